@@ -17,7 +17,7 @@ from threadpoolctl import ThreadpoolController
 
 @cache
 def _controller() -> ThreadpoolController:
-    """Of the libraries that this process has loaded; finding them takes a millisecond."""
+    """Returns the controller of the loaded libraries of linear algebra; it takes a millisecond."""
     import scipy.linalg  # noqa: F401  slow; loads a library of its own, which is to be found
 
     return ThreadpoolController()

@@ -44,12 +44,12 @@ class Compiled:
     model: mujoco.MjModel
 
     def compile(self) -> mujoco.MjModel:
-        """A copy of the model."""
+        """Returns a copy of the model."""
         return copy.copy(self.model)
 
 
 def to_sysid(plant: Plant, log: Log, names: Sequence[str] = ()) -> Any:
-    """A log as the `ModelSequences` of `mujoco.sysid`.
+    """Returns a log as the `ModelSequences` of `mujoco.sysid`.
 
     Args:
         plant: the model, whose start of nominal values is the initial state.
@@ -88,7 +88,7 @@ def to_sysid(plant: Plant, log: Log, names: Sequence[str] = ()) -> Any:
 def to_sysid_parameters(
     plant: Plant, names: Sequence[str], start: Mapping[str, float] | None = None
 ) -> Any:
-    """Free parameters as the `ParameterDict` of `mujoco.sysid`.
+    """Returns free parameters as the `ParameterDict` of `mujoco.sysid`.
 
     Args:
         plant: has their values and bounds.
@@ -109,7 +109,7 @@ def to_sysid_parameters(
 
 
 def from_sysid(result: Any) -> dict[str, float]:
-    """Values by name from a `ParameterDict`, or from what `mujoco.sysid.optimize` returns.
+    """Returns values by name from a `ParameterDict`, or from what `mujoco.sysid.optimize` returns.
 
     Raises:
         InputError: a parameter has more than one number.
@@ -126,7 +126,7 @@ def from_sysid(result: Any) -> dict[str, float]:
 
 
 def sysid_residual(plant: Plant, log: Log, names: Sequence[str]) -> Residual:
-    """The residual function that `mujoco.sysid.optimize` takes, for a plant and a log.
+    """Returns the residual function that `mujoco.sysid.optimize` takes, for a plant and a log.
 
     Raises:
         InputError: as `to_sysid`.
@@ -162,7 +162,7 @@ def sysid_residual(plant: Plant, log: Log, names: Sequence[str]) -> Residual:
 
 
 def full_state(model: mujoco.MjModel, start: State) -> np.ndarray:
-    """Starts as rows of MuJoCo's full physics state (time, qpos, qvel, act), shape (n, size)."""
+    """Returns starts as rows of MuJoCo's full physics state (time, qpos, qvel, act): (n, size)."""
     rows = [np.atleast_2d(part) for part in (start.qpos, start.qvel, start.act)]
     full = mujoco.mjtState.mjSTATE_FULLPHYSICS
     state = np.hstack([np.zeros((len(rows[0]), 1)), *rows])
@@ -175,13 +175,13 @@ def full_state(model: mujoco.MjModel, start: State) -> np.ndarray:
 
 
 def _joint(model: mujoco.MjModel, field: str, address: int) -> str:
-    """Name of the joint whose state stands at an address."""
+    """Returns the name of the joint whose state stands at an address."""
     of = {"qpos": model.jnt_qposadr, "qvel": model.jnt_dofadr}[field]
     return model.joint(int(np.flatnonzero(of == address)[0])).name
 
 
 def _sysid() -> ModuleType:
-    """`mujoco.sysid`, whose own import hides that it failed."""
+    """Imports `mujoco.sysid`, whose own import hides that it failed, and returns it."""
     try:
         for part in ("parameter", "optimize", "plotting", "residual"):
             import_module(f"mujoco.sysid._src.{part}")

@@ -66,7 +66,7 @@ def _tail(path: Path) -> str:
 
 
 def _drafts(path: Path, parent: Path) -> list[Path]:
-    """The drafts of results of a folder, those of programs that still run among them."""
+    """Returns the drafts of results of a folder, also those of programs that still run."""
     found = [each for each in path.iterdir() if each.name.startswith(_DRAFT)]
     with suppress(OSError):  # what is above may be written and not read
         found += [

@@ -22,7 +22,7 @@ import mujoco
 
 @cache
 def library() -> ctypes.CDLL:
-    """MuJoCo's library, which `import mujoco` has loaded.
+    """Returns MuJoCo's library, which `import mujoco` has loaded.
 
     Raises:
         ImportError: it is not where the package has it.
@@ -46,7 +46,7 @@ def _ignore(message: bytes) -> None:
 
 
 class _Switch:
-    """What is set when the first of several users begins, and set back when the last one ends."""
+    """A switch that its first user turns off, and its last one sets back."""
 
     def __init__(self, read: Callable[[], Any], write: Callable[[Any], object], off: Any) -> None:
         self._read, self._write, self._off = read, write, off

@@ -35,7 +35,7 @@ class GraphicsError(InputError):
 
 @contextmanager
 def told_of(where: str) -> Iterator[None]:
-    """Bad input that is found inside is told with the place where a user wrote it.
+    """Adds to an `InputError` of the block the place where a user wrote the bad input.
 
     Args:
         where: the key and the file, such as "free in robot.toml".
@@ -59,7 +59,7 @@ def _printable(letter: str) -> str:
 
 
 def repeated(names: Sequence[str]) -> list[str]:
-    """The names that occur more than once, in alphabetical order."""
+    """Returns the names that occur more than once, in alphabetical order."""
     return sorted(name for name, count in Counter(names).items() if count > 1)
 
 
@@ -110,7 +110,7 @@ def refuse_kind(value: object, kinds: type | tuple[type, ...], what: str) -> Non
 def unknown_name(
     what: str, name: str, known: Iterable[str], likely: str | None = None
 ) -> InputError:
-    """An `InputError` for a misspelt name, with the likely one first and all good ones listed.
+    """Returns an `InputError` for a misspelt name, with the likely one and all good ones listed.
 
     Args:
         what: the name is of.
@@ -131,5 +131,5 @@ def unknown_name(
 
 
 def nearest(name: str, known: Iterable[str], cutoff: float = 0.6) -> str | None:
-    """The good name that is most like another, from a share of letters on; None where none is."""
+    """Returns the good name most similar to another, None where none has similarity `cutoff`."""
     return next(iter(get_close_matches(name, sorted(known), n=1, cutoff=cutoff)), None)

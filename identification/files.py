@@ -238,7 +238,7 @@ def _refuse_long(value: Any) -> None:
 
 
 def read_toml(path: Path, what: str = "TOML file") -> dict[str, Any]:
-    """The content of a TOML file that was written by hand.
+    """Returns the content of a TOML file that was written by hand.
 
     Args:
         path: of the file.

@@ -39,7 +39,7 @@ _RESULTS = ("result.json", "report.html", MADE)  # no folder may bear these name
 
 
 def list_foreign(folder: Path) -> list[str]:
-    """Names of the files of a folder that were not made there, or were changed since."""
+    """Returns the names of files in a folder that were not made there, or were changed since."""
     return list_content(folder).foreign if folder.is_dir() else []
 
 
@@ -116,7 +116,7 @@ class Draft:
 
 @contextmanager
 def draft_of(path: str | os.PathLike[str]) -> Iterator[Draft]:
-    """A draft of the results of a folder, which is made when missing; it is saved when asked.
+    """Yields a draft of the results of a folder, made when missing; it is saved when asked.
 
     Args:
         path: of the folder.
@@ -157,7 +157,7 @@ def draft_of(path: str | os.PathLike[str]) -> Iterator[Draft]:
 
 @contextmanager
 def whole_folder(path: str | os.PathLike[str]) -> Iterator[Path]:
-    """A temporary folder whose files are saved in `path` when the block ends well.
+    """Yields a temporary folder whose files are saved in `path` when the block ends well.
 
     Args:
         path: of a folder, which is made when missing.
@@ -215,7 +215,7 @@ def _replace(draft: Path, place: Path, now: Content) -> bool:
 
 
 def _is_still(now: Content, old: Path, new: Path) -> bool:
-    """Whether nobody has put or changed a file in the old folder while it was replaced."""
+    """Returns whether nobody put or changed a file in the old folder while it was replaced."""
     try:
         same = list_content(old) == now
         return same and all(os.path.samestat((old / n).lstat(), (new / n).lstat())
@@ -225,7 +225,7 @@ def _is_still(now: Content, old: Path, new: Path) -> bool:
 
 
 def _stands_in(folder: Path) -> bool:
-    """Whether this program stands in the folder, as does the shell from which it was called."""
+    """Returns whether the current directory of this program is in the folder."""
     try:
         return Path.cwd().is_relative_to(folder)
     except OSError:  # where it stands is no more
@@ -234,7 +234,7 @@ def _stands_in(folder: Path) -> bool:
 
 @contextmanager
 def _filled(draft: Path, fresh: Path) -> Iterator[Path]:
-    """A hidden folder with the files of a draft and their record; what is left of it goes."""
+    """Yields a hidden folder with a draft's files and their record; it is removed at the end."""
     try:
         for file in draft.iterdir():
             try:

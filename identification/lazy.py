@@ -10,7 +10,7 @@ from typing import Any
 def lazy(
     package: str, public: Mapping[str, str]
 ) -> tuple[Callable[[str], Any], Callable[[], list[str]]]:
-    """A package's `__getattr__` and `__dir__`.
+    """Returns a package's `__getattr__` and `__dir__`.
 
     Args:
         package: its name.

@@ -1,4 +1,4 @@
-"""What lies in a folder of results: what the program made there, and what belongs to others.
+"""The content of a folder of results: what the program made there, and what belongs to others.
 
 The hidden file `.made.json` lists what was made, each file with the hash of its content. A file
 that is not listed, or that was changed since, belongs to somebody else.

@@ -61,7 +61,7 @@ def finish_moves(folder: Path) -> None:
 
 
 def _steps(moving: Path, folder: Path) -> list[tuple[Path, Path]]:
-    """The moves that are left, from where to where. A file of others keeps its place."""
+    """Returns the moves that are left, from where to where. A file of others keeps its place."""
     with suppress(FileExistsError):
         (moving / _OLD).mkdir()
     new = read_made(moving)
@@ -77,5 +77,5 @@ def _steps(moving: Path, folder: Path) -> list[tuple[Path, Path]]:
 
 
 def _last(names: Iterable[str]) -> list[str]:
-    """Sorted names, with result.json at the end."""
+    """Returns the sorted names, with result.json at the end."""
     return sorted(names, key=lambda name: (name == _LAST, name))

@@ -27,7 +27,7 @@ class GivenUp(BaseException):
 
 
 def threads() -> int:
-    """The processors that this process may use, or fewer if `INCA_MJ_THREADS` says so.
+    """Returns how many processors this process may use, or fewer if `INCA_MJ_THREADS` says so.
 
     A part of some work has one of them.
     """
@@ -103,6 +103,6 @@ def split(count: int, most: int) -> list[slice]:
 
 @lru_cache(maxsize=1)
 def _pool(count: int, process: int) -> ThreadPoolExecutor:
-    """The pool of a process; a process that was forked off begins its own."""
+    """Returns the pool of a process; a process that was forked off begins its own."""
     del process
     return ThreadPoolExecutor(count, "inca_mj")

@@ -1,4 +1,4 @@
-"""How far a long computation is: told where it is known, shown by whoever watches.
+"""Progress of a long computation: told where it is known, shown by whoever watches.
 
 A computation tells the stage it is in and counts its steps. Nothing is shown unless a program
 watches, as the commands do on a terminal. A search does not know how many steps it will take; it
@@ -36,7 +36,7 @@ def watched(watch: Watch) -> Iterator[None]:
 
 @contextmanager
 def stage(what: str, steps: int = USUAL) -> Iterator[Advance]:
-    """A stage of a computation; call what it yields after each step.
+    """Begins a stage of a computation; call what it yields after each step.
 
     Args:
         what: is counted, such as "refits".
@@ -51,7 +51,7 @@ def stage(what: str, steps: int = USUAL) -> Iterator[Advance]:
 
 
 def counted(items: Iterable[Item], what: str, steps: int = USUAL) -> Iterator[Item]:
-    """Items of a stage, each counted when the next one is asked for.
+    """Yields the items of a stage, each counted when the next one is asked for.
 
     Args:
         items: what is computed with.
@@ -65,7 +65,7 @@ def counted(items: Iterable[Item], what: str, steps: int = USUAL) -> Iterator[It
 
 
 def duration(seconds: float) -> str:
-    """A time as a person says it: 40 s, 12 min, 3 h 5 min."""
+    """Returns a time as a person says it: 40 s, 12 min, 3 h 5 min."""
     minutes, rest = divmod(round(seconds), 60)
     if minutes < 2:
         return f"{60 * minutes + rest} s"

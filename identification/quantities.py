@@ -26,12 +26,12 @@ HELD = 2  # digits of the error of a model that are said (docs/identification.md
 
 
 def finite_or_none(value: float | None) -> float | None:
-    """A number for JSON, which knows no infinity: null where it is not finite."""
+    """Returns a number for JSON, which knows no infinity: None (null) where it is not finite."""
     return None if value is None or not isfinite(value) else float(value)
 
 
 def fall_words(fall: float) -> str:
-    """The relative change of a mean square in words: "falls by 12 %", "rises by 3 %".
+    """Returns the relative change of a mean square in words: "falls by 12 %", "rises by 3 %".
 
     Args:
         fall: 1 minus the new value over the old one.
@@ -43,7 +43,7 @@ def fall_words(fall: float) -> str:
 
 
 def quantity(value: float, std: float = float("nan"), unit: str = "", like: float = 0.0) -> str:
-    """A value with its std and unit.
+    """Returns a value with its std and unit.
 
     Args:
         value: in `unit`.
@@ -67,7 +67,7 @@ def quantity(value: float, std: float = float("nan"), unit: str = "", like: floa
 
 
 def matched(value: float, std: float, sign: str = "") -> tuple[str, str]:
-    """A value and its std for two columns of a table: the value has the digits of the std.
+    """Returns a value and its std for two columns of a table: the value has the digits of the std.
 
     Args:
         value: in its unit.
@@ -89,17 +89,17 @@ def matched(value: float, std: float, sign: str = "") -> tuple[str, str]:
 
 
 def probability(p: float) -> str:
-    """A small probability."""
+    """Returns a small probability as text."""
     return f"{p:.0e}" if p > 0 else "below 1e-300"
 
 
 def held(value: float) -> str:
-    """The error of a model, or a ratio of two, with two digits."""
+    """Returns the error of a model, or a ratio of two, with two digits."""
     return _plain(_rounded(value, HELD), HELD) if isfinite(value) else "unknown"
 
 
 def error(value: float, unit: str) -> str:
-    """The error of a model with its unit, two digits.
+    """Returns the error of a model with its unit, two digits.
 
     Args:
         value: in `unit`.
@@ -109,7 +109,7 @@ def error(value: float, unit: str) -> str:
 
 
 def alike(values: Sequence[float], unit: str, digits: int = _DIGITS) -> list[str]:
-    """Several values with one prefix, so that they compare at a glance.
+    """Returns several values with one prefix, so that they compare at a glance.
 
     It is that of the largest, or where that has none and the smallest needs one, the milli's.
 
@@ -128,12 +128,12 @@ def alike(values: Sequence[float], unit: str, digits: int = _DIGITS) -> list[str
 
 
 def plain_unit(unit: str) -> str:
-    """A unit without brackets around single symbols, as somebody may have written it: m/(N)."""
+    """Returns a unit without brackets around single symbols, as a user may have written: m/(N)."""
     return _ALONE.sub(r"\1", unit)
 
 
 def per(over: str, under: str, power: int = 1) -> str:
-    """The unit of a quotient, with brackets only where they are needed: m/N, rad/(N m), 1/(N m)^2.
+    """Returns the unit of a quotient, with brackets only where needed: m/N, rad/(N m), 1/(N m)^2.
 
     Args:
         over: unit of the numerator; "1" where it has none.
@@ -145,7 +145,7 @@ def per(over: str, under: str, power: int = 1) -> str:
 
 
 def _scale(magnitude: float, unit: str, exact: bool) -> tuple[float, str]:
-    """Unit to divide by, in the old one, and its name."""
+    """Returns the unit for a magnitude, as a factor to the old unit, and its name."""
     unit = plain_unit(unit)
     if not unit:
         return (0.01, "%") if magnitude < 1 and not exact else (1.0, "")
@@ -166,7 +166,7 @@ def _scale(magnitude: float, unit: str, exact: bool) -> tuple[float, str]:
 
 
 def _lead(unit: str) -> tuple[str, str]:
-    """The first symbol of a unit, and the rest of it."""
+    """Returns the first symbol of a unit, and the rest of it."""
     end = next((k for k, c in enumerate(unit) if not c.isalpha()), len(unit))
     # A power belongs to the symbol: mm² is not milli(m²)
     if end < len(unit) and unit[end] in "^²³0123456789":
@@ -175,20 +175,20 @@ def _lead(unit: str) -> tuple[str, str]:
 
 
 def _decimals(std: float) -> int:
-    """Decimals that show two digits of a std that starts with 1 to 3, else one."""
+    """Returns the decimals that show two digits of a std that starts with 1 to 3, else one."""
     first = floor(log10(std))
     return -first + (1 if std / 10.0**first < 3.5 else 0)
 
 
 def _shared(value: float, std: float) -> int:
-    """Decimals of a value and its std: one more where the value would read as zero."""
+    """Returns the decimals of a value and its std: one more where the value would read as zero."""
     places = _decimals(std)
     is_lost = value != 0 and abs(value) < 0.5 * 10.0**-places
     return places + 1 if is_lost and std / 10.0 ** floor(log10(std)) >= 3.5 else places
 
 
 def _rounded(value: float, digits: int) -> float:
-    """131.4 with two digits is 130."""
+    """Returns a value rounded if `digits` is `HELD`: 131.4 with two digits is 130."""
     return float(f"{value:.{digits}g}") if digits == HELD else value
 
 

@@ -1,4 +1,4 @@
-"""What a fit predicts of the samples after the fitted ones, and how surely."""
+"""Predictions of a fit on the samples after the fitted ones, and their uncertainty."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from identification.model.sensitivity import sensitivity
 def beyond(
     estimate: Estimate, whole: Log | None, covariance: np.ndarray
 ) -> tuple[np.ndarray | None, np.ndarray | None, np.ndarray]:
-    """Fit in %, rms error, and rms spread of the prediction by the covariance of q, (ny,) each.
+    """Returns fit in %, rms error, and rms spread of the prediction by the covariance of q: (ny,).
 
     All three are of the samples after the fitted ones, in a free run from the start of the log.
     """

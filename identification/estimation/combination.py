@@ -1,4 +1,4 @@
-"""What can be known of parameters that can be scaled together while no output changes.
+"""Combinations of parameters that can be known where the parameters themselves cannot.
 
     θ_j → θ_j c^v_j for all c        a scaling symmetry v: the outputs stay as they are
     Π θ_j^w_j,  Σ_j w_j v_j = 0       products that no symmetry changes: these can be known
@@ -26,7 +26,7 @@ class ScalingSymmetry:
     powers: dict[str, Fraction]
 
     def row(self, names: Sequence[str]) -> np.ndarray:
-        """v as a direction of q, of norm 1, shape (p,)."""
+        """Returns v as a direction of q, of norm 1, shape (p,)."""
         v = np.array([float(self.powers.get(name, 0)) for name in names])
         return v / np.linalg.norm(v)
 
@@ -47,20 +47,20 @@ class Combination:
         )
 
     def value(self, values: dict[str, float]) -> float:
-        """Its value, in the product of the units."""
+        """Returns the value of the product, in the product of the units."""
         return float(
             np.prod([values[name] ** float(power) for name, power in self.exponents.items()])
         )
 
     def row(self, names: Sequence[str]) -> np.ndarray:
-        """Its exponents, shape (p,)."""
+        """Returns the exponents, shape (p,)."""
         return np.array([float(self.exponents.get(name, 0)) for name in names])
 
 
 def known_products(
     symmetries: Sequence[ScalingSymmetry], names: Sequence[str]
 ) -> list[Combination]:
-    """Products that no symmetry changes, made of the parameters that symmetries change.
+    """Returns products that no symmetry changes, of the parameters that symmetries change.
 
     A set of k parameters that m symmetries change together gives k - m products.
     """
@@ -77,14 +77,14 @@ def known_products(
 
 
 def _whole(powers: dict[str, Fraction]) -> Combination:
-    """The product scaled so that its smallest power is 1, in the order of the powers."""
+    """Returns the product scaled so that its smallest power is 1, in the order of the powers."""
     least = min(powers.values(), key=abs)
     return Combination({n: x / least for n, x in sorted(
         powers.items(), key=lambda item: abs(item[1]))})  # fmt: skip
 
 
 def _reduced(rows: list[list[Fraction]]) -> tuple[list[list[Fraction]], list[int]]:
-    """Reduced row echelon form from the last column on, and the column that each row leads."""
+    """Returns the echelon form reduced from the last column on, and each row's leading column."""
     rows, held = [list(row) for row in rows], list[int]()
     for column in reversed(range(len(rows[0]) if rows else 0)):
         lead = len(held)

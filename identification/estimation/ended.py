@@ -27,7 +27,7 @@ LOSSES: Mapping[str, Callable[[np.ndarray], np.ndarray]] = {  # ρ of scipy's `l
 
 
 def cost(found: Estimate, error: np.ndarray, known: np.ndarray) -> float:
-    """V at the end of a search.
+    """Returns V at the end of a search.
 
     Args:
         found: where it ended.

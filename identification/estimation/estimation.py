@@ -41,7 +41,7 @@ from identification.model.predictor import Plant, Predictor
 
 @dataclass(frozen=True, kw_only=True)
 class Estimate:
-    """Where a search ended.
+    """The end of a search: the estimate, and how it was found.
 
     Attributes:
         predictor: the plant, the log and the names of the free parameters.

@@ -55,7 +55,7 @@ class Experiment:
             raise InputError(f"inputs have shape {inputs.shape}; the model takes (N, {nu})")
 
     def log(self) -> Log:
-        """The inputs as a log whose outputs are still zero."""
+        """Returns the inputs as a log whose outputs are still zero."""
         model = self.plant.model
         n = len(self.inputs)
         return Log(
@@ -75,7 +75,7 @@ def information(
     nuisance: Sequence[str] = (),
     resolved: bool = True,
 ) -> Information:
-    """What an experiment would say about parameters, from 4 p simulations or more.
+    """Returns what an experiment would say about parameters, from 4 p simulations or more.
 
     Args:
         experiment: the plant, its inputs, the outputs that are measured, and their noise.

@@ -1,4 +1,4 @@
-"""How far the steps of the simulation move an estimate of a free run.
+"""The effect of the steps of the simulation on an estimate of a free run.
 
     δ = (SᵀS + P)⁻¹ Sᵀ C(ŷ_Δ - ŷ_Δ/4)
 

@@ -171,12 +171,12 @@ def assess(estimate: Estimate, validation: Log | None = None) -> Fit:
 
 
 def _over_all(rms: np.ndarray) -> float:
-    """Rms over all outputs, of those of each, shape (ny,)."""
+    """Returns the rms over all outputs, from that of each output, shape (ny,)."""
     return float(np.sqrt(np.mean(rms**2)))
 
 
 def _bounded(correlation: np.ndarray) -> np.ndarray:
-    """A correlation without its rounding: within ±1, and 1 of a parameter with itself.
+    """Returns a correlation without its rounding: within ±1, and 1 of a parameter with itself.
 
     What no record determines has no variance and keeps its zero.
     """
@@ -194,7 +194,7 @@ def _sandwich(
     found: Identifiability,
     prior: np.ndarray,
 ) -> np.ndarray:
-    """Covariance of q along the directions that log or priors determine, shape (p, p)."""
+    """Returns the covariance of q along directions that log or priors determine, shape (p, p)."""
     n, ny, p = S.shape
     length = min(int(np.ceil(3 * correlation_time(error) - 2)), max(1, n // 30))
     scores = np.einsum("nip,ni->np", S, pull / share)
@@ -208,7 +208,7 @@ def _sandwich(
 def combinations_of(
     found: Identifiability, estimate: Estimate, covariance: np.ndarray
 ) -> tuple[tuple[Combination, float, float], ...]:
-    """Products of parameters, with the value and the std of each product.
+    """Returns products of parameters, with the value and the std of each product.
 
     The std is infinite where the product also changes along a direction that the differences cannot
     resolve.

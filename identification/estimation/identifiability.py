@@ -1,4 +1,4 @@
-"""What a log can and cannot say about parameters.
+"""Identifiability: what a log can and cannot say about parameters.
 
     S = C ∂ŷ/∂q (n ny × p),   F = SᵀS    Fisher information for noise whitened by C
     S = U Σ Vᵀ:   a move along v_i is felt as σ_i;  its std is 1/σ_i
@@ -80,27 +80,27 @@ class Identifiability:
 
     @property
     def undetermined(self) -> np.ndarray:
-        """Which parameters a blind direction moves, shape (p,)."""
+        """True for each parameter that a blind direction moves, shape (p,)."""
         return self.moved(np.eye(len(self.names)))
 
     @property
     def moved_by_unresolved(self) -> np.ndarray:
-        """Which parameters a direction that is no symmetry moves, shape (p,)."""
+        """True for each parameter that a direction that is no symmetry moves, shape (p,)."""
         moves = self._moves(np.eye(len(self.names)))[:, : len(self.unresolved)]
         return np.asarray(moves.any(axis=1))
 
     def moved(self, powers: np.ndarray) -> np.ndarray:
-        """Which products of powers of parameters, shape (m, p), a blind direction moves: (m,)."""
+        """Returns which products of powers of parameters (m, p) a blind direction moves, (m,)."""
         return np.asarray(self._moves(powers).any(axis=1))
 
     def _moves(self, powers: np.ndarray) -> np.ndarray:
-        """Whether each blind direction moves each product of powers (m, p): (m, p - rank)."""
+        """Returns whether each blind direction moves each product of powers (m, p): (m, blind)."""
         least = UNMOVED * np.linalg.norm(powers, axis=1)[:, None]
         off = self._std(powers)[:, None] * self.leaks
         return np.abs(powers @ self.blind.T) > np.maximum(least, off)
 
     def _std(self, powers: np.ndarray) -> np.ndarray:
-        """Cramér-Rao std of powersᵀq along the directions that are felt, shape (m,)."""
+        """Returns the Cramér-Rao std of powersᵀq along the directions that are felt, shape (m,)."""
         felt = self.directions[: self.rank] / self.strengths[: self.rank, None]
         return np.sqrt(((powers @ felt.T) ** 2).sum(axis=1))
 
@@ -110,7 +110,7 @@ class Identifiability:
         return known_products(self.symmetries, self.names)
 
     def weakest(self) -> str:
-        """The worst determined direction, as `R_s +0.45, k_s -0.89`."""
+        """Returns the worst determined direction, as `R_s +0.45, k_s -0.89`."""
         return in_words(self.directions[-1], self.names)
 
 
@@ -159,28 +159,28 @@ def identifiability(
 
 
 def column_errors(E: np.ndarray, least: float) -> np.ndarray:
-    """d: norms of the columns of E (n, p), each at least that of round-off, shape (p,)."""
+    """Returns d: norms of the columns of E (n, p), each at least that of round-off, shape (p,)."""
     return np.maximum(np.linalg.norm(E, axis=0), least)
 
 
 def unresolved_directions(S: np.ndarray, errors: np.ndarray) -> np.ndarray:
-    """Directions whose effect is within the errors of S (n, p); orthonormal, shape (k, p)."""
+    """Returns orthonormal directions whose effect is within the errors of S (n, p): (k, p)."""
     _, strengths, directions = np.linalg.svd(_tall(S) / errors, full_matrices=False)
     return _basis(directions[strengths <= np.sqrt(len(errors))] / errors)
 
 
 def _tall(S: np.ndarray) -> np.ndarray:
-    """S with at least as many rows as columns; rows that are added are zero."""
+    """Returns S with at least as many rows as columns; rows that are added are zero."""
     return np.vstack([S, np.zeros((max(0, S.shape[1] - len(S)), S.shape[1]))])
 
 
 def _basis(rows: np.ndarray) -> np.ndarray:
-    """Orthonormal rows that span the same space, the strongest first, shape like `rows`."""
+    """Returns orthonormal rows that span the same space, the strongest first, shape like `rows`."""
     size = np.linalg.norm(rows, axis=1, keepdims=True)
     return np.linalg.svd(rows / np.where(size > 0, size, 1.0), full_matrices=False)[2]
 
 
 def in_words(direction: np.ndarray, names: Sequence[str], least: float = 0.1) -> str:
-    """A direction as text, by its largest entries: `R_s +0.45, k_s -0.89`."""
+    """Returns a direction as text, by its largest entries: `R_s +0.45, k_s -0.89`."""
     order = np.argsort(-np.abs(direction))
     return ", ".join(f"{names[i]} {direction[i]:+z.2f}" for i in order if abs(direction[i]) > least)

@@ -1,4 +1,4 @@
-"""What an experiment says about parameters: the Fisher information and its criteria.
+"""The information of an experiment on parameters: the Fisher information and its criteria.
 
     F = SᵀS,   S = ∂ŷ/∂q / σ  (n ny × p)                        white noise of std σ on each output
     cov(q̂) ≥ F⁻¹                                                  Cramér-Rao, all of q unknown
@@ -32,7 +32,7 @@ from identification.model.coordinates import Coordinates
 
 @dataclass(frozen=True, kw_only=True)
 class Information:
-    """What an experiment says about p parameters.
+    """The information of an experiment on p parameters.
 
     Attributes:
         names: the parameters of interest, then the nuisances.
@@ -110,7 +110,7 @@ class Information:
         return float((self.std**2).sum())
 
     def with_data(self, other: Information) -> Information:
-        """The information of both experiments together.
+        """Returns the information of both experiments together.
 
         Raises:
             InputError: the other is about other parameters.
@@ -126,7 +126,7 @@ class Information:
         return replace(self, root=root, error=error, least=least, symmetries=symmetries)
 
     def about(self, names: Sequence[str]) -> Information:
-        """The information on some of the parameters of interest, where the others are known.
+        """Returns the information on some of the parameters of interest when the others are known.
 
         The nuisances stay unknown.
 
@@ -178,7 +178,7 @@ class Information:
 
 
 def information_of(resolved: Resolved, space: Coordinates, asked: int | None = None) -> Information:
-    """The information of whitened sensitivities on the first `asked` parameters, or on all."""
+    """Returns the information of whitened sensitivities on all or the first `asked` parameters."""
     root, error = _compressed(resolved.S, resolved.E)
     return Information(
         names=space.names,
@@ -192,7 +192,7 @@ def information_of(resolved: Resolved, space: Coordinates, asked: int | None = N
 
 
 def determinable(found: Information) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Parameters that can be determined, and those that must be held fixed for this.
+    """Returns parameters that can be determined, and those that must be held fixed for this.
 
     For each blind direction, the parameter that moves most along it is held fixed.
     """
@@ -206,7 +206,7 @@ def determinable(found: Information) -> tuple[tuple[str, ...], tuple[str, ...]]:
 
 
 def _compressed(S: np.ndarray, E: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """S and E (n, p) rotated into fewer rows: R of S = Q R, and [QᵀE; R of the rest of E]."""
+    """Returns S and E (n, p) in fewer rows: R of S = Q R, and [QᵀE; R of the rest of E]."""
     Q, root = np.linalg.qr(S)
     along = Q.T @ E
     return root, np.vstack([along, np.linalg.qr(E - Q @ along).R])
@@ -215,5 +215,5 @@ def _compressed(S: np.ndarray, E: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def _among(
     symmetries: tuple[ScalingSymmetry, ...], names: Sequence[str]
 ) -> tuple[ScalingSymmetry, ...]:
-    """The symmetries that change no other parameters than the named ones."""
+    """Returns the symmetries that change no other parameters than the named ones."""
     return tuple(s for s in symmetries if s.powers.keys() <= set(names))

@@ -33,13 +33,13 @@ class Criterion(Protocol[Step]):
         """‖r‖² at the point."""
 
     def step(self, μ: Cost) -> Step:
-        """The step δ(μ) within the bounds."""
+        """Returns the step δ(μ) within the bounds."""
 
     def cost_after(self, step: Step) -> Cost:
-        """‖r‖² after a step; infinite where the plant cannot be simulated."""
+        """Returns ‖r‖² after a step; infinite where the plant cannot be simulated."""
 
     def bend(self, step: Step, after: Cost, μ: Cost) -> Step | None:
-        """The step with a second-order correction; None where the step stays as it is.
+        """Returns the step with a second-order correction; None where the step stays as it is.
 
         Args:
             step: δ(μ).
@@ -53,7 +53,7 @@ Linearised = TypeVar("Linearised", bound=Criterion)
 
 @dataclass(frozen=True)
 class Damping:
-    """How the damping μ changes after each step.
+    """The rule by which the damping μ changes from step to step.
 
     Attributes:
         first: μ of the first step.
@@ -70,7 +70,7 @@ class Damping:
     floor: float
 
     def next(self, μ: np.ndarray, taken: np.ndarray) -> np.ndarray:
-        """μ of the next step, elementwise, from μ of the last one and whether it was accepted."""
+        """Returns μ of the next step, elementwise, from the last μ and whether it was accepted."""
         low, high = μ / self.lowered, np.maximum(self.raised * μ, self.least)
         return np.where(taken, np.where(low < self.least, self.floor, low), high)
 
@@ -104,7 +104,7 @@ def levenberg_marquardt(
     damping: Damping,
     μ: Cost | None = None,
 ) -> Iterator[Trial[Linearised, Step]]:
-    """The trials of a descent; the iterator never ends by itself.
+    """Yields the trials of a descent; the iterator never ends by itself.
 
     Args:
         criterion: the criterion, linearised where the search begins.

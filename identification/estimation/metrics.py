@@ -1,4 +1,4 @@
-"""How well a simulation agrees with a log: fit, rms and loss, each over n samples."""
+"""Agreement of a simulation with a log: fit, rms and loss, each over n samples."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from identification.logs.sampling import FloatArray
 
 
 def fit_percent(y: FloatArray, y_hat: FloatArray) -> FloatArray:
-    """Fit of each channel, 100 (1 − ‖ŷ − y‖ / ‖y − ȳ‖) [%].
+    """Returns the fit of each channel, 100 (1 − ‖ŷ − y‖ / ‖y − ȳ‖) [%].
 
     100 is perfect, 0 is no better than the mean of the measurement, and less is worse than that. A
     channel that never moves has no scale to compare with: its fit is NaN.
@@ -45,7 +45,7 @@ def fit_percent(y: FloatArray, y_hat: FloatArray) -> FloatArray:
 
 
 def mean_fit(fit: FloatArray) -> str:
-    """The mean fit in words; outputs that never move have none, and are left out."""
+    """Returns the mean fit in words; outputs that never move have none, and are left out."""
     moving = fit[~np.isnan(fit)]
     if not len(moving):
         return "undefined: no output moves"
@@ -54,7 +54,7 @@ def mean_fit(fit: FloatArray) -> str:
 
 
 def rms(residual: FloatArray) -> FloatArray:
-    """Root mean square (ny,) of each channel of a residual (n, ny), in the channel's unit.
+    """Returns the root mean square (ny,) of each channel of a residual (n, ny), in its unit.
 
     Raises:
         InputError: the residual is not (n, ny).
@@ -64,7 +64,7 @@ def rms(residual: FloatArray) -> FloatArray:
 
 
 def loss(residual: FloatArray) -> float:
-    """The quadratic loss (1/N) Σ_k ε_kᵀ ε_k of a residual ε, shape (N, ny): thesis, eq. 3.5.
+    """Returns the quadratic loss (1/N) Σ_k ε_kᵀ ε_k of a residual ε (N, ny): thesis, eq. 3.5.
 
     All outputs must be in one unit; the loss is in its square.
 

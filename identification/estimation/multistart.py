@@ -116,7 +116,7 @@ def estimate_from(
 
 
 def _around(space: Coordinates, first: np.ndarray, n: int, spread: float, seed: int) -> np.ndarray:
-    """The first start and n - 1 others around it, inside the bounds, shape (n, p)."""
+    """Returns the first start and n - 1 others around it, inside the bounds, shape (n, p)."""
     q = space.encode(first)
     reach = np.where(space.logarithmic, spread, ELSEWHERE * spread)
     low, high = np.maximum(space.lower, q - reach), np.minimum(space.upper, q + reach)
@@ -125,6 +125,6 @@ def _around(space: Coordinates, first: np.ndarray, n: int, spread: float, seed: 
 
 
 def _error(found: Estimate) -> np.ndarray:
-    """y - ŷ at the end of a search, shape (n, ny)."""
+    """Returns y - ŷ at the end of a search, shape (n, ny)."""
     predicted = found.predictor.predict(found.space.decode(found.q))[0]
     return np.asarray(found.predictor.log.outputs - predicted)

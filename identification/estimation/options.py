@@ -59,5 +59,5 @@ class Options:
 
 
 def prior_weight(options: Options, names: Sequence[str]) -> np.ndarray:
-    """1/std of the prior of each q, zero where there is none, shape (p,)."""
+    """Returns 1/std of the prior of each q, zero where there is none, shape (p,)."""
     return np.array([1 / options.priors.get(name, np.inf) for name in names])

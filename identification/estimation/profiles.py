@@ -60,7 +60,7 @@ class Profile:
 def profile(
     fit: Fit, name: str, points: int | Sequence[float] = 9, max_evaluations: int = 30
 ) -> Profile:
-    """Profile one parameter of a fit: at each of its values the others are fitted again.
+    """Profiles one parameter of a fit: at each of its values the others are fitted again.
 
     Args:
         fit: an estimate and its uncertainty.
@@ -101,12 +101,12 @@ def profile(
 
 
 def _std_q(fit: Fit, j: int) -> float:
-    """Std of q_j; infinite where the log does not determine it."""
+    """Returns the std of q_j; infinite where the log does not determine it."""
     return float(fit.std[j] / fit.estimate.space.slope(fit.estimate.q)[j])
 
 
 def _scale(fit: Fit, j: int, bottom: float) -> float:
-    """s_j², or its value for white noise where the log does not determine q_j."""
+    """Returns s_j², or its value for white noise where the log does not determine q_j."""
     known, alone = _std_q(fit, j), float(fit.found.std[j])
     freedom = max(1, fit.residual.size - len(fit.std))
     both = np.isfinite(known) and np.isfinite(alone) and known > 0
@@ -114,7 +114,7 @@ def _scale(fit: Fit, j: int, bottom: float) -> float:
 
 
 def _spread(fit: Fit, j: int, points: int) -> np.ndarray:
-    """Values evenly spaced in q_j, inside the bounds."""
+    """Returns values evenly spaced in q_j, inside the bounds."""
     space, q = fit.estimate.space, fit.estimate.q
     reach = min(REACH * _std_q(fit, j), WIDEST)
     moves = np.tile(q, (points, 1))
@@ -126,7 +126,7 @@ def _spread(fit: Fit, j: int, points: int) -> np.ndarray:
 def _refit(
     estimate: Estimate, name: str, value: float, near: dict[str, float], most: int
 ) -> dict[str, float]:
-    """Best values of the others while one is held; the search starts from a neighbouring point."""
+    """Fits the other parameters again while one is held, from a neighbouring point."""
     predictor, options = estimate.predictor, estimate.options
     held = {**predictor.fixed, **near, name: value}
     free = tuple(n for n in near if n != name)
@@ -140,14 +140,14 @@ def _refit(
 
 
 def _cost(estimate: Estimate, values: dict[str, float]) -> float:
-    """V of the estimate's criterion, with the same covariance."""
+    """Returns V of the estimate's criterion, with the same covariance."""
     row = np.array([[values[n] for n in estimate.space.names]])
     error = estimate.predictor.log.outputs - estimate.predictor.predict(row)[0]
     return float(np.sum((error @ estimate.whitener.T) ** 2))
 
 
 def _crossing(values: np.ndarray, rise: np.ndarray, best: float, side: int) -> float:
-    """Where the profile crosses the level on one side; √rise is nearly a straight line there."""
+    """Returns where the profile crosses the level on one side; √rise is nearly a straight line."""
     order = np.argsort(side * values)
     beyond = order[side * values[order] > side * best]
     inner_value, inner = best, 0.0

@@ -1,4 +1,4 @@
-"""Is anything of the model left in what it could not predict?
+"""Tests of a residual: is anything of the model left in it?
 
     whiteness       see `identification.estimation.whiteness`
     independence    √N r_ue(k)/√P ~ N(0, 1),  P = Σ_j r_e(j) r_u(j)   (Ljung 1999, 16.6)

@@ -68,13 +68,13 @@ class Resolved:
         return len(unresolved_directions(self.S, self.errors)) == len(self.symmetries)
 
     def better(self, S: np.ndarray, E: np.ndarray) -> Resolved:
-        """The same, but each column is the one with the smaller error."""
+        """Returns the same, but each column is the one with the smaller error."""
         less = np.linalg.norm(E, axis=0) < np.linalg.norm(self.E, axis=0)
         S, E = np.where(less, S, self.S), np.where(less, E, self.E)
         return Resolved(self.names, S, E, self.least).with_symmetries(self.symmetries)
 
     def with_symmetries(self, symmetries: tuple[ScalingSymmetry, ...]) -> Resolved:
-        """The same, but exactly zero along the proven symmetries."""
+        """Returns the same, but exactly zero along the proven symmetries."""
         if not symmetries:
             return self
         rows = np.linalg.qr(np.array([s.row(self.names) for s in symmetries]).T)[0].T
@@ -83,13 +83,13 @@ class Resolved:
 
 
 def nothing_resolved(names: tuple[str, ...], n: int) -> Resolved:
-    """Of sensitivities that nobody computed: no direction is felt; S has the shape (n, p)."""
+    """Returns sensitivities that nobody computed: no direction is felt; S has the shape (n, p)."""
     S = np.zeros((n, len(names)))
     return Resolved(names, S, S, 1.0)
 
 
 def resolve(predictor: Predictor, space: Coordinates, q: np.ndarray, whiten: Whiten) -> Resolved:
-    """Sensitivities of a predictor's outputs at q, and their errors.
+    """Returns the sensitivities of a predictor's outputs at q, and their errors.
 
     Args:
         predictor: predicts the outputs.
@@ -114,7 +114,7 @@ def resolve(predictor: Predictor, space: Coordinates, q: np.ndarray, whiten: Whi
 
 
 def round_off(y: np.ndarray) -> float:
-    """Norm of the round-off error in a column of the sensitivities of whitened outputs y."""
+    """Returns the round-off error's norm in a column of the sensitivities of whitened outputs y."""
     return ROUND_OFF * (float(np.linalg.norm(y)) or 1.0)
 
 
@@ -125,7 +125,7 @@ def resolve_columns(
     steps: Sequence[float],
     symmetries: Callable[[np.ndarray, np.ndarray], tuple[ScalingSymmetry, ...]] | None = None,
 ) -> Resolved:
-    """Sensitivities at the first step, or each column at the step where its error is smallest.
+    """Returns sensitivities at the first step, or each column at the step of its smallest error.
 
     Args:
         names: parameters, p of them.

@@ -30,7 +30,7 @@ _SLOPES = {
 
 
 def influence(error: np.ndarray, loss: str) -> tuple[np.ndarray, float]:
-    """ψ of each residual, of the same shape, and c.
+    """Returns ψ of each residual, of the same shape, and c.
 
     c is at least 1 %: if it were smaller, nearly all residuals would be outliers, and no std could
     be believed.

@@ -37,7 +37,7 @@ def scaling_symmetries(
     S: np.ndarray,
     errors: np.ndarray,
 ) -> tuple[ScalingSymmetry, ...]:
-    """The scaling symmetries that whitened sensitivities suggest and simulations prove.
+    """Returns the scaling symmetries that whitened sensitivities suggest and simulations prove.
 
     Args:
         predictor: predicts the outputs.
@@ -63,7 +63,7 @@ def scaling_symmetries(
 def _unseen(
     predictor: Predictor, space: Coordinates, q: np.ndarray, whiten: Whiten, v: np.ndarray
 ) -> bool:
-    """Whether a long move along v changes the outputs by less than the noise."""
+    """Returns whether a long move along v changes the outputs by less than the noise."""
     try:
         ahead, behind = predictor.predict(space.decode(np.stack([q + LONG * v, q - LONG * v])))
     except (DivergenceError, InputError):  # no start or no simulation is possible there
@@ -74,7 +74,7 @@ def _unseen(
 def _candidates(
     S: np.ndarray, errors: np.ndarray, logarithmic: np.ndarray
 ) -> list[tuple[Fraction, ...]]:
-    """Directions of small fractions along which S is zero within its errors, the shortest first."""
+    """Returns directions of small fractions along which S is zero within errors, shortest first."""
     root = np.linalg.qr(S).R
     rows = [_parallel(root, errors, logarithmic, int(j)) for j in np.flatnonzero(logarithmic)]
     rounded = {_rounded(row) for row in rows if row is not None}
@@ -88,7 +88,7 @@ def _candidates(
 def _parallel(
     root: np.ndarray, errors: np.ndarray, logarithmic: np.ndarray, j: int
 ) -> np.ndarray | None:
-    """A few columns whose combination is column j within the errors, chosen one at a time.
+    """Returns a combination of a few columns that is column j within the errors, found greedily.
 
     This is orthogonal matching pursuit (Pati, Rezaiifar and Krishnaprasad 1993).
     """
@@ -111,7 +111,7 @@ def _parallel(
 
 
 def _rounded(v: np.ndarray) -> tuple[Fraction, ...]:
-    """The nearest small fractions, the largest being 1 and the first positive."""
+    """Returns the nearest small fractions, the largest being 1 and the first positive."""
     v = v / np.abs(v).max()
     powers = [Fraction(float(x)).limit_denominator(LARGEST_DENOMINATOR) for x in v]
     first = next(x for x in powers if x)

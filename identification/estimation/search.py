@@ -73,7 +73,7 @@ class Search:
         refuse_without_effect(J, self.space.names, self.predictor.log)
 
     def samples(self, fraction: float) -> int:
-        """Number of samples of a horizon."""
+        """Returns the number of samples of a horizon."""
         return max(3, round(fraction * len(self.predictor.log)))
 
     def run(self) -> Status:
@@ -120,11 +120,11 @@ class Search:
         return status
 
     def error(self, q: np.ndarray, samples: int | None) -> np.ndarray:
-        """ε = y - ŷ, shape (samples, ny)."""
+        """Returns ε = y - ŷ, shape (samples, ny)."""
         return self.predictor.log.outputs[:samples] - self.predicted(q, samples)
 
     def predicted(self, q: np.ndarray, samples: int | None) -> np.ndarray:
-        """ŷ, shape (samples, ny); it is kept for the Jacobian at the same point."""
+        """Returns ŷ, shape (samples, ny); it is kept for the Jacobian at the same point."""
         samples = samples or len(self.predictor.log)
         at, known = self._last
         if len(known) != samples or not np.array_equal(at, q):

@@ -25,7 +25,7 @@ class Slopes:
     J: np.ndarray
 
     def moved(self, q: np.ndarray, r: np.ndarray) -> Slopes | None:
-        """The slopes at another point without a simulation; None where they differ by too much."""
+        """Returns the slopes at another point, not simulated; None if they differ by too much."""
         step, change = q - self.q, r - self.r
         off = change - self.J @ step
         if not np.linalg.norm(off) <= KEPT * np.linalg.norm(change):

@@ -1,4 +1,4 @@
-"""Is a signal white?
+"""Tests of whether a signal is white.
 
 r_k = Σ_t x_t x_{t-k} / Σ_t x_t²                   of each channel, its mean taken off
 Q = N (N+2) Σ_{k≤m} r_k²/(N-k)  ~  χ²_m            of one channel       (Ljung and Box 1978)
@@ -42,7 +42,7 @@ class Whiteness:
 
     @property
     def p_value(self) -> float:
-        """The same of all channels together."""
+        """The p-value of all channels together."""
         return float(chi2_above(self.Q.sum(), self.r.size))
 
     @property
@@ -62,7 +62,7 @@ def whiteness(x: np.ndarray, lags: int = LAGS) -> Whiteness:
 
 
 def autocorrelation(x: np.ndarray, lags: int) -> np.ndarray:
-    """Normalised autocorrelation at lags 0..lags of each column, (n, m) -> (lags + 1, m)."""
+    """Returns each column's normalised autocorrelation at lags 0..lags, (n, m) -> (lags + 1, m)."""
     x = x - x.mean(axis=0)
     power = (x * x).sum(axis=0)
     power = np.where(power > 0, power, 1.0)
@@ -70,7 +70,7 @@ def autocorrelation(x: np.ndarray, lags: int) -> np.ndarray:
 
 
 def correlation_time(residual: np.ndarray, lags: int = LAGS) -> float:
-    """Integrated autocorrelation time of the most persistent column [samples], 1 when white.
+    """Returns the integrated autocorrelation time of the most persistent column [samples].
 
     Summed up to the first lag that is not significantly positive (Geyer's initial sequence).
     """

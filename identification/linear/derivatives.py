@@ -32,7 +32,7 @@ FREE, BALL = int(mujoco.mjtJoint.mjJNT_FREE), int(mujoco.mjtJoint.mjJNT_BALL)
 
 @dataclass(frozen=True)
 class Scheme:
-    """How a derivative is taken.
+    """The scheme by which a derivative is taken.
 
     Attributes:
         step: h, in the units of the state and of the inputs.
@@ -55,7 +55,7 @@ def differences(
     intervals: Intervals | None = None,
     moved: np.ndarray | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Derivatives of the results of `points` with respect to the state and the inputs.
+    """Returns derivatives of the results of `points` with respect to the state and the inputs.
 
     Args:
         at: the states.
@@ -90,7 +90,7 @@ def differences(
 
 
 def _shifted(at: AtPoints, by: float, moved: np.ndarray | None = None) -> Iterator[Change]:
-    """The states and the inputs, with one after the other of them shifted."""
+    """Yields the changes that shift the states and the inputs one after the other."""
     for i in range(at.model.nv):
         yield Change({"qpos": shift_position(at.model, at.qpos, i, by)})
     if moved is None:
@@ -102,13 +102,13 @@ def _shifted(at: AtPoints, by: float, moved: np.ndarray | None = None) -> Iterat
 
 
 def _each_shifted(field: str, value: np.ndarray, by: float) -> Iterator[Change]:
-    """The columns of a field, with one after the other of them shifted."""
+    """Yields the changes that shift the columns of a field one after the other."""
     for unit in np.eye(value.shape[1]):
         yield Change({field: value + by * unit})
 
 
 def _secants(at: AtPoints, by: float, moved: np.ndarray) -> Iterator[Change]:
-    """Both ends of each velocity's way, whose results add up to `by` times the secant."""
+    """Yields both ends of each velocity's way, whose results add up to `by` times the secant."""
     for i, way in enumerate(moved.T):
         way = np.where(np.abs(way) > by, way, by)
         for end in (0.5, -0.5):
@@ -118,7 +118,7 @@ def _secants(at: AtPoints, by: float, moved: np.ndarray) -> Iterator[Change]:
 
 
 def position_rows(model: mujoco.MjModel, qvel: np.ndarray) -> np.ndarray:
-    """The rows of ∂ẋ/∂x that belong to positions, shape (M, nv, nx).
+    """Returns the rows of ∂ẋ/∂x that belong to positions, shape (M, nv, nx).
 
     Args:
         model: the model.
@@ -136,7 +136,7 @@ def position_rows(model: mujoco.MjModel, qvel: np.ndarray) -> np.ndarray:
 
 
 def shift_position(model: mujoco.MjModel, qpos: np.ndarray, dof: int, by: float) -> np.ndarray:
-    """Positions after a small shift of one degree of freedom.
+    """Returns positions after a small shift of one degree of freedom.
 
     Args:
         model: whose degrees of freedom these are.
@@ -157,7 +157,7 @@ def shift_position(model: mujoco.MjModel, qpos: np.ndarray, dof: int, by: float)
 
 
 def _turned(quaternion: np.ndarray, angle: np.ndarray) -> np.ndarray:
-    """Quaternions (M, 4) after a small rotation in the body's own frame, angle (3,) [rad]."""
+    """Returns quaternions (M, 4) after a small rotation in the body's frame, angle (3,) [rad]."""
     w, v = quaternion[:, :1], quaternion[:, 1:]
     half = angle / 2
     return np.concatenate([w - v @ half[:, None], v + w * half + np.cross(v, half)], axis=1)

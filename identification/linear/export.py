@@ -46,7 +46,7 @@ def save_system(system: LinearSystem, path: str | Path) -> Path:
 
 
 def names_of(system: Any) -> dict[str, Any]:
-    """The names of states, inputs and outputs of a system or of a grid of systems."""
+    """Returns the names of states, inputs and outputs of a system or of a grid of systems."""
     return {name: getattr(system, name) for name in NAMES}
 
 

@@ -91,7 +91,7 @@ class GriddedSystem:
         return first, varies, spline(tuple(self.axes.values()), flat[..., varies], self.method)
 
     def at(self, point: Mapping[str, float]) -> LinearSystem:
-        """The interpolated system at one point.
+        """Returns the interpolated system at one point.
 
         Args:
             point: value of every scheduling variable by its name, in its unit.
@@ -111,7 +111,7 @@ class GriddedSystem:
     def simulate(
         self, start: np.ndarray, inputs: np.ndarray, rate: float
     ) -> tuple[np.ndarray, np.ndarray]:
-        """States and outputs under inputs, where the scheduling variables are states.
+        """Simulates states and outputs under inputs, where the scheduling variables are states.
 
         At each sample the system at the present p is discretised exactly and holds for one sample:
 
@@ -150,7 +150,7 @@ class GriddedSystem:
         return x, y
 
     def place(self, point: Mapping[str, float]) -> np.ndarray:
-        """The values of the scheduling variables in the order of the axes, shape (k,), in units.
+        """Returns the scheduling variables in the order of the axes, shape (k,), in their units.
 
         Args:
             point: value of every scheduling variable by its name, in its unit.
@@ -194,7 +194,7 @@ class GriddedSystem:
 
 
 def spline(axes: Sequence[np.ndarray], values: np.ndarray, method: str) -> Any:
-    """The tensor-product spline through values on a grid, as a function of points (M, k).
+    """Returns the tensor-product spline through values on a grid, as a function of points (M, k).
 
     It is solved axis by axis, exactly; `RegularGridInterpolator` solves cubic splines by an
     iteration that leaves a relative error of 1e-6.

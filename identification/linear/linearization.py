@@ -24,7 +24,7 @@ RESULTS = ("qacc", "act_dot", "sensordata")
 
 
 def linearize(points: OperatingPoints, outputs: Sequence[str] = ()) -> tuple[LinearSystem, ...]:
-    """The linear system at each operating point.
+    """Returns the linear system at each operating point.
 
     Args:
         points: M operating points, as `at_rest` or `along_log` find them.
@@ -59,7 +59,7 @@ def linearize(points: OperatingPoints, outputs: Sequence[str] = ()) -> tuple[Lin
 
 
 def _positions(points: OperatingPoints) -> np.ndarray:
-    """Positions in tangent space, shape (M, nv); rotations of a ball or a free body are zero."""
+    """Returns positions in tangent space, shape (M, nv); rotations of ball or free joints are 0."""
     model = points.model
     out = np.zeros((len(points.time), model.nv))
     for joint, dof in enumerate(model.jnt_dofadr):

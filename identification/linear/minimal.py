@@ -72,7 +72,7 @@ def minimal(system: LinearSystem, tolerance: float = TOLERANCE) -> Minimal:
 
 
 def stairs(A: np.ndarray, B: np.ndarray, tolerance: float) -> np.ndarray:
-    """An orthonormal basis of the states that inputs reach, shape (nx, reached), without unit.
+    """Returns an orthonormal basis of the states that inputs reach, shape (nx, reached), no unit.
 
     Args:
         A: shape (nx, nx), in alike units.
@@ -95,6 +95,6 @@ def stairs(A: np.ndarray, B: np.ndarray, tolerance: float) -> np.ndarray:
 
 
 def _alike(B: np.ndarray) -> np.ndarray:
-    """Columns of length one, but for those that are zero."""
+    """Returns the columns scaled to length one, but for those that are zero."""
     length = np.linalg.norm(B, axis=0)
     return np.asarray(B / np.where(length > 0, length, 1.0))

@@ -41,12 +41,12 @@ class Mode:
 
     @property
     def swings(self) -> bool:
-        """Whether it is a pair of conjugate eigenvalues."""
+        """Whether the mode is a pair of conjugate eigenvalues."""
         return self.eigenvalue.imag > 0
 
 
 def modes(system: LinearSystem) -> tuple[Mode, ...]:
-    """The modes of a continuous system, the slowest first.
+    """Returns the modes of a continuous system, the slowest first.
 
     Args:
         system: continuous.

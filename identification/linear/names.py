@@ -22,12 +22,12 @@ _TURNING = tuple(f"rate_{axis}" for axis in "xyz")
 
 
 def state_names(model: mujoco.MjModel) -> tuple[str, ...]:
-    """Names of position (nv), velocity (nv) and activations (na), in this order."""
+    """Returns names of position (nv), velocity (nv) and activations (na), in this order."""
     return (*_of_joints(model, 0), *_of_joints(model, 1), *_of_activations(model))
 
 
 def input_names(model: mujoco.MjModel) -> tuple[str, ...]:
-    """Names of the actuators that have an input, in the order of the controls."""
+    """Returns names of the actuators that have an input, in the order of the controls."""
     named = (model.actuator(i) for i in range(len(model.actuator_trntype)))
     return tuple(a.name or f"actuator {a.id}" for a in named)[: model.nu]
 
@@ -51,7 +51,7 @@ def _of_activations(model: mujoco.MjModel) -> Iterator[str]:
 def output_places(
     model: mujoco.MjModel, outputs: Sequence[str]
 ) -> tuple[tuple[str, ...], np.ndarray]:
-    """Names of single outputs, and where each stands among the numbers of the sensors.
+    """Returns names of single outputs, and where each stands among the numbers of the sensors.
 
     Args:
         model: the model.

@@ -65,7 +65,7 @@ class OperatingPoints:
 def at_rest(
     model: mujoco.MjModel, start: State, inputs: np.ndarray | None = None
 ) -> OperatingPoints:
-    """The rest that Newton steps reach from a start, as one operating point.
+    """Returns the rest that Newton steps reach from a start, as one operating point.
 
     Args:
         model: with its numbers.
@@ -101,7 +101,7 @@ def at_rest(
 
 
 def along_log(predictor: Predictor, times: Sequence[float]) -> OperatingPoints:
-    """Where the free run of a plant under a log is at some times.
+    """Returns the states of the free run of a plant under a log at some times.
 
     Args:
         predictor: plant and log, without free parameters.
@@ -134,7 +134,7 @@ def along_log(predictor: Predictor, times: Sequence[float]) -> OperatingPoints:
 
 
 def samples_at(time: np.ndarray, wanted: Sequence[float]) -> np.ndarray:
-    """The samples nearest to some times, shape (n,) of whole numbers.
+    """Returns the samples nearest to some times, shape (n,) of whole numbers.
 
     Args:
         time: of the samples, shape (N,) [s].
@@ -154,7 +154,7 @@ def samples_at(time: np.ndarray, wanted: Sequence[float]) -> np.ndarray:
 
 
 def _unit(model: mujoco.MjModel) -> np.ndarray:
-    """Gravity's acceleration for a degree of freedom, 1 for an activation, shape (nv + na,)."""
+    """Returns gravity's acceleration per degree of freedom, 1 per activation, shape (nv + na,)."""
     g = max(float(np.linalg.norm(model.opt.gravity)), 1.0)
     return np.concatenate([np.full(model.nv, g), np.ones(model.na)])
 
@@ -162,7 +162,7 @@ def _unit(model: mujoco.MjModel) -> np.ndarray:
 def _nearer(
     point: OperatingPoints, step: np.ndarray, r: np.ndarray, size: np.ndarray
 ) -> OperatingPoints:
-    """The point after a step, shortened until it is nearer to a rest."""
+    """Returns the point after a step, shortened until it is nearer to a rest."""
     model, now = point.model, float(np.linalg.norm(r / size))
     share = 1.0
     while share > SMALLEST:

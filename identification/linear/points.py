@@ -52,12 +52,12 @@ class AtPoints(Protocol):
 
     @property
     def time(self) -> np.ndarray:
-        """Of the points [s], shape (M,)."""
+        """The times of the points [s], shape (M,)."""
 
 
 @dataclass(frozen=True)
 class Change:
-    """What differs from the states at which a model is evaluated.
+    """A change of the states or the numbers at which a model is evaluated.
 
     Attributes:
         fields: other values of `qpos`, `qvel`, `act` or `ctrl`, one row or a row for each point.
@@ -169,7 +169,7 @@ class Points:
         return Case(states, (), other, shares, change.courses)
 
     def _actuators(self, change: Change) -> tuple[int, ...]:
-        """The actuators that alone read what differs; none where others do, or nothing differs."""
+        """Returns the actuators that alone read what differs; empty if there are other readers."""
         if not self._owners or "ctrl" in change.fields:
             return ()
         slots = [slot for slot, _ in change.numbers]
@@ -184,6 +184,6 @@ class Points:
 
 
 def _entry(slot: Slot, value: float) -> tuple[str, tuple[int, ...], float]:
-    """An entry of a model as `Case` takes it."""
+    """Returns an entry of a model as `Case` takes it."""
     (row,) = slot.rows
     return slot.field, (row,) if slot.column is None else (row, slot.column), value

@@ -57,7 +57,7 @@ class LinearSystem:
     sampling_time: float | None = None
 
     def discrete(self, rate: float) -> LinearSystem:
-        """The same system for inputs that are held between samples, exactly.
+        """Returns the same system for inputs that are held between samples, exactly.
 
         Args:
             rate: of the samples [Hz].
@@ -76,7 +76,7 @@ class LinearSystem:
         return replace(self, A=A, B=B, sampling_time=h)
 
     def ordered(self, states: Sequence[str]) -> LinearSystem:
-        """The same system with its states in another order.
+        """Returns the same system with its states in another order.
 
         Args:
             states: the names of all states.
@@ -96,7 +96,7 @@ class LinearSystem:
         )  # fmt: skip
 
     def response(self, frequencies: np.ndarray) -> np.ndarray:
-        """The transfer function at some frequencies, in outputs per input.
+        """Returns the transfer function at some frequencies, in outputs per input.
 
         Args:
             frequencies: shape (n,) [Hz].
@@ -116,7 +116,7 @@ class LinearSystem:
         return np.asarray((self.C * scale) @ np.linalg.solve(matrices, B) + self.D)
 
     def simulate(self, inputs: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """States and outputs of a discrete system that begins at its operating point.
+        """Simulates states and outputs of a discrete system that begins at its operating point.
 
         Args:
             inputs: at the samples, shape (N, nu), in their units.
@@ -139,14 +139,14 @@ class LinearSystem:
         return δx + self.x, δx @ self.C.T + δu @ self.D.T + self.y
 
     def to_scipy(self) -> Any:
-        """The system as a `scipy.signal.StateSpace`."""
+        """Returns the system as a `scipy.signal.StateSpace`."""
         from scipy.signal import StateSpace
 
         dt = {} if self.sampling_time is None else {"dt": self.sampling_time}
         return StateSpace(self.A, self.B, self.C, self.D, **dt)
 
     def to_control(self) -> Any:
-        """The system as a `control.StateSpace`, with the names of states, inputs and outputs.
+        """Returns the system as a `control.StateSpace`, with names of states, inputs and outputs.
 
         Raises:
             InputError: the package `control` is not installed.
@@ -167,7 +167,7 @@ class LinearSystem:
 
 
 def held_for(A: np.ndarray, B: np.ndarray, h: float) -> tuple[np.ndarray, np.ndarray]:
-    """A_h, shape (nx, nx), and B_h, shape (nx, nu), of a continuous system, by one exponential.
+    """Returns A_h (nx, nx) and B_h (nx, nu) of a continuous system, by one exponential.
 
     Args:
         A: shape (nx, nx), in the units of the states per second.
@@ -181,7 +181,7 @@ def held_for(A: np.ndarray, B: np.ndarray, h: float) -> tuple[np.ndarray, np.nda
 
 
 def sampling_time_of(rate: float) -> float:
-    """The time between samples of a rate [s].
+    """Returns the time between samples of a rate [s].
 
     Args:
         rate: [Hz].

@@ -14,7 +14,7 @@ from identification.logs.log import Log
 
 
 def by_unit(rms: np.ndarray, log: Log) -> dict[str, float]:
-    """Rms over the outputs of each unit, in it, by unit; "" is that of outputs without one.
+    """Returns the rms over the outputs of each unit, in it, by unit; "" for outputs without one.
 
     Args:
         rms: of each output, shape (ny,), in its unit.
@@ -28,7 +28,7 @@ def by_unit(rms: np.ndarray, log: Log) -> dict[str, float]:
 
 
 def rms_by_unit(errors: np.ndarray, log: Log) -> dict[str, float]:
-    """Rms of errors by unit, in it.
+    """Returns the rms of errors by unit, in it.
 
     Args:
         errors: shape (…, ny), in the outputs' units.
@@ -38,12 +38,12 @@ def rms_by_unit(errors: np.ndarray, log: Log) -> dict[str, float]:
 
 
 def of_outputs(values: Mapping[str, float], log: Log) -> np.ndarray:
-    """What is told by unit, for each output, shape (ny,)."""
+    """Returns for each output the value that is given for its unit, shape (ny,)."""
     return np.array([values[log.units.get(name, "")] for name in log.output_names])
 
 
 def relative(errors: Mapping[str, float], of: Mapping[str, float]) -> float:
-    """Errors by unit relative to others, in one number; infinite where these are zero.
+    """Returns errors by unit relative to others, in one number; infinite where these are zero.
 
     Args:
         errors: by unit.

@@ -20,7 +20,7 @@ HUGE = 1e15  # of any SI unit: no angle, way, force, voltage or current of a rob
 def conversions(
     table: Table, sidecar: Sidecar, units: Mapping[str, str]
 ) -> tuple[dict[str, str], dict[str, float]]:
-    """The SI unit of each column, where known, and the factor from the file's number to SI.
+    """Returns the SI unit of each column, where known, and the factor from its numbers to SI.
 
     Args:
         table: as it stands in the file, with the names that its columns should have.
@@ -48,7 +48,7 @@ def conversions(
 
 
 def converted(table: Table, sidecar: Sidecar, factors: Mapping[str, float]) -> Table:
-    """The table in SI units.
+    """Returns the table in SI units.
 
     Args:
         table: as it stands in the file.
@@ -74,5 +74,5 @@ def converted(table: Table, sidecar: Sidecar, factors: Mapping[str, float]) -> T
 
 
 def _largest(column: np.ndarray) -> float:
-    """The largest size of the numbers of a column, shape (n,), whose empty cells are NaN."""
+    """Returns the largest absolute number of a column, shape (n,), whose empty cells are NaN."""
     return float(np.abs(column).max(initial=0.0, where=~np.isnan(column)))

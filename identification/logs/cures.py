@@ -1,4 +1,4 @@
-"""What a user writes into the TOML of a log to read it in another way, for messages."""
+"""Advice for messages: what to write into a log's TOML so that the log is read in another way."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def how_to_turn(
     instead: str = "",
     renamed: bool = False,
 ) -> str:
-    """How to turn the sign of some columns of a log.
+    """Says how to turn the sign of some columns of a log.
 
     Args:
         columns: of the log's file.
@@ -44,7 +44,7 @@ def how_to_turn(
 
 
 def how_to_rename(names: Mapping[str, str]) -> str:
-    """How to give columns of a log new names, by the old ones, all at once.
+    """Says how to give columns of a log new names, by the old ones, all at once.
 
     A file that already gives names there has other columns; so the names may also be changed there.
     """
@@ -56,21 +56,21 @@ def how_to_rename(names: Mapping[str, str]) -> str:
 
 
 def how_to_exchange(a: str, b: str) -> str:
-    """How to exchange two columns of a log."""
+    """Says how to exchange two columns of a log."""
     return f"exchange {a} and {b}{how_to_rename({a: b, b: a})}"
 
 
 def unit_lines(units: Mapping[str, str]) -> str:
-    """What says the units of some columns of a log, by column or by group."""
+    """Says how to give the units of some columns of a log, by column or by group."""
     told = lines_of([f"{toml_key(name)} = {json.dumps(word)}" for name, word in units.items()])
     return f"write {told} under [units] of the log's TOML"
 
 
 def toml_key(name: str) -> str:
-    """A name as a key of TOML, in quotes where it needs them."""
+    """Returns a name as a key of TOML, in quotes where it needs them."""
     return name if _BARE.fullmatch(name) else json.dumps(name)
 
 
 def lines_of(told: Sequence[str]) -> str:
-    """Lines of TOML in a sentence."""
+    """Returns lines of TOML as part of a sentence."""
     return " and ".join(told) + (" (a line each)" if len(told) > 1 else "")

@@ -1,4 +1,4 @@
-"""What a unit is made of: its factor to SI, and the powers of kg, m, s and A in it.
+"""The dimension of a unit: its factor to SI, and the powers of kg, m, s and A in it.
 
     N m s/rad  =  1 · kg^1 m^2 s^-1 A^0        g mm^2  =  1e-9 · kg^1 m^2 s^0 A^0
 
@@ -53,7 +53,7 @@ class Dimension:
 
     @property
     def is_si(self) -> bool:
-        """Whether a number in it is one in SI."""
+        """Whether a number in this unit is the same number in SI."""
         return isclose(self.factor, 1.0, rel_tol=1e-12)
 
     def __mul__(self, other: Dimension) -> Dimension:
@@ -66,7 +66,7 @@ class Dimension:
 
 @lru_cache(maxsize=1024)  # each of thousands of parameters has one of a few units
 def dimension(unit: str) -> Dimension | None:
-    """The dimension of a unit; None where it has a symbol that is not known.
+    """Returns the dimension of a unit; None where it has a symbol that is not known.
 
     Args:
         unit: such as "N m s/rad", "kg m²" or "1/(N m)^2"; "" has no dimension.
@@ -132,7 +132,7 @@ def refuse_other_unit(unit: str, expected: str, what: str) -> None:
 
 
 def _product(tokens: list[str]) -> Dimension:
-    """The product of all tokens up to a closing parenthesis, which are taken away."""
+    """Returns the product of all tokens up to a closing parenthesis, and removes these tokens."""
     out, below = Dimension(), False
     while tokens and tokens[0] != ")":
         token = tokens.pop(0)
@@ -153,7 +153,7 @@ def _product(tokens: list[str]) -> Dimension:
 
 
 def _symbol(word: str) -> Dimension:
-    """A symbol, with a prefix where it is not known without."""
+    """Returns the dimension of a symbol, split from its prefix where it is not known as a whole."""
     prefix = 1.0
     if word not in _SYMBOLS:
         prefix, word = _PREFIXES[word[0]], word[1:]

@@ -30,7 +30,7 @@ def turned_units(
     column: Mapping[str, str],
     wanted: Mapping[str, str] | None = None,
 ) -> Iterator[Reading]:
-    """Another unit of all columns of a kind, with the other sign of an output or an input.
+    """Yields logs with another unit of a kind of columns and the other sign of an output or input.
 
     Args:
         log: as it is read.
@@ -44,7 +44,7 @@ def turned_units(
 
 
 def turned_exchanges(log: Log, bad: np.ndarray, column: Mapping[str, str]) -> Iterator[Reading]:
-    """Two outputs or two inputs exchanged, and the other sign of an output or an input.
+    """Yields logs with two outputs or inputs exchanged and the other sign of an output or input.
 
     A sign belongs to a column as it is called after the exchange, as the TOML of a log reads it;
     which of its factors that column then has is not known here.
@@ -61,7 +61,7 @@ def turned_exchanges(log: Log, bad: np.ndarray, column: Mapping[str, str]) -> It
 
 
 def two_turns(log: Log, bad: np.ndarray, column: Mapping[str, str]) -> Iterator[Reading]:
-    """The other sign of two columns: of outputs that are not explained, and of inputs.
+    """Yields logs with the other sign of two columns: of unexplained outputs, and of inputs.
 
     Args:
         log: as it is read.
@@ -89,7 +89,7 @@ def _turns(log: Log, bad: np.ndarray, column: Mapping[str, str]) -> Iterator[Rea
 
 
 def _both(first: Reading, turn: Reading, then: str, log: Log | None = None) -> Reading:
-    """Two readings as one, of the log of the first if no other is given."""
+    """Returns two readings as one, of the log of the first if no other is given."""
     return Reading(
         first.log if log is None else log,
         sorted({*turn.columns, *first.columns}),

@@ -18,7 +18,7 @@ from identification.logs.readings import Reading
 
 
 def factor_readings(log: Log, bad: np.ndarray, column: Mapping[str, str]) -> Iterator[Reading]:
-    """The log without the factor of an output that is not explained, and of all such outputs.
+    """Yields the log without the factor of an unexplained output, and of all such outputs.
 
     A factor of 1 or -1 changes no size; `output_turns` tells of a wrong sign.
 

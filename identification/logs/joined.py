@@ -32,7 +32,7 @@ class JoinedLog(Log):
     numbers: tuple[int, ...]
 
     def between(self, start: float, end: float) -> Log:
-        """The samples of [start, end) [s], of the records that have some there; see `Log`."""
+        """Returns the samples of [start, end) [s], of the records that have some; see `Log`."""
         first, last = rows_between(self.time, start, end)
         parts, numbers, begun = [], [], 0
         for number, record in zip(self.numbers, self.records, strict=True):
@@ -46,7 +46,7 @@ class JoinedLog(Log):
         return _joined(parts, numbers, self.name, float(self.time[first]))
 
     def part(self, name: str) -> Log:
-        """The samples of a named split, of all records that have it; see `Log.part`.
+        """Returns the samples of a named split, of all records that have it; see `Log.part`.
 
         Raises:
             InputError: no record has it.
@@ -62,7 +62,7 @@ class JoinedLog(Log):
 
 
 def join_logs(logs: Sequence[Log], name: str = "") -> Log:
-    """Several records as one log; a single one stays as it is.
+    """Returns several records as one log; a single one stays as it is.
 
     Args:
         logs: of the same inputs and outputs, with the same sampling time and hold.
@@ -84,7 +84,7 @@ def join_logs(logs: Sequence[Log], name: str = "") -> Log:
 
 
 def rows_of(log: Log, name: str) -> np.ndarray:
-    """Which samples of a log, or of the records of a joined one, belong to a split, shape (N,)."""
+    """Returns which samples of a log, or of joined records, belong to a split, shape (N,)."""
     out = []
     for _, record in records_of(log):
         splits = record.splits or halves(record)
@@ -114,7 +114,7 @@ def _joined(records: Sequence[Log], numbers: Sequence[int], name: str, start: fl
 
 
 def records_of(log: Log) -> tuple[tuple[int, Log], ...]:
-    """The records of a log with their numbers; a log that was not joined is number 1."""
+    """Returns the records of a log with their numbers; a log that was not joined is number 1."""
     if isinstance(log, JoinedLog):
         return tuple(zip(log.numbers, log.records, strict=True))
     return ((1, log),)

@@ -150,7 +150,7 @@ class Log:
         return units.pop() if len(units) == 1 else ""
 
     def between(self, start: float, end: float) -> Log:
-        """The samples of [start, end) [s]; time stamps stay as they are, splits are dropped.
+        """Returns the samples of [start, end) [s]; time stamps stay the same, splits are dropped.
 
         Raises:
             InputError: there are fewer samples than a log needs.
@@ -173,7 +173,7 @@ class Log:
         )
 
     def part(self, name: str) -> Log:
-        """The samples of a named split; a log without splits has those of `halves`.
+        """Returns the samples of a named split; a log without splits has those of `halves`.
 
         Raises:
             InputError: the name is unknown.
@@ -185,7 +185,7 @@ class Log:
 
 
 def halves(log: Log) -> Splits:
-    """The default splits: the first half is for estimation, the second for validation."""
+    """Returns the default splits: the first half is for estimation, the second for validation."""
     step = log.sampling_time
     start, end = float(log.time[0]), float(log.time[-1]) + step
     middle = float(log.time[len(log) // 2])

@@ -17,7 +17,7 @@ KINDS = "fiub"
 
 
 def convert(raw: bytes) -> bytes:
-    """The variables of a MATLAB file as .npz; of one that is no full real matrix, only its name."""
+    """Returns a MATLAB file's variables as .npz; only the name of what is no full real matrix."""
     from scipy.io import loadmat
 
     with warnings.catch_warnings():

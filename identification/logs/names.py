@@ -15,12 +15,12 @@ _LISTED = 24  # names in one message: enough for a robot's log, short enough for
 
 
 def group(name: str) -> str:
-    """The name without its trailing number: `angle` of `angle_3`, `x` of `x`."""
+    """Returns the name without its trailing number: `angle` of `angle_3`, `x` of `x`."""
     return _NUMBER.sub("", name)
 
 
 def lookup(table: Mapping[str, Value], name: str) -> Value | None:
-    """The entry of `table` for a column: under its own name, or else under its group."""
+    """Returns the entry of `table` for a column: under its own name, or else under its group."""
     return table.get(name, table.get(group(name)))
 
 
@@ -37,14 +37,14 @@ def check_keys(what: str, keys: Iterable[str], columns: Iterable[str]) -> None:
 
 
 def listed(names: Iterable[str]) -> str:
-    """Names for a message: always on one line, and shortened when there are too many."""
+    """Returns names for a message: always on one line, and shortened when there are too many."""
     every = list(names)
     shown = ", ".join(quoted(n) for n in every[:_LISTED])
     return shown + (f" and {len(every) - _LISTED} more" if len(every) > _LISTED else "")
 
 
 def quoted(text: str, longest: int = 40) -> str:
-    """Text of a file for a message: a plain name as it is, other text escaped and shortened."""
+    """Returns a file's text for a message: a plain name as it is, else escaped and shortened."""
     if text.isprintable() and 0 < len(text) <= longest and text == text.strip():
         return text
     return repr(text if len(text) <= longest else text[: longest - 3] + "...")

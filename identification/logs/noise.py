@@ -18,7 +18,7 @@ KEPT = 0.7  # share of the differences that is used
 
 
 def noise_floor(y: np.ndarray, order: int = ORDER) -> np.ndarray:
-    """Std of the white noise on each channel of a measurement.
+    """Returns the std of the white noise on each channel of a measurement.
 
     This is an upper bound where the signal itself is rough at the sampling rate. Encoder steps Δ
     count as noise of Δ/√12 as long as the signal crosses some of them.
@@ -39,7 +39,7 @@ def noise_floor(y: np.ndarray, order: int = ORDER) -> np.ndarray:
 
 
 def whitener_of(residual: np.ndarray) -> np.ndarray:
-    """C with Cᵀ C = Λ⁻¹, where Λ is the covariance of a residual (n, ny); shape (ny, ny)."""
+    """Returns C with Cᵀ C = Λ⁻¹, Λ the covariance of a residual (n, ny); shape (ny, ny)."""
     covariance = residual.T @ residual / len(residual)
     variance = np.diag(covariance)
     # A channel without error must not get all the weight, and units must not change the weights.
@@ -49,7 +49,7 @@ def whitener_of(residual: np.ndarray) -> np.ndarray:
 
 
 def relative_weight(y: np.ndarray, relative: float) -> np.ndarray:
-    """Weights of residuals whose noise has the std `relative` |y|, shape (n, ny); ones for 0.
+    """Returns weights of residuals with noise of the std `relative` |y|, (n, ny); ones for 0.
 
     They are scaled so that a sample as large as the signal's rms has the weight 1. A sample near
     zero has almost no such noise; it gets the weight of a sample of 1 % of the rms.

@@ -1,4 +1,4 @@
-"""Whether logs are different records of one robot: the same columns, and no sample in two of them.
+"""Tests whether logs are different records of one robot: same columns, and no sample in two.
 
 Sensors' noise never repeats, so that as many samples in a row that are equal to the bit were
 measured once.
@@ -50,7 +50,7 @@ def refuse_different(logs: Sequence[Log]) -> None:
 
 
 def share_samples(a: Log, b: Log) -> bool:
-    """Whether some samples in a row stand in both logs, to the bit.
+    """Returns whether some samples in a row stand in both logs, to the bit.
 
     Args:
         a: a log.
@@ -66,12 +66,12 @@ def share_samples(a: Log, b: Log) -> bool:
 
 
 def _stretches(names: np.ndarray) -> np.ndarray:
-    """Samples in a row by their names, one entry a stretch, those at rest left out."""
+    """Returns samples in a row by their names, one entry a stretch, those at rest left out."""
     each = np.ascontiguousarray(sliding_window_view(names, ROW))
     different = (np.diff(np.sort(each, axis=1), axis=1) != 0).sum(axis=1) + 1
     return each[different >= MOVING].view(f"V{ROW * each.itemsize}").ravel()
 
 
 def _is_same(a: Log, b: Log) -> bool:
-    """Whether two logs are one record, to the bit."""
+    """Returns whether two logs are one record, to the bit."""
     return a is b or (np.array_equal(a.inputs, b.inputs) and np.array_equal(a.outputs, b.outputs))

@@ -93,7 +93,7 @@ def check_plausible(
 
 
 def _wrapped(unit: str, jump: float) -> str:
-    """The advice for an angle that jumps by a whole turn."""
+    """Returns the advice for an angle that jumps by a whole turn."""
     if unit != "rad" or abs(abs(jump) - 2 * np.pi) > TURN * 2 * np.pi:
         return ""
     return ", a jump of a whole turn: the angle is wrapped; unwrap it (numpy.unwrap)"
@@ -103,7 +103,7 @@ def _cure(
     table: Table, name: str, factors: Mapping[str, float], unit: str, raw: float, limit: float,
     sidecar: Path,
 ) -> str:  # fmt: skip
-    """What to write where a column is too large: of its group, or of those that are so large."""
+    """Says which unit to write where numbers are too large: for the column's group, or for some."""
     fitting = units_that_fit(unit, raw, limit)
     if not fitting:
         return "; repair or cut the log there"

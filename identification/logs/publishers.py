@@ -161,20 +161,20 @@ def _refuse_zeros(table: Table, name: str, zero: np.ndarray, unit: str, overrule
 
 
 def _seen(table: Table, name: str) -> tuple[np.ndarray, FloatArray, FloatArray]:
-    """The rows in which a column has a number, these numbers, and their stamps."""
+    """Returns the rows in which a column has a number, these numbers, and their stamps."""
     rows = np.flatnonzero(np.isfinite(table[name]))
     return rows, table[name][rows], table["time"][rows]
 
 
 def _zero_rows(table: Table, inputs: Sequence[str], outputs: Sequence[str]) -> np.ndarray:
-    """Rows in which all that stands there is zero, and an output stands there, shape (n,)."""
+    """Returns which rows have an output, and only zeros in all cells that are not empty: (n,)."""
     cells = np.column_stack([table[name] for name in (*inputs, *outputs)])
     empty = np.isnan(cells)
     return np.asarray((empty | (cells == 0)).all(axis=1) & ~empty[:, len(inputs) :].all(axis=1))
 
 
 def _encoder(x: FloatArray) -> float:
-    """The smallest difference of two samples in a row that is not zero."""
+    """Returns the smallest non-zero difference of two successive samples."""
     steps = np.abs(np.diff(x))
     return float(steps[steps > 0].min()) if steps.any() else 0.0
 

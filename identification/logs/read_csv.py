@@ -30,7 +30,7 @@ def parse_csv(
     wanted: Callable[[Sequence[str]], Collection[str]] | None = None,
     stamps: Collection[str] = ("time",),
 ) -> Table:
-    """The table in a CSV file.
+    """Reads the table in a CSV file.
 
     Comment lines above the header, a byte order mark, CRLF and blank lines are accepted.
 
@@ -80,7 +80,7 @@ def parse_csv(
 
 
 def _given(header: Sequence[str], first: str, path: Path) -> tuple[str, ...]:
-    """The names that a TOML gives, if the file has as many columns."""
+    """Returns the names that a TOML gives, if the file has as many columns."""
     columns = first.count(",") + 1
     if columns != len(header):
         raise InputError(

@@ -26,7 +26,7 @@ def parse_mat(
     outputs: Sequence[str],
     optional: Sequence[str],
 ) -> Table:
-    """The table in a `.mat` file of version 7 or older.
+    """Reads the table in a `.mat` file of version 7 or older.
 
     An optional column is a vector of the same name; it cannot be called `u` or `y`.
 
@@ -64,7 +64,7 @@ def parse_mat(
 
 
 def _loaded(raw: bytes, path: Path) -> dict[str, np.ndarray | None]:
-    """The variables by name, None for one that is no full real matrix; read by another process."""
+    """Reads the variables by name in another process; None for one that is no full real matrix."""
     try:
         done = subprocess.run(
             [sys.executable, "-I", mat_child.__file__], input=raw, capture_output=True,
@@ -98,7 +98,7 @@ def _step(value: np.ndarray | None, path: Path) -> float:
 
 
 def _samples(arrays: dict[str, FloatArray], wanted: dict[str, Sequence[str]], path: Path) -> int:
-    """The number of samples n for which all matrices are (n, names), or all are transposed."""
+    """Returns the n for which all matrices are (n, names), or all are transposed."""
     upright = {a.shape[0] for k, a in arrays.items() if a.shape[1] == len(wanted[k])}
     lying = {a.shape[1] for k, a in arrays.items() if a.shape[0] == len(wanted[k])}
     fits = [

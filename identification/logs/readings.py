@@ -1,4 +1,4 @@
-"""Is a log what it says: every column in its unit, with its sign, in its place?
+"""Readings of a log: is every column in its unit, with its sign, in its place?
 
     ε_k = Σ ‖y_k - ŷ_k‖² / Σ ‖y_k - y_k(0)‖²       share of output k that a model leaves unexplained
 
@@ -75,7 +75,7 @@ def misread(
     unexplained: Unexplained,
     believed: Callable[[Reading, np.ndarray], bool] = lambda reading, left: True,
 ) -> tuple[Reading, str] | None:
-    """The reading that explains a log far better than it is read, and that in words.
+    """Returns the reading that explains a log far better than the present one, and that in words.
 
     Far better: every column that it changes. Of several, the one that leaves least in all, and of
     those that leave the same the first.
@@ -115,7 +115,7 @@ def unit_readings(
     wanted: Mapping[str, str] | None = None,
     alone: bool = True,
 ) -> Iterator[Reading]:
-    """Other units of the outputs that are not explained, and of inputs that are wanted positions.
+    """Yields other units of unexplained outputs, and of inputs that are wanted positions.
 
     Args:
         log: as it is read.
@@ -147,13 +147,13 @@ def unit_readings(
 def output_readings(
     log: Log, bad: np.ndarray, column: Mapping[str, str], mirrored: bool = True
 ) -> Iterator[Reading]:
-    """Other signs and places of the outputs that are not explained; see `output_turns`."""
+    """Yields other signs and places of the outputs that are not explained; see `output_turns`."""
     yield from output_turns(log, bad, column, mirrored)
     yield from output_exchanges(log, bad, column)
 
 
 def output_exchanges(log: Log, bad: np.ndarray, column: Mapping[str, str]) -> Iterator[Reading]:
-    """Two outputs that are not explained, each in the other's place; see `unit_readings`."""
+    """Yields two outputs that are not explained, each in the other's place; see `unit_readings`."""
     y, out = log.outputs, [column[n] for n in log.output_names]
     for i, j in column_pairs(np.flatnonzero(bad).tolist()):
         yield Reading(replace(log, outputs=_exchanged(y, i, j)), [i, j], "were they exchanged",
@@ -163,7 +163,7 @@ def output_exchanges(log: Log, bad: np.ndarray, column: Mapping[str, str]) -> It
 def output_turns(
     log: Log, bad: np.ndarray, column: Mapping[str, str], mirrored: bool = True
 ) -> Iterator[Reading]:
-    """The other sign of each output that is not explained, and of all; see `unit_readings`.
+    """Yields the other sign of each unexplained output, and of all of them; see `unit_readings`.
 
     Args:
         log: as it is read.
@@ -181,13 +181,13 @@ def output_turns(
 
 
 def input_readings(log: Log, bad: np.ndarray, column: Mapping[str, str]) -> Iterator[Reading]:
-    """Other signs and places of the inputs; see `unit_readings`."""
+    """Yields other signs and places of the inputs; see `unit_readings`."""
     yield from input_turns(log, bad, column)
     yield from input_exchanges(log, bad, column)
 
 
 def input_exchanges(log: Log, bad: np.ndarray, column: Mapping[str, str]) -> Iterator[Reading]:
-    """Two inputs, each in the other's place; see `unit_readings`."""
+    """Yields two inputs, each in the other's place; see `unit_readings`."""
     u, wrong = log.inputs, np.flatnonzero(bad).tolist()
     into = [column[n] for n in log.input_names]
     for i, j in column_pairs(range(u.shape[1])):
@@ -196,7 +196,7 @@ def input_exchanges(log: Log, bad: np.ndarray, column: Mapping[str, str]) -> Ite
 
 
 def input_turns(log: Log, bad: np.ndarray, column: Mapping[str, str]) -> Iterator[Reading]:
-    """The other sign of each input; see `unit_readings`."""
+    """Yields the other sign of each input; see `unit_readings`."""
     u, wrong = log.inputs, np.flatnonzero(bad).tolist()
     factors = {column[n]: f for n, f in log.factors.items() if n in column}
     for k, name in enumerate(column[n] for n in log.input_names):
@@ -206,12 +206,12 @@ def input_turns(log: Log, bad: np.ndarray, column: Mapping[str, str]) -> Iterato
 
 
 def turned(signals: np.ndarray, columns: Sequence[int]) -> np.ndarray:
-    """Signals, shape (n, m), with the other sign of some columns, in the same units."""
+    """Returns signals, shape (n, m), with the other sign of some columns, in the same units."""
     return signals * np.where(np.isin(np.arange(signals.shape[1]), columns), -1.0, 1.0)
 
 
 def unexplained_share(y: np.ndarray, error: np.ndarray) -> np.ndarray:
-    """ε of each output over W windows, shape (ny,), without unit; 0 where it does not move.
+    """Returns ε of each output over W windows, shape (ny,), no unit; 0 where it does not move.
 
     Args:
         y: what was measured, shape (W, L, ny), in the outputs' units.
@@ -224,7 +224,7 @@ def unexplained_share(y: np.ndarray, error: np.ndarray) -> np.ndarray:
 
 
 def _units(columns: Sequence[tuple[str, bool]], alone: bool) -> Iterator[tuple[str, ...]]:
-    """Other units of columns of a kind, "" for as it is: of all of a kind, and of one alone."""
+    """Yields other units of columns, "" for as it is: of all of a kind, and of one alone."""
     kinds = [*dict.fromkeys(columns)]
     words = {k: ["", *(w for w, (of, _) in UNITS.items() if of == k[0] != w)] for k in kinds}
     for chosen in product(*(words[kind] for kind in kinds)):

@@ -1,4 +1,4 @@
-"""What a mere replay of some logs explains of another one, without any model.
+"""The share of a log that a mere replay of other logs explains, without any model.
 
     R = 1 - Σ_blocks min_s Σ_t ‖z(t) - z_f(t - s)‖² / Σ_blocks Σ_t ‖z(t)‖²      about block means
 
@@ -23,7 +23,7 @@ BLOCKS = 4
 
 
 def replayed_share(fitted: Sequence[Log], log: Log) -> float:
-    """R of a log, without unit; 0 where nothing varies or no fitted piece is long enough.
+    """Returns R of a log, no unit; 0 where nothing varies or no fitted piece is long enough.
 
     Args:
         fitted: logs of the same columns and sampling time.
@@ -52,7 +52,7 @@ def replayed_share(fitted: Sequence[Log], log: Log) -> float:
 
 
 def _least(block: np.ndarray, piece: np.ndarray) -> float:
-    """min_s Σ ‖block - piece_s‖² over all places s in a piece, each about its own mean."""
+    """Returns min_s Σ ‖block - piece_s‖² over all places s in a piece, each about its own mean."""
     from scipy.signal import fftconvolve  # slow to import
 
     size = len(block)

@@ -105,7 +105,7 @@ def even_out(
 
 
 def _samples(log: str, name: str, time: FloatArray, values: FloatArray) -> Channel:
-    """The rows of a channel in which it is finite, the last of equal stamps."""
+    """Returns the rows of a channel in which it is finite, the last of equal stamps."""
     rows = np.flatnonzero(np.isfinite(values))
     rows = rows[np.append(np.diff(time[rows]) > 0, True)] if rows.size else rows
     if rows.size < MIN_ROWS:
@@ -118,21 +118,21 @@ def _samples(log: str, name: str, time: FloatArray, values: FloatArray) -> Chann
 
 
 def _round(interval: float) -> float:
-    """An interval whose rate [Hz] has the fewest digits."""
+    """Returns the interval near this one whose rate [Hz] has the fewest digits."""
     rate = 1 / interval
     rounded = (float(f"{rate:.{digits}g}") for digits in range(1, 17))
     return 1 / next((r for r in rounded if abs(r - rate) <= ROUND * rate), rate)
 
 
 def _held(c: Channel, t: FloatArray, h: float) -> FloatArray:
-    """Means of a held input over the intervals of a grid."""
+    """Returns the means of a held input over the intervals of a grid."""
     stamps = np.append(c.time, max(t[-1] + h, c.time[-1]) + h)
     work = np.concatenate([[0.0], np.cumsum(c.values * np.diff(stamps))])
     return np.asarray((np.interp(t + h, stamps, work) - np.interp(t, stamps, work)) / h)
 
 
 def _smooth(c: Channel, t: FloatArray) -> FloatArray:
-    """An output on a grid, by cubics that keep its rises and falls."""
+    """Returns an output on a grid, by cubics that keep its rises and falls."""
     # A rate is a harmonic mean of slopes, (w_1 + w_2) / (w_1/m_1 + w_2/m_2): a slope of 1e-318
     # makes the sum infinite and the mean zero, as it should be.
     with np.errstate(over="ignore"):
@@ -142,7 +142,7 @@ def _smooth(c: Channel, t: FloatArray) -> FloatArray:
 
 
 def _why(time: FloatArray, channels: Mapping[str, FloatArray]) -> str:
-    """Why a log needs another grid: its stamps, or cells in which nothing stands."""
+    """Says why a log needs another grid: its stamps, or empty cells."""
     gaps = np.diff(time)
     empty = sum(int(np.isnan(x).sum()) for x in channels.values())
     if empty and gaps.max() - gaps.min() <= EVEN * gaps.max():

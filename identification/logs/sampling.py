@@ -28,7 +28,7 @@ _JUMP, _FEW = 1.5, 5
 
 
 def sampling_time(time: FloatArray) -> float:
-    """The mean step [s], in which the rounding errors of the stamps average out.
+    """Returns the mean step [s], in which the rounding errors of the stamps average out.
 
     It is rounded to twelve digits, to remove the rounding error of the division: 0.01 stays 0.01.
     """
@@ -36,7 +36,7 @@ def sampling_time(time: FloatArray) -> float:
 
 
 def grid(start: float, step: float, n: int) -> FloatArray:
-    """The n stamps start + k step [s]; infinite where they exceed the largest float."""
+    """Returns the n stamps start + k step [s]; infinite where they exceed the largest float."""
     with np.errstate(over="ignore"):
         return start + step * np.arange(n, dtype=np.float64)
 
@@ -48,7 +48,7 @@ def off_grid(time: FloatArray, step: float) -> FloatArray:
 
 
 def rows_between(time: FloatArray, start: float, end: float) -> tuple[int, int]:
-    """First row of [start, end) [s] and the row after its last.
+    """Returns the first row of [start, end) [s] and the row after its last.
 
     Stamps are rounded, so a sample counts from a tenth of a step before its stamp.
     """
@@ -140,7 +140,7 @@ def _check_even(time: FloatArray, place: Callable[[int], str], declared: float |
 
 
 def _printed_resolution(time: FloatArray) -> float:
-    """Size of the last printed decimal of the larger stamps [s]; 0 where it is too small to see.
+    """Returns the size of the last printed decimal of the larger stamps [s]; 0 if it is not seen.
 
     "%g" prints the largest stamps with the fewest decimals, so the coarser half decides.
     """

@@ -53,7 +53,7 @@ class Sidecar:
     elsewhere: Mapping[str, Path] = field(default_factory=dict)
 
     def file_of(self, key: str) -> Path:
-        """The file that gives a key: another one, such as a robot's, or that beside the log."""
+        """Returns the file that gives a key: that beside the log, or another, such as a robot's."""
         return self.elsewhere.get(key, self.path)
 
 
@@ -86,7 +86,7 @@ def read_sidecar(
 
 
 def _values(content: Mapping[str, Any], where: str) -> dict[str, Any]:
-    """The values of the keys of a file, checked; a list of columns is a header.
+    """Returns the values of the keys of a file, checked; a list of columns is a header.
 
     Args:
         content: the keys.
@@ -105,7 +105,7 @@ def _values(content: Mapping[str, Any], where: str) -> dict[str, Any]:
 
 
 def _table(key: str, value: object, where: str) -> dict[str, Any]:
-    """A table, each of whose entries is converted."""
+    """Returns a table with each of its entries converted."""
     example, kind, convert = _TABLES[key]
     if not isinstance(value, dict):
         raise InputError(f"{key} in {where} must be {example}; correct it there")

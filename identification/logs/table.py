@@ -39,7 +39,7 @@ class Table:
 
 
 def renamed(table: Table, sidecar: Sidecar) -> Table:
-    """The table without the columns of `sidecar.ignore`, and with those of `columns` renamed.
+    """Returns the table without the columns of `sidecar.ignore`, those of `columns` renamed.
 
     Raises:
         InputError: the file lacks a column that is named there, or two columns get one name.

@@ -44,7 +44,7 @@ SI_UNITS = tuple(word for word, (si, _) in UNITS.items() if word == si)
 
 
 def to_si(word: str) -> tuple[str, float]:
-    """The SI unit of a unit word, and the factor that converts to it.
+    """Returns the SI unit of a unit word, and the factor that converts to it.
 
     Raises:
         InputError: the word is not in the table.
@@ -67,7 +67,7 @@ def check_si(word: str) -> None:
 
 
 def units_that_fit(si: str, raw: float, limit: float) -> list[str]:
-    """The smaller units of a quantity in which a raw number would stay within a limit.
+    """Returns the smaller units of a quantity in which a raw number would stay within a limit.
 
     Args:
         si: the SI unit of the quantity.

@@ -68,7 +68,7 @@ def _toml(log: Log) -> str:
 
 
 def _grouped(log: Log) -> Iterator[tuple[str, str]]:
-    """Units by group where all columns of a group have the same unit, else by column."""
+    """Yields units by group where all columns of a group have the same unit, else by column."""
     members: dict[str, list[str]] = {}
     for name in log.columns:
         members.setdefault(group(name), []).append(name)

@@ -41,12 +41,12 @@ class Coordinates:
     scale: np.ndarray
 
     def encode(self, values: np.ndarray) -> np.ndarray:
-        """Values to q, shape (..., p)."""
+        """Returns q of some values, shape (..., p)."""
         logarithm = np.log(np.where(self.logarithmic, values, 1.0))
         return np.where(self.logarithmic, logarithm, np.asarray(values) / self.scale)
 
     def decode(self, q: np.ndarray) -> np.ndarray:
-        """The values of q, shape (..., p)."""
+        """Returns the values of q, shape (..., p)."""
         return np.where(
             self.logarithmic,
             np.exp(np.clip(np.where(self.logarithmic, q, 0.0), -FARTHEST, FARTHEST)),
@@ -54,15 +54,15 @@ class Coordinates:
         )
 
     def inside(self, q: np.ndarray) -> np.ndarray:
-        """The point inside the bounds nearest to q, shape (..., p)."""
+        """Returns the point inside the bounds nearest to q, shape (..., p)."""
         return np.clip(q, self.lower, self.upper)
 
     def slope(self, q: np.ndarray) -> np.ndarray:
-        """d value/d q, shape (..., p): a std in q times this is a std of the value."""
+        """Returns d value/d q, shape (..., p): a std in q times this is a std of the value."""
         return np.where(self.logarithmic, self.decode(q), self.scale)
 
     def on_bound(self, q: np.ndarray) -> np.ndarray:
-        """Which of q (p,) lie on a bound, shape (p,)."""
+        """Returns which of q (p,) lie on a bound, shape (p,)."""
         near = 1e-6 * np.maximum(1.0, np.abs(q))
         return (q - self.lower < near) | (self.upper - q < near)
 
@@ -77,7 +77,7 @@ def coordinates(
     start: np.ndarray,
     linear: Collection[str] = (),
 ) -> Coordinates:
-    """Coordinates of some parameters of a set, fit for a search from `start`.
+    """Returns coordinates of some parameters of a set, fit for a search from `start`.
 
     Args:
         parameters: the set.

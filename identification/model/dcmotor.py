@@ -1,4 +1,4 @@
-"""Which numbers of MuJoCo's `dcmotor` a model reads: a term that its file leaves out reads none.
+"""The numbers of MuJoCo's `dcmotor` that a model reads: a term that its file omits reads none.
 
     u = R i + K ω + L di/dt                  te = L/R: without `inductance` the current has no state
     τ = K i - σ₀ z - σ₁ ż                    without `lugre` (σ₀ = 0) z has no state
@@ -78,7 +78,7 @@ def refuse_unread(model: mujoco.MjModel, name: str, slot: Slot, path: str) -> No
 
 
 def _readable(model: mujoco.MjModel, row: int, motor: str) -> str:
-    """The numbers of a motor that can be freed, in words."""
+    """Returns the numbers of a motor that can be freed, in words."""
     there = dict(_BASE)
     for term in _TERMS:
         field, column = term.begins

@@ -35,7 +35,7 @@ _SCALARS = {"joint": (*_TENDON, "frictionloss"), "spatial": _TENDON, "fixed": _T
 
 
 def to_xml(spec: mujoco.MjSpec) -> str:
-    """The MJCF of a spec with exact numbers: compiling the text gives the model of the spec.
+    """Returns the MJCF of a spec with exact numbers: its text compiles to the model of the spec.
 
     The spec's comment stands at its head, so that a file that is saved again keeps it.
 
@@ -64,7 +64,7 @@ def write_xml(spec: mujoco.MjSpec, path: str | Path) -> Path:
 
 
 def _elements(root: Any, spec: mujoco.MjSpec) -> Iterator[tuple[str, Any, Any]]:
-    """Named elements of the text, each with its counterpart in the spec."""
+    """Yields named elements of the text, each with its counterpart in the spec."""
     for tag, finder in (
         ("body", spec.body),
         ("joint", spec.joint),

@@ -1,4 +1,4 @@
-"""The same plant with a finer step of its model, to see what the step does to an estimate."""
+"""A plant with a finer step of its model, to see what the step does to an estimate."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ class Stepped(Protocol):
     """A plant whose model can be simulated with another step."""
 
     def with_step(self, factor: float) -> Plant:
-        """The same plant with another step; `factor` is the new step over the old one."""
+        """Returns the same plant with another step; `factor` is the new step over the old one."""
 
 
 def finer(plant: Plant) -> Plant | None:

@@ -161,7 +161,7 @@ def _refuse_nan(root: ElementTree.Element, names: set[str], where: str) -> None:
 
 
 def _count(element: ElementTree.Element, where: str) -> float:
-    """How many elements one becomes, its parts among them."""
+    """Returns how many elements one becomes, its parts among them."""
     sides = " ".join(element.get(name, "1") for name in _GRIDS.get(element.tag, ()))
     if _product(sides) > _CELLS:
         raise InputError(
@@ -174,7 +174,7 @@ def _count(element: ElementTree.Element, where: str) -> float:
 
 
 def _product(text: str) -> float:
-    """The product of the numbers of an attribute; 1 where they are none, which MuJoCo tells."""
+    """Returns the product of an attribute's numbers; 1 where they are none, which MuJoCo tells."""
     out = 1.0
     for word in text.split():
         try:

@@ -31,7 +31,7 @@ _ANY = f"{_REPLICATE} and its sizes nuser_*, or make its heightfields and meshes
 
 @dataclass(frozen=True)
 class Amount:
-    """What a model asks for, as its text says it.
+    """The amounts that a model asks for, as its text says them.
 
     Attributes:
         elements: of the text, those that repeat counted each.
@@ -49,7 +49,7 @@ class Amount:
 
     @property
     def much(self) -> tuple[str, ...]:
-        """What to make smaller, a clause for each count that is far beyond that of robots."""
+        """Advice on what to make smaller, a clause for each count far beyond that of robots."""
         lower = f"lower {self.user_data}, which asks for {self.numbers:.3g} numbers of each element"
         each = (
             (self.numbers > NUMBERS, lower), (self.elements > ELEMENTS, _REPLICATE),
@@ -59,7 +59,7 @@ class Amount:
 
     @property
     def may_be_large(self) -> bool:
-        """Whether it is compiled by another process first."""
+        """Whether the model is compiled by another process first."""
         return bool(self.much)
 
 
@@ -116,5 +116,5 @@ def refuse_endless(source: str | Path, where: str, amount: Amount) -> None:
 
 
 def _cure(amount: Amount | None) -> str:
-    """What to make smaller: what the text asks much of, or whatever makes a model large."""
+    """Says what to make smaller: what the text asks much of, or whatever makes a model large."""
     return " and ".join(amount.much) if amount and amount.much else _ANY

@@ -53,7 +53,7 @@ def lean(model: mujoco.MjModel, numbers: Sequence[tuple[Slot, Any]] = ()) -> muj
 
 
 def is_constrained(model: mujoco.MjModel, numbers: Sequence[tuple[Slot, Any]] = ()) -> bool:
-    """Whether a limit, dry friction, an equality or a contact may act on a model.
+    """Returns whether a limit, dry friction, an equality or a contact may act on a model.
 
     Args:
         model: the model.
@@ -79,7 +79,7 @@ def one_evaluation(model: mujoco.MjModel) -> int:
 
 
 def is_damped_by_joints_alone(model: mujoco.MjModel) -> bool:
-    """Whether no force that MuJoCo derives by rates depends on them, but for joints' damping.
+    """Returns whether joints' damping is the only force whose dependence on rates MuJoCo derives.
 
     Args:
         model: the model.

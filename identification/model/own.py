@@ -16,12 +16,12 @@ _OWN = re.compile(r"(?P<name>.+) \[(?P<number>\d+)\]")
 
 
 def own_name(name: str, number: int) -> str:
-    """Name of a parameter's value in a record, whose number is counted from 1."""
+    """Returns the name of a parameter's value in a record, whose number is counted from 1."""
     return name if number == 1 else f"{name} [{number}]"
 
 
 def with_own(parameters: ParameterSet, names: Sequence[str], records: int) -> ParameterSet:
-    """Parameters of a robot with own values of each record, where they do not have them yet.
+    """Returns a robot's parameters with own values of each record, where these are missing yet.
 
     Args:
         parameters: the set.
@@ -39,7 +39,7 @@ def with_own(parameters: ParameterSet, names: Sequence[str], records: int) -> Pa
 
 
 def _own(parameter: Parameter, number: int) -> Parameter:
-    """The value of a record, which has its number in its name and in its words."""
+    """Returns the value of a record, which has its number in its name and in its words."""
     short, colon, detail = parameter.about.partition(":")
     return replace(
         parameter,
@@ -52,7 +52,7 @@ def _own(parameter: Parameter, number: int) -> Parameter:
 
 
 def of_record(names: Sequence[str], number: int) -> dict[str, int]:
-    """What a record sees: names of parameters as its plant knows them, and their columns.
+    """Returns what a record sees: names of parameters as its plant knows them, and their columns.
 
     Args:
         names: of all records' parameters, one a column.
@@ -70,6 +70,6 @@ def of_record(names: Sequence[str], number: int) -> dict[str, int]:
 
 
 def values_of_record(values: Mapping[str, float], number: int) -> dict[str, float]:
-    """The values that a record sees, by names as its plant knows them."""
+    """Returns the values that a record sees, by names as its plant knows them."""
     names = [*values]
     return {name: values[names[column]] for name, column in of_record(names, number).items()}

@@ -75,12 +75,12 @@ class Parameter:
 
     @property
     def letter(self) -> str:
-        """What the equations call it."""
+        """The symbol of the parameter in equations; its name where it has none."""
         return self.symbol or self.name
 
     @property
     def short(self) -> str:
-        """What it is, in few words; "" where nobody said it."""
+        """A description in few words; "" where nobody gave one."""
         return self.about.partition(":")[0]
 
     @property
@@ -128,11 +128,11 @@ class ParameterSet:
         return iter(self.records)
 
     def values(self) -> dict[str, float]:
-        """The values by name, each in its parameter's unit."""
+        """Returns the values by name, each in its parameter's unit."""
         return self._values.copy()
 
     def with_values(self, values: Mapping[str, float], source: str = "") -> ParameterSet:
-        """The same set with some values replaced.
+        """Returns the same set with some values replaced.
 
         Args:
             values: the new values by name, in their parameters' units.

@@ -1,4 +1,4 @@
-"""Which objects and attributes a model has for paths, and what a path that has none may mean."""
+"""The objects and attributes that a model has for paths, and what a wrong path may mean."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ def unknown_attribute(model: mujoco.MjModel, kind: str, row: int, attribute: str
 def _with_that_name(
     model: mujoco.MjModel, name: str, attribute: str, besides: str
 ) -> Iterator[str]:
-    """Paths to the same attribute of objects of other kinds that have the same name."""
+    """Yields paths to the same attribute of objects of other kinds that have the same name."""
     for kind in KINDS:
         if kind != besides and name in names_of(model, kind) and name:
             if attribute in attributes(model, kind):
@@ -100,7 +100,7 @@ def _with_that_name(
 
 
 def _around(model: mujoco.MjModel, kind: str, row: int, attribute: str) -> Iterator[str]:
-    """Paths to the same attribute of an object's body, of a body's joints, or a joint's drives."""
+    """Yields paths to the same attribute of an object's body, a body's joints, a joint's drives."""
     if kind in _ON_A_BODY and attribute in attributes(model, "body"):
         body = int(getattr(model, f"{prefix(kind)}bodyid")[row])
         if name := names_of(model, "body")[body]:
@@ -117,6 +117,6 @@ def _around(model: mujoco.MjModel, kind: str, row: int, attribute: str) -> Itera
 
 
 def _meant(paths: Iterator[str]) -> str:
-    """The question that offers other paths; "" where there are none."""
+    """Returns the question that offers other paths; "" where there are none."""
     found = [repr(path) for path in dict.fromkeys(paths)]
     return f" did you mean {' or '.join(found)}?" if found else ""

@@ -1,4 +1,4 @@
-"""Where a parameter goes: a path such as `joint/motor_*.damping` or `body/platform.inertia[0]`.
+"""Paths of parameters, such as `joint/motor_*.damping` or `body/platform.inertia[0]`.
 
 A path is `kind/name.attribute` or `kind/name.attribute[column]`. A `*` in the name stands for all
 objects that match, and the parameter writes the same number to each of them. Objects that get the
@@ -42,7 +42,7 @@ class Slot:
     column: int | None
 
     def index(self) -> tuple[list[int], int] | list[int]:
-        """The numpy index of these entries in the array."""
+        """Returns the numpy index of these entries in the array."""
         return list(self.rows) if self.column is None else (list(self.rows), self.column)
 
 
@@ -88,5 +88,5 @@ def write(model: mujoco.MjModel, slot: Slot, value: float) -> None:
 
 
 def read(model: mujoco.MjModel, slot: Slot) -> float:
-    """The value that a slot holds; its entries are equal when one parameter wrote them."""
+    """Returns the value that a slot holds; its entries are equal when one parameter wrote them."""
     return float(getattr(model, slot.field)[slot.index()][0])

@@ -56,7 +56,7 @@ class ModelPlant:
     start: State | None = None
 
     def with_step(self, factor: float) -> ModelPlant:
-        """The same plant with another step of its model.
+        """Returns the same plant with another step of its model.
 
         Args:
             factor: new step over the old one.
@@ -100,7 +100,7 @@ class ModelPlant:
         object.__setattr__(self, "start", State(**start))
 
     def settings(self, names: Sequence[str], values: np.ndarray) -> tuple[State, Numbers]:
-        """Initial states (n rows) and model numbers of n value sets; see `Plant`.
+        """Returns initial states (n rows) and model numbers of n value sets; see `Plant`.
 
         Args:
             names: parameters that differ from the plant's own, p of them.
@@ -136,7 +136,7 @@ class ModelPlant:
 
     @cached_property
     def _owners(self) -> dict[str, tuple[str, str, float]]:
-        """Of each deviation, what is written to its path: parameter, path and factor."""
+        """The parameter, the path and its factor that are written to the path of each deviation."""
         return {
             self._deviations[path]: (p.name, path, factor)
             for p in self.parameters
@@ -145,7 +145,7 @@ class ModelPlant:
         }
 
     def _written(self, names: Sequence[str]) -> list[tuple[str, str, float]]:
-        """What some parameters write, once each: the parameter, the path and its factor."""
+        """Returns what some parameters write, once each: the parameter, the path and its factor."""
         out = []
         for name in names:
             parameter = self.parameters[name]
@@ -154,7 +154,7 @@ class ModelPlant:
         return list(dict.fromkeys(out))
 
     def _deviation(self, path: str) -> float:
-        """The relative deviation at a path in the plant's own values, zero where it has none."""
+        """Returns the relative deviation at a path in the plant's values, zero if it has none."""
         name = self._deviations.get(path)
         return 0.0 if name is None else self.parameters[name].value
 
@@ -162,23 +162,23 @@ class ModelPlant:
         self, names: Sequence[str], values: np.ndarray, held: np.ndarray, timestep: float,
         begun: float = 0.0,
     ) -> np.ndarray:  # fmt: skip
-        """The logged inputs, as they are; see `Plant`."""
+        """Returns the logged inputs, as they are; see `Plant`."""
         return held
 
     def outputs(
         self, names: Sequence[str], values: np.ndarray, sensors: Sequence[str], readings: np.ndarray
     ) -> np.ndarray:
-        """What perfect sensors say; see `Plant`."""
+        """Returns what perfect sensors say; see `Plant`."""
         return np.asarray(readings[0])
 
 
 def own_start(model: mujoco.MjModel) -> State:
-    """The state in which a model is reset: qpos0, at rest."""
+    """Returns the state in which a model is reset: qpos0, at rest."""
     return State(np.array(model.qpos0), np.zeros(model.nv), np.zeros(model.na))
 
 
 def start_place(where: str, model: mujoco.MjModel) -> tuple[str, int] | None:
-    """Field and index of a path such as `qpos[2]`; None for a path into the model.
+    """Returns field and index of a path such as `qpos[2]`; None for a path into the model.
 
     Raises:
         InputError: the state has no such entry.

@@ -42,31 +42,31 @@ class Predictor:
     fixed: Mapping[str, float] = field(default_factory=dict)
 
     def _every(self, values: np.ndarray) -> tuple[tuple[str, ...], np.ndarray]:
-        """Names and values of all that differs from the plant's own, the fixed ones included."""
+        """Returns names and values of all that differs from the plant, also the fixed ones."""
         values = np.atleast_2d(values)
         fixed = {n: v for n, v in self.fixed.items() if n not in self.names}
         rest = np.broadcast_to(list(fixed.values()), (len(values), len(fixed)))
         return (*self.names, *fixed), np.hstack([values, rest])
 
     def settings(self, values: np.ndarray) -> tuple[State, Numbers]:
-        """Initial states and model numbers of n value sets (n, p), the fixed values included."""
+        """Returns initial states and model numbers of n value sets (n, p), with fixed values."""
         return self.plant.settings(*self._every(values))
 
     def inputs(self, values: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
-        """The function from held inputs (steps, nu) to those that reach the model, for (n, p)."""
+        """Returns the function from held inputs (steps, nu) to the model's inputs, for (n, p)."""
         names, every = self._every(values)
         timestep = self.plant.model.opt.timestep
         return lambda held: self.plant.inputs(names, every, held, timestep, self.log.begun)
 
     def begun(self, values: np.ndarray, known: State) -> State:
-        """States as MuJoCo integrates them, of n value sets (n, p); see `WithStates`."""
+        """Returns states as MuJoCo integrates them, of n value sets (n, p); see `WithStates`."""
         plant = with_states(self.plant)
         return known if plant is None else plant.begun(*self._every(values), known)
 
     def first_loads(
         self, values: np.ndarray, known: State, inputs: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:
-        """States of the plant that no model file has, where windows begin; see `WithStates`.
+        """Returns the plant's states that no model file has, where windows begin; see `WithStates`.
 
         Raises:
             InputError: the plant has none.
@@ -82,7 +82,7 @@ class Predictor:
         return ("qpos", "qvel") if with_states(self.plant) is None else ("qpos", "qvel", "act")
 
     def records(self) -> tuple[tuple[Predictor, list[int]], ...]:
-        """A predictor of each record of the log, and the columns of values that it takes."""
+        """Returns a predictor of each record of the log, and the columns of its values."""
         if not isinstance(self.log, JoinedLog):
             return ((self, [*range(len(self.names))]),)
         given = {n: v for n, v in self.fixed.items() if n not in self.names}
@@ -96,7 +96,7 @@ class Predictor:
         return tuple(out)
 
     def predict(self, values: np.ndarray, samples: int | None = None) -> np.ndarray:
-        """Outputs of n value sets over the first samples of the log.
+        """Predicts the outputs of n value sets over the first samples of the log.
 
         Args:
             values: shape (n, p), in the parameters' units.
@@ -126,7 +126,7 @@ class Predictor:
         return self.outputs(values, states)
 
     def _predict_records(self, values: np.ndarray, samples: int | None) -> np.ndarray:
-        """Outputs of all records, each simulated from its own start, one after the other.
+        """Predicts the outputs of all records in turn, each simulated from its own start.
 
         Value sets that differ in values of other records only are simulated once.
         """
@@ -142,7 +142,7 @@ class Predictor:
     def outputs(
         self, values: np.ndarray, states: Mapping[str, np.ndarray], begun: np.ndarray | None = None
     ) -> np.ndarray:
-        """What the sensors say of simulated states, for n value sets (n, p).
+        """Returns what the sensors say of simulated states, for n value sets (n, p).
 
         Args:
             values: shape (n, p), in the parameters' units.
@@ -162,7 +162,7 @@ class Predictor:
     def readings(
         self, states: Mapping[str, np.ndarray], begun: np.ndarray | None = None
     ) -> np.ndarray:
-        """What perfect sensors would say of simulated states; see `Plant.outputs`.
+        """Returns what perfect sensors would say of simulated states; see `Plant.outputs`.
 
         Args:
             states: of m simulations, each field (m, samples, size).
@@ -182,7 +182,7 @@ class Predictor:
         return np.stack([np.stack(part, axis=-1) for part in (y, q, v, times)])
 
     def said(self, values: np.ndarray, readings: np.ndarray) -> np.ndarray:
-        """What the plant's sensors say, for n value sets (n, p); see `Plant.outputs`."""
+        """Returns what the plant's sensors say, for n value sets (n, p); see `Plant.outputs`."""
         return self.plant.outputs(*self._every(values), self.log.output_names, readings)
 
 
@@ -193,7 +193,7 @@ def sensor_word(model: mujoco.MjModel, i: int) -> str:
 
 
 def output_columns(model: mujoco.MjModel, names: Sequence[str]) -> list[tuple[str, int]]:
-    """Where each output stands in the state: its field (qpos or qvel) and index.
+    """Returns the place of each output in the state: its field (qpos or qvel) and index.
 
     Raises:
         InputError: a name is not a sensor of the model, or its sensor is not a joint position or

@@ -1,4 +1,4 @@
-"""What a plant is: a model whose parameters can be moved, perhaps with more states."""
+"""The protocol of a plant: a model whose parameters can be moved, perhaps with more states."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Plant(Protocol):
         """Every parameter, with its nominal value."""
 
     def settings(self, names: Sequence[str], values: np.ndarray) -> tuple[State, Numbers]:
-        """Initial states (n rows) and model numbers of n value sets.
+        """Returns initial states (n rows) and model numbers of n value sets.
 
         Args:
             names: parameters that differ from the plant's own.
@@ -38,7 +38,7 @@ class Plant(Protocol):
         self, names: Sequence[str], values: np.ndarray, held: np.ndarray, timestep: float,
         begun: float = 0.0,
     ) -> np.ndarray:  # fmt: skip
-        """The inputs that reach the model, step by step, computed from the logged inputs.
+        """Returns the inputs that reach the model at each step, computed from the logged inputs.
 
         Args:
             names: as above.
@@ -55,7 +55,7 @@ class Plant(Protocol):
         self, names: Sequence[str], values: np.ndarray, sensors: Sequence[str],
         readings: np.ndarray,
     ) -> np.ndarray:  # fmt: skip
-        """What the sensors say, computed from what perfect ones would say.
+        """Returns what the sensors say, computed from what perfect ones would say.
 
         Args:
             names: as above.
@@ -78,10 +78,10 @@ class WithStates(Protocol):
     """
 
     def without_states(self) -> Plant:
-        """The same plant without them, and without the effects that need them."""
+        """Returns the same plant without its extra states and the effects that need them."""
 
     def begun(self, names: Sequence[str], values: np.ndarray, known: State) -> State:
-        """States as MuJoCo integrates them.
+        """Returns states as MuJoCo integrates them.
 
         Args:
             names: parameters that differ from the plant's own.
@@ -92,13 +92,13 @@ class WithStates(Protocol):
     def shown(
         self, names: Sequence[str], values: np.ndarray, run: Mapping[str, np.ndarray]
     ) -> Mapping[str, np.ndarray]:
-        """Positions and rates as sensors see them, of m simulations with qpos, qvel and act."""
+        """Returns positions and rates as sensors see them, of m simulations (qpos, qvel, act)."""
 
     def first_loads(
         self, names: Sequence[str], values: np.ndarray, known: State, inputs: np.ndarray,
         sampling_time: float,
     ) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
-        """The states where windows begin, shape (W, na), and how far they may be, shape (na,).
+        """Returns the states where windows begin (W, na), and how far they may be off (na,).
 
         Args:
             names: as above.
@@ -110,7 +110,7 @@ class WithStates(Protocol):
 
 
 def with_states(plant: Plant) -> WithStates | None:
-    """The plant, where it has states which no model file has."""
+    """Returns the plant where it has states which no model file has, else None."""
     if isinstance(plant, WithStates) and plant.without_states() is not plant:
         return plant
     return None

@@ -54,7 +54,7 @@ class State:
 
 
 def substeps(sampling_time: float, timestep: float) -> int:
-    """Simulation steps per sample.
+    """Returns how many simulation steps a sample has.
 
     Raises:
         InputError: the sampling time is not a whole number of steps.
@@ -69,13 +69,13 @@ def substeps(sampling_time: float, timestep: float) -> int:
 
 
 def logged_inputs(model: mujoco.MjModel) -> int:
-    """How many inputs a log of a model has: actuators that only carry states have none."""
+    """Returns how many inputs a log of a model has: actuators that only carry states have none."""
     own = (model.actuator(i).name.startswith(UNLOGGED) for i in range(len(model.actuator_trntype)))
     return int(model.nu) - sum(own)
 
 
 def hold(inputs: np.ndarray, n: int, kind: str = "zoh") -> np.ndarray:
-    """Controls of the simulation steps between the samples: (..., N, nu) -> (..., (N-1) n, nu)."""
+    """Returns controls of the steps between the samples: (..., N, nu) -> (..., (N-1) n, nu)."""
     if kind == "zoh":
         return np.repeat(inputs[..., :-1, :], n, axis=-2)
     if kind != "foh":
@@ -88,7 +88,7 @@ def hold(inputs: np.ndarray, n: int, kind: str = "zoh") -> np.ndarray:
 
 
 def without_sensors(model: mujoco.MjModel) -> mujoco.MjModel:
-    """The model whose steps leave its sensors out; itself where they are left out."""
+    """Returns the model with sensors disabled in its steps; itself where they are so already."""
     out = int(mujoco.mjtDisableBit.mjDSBL_SENSOR)
     if model.opt.disableflags & out:
         return model

@@ -37,7 +37,7 @@ def sensitivity(
     samples: int | None = None,
     step: float = STEP,
 ) -> np.ndarray:
-    """∂ŷ/∂q of the predicted outputs by central differences, from 2 p simulations.
+    """Returns ∂ŷ/∂q of the predicted outputs by central differences, from 2 p simulations.
 
     Args:
         predictor: predicts the outputs.
@@ -59,7 +59,7 @@ def sensitivity(
 def two_sensitivities(
     predictor: Predictor, space: Coordinates, q: np.ndarray, step: float = STEP
 ) -> tuple[np.ndarray, np.ndarray]:
-    """∂ŷ/∂q at a step and at twice the step, each (N, ny, p), from 4 p simulations in one batch.
+    """Returns ∂ŷ/∂q at a step and at twice the step, each (N, ny, p), from 4 p simulations at once.
 
     The first is the result of `sensitivity`, to the last bit. The difference between the second and
     the first estimates its error.
@@ -75,7 +75,7 @@ def _central(
     steps: tuple[float, ...],
     samples: int | None,
 ) -> list[np.ndarray]:
-    """Central differences at each of some steps, all in one batch."""
+    """Returns central differences at each of some steps, all in one batch."""
     moves = [step * np.eye(len(q)) for step in steps]
     values = space.decode(np.concatenate([q + sign * move for move in moves for sign in (1, -1)]))
     runs = np.split(predictor.predict(values, samples), 2 * len(steps))
@@ -92,7 +92,7 @@ def forward_sensitivity(
     predicted: np.ndarray,
     step: float = FORWARD_STEP,
 ) -> np.ndarray:
-    """∂ŷ/∂q, shape (samples, ny, p), from p simulations, where ŷ(q) is known already.
+    """Returns ∂ŷ/∂q (samples, ny, p), from p simulations, where ŷ(q) is known already.
 
     Args:
         predictor: predicts the outputs.
@@ -107,7 +107,7 @@ def forward_sensitivity(
 
 
 def without_effect(J: np.ndarray, outputs: np.ndarray) -> np.ndarray:
-    """Which columns of J (samples, ny, p) are only round-off of the outputs, shape (p,)."""
+    """Returns which columns of J (samples, ny, p) are only round-off of the outputs, shape (p,)."""
     size = np.abs(outputs).max(axis=0)
     return (np.abs(J).max(axis=0) <= ROUND_OFF * size[:, None]).all(axis=0)
 

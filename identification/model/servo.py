@@ -110,5 +110,5 @@ def refuse_half(model: mujoco.MjModel, paths: Sequence[tuple[str, str]]) -> None
 
 
 def _entry(slot: Slot) -> str:
-    """The name of a number of an actuator in a path, such as "gainprm[0]"."""
+    """Returns the name of a number of an actuator in a path, such as "gainprm[0]"."""
     return f"{slot.field.removeprefix('actuator_')}[{slot.column}]"

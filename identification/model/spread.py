@@ -26,7 +26,7 @@ Place = tuple[int, int]
 
 
 def spread_place(path: str, model: mujoco.MjModel) -> Place | None:
-    """Body and axis of a path such as `body/link.spread[0]`; None for any other path.
+    """Returns body and axis of a path such as `body/link.spread[0]`; None for any other path.
 
     Raises:
         InputError: the model has no such body.
@@ -43,7 +43,7 @@ def spread_place(path: str, model: mujoco.MjModel) -> Place | None:
 
 
 def spreads(model: mujoco.MjModel, body: int) -> np.ndarray:
-    """σ of a body, shape (3,) [kg m²]."""
+    """Returns σ of a body, shape (3,) [kg m²]."""
     inertia = model.body_inertia[body]
     return np.asarray(inertia.sum() / 2 - inertia)
 
@@ -51,7 +51,7 @@ def spreads(model: mujoco.MjModel, body: int) -> np.ndarray:
 def with_spreads(
     model: mujoco.MjModel, values: Mapping[Place, np.ndarray], count: int
 ) -> list[tuple[Slot, np.ndarray]]:
-    """The entries of a model that some spreads change.
+    """Returns the entries of a model that some spreads change.
 
     Args:
         model: gives the spreads that are not among the values.

@@ -17,7 +17,7 @@ from identification.native.memory import load_constant, load_int, load_word
 
 
 def offsets(struct: str, names: str) -> Any:
-    """Word offsets of some fields of a struct, as a named tuple.
+    """Returns the word offsets of some fields of a struct, as a named tuple.
 
     Args:
         struct: "mjModel" or "mjData".
@@ -30,17 +30,17 @@ def offsets(struct: str, names: str) -> Any:
 
 @internal
 def word(struct, at):  # type: ignore[no-untyped-def]
-    """A size, or the address of an array."""
+    """Returns a size, or the address of an array."""
     return load_word(struct + 8 * at)
 
 
 @internal
 def double(struct, at, i):  # type: ignore[no-untyped-def]
-    """Entry i of an array of doubles that no callback writes."""
+    """Returns entry i of an array of doubles that no callback writes."""
     return load_constant(load_word(struct + 8 * at) + 8 * i)
 
 
 @internal
 def integer(struct, at, i):  # type: ignore[no-untyped-def]
-    """Entry i of an array of ints."""
+    """Returns entry i of an array of ints."""
     return np.int64(load_int(load_word(struct + 8 * at) + 4 * i))

@@ -34,7 +34,7 @@ _FORMAT = b"inca_mj machine code 1"
 
 
 def compile_once(function: Callable[..., Any], signature: Any) -> Any:
-    """A callback as a ctypes function: loaded from the cache, or compiled and kept there.
+    """Returns a callback as a ctypes function: loaded from the cache, or compiled and kept there.
 
     Args:
         function: what is compiled; it must not raise, and a division by zero gives inf or NaN.
@@ -64,18 +64,18 @@ def compile_once(function: Callable[..., Any], signature: Any) -> Any:
 
 
 def enabled() -> bool:
-    """Whether the cache is on: the environment says nothing else, and files have owners here."""
+    """Returns whether the cache is on: it is not switched off, and files have owners here."""
     return os.environ.get(VARIABLE, "").strip().lower() not in OFF and hasattr(os, "getuid")
 
 
 def encode(key: str, code: MachineCode) -> bytes:
-    """The content of an entry."""
+    """Returns the content of an entry."""
     rest = b"\n".join((code.symbol.encode(), " ".join(code.needs).encode(), code.object_file))
     return b"\n".join((_FORMAT, key.encode(), _digest(key, rest), rest))
 
 
 def decode(key: str, content: bytes) -> MachineCode | None:
-    """The machine code of an entry; None when it is damaged or not that of the key."""
+    """Returns the machine code of an entry; None when it is damaged or has another key."""
     *header, rest = content.split(b"\n", 3)
     if header != [_FORMAT, key.encode(), _digest(key, rest)]:
         return None

@@ -21,7 +21,7 @@ LARGEST = 64 * 2**20  # bytes of all entries together; the law with all effects 
 
 
 def folder() -> Path:
-    """Where the cache of this user is.
+    """Returns the folder of this user's cache.
 
     Raises:
         OSError: the user has no home.
@@ -36,7 +36,7 @@ def folder() -> Path:
 
 
 def read(name: str) -> bytes:
-    """The content of an entry.
+    """Returns the content of an entry.
 
     Raises:
         OSError: there is none, or it is not safe to use.
@@ -101,7 +101,7 @@ def _remove(name: str, inside: int) -> None:
 
 @contextmanager
 def _opened() -> Iterator[int]:
-    """The folder, opened and found safe."""
+    """Opens the folder, found safe, and yields its file descriptor."""
     place = folder()
     flags = os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW | os.O_CLOEXEC
     inside = os.open(place, flags)

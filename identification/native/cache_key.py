@@ -49,7 +49,7 @@ class UnknownDependency(Exception):
 
 
 def key_of(function: Any, signature: Any) -> str:
-    """The key of a callback, 64 hexadecimal digits.
+    """Returns the key of a callback, 64 hexadecimal digits.
 
     Args:
         function: the Python function that is compiled.
@@ -67,7 +67,7 @@ def key_of(function: Any, signature: Any) -> str:
 
 @cache
 def machine() -> tuple[str, ...]:
-    """Versions, processor and settings on which all machine code depends."""
+    """Returns the versions, processor and settings on which all machine code depends."""
     return (
         sys.version,
         str(sys.implementation.cache_tag),
@@ -79,7 +79,7 @@ def machine() -> tuple[str, ...]:
 
 
 def _function(function: Any, seen: _Seen) -> Iterator[str]:
-    """A function: its bytecode, its defaults, its closure and the globals that it reads."""
+    """Yields the parts of a function: bytecode, defaults, closure and the globals that it reads."""
     code: CodeType = function.__code__
     yield from _code(code, seen)
     yield from _value(function.__defaults__, code, seen)
@@ -101,7 +101,7 @@ def _cell(cell: CellType, code: CodeType, seen: _Seen) -> Iterator[str]:
 
 
 def _code(code: CodeType, seen: _Seen) -> Iterator[str]:
-    """What a code object does, without where its file is."""
+    """Yields the parts of a code object, without where its file is."""
     yield repr((
         code.co_name, code.co_argcount, code.co_posonlyargcount, code.co_kwonlyargcount,
         code.co_flags, code.co_code, code.co_names, code.co_varnames, code.co_freevars,
@@ -115,14 +115,14 @@ def _code(code: CodeType, seen: _Seen) -> Iterator[str]:
 
 
 def _global_names(code: CodeType) -> set[str]:
-    """The global names that a code object reads, with those of the functions inside it."""
+    """Returns the global names that a code object reads, also those of functions inside it."""
     names = {i.argval for i in dis.get_instructions(code) if i.opname == "LOAD_GLOBAL"}
     inner = [c for c in code.co_consts if isinstance(c, CodeType)]
     return names.union(*map(_global_names, inner))
 
 
 def _value(value: Any, code: CodeType, seen: _Seen) -> Iterator[str]:
-    """Anything that a function with some code may refer to."""
+    """Yields the parts of anything that a function with some code may refer to."""
     kind = type(value)
     if isinstance(value, (Dispatcher, _Intrinsic)):
         yield from _compiled(value, seen)
@@ -157,7 +157,7 @@ def _value(value: Any, code: CodeType, seen: _Seen) -> Iterator[str]:
 
 
 def _compiled(value: Any, seen: _Seen) -> Iterator[str]:
-    """A function that numba compiles, or an intrinsic, which writes LLVM code for it."""
+    """Yields the parts of a function that numba compiles, or of an intrinsic, which writes LLVM."""
     if id(value) in seen:
         yield f"as number {seen[id(value)][0]}"
         return

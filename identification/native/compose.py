@@ -20,7 +20,7 @@ from identification.native.tuples import added, loader, replacer
 
 @internal
 def is_absent(p, sizes):  # type: ignore[no-untyped-def]
-    """Whether the first numbers of a tuple, which are the sizes, are all zero."""
+    """Returns whether the first numbers of a tuple, which are the sizes, are all zero."""
     for k in range(sizes):  # noqa: SIM110
         if p[k] != 0.0:
             return False
@@ -28,7 +28,7 @@ def is_absent(p, sizes):  # type: ignore[no-untyped-def]
 
 
 def total(element: Element, terms: Sequence[Term], hook: str) -> Function:
-    """The compiled sum of a hook over a set of effects.
+    """Returns the compiled sum of a hook over a set of effects.
 
     Args:
         element: what the effects act on.
@@ -62,7 +62,7 @@ def total(element: Element, terms: Sequence[Term], hook: str) -> Function:
 
 
 def _joined(parts: Sequence[Function], join: Callable[[Function, Function], Function]) -> Function:
-    """One function of many, which run in their order: a balanced tree of pairs."""
+    """Returns one function of many, which run in their order: a balanced tree of pairs."""
     if len(parts) == 1:
         return parts[0]
     middle = len(parts) // 2
@@ -70,7 +70,7 @@ def _joined(parts: Sequence[Function], join: Callable[[Function, Function], Func
 
 
 def _one_after_another(first: Function, second: Function) -> Function:
-    """Two functions (before, s, row, states) -> after as one."""
+    """Returns two functions (before, s, row, states) -> after as one."""
 
     @internal
     def both(before, s, row, states):  # type: ignore[no-untyped-def]
@@ -80,7 +80,7 @@ def _one_after_another(first: Function, second: Function) -> Function:
 
 
 def _leaf(function: Function, term: Term, element: Element) -> Function:
-    """One effect as a function (before, s, row, states) -> before with its own added."""
+    """Returns an effect as a function (before, s, row, states) -> before with its own added."""
     load, at, sizes = loader(len(term.names)), 8 * term.column, term.sizes
     if term.state:
         own, with_own = 8 * term.state, replacer(element.state, "x")
@@ -105,7 +105,7 @@ def _leaf(function: Function, term: Term, element: Element) -> Function:
 
 
 def rates(element: Element, terms: Sequence[Term], hook: str = "rate") -> Function:
-    """The compiled rates of the effects' own states.
+    """Returns the compiled rates of the effects' own states.
 
     Args:
         element: what the effects act on.
@@ -132,7 +132,7 @@ def rates(element: Element, terms: Sequence[Term], hook: str = "rate") -> Functi
 
 
 def _both_rates(first: Function, second: Function) -> Function:
-    """Two functions (s, row, states, out) as one."""
+    """Returns two functions (s, row, states, out) as one."""
 
     @internal
     def both(s, row, states, out):  # type: ignore[no-untyped-def]
@@ -143,7 +143,7 @@ def _both_rates(first: Function, second: Function) -> Function:
 
 
 def _rate(function: Function, term: Term, element: Element) -> Function:
-    """The rate of one effect's state as a function (s, row, states, out)."""
+    """Returns the rate of one effect's state as a function (s, row, states, out)."""
     load, at, own = loader(len(term.names)), 8 * term.column, 8 * term.state
     with_own = replacer(element.state, "x")
 

@@ -1,4 +1,4 @@
-"""What effects act on, such as a joint or a drive: what they know of it, where they add to its law.
+"""The elements that effects act on, such as a joint or a drive: their state, and their hooks.
 
 A hook is one place of a law where effects may add. Its function takes the element's state and the
 effect's parameters, sizes first, and returns one number or a tuple of them.
@@ -29,12 +29,12 @@ class Hook:
 
     @property
     def zero(self) -> float | tuple[float, ...]:
-        """What it adds where no effect is."""
+        """The value that the hook adds where no effect is."""
         return 0.0 if len(self.returns) == 1 else (0.0,) * len(self.returns)
 
     @property
     def type(self) -> Any:
-        """What its functions return, as numba's type."""
+        """The type that the hook's functions return, as numba's type."""
         count = len(self.returns)
         return types.float64 if count == 1 else types.UniTuple(types.float64, count)
 
@@ -62,12 +62,12 @@ class Element:
 
     @property
     def type(self) -> Any:
-        """Its state as numba's type."""
+        """The type of the element's state, as numba's type."""
         fields = [types.int64 if f in self.integers else types.float64 for f in self.state._fields]
         return types.BaseTuple.from_types(fields, self.state)
 
     def hook(self, name: str) -> Hook:
-        """The hook of a name that is one of its own."""
+        """Returns the hook of a name that is one of its own."""
         return next(hook for hook in self.hooks if hook.name == name)
 
 
@@ -92,5 +92,5 @@ class Term:
     state: int = 0
 
     def function(self, hook: str) -> Function | None:
-        """Its function for a hook, None where it adds nothing there."""
+        """Returns its function for a hook, None where it adds nothing there."""
         return dict(self.functions).get(hook)

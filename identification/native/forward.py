@@ -176,7 +176,7 @@ def evaluate(
 
 
 def _parts(where: np.ndarray, most: int) -> np.ndarray:
-    """First points of the parts of a few threads, and their end: an interval is never divided."""
+    """Returns the first points of the threads' parts, and their end: no interval is divided."""
     points = len(where)
     if not points:
         return np.zeros(1, int)
@@ -185,7 +185,7 @@ def _parts(where: np.ndarray, most: int) -> np.ndarray:
 
 
 def _address(model: mujoco.MjModel, field: str, index: tuple[int, ...]) -> int:
-    """The address of one entry of a model."""
+    """Returns the address of one entry of a model."""
     array = getattr(model, field)
     return int(array.ctypes.data + np.dot(index, array.strides))
 
@@ -255,7 +255,7 @@ def _clear(x, n):  # type: ignore[no-untyped-def]
 
 @internal
 def _add(x, y, factor, n):  # type: ignore[no-untyped-def]
-    """x ← x + factor · y, n doubles each."""
+    """Adds factor · y to x in place, n doubles each."""
     for i in range(n):
         store_double(x + 8 * i, load_double(x + 8 * i) + factor * load_double(y + 8 * i))
 

@@ -1,4 +1,4 @@
-"""What effects say of the gear of a joint, and of the friction in it; see `native.gear`."""
+"""The gear of a joint, and the friction in it, as elements of effects; see `native.gear`."""
 
 from __future__ import annotations
 

@@ -36,13 +36,13 @@ RESOLVED = 1.0  # X: RK4 then damps a swing by 7e-3 a step; semi-implicit Euler 
 
 @inlined
 def resolved(c, inertia, h):  # type: ignore[no-untyped-def]
-    """r: the share of a spring of compliance c that a step resolves, of friction that gives."""
+    """Returns r, the share that a step resolves of friction that gives, c being its compliance."""
     return min(1.0, c * inertia * (RESOLVED / h) ** 2)
 
 
 @internal
 def invert(M, A, n):  # type: ignore[no-untyped-def]
-    """A = M⁻¹ of a positive matrix n x n, of which the lower triangle is given; M is overwritten.
+    """Computes A = M⁻¹ (n x n) from the lower triangle of a positive M, which is overwritten.
 
     M = L Lᵀ (Cholesky), A = L⁻ᵀ L⁻¹.
     """
@@ -70,7 +70,7 @@ def invert(M, A, n):  # type: ignore[no-untyped-def]
 
 @internal
 def hold(A, w, low, high, f, n, r, p):  # type: ignore[no-untyped-def]
-    """Friction into f, which comes as zeros; w comes as M⁻¹ g and is overwritten."""
+    """Computes friction into f, which comes as zeros; w comes as M⁻¹ g and is overwritten."""
     largest = 0.0
     for i in range(n):
         largest = max(largest, low[i], high[i])
@@ -93,7 +93,7 @@ def hold(A, w, low, high, f, n, r, p):  # type: ignore[no-untyped-def]
 
 @njit
 def held(M, g, low, high, r=None, p=None):  # type: ignore[no-untyped-def]
-    """Friction of joints that pull at each other, shape (n,); for tests and for reading.
+    """Returns friction of joints that pull at each other, shape (n,); for tests and for reading.
 
     Args:
         M: mass matrix, shape (n, n) [kg or kg m²].

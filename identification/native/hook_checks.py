@@ -1,4 +1,4 @@
-"""What is wrong with the functions of effects, in one sentence instead of numba's page."""
+"""Checks of the functions of effects, which say in one sentence what numba says on a page."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def _refuse_unfit(element: Element, hook: Hook, term: Term, function: Function) 
 
 
 def _returned(element: Element, term: Term, function: Function) -> Any:
-    """Numba's type of what a function returns for the state and parameters of its hook."""
+    """Returns numba's type of what a function returns for its hook's state and parameters."""
     signature = (element.type, types.UniTuple(types.float64, len(term.names)))
     dispatcher: Any = function
     dispatcher.compile(signature)
@@ -63,7 +63,7 @@ def _said(returned: Any) -> str:
 
 
 def _reason(error: Exception) -> str:
-    """The line of numba's page that says what it is about."""
+    """Returns the line of numba's page that says what it is about."""
     lines = [line.strip() for line in str(error).splitlines()]
     said = [line for line in lines if line and not line.startswith("Failed in")]
     reason = said[0] if said else type(error).__name__

@@ -48,7 +48,7 @@ _SIGNATURE = types.void(types.int64, types.int64, types.float64, types.float64, 
 
 @internal
 def past(s, n, before):  # type: ignore[no-untyped-def]
-    """The input n steps ago; before the first step it was `before` times the first input."""
+    """Returns the input n steps ago; before step 0 it was `before` times the first input."""
     n = min(n, s.k + 1.0)  # a delay may be longer than any whole number
     if n > s.k:
         return before * load_double(s.signal)
@@ -57,7 +57,7 @@ def past(s, n, before):  # type: ignore[no-untyped-def]
 
 @internal
 def shifted(s, n):  # type: ignore[no-untyped-def]
-    """The input n steps ago, or ahead where n < 0; its first and last values last for ever."""
+    """Returns the input n steps ago, or ahead if n < 0; its first and last values last for ever."""
     at = min(max(s.k - n, 0.0), s.steps - 1.0)  # n may be larger than any whole number
     return load_double(s.signal + 8 * int(at))
 
@@ -68,7 +68,7 @@ def _zero(s, p):  # type: ignore[no-untyped-def]
 
 
 def _link(rest: Function, term: Term, place: int) -> Function:
-    """One more effect on a chain: it reads signal `place` and writes the next one."""
+    """Returns a chain with one more effect: it reads signal `place` and writes the next one."""
     change = term.function("input")
     start, after = term.function("start") or _zero, term.function("next") or _zero
     load, at, sizes = loader(len(term.names)), 8 * term.column, term.sizes
@@ -100,7 +100,7 @@ def _link(rest: Function, term: Term, place: int) -> Function:
 
 @cache
 def input_filter(terms: Sequence[Term]) -> Any:
-    """The compiled effects of an input.
+    """Returns the compiled effects of an input.
 
     Args:
         terms: the effects, in the order in which the input passes them.

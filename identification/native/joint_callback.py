@@ -1,4 +1,4 @@
-"""What the effects of a joint see of it, and where its numbers stand.
+"""The state of a joint that its effects see, and the place of its numbers.
 
 The numbers stand at the end of a joint's user data, in a row
 
@@ -76,18 +76,18 @@ _GAINS, _BIASES, _GEARS = mujoco.mjNGAIN, mujoco.mjNBIAS, 6
 
 
 def stopping_steps(nv: int) -> float:
-    """T over the step of a model with nv degrees of freedom."""
+    """Returns T over the step of a model with nv degrees of freedom."""
     return STEPS if nv <= MOST else STEPS_ALONE
 
 
 def width(terms: Sequence[Term]) -> int:
-    """Entries of a joint's row with some effects."""
+    """Returns how many entries a joint's row has with some effects."""
     return FIRST + sum(len(term.names) for term in terms) + LAST
 
 
 @inlined
 def _clipped(m, limited, range_, i, x):  # type: ignore[no-untyped-def]
-    """x within limit i of an array of limits, where there is one."""
+    """Returns x within limit i of an array of limits, where there is one."""
     if load_byte(word(m, limited) + i):
         x = max(double(m, range_, 2 * i), min(double(m, range_, 2 * i + 1), x))
     return x
@@ -95,7 +95,7 @@ def _clipped(m, limited, range_, i, x):  # type: ignore[no-untyped-def]
 
 @inlined
 def _actuator_force(m, d, i, q, v):  # type: ignore[no-untyped-def]
-    """Force of actuator i on its joint, gain·u + bias [N or N m]; NaN where it is another law."""
+    """Returns actuator i's force on its joint, gain·u + bias [N or N m]; NaN for another law."""
     bias = integer(m, M.actuator_biastype, i)
     if bias == _USER_BIAS and double(m, M.actuator_biasprm, _BIASES * i) == TAG:
         return 0.0  # it carries a state of the joint (`identification.native.joint_states`)
@@ -119,7 +119,7 @@ def _actuator_force(m, d, i, q, v):  # type: ignore[no-untyped-def]
 
 @inlined
 def drive_force(m, d, j, q, v):  # type: ignore[no-untyped-def]
-    """Force of the actuators on joint j [N or N m]."""
+    """Returns the force of the actuators on joint j [N or N m]."""
     f = 0.0
     for i in range(word(m, M.nactuator)):
         if integer(m, M.actuator_trntype, i) == _JOINT and integer(m, M.actuator_trnid, 2 * i) == j:
@@ -129,7 +129,7 @@ def drive_force(m, d, j, q, v):  # type: ignore[no-untyped-def]
 
 @inlined
 def gravity_force(m, d, j):  # type: ignore[no-untyped-def]
-    """Force of gravity on joint j, of its body and all that hang on it [N or N m]."""
+    """Returns the force of gravity on joint j, of its body and all that hang on it [N or N m]."""
     body = integer(m, M.jnt_bodyid, j)
     mass = double(m, M.body_subtreemass, body)
     gx = mass * load_constant(m + 8 * GRAVITY)
@@ -148,14 +148,14 @@ def gravity_force(m, d, j):  # type: ignore[no-untyped-def]
 
 @inlined
 def inertia(m, d, dof):  # type: ignore[no-untyped-def]
-    """Entry of the mass matrix of a degree of freedom with itself [kg or kg m²]."""
+    """Returns the diagonal entry of the mass matrix for a degree of freedom [kg or kg m²]."""
     last = integer(m, M.M_rowadr, dof) + integer(m, M.M_rownnz, dof) - 1
     return double(d, D.M, last)
 
 
 @inlined
 def _neighbour(m, d, j, other, row):  # type: ignore[no-untyped-def]
-    """(q - q_mid)/q_far and v/v_top of another joint; NaN where it has no row as joint j has."""
+    """Returns (q - q_mid)/q_far and v/v_top of another joint; NaN if it has no row like joint j."""
     columns = word(m, M.nuser_jnt)
     if other < 0 or other >= word(m, M.njnt):
         return np.nan, np.nan
@@ -170,7 +170,7 @@ def _neighbour(m, d, j, other, row):  # type: ignore[no-untyped-def]
 
 @inlined
 def joint(m, d, j, row):  # type: ignore[no-untyped-def]
-    """The state of joint j, as a force sees it; `row` is the address of its row."""
+    """Returns the state of joint j, as a force sees it; `row` is the address of its row."""
     q = double(d, D.qpos, integer(m, M.jnt_qposadr, j))
     v = double(d, D.qvel, integer(m, M.jnt_dofadr, j))
     x_before, v_before = _neighbour(m, d, j, j - 1, row)

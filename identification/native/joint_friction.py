@@ -58,7 +58,7 @@ with_sign = replacer(Joint, "sign")
 
 @inlined
 def _drive_alone(m, d, j, room):  # type: ignore[no-untyped-def]
-    """The drive of a joint without effects into `room`, which others feel."""
+    """Writes the drive of a joint without effects into `room`, for the joints that feel it."""
     kind, dof = integer(m, M.jnt_type, j), integer(m, M.jnt_dofadr, j)
     if kind in (HINGE, SLIDE):
         q = double(d, D.qpos, integer(m, M.jnt_qposadr, j))
@@ -98,7 +98,7 @@ def _hold_together(m, d, stop, room, n):  # type: ignore[no-untyped-def]
 
 
 def passive_force(terms: Sequence[Term], key: float, entries: int, felt: Function) -> Function:
-    """The passive force of a set of joint effects, to be compiled.
+    """Returns the passive force of a set of joint effects, to be compiled.
 
     Args:
         terms: the effects, their columns counted from the first parameter of a row.
@@ -174,7 +174,7 @@ def passive_force(terms: Sequence[Term], key: float, entries: int, felt: Functio
 
 
 def callbacks(terms: Sequence[Term], key: float) -> dict[str, Function]:
-    """The callback of a set of joint effects without states, to be compiled; see above."""
+    """Returns the callback of a set of joint effects without states, to be compiled; see above."""
 
     @inlined
     def felt(m, d, j, row, end):  # type: ignore[no-untyped-def]

@@ -47,12 +47,12 @@ from identification.native.transmission import is_ours, transmit
 
 
 def width(terms: Sequence[Term]) -> int:
-    """Entries of a joint's row with some effects, and with the numbers of its states."""
+    """Returns how many entries a joint's row has with some effects and its states' numbers."""
     return FIRST + sum(len(term.names) for term in terms) + GEARS + LAST
 
 
 def callbacks(terms: Sequence[Term], key: float) -> dict[str, Function]:
-    """The callbacks of a set of joint effects in a plant with states, to be compiled.
+    """Returns the callbacks of a set of joint effects in a plant with states, to be compiled.
 
     Args:
         terms: the effects without states, their columns counted from the first parameter of a row.
@@ -71,7 +71,7 @@ def callbacks(terms: Sequence[Term], key: float) -> dict[str, Function]:
 
     @inlined
     def mine(m, i):  # type: ignore[no-untyped-def]
-        """The joint of an actuator that carries states of this law; -1 where it does not."""
+        """Returns the joint of an actuator that carries states of this law; -1 if it does not."""
         if (
             i < 0
             or word(m, JOINT_M.nuser_jnt) < entries

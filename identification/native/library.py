@@ -21,7 +21,7 @@ POINTER, INT = 64, 32  # bits of an argument
 
 
 def _function(name: str, bits: tuple[int, ...]) -> Any:
-    """The compiled function (arguments in a tuple, all int64) -> None that calls one of MuJoCo's.
+    """Returns the compiled function (tuple of int64) -> None that calls one of MuJoCo's.
 
     Args:
         name: of the function.

@@ -73,7 +73,7 @@ def compile_callback(
 
 @contextmanager
 def _uncollected() -> Iterator[None]:
-    """Looks for no garbage meanwhile: numba's trees are many objects, and it took an eighth."""
+    """Stops garbage collection in the block; it took an eighth of the time."""
     was_on = gc.isenabled()
     gc.disable()
     try:
@@ -85,7 +85,7 @@ def _uncollected() -> Iterator[None]:
 
 @global_compiler_lock
 def load_callback(code: MachineCode, signature: Any) -> Any | None:
-    """The ctypes function of machine code that was compiled earlier.
+    """Returns the ctypes function of machine code that was compiled earlier.
 
     Args:
         code: made by `compile_callback` for the same processor and the same versions.

@@ -19,7 +19,7 @@ FIELDS = frozenset((*M._fields, *D._fields))
 
 @inlined
 def _rise(m, d, x, last):  # type: ignore[no-untyped-def]
-    """L⁻ᵀ x in place, where x is zero behind its entry `last`."""
+    """Computes L⁻ᵀ x in place, where x is zero behind its entry `last`."""
     L = word(d, D.qLD)
     for i in range(last, -1, -1):
         first, count = integer(m, M.M_rowadr, i), integer(m, M.M_rownnz, i)
@@ -30,7 +30,7 @@ def _rise(m, d, x, last):  # type: ignore[no-untyped-def]
 
 @inlined
 def solve(m, d, x):  # type: ignore[no-untyped-def]
-    """M⁻¹ x in place, x an address."""
+    """Computes M⁻¹ x in place, x an address."""
     n, L = word(m, M.nv), word(d, D.qLD)
     _rise(m, d, x, n - 1)
     for i in range(n):
@@ -44,7 +44,7 @@ def solve(m, d, x):  # type: ignore[no-untyped-def]
 
 @inlined
 def unit(x, j, n):  # type: ignore[no-untyped-def]
-    """The unit vector e_j of n entries, to the address x."""
+    """Writes the unit vector e_j of n entries to the address x."""
     for i in range(n):
         store_double(x + 8 * i, 0.0)
     store_double(x + 8 * j, 1.0)
@@ -52,7 +52,7 @@ def unit(x, j, n):  # type: ignore[no-untyped-def]
 
 @inlined
 def mobility(m, d, dof, x):  # type: ignore[no-untyped-def]
-    """(M⁻¹)_jj of a degree of freedom [1/kg or 1/(kg m²)]; x: address of room for nv numbers."""
+    """Returns (M⁻¹)_jj of a degree of freedom [1/kg or 1/(kg m²)]; x: address of nv numbers."""
     unit(x, dof, dof + 1)
     _rise(m, d, x, dof)
     out = 0.0

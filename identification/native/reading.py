@@ -51,7 +51,7 @@ _SIGNATURE = types.void(types.int64, types.int64, types.int64)
 
 @internal
 def position_at(s, time):  # type: ignore[no-untyped-def]
-    """The position of the joint at a time of the record; beyond its ends it moves on steadily."""
+    """Returns the joint's position at a time of the record; beyond its ends it moves steadily."""
     q, v, t = [s.signals + 8 * s.samples * i for i in (1, 2, 3)]
     k = s.k
     while k > 0 and time < load_double(t + 8 * k):
@@ -69,7 +69,7 @@ def position_at(s, time):  # type: ignore[no-untyped-def]
 
 @internal
 def lagged_position(s, tau):  # type: ignore[no-untyped-def]
-    """The position of the joint through a first-order lag; before the record it moved steadily."""
+    """Returns the joint's position after a first-order lag; before the record it moved steadily."""
     q, v, t = [s.signals + 8 * s.samples * i for i in (1, 2, 3)]
     k, now = s.k, load_double(t + 8 * s.k)
     while k > 0 and now - load_double(t + 8 * k) < FORGOTTEN * tau:
@@ -91,7 +91,7 @@ def lagged_position(s, tau):  # type: ignore[no-untyped-def]
 
 @cache
 def sensor_filter(terms: Sequence[Term]) -> Any:
-    """The compiled effects of a sensor.
+    """Returns the compiled effects of a sensor.
 
     Args:
         terms: the effects.

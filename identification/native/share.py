@@ -1,4 +1,4 @@
-"""What one actuator of a law does to the rates, without the rest of the model.
+"""The share of one actuator of a law in the rates, without the rest of the model.
 
     M q̈ = f + Σ_i f_i(q, v, a_i, p_i),    ȧ_i = g_i(q, v, a_i, p_i)
 
@@ -33,7 +33,7 @@ _laws_of, _call = table(SHARE), caller(SIGNATURES[SHARE])
 
 
 def has_shares(model: mujoco.MjModel) -> bool:
-    """Whether the share of an actuator may be taken alone, where its law gives one."""
+    """Returns whether the share of an actuator may be taken alone, where its law gives one."""
     flags = int(model.opt.disableflags)
     limits = (
         model.actuator_forcelimited, model.actuator_actlimited, model.jnt_actfrclimited,
@@ -43,7 +43,7 @@ def has_shares(model: mujoco.MjModel) -> bool:
 
 
 def is_balanced_rotor(model: mujoco.MjModel, joint: int) -> bool:
-    """Whether a joint turns a body in the frame, and neither gravity nor a spring feels its angle.
+    """Returns whether a joint turns a body in the frame, and no gravity or spring feels its angle.
 
     Args:
         model: the model.

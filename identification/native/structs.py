@@ -1,4 +1,4 @@
-"""Where MuJoCo's C structs keep their fields, for compiled callbacks that get bare pointers.
+"""The places of fields in MuJoCo's C structs, for compiled callbacks that get bare pointers.
 
 Offsets come from the declarations shipped with MuJoCo (`mujoco.introspect.structs`), laid out
 by ctypes with the platform's C rules, and are checked against live pointers before use.
@@ -69,13 +69,13 @@ def _c_type(declared: ast_nodes.ValueType) -> type:
 
 @cache
 def layout(struct: str) -> type[ctypes.Structure]:
-    """The ctypes layout of a MuJoCo struct, e.g. "mjModel"."""
+    """Returns the ctypes layout of a MuJoCo struct, e.g. "mjModel"."""
     fields = [(f.name, _c_type(f.type)) for f in structs.STRUCTS[struct].fields]
     return type(struct, (ctypes.Structure,), {"_fields_": fields})
 
 
 def word(struct: str, field: str) -> int:
-    """Offset of a pointer or size field in 8-byte words."""
+    """Returns the offset of a pointer or size field in 8-byte words."""
     offset = getattr(layout(struct), field).offset
     if offset % 8:
         raise NotImplementedError(f"{struct}.{field} is at byte {offset}, not on a word")
@@ -83,7 +83,7 @@ def word(struct: str, field: str) -> int:
 
 
 def inner_word(struct: str, field: str, inner: str) -> int:
-    """Offset of a field of a struct inside a struct, e.g. mjModel's opt.gravity, in words."""
+    """Returns the offset in words of a field in an inner struct, e.g. mjModel's opt.gravity."""
     offset = inner_byte(struct, field, inner)
     if offset % 8:
         raise NotImplementedError(f"{struct}.{field}.{inner} is at byte {offset}, not on a word")
@@ -91,7 +91,7 @@ def inner_word(struct: str, field: str, inner: str) -> int:
 
 
 def inner_byte(struct: str, field: str, inner: str) -> int:
-    """Offset of a field of a struct inside a struct, e.g. mjModel's opt.integrator, in bytes."""
+    """Returns the offset in bytes of a field in an inner struct, e.g. mjModel's opt.integrator."""
     declared = next(f for f in structs.STRUCTS[struct].fields if f.name == field).type
     inside = getattr(_c_type(declared), inner).offset
     return int(getattr(layout(struct), field).offset + inside)
@@ -147,7 +147,7 @@ def check(model: mujoco.MjModel, data: mujoco.MjData) -> set[str]:
 
 @cache
 def _shown() -> set[str]:
-    """The fields of a live model that lie where their declarations put them."""
+    """Returns the fields of a live model that lie where their declarations put them."""
     model = mujoco.MjModel.from_xml_string(_PROBE)
     data = mujoco.MjData(model)
     mujoco.mj_step(model, data)

@@ -58,7 +58,7 @@ def enter(kind: str, key: float, address: int) -> int:
 
 @cache
 def table(kind: str) -> Any:
-    """The compiled function () -> address of the table of a kind."""
+    """Returns the compiled function () -> address of the table of a kind."""
 
     @intrinsic
     def address(typing_context):  # type: ignore[no-untyped-def]
@@ -77,7 +77,7 @@ def table(kind: str) -> Any:
 
 @internal
 def callback(laws, k):  # type: ignore[no-untyped-def]
-    """Address of the callback of law k of a table."""
+    """Returns the address of the callback of law k of a table."""
     return load_word(laws + 16 + 16 * k)
 
 
@@ -86,7 +86,7 @@ _passive = table("passive")
 
 @internal
 def is_compiled(key):  # type: ignore[no-untyped-def]
-    """Whether a law with this key is in this process; every law has a passive callback."""
+    """Returns whether a law with this key is in this process; every law has a passive callback."""
     laws = _passive()
     for k in range(load_word(laws)):  # noqa: SIM110
         if load_double(laws + 8 + 16 * k) == key:

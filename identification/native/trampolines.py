@@ -33,7 +33,7 @@ SIGNATURES: dict[str, Any] = {
 
 
 def caller(signature: Any) -> Any:
-    """The compiled function (address, arguments) -> what the C function at an address returns."""
+    """Returns the compiled function (address, arguments) -> what a C function there returns."""
 
     @intrinsic
     def call(typing_context, address, arguments):  # type: ignore[no-untyped-def]
@@ -52,7 +52,7 @@ def caller(signature: Any) -> Any:
 
 
 def _function(kind: str) -> Function:
-    """The function of a trampoline, to be compiled."""
+    """Returns the function of a trampoline, to be compiled."""
     laws_of, call = table(kind), caller(SIGNATURES[kind])
 
     def passive(m, d):  # type: ignore[no-untyped-def]

@@ -1,4 +1,4 @@
-"""What the gears of all joints pass on at once; they feel each other where they are not resolved.
+"""The forces that the gears of all joints pass on at once; unresolved ones feel each other.
 
     a = M⁻¹ (F + τ)                                         F: all forces but those of geared drives
     T_j = m_j (f_mj/J_j - (a_j - A_jj τ_j))                 A = M⁻¹
@@ -43,20 +43,20 @@ COLUMNS = 12
 
 @inlined
 def is_ours(m, j, key):  # type: ignore[no-untyped-def]
-    """Whether joint j has a row of a set of effects."""
+    """Returns whether joint j has a row of a set of effects."""
     end = gears_of(m, j) + 8 * (GEARS + LAST)
     return load_constant(end - 8) == TAG and load_constant(end - 16) == key
 
 
 @inlined
 def _load(g, k, a):  # type: ignore[no-untyped-def]
-    """T of geared joint k, which accelerates by a."""
+    """Returns T of geared joint k, which accelerates by a."""
     return g[k, MASS] * (g[k, FORCE] / g[k, OWN] - (a - g[k, MOBILITY] * g[k, TAU]))
 
 
 @inlined
 def _passed_on(g, k, load, h):  # type: ignore[no-untyped-def]
-    """τ of geared joint k under a load."""
+    """Returns τ of geared joint k under a load."""
     return transmitted(
         load, g[k, DELTA], g[k, RATE], g[k, HALF], g[k, KAPPA], g[k, SHARE], g[k, DAMPING], h
     )
@@ -64,7 +64,7 @@ def _passed_on(g, k, load, h):  # type: ignore[no-untyped-def]
 
 @internal
 def _gather(m, d, key, g):  # type: ignore[no-untyped-def]
-    """Geared joints into the rows of g, and F into qacc_smooth.
+    """Puts geared joints into the rows of g, and F into qacc_smooth.
 
     Returns:
         How many have a gear, how many of these are not resolved, whether a friction gives.
@@ -100,7 +100,7 @@ def _gather(m, d, key, g):  # type: ignore[no-untyped-def]
 
 @internal
 def _settle(m, d, g, count, loose, h):  # type: ignore[no-untyped-def]
-    """τ of the gears that are not resolved into g, and what they change of a, in place."""
+    """Computes τ of the gears that are not resolved into g, and what they change of a, in place."""
     n, room, a = word(m, M.nv), word(d, D.qfrc_smooth), word(d, D.qacc_smooth)
     columns, at, largest = np.empty((loose, n)), 0, 0.0
     for k in range(count):
@@ -130,7 +130,7 @@ def _settle(m, d, g, count, loose, h):  # type: ignore[no-untyped-def]
 
 @internal
 def transmit(m, d, key, is_implicit):  # type: ignore[no-untyped-def]
-    """τ of all geared joints into qfrc_actuator, behind MuJoCo's velocity stage.
+    """Writes τ of all geared joints into qfrc_actuator, behind MuJoCo's velocity stage.
 
     MuJoCo writes there, and into the room of qfrc_smooth and qacc_smooth, when it has asked all
     actuators. Where a step moves friction that gives by the new rate, qacc_smooth holds a.

@@ -17,7 +17,7 @@ from numba.extending import intrinsic
 
 @cache
 def loader(count: int) -> Any:
-    """The compiled function (address) -> tuple of `count` doubles, which no callback writes."""
+    """Returns the compiled function (address) -> tuple of `count` doubles no callback writes."""
 
     @intrinsic
     def load(typing_context, address):  # type: ignore[no-untyped-def]
@@ -38,7 +38,7 @@ def loader(count: int) -> Any:
 
 @cache
 def replacer(kind: Any, names: str) -> Any:
-    """The compiled function (record, values) -> the named tuple with other values in some fields.
+    """Returns the compiled function (record, values) -> named tuple with other values in fields.
 
     Args:
         kind: the named tuple's class.
@@ -65,7 +65,7 @@ def replacer(kind: Any, names: str) -> Any:
 
 @intrinsic
 def added(typing_context, total, more):  # type: ignore[no-untyped-def]
-    """A number or tuple of numbers, and what an effect adds to it."""
+    """Returns a number or tuple of numbers with what an effect adds to it."""
     if not typing_context.can_convert(more, total):
         raise TypingError(f"{more} cannot be added to {total}")
 

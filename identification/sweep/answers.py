@@ -51,7 +51,7 @@ JUDGED = {
 
 
 def answer(found: Any) -> dict[str, Any]:
-    """The columns of `ANSWER`, of a discovery of either kind."""
+    """Returns the columns of `ANSWER` for a discovery of either kind."""
     named = [(getattr(n, "effect", n), n) for n in found.named]
     sizes = {
         size_name(effect.candidate.effect.name, name, effect.candidate.where): float(p[0])
@@ -73,7 +73,7 @@ def answer(found: Any) -> dict[str, Any]:
 
 
 def proof(found: Any) -> dict[str, Any]:
-    """The columns of `PROOF`, of a discovery on a free run."""
+    """Returns the columns of `PROOF` for a discovery on a free run."""
     noise = found.noise_rms**2 + found.disturbance_rms**2
     above = found.before.rms**2 - min(noise, found.after.rms**2)
     closed = (found.before.rms**2 - found.after.rms**2) / above if above > 0 else None
@@ -87,7 +87,7 @@ def proof(found: Any) -> dict[str, Any]:
 
 
 def judged(named: Sequence[str], hidden: Sequence[str], kind: str) -> dict[str, bool | None]:
-    """The columns of `JUDGED`."""
+    """Returns the columns of `JUDGED`."""
     listed = bool(hidden) and kind != "unknown"
     return {
         "right": (bool(named) and named[0] in hidden) if listed else None,
@@ -96,7 +96,7 @@ def judged(named: Sequence[str], hidden: Sequence[str], kind: str) -> dict[str, 
 
 
 def nested(record: Record) -> dict[str, Any]:
-    """A record with `TRUTH`, `ANSWER` and `PROOF` as a row that `discovery_rates` counts."""
+    """Returns a record with `TRUTH`, `ANSWER`, `PROOF` as a row that `discovery_rates` counts."""
     sizes, hidden = (
         dict(zip(record[a], record[b], strict=True))
         for a, b in (("size_of", "sizes"), ("hidden_size_of", "hidden_sizes"))
@@ -127,12 +127,12 @@ def nested(record: Record) -> dict[str, Any]:
 
 
 def size_name(effect: str, size: str, where: str) -> str:
-    """How a size of an effect at a place is written: effect.size@place."""
+    """Returns how a size of an effect at a place is written: effect.size@place."""
     return f"{effect}.{size}@{where}"
 
 
 def _of(effect: str, where: str, sizes: Mapping[str, float]) -> dict[str, float]:
-    """Those sizes that are of one effect at one place."""
+    """Returns the sizes that are of one effect at one place."""
     begin, end = f"{effect}.", f"@{where}"
     return {
         name[len(begin) : -len(end)]: value for name, value in sizes.items()
@@ -141,7 +141,7 @@ def _of(effect: str, where: str, sizes: Mapping[str, float]) -> dict[str, float]
 
 
 def _set(effect: Any, whole: Any) -> list[str]:
-    """The other names of a set that the data cannot tell apart."""
+    """Returns the other names of a set that the data cannot tell apart."""
     if not whole.one_of:
         return []
     names = [getattr(r, "candidate", r).effect.name for r in whole.rivals]

@@ -26,7 +26,7 @@ _FILES: Kinds = {"files": (str, "a pattern in quotes"), "label": (dict, "a table
 
 
 def axis(value: Any, folder: Path, where: str) -> tuple[Plain, ...]:
-    """The values of an axis.
+    """Returns the values of an axis.
 
     Args:
         value: as the TOML has it.
@@ -60,7 +60,7 @@ def axis(value: Any, folder: Path, where: str) -> tuple[Plain, ...]:
 
 
 def _files(pattern: str, label: Mapping[str, Any], folder: Path, where: str) -> tuple[str, ...]:
-    """The files of a pattern, written as the pattern is, in the order of their names.
+    """Returns the files of a pattern, written as the pattern is, in the order of their names.
 
     Raises:
         InputError: no file has such a name, or labels.json describes none so.
@@ -88,7 +88,7 @@ def _labels(folder: Path) -> dict[str, Any]:
 
 
 def _described(told: Mapping[str, Any], label: Mapping[str, Any]) -> bool:
-    """Whether a label says all that is asked; an entry that is a list must hold the value."""
+    """Returns whether a label says all that is asked; a list in it must hold the value."""
     return all(
         value == told.get(key) or (isinstance(told.get(key), list) and value in told[key])
         for key, value in label.items()

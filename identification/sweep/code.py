@@ -1,4 +1,4 @@
-"""Which code computed a record: the version of the package and, in a checkout, its commit."""
+"""The code that computed a record: the version of the package and, in a checkout, its commit."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ HERE = Path(__file__).parent
 
 @cache
 def commit() -> str:
-    """The commit of the checkout in which this file stands, "-dirty" where files differ from it.
+    """Returns the commit of the checkout of this file, "-dirty" where files differ from it.
 
     It is empty where there is no git, or where the file is not one of a checkout.
     """
@@ -32,5 +32,5 @@ def commit() -> str:
 
 @cache
 def code() -> str:
-    """Version of the package, and its commit in a checkout: "0.2.0, c7d7b26"."""
+    """Returns the version of the package, and its commit in a checkout: "0.2.0, c7d7b26"."""
     return ", ".join(filter(None, (version("inca-mj"), commit())))

@@ -1,4 +1,4 @@
-"""What records of discoveries on logs of known truth come to: rates, confusion, reliability."""
+"""Findings of discoveries on logs of known truth: rates, confusion, reliability."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ SAID = {
 
 
 def discovery_findings(records: Sequence[Record]) -> Findings:
-    """Rates over all records, the confusion matrix, and how far confidence can be trusted.
+    """Returns rates over all records, the confusion matrix, and how far to trust confidence.
 
     Args:
         records: with the columns `TRUTH`, `ANSWER` and `PROOF` of `identification.sweep.answers`.

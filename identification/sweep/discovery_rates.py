@@ -1,4 +1,4 @@
-"""What discoveries on logs of known truth come to: rates, confusions, calibration of confidence.
+"""Results of discoveries on logs of known truth: rates, confusions, calibration of confidence.
 
 A row has `truth` (kind, effects with name, where, sizes) and `answer` (verdict, named effects);
 `identification.sweep.answers.nested` makes one of a record.
@@ -17,18 +17,18 @@ Row = Mapping[str, Any]
 
 
 def first(row: Row) -> str:
-    """The answer's first name, or its verdict where it names nothing."""
+    """Returns the answer's first name, or its verdict where it names nothing."""
     named = row["answer"]["named"]
     return named[0]["name"] if named else row["answer"]["verdict"]
 
 
 def right(row: Row) -> bool:
-    """The first name is one of the true ones."""
+    """Returns whether the first name is one of the true ones."""
     return first(row) in {e["name"] for e in row["truth"]["effects"]}
 
 
 def in_set(row: Row) -> bool:
-    """The first name, or the one other that the data cannot tell from it, is true."""
+    """Returns whether the first name, or the one other that data cannot tell from it, is true."""
     named = row["answer"]["named"]
     return bool(named) and any(
         name in {e["name"] for e in row["truth"]["effects"]}
@@ -37,14 +37,14 @@ def in_set(row: Row) -> bool:
 
 
 def all_found(row: Row) -> bool:
-    """Every true effect is named and nothing else is."""
+    """Returns whether every true effect is named and nothing else is."""
     return {n["name"] for n in row["answer"]["named"]} == {
         e["name"] for e in row["truth"]["effects"]
     }
 
 
 def matched(rows: Sequence[Row]) -> list[tuple[Mapping[str, Any], Mapping[str, Any]]]:
-    """Named effects whose name is true, each with the truth."""
+    """Returns the named effects whose name is true, each with the truth."""
     out = []
     for row in rows:
         true = {e["name"]: e for e in row["truth"]["effects"]}
@@ -53,7 +53,7 @@ def matched(rows: Sequence[Row]) -> list[tuple[Mapping[str, Any], Mapping[str, A
 
 
 def size_errors(rows: Sequence[Row]) -> list[float]:
-    """|estimate - truth| / |truth| of true names, over the sizes that the truth gives."""
+    """Returns |estimate - truth| / |truth| of true names, over the sizes that the truth gives."""
     out = []
     for named, true in matched(rows):
         sizes = {s: v for s, v in true["sizes"].items() if s in named["sizes"]}
@@ -64,7 +64,7 @@ def size_errors(rows: Sequence[Row]) -> list[float]:
 
 
 def gaps(rows: Sequence[Row]) -> list[float]:
-    """Shares of the gap above the noise that are closed on unseen data, of right first names."""
+    """Returns the shares of the gap above the noise closed on unseen data, of right first names."""
     return [
         r["answer"]["gap_closed"]
         for r in rows
@@ -73,7 +73,7 @@ def gaps(rows: Sequence[Row]) -> list[float]:
 
 
 def signs(rows: Sequence[Row]) -> dict[str, Any]:
-    """Share of those sizes with the right sign."""
+    """Returns the share of the sizes of true names with the right sign."""
     outcomes = [
         value * true["sizes"][size] > 0
         for named, true in matched(rows)
@@ -84,20 +84,20 @@ def signs(rows: Sequence[Row]) -> dict[str, Any]:
 
 
 def places(rows: Sequence[Row]) -> dict[str, Any]:
-    """Share of true names at the right place (drive)."""
+    """Returns the share of true names at the right place (drive)."""
     outcomes = [named["where"] == true["where"] for named, true in matched(rows) if true["where"]]
     return wilson(sum(outcomes), len(outcomes))
 
 
 def calibration(rows: Sequence[Row]) -> dict[str, Any]:
-    """Of the confidence of first names: expected calibration error and Brier score."""
+    """Returns expected calibration error and Brier score of the confidence of first names."""
     return calibration_of(
         [(r["answer"]["named"][0]["confidence"], right(r)) for r in rows if r["answer"]["named"]]
     )
 
 
 def confidences(rows: Sequence[Row]) -> list[tuple[float, bool]]:
-    """Confidence of every name of every row, and whether the name is true."""
+    """Returns the confidence of every name of every row, and whether the name is true."""
     return [
         (n["confidence"], n["name"] in {e["name"] for e in r["truth"]["effects"]})
         for r in rows for n in r["answer"]["named"]
@@ -105,7 +105,7 @@ def confidences(rows: Sequence[Row]) -> list[tuple[float, bool]]:
 
 
 def summary(rows: Sequence[Row]) -> dict[str, Any]:
-    """Of all rows that did not fail."""
+    """Returns counts and rates of all rows that did not fail."""
     done = [row for row in rows if "error" not in row]
     kind = {k: [r for r in done if r["truth"]["kind"] == k]
             for k in ("null", "single", "pair", "triple", "rule", "sensor", "unknown")}  # fmt: skip

@@ -27,7 +27,7 @@ Z = NormalDist().inv_cdf(0.975)
 
 
 def estimate_findings(records: Sequence[Record]) -> Findings:
-    """Bias, std and coverage by parameter.
+    """Returns bias, std and coverage by parameter.
 
     Args:
         records: with the columns `ESTIMATES`.

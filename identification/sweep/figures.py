@@ -21,7 +21,7 @@ MANY = 30  # names on an axis that are still read
 
 
 def power_figure(curves: Sequence[Curve], axis: str, success: str) -> Figure:
-    """The share of successes over a setting, with Wilson's 95 % intervals; a line for each curve.
+    """Draws the share of successes over a setting, Wilson's 95 % intervals, a line for each curve.
 
     Many curves have a panel each, with the others in grey.
 
@@ -68,7 +68,7 @@ def _part(curve: Curve, part: str) -> list[float]:
 
 
 def threshold_figure(lines: Mapping[str, Sequence[Threshold]], axis: str, against: str) -> Figure:
-    """The smallest value that is found in 80 %, over another setting, with its interval.
+    """Draws the smallest value that is found in 80 %, over another setting, with its interval.
 
     Args:
         lines: by label.
@@ -134,7 +134,7 @@ def confusion_figure(confusion: Mapping[str, Mapping[str, int]]) -> Figure:
 
 
 def reliability_figure(pairs: Sequence[tuple[float, bool]]) -> Figure:
-    """Share of right names over confidence, with Wilson's 95 % intervals and counts.
+    """Draws the share of right names over confidence, with Wilson's 95 % intervals and counts.
 
     Args:
         pairs: a confidence, and whether the name was right.
@@ -162,7 +162,7 @@ def reliability_figure(pairs: Sequence[tuple[float, bool]]) -> Figure:
 
 
 def _scale(ax: Any, values: Sequence[float]) -> bool:
-    """A logarithmic axis where values are positive and far apart; a tick at each of a few.
+    """Makes an axis logarithmic where values are positive and far apart; a tick at each of a few.
 
     Returns:
         Whether it is logarithmic, which its label must say.

@@ -45,15 +45,15 @@ class Seed:
     key: tuple[int, ...]
 
     def sequence(self) -> np.random.SeedSequence:
-        """The sequence itself, which spawns further ones."""
+        """Returns the sequence itself, which spawns further ones."""
         return np.random.SeedSequence(self.entropy, spawn_key=self.key)
 
     def generator(self) -> np.random.Generator:
-        """A generator of random numbers, the same each time."""
+        """Returns a generator of random numbers, the same each time."""
         return np.random.default_rng(self.sequence())
 
     def number(self) -> int:
-        """A whole number from 0 to 2³¹ - 1, for functions that take such a seed."""
+        """Returns a whole number from 0 to 2³¹ - 1, for functions that take such a seed."""
         return int(self.sequence().generate_state(1)[0] >> np.uint32(1))
 
 
@@ -72,7 +72,7 @@ class Column:
 
 @dataclass(frozen=True)
 class Findings:
-    """What the records of a study come to, beyond the rates that every study has.
+    """The findings of a study's records, beyond the rates that every study has.
 
     Attributes:
         record: plain values for result.json.
@@ -87,7 +87,7 @@ class Findings:
 
 @dataclass(frozen=True, kw_only=True)
 class Method:
-    """What a sweep repeats.
+    """A method, which a sweep repeats.
 
     Attributes:
         about: what it does, in one sentence.
@@ -110,7 +110,7 @@ class Method:
 
 
 def reference_of(word: str, known: Registry, folder: Path) -> str:
-    """The reference by which a worker finds a method.
+    """Returns the reference by which a worker finds a method.
 
     Args:
         word: a registered name, or `file.py:NAME` of a method of your own.
@@ -198,7 +198,7 @@ def load_method(reference: str) -> Method:
 
 
 def _load_file(path: Path) -> ModuleType:
-    """A module from a file, once in a process; what lies beside it can be imported too."""
+    """Loads a module from a file, once in a process; files beside it can be imported too."""
     name = f"_sweep_{path.stem}_{sha256(str(path).encode()).hexdigest()[:12]}"
     if name in sys.modules:
         return sys.modules[name]

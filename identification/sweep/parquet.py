@@ -41,7 +41,7 @@ def write_whole(folder: Path, stem: str, schema: Any, tables: Iterable[Any]) -> 
 
 
 def read_tasks(path: Path) -> set[int]:
-    """The tasks of a file.
+    """Reads the tasks of a file.
 
     Raises:
         InputError: it is no regular file.
@@ -58,7 +58,7 @@ def _digest(path: Path) -> str:
 
 
 def read_tables(files: Sequence[Path], schema: Any, count: int) -> Iterator[Any]:
-    """The rows of some files in the order of their tasks, a block at a time.
+    """Yields the rows of some files in the order of their tasks, a block at a time.
 
     Args:
         files: with a column `task`.

@@ -47,7 +47,7 @@ class Curve:
         )
 
     def threshold(self, at: float) -> Threshold:
-        """The smallest value found in 80 %, at a value of another setting."""
+        """Returns the smallest value found in 80 %, at a value of another setting."""
         value, low, high = (
             crossing(self.x, [rate[part] for rate in self.rates], LEVEL)
             for part in ("value", "high", "low")
@@ -75,19 +75,19 @@ class Threshold:
 
 
 def word(value: Plain) -> str:
-    """A value of a setting as text."""
+    """Returns a value of a setting as text."""
     if isinstance(value, bool):
         return "yes" if value else "no"
     return f"{value:g}" if isinstance(value, int | float) else str(value)
 
 
 def axes(grid: Mapping[str, Sequence[Plain]]) -> list[str]:
-    """The settings of a grid that tell groups of tasks apart: of two values or more, and few."""
+    """Returns the settings of a grid that tell groups of tasks apart: of two values to `FEW`."""
     return [name for name, values in grid.items() if 2 <= len(values) <= FEW]
 
 
 def numeric(grid: Mapping[str, Sequence[Plain]]) -> list[str]:
-    """Those of them that are numbers."""
+    """Returns the settings of `axes` that are numbers."""
     return [
         name for name in axes(grid)
         if all(isinstance(v, int | float) and not isinstance(v, bool) for v in grid[name])
@@ -95,7 +95,7 @@ def numeric(grid: Mapping[str, Sequence[Plain]]) -> list[str]:
 
 
 def grouped(rows: Sequence[Record], names: Sequence[str]) -> dict[tuple[Plain, ...], list[Record]]:
-    """Rows by the values of some settings, in the order in which these come."""
+    """Returns rows by the values of some settings, in the order in which these come."""
     groups: dict[tuple[Plain, ...], list[Record]] = {}
     for row in rows:
         groups.setdefault(tuple(row[SET + name] for name in names), []).append(row)
@@ -109,7 +109,7 @@ def curves(
     others: Sequence[str],
     heads: Heads = NAMES,
 ) -> list[Curve]:
-    """A curve for each combination of the other settings.
+    """Returns a curve for each combination of the other settings.
 
     Args:
         rows: of one study, without errors.
@@ -131,7 +131,7 @@ def curves(
 
 
 def thresholds(found: Sequence[Curve], axis: str) -> dict[str, list[Threshold]]:
-    """Thresholds over one of the other settings; by the rest of the settings, in words."""
+    """Returns thresholds over one of the other settings; by the rest of the settings, in words."""
     lines: dict[str, list[Threshold]] = {}
     for curve in found:
         rest = Curve({k: v for k, v in curve.others.items() if k != axis}, (), (), curve.heads)

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 def power_section(
     study: Study, done: Sequence[Record]
 ) -> tuple[list[dict[str, Any]], list[Section]]:
-    """Power curves over the method's own axis and, of their thresholds, over the other numbers."""
+    """Returns power curves over the method's own axis, and their thresholds over other numbers."""
     method, numbers = study.method, numeric(study.grid)
     if not method.success or not numbers or not done:
         return [], []

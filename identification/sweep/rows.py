@@ -45,7 +45,7 @@ _LAST = {
 
 
 def columns(sweep: Sweep) -> dict[str, tuple[Any, str]]:
-    """Kind and meaning of every column of a sweep's table.
+    """Returns kind and meaning of every column of a sweep's table.
 
     Raises:
         InputError: two methods of the sweep have a column of one name and another kind.
@@ -72,7 +72,7 @@ def columns(sweep: Sweep) -> dict[str, tuple[Any, str]]:
 
 
 def row(sweep: Sweep, outcome: Outcome) -> dict[str, Any]:
-    """The row of an outcome; what it does not have is null."""
+    """Returns the row of an outcome; what it does not have is null."""
     s, _, draw = sweep.locate(outcome.number)
     study = sweep.studies[s]
     return {
@@ -85,7 +85,7 @@ def row(sweep: Sweep, outcome: Outcome) -> dict[str, Any]:
 
 
 def schema(sweep: Sweep) -> Any:
-    """The schema of the table, as pyarrow has it.
+    """Returns the schema of the table, as pyarrow has it.
 
     Raises:
         InputError: as `columns`, or pyarrow is not installed.
@@ -104,7 +104,7 @@ def schema(sweep: Sweep) -> Any:
 
 
 def comparable(rows: Iterable[Record]) -> Iterator[str]:
-    """Each row as text that is the same where the row is the same to the bit, without times.
+    """Yields each row as text without times, the same where the row is the same to the bit.
 
     A float is written with as many digits as tell it from every other.
     """
@@ -114,7 +114,7 @@ def comparable(rows: Iterable[Record]) -> Iterator[str]:
 
 
 def digest(rows: Iterable[Record]) -> str:
-    """A digest of rows, which tells whether two sweeps have the same records to the bit.
+    """Returns a digest of rows, which tells whether two sweeps have equal records to the bit.
 
     Args:
         rows: in the order of their tasks.

@@ -68,7 +68,7 @@ class _Clock:
         self.begun = self.said = time.monotonic()
 
     def count(self, failed: bool) -> str:
-        """One more; a line if it is time for one, else ""."""
+        """Counts one more task; returns a line if it is time for one, else ""."""
         self.ended += 1
         self.failed += failed
         now = time.monotonic()

@@ -20,7 +20,7 @@ _WORDS = {bool: "true or false", int: "a whole number", float: "a number", str: 
 
 
 def kinds_of(settings: type) -> dict[str, type]:
-    """The kind of each field of a settings dataclass, without None.
+    """Returns the kind of each field of a settings dataclass, without None.
 
     Raises:
         InputError: a field is of a kind that a TOML cannot give.
@@ -37,7 +37,7 @@ def kinds_of(settings: type) -> dict[str, type]:
 
 
 def check_values(settings: type, values: Mapping[str, Plain], where: str) -> dict[str, Plain]:
-    """The values of all fields, those of the defaults among them, of the right kind.
+    """Returns the values of all fields, defaults among them, in the right kind.
 
     Args:
         settings: the dataclass.
@@ -74,7 +74,7 @@ def _fits(value: Any, kind: type) -> bool:
 
 
 def resolve(settings: type, values: Mapping[str, Plain], folder: Path) -> dict[str, Plain]:
-    """The values with whole paths in the place of those that are relative to a TOML.
+    """Returns the values with whole paths in place of those that are relative to a TOML.
 
     Args:
         settings: the dataclass.
@@ -120,7 +120,7 @@ def refuse_missing_files(settings: type, values: Mapping[str, Plain], where: str
 
 
 def place(text: str, folder: Path) -> Path:
-    """A path of a TOML: `$NAME` is a variable of the environment, the rest is relative to it.
+    """Returns a path of a TOML: `$NAME` is from the environment, the rest is relative to the TOML.
 
     Args:
         text: the path.
@@ -138,7 +138,7 @@ def place(text: str, folder: Path) -> Path:
 
 
 def build(settings: type, values: Mapping[str, Plain]) -> Any:
-    """The settings as their dataclass.
+    """Returns the settings as their dataclass.
 
     Args:
         settings: the dataclass.

@@ -17,7 +17,7 @@ Row = Mapping[str, Any]
 
 
 def wilson(hits: int, of: int, z: float = 1.96) -> dict[str, Any]:
-    """A rate and its 95 % interval (Wilson 1927).
+    """Returns a rate and its 95 % interval (Wilson 1927).
 
     Args:
         hits: how often it happened.
@@ -34,13 +34,13 @@ def wilson(hits: int, of: int, z: float = 1.96) -> dict[str, Any]:
 
 
 def rate(rows: Iterable[Row], test: Callable[[Row], bool]) -> dict[str, Any]:
-    """Share of rows that pass a test."""
+    """Returns the share of rows that pass a test."""
     outcomes = [test(row) for row in rows]
     return wilson(sum(outcomes), len(outcomes))
 
 
 def said(share: Mapping[str, Any]) -> str:
-    """A rate as a table shows it: 7 of 9 [45, 94 %]."""
+    """Returns a rate as a table shows it: 7 of 9 [45, 94 %]."""
     if not share["of"]:
         return "-"
     low, high = (100 * share[end] for end in ("low", "high"))
@@ -48,14 +48,14 @@ def said(share: Mapping[str, Any]) -> str:
 
 
 def median(values: Sequence[float]) -> float | None:
-    """The middle one; None of none."""
+    """Returns the median of some values; None where there are none."""
     ordered = sorted(values)
     n = len(ordered)
     return (ordered[(n - 1) // 2] + ordered[n // 2]) / 2 if n else None
 
 
 def calibration_of(pairs: Sequence[tuple[float, bool]]) -> dict[str, Any]:
-    """Expected calibration error and Brier score.
+    """Returns the expected calibration error and the Brier score.
 
     Args:
         pairs: a confidence, and whether it was right.
@@ -79,7 +79,7 @@ def calibration_of(pairs: Sequence[tuple[float, bool]]) -> dict[str, Any]:
 
 
 def crossing(x: Sequence[float], share: Sequence[float], level: float) -> float | None:
-    """The smallest x at which a rate that rises with x reaches a level; None where it does not.
+    """Returns the smallest x where a rate that rises with x reaches a level; None if it never does.
 
     The rates are first made to rise (isotonic regression: Barlow et al. 1972, with equal weights);
     between two points x is interpolated, in its logarithm where all are positive.

@@ -98,7 +98,7 @@ class Store:
             self._single = []
 
     def rows(self) -> Iterator[dict[str, Any]]:
-        """All records in the order of their tasks, a part of them in memory at a time."""
+        """Yields all records in the order of their tasks, a part of them in memory at a time."""
         for table in self._tables(self._files()):
             yield from table.to_pylist()
 
@@ -142,7 +142,7 @@ class Store:
             )
 
     def _look(self) -> None:
-        """What is done; remove drafts, files that are not whole, and what is there twice."""
+        """Finds what is done; removes drafts, files that are not whole, and what is there twice."""
         for draft in self.records.glob(".*.tmp"):
             draft.unlink()
         tasks: list[tuple[Path, set[int]]] = []

@@ -1,4 +1,4 @@
-"""What the records of one study come to: rates and values by the points of its grid, and more."""
+"""Findings of one study's records: rates and values by the points of its grid, and more."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from identification.sweep.words import Heads, about_of
 
 
 def summarise_study(study: Study, rows: Sequence[Record]) -> Findings:
-    """Rates, medians and power curves of one study, and what its method says beyond them."""
+    """Returns rates, medians and power curves of a study, and what its method says beyond them."""
     done, names = [row for row in rows if row["error"] is None], axes(study.grid)
     columns = study.method.columns
     flags = [n for n, c in columns.items() if c.kind is bool]
@@ -95,7 +95,7 @@ def _meaning(study: Study, names: Sequence[str]) -> str:
 
 
 def _heads(study: Study, names: Sequence[str], columns: Sequence[str]) -> tuple[str, ...]:
-    """Heads of a table: settings, the count of tasks, and columns, in words with their units."""
+    """Returns heads of a table: settings, the count of tasks, and columns, in words with units."""
     settings = Heads(about_of(study.method.settings))
     return (*map(settings.head, names), "tasks", *map(_columns(study).head, columns))
 

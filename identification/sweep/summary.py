@@ -1,4 +1,4 @@
-"""What the records of a sweep come to: counts, rates, medians, power curves, times; as a report."""
+"""Summary of a sweep's records: counts, rates, medians, power curves, times; as a report."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ SHOWN = 8  # kinds of errors in the report
 
 @dataclass(frozen=True)
 class Summary:
-    """What a sweep comes to.
+    """The summary of a sweep.
 
     Attributes:
         record: plain values for result.json.
@@ -78,7 +78,7 @@ def _errors(failed: Counter[str]) -> Section:
 
 
 def _times(sweep: Sweep, rows: Sequence[Record]) -> Section:
-    """Times by study, and on how many machines; they are no part of the result."""
+    """Returns times by study, and on how many machines; they are no part of the result."""
     cells = []
     for study in sweep.studies:
         mine = [row for row in rows if row["study"] == study.name]

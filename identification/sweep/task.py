@@ -52,7 +52,7 @@ class Study:
         return prod(len(values) for values in self.grid.values())
 
     def at(self, point: int) -> dict[str, Plain]:
-        """The values of all settings at a point of the grid; the last axis changes fastest."""
+        """Returns the values of all settings at a grid point; the last axis changes fastest."""
         chosen: dict[str, Plain] = {}
         for name, values in reversed([*self.grid.items()]):
             point, k = divmod(point, len(values))
@@ -63,7 +63,7 @@ class Study:
 
 @dataclass(frozen=True)
 class Task:
-    """What a worker gets: plain data and a seed.
+    """A task as a worker gets it: plain data and a seed.
 
     Attributes:
         number: in the sweep, from 0.
@@ -102,18 +102,18 @@ class Sweep:
         return self._ends[-1]
 
     def locate(self, number: int) -> tuple[int, int, int]:
-        """Study, point of its grid, and draw of a task."""
+        """Returns the study, the point of its grid, and the draw of a task."""
         s = bisect_right(self._ends, number)
         before = self._ends[s - 1] if s else 0
         return s, *divmod(number - before, self.studies[s].count)
 
     def shown(self, number: int) -> dict[str, Plain]:
-        """The settings of a task as the TOML writes them."""
+        """Returns the settings of a task as the TOML writes them."""
         s, point, _ = self.locate(number)
         return self.studies[s].at(point)
 
     def task(self, number: int) -> Task:
-        """A task by its number.
+        """Returns a task by its number.
 
         Raises:
             InputError: a path names a variable of the environment that is not set.
@@ -125,7 +125,7 @@ class Sweep:
         return Task(number, study.reference, settings, seed)
 
     def digest(self) -> str:
-        """A digest of all that decides which tasks there are; comments and `about` do not."""
+        """Returns a digest of what decides which tasks there are; comments and `about` do not."""
         plain = [
             [s.name, s.word, s.count, s.paired, dict(s.settings), dict(s.grid)]
             for s in self.studies

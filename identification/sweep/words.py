@@ -25,17 +25,17 @@ class Heads:
     about: Mapping[str, str]
 
     def unit(self, name: str) -> str:
-        """The unit of a name, or ""."""
+        """Returns the unit of a name, or ""."""
         found = re.search(r"\[([^\]]+)\]", self.about.get(name, ""))
         return found[1] if found else ""
 
     def head(self, name: str) -> str:
-        """A name in words with its unit in brackets: the head of a column, the label of an axis."""
+        """Returns a name in words with its unit in brackets, for a column or an axis."""
         unit = self.unit(name)
         return f"{in_words(name)} [{unit}]" if unit else in_words(name)
 
     def meaning(self, name: str) -> str:
-        """A name in words, and what it is about."""
+        """Returns a name in words, and what it is about."""
         about = self.about.get(name, "")
         return f"{in_words(name)}: {about}" if about else in_words(name)
 
@@ -44,12 +44,12 @@ NAMES = Heads({})  # names alone, without units
 
 
 def in_words(name: str) -> str:
-    """The name of a setting or a column without the underscores of code."""
+    """Returns the name of a setting or a column without the underscores of code."""
     return name.replace("_", " ")
 
 
 def setting(about: str, default: Any = MISSING) -> Any:
-    """A field of a settings dataclass that says what it is.
+    """Returns a field of a settings dataclass that says what it is.
 
     Args:
         about: what it is, with its unit in brackets at the end.
@@ -59,7 +59,7 @@ def setting(about: str, default: Any = MISSING) -> Any:
 
 
 def file_setting(about: str, default: Any = MISSING, *, words: tuple[str, ...] = ()) -> Any:
-    """A setting that names a file which tasks read; it must be there before the first task.
+    """Returns a setting that names a file which tasks read, to be there before the first task.
 
     Args:
         about: what the file is.
@@ -70,10 +70,10 @@ def file_setting(about: str, default: Any = MISSING, *, words: tuple[str, ...] =
 
 
 def about_of(settings: type) -> dict[str, str]:
-    """What each field of a settings dataclass is about; "" where it does not say."""
+    """Returns what each field of a settings dataclass is about; "" where it does not say."""
     return {f.name: f.metadata.get("about", "") for f in fields(settings)}
 
 
 def file_words(settings: type) -> dict[str, tuple[str, ...]]:
-    """The fields that name a file which tasks read, each with the words that may stand instead."""
+    """Returns the fields that name a file that tasks read, with words that may stand instead."""
     return {f.name: f.metadata["words"] for f in fields(settings) if f.metadata.get("file")}

@@ -1,4 +1,4 @@
-"""What a worker does: one task at a time, on one thread, from its data to its outcome.
+"""A worker's part: one task at a time, on one thread, from its data to its outcome.
 
 The sums of a BLAS depend on the number of its threads, in the last bits. So a worker uses one, and
 its simulations do too: the tasks beside it have the other processors.
@@ -31,7 +31,7 @@ _PLAIN: dict[Any, type | tuple[type, ...]] = {
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of a task.
+    """The outcome of a task.
 
     Attributes:
         number: of the task.
@@ -78,7 +78,7 @@ def work(task: Task) -> Outcome:
 
 @contextmanager
 def one_thread() -> Iterator[None]:
-    """One thread for libraries that are loaded in the block, for simulations, and for children."""
+    """Keeps to one thread in the block: libraries loaded there, simulations, and children."""
     before = {name: os.environ.get(name) for name in THREADS}
     os.environ.update(dict.fromkeys(THREADS, "1"))
     try:
@@ -89,7 +89,7 @@ def one_thread() -> Iterator[None]:
 
 
 def checked(record: Mapping[str, Any], columns: Mapping[str, Column]) -> dict[str, Any]:
-    """A record with plain values of the kinds that its method declares.
+    """Returns a record with plain values of the kinds that its method declares.
 
     Args:
         record: of a method.
@@ -119,7 +119,7 @@ def _value(name: str, value: Any, kind: Any) -> Any:
 
 
 def peak_memory() -> int:
-    """The most memory that this process has held [bytes]."""
+    """Returns the most memory that this process has held [bytes]."""
     import resource
 
     unit = 1 if sys.platform == "darwin" else 1024

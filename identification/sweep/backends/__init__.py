@@ -1,1 +1,1 @@
-"""Where tasks run: in this process, in processes beside it, on Dask, or as jobs of Slurm."""
+"""Backends for tasks: this process, processes beside it, Dask, or jobs of Slurm."""

@@ -21,7 +21,7 @@ class Backend(Protocol):
     """Runs tasks somewhere."""
 
     def outcomes(self, work: Work, tasks: Iterable[Task]) -> Iterator[Outcome]:
-        """The outcome of each task, in the order in which they end.
+        """Yields the outcome of each task, in the order in which they end.
 
         Args:
             work: a function of a module, which a worker can import.

@@ -19,19 +19,19 @@ class Serial:
     """Runs tasks one after the other in this process."""
 
     def outcomes(self, work: Work, tasks: Iterable[Task]) -> Iterator[Outcome]:
-        """The outcome of each task, in their order."""
+        """Yields the outcome of each task, in their order."""
         return map(work, tasks)
 
 
 def processors() -> int:
-    """The processors that this process may use."""
+    """Returns how many processors this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def backend_of(
     word: str, jobs: int | None, folder: Path, options: Mapping[str, str] | None = None
 ) -> Backend:
-    """A backend by its word.
+    """Returns a backend by its word.
 
     Args:
         word: one of `BACKENDS`, or the address of a running Dask scheduler.

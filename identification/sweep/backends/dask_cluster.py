@@ -38,7 +38,7 @@ class Dask:
         needed("distributed", "cluster", "--backend dask")
 
     def outcomes(self, work: Work, tasks: Iterable[Task]) -> Iterator[Outcome]:
-        """The outcome of each task, in the order in which they end.
+        """Yields the outcome of each task, in the order in which they end.
 
         Raises:
             InputError: the scheduler or a worker cannot be reached, or a task killed its workers.

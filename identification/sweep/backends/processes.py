@@ -32,7 +32,7 @@ class Processes:
     jobs: int
 
     def outcomes(self, work: Work, tasks: Iterable[Task]) -> Iterator[Outcome]:
-        """The outcome of each task, in the order in which they end.
+        """Yields the outcome of each task, in the order in which they end.
 
         Raises:
             InputError: a process died, by a signal or for want of memory.

@@ -44,7 +44,7 @@ class Chunk:
         return self.done
 
     def checkpoint(self) -> Any:
-        """What submitit puts into the queue in place of a job that is stopped."""
+        """Returns what submitit puts into the queue in place of a job that is stopped."""
         import submitit
 
         return submitit.helpers.DelayedSubmission(self)
@@ -70,7 +70,7 @@ class Submitit:
         needed("submitit", "cluster", f"--backend {self.cluster}")
 
     def outcomes(self, work: Work, tasks: Iterable[Task]) -> Iterator[Outcome]:
-        """The outcome of each task, in the order in which their jobs end.
+        """Yields the outcome of each task, in the order in which their jobs end.
 
         Raises:
             InputError: jobs cannot be submitted, an option is unknown, or a job failed.
@@ -116,7 +116,7 @@ class Submitit:
 
     @property
     def _correct(self) -> str:
-        """What a user does where a job is refused: the options that were given, or could be."""
+        """Advice where a job is refused: the options that were given, or could be."""
         given = " ".join(f"{name}={value}" for name, value in self.options.items())
         if given:
             return f"correct the options that --job gives ({given})"

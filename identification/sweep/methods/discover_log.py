@@ -1,4 +1,4 @@
-"""What a robot lacks to explain one log of a folder."""
+"""The effects that a robot lacks to explain one log of a folder."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def discover_log(settings: OnLog, seed: Seed) -> dict[str, Any]:
 
 
 def named_findings(records: Sequence[Record]) -> Findings:
-    """How often each effect is named; the truth is not known."""
+    """Returns how often each effect is named; the truth is not known."""
     pairs = (pair for r in records for pair in zip(r["named"], r["where"], strict=True))
     counts = Counter(f"{name}, {where}" for name, where in pairs)
     counts.update(r["verdict"] for r in records if not r["named"])

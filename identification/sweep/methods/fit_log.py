@@ -16,7 +16,7 @@ SPREAD = "how much the parts of one robot may differ: none, usual, or a TOML fil
 
 @dataclass(frozen=True, kw_only=True)
 class OnLog:
-    """What is needed to work on a log; every field says what it is in its metadata."""
+    """Settings for work on a log; every field says what it is in its metadata."""
 
     robot: Path = file_setting("robot file (TOML)")
     log: Path = file_setting("log that is fitted")
@@ -26,7 +26,7 @@ class OnLog:
     spread: str = file_setting(SPREAD, "usual", words=SPREAD_WORDS)
 
     def read(self) -> Any:
-        """The robot with its log.
+        """Reads the robot with its log.
 
         Raises:
             InputError: as `identification.read_robot`.
