@@ -23,7 +23,7 @@ def without_laws_beside_curves(
     model: WindowModel, accepted: Sequence[Contender], nominal_model: NominalModel,
     confirm: Sequence[Record], progress: Progress,
 ) -> tuple[WindowModel, tuple[Contender, ...], tuple[Contender, ...]]:  # fmt: skip
-    """The model without laws that were accepted after a curve which is still there.
+    """Returns the model without laws that were accepted after a curve which is still there.
 
     Args:
         model: with all of the accepted effects.

@@ -17,14 +17,14 @@ PER_RECORD = 20  # blocks of a record at most, of two windows where it has two; 
 
 
 def count_blocks(windows: int) -> int:
-    """How many blocks a record with so many windows has."""
+    """Returns how many blocks a record with so many windows has."""
     return min(PER_RECORD, max(1, windows // 2))
 
 
 def block_gains(
     without: Sequence[np.ndarray], with_it: Sequence[np.ndarray], floor: float
 ) -> list[np.ndarray]:
-    """g of the blocks of each record, shape (B,).
+    """Returns g of the blocks of each record, shape (B,).
 
     Args:
         without: mean square of each window under the first model, shape (W,), a record each, in

@@ -1,4 +1,4 @@
-"""How far the inputs of each record are shifted in time against its outputs.
+"""The shift in time of each record's inputs against its outputs.
 
     u(t - τ_r) in record r, all other parameters those of the model
     |τ_a - τ_b| < t 2 σ        halves a, b of it: each has twice the variance σ² of the whole record
@@ -39,7 +39,7 @@ SHARE = 4  # a record by itself has this part of the windows' steps: one number 
 
 
 def record_shifts(task: RecordsTask, model: WindowModel) -> tuple[ShiftedRecord, ...]:
-    """The shifts of records whose halves tell the same, beyond two std.
+    """Returns the shifts of records whose halves tell the same, beyond two std.
 
     Nothing is asked where the model knows shifts already, or where no candidate is one.
 
@@ -75,7 +75,7 @@ def _record_shift(
 def told_shifts(
     shifts: Sequence[ShiftedRecord], records: int, options: DiscoveryOptions
 ) -> list[ShiftedRecord]:
-    """Those that are beyond chance among all records, and large enough to matter, the first most.
+    """Returns shifts that are beyond chance among all records and matter, the largest fall first.
 
     Args:
         shifts: of `record_shifts`.
@@ -91,7 +91,7 @@ def told_shifts(
 def shown_shifts(
     shifts: Sequence[ShiftedRecord], records: Sequence[Record], options: DiscoveryOptions
 ) -> list[ShiftedRecord]:
-    """Those that a reader is told of: beyond chance among all records, or no small part of a step.
+    """Returns the shifts to report: beyond chance among all records, or no small part of a step.
 
     Args:
         shifts: of `record_shifts`.
@@ -106,12 +106,12 @@ def shown_shifts(
 
 
 def _called(record: Record) -> str:
-    """How a record is called where its shift is told."""
+    """Returns the name of a record as it is reported with its shift."""
     return record.log.name + (" (fit)" if record.role == "fit" else "")
 
 
 def _alone(model: WindowModel, record: Record, horizon: float) -> WindowFit:
-    """The windows of one record at the model's values, their states settled; nothing is free."""
+    """Returns the fit of one record at the model's values: its states settled, nothing free."""
     values = {**model.values, **model.own_values.get(record.log.name, {})}
     task = problem(
         model.plant, [record], Prior(), Prior(), horizon, values, model.scale, MOST_STEPS // SHARE
@@ -123,7 +123,7 @@ def _alone(model: WindowModel, record: Record, horizon: float) -> WindowFit:
 def _told(
     at: WindowFit, record: Record, score: WindowScore, largest: float, options: DiscoveryOptions
 ) -> ShiftedRecord | None:
-    """The best shift of the record; None where it is none, or its halves differ."""
+    """Returns the best shift of a record; None where it is not significant or its halves differ."""
     windows, least = np.arange(len(at.moves[0])), options.min_proof_t
     whole = _fitted(at, windows, score)
     std = float(told_std(whole)[0])
@@ -146,13 +146,13 @@ def _shift(found: WindowFit) -> float:
 
 
 def _fitted(at: WindowFit, rows: np.ndarray, score: WindowScore) -> WindowFit:
-    """The shift that is best for some windows of the record."""
+    """Returns the fit of the shift to some windows of the record."""
     task = _with(at, rows, score)
     return solve(task, task.prior.mean, [at.moves[0][rows]])
 
 
 def _with(at: WindowFit, rows: np.ndarray, score: WindowScore) -> Problem:
-    """Some windows of the record, the shift free; its search begins at the score's."""
+    """Returns the problem of some windows with the shift free, begun at the score's size."""
     (part,), (name,) = at.problem.parts, score.candidate.sizes
     space = coordinates(part.predictor.plant.parameters, [name], score.size, linear=[name])
     prior = Prior(space, space.encode(score.size), np.zeros(1))

@@ -1,4 +1,4 @@
-"""Which candidates are fitted: the few best scores that are beyond chance, and simpler ones."""
+"""The candidates that are fitted: the few best scores that are beyond chance, and simpler ones."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from identification.prediction.scores import WindowScore
 def list_contenders(
     scores: Sequence[WindowScore], options: DiscoveryOptions, errors: int
 ) -> list[WindowScore]:
-    """The few best scores that are beyond chance, the best shape of each effect at each place.
+    """Returns the few best scores beyond chance, with the best shape of each effect at each place.
 
     They are fitted to some windows, and the best of them to all: a score is linear, and what is
     right need not have the best one. Curves of the data are among them only where their criterion
@@ -55,12 +55,12 @@ def _best_few(
 
 
 def is_significant(s: WindowScore, count: int, options: DiscoveryOptions) -> bool:
-    """Whether a score is beyond chance among `count` of them, and large enough to matter."""
+    """Returns whether a score is beyond chance among `count` of them and large enough to matter."""
     return s.p_value * count < options.significance and s.fall > options.min_fall
 
 
 def is_plausible(s: WindowScore, options: DiscoveryOptions) -> bool:
-    """Whether sizes have signs and magnitudes that physics admits."""
+    """Returns whether sizes have signs and magnitudes that physics admits."""
     sizes = s.candidate.effect.sizes
     pairs = zip(s.size, sizes * (len(s.size) // len(sizes)), strict=True)
     return all(z.sign * v >= 0 and abs(v) <= options.size_factor * z.largest for v, z in pairs)
@@ -69,7 +69,7 @@ def is_plausible(s: WindowScore, options: DiscoveryOptions) -> bool:
 def list_simpler(
     winner: Candidate, scores: Sequence[WindowScore], options: DiscoveryOptions
 ) -> list[WindowScore]:
-    """The best scores of laws with fewer numbers that act as the winner does, at its place.
+    """Returns the best scores of laws with fewer numbers that act as the winner does, at its place.
 
     Args:
         winner: which promised most.
@@ -88,12 +88,12 @@ def list_simpler(
 
 
 def count_numbers(c: Candidate) -> int:
-    """How many numbers of an effect are estimated."""
+    """Returns how many numbers of an effect are estimated."""
     return len(c.free) + sum(shape.free for shape in c.effect.shapes)
 
 
 def list_starts(score: WindowScore, scores: Sequence[WindowScore]) -> list[WindowScore]:
-    """Another start of a law with free shapes: its best score with sizes of the other sign.
+    """Returns another start of a law with free shapes: its best score with sizes of the other sign.
 
     Such a law often has two minima: a peak of friction at rest, and a lack of it at speed.
 

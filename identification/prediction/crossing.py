@@ -24,7 +24,7 @@ from identification.windows.crossing import Starts, best_starts, sought_from_oth
 
 
 def crossed(fit: WindowFit, others: Sequence[WindowFit]) -> WindowFit:
-    """A fit whose windows begin where they are best, of what its own search and others found.
+    """Returns a fit whose windows begin at the best states that its own search or others found.
 
     Args:
         fit: whose parameters stay as they are.
@@ -50,7 +50,7 @@ def crossed(fit: WindowFit, others: Sequence[WindowFit]) -> WindowFit:
 def at_their_best(
     parent: WindowModel, children: Sequence[WindowModel], horizon: float, confirm: Sequence[Record]
 ) -> tuple[WindowModel, tuple[WindowModel, ...]]:
-    """A model and models with one effect more, whose windows begin at the best that any one found.
+    """Returns a parent and its children, whose windows begin at the best states that any found.
 
     Args:
         parent: the model without the effects.
@@ -72,7 +72,7 @@ def at_their_best(
 def at_all_lengths(
     parent: WindowModel, children: Sequence[WindowModel], horizon: float, confirm: Sequence[Record]
 ) -> tuple[WindowModel, tuple[WindowModel | None, ...]]:
-    """A model and models with one effect more, which predict windows of every length at their best.
+    """Returns a parent and its children, which predict windows of every length at their best.
 
     Args:
         parent: the model without the effects.
@@ -106,7 +106,7 @@ def at_all_lengths(
 def _completed(
     model: WindowModel, parent: WindowModel, horizon: float, confirm: Sequence[Record]
 ) -> WindowModel:
-    """The model which predicts windows of every length that its parent predicts."""
+    """Returns the model with predictions of windows of every length that its parent predicts."""
     rest = [n for n in parent.unseen.lengths if n not in model.unseen.lengths]
     if not rest:
         return model
@@ -118,7 +118,7 @@ def _completed(
 def _crossed(
     model: WindowModel, others: Sequence[WindowModel], horizon: float, confirm: Sequence[Record]
 ) -> WindowModel:
-    """A model whose windows begin where they are best, of what its searches and others found.
+    """Returns a model whose windows begin at the best states that its searches or others found.
 
     Where one of these cannot be simulated, or beside it, what its own search found stands.
     """
@@ -128,7 +128,7 @@ def _crossed(
 def _moved(
     model: WindowModel, others: Sequence[WindowModel], horizon: float, confirm: Sequence[Record]
 ) -> WindowModel:
-    """The model whose windows begin there; an error where it cannot be simulated."""
+    """Returns the model whose windows begin at these states; raises if it cannot be simulated."""
     model = replace(model, fit=crossed(model.fit, [o.fit for o in others]))
     return _begun_best(model, others, horizon, confirm, model.unseen.lengths)
 
@@ -137,7 +137,7 @@ def _begun_best(
     model: WindowModel, others: Sequence[WindowModel], horizon: float, confirm: Sequence[Record],
     lengths: Sequence[float],
 ) -> WindowModel:  # fmt: skip
-    """The model whose unseen windows of some lengths begin where any of the models is best."""
+    """Returns the model with unseen windows of some lengths begun at any model's best states."""
     theirs = [o.unseen for o in others]
     seen = _predicted(model, horizon, confirm, model.unseen, theirs, lengths)
     refuse_infinite(model.fit.cost, *(s for of_length in seen.squares for s in of_length))
@@ -148,7 +148,7 @@ def _predicted(
     model: WindowModel, horizon: float, confirm: Sequence[Record], near: Unseen,
     others: Sequence[Unseen] = (), lengths: Sequence[float] = LENGTHS,
 ) -> Unseen:  # fmt: skip
-    """Errors of a fitted model on unseen records, as `predict_fitted` has them."""
+    """Returns the errors of a fitted model on unseen records, as `predict_fitted` has them."""
     names = model.fit.problem.unknowns.local.names
     fixed = {n: v for n, v in model.values.items() if n not in names}
     return predict_fitted(

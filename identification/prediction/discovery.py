@@ -61,4 +61,4 @@ def discover_records(
 
 
 def _say_nothing(line: str) -> None:
-    """The progress that nobody listens to."""
+    """Ignores a line of progress."""

@@ -32,7 +32,7 @@ def without_drawn_laws(
     model: WindowModel, accepted: Sequence[Contender], nominal_model: NominalModel,
     confirm: Sequence[Record], options: DiscoveryOptions, progress: Progress,
 ) -> tuple[WindowModel, tuple[Contender, ...], tuple[Contender, ...]]:  # fmt: skip
-    """The model without laws that a later curve at their joint makes needless.
+    """Returns the model without laws that a later curve at their joint makes needless.
 
     Args:
         model: with all of the accepted effects.
@@ -69,6 +69,6 @@ def _mean_square(model: WindowModel) -> float:
 
 
 def _explained(law: Contender) -> float:
-    """By how much the mean square fell when the law was found: m_2 F/(1 - F)."""
+    """Returns the fall of the mean square when the law was found: m_2 F/(1 - F)."""
     after, fall = _mean_square(law.model), law.prediction.fall
     return after * fall / (1 - fall)

@@ -1,4 +1,4 @@
-"""What speaks for a law against others in its place: all windows, fitted and unseen.
+"""The evidence for a law against others in its place: all windows, fitted and unseen.
 
     E_c = n_y W mean_b g_cb - k_c ln W
     P_c = mean over resamples of the blocks of exp(E_c/2) / Σ_k exp(E_k/2)
@@ -25,7 +25,7 @@ SEED = 0  # of the resampling, so that a verdict repeats
 
 
 def all_gains(without: WindowModel, with_it: WindowModel) -> np.ndarray:
-    """g of the blocks of all fitted windows, then of all unseen ones, shape (B,)."""
+    """Returns g of the blocks of all fitted windows, then of all unseen ones, shape (B,)."""
     before, after = (
         [*scaled_squares(m.fit.errors, without.scale), *m.unseen.at_horizon]
         for m in (without, with_it)
@@ -34,7 +34,7 @@ def all_gains(without: WindowModel, with_it: WindowModel) -> np.ndarray:
 
 
 def count_windows(model: WindowModel) -> int:
-    """Windows of the horizon of all records, fitted and unseen."""
+    """Returns the number of windows of the horizon of all records, fitted and unseen."""
     fitted = sum(len(p.cut.starts) for p in model.fit.problem.parts)
     return fitted + sum(len(s) for s in model.unseen.at_horizon)
 
@@ -42,7 +42,7 @@ def count_windows(model: WindowModel) -> int:
 def evidence(
     gains: Sequence[np.ndarray], numbers: Sequence[int], windows: int, outputs: int
 ) -> np.ndarray:
-    """E of each law in each resample of the blocks, shape (k, R); the first is of all blocks.
+    """Returns E of each law in each resample of the blocks, shape (k, R); the first is of all.
 
     Args:
         gains: of each law, by block, shape (B,).
@@ -59,7 +59,7 @@ def evidence(
 
 
 def compute_confidence(evidences: np.ndarray) -> np.ndarray:
-    """P of each law, shape (k,).
+    """Returns P of each law, shape (k,).
 
     Args:
         evidences: E, shape (k, R), of `evidence`.

@@ -33,7 +33,7 @@ def without_contradicted(
     tried: Sequence[Contender], without: WindowModel, records: Sequence[Record], horizon: float,
     options: DiscoveryOptions, progress: Progress,
 ) -> tuple[tuple[Contender, ...], WindowModel | None]:  # fmt: skip
-    """Contenders, those that are contradicted no longer proven, and the first with roles exchanged.
+    """Returns contenders, contradicted ones unproven, and the first one with roles exchanged.
 
     Args:
         tried: contenders in their order, the proven ones first.
@@ -59,7 +59,7 @@ def without_contradicted(
 
 
 def exchanged(model: WindowModel, records: Sequence[Record], horizon: float) -> WindowModel | None:
-    """The same model fitted to the records that confirm; its unseen ones are those of its fit.
+    """Returns the model fitted to the records that confirm; its unseen ones are those of its fit.
 
     Only the horizon is predicted: nothing else is asked of it.
 
@@ -91,7 +91,7 @@ def exchanged(model: WindowModel, records: Sequence[Record], horizon: float) -> 
 
 
 def is_contradicted(without: WindowModel, with_it: WindowModel, options: DiscoveryOptions) -> bool:
-    """Whether an effect predicts worse on average, or one record by enough to matter.
+    """Returns whether an effect predicts worse on average, or one record by enough to matter.
 
     Args:
         without: the model without it, with the roles of the records exchanged.
@@ -103,7 +103,7 @@ def is_contradicted(without: WindowModel, with_it: WindowModel, options: Discove
 
 
 def _begin(task: Problem, model: WindowModel) -> np.ndarray:
-    """Where the search begins, shape (p,): the model's values, and what halves of records tell."""
+    """Returns the start of the search, (p,): the model's values and those that halves tell."""
     unknowns = task.unknowns
     own = unknowns.own
     q = [model.fit.q[: len(unknowns.shared.names)]]

@@ -28,7 +28,7 @@ MOST_REFIT = 12  # its linearisations; an effect that takes more is not what is 
 def with_effect(
     parent: WindowModel, begun: Begun, horizon: float, confirm: Sequence[Record]
 ) -> WindowModel | None:
-    """The model with one effect more, refitted; None where it explains no more than its parent.
+    """Returns the model refitted with one effect more; None where it explains no more.
 
     Of unseen records it predicts the horizon alone (see `identification.prediction.unseen`).
 
@@ -56,7 +56,7 @@ def with_effect(
 def with_fitting_steps(
     model: WindowModel, horizon: float, confirm: Sequence[Record]
 ) -> WindowModel:
-    """The model refitted with steps of simulations that its own error allows.
+    """Returns the model refitted with steps of simulations that its own error allows.
 
     Steps that err by little beside what a parent leaves may err by much beside what its child does.
     A model whose steps are short enough stays as it is.
@@ -80,7 +80,7 @@ def with_fitting_steps(
 
 
 def _steps(plant: Plant) -> int:
-    """How many steps of the user's model are one step of a simulation."""
+    """Returns how many steps of the user's model are one step of a simulation."""
     return plant.steps if isinstance(plant, JointPlant) else 1
 
 
@@ -90,7 +90,7 @@ def refitted(
     nominal_model: NominalModel,
     confirm: Sequence[Record],
 ) -> WindowModel | None:
-    """A model with fewer effects, refitted from where it is; None where it cannot be simulated.
+    """Returns a model with fewer effects, refitted; None where it cannot be simulated.
 
     Args:
         model: with more effects.

@@ -57,7 +57,7 @@ class Begun:
 
 
 def begin(parent: WindowModel, scores: Sequence[WindowScore], options: DiscoveryOptions) -> Begun:
-    """An effect fitted to some of the windows, from the best of several starts.
+    """Returns an effect fitted to some of the windows, from the best of several starts.
 
     Args:
         parent: the model without it.
@@ -78,7 +78,7 @@ def begin(parent: WindowModel, scores: Sequence[WindowScore], options: Discovery
 
 
 def _begun(parent: WindowModel, score: WindowScore, shape_std: float) -> Begun | None:
-    """The fit of some windows; None where it cannot be simulated at any size."""
+    """Returns the fit of some windows; None where it cannot be simulated at any size."""
     c = score.candidate
     parent = model_for(parent, c)
     task, fixed = _task(parent, c, shape_std)
@@ -107,7 +107,7 @@ def _begun(parent: WindowModel, score: WindowScore, shape_std: float) -> Begun |
 
 
 def _task(parent: WindowModel, c: Candidate, shape_std: float) -> tuple[Problem, dict[str, float]]:
-    """The windows with the parameters of one effect more, and the values of what is not free."""
+    """Returns the problem with the parameters of one more effect, and the values held fixed."""
     plant, old = parent.plant, parent.fit.problem.unknowns
     sizes = _free(plant, c, [n for n in c.free if n not in old.local.names], shape_std)
     shapes = _free(plant, c, [n for n in shapes_of(c) if n not in old.local.names], shape_std)
@@ -119,7 +119,7 @@ def _task(parent: WindowModel, c: Candidate, shape_std: float) -> tuple[Problem,
 
 
 def _shaped(score: WindowScore) -> list[WindowScore]:
-    """The score with all shapes of its effect's grid that are free.
+    """Returns copies of the score, one for each grid value of its effect's free shapes.
 
     What joints with states do is far from linear in their sizes, so that a score tells the size
     and hardly the shapes.
@@ -134,7 +134,7 @@ def _shaped(score: WindowScore) -> list[WindowScore]:
 
 
 def _free(plant: Plant, c: Candidate, names: Sequence[str], shape_std: float) -> Prior:
-    """Parameters of an effect: of sizes nothing is known, shapes are near the grid's value."""
+    """Returns the prior of an effect's parameters: none of sizes, shapes near the grid's value."""
     if not names:
         return Prior()
     values = {**plant.parameters.values(), **c.fixed}
@@ -146,7 +146,7 @@ def _free(plant: Plant, c: Candidate, names: Sequence[str], shape_std: float) ->
 
 
 def _begin(task: Problem, parent: WindowModel, score: WindowScore, share: float) -> np.ndarray:
-    """Where a child's q begins: at its parent, moved by a share of what the score gives.
+    """Returns the start of a child's q: its parent's, moved by a share of what the score gives.
 
     The parent's parameters make room for the effect: what they imitated of it goes back.
     """
@@ -166,12 +166,12 @@ def _begin(task: Problem, parent: WindowModel, score: WindowScore, share: float)
 
 
 def shapes_of(c: Candidate) -> list[str]:
-    """The plant's parameters of an effect's free shapes."""
+    """Returns the names of the plant's parameters of an effect's free shapes."""
     return [c.effect.parameter(s.name, c.where) for s in c.effect.shapes if s.free]
 
 
 def _away(parameters: ParameterSet, name: str, value: float) -> float:
-    """A size that is not zero."""
+    """Returns a size of at least a small value, so that it is not zero."""
     record = parameters[name]
     least = SMALL * record.scale
     return value if abs(value) > least else least * (1 if record.upper > 0 else -1)

@@ -37,7 +37,7 @@ BLOCKS = 40  # of windows, over all records, for the std
 
 @dataclass(frozen=True, kw_only=True)
 class WindowFit:
-    """Where a search over the windows of all records ended.
+    """The result of a search over the windows of all records.
 
     Attributes:
         problem: what was solved.
@@ -70,7 +70,7 @@ class WindowFit:
         return {n: values[n] for n in self.problem.unknowns.shared.names}
 
     def of_record(self, record: int) -> dict[str, float]:
-        """Estimates that one record feels, by name in the plant, in their units."""
+        """Returns the estimates that one record feels, by name in the plant, in their units."""
         unknowns = self.problem.unknowns
         at = self.q[unknowns.columns(record)]
         space = unknowns.local.space
@@ -78,7 +78,7 @@ class WindowFit:
 
     @property
     def states(self) -> tuple[State, ...]:
-        """Where each window begins, W rows a record."""
+        """The states in which the windows begin, W rows a record."""
         return tuple(p.states(d) for p, d in zip(self.problem.parts, self.moves, strict=True))
 
     @property
@@ -173,7 +173,7 @@ def solve(
 
 
 def _error_words(problem: Problem, at: AtPoint) -> str:
-    """The rms error of the windows at a point, with its unit; of several units each."""
+    """Returns the rms error of the windows at a point with its unit, one for each unit."""
     log = problem.parts[0].predictor.log
     pairs = zip(problem.parts, at.tangents, strict=True)
     each = np.concatenate([part.error(t.r).reshape(-1, len(log.output_names)) for part, t in pairs])

@@ -25,7 +25,7 @@ def without_idle_places(
     model: WindowModel, accepted: Sequence[Contender], nominal_model: NominalModel,
     confirm: Sequence[Record], options: DiscoveryOptions, progress: Progress,
 ) -> tuple[WindowModel, tuple[Contender, ...]]:  # fmt: skip
-    """The model, and the accepted effects, without places that are no longer needed.
+    """Returns the model and the accepted effects, without places that are no longer needed.
 
     Args:
         model: with all of the accepted effects.
@@ -53,7 +53,7 @@ def without_idle_places(
 
 
 def _fewer(model: WindowModel, c: Candidate, options: DiscoveryOptions) -> Candidate | None:
-    """The effect at those of its places where it is felt; None where that is all, or none."""
+    """Returns the effect where it is felt; None where that is all of its places, or none."""
     places = places_of(c.where)
     if len(places) < 2 or c.effect.own or not set(c.sizes) <= set(model.std):
         return None

@@ -1,4 +1,4 @@
-"""How much the inputs would have to err to make what a fitted model leaves.
+"""The error of the inputs that would explain what a fitted model leaves.
 
     Σ_w ‖r⊥_w‖² = σ² n + α² Σ_w ‖S⊥_w‖²           α: rms error of the inputs, a share of their rms
 
@@ -23,7 +23,7 @@ STEP = 1e-3  # of an input's rms, by which it is moved
 
 
 def needed_input_error(fit: WindowFit, floor: float) -> float:
-    """Rms error of the inputs over a window that the residual needs, as a share of their own rms.
+    """Returns the inputs' rms error over a window that the residual needs, as a share of their rms.
 
     Args:
         fit: the model, on the windows of the records that were fitted.
@@ -46,7 +46,7 @@ def needed_input_error(fit: WindowFit, floor: float) -> float:
 def _sensitivity(
     part: Shooting, q: np.ndarray, d: np.ndarray, t: Tangent, size: np.ndarray, moving: np.ndarray
 ) -> np.ndarray:
-    """S⊥ of the inputs that move, each in units of its rms, shape (W, m, k)."""
+    """Returns S⊥ of the inputs that move, each in units of its rms, shape (W, m, k)."""
     out = []
     at = part.joined(part.outputs(q[None], [d], is_rough=True)[0], d)
     for j in moving:

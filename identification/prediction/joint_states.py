@@ -22,7 +22,7 @@ from identification.windows.windows import extended
 
 
 def plant_for(plant: Plant, candidate: Candidate) -> Plant:
-    """The plant with the states that an effect needs; itself where it has them."""
+    """Returns the plant with the states that an effect needs; itself where it has them."""
     if not candidate.effect.state or not isinstance(plant, JointPlant):
         return plant
     return plant.with_states_of(candidate.sizes)
@@ -31,7 +31,7 @@ def plant_for(plant: Plant, candidate: Candidate) -> Plant:
 def part_for(
     part: Shooting, candidate: Candidate, values: Mapping[str, float], plant: Plant | None = None
 ) -> Shooting:
-    """The windows of a record in a plant with the states that an effect needs.
+    """Returns the windows of a record in a plant with the states that an effect needs.
 
     Args:
         part: the windows.
@@ -51,7 +51,7 @@ def part_for(
 
 
 def widened(moves: np.ndarray, part: Shooting) -> np.ndarray:
-    """Moves of windows' states (W, nx), with zeros for states that the plant got since."""
+    """Returns moves of windows' states (W, nx), with zeros for states that the plant got since."""
     model = part.predictor.plant.model
     more = 2 * model.nv + model.na - moves.shape[1]
     return np.hstack([moves, np.zeros((len(moves), more))])
@@ -60,7 +60,7 @@ def widened(moves: np.ndarray, part: Shooting) -> np.ndarray:
 def rows_for(
     part: Shooting, d: np.ndarray, group: Sequence[Candidate], values: Mapping[str, float]
 ) -> tuple[Shooting, list[np.ndarray]]:
-    """Windows in a plant for a group of candidates, and moves of their states for each size of it.
+    """Returns windows in a plant for a group of candidates, and moves of their states by size.
 
     The sensitivity to where the states of joints begin is zero as long as sizes are, so that a
     score need not project it out; they begin at the loads that go with each candidate's shapes.
@@ -96,7 +96,7 @@ def rows_for(
 
 
 def model_for(model: WindowModel, candidate: Candidate) -> WindowModel:
-    """A fitted model in a plant with the states that an effect needs."""
+    """Returns a fitted model in a plant with the states that an effect needs."""
     if plant_for(model.plant, candidate) is model.plant:
         return model
     fit = model.fit

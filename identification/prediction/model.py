@@ -71,12 +71,12 @@ class WindowModel:
 
     @property
     def told_std(self) -> dict[str, float]:
-        """These std as far as they can be known; NaN where too few windows tell, or on a bound."""
+        """Std of the free values; NaN where too few windows tell it, or a value is on a bound."""
         return dict(zip(self.fit.problem.names, told_std(self.fit).tolist(), strict=True))
 
     @cached_property
     def finer(self) -> StepShift:
-        """What a quarter of the model's step would do to the fit."""
+        """The change of the fit with a quarter of the model's step."""
         return step_shift(self.fit)
 
     @property
@@ -86,7 +86,7 @@ class WindowModel:
 
     @property
     def step_shift(self) -> dict[str, float]:
-        """By how much each free value would change with a quarter of the step, in its unit."""
+        """The change of each free value with a quarter of the step, in its unit."""
         return dict(zip(self.fit.problem.names, self.finer.values.tolist(), strict=True))
 
     @property
@@ -100,7 +100,7 @@ def predict_fitted(
     fixed: Mapping[str, float], near: Unseen | None = None, others: Sequence[Unseen] = (),
     lengths: Sequence[float] = LENGTHS,
 ) -> Unseen:  # fmt: skip
-    """Errors on unseen records; of parameters that each has for itself, its own halves tell.
+    """Returns errors on unseen records; each half's own parameters are told by the other half.
 
     Args:
         plant: the model.

@@ -91,7 +91,7 @@ def fit_nominal(
 
 
 def _of(length: float, scale: int, progress: Progress | None) -> Progress | None:
-    """Progress that says the windows' length, and which fit over windows of the horizon it is."""
+    """Returns a progress that adds the windows' length, and which fit over the horizon it is."""
     if progress is None:
         return None
     tell, which = progress, f", fit {scale + 1}" if scale else ""
@@ -99,7 +99,7 @@ def _of(length: float, scale: int, progress: Progress | None) -> Progress | None
 
 
 def as_begun(nominal_model: NominalModel, fitted: WindowModel, unseen: Unseen) -> WindowModel:
-    """The model at the values with which its fit began, on the windows of the fit.
+    """Returns the model at the values with which its fit began, on the windows of the fit.
 
     Args:
         nominal_model: says these values.
@@ -117,7 +117,7 @@ def as_begun(nominal_model: NominalModel, fitted: WindowModel, unseen: Unseen) -
 
 
 def begin(nominal_model: NominalModel, unknowns: Unknowns) -> np.ndarray:
-    """Where the search begins, shape (p,), in coordinates: the plant's values, or a record's own.
+    """Returns the start of the search, (p,), in coordinates: the plant's values, or a record's own.
 
     Args:
         nominal_model: says both.
@@ -130,7 +130,7 @@ def begin(nominal_model: NominalModel, unknowns: Unknowns) -> np.ndarray:
 
 
 def _priors(nominal_model: NominalModel) -> tuple[Prior, Prior]:
-    """What is known of the free parameters of a nominal model: shared ones, and own ones."""
+    """Returns the priors of a nominal model's free parameters: shared ones, and own ones."""
     plant, names, own = nominal_model.plant, nominal_model.names, nominal_model.own
     values = plant.parameters.values()
     first = np.array([values[n] for n in names])
@@ -158,7 +158,7 @@ def _refuse_idle(found: WindowFit) -> None:
 
 
 def _rms(found: WindowFit) -> np.ndarray:
-    """Rms error of each output over the windows, no less than the sensors' noise, (ny,)."""
+    """Returns the rms error of each output over the windows, at least the sensors' noise, (ny,)."""
     logs = [p.predictor.log for p in found.problem.parts]
     noise = np.mean([noise_floor(log.outputs) ** 2 for log in logs], axis=0)
     square = np.mean(np.concatenate([np.mean(e**2, axis=1) for e in found.errors]), axis=0)
@@ -166,7 +166,7 @@ def _rms(found: WindowFit) -> np.ndarray:
 
 
 def _scale_of_change(records: Sequence[Record]) -> np.ndarray:
-    """Rms change of each output between samples: a scale before any model is known, (ny,)."""
+    """Returns the rms change of each output between samples, (ny,): a scale before any fit."""
     return np.sqrt(
         np.mean([np.mean(np.diff(r.log.outputs, axis=0) ** 2, axis=0) for r in records], axis=0)
     )

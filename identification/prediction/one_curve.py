@@ -34,7 +34,7 @@ def with_one_curve(
     effects: Sequence[Effect], confirm: Sequence[Record], options: DiscoveryOptions,
     progress: Progress,
 ) -> tuple[WindowModel, tuple[Contender, ...], tuple[Contender, ...]]:  # fmt: skip
-    """The model with a curve in the place of several laws at a joint, where that has more evidence.
+    """Returns the model with a curve in place of several laws at a joint, if it has more evidence.
 
     Args:
         model: with all of the accepted effects.
@@ -76,7 +76,7 @@ def with_one_curve(
 
 
 def _joints_of_several(accepted: Sequence[Contender]) -> list[str]:
-    """Joints at which several laws and no curve were accepted."""
+    """Returns the joints at which several laws and no curve were accepted."""
     curves = {
         place
         for a in accepted
@@ -88,6 +88,6 @@ def _joints_of_several(accepted: Sequence[Contender]) -> list[str]:
 
 
 def _is_law(a: Contender) -> bool:
-    """Whether it is a law of a force, which a curve may be as well."""
+    """Returns whether a contender is a law of a force, which a curve may be as well."""
     effect = a.candidate.effect
     return not effect.is_curve and bool(effect.hooks) and {*effect.hooks} <= ON_JOINTS

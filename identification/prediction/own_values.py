@@ -31,7 +31,7 @@ def own_values(
     plant: Plant, record: Record, horizon: float, scale: np.ndarray, values: Mapping[str, float],
     own: Own,
 ) -> tuple[dict[str, float], dict[str, float]]:  # fmt: skip
-    """A record's own values for its first half, told by the second one, and the reverse."""
+    """Returns a record's own values for each of its halves, as the other half tells them."""
     if not own.prior.names:
         return {}, {}
     task = problem(plant, [record], Prior(), own.prior, horizon, values, scale)
@@ -49,5 +49,5 @@ def own_values(
 
 
 def of_halves(a: Mapping[str, float], b: Mapping[str, float]) -> dict[str, tuple[float, float]]:
-    """Mean and its std of values that two halves of a record tell."""
+    """Returns the mean of values that two halves of a record tell, and its std."""
     return {n: ((a[n] + b[n]) / 2, abs(a[n] - b[n]) / 2) for n in a}

@@ -35,7 +35,7 @@ Moves = tuple[np.ndarray, ...]  # of the windows' states, one array (W, nx) a re
 
 @dataclass(frozen=True)
 class Step:
-    """Where a trial step ends.
+    """The end of a trial step.
 
     Attributes:
         q: the parameters there, shape (p,).
@@ -79,7 +79,7 @@ class AtPoint:
         return data + float(np.sum(self.problem.against(self.q) ** 2))
 
     def step(self, μ: Cost) -> Step:
-        """Where the step with damping μ ends."""
+        """Returns the end of the step with damping μ."""
         dq, dd = step_of(self.problem, self.q, self.tangents, float(μ))
         q = self.q + dq
         expected = self._expected(dq, dd)
@@ -101,14 +101,14 @@ class AtPoint:
         return Step(q, moves, r, cost, promised)
 
     def cost_after(self, step: Step) -> float:
-        """V after a step."""
+        """Returns V after a step."""
         return step.cost
 
     def bend(self, step: Step, after: Cost, μ: Cost) -> None:
-        """The steps are never bent."""
+        """Does nothing: the steps are never bent."""
 
     def moved(self, step: Step, taken: np.ndarray) -> AtPoint:
-        """The criterion after a step, with the slopes before it where they serve."""
+        """Returns the criterion after a step, with the slopes before it where they serve."""
         gain, promised = self.cost - step.cost, self.cost - step.promised
         if len(self.q) < MANY or gain < KEPT * promised:
             return linearised(self.problem, step.q, step.moves, self.tolerance, step.residuals)
@@ -119,7 +119,7 @@ class AtPoint:
         )  # fmt: skip
 
     def refreshed(self) -> AtPoint:
-        """The same with slopes at this point.
+        """Returns the criterion with slopes at this point.
 
         Raises:
             DivergenceError: it cannot be simulated beside it.
@@ -128,7 +128,7 @@ class AtPoint:
         return linearised(self.problem, self.q, self.moves, self.tolerance, known)
 
     def _enough(self, expected: Sequence[np.ndarray]) -> list[np.ndarray]:
-        """Sums of squares with which windows have followed a step, one array (W,) a record.
+        """Returns sums of squares at which windows have followed a step, one array (W,) a record.
 
         A window that keeps the state it had can gain little more than these leave.
         """
@@ -139,7 +139,7 @@ class AtPoint:
         ]
 
     def _expected(self, dq: np.ndarray, dd: Sequence[np.ndarray]) -> list[np.ndarray]:
-        """Sums of squares by the linearisation after a step, one array (W,) a record."""
+        """Returns the linearisation's sums of squares after a step, one array (W,) a record."""
         return [
             np.sum((t.r - t.S @ dq - along_states(t, d)) ** 2, axis=1)
             for t, d in zip(self.tangents, dd, strict=True)
@@ -150,7 +150,7 @@ def linearised(
     problem: Problem, q: np.ndarray, moves: Moves, tolerance: float,
     known: Sequence[np.ndarray] | None = None,
 ) -> AtPoint:  # fmt: skip
-    """The criterion linearised at q (p,) and at moves of the states, where residuals are `known`.
+    """Returns the criterion linearised at q (p,) and moves of the states, with `known` residuals.
 
     Raises:
         DivergenceError: it cannot be simulated there, or beside it.
@@ -159,7 +159,7 @@ def linearised(
 
 
 def projected(t: Tangent) -> tuple[np.ndarray, np.ndarray]:
-    """S and r without what the states of each window make up for: (W, m, p) and (W, m)."""
+    """Returns S and r without what the states of each window make up for: (W, m, p) and (W, m)."""
     U = t.U * (t.s > 0)[:, None]
     S = t.S - U @ (np.swapaxes(U, 1, 2) @ t.S)
     return S, t.r - np.einsum("wmk,wk->wm", U, np.einsum("wmk,wm->wk", U, t.r))
@@ -168,7 +168,7 @@ def projected(t: Tangent) -> tuple[np.ndarray, np.ndarray]:
 def step_of(
     problem: Problem, q: np.ndarray, tangents: Sequence[Tangent], damping: float
 ) -> tuple[np.ndarray, Moves]:
-    """The damped step of the parameters, within their bounds, and of the windows' states."""
+    """Returns the damped step of the parameters, within bounds, and of the windows' states."""
     H, g = np.diag(problem.prior.weight**2), problem.prior.weight * problem.against(q)
     for t in tangents:
         against, left, share = _states(t, damping)
@@ -190,7 +190,7 @@ def step_of(
 def _within(
     H: np.ndarray, g: np.ndarray, space: Coordinates, q: np.ndarray, size: np.ndarray
 ) -> np.ndarray:
-    """Δq = x/size of H x = g, those that would leave their bounds held there."""
+    """Returns Δq = x/size of H x = g, with values that would leave their bounds held there."""
     x, free = np.zeros(len(g)), np.ones(len(g), bool)
     low, high = (space.lower - q) * size, (space.upper - q) * size
     while free.any():

@@ -39,7 +39,7 @@ FEWEST_WINDOWS = 10  # of a record, so that blocks of them can be compared
 
 @dataclass(frozen=True)
 class Problem:
-    """What does not change while parameters and states of windows are sought.
+    """The data and unknowns that do not change while parameters and states are sought.
 
     Attributes:
         parts: the windows of each record that is fitted; each feels its own columns of q.
@@ -51,7 +51,7 @@ class Problem:
 
     @cached_property
     def prior(self) -> Prior:
-        """Of all p free parameters."""
+        """The prior of all p free parameters."""
         return self.unknowns.all
 
     @property
@@ -65,16 +65,16 @@ class Problem:
         return self.prior.names
 
     def against(self, q: np.ndarray) -> np.ndarray:
-        """What the priors hold against q, in their std, shape (p,)."""
+        """Returns the priors' means less q, in their std, shape (p,)."""
         return self.prior.weight * (self.prior.mean - q)
 
     def held(self, q: np.ndarray) -> HeldRecords:
-        """The windows of all records with the parameters q (p,), which are held."""
+        """Returns the windows of all records with the parameters q (p,) held."""
         parts = enumerate(self.parts)
         return hold([at_values(part, q[self.unknowns.columns(k)]) for k, part in parts])
 
     def cost_of(self, q: np.ndarray, residuals: Sequence[np.ndarray]) -> float:
-        """V at q, of the residuals there, one array (W, m) a record.
+        """Returns V at q, of the residuals there, one array (W, m) a record.
 
         Raises:
             DivergenceError: a window left the finite numbers.
@@ -87,7 +87,7 @@ class Problem:
     def tangents(
         self, q: np.ndarray, d: Sequence[np.ndarray], known: Sequence[np.ndarray] | None = None
     ) -> tuple[Tangent, ...]:
-        """All windows linearised, one tangent a record, its S with a column for each of q.
+        """Returns all windows linearised, one tangent a record, its S with a column for each of q.
 
         Args:
             q: shape (p,).
@@ -105,7 +105,7 @@ class Problem:
         self, before: Sequence[Tangent], q: np.ndarray, d: Sequence[np.ndarray],
         known: Sequence[np.ndarray], is_moved: Sequence[np.ndarray],
     ) -> tuple[Tangent, ...]:  # fmt: skip
-        """The windows linearised at q, of which some have moved since.
+        """Returns the windows linearised at q, of which some have moved since.
 
         Args:
             before: their tangents at q, one a record.
@@ -124,7 +124,7 @@ class Problem:
         return tuple(out)
 
     def widened(self, record: int, t: Tangent) -> Tangent:
-        """A tangent of the record's own columns with columns of zeros for all others."""
+        """Returns a tangent of the record's own columns with columns of zeros for all others."""
         if not self.unknowns.own.names:
             return t
         S = np.zeros((*t.S.shape[:2], len(self.names)))
@@ -135,7 +135,7 @@ class Problem:
         self, q: np.ndarray, d: Sequence[np.ndarray], near: Sequence[Tangent] | None = None,
         is_thorough: bool = False,
     ) -> tuple[tuple[np.ndarray, ...], tuple[np.ndarray, ...]]:  # fmt: skip
-        """The moves of the states that are best at q, each window for itself, and residuals there.
+        """Returns the moves of the states that are best at q, by window, and the residuals there.
 
         Args:
             q: shape (p,).
@@ -155,7 +155,7 @@ def best_of(
     held: HeldRecords, moves: Sequence[np.ndarray], others: Sequence[np.ndarray],
     enough: Sequence[np.ndarray],
 ) -> tuple[tuple[np.ndarray, ...], tuple[np.ndarray, ...]]:  # fmt: skip
-    """Of two moves of the states the better one, each window for itself, and the residuals there.
+    """Returns the better of two moves of the states, by window, and the residuals there.
 
     Args:
         held: the windows.
@@ -221,13 +221,13 @@ def problem(
 def most_windows(
     plant: Plant, records: Sequence[Record], length: float, most_steps: int = MOST_STEPS
 ) -> int:
-    """How many windows of each record are simulated at most, so that all take `most_steps`."""
+    """Returns the most windows of each record to simulate, so that all take `most_steps`."""
     each = max(length / own_step(plant), 1.0)
     return max(FEWEST_WINDOWS, int(most_steps / (each * max(1, len(records)))))
 
 
 def no_moves(problem_: Problem) -> tuple[np.ndarray, ...]:
-    """States that begin where they are believed to begin, one array (W, nx) a record."""
+    """Returns zero moves of the windows' states, one array (W, nx) a record."""
     out = []
     for part in problem_.parts:
         model = part.predictor.plant.model
@@ -238,7 +238,7 @@ def no_moves(problem_: Problem) -> tuple[np.ndarray, ...]:
 def with_unknowns(
     problem_: Problem, shared: Prior, own: Prior, fixed: Mapping[str, float]
 ) -> Problem:
-    """The same windows with other free parameters, and other values of those that are not free."""
+    """Returns the same windows with other free parameters, and other values of those not free."""
     parts, space = [], shared.plus(own).space
     for part in problem_.parts:
         values = {**part.predictor.fixed, **fixed}
@@ -251,7 +251,7 @@ def with_unknowns(
 def with_longer_steps(
     problem_: Problem, q: np.ndarray, moves: Sequence[np.ndarray], is_for_slopes: bool = False
 ) -> Problem:
-    """The same windows with simulations whose steps are as long as predictions and slopes allow.
+    """Returns the windows with simulation steps as long as predictions and slopes allow.
 
     Args:
         problem_: of one plant.
@@ -267,6 +267,6 @@ def with_longer_steps(
 
 
 def with_scale(problem_: Problem, scale: np.ndarray) -> Problem:
-    """The same windows whose errors count in units of another scale s, shape (ny,)."""
+    """Returns the same windows whose errors count in units of another scale s, shape (ny,)."""
     whitener = np.diag(1 / scale)
     return replace(problem_, parts=tuple(replace(p, whitener=whitener) for p in problem_.parts))

@@ -1,4 +1,4 @@
-"""Whether unseen records prove an effect, and what is against it where they do not."""
+"""The proof of an effect by unseen records, and what is against it where they do not prove it."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Doubt = Literal[
 
 
 def find_doubt(found: Prediction, refits: int, options: DiscoveryOptions) -> Doubt | None:
-    """What is against an effect on unseen windows; None where they prove it.
+    """Returns what is against an effect on unseen windows; None where they prove it.
 
     Args:
         found: what is predicted better with it.
@@ -40,7 +40,7 @@ def find_doubt(found: Prediction, refits: int, options: DiscoveryOptions) -> Dou
 
 
 def has_size(model: WindowModel, options: DiscoveryOptions) -> bool:
-    """Whether a free size of the last effect is beyond its own std, where it has one.
+    """Returns whether a free size of the last effect is beyond its own std, where it has one.
 
     It must be beyond what steps of the simulation err by too. The nodes of a curve go together, and
     with a free level or slope beside it each of them may be unknown where the curve is not: of it
@@ -57,7 +57,7 @@ def has_size(model: WindowModel, options: DiscoveryOptions) -> bool:
 
 
 def is_at_bound(model: WindowModel) -> bool:
-    """Whether a size of the last effect ended on the bound beyond which it is not believed.
+    """Returns whether a size of the last effect ended on the bound of what is believed.
 
     The data then ask for more than physics allows: the effect stands for something else. Zero as a
     bound of a size is no effect, and no reason.

@@ -45,7 +45,7 @@ class RecordError:
 
 
 def error_unit(log: Log, scale: np.ndarray) -> tuple[float, str]:
-    """S, and its unit: that of the outputs, or none where they have several.
+    """Returns S, and its unit: that of the outputs, or none where they have several.
 
     Args:
         log: one of the records.
@@ -56,12 +56,12 @@ def error_unit(log: Log, scale: np.ndarray) -> tuple[float, str]:
 
 
 def scaled_squares(errors: Sequence[np.ndarray], scale: np.ndarray) -> list[np.ndarray]:
-    """Mean squares of windows (W,) in units of s², of errors (W, L, ny), one array a record."""
+    """Returns mean squares (W,) in units of s² of windows' errors (W, L, ny), an array a record."""
     return [np.mean((e / scale) ** 2, axis=(1, 2)) for e in errors]
 
 
 def errors_by_unit(squares: np.ndarray, scale: np.ndarray, log: Log) -> dict[str, float]:
-    """rms_g by the outputs' units, each in it.
+    """Returns rms_g by the outputs' units, each in its unit.
 
     Args:
         squares: mean squares of outputs in units of s², shape (…, ny).
@@ -79,7 +79,7 @@ def record_errors(
     unseen: tuple[Unseen, Unseen],
     fitted: tuple[Errors, Errors],
 ) -> tuple[RecordError, ...]:
-    """Errors of two models on fitted records and on those that confirm.
+    """Returns the errors of two models on fitted records and on those that confirm.
 
     Args:
         records: of both roles, in the order of the errors of each.

@@ -37,7 +37,7 @@ def as_records(
     confirm: Sequence[Log] = (),
     values: Mapping[str, Mapping[str, float]] | None = None,
 ) -> tuple[Record, ...]:
-    """Records to fit and records to confirm.
+    """Returns records to fit and records to confirm.
 
     Where nothing confirms, the first half of each log is fitted (its part `estimation`) and the
     rest of it confirms.
@@ -71,7 +71,7 @@ _HALVES: tuple[tuple[str, Role], ...] = (("estimation", "fit"), ("validation", "
 
 
 def _distinct(logs: Sequence[Log]) -> list[Log]:
-    """Logs of which none bears the name of another: what a record has for itself is told by it."""
+    """Returns the logs under distinct names: a record's own values are told by its name."""
     out: list[Log] = []
     for log in logs:
         used = {other.name for other in out}

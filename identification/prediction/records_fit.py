@@ -48,7 +48,7 @@ NO_HORIZON = (
 
 @dataclass(frozen=True, kw_only=True)
 class RecordsFit:
-    """Where a fit of records ended, and how it predicts those that it has not seen.
+    """The result of a fit of records, and its predictions of those that it has not seen.
 
     Attributes:
         records: what was fitted and what confirms.
@@ -73,7 +73,7 @@ class RecordsFit:
 
     @property
     def shared(self) -> dict[str, float]:
-        """Those of them that hold for all records."""
+        """The fitted values that hold for all records."""
         return self.model.fit.shared
 
     @property
@@ -87,13 +87,13 @@ class RecordsFit:
 
     @property
     def at_bound(self) -> np.ndarray:
-        """Which values lie on a bound, shape (p,)."""
+        """True where a value lies on a bound, shape (p,)."""
         fit = self.model.fit
         return fit.problem.prior.space.on_bound(fit.q)
 
     @property
     def own(self) -> Mapping[str, Mapping[str, tuple[float, float]]]:
-        """Of each record that confirms, the values that it has for itself, and their std."""
+        """The own values of each record that confirms, and their std."""
         return self.model.unseen.own
 
     @property
@@ -104,7 +104,7 @@ class RecordsFit:
 
     @property
     def rms_by_unit(self) -> dict[str, float]:
-        """The same by the outputs' units, each in it."""
+        """Rms error of the windows that were fitted, by the outputs' units, each in its unit."""
         scale = self.model.scale
         squares = [np.mean((e / scale) ** 2, axis=1) for e in self.model.fit.errors]
         return errors_by_unit(np.concatenate(squares), scale, self.records[0].log)
@@ -120,7 +120,7 @@ class RecordsFit:
 
     @property
     def unseen_by_unit(self) -> dict[str, float]:
-        """Of the fitted values on the records that confirm, by the outputs' units, each in it."""
+        """Rms errors of the fitted values on the records that confirm, by the outputs' units."""
         squares = np.concatenate(self.model.unseen.of_outputs)
         return errors_by_unit(squares, self.model.scale, self.records[0].log)
 
@@ -131,17 +131,17 @@ class RecordsFit:
 
     @property
     def noise_by_unit(self) -> dict[str, float]:
-        """The same by the outputs' units, each in it."""
+        """Rms of the sensors' noise by the outputs' units, each in its unit."""
         return errors_by_unit(self.model.unseen.noise, self.model.scale, self.records[0].log)
 
     @property
     def unit(self) -> str:
-        """Of errors over all outputs; empty where these have several, or none."""
+        """The unit of errors over all outputs; empty where these have several, or none."""
         return error_unit(self.records[0].log, self.model.scale)[1]
 
     @cached_property
     def errors(self) -> tuple[RecordError, ...]:
-        """By record, with the values with which the fit began and with the fitted ones."""
+        """Errors by record, with the values with which the fit began and with the fitted ones."""
         fit, scale = self.model.fit, self.model.scale
         begun = _begun_errors(fit, fit.problem.prior.space.encode(self.start))
         unseen = self.begun, self.model.unseen
@@ -149,7 +149,7 @@ class RecordsFit:
 
     @property
     def worse(self) -> Prediction | None:
-        """By how much it predicts unseen records worse than the values with which it began.
+        """The proof that it predicts unseen records worse than the values with which it began.
 
         None where that is not proven.
         """
@@ -211,7 +211,7 @@ def fit_records(
 
 
 def _begun_errors(fit: WindowFit, q: np.ndarray) -> list[np.ndarray]:
-    """y - ŷ of the fitted windows at q (p,), where the fit began, (W, L, ny) a record."""
+    """Returns y - ŷ of the fitted windows at q (p,), where the fit began, (W, L, ny) a record."""
     problem = fit.problem
     settled = settle(problem.held(q), no_moves(problem))
     return [part.error(s.r) for part, s in zip(problem.parts, settled, strict=True)]

@@ -42,7 +42,7 @@ FEWEST = 10  # windows of a record
 def recover_over_horizon(
     model: WindowModel, candidate: Candidate, rivals: Sequence[RefittedEffect] = ()
 ) -> RecoveredForce | None:
-    """The force of an effect, recovered from the fitted windows.
+    """Returns the force of an effect, recovered from the fitted windows.
 
     Args:
         model: with the effect.
@@ -106,14 +106,14 @@ def _windows(
 
 
 def _of_forces(candidate: Candidate, each: Sequence[_Windows]) -> Shown | None:
-    """Forces on joints; None where the law has none, or not on joints of one kind alone."""
+    """Returns forces on joints; None where the law has none, or not on joints of one kind alone."""
     stretches = [s for windows in each for s in stretches_of(windows.base, windows.sets)]
     along = forces_along(stretches, np.concatenate([_flat(w.sets[0].outputs) for w in each]))
     return None if along is None else show_forces(candidate, each[0].values, along)
 
 
 def _of_readings(candidate: Candidate, each: Sequence[_Windows]) -> Shown | None:
-    """Errors of sensors."""
+    """Returns the errors of sensors."""
     log = each[0].part.predictor.log
     own = [w.base.outputs for w in each]
     rate = [np.gradient(y, log.sampling_time, axis=1) for y in own]
@@ -130,7 +130,7 @@ def _of_readings(candidate: Candidate, each: Sequence[_Windows]) -> Shown | None
 
 
 def _solve(each: Sequence[_Windows], S: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The forces at the nodes that are likeliest, and their std, each of shape (m,)."""
+    """Returns the likeliest forces at the nodes, and their std, each of shape (m,)."""
     out, left, done = [], [], 0
     for windows in each:
         t, part = windows.tangent, windows.part
@@ -160,7 +160,7 @@ def _solve(each: Sequence[_Windows], S: np.ndarray) -> tuple[np.ndarray, np.ndar
 
 
 def _values_of(rival: RefittedEffect) -> dict[str, float]:
-    """What a rival's law has, by the plant's names."""
+    """Returns the values of a rival's law, by the plant's names."""
     candidate = rival.candidate
     own = {
         candidate.effect.parameter(name, candidate.where): value
@@ -170,11 +170,11 @@ def _values_of(rival: RefittedEffect) -> dict[str, float]:
 
 
 def _is_alike(rival: Candidate, is_reading: bool) -> bool:
-    """Whether a rival's law can be drawn beside the named one."""
+    """Returns whether a rival's law can be drawn beside the named one."""
     effect = rival.effect
     return not (effect.state or effect.own) and ("reading" in effect.hooks) == is_reading
 
 
 def _flat(outputs: np.ndarray) -> np.ndarray:
-    """Outputs of windows (W, L, ny) one after the other, shape (W L, ny)."""
+    """Returns the outputs of windows (W, L, ny) one after the other, shape (W L, ny)."""
     return outputs.reshape(-1, outputs.shape[-1])

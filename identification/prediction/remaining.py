@@ -1,4 +1,4 @@
-"""What the final model of a discovery leaves, as findings.
+"""The findings on what the final model of a discovery leaves.
 
 Where the error at the horizon is that of the sensors, nothing is left that an effect or a shift of
 a record could explain. Among many that are tried one gains by luck, so that such a doubt counts
@@ -37,7 +37,7 @@ FEWEST = 3  # records: of two nobody knows which one is different
 def find_remaining(
     state: RecordsState, rejected: Sequence[RefittedEffect], shifts: Sequence[ShiftedRecord]
 ) -> tuple[Finding, ...]:
-    """What the final model leaves: errors above the sensors' noise, and doubtful effects.
+    """Returns what the final model leaves: errors above the sensors' noise, and doubtful effects.
 
     Args:
         state: the finished state.
@@ -66,7 +66,7 @@ def find_remaining(
 
 
 def _error_left(state: RecordsState) -> RemainingError | None:
-    """What is left above the sensors' noise; None where that makes it."""
+    """Returns the error above the sensors' noise; None where the noise alone explains it."""
     options, ratio = state.task.options, noise_ratio(state)
     names, ratios = state.task.records[0].log.output_names, output_ratios(state.model.unseen)
     worst = int(np.argmax(ratios))
@@ -76,20 +76,20 @@ def _error_left(state: RecordsState) -> RemainingError | None:
 
 
 def output_ratios(unseen: Unseen) -> np.ndarray:
-    """Rms error of each output over that of its noise, zero where the noise is not known, (ny,)."""
+    """Returns each output's rms error over that of its noise, (ny,); zero where that is unknown."""
     squares, noise = np.concatenate(unseen.of_outputs).mean(axis=0), unseen.noise
     return np.sqrt(np.divide(squares, noise, out=np.zeros_like(squares), where=noise > 0))
 
 
 def noise_ratio(state: RecordsState) -> float:
-    """Rms error of the final model on unseen records over that of the sensors' noise."""
+    """Returns the final model's rms error on unseen records over that of the sensors' noise."""
     unseen = state.model.unseen
     square = float(np.mean(np.concatenate(unseen.at_horizon)))
     return float(np.sqrt(square / unseen.floor)) if unseen.floor else np.inf
 
 
 def different_records(state: RecordsState) -> list[DifferentRecord]:
-    """Records that the final model predicts much worse than the others, by Welch's t-test.
+    """Returns records that the final model predicts much worse than the others, by Welch's t-test.
 
     The sample are logarithms of the windows' mean squares, and the records are paid for.
     """

@@ -26,7 +26,7 @@ def find_rivals(
     others: Sequence[Contender], before: WindowModel, scores: Sequence[WindowScore],
     after: WindowModel, then: Sequence[WindowScore], options: DiscoveryOptions,
 ) -> tuple[Contender, ...]:  # fmt: skip
-    """Other contenders that explain less than half as much once the best one is there.
+    """Returns other contenders that explain less than half as much once the best one is there.
 
     What still explains as much is no rival of the best one: it is missing too. A rival need not be
     proven to make a name doubtful; but what some windows or a record contradict is none, nor what
@@ -56,7 +56,7 @@ def prune(
     model: WindowModel, accepted: Sequence[Contender], nominal_model: NominalModel,
     confirm: Sequence[Record], options: DiscoveryOptions, progress: Progress,
 ) -> tuple[WindowModel, tuple[int, ...]]:  # fmt: skip
-    """The model without needless effects, and which of the accepted ones stay.
+    """Returns the model without needless effects, and which of the accepted ones stay.
 
     An effect is needless where unseen records are predicted as well without it, by chance or but
     for too little to matter. The last one was just proven.
@@ -84,7 +84,7 @@ def as_good_without(
     model: WindowModel, candidates: Sequence[Candidate], nominal_model: NominalModel,
     confirm: Sequence[Record], options: DiscoveryOptions,
 ) -> WindowModel | None:  # fmt: skip
-    """A model with fewer effects or places, refitted; None where it predicts unseen records worse.
+    """Returns the refit of fewer effects or places; None where it predicts unseen records worse.
 
     Args:
         model: with all of them.

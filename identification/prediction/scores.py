@@ -1,4 +1,4 @@
-"""What each candidate would explain of the windows' residual, before it is refitted.
+"""The part of the windows' residual that each candidate would explain, before it is refitted.
 
     r⊥, S_j⊥       residual and sensitivities without what states and base parameters make up for
     η̂_j = (S⊥ᵀS⊥)⁻¹ S⊥ᵀ r⊥                    the size, at once
@@ -35,7 +35,7 @@ BATCH = 24  # columns at a time: bounds the memory of their trajectories
 
 @dataclass(frozen=True, kw_only=True)
 class WindowScore:
-    """What a candidate would explain.
+    """The score of a candidate: what it would explain.
 
     Attributes:
         candidate: which.
@@ -82,7 +82,7 @@ def window_scores(fit: WindowFit, candidates: Sequence[Candidate]) -> tuple[Wind
 def find_imitated(
     fit: WindowFit, scores: Sequence[WindowScore], options: DiscoveryOptions
 ) -> set[tuple[str, str]]:
-    """Effects, with their places, that free parameters imitate: the same by another name.
+    """Returns effects, with their places, that free parameters imitate: the same by another name.
 
     Args:
         fit: the model without them.
@@ -147,7 +147,7 @@ class _Base:
         return out
 
     def imitated(self, group: Sequence[Candidate], share: float) -> list[Candidate]:
-        """Candidates all of whose columns free parameters imitate, whatever priors say.
+        """Returns candidates of which free parameters imitate every column, whatever priors say.
 
         Their steps are as small as those of the free parameters: where joints stick, a large one
         shows something else.
@@ -159,7 +159,7 @@ class _Base:
         return [c for c, own in zip(group, each, strict=True) if own.all()]
 
     def _columns(self, group: Sequence[Candidate], share: float = 1.0) -> list[np.ndarray]:
-        """-∂r/∂η of the sizes of candidates, without the states' part, (rows, k) a record.
+        """Returns -∂r/∂η of the sizes of candidates, without the states' part, (rows, k) a record.
 
         Args:
             group: the candidates.
@@ -223,7 +223,7 @@ class _Base:
         )  # fmt: skip
 
     def _by_blocks(self, rows: np.ndarray) -> np.ndarray:
-        """Sums of rows over blocks of windows, shape (B, k)."""
+        """Returns sums of rows over blocks of windows, shape (B, k)."""
         windows, done = [], 0
         for W, m in self.rows:
             windows.append(rows[done : done + W * m].reshape(W, m, -1).sum(axis=1))
@@ -233,7 +233,7 @@ class _Base:
 
 
 def inside(parameters: ParameterSet, names: Sequence[str], values: np.ndarray) -> np.ndarray:
-    """Values a little inside the bounds, as coordinates ask of a start."""
+    """Returns values a little inside the bounds, as coordinates ask of a start."""
     out = []
     for name, value in zip(names, values, strict=True):
         record = parameters[name]

@@ -26,7 +26,7 @@ from identification.prediction.thinning import picks, thinned, thinned_moves, th
 def score_all(
     model: WindowModel, effects: Sequence[Effect], options: DiscoveryOptions
 ) -> tuple[WindowScore, ...]:
-    """Scores of what a model lacks, at all places, at each, and at several, the best first.
+    """Returns scores of what a model lacks, at all places, at each, and at several, the best first.
 
     Args:
         model: fitted.
@@ -53,7 +53,7 @@ def score_all(
 
 
 def some_windows(fit: WindowFit) -> WindowFit:
-    """A fit seen through one window of `THIN`; its values are those of all windows."""
+    """Returns a fit seen through one window of `THIN`; its values are those of all windows."""
     at = picks(fit.tangents)
     return replace(
         fit, problem=thinned(fit.problem, at), moves=thinned_moves(fit.moves, at),
@@ -62,7 +62,7 @@ def some_windows(fit: WindowFit) -> WindowFit:
 
 
 def _listed(model: WindowModel, effects: Sequence[Effect]) -> list[Candidate]:
-    """All shapes of what the model lacks, at all places together and at each of them."""
+    """Returns all shapes of what the model lacks, at all places together and at each of them."""
     has = {c.key for c in model.candidates}
     everywhere = {c.effect.name for c in model.candidates if not c.effect.places[c.where]}
     common = list_common([e for e in effects if e.name not in everywhere])
@@ -71,7 +71,7 @@ def _listed(model: WindowModel, effects: Sequence[Effect]) -> list[Candidate]:
 
 
 def has_what_it_needs(model: WindowModel, candidate: Candidate) -> bool:
-    """Whether a model has the effect that a candidate changes, at all of the candidate's places."""
+    """Returns whether a model has the effect that a candidate changes, at all of its places."""
     needs, places = candidate.effect.needs, candidate.effect.places
     if not needs:
         return True
@@ -87,7 +87,7 @@ def has_what_it_needs(model: WindowModel, candidate: Candidate) -> bool:
 
 
 def _promising(scores: Sequence[WindowScore], options: DiscoveryOptions) -> list[Candidate]:
-    """Candidates that may be refitted: plausible, with a share of the best one's gain."""
+    """Returns candidates that may be refitted: plausible, with a share of the best one's gain."""
     count: dict[tuple[str, str], int] = {}
     plausible = [s for s in scores if is_plausible(s, options)]
     least = options.refit_share * max([s.gain for s in plausible], default=0.0)

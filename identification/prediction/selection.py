@@ -140,7 +140,7 @@ def _begun(
     model: WindowModel, chosen: Sequence[WindowScore], scores: Sequence[WindowScore],
     options: DiscoveryOptions,
 ) -> list[Begun]:  # fmt: skip
-    """Effects fitted to some of the windows; those that cannot be simulated are told."""
+    """Returns effects fitted to some of the windows; those that cannot be simulated are told."""
     tasks = [
         (s.candidate, partial(begin, model, [s, *list_starts(s, scores)], options)) for s in chosen
     ]
@@ -148,7 +148,7 @@ def _begun(
 
 
 def _near_best(begun: Sequence[Begun], options: DiscoveryOptions) -> list[Begun]:
-    """The few best on some of the windows, and those that these windows cannot tell from them."""
+    """Returns the few best on some windows, and those that these cannot tell from them."""
     each = [(_evidence_of_some(b), b) for b in begun]
     each.sort(key=lambda pair: -pair[0])
     least = min((e for e, _ in each[: options.max_refits]), default=0.0) - options.strong_bic
@@ -156,7 +156,7 @@ def _near_best(begun: Sequence[Begun], options: DiscoveryOptions) -> list[Begun]
 
 
 def _evidence_of_some(begun: Begun) -> float:
-    """E of an effect that is fitted to some windows, but for what all of them have alike."""
+    """Returns E of an effect fitted to some windows, but for what all of them have alike."""
     outputs = begun.task.parts[0].cut.outputs.shape[-1]
     price = len(begun.q) * np.log(max(2, begun.windows))
     return float(-begun.windows * outputs * np.log(begun.cost) - price)
@@ -169,7 +169,7 @@ def _label(c: Candidate) -> str:
 def _refit(
     model: WindowModel, begun: Begun, horizon: float, confirm: Sequence[Record]
 ) -> WindowModel | Begun:
-    """The model with an effect; what it began with where it explains nothing."""
+    """Returns the model with an effect, or what it began with where it explains nothing."""
     new = with_effect(model, begun, horizon, confirm)
     if new is None:
         return begun
@@ -181,7 +181,7 @@ def _judged(
     model: WindowModel, new: WindowModel, refits: int, options: DiscoveryOptions,
     worse_fit: Unseen | None,
 ) -> Contender:  # fmt: skip
-    """What speaks for a model with one effect more, and against it."""
+    """Returns the contender of a model with one more effect: what speaks for it, and against it."""
     c = new.candidates[-1]
     found = compare(worse_fit or model.unseen, new.unseen)
     gains = all_gains(model, new)
@@ -203,12 +203,12 @@ def _judged(
 
 
 def _is_worse(new: Unseen, old: Unseen, options: DiscoveryOptions) -> bool:
-    """Whether unseen records prove that a model predicts worse than another."""
+    """Returns whether unseen records prove that a model predicts worse than another."""
     return find_doubt(compare(new, old), 1, options) is None
 
 
 def _ranked(found: Sequence[Contender], options: DiscoveryOptions) -> tuple[Contender, ...]:
-    """Contenders in the order of `refit_contenders`."""
+    """Returns contenders in the order of `refit_contenders`."""
     out = sorted(found, key=lambda c: (not c.is_proven, -c.criterion))
     for c in tuple(out[1:]):
         best = out[0]
@@ -222,7 +222,7 @@ def _ranked(found: Sequence[Contender], options: DiscoveryOptions) -> tuple[Cont
 
 
 def evidences(contenders: Sequence[Contender]) -> np.ndarray:
-    """E of contenders for one place in each resample, shape (k, R); the first is of all blocks."""
+    """Returns E of contenders for one place by resample, (k, R); the first is of all blocks."""
     model = contenders[0].model
     return evidence(
         [c.gains for c in contenders], [c.numbers for c in contenders], count_windows(model),

@@ -21,7 +21,7 @@ ROUNDS = 3  # of leaving places out
 
 
 def at_several(effect: Effect, places: Sequence[str]) -> Effect:
-    """The effect with one size for each of some places, acting on all of them.
+    """Returns the effect with one size for each of some places, acting on all of them.
 
     Args:
         effect: with these places among its own.
@@ -36,7 +36,7 @@ def at_several(effect: Effect, places: Sequence[str]) -> Effect:
 
 
 def at_places(several: Effect, keep: Sequence[str]) -> Effect:
-    """An effect of `at_several` at some of its places.
+    """Returns an effect of `at_several` at some of its places.
 
     Args:
         several: with a size for each of its places.
@@ -54,14 +54,14 @@ def at_places(several: Effect, keep: Sequence[str]) -> Effect:
 
 
 def places_of(where: str) -> list[str]:
-    """The places of an effect of `at_several`, in words; of another effect its one place."""
+    """Returns the places of an effect of `at_several` in words; of another effect its one place."""
     return where.split(AND)
 
 
 def several_scores(
     fit: WindowFit, significant: Sequence[WindowScore], options: DiscoveryOptions
 ) -> list[WindowScore]:
-    """Scores of the best effects at several places.
+    """Returns scores of the best effects at several places.
 
     Args:
         fit: the model without them.
@@ -89,7 +89,7 @@ def several_scores(
 def felt_places(
     score: WindowScore, places: Sequence[str], effect: Effect, options: DiscoveryOptions
 ) -> list[str]:
-    """The places at which all sizes are plausible, in sign and magnitude, and beyond their std."""
+    """Returns places where all sizes are plausible in sign and magnitude, and beyond their std."""
     m = len(effect.sizes)
     out = []
     for k, where in enumerate(places):
@@ -103,7 +103,7 @@ def felt_places(
 
 
 def is_felt(value: float, std: float, size: Size, options: DiscoveryOptions) -> bool:
-    """Whether a size is beyond its std, and plausible in sign and magnitude."""
+    """Returns whether a size is beyond its std, and plausible in sign and magnitude."""
     return bool(
         size.sign * value >= 0
         and options.min_proof_t * std < abs(value) <= options.size_factor * size.largest

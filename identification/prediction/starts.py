@@ -9,7 +9,7 @@ from identification.model.plant import start_place
 
 
 def without_starts(nominal_model: NominalModel) -> NominalModel:
-    """A nominal model of whose free parameters none is an entry of the initial state.
+    """Returns a nominal model without free parameters that are entries of the initial state.
 
     Args:
         nominal_model: any.

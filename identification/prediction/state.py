@@ -44,7 +44,7 @@ FEWEST_BLOCKS = 3  # of unseen windows, whose scatter is known
 
 @dataclass(frozen=True, kw_only=True)
 class RecordsTask:
-    """What is asked.
+    """The task of a discovery.
 
     Attributes:
         nominal_model: the model with every candidate effect compiled in, and its free parameters.
@@ -107,7 +107,7 @@ class RecordsState:
 
 
 def first_state(task: RecordsTask, progress: Progress) -> RecordsState:
-    """The state after the nominal fit, with all candidates scored.
+    """Returns the state after the nominal fit, with all candidates scored.
 
     Args:
         task: what is asked.
@@ -220,7 +220,7 @@ def _round(state: RecordsState, progress: Progress) -> RecordsState:
 def _checked(
     state: RecordsState, tried: tuple[Contender, ...], progress: Progress
 ) -> tuple[tuple[Contender, ...], WindowModel | None]:
-    """Contenders without proof for those that the exchange of roles contradicts; and the first so.
+    """Returns contenders, contradicted ones unproven, and the first one with roles exchanged.
 
     Where the search began at values that no fit found, there is nothing to exchange.
     """
@@ -235,7 +235,7 @@ def _checked(
 
 
 def _pruned(state: RecordsState, progress: Progress) -> RecordsState:
-    """Without what later effects made needless, and without laws that a curve may have left."""
+    """Returns the state without needless effects, and without laws that a curve may have left."""
     task = state.task
     rest = task.nominal_model, task.confirm, task.options, progress
     model, keep = prune(state.model, state.accepted, *rest)
@@ -252,7 +252,7 @@ def _pruned(state: RecordsState, progress: Progress) -> RecordsState:
 
 
 def rise(begun: Unseen, fitted: Unseen) -> float:
-    """By how much the mean square at the horizon is larger after a fit than before it, relative."""
+    """Returns the relative rise of the mean square at the horizon from before a fit to after it."""
     before, after = (float(np.mean(np.concatenate(u.at_horizon))) for u in (begun, fitted))
     return after / before - 1
 

@@ -1,4 +1,4 @@
-"""How far the steps of the simulation move an estimate.
+"""The shift of an estimate by the steps of the simulation.
 
     δ = H⁻¹ Σ_w S_wᵀ(I - P_w)(r_w(Δ/4) - r_w(Δ))
 
@@ -26,7 +26,7 @@ from identification.prediction.point import projected
 
 @dataclass(frozen=True)
 class StepShift:
-    """What a quarter of the model's step would do to a fit, to first order.
+    """The change of a fit with a quarter of the model's step, to first order.
 
     Attributes:
         values: change of each value, shape (p,), in their units; zero where the windows do not feel
@@ -45,7 +45,7 @@ class StepShift:
     def far(
         self, names: Sequence[str], std: np.ndarray, options: PredictionOptions
     ) -> dict[str, float]:
-        """The values that finer steps would move beyond what is told of them, the farthest first.
+        """Returns the values that finer steps would move far enough to be told, the farthest first.
 
         Args:
             names: of the values, p of them.
@@ -61,12 +61,12 @@ class StepShift:
         return {names[k]: float(moved[k]) for k in far}
 
     def is_lower(self, options: PredictionOptions) -> bool:
-        """Whether finer steps would lower the error by so much that it is told."""
+        """Returns whether finer steps would lower the error by so much that it is told."""
         return self.error < options.told_step_error
 
 
 def step_shift(found: WindowFit) -> StepShift:
-    """How a fit would answer to a quarter of the model's step.
+    """Returns the change of a fit with a quarter of the model's step.
 
     Args:
         found: a fit.

@@ -18,7 +18,7 @@ THIN = 3  # n: one window of so many
 
 
 def picks(tangents: Sequence[Tangent], every: int = THIN) -> tuple[np.ndarray, ...]:
-    """Indices of one window of `every` in each record, but of no fewer than `FEWEST_WINDOWS`.
+    """Returns indices of one window of `every` a record, but of no fewer than `FEWEST_WINDOWS`.
 
     Args:
         tangents: of a fitted model, one a record.
@@ -28,21 +28,21 @@ def picks(tangents: Sequence[Tangent], every: int = THIN) -> tuple[np.ndarray, .
 
 
 def kept(count: int, every: int) -> np.ndarray:
-    """Indices of the windows of a record that are kept, of so many."""
+    """Returns the indices of the windows that are kept of `count` windows of a record."""
     return np.arange(0, count, max(1, min(every, count // FEWEST_WINDOWS)))
 
 
 def thinned(problem_: Problem, at: Sequence[np.ndarray]) -> Problem:
-    """Some of the windows of each record, by their indices."""
+    """Returns the problem with some of the windows of each record, by their indices."""
     parts = zip(problem_.parts, at, strict=True)
     return replace(problem_, parts=tuple(part.rows(rows) for part, rows in parts))
 
 
 def thinned_moves(moves: Sequence[np.ndarray], at: Sequence[np.ndarray]) -> tuple[np.ndarray, ...]:
-    """The moves of the states of these windows."""
+    """Returns the moves of the states of these windows."""
     return tuple(d[rows] for d, rows in zip(moves, at, strict=True))
 
 
 def thinned_tangents(tangents: Sequence[Tangent], at: Sequence[np.ndarray]) -> tuple[Tangent, ...]:
-    """The tangents of these windows."""
+    """Returns the tangents of these windows."""
     return tuple(t.rows(rows) for t, rows in zip(tangents, at, strict=True))

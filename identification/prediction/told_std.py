@@ -18,7 +18,7 @@ FEWEST = 3.0  # degrees of freedom: the std is right within a factor 4 in 19 cas
 
 
 def told_std(found: WindowFit) -> np.ndarray:
-    """Std of each value by blocks of windows, in its unit, shape (p,).
+    """Returns the std of each value by blocks of windows, in its unit, shape (p,).
 
     It is inf where no window feels the parameter, and NaN where too few windows tell of it for
     their scatter to be known, or where the value lies on a bound: there the bound holds it, and the
@@ -34,7 +34,7 @@ def told_std(found: WindowFit) -> np.ndarray:
 
 
 def degrees_of_freedom(found: WindowFit) -> np.ndarray:
-    """ν of the std of each value, shape (p,), without unit.
+    """Returns ν of the std of each value, shape (p,), without unit.
 
     Args:
         found: a fit.

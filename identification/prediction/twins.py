@@ -20,7 +20,7 @@ LEVEL = "coulomb_friction.f_c"
 
 
 def find_twin(model: WindowModel, candidate: Candidate) -> str:
-    """Name of the effect that is the same force as a candidate; "" where there is none.
+    """Returns the name of the effect that is the same force as a candidate; "" where there is none.
 
     Args:
         model: fitted, with the candidate.

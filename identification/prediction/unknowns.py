@@ -1,4 +1,4 @@
-"""Which parameters are sought: those that all records share, and those that each has for itself.
+"""The parameters that are sought: those that all records share, and those that each has for itself.
 
     q = (q_shared, q_own of record 1, q_own of record 2, ...)
 
@@ -31,11 +31,11 @@ class Prior:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Of the parameters."""
+        """Names of the parameters."""
         return self.space.names
 
     def plus(self, other: Prior) -> Prior:
-        """These parameters, then others."""
+        """Returns the prior of these parameters, then of others."""
         a, b = self.space, other.space
         space = Coordinates(
             (*a.names, *b.names), np.concatenate([a.logarithmic, b.logarithmic]).astype(bool),
@@ -47,20 +47,20 @@ class Prior:
         return Prior(space, mean, weight)
 
     def taken(self, places: np.ndarray, names: Sequence[str] | None = None) -> Prior:
-        """Some of the entries, under other names where they are given."""
+        """Returns the prior of some of the entries, under other names where they are given."""
         s, at = self.space, np.asarray(places, int)
         names = [s.names[k] for k in at] if names is None else names
         space = Coordinates(tuple(names), s.logarithmic[at], s.lower[at], s.upper[at], s.scale[at])
         return Prior(space, self.mean[at], self.weight[at])
 
     def only(self, names: Sequence[str]) -> Prior:
-        """Those of the parameters that have one of these names."""
+        """Returns the prior of the parameters that have one of these names."""
         return self.taken(np.array([k for k, n in enumerate(self.names) if n in names], int))
 
 
 @dataclass(frozen=True)
 class Unknowns:
-    """What is sought, and what is known of it.
+    """The parameters that are sought, and what is known of them.
 
     Attributes:
         shared: parameters with one value for all records.
@@ -88,6 +88,6 @@ class Unknowns:
         return self.shared.plus(own)
 
     def columns(self, record: int) -> np.ndarray:
-        """The entries of q that a record feels, in the order of `local`."""
+        """Returns the entries of q that a record feels, in the order of `local`."""
         p, m = len(self.shared.names), len(self.own.names)
         return np.concatenate([np.arange(p), p + m * record + np.arange(m)]).astype(int)

@@ -59,12 +59,12 @@ class Unseen:
     own: Mapping[str, Mapping[str, tuple[float, float]]] = field(default_factory=dict)
 
     def begun(self, length: float) -> tuple[Starts, ...]:
-        """Where windows of a length begin, in units of the horizon, and their errors, by record."""
+        """Returns starts and errors of windows of a length, in units of the horizon, by record."""
         k = self.lengths.index(length)
         return tuple(Starts(*pair) for pair in zip(self.moves[k], self.squares[k], strict=True))
 
     def plus(self, other: Unseen) -> Unseen:
-        """The same with other lengths; those of the other one count where both have them.
+        """Returns the errors with other lengths; those of `other` count where both have them.
 
         Args:
             other: of the same model, on the same records.
@@ -90,7 +90,7 @@ class Unseen:
 
 @dataclass(frozen=True, kw_only=True)
 class Prediction:
-    """What one model predicts better than another.
+    """The gain of one model's predictions over another's.
 
     Attributes:
         t: of the mean gain over blocks, at the horizon.
@@ -136,7 +136,7 @@ def predict(
     others: Sequence[Unseen] = (),
     lengths: Sequence[float] = LENGTHS,
 ) -> Unseen:
-    """Errors of a model on records, over windows of several lengths.
+    """Returns the errors of a model on records, over windows of several lengths.
 
     Parameters that a record has for itself are fitted to one half of its windows, and judged on
     the other half.
@@ -196,7 +196,7 @@ def predict(
 
 
 def _is_better_elsewhere(own: Unseen, others: Sequence[Unseen], length: float) -> bool:
-    """Whether other models begin any window of a length with less error."""
+    """Returns whether other models begin any window of a length with less error."""
     return any(
         (theirs.squares < mine.squares).any()
         for o in others
@@ -206,7 +206,7 @@ def _is_better_elsewhere(own: Unseen, others: Sequence[Unseen], length: float) -
 
 
 def compare(without: Unseen, with_it: Unseen) -> Prediction:
-    """What the second of two models predicts better than the first, over lengths that both have."""
+    """Returns what the second of two models predicts better, over lengths that both have."""
     falls, typical, gains = [], [], []
     lengths = [n for n in without.lengths if n in with_it.lengths]
     for length in lengths:
@@ -234,7 +234,7 @@ def _settled(
     values: Mapping[str, float], halves: Sequence[tuple[Mapping[str, float], Mapping[str, float]]],
     near: Sequence[Starts] | None, others: Sequence[Sequence[Starts]],
 ) -> list[tuple[np.ndarray, np.ndarray]]:  # fmt: skip
-    """States at the starts of windows and errors by record, with each half's own values."""
+    """Returns windows' initial states and errors by record, with each half's own values."""
     model = plant.model
     out, parts, begun, starts, places = [], [], [], [], []
     for k, (record, cut, own) in enumerate(zip(records, cuts, halves, strict=True)):

@@ -41,7 +41,7 @@ from identification.prediction.unseen import Unseen
 
 
 def conclude(state: RecordsState) -> RecordsDiscovery:
-    """The outcome of a finished search.
+    """Returns the outcome of a finished search.
 
     Args:
         state: the finished state.
@@ -104,7 +104,7 @@ def conclude(state: RecordsState) -> RecordsDiscovery:
 
 
 def _repeats(records: Sequence[Record]) -> tuple[str, ...]:
-    """Names of the records that confirm no more than what was fitted, or than one before them."""
+    """Returns the names of records that confirm, but repeat a fitted one or one before them."""
     distinct = [r.log for r in records if r.role == "fit"]
     repeats = []
     for log in (r.log for r in records if r.role == "confirm"):
@@ -118,7 +118,7 @@ def _repeats(records: Sequence[Record]) -> tuple[str, ...]:
 def _named(
     state: RecordsState, accepted: Contender, others: Sequence[Contender], limit: float
 ) -> NamedByPrediction:
-    """An accepted effect at the values of the final model, with its rivals.
+    """Returns an accepted effect at the values of the final model, with its rivals.
 
     Args:
         state: the finished state.
@@ -159,7 +159,7 @@ def _named(
 
 
 def _refitted(model: WindowModel, contender: Contender, confidence: float) -> RefittedEffect:
-    """An effect at the values of a model that has it."""
+    """Returns an effect at the values of a model that has it."""
     c = contender.candidate
     plant, unknowns = model.plant, model.fit.problem.unknowns
     values = {**model.values, **model.fit.values}
@@ -189,14 +189,14 @@ def _refitted(model: WindowModel, contender: Contender, confidence: float) -> Re
 
 
 def _is_worse(state: RecordsState) -> bool:
-    """Whether the fit made predictions worse by enough to matter, and no effect explains why."""
+    """Returns whether the fit worsens predictions enough to matter, and no effect explains why."""
     if state.worse_fit is None or state.accepted:
         return False
     return rise(state.begun, state.worse_fit) > state.task.options.min_gap_share
 
 
 def _is_off(model: WindowModel, options: DiscoveryOptions) -> bool:
-    """Whether a model errs on unseen records by more than the sensors' noise."""
+    """Returns whether a model errs on unseen records by more than the sensors' noise."""
     square = float(np.mean(np.concatenate(model.unseen.at_horizon)))
     return square > model.unseen.floor * (1 + options.min_gap_share)
 

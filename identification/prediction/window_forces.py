@@ -36,7 +36,7 @@ class HeldWindows:
 
     @property
     def outputs(self) -> np.ndarray:
-        """What is predicted, shape (W, L, ny)."""
+        """The predicted outputs, shape (W, L, ny)."""
         return self.part.outputs(NONE, [self.moves])[0]
 
     @property
@@ -53,7 +53,7 @@ class HeldWindows:
 
 
 def with_values(part: Shooting, moves: np.ndarray, values: Mapping[str, float]) -> HeldWindows:
-    """The windows of a record with all values given.
+    """Returns the windows of a record with all values given.
 
     Args:
         part: the windows.
@@ -65,7 +65,7 @@ def with_values(part: Shooting, moves: np.ndarray, values: Mapping[str, float]) 
 
 
 def stretches_of(base: HeldWindows, sets: Sequence[HeldWindows]) -> list[Stretch]:
-    """Each window as a stretch, simulated with the first of some sets of values.
+    """Returns each window as a stretch, simulated with the first of some sets of values.
 
     Args:
         base: with θ₀.

@@ -10,7 +10,7 @@ _NONE = ("–", "unknown", None)  # in the place of a number
 
 
 def columns_of(headings: Sequence[str], rows: Sequence[Sequence[object]]) -> list[tuple[str, bool]]:
-    """Headings, and whether numbers stand below them."""
+    """Returns the headings, each with whether numbers stand below it."""
     cells = zip(*rows, strict=True) if rows else ((),) * len(headings)
     return [
         (heading, _holds_numbers(column)) for heading, column in zip(headings, cells, strict=True)
@@ -18,7 +18,7 @@ def columns_of(headings: Sequence[str], rows: Sequence[Sequence[object]]) -> lis
 
 
 def _holds_numbers(column: Iterable[object]) -> bool:
-    """Whether some of the cells are numbers, or all of them are written numbers."""
+    """Returns whether some of the cells are numbers, or all of them are written numbers."""
     cells = list(column)
     written = [isinstance(c, str) and bool(_NUMBER.fullmatch(c)) for c in cells]
     numbers = [isinstance(c, int | float) and not isinstance(c, bool) for c in cells]
@@ -28,7 +28,7 @@ def _holds_numbers(column: Iterable[object]) -> bool:
 
 
 def text_of(cell: object) -> str:
-    """A cell as it is read; – where it is empty."""
+    """Returns a cell as it is read; – where it is empty."""
     if cell is None:
         return "–"
     return f"{cell:z.5g}" if isinstance(cell, float) else str(cell)

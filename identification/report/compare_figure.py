@@ -20,7 +20,7 @@ def compare_figure(
     unit: str = "rad",
     labels: tuple[str, str] = ("measured", "simulated"),
 ) -> Figure:
-    """Measured and simulated outputs, one panel each with its fit, and the residual below it.
+    """Returns a figure of measured and simulated outputs, with fits, and the residuals below.
 
     Args:
         time: shape (N,) [s].

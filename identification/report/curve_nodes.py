@@ -1,4 +1,4 @@
-"""Where the nodes of a curve stand that was drawn from the data: of what, and at which values.
+"""The nodes of a curve that was drawn from the data: of what, and at which values they stand.
 
     speed           v = ±x² v_top               x = ¼, ½, ¾, 1, first the negative ones; also of a
                                                 neighbouring joint

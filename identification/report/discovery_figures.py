@@ -29,7 +29,7 @@ def gap_figure(
     names: Sequence[str],
     units: Sequence[str],
 ) -> Figure:
-    """Errors of the free run, one panel an output, over the band of the noise.
+    """Returns a figure of the free run's errors, one panel an output, over the band of the noise.
 
     Args:
         time: of the unseen samples, shape (N,) [s]; a gap in it is a gap in the lines.
@@ -74,7 +74,7 @@ def gap_figure(
 def force_figure(
     time: np.ndarray, force: np.ndarray, names: Sequence[str], units: Sequence[str]
 ) -> Figure:
-    """Forces that a model lacks, one panel a degree of freedom.
+    """Returns a figure of forces that a model lacks, one panel a degree of freedom.
 
     Args:
         time: shape (N,) [s].
@@ -108,7 +108,7 @@ def force_figure(
 def rms_figure(
     before: np.ndarray, after: np.ndarray | None, floor: float, names: Sequence[str], unit: str
 ) -> Figure:
-    """Bars of the error of each output before and after, with the line of the noise.
+    """Returns a figure of bars of each output's error before and after, with the noise as a line.
 
     Args:
         before: rms by output, shape (ny,) [unit].
@@ -145,7 +145,7 @@ def rms_figure(
 def gains_figure(
     labels: Sequence[str], gains: np.ndarray, named: Sequence[bool], what: str = GAIN
 ) -> Figure:
-    """Horizontal bars of how much each candidate would explain, the best on top.
+    """Returns a figure of bars of how much each candidate would explain, the best on top.
 
     Each label stands above its bar, so that the figure is narrow enough for a telephone. The axis
     is logarithmic where the bars of several candidates would vanish.

@@ -23,7 +23,7 @@ from identification.report.records_json import records_to_json
 
 
 def discovery_to_json(found: Discovery | RecordsDiscovery) -> dict[str, Any]:
-    """The outcome as plain values; what is unknown or not finite is None."""
+    """Returns the outcome as plain values; what is unknown or not finite is None."""
     if isinstance(found, RecordsDiscovery):
         return records_to_json(found)
     findings = (*found.located, *found.findings)

@@ -1,4 +1,4 @@
-"""What a log could not have shown: the smallest effects it shows, and those that noise hides."""
+"""The limits of what a log shows: the smallest effects it shows, and those that noise hides."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ SHARE = 0.1  # of the inputs' error, by power: an effect that would be less of i
 
 
 def hiding(found: Discovery) -> str:
-    """How large the likeliest effects may be that the fitted noise hides; "" without any."""
+    """Returns a sentence on how large effects may be that fitted noise hides; "" without any."""
     if not found.hidden:
         return ""
     listed = "; ".join(map(_describe, found.hidden[:SHOWN]))
@@ -33,7 +33,7 @@ def _describe(h: Hidden) -> str:
 def split_detectable(
     detectable: Sequence[Detectable],
 ) -> tuple[list[Detectable], list[Detectable]]:
-    """Effects that a plausible size would show, the easiest to find first; and the others."""
+    """Returns effects that a plausible size would show, the easiest to find first; and others."""
     seen = [d for d in detectable if is_plausible(d)]
     return (
         sorted(seen, key=lambda d: d.smallest / largest(d)),
@@ -42,15 +42,15 @@ def split_detectable(
 
 
 def is_plausible(d: Detectable) -> bool:
-    """Whether a plausible size would have shown."""
+    """Returns whether a plausible size would have shown."""
     return d.smallest < float("inf") and d.smallest <= largest(d)
 
 
 def smallest(d: Detectable) -> str:
-    """The smallest size in words."""
+    """Returns the smallest size in words."""
     return f"{d.size} {quantity(d.smallest, unit=d.unit)}"
 
 
 def largest(d: Detectable) -> float:
-    """The largest plausible magnitude of a size [unit]; inf where none is known."""
+    """Returns the largest plausible magnitude of a size [unit]; inf where none is known."""
     return next((s.largest for s in d.candidate.effect.sizes if s.name == d.size), float("inf"))

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 def discovery_sections(found: Discovery, files: str = "") -> list[Section]:
-    """The sections of every report of a discovery.
+    """Returns the sections of every report of a discovery.
 
     Args:
         found: the discovery.
@@ -42,7 +42,7 @@ def discovery_sections(found: Discovery, files: str = "") -> list[Section]:
 
 
 def _final_first(section: Section) -> Section:
-    """A section whose table has the final values beside the names."""
+    """Returns a section whose table has the final values beside the names."""
     return replace(section, table=section.table and section.table.last_first)
 
 

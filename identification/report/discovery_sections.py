@@ -30,7 +30,7 @@ BEST = 10  # candidates shown
 
 
 def unseen_rows(found: Discovery) -> np.ndarray:
-    """Which samples the fit has not seen, shape (N,); all of them where it has seen all."""
+    """Returns a mask of samples that the fit has not seen, (N,); of all where it has seen all."""
     splits = found.log.splits or halves(found.log)
     start, end = splits["estimation"]
     unseen = (found.log.time < start) | (found.log.time >= end)
@@ -38,7 +38,7 @@ def unseen_rows(found: Discovery) -> np.ndarray:
 
 
 def gap_section(found: Discovery) -> Section:
-    """The section on the gap on unseen samples, before and after."""
+    """Returns the section on the gap on unseen samples, before and after."""
     rows, log = unseen_rows(found), found.log
     before, after = _errors(found)
     figure = gap_figure(
@@ -70,7 +70,7 @@ def gap_section(found: Discovery) -> Section:
 
 
 def where_section(found: Discovery) -> Section:
-    """The section on where the nominal model fails, and where the final one still does."""
+    """Returns the section on where the nominal model fails, and where the final one still does."""
     rows = unseen_rows(found)
     before, after = _errors(found)
     title = "With what is named" if found.named else "What is left"
@@ -97,7 +97,7 @@ def where_section(found: Discovery) -> Section:
 
 
 def rivals_section(found: Discovery) -> Section:
-    """The section on all candidates: how much each would explain, and the rivals of the named."""
+    """Returns the section on all candidates: what each would explain, and rivals of the named."""
     each: dict[str, Score] = {}  # the best place and shape of every effect
     for score in found.scores:
         each.setdefault(score.candidate.effect.name, score)
@@ -152,7 +152,7 @@ def _rms(e: np.ndarray) -> np.ndarray:
 
 
 def _units(found: Discovery) -> list[str]:
-    """Of each output."""
+    """Returns the unit of each output; "" where it has none."""
     return [found.log.units.get(name, "") for name in found.log.output_names]
 
 

@@ -14,7 +14,7 @@ from identification.report.shown_words import shown_rows, shown_sentences
 
 
 def diff_section(found: Discovery, files: str = "") -> Section:
-    """The effects that were added to the model, as laws and numbers.
+    """Returns the section on the effects that were added to the model, as laws and numbers.
 
     Args:
         found: the discovery.
@@ -38,7 +38,7 @@ def diff_section(found: Discovery, files: str = "") -> Section:
 
 
 def parameters_section(found: Discovery) -> Section:
-    """Nominal values beside those of the fit without effects and of the final fit."""
+    """Returns the section on parameters: nominal, fitted without effects, and of the final fit."""
     plant = found.final.point.predictor.plant
     first, last = collect_std(found.nominal), collect_std(found.final)
     nominal, values = found.nominal.point.values, collect_final_values(found)
@@ -74,7 +74,7 @@ def parameters_section(found: Discovery) -> Section:
 
 
 def unseen_section(found: Discovery) -> Section:
-    """What this log would have shown, and what not."""
+    """Returns the section on what this log would have shown, and what not."""
     if not found.detectable:
         return Section("What it could have seen", "Not computed for this log.")
     return Section(

@@ -29,7 +29,7 @@ SHOWN = 0.005  # an explanation with a smaller confidence gets no line
 
 
 def discovery_text(found: Discovery | RecordsDiscovery) -> str:
-    """The whole outcome, in paragraphs."""
+    """Returns the whole outcome, in paragraphs."""
     if isinstance(found, RecordsDiscovery):
         return records_text(found)
     (title, lines), failed = describe_rejected(found), failed_lines(found)
@@ -85,7 +85,7 @@ def _gap(found: Discovery) -> list[str]:
 
 
 def _values(found: Discovery) -> list[str]:
-    """The parameters, each as the model had it, and as it was fitted; few of single parts."""
+    """Returns lines on each parameter as the model had it and as fitted; few of single parts."""
     found_table = parameters_section(found).table
     if found_table is None or not found_table.rows:
         return []

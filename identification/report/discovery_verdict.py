@@ -33,14 +33,14 @@ from identification.shown import verdict_of
 
 @verdict_of.register
 def discovery_verdict(found: Discovery) -> list[str]:
-    """The verdict first, then what supports it."""
+    """Returns sentences: the verdict first, then what supports it."""
     own = list_at_bound(found.final, found.nominal.point.space.names)
     bounds = bound_sentences(found.final.point.predictor.plant.parameters, own)
     return [*_verdict(found), *bounds, *_unlike(found)]
 
 
 def _unlike(found: Discovery) -> list[str]:
-    """A sentence where outputs have several units."""
+    """Returns a sentence where outputs have several units."""
     if len(units := errors_of(found.before, found)) < 2:
         return []
     return [
@@ -65,7 +65,7 @@ def _verdict(found: Discovery) -> list[str]:
 
 
 def unknown(found: Discovery) -> str:
-    """The paragraph that says that something is missing which no known effect explains."""
+    """Returns the paragraph that says that something is missing which no known effect explains."""
     tried = len({s.candidate.effect.name for s in found.scores})
     ratio = times_noise(found.before, found)
     return " ".join(
@@ -80,7 +80,7 @@ def unknown(found: Discovery) -> str:
 
 
 def unexplained(found: Discovery) -> str:
-    """The paragraph on what is left after the named effects."""
+    """Returns the paragraph on what is left after the named effects."""
     more = "what is named" if len(found.named) == 1 else "all that is named"
     ratio = times_noise(found.after, found)
     times = f", {held(ratio)} times the noise" if 1 < ratio < float("inf") else ""
@@ -96,7 +96,7 @@ def unexplained(found: Discovery) -> str:
 
 
 def _nearest(rejected: RejectedEffect) -> str:
-    """A sentence on what was refitted, is beyond chance, and is not named."""
+    """Returns a sentence on what was refitted, is beyond chance, and is not named."""
     fall = 100 * rejected.proof.fall
     free_run = f"{'falls' if fall >= 0 else 'rises'} by {abs(fall):.2g} %"
     return (

@@ -26,27 +26,27 @@ FEW = 0.01  # a chance above it is told as a share, and not as a power of ten
 
 
 def describe_effect(candidate: Candidate) -> str:
-    """An effect and its place in words."""
+    """Returns an effect and its place in words."""
     return f"{phrase(candidate.effect)}, {candidate.where}"
 
 
 def describe_there(candidate: Candidate, plant: Plant) -> str:
-    """An effect and its place in words, in which a neighbouring joint has its name."""
+    """Returns an effect and its place in words, in which a neighbouring joint has its name."""
     return f"{without_colon(phrase_there(candidate, plant))}, {candidate.where}"
 
 
 def phrase(effect: Effect) -> str:
-    """An effect in words without a colon, because sentences have their own before it."""
+    """Returns an effect in words without a colon, because sentences have their own before it."""
     return without_colon(effect.phrase or effect.name.replace("_", " "))
 
 
 def without_colon(said: str) -> str:
-    """Words of a catalogue for a sentence that has a colon of its own."""
+    """Returns words of a catalogue for a sentence that has a colon of its own."""
     return said.replace(": ", " – ", 1)
 
 
 def describe_sizes(found: NamedEffect | RejectedEffect) -> str:
-    """Sizes and shapes of a fitted effect, each with its std; no shape that no data tell."""
+    """Returns sizes and shapes of a fitted effect with std, but no shape that no data tell."""
     effect = found.candidate.effect
     untold = {s.name for s in effect.shapes}
     about = {s.name: s.about for s in effect.sizes} | {s.name: s.about for s in effect.shapes}
@@ -58,7 +58,7 @@ def describe_sizes(found: NamedEffect | RejectedEffect) -> str:
 
 
 def describe_rejected(found: Discovery) -> tuple[str, list[str]]:
-    """The effects that were refitted and not accepted: a title and a line each.
+    """Returns the effects that were refitted and not accepted: a title and a line each.
 
     Where an effect is named and no other one was refitted beside it, it is the candidate with the
     best score that is left.
@@ -87,19 +87,19 @@ def _describe_next(scores: Sequence[Score], options: DiscoveryOptions) -> str:
 
 
 def describe_chance(proof: Proof) -> str:
-    """How far unseen samples are from chance."""
+    """Returns in words how far unseen samples are from chance."""
     chance = f"{proof.chance:.2g}" if proof.chance > FEW else probability(proof.chance)
     return f"t = {proof.t:z.1f}, chance {chance}"
 
 
 def describe_gains(named: NamedEffect) -> str:
-    """What a named effect gains on fitted and on unseen samples."""
+    """Returns in words what a named effect gains on fitted and on unseen samples."""
     gains = f"gain {named.gain:z.4g} on fitted samples, {named.proof.gain:z.4g} on unseen"
     return f"{gains} ({describe_chance(named.proof)})"
 
 
 def _describe_proof(rejected: RejectedEffect) -> str:
-    """What a rejected effect would do on fitted and on unseen samples."""
+    """Returns in words what a rejected effect would do on fitted and on unseen samples."""
     proof, outside = rejected.proof, rejected.outside
     instead = f"; instead of it, {describe_outside(outside)}" if outside is not None else ""
     turn = "falls" if proof.fall >= 0 else "rises"
@@ -111,7 +111,7 @@ def _describe_proof(rejected: RejectedEffect) -> str:
 
 
 def describe_outside(outside: Outside) -> str:
-    """A curve that no catalogue lists, and how likely it is."""
+    """Returns in words a curve that no catalogue lists, and how likely it is."""
     link = "at" if outside.along == "time" else "of"
     return (
         f"some force that follows the {outside.along} {link} {outside.where}, by a law that is in"

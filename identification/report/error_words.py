@@ -16,7 +16,7 @@ KINDS = {"rad": "angles", "m": "slides", "rad/s": "angular speeds", "m/s": "spee
 def error_words(
     each: Sequence[Mapping[str, float]], word: str = "rms", digits: int = HELD
 ) -> list[str]:
-    """Errors in words, those of one unit with one prefix, so that they compare at a glance.
+    """Returns errors in words, those of one unit with one prefix, so that they compare at a glance.
 
     Args:
         each: errors, by unit and in it; all have the same units.
@@ -41,7 +41,7 @@ def pair_words(
     word: str = "rms",
     digits: int = HELD,
 ) -> list[tuple[str, str]]:
-    """Errors of two models on several records in words, one prefix for all, as in a table.
+    """Returns errors of two models on several records in words, with one prefix for all.
 
     Args:
         pairs: errors of both, by unit and in it; all have the same units.
@@ -60,7 +60,7 @@ def change_words(
     beside: Sequence[Mapping[str, float]] = (),
     digits: int = HELD,
 ) -> tuple[str, list[str]]:
-    """A change of errors, "from 3.7 mrad to 1.1 mrad rms", and other errors beside it.
+    """Returns a change of errors, "from 3.7 mrad to 1.1 mrad rms", and other errors beside it.
 
     Args:
         before: error by unit.
@@ -77,15 +77,15 @@ def change_words(
 
 
 def times_words(errors: Mapping[str, float], of: Mapping[str, float]) -> str:
-    """Errors by unit as multiples of others, one for each unit: 2.1 and 3.4."""
+    """Returns errors by unit as multiples of others, one for each unit: 2.1 and 3.4."""
     return listed([held(e / of[unit]) if of[unit] > 0 else "∞" for unit, e in errors.items()])
 
 
 def kind(unit: str) -> str:
-    """What outputs of a unit are, in words."""
+    """Returns in words what outputs of a unit are."""
     return KINDS.get(unit, f"outputs in {unit}" if unit else "outputs without unit")
 
 
 def listed(words: Sequence[str]) -> str:
-    """Words with commas and an "and"."""
+    """Returns words joined by commas and an "and"."""
     return " and ".join(filter(None, [", ".join(words[:-1]), *words[-1:]]))

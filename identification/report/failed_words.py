@@ -1,4 +1,4 @@
-"""What a search tried and could not evaluate, in lines."""
+"""The candidates that a search tried and could not evaluate, in lines."""
 
 from __future__ import annotations
 

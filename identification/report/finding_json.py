@@ -13,7 +13,7 @@ from identification.discovery.findings.finding import Finding
 
 
 def finding_to_json(finding: Finding) -> dict[str, Any]:
-    """A finding as plain values: its kind, and the numbers and names of its evidence."""
+    """Returns a finding as plain values: its kind, and the numbers and names of its evidence."""
     evidence = finding.evidence
     if isinstance(evidence, DoubtfulEffect):
         numbers = rejected_to_json(evidence.rejected)
@@ -25,7 +25,7 @@ def finding_to_json(finding: Finding) -> dict[str, Any]:
 
 
 def finite(value: Any) -> Any:
-    """Plain values with lists for tuples, and None for every number that is not finite."""
+    """Returns plain values with lists for tuples, and None for every number that is not finite."""
     if isinstance(value, dict):
         return {k: finite(v) for k, v in value.items()}
     if isinstance(value, list | tuple):
@@ -34,7 +34,7 @@ def finite(value: Any) -> Any:
 
 
 def rejected_to_json(rejected: RejectedEffect) -> dict[str, Any]:
-    """An effect that was refitted and not believed, as plain values."""
+    """Returns an effect that was refitted and not believed, as plain values."""
     proof = rejected.proof
     return {
         "name": rejected.candidate.effect.name, "where": rejected.candidate.where,
@@ -47,7 +47,7 @@ def rejected_to_json(rejected: RejectedEffect) -> dict[str, Any]:
 
 
 def outside_to_json(outside: Outside | None) -> dict[str, Any] | None:
-    """A curve that no catalogue lists, as plain values."""
+    """Returns a curve that no catalogue lists, as plain values."""
     return None if outside is None else asdict(outside)
 
 
@@ -66,7 +66,7 @@ def _oversized_to_json(evidence: OversizedEffect) -> dict[str, Any]:
 
 
 def parameters_to_json(parameters: Mapping[str, tuple[float, float, str]]) -> dict[str, Any]:
-    """Parameters as plain values: value, std and unit by name."""
+    """Returns parameters as plain values: value, std and unit by name."""
     return {
         name: {"value": value, "std": std, "unit": unit}
         for name, (value, std, unit) in parameters.items()

@@ -36,12 +36,12 @@ REGRESSORS = {  # of a missing force: keys of `location.list_regressors`
 
 
 def describe_finding(finding: Finding) -> str:
-    """A finding as a clause, without a capital and without a full stop."""
+    """Returns a finding as a clause, without a capital and without a full stop."""
     return WORDS[finding.kind](finding.evidence)
 
 
 def sentence(clause: str) -> str:
-    """A clause as a sentence."""
+    """Returns a clause as a sentence."""
     end = "" if clause.endswith((".", "!", "?")) else "."
     return clause[:1].upper() + clause[1:] + end
 

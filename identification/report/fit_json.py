@@ -13,7 +13,7 @@ from identification.report.fit_verdict import fit_verdict
 
 
 def fit_to_json(fit: Fit) -> dict[str, Any]:
-    """The numbers and the verdict of a fit; what is unknown or infinite is null."""
+    """Returns the numbers and the verdict of a fit; what is unknown or infinite is null."""
     e = fit.estimate
     parameters = e.predictor.plant.parameters
     return {

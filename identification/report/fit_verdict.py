@@ -1,4 +1,4 @@
-"""What a fit means, in sentences that say what to do next."""
+"""The meaning of a fit, in sentences that say what to do next."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ LEVEL = 0.01  # significance of the tests of the residual: one false alarm in a 
 
 
 def fit_verdict(fit: Fit) -> list[str]:
-    """Sentences: did it converge, what can be known, is the model enough, does it hold unseen."""
+    """Returns sentences: did it converge, what is known, is it enough, does it hold unseen."""
     if fit.estimate.status == "stopped":  # a search that was stopped says nothing of the model
         return search_sentences(fit)
     return [
@@ -35,7 +35,7 @@ def fit_verdict(fit: Fit) -> list[str]:
 
 
 def _steps(fit: Fit) -> list[str]:
-    """What a finer step of the simulation would change beyond what the std tell."""
+    """Returns a sentence on what a finer step would change beyond what the std tell."""
     far = fit.far
     if not far:
         return []
@@ -50,7 +50,7 @@ def _steps(fit: Fit) -> list[str]:
 
 
 def search_sentences(fit: Fit) -> list[str]:
-    """How the search ended."""
+    """Returns sentences on how the search ended."""
     said = {
         "converged": "The search converged.",
         "iterations": "The search ran out of iterations; start nearer, or allow more.",
@@ -61,7 +61,7 @@ def search_sentences(fit: Fit) -> list[str]:
 
 
 def window_sentences(found: WindowEstimate, floor: float, unit: str) -> list[str]:
-    """How a search over windows ended, which parameters it cannot know, and its residual.
+    """Returns sentences on how a search over windows ended, what it cannot know, and its residual.
 
     Args:
         found: the search.
@@ -88,7 +88,7 @@ def window_sentences(found: WindowEstimate, floor: float, unit: str) -> list[str
 
 
 def coloured_outputs(fit: Fit) -> int:
-    """How many outputs' residuals are not white."""
+    """Returns how many outputs' residuals are not white."""
     return int((fit.tests.white < LEVEL / len(fit.tests.white)).sum())
 
 
@@ -97,7 +97,7 @@ def _outputs(count: int) -> str:
 
 
 def _above(fit: Fit) -> float:
-    """The residual as a multiple of the noise floor."""
+    """Returns the residual as a multiple of the noise floor."""
     return relative(fit.rms_by_unit, fit.floor_by_unit)
 
 

@@ -17,7 +17,7 @@ MANY = 8
 
 
 def unknown_shares(fit: Refit) -> dict[str, float]:
-    """Std of each parameter of a single part over the std that was known before, by name."""
+    """Returns the std of each single part's parameter over the std known before, by name."""
     names, left = fit.point.space.names, (fit.std * fit.prior).tolist()
     return {n: s for n, s in zip(names, left, strict=True) if "@" in n and "." not in n}
 
@@ -25,7 +25,7 @@ def unknown_shares(fit: Refit) -> dict[str, float]:
 def shown_values(
     rows: Sequence[Sequence[str]], shares: Mapping[str, float]
 ) -> tuple[list[Sequence[str]], str]:
-    """The rows that matter, and a sentence on those that are left out.
+    """Returns the rows that matter, and a sentence on those that are left out.
 
     Args:
         rows: of a table of parameters; each begins with what the parameter is called.

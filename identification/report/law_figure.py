@@ -23,7 +23,7 @@ FOLLOWS = {
 
 
 def law_figure(of: RecoveredForce) -> Figure:
-    """The recovered points with their bars, the law with its band, and up to two rivals.
+    """Returns a figure of recovered points with bars, the law with its band, and up to two rivals.
 
     A law that changes in a small part of the range has a second panel of that part.
 
@@ -70,7 +70,7 @@ def _draw(ax: Axes, of: RecoveredForce, factor: float) -> None:
 
 
 def _bends(of: RecoveredForce) -> tuple[float, float] | None:
-    """The part of the range in which a law changes, with some room; None where that is most."""
+    """Returns the part of the range where a law changes, with room; None where that is most."""
     x, f, _ = _drawn(of.law, of)
     change = np.nan_to_num(np.abs(np.diff(f)))
     total = np.concatenate([[0.0], np.cumsum(change)])
@@ -81,7 +81,7 @@ def _bends(of: RecoveredForce) -> tuple[float, float] | None:
 
 
 def _drawn(line: LawLine, of: RecoveredForce) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """A line, cut where the motion turns and a friction jumps."""
+    """Returns a line, cut where the motion turns and a friction jumps."""
     cut = int(np.searchsorted(line.x, 0.0))
     parts = (line.x, line.force, line.std)
     if of.along != "rate" or not 0 < cut < len(line.x):

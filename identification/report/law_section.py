@@ -43,7 +43,7 @@ NONE = (
 
 
 def law_sections(found: Discovery | RecordsDiscovery) -> list[Section]:
-    """The section on the recovered forces; none where nothing is named.
+    """Returns the section on the recovered forces; none where nothing is named.
 
     Args:
         found: the discovery.
@@ -70,7 +70,7 @@ def law_sections(found: Discovery | RecordsDiscovery) -> list[Section]:
 
 
 def _of_free_run(found: Discovery) -> list[Recovered]:
-    """Of the last fit of a free run, with the models of rivals."""
+    """Returns the recovered forces of the last fit of a free run, with the models of rivals."""
     return [
         (n.candidate, _if_simulated(partial(recover_force, found.final, n.candidate, n.rivals)))
         for n in found.named
@@ -78,7 +78,7 @@ def _of_free_run(found: Discovery) -> list[Recovered]:
 
 
 def _of_records(found: RecordsDiscovery) -> list[Recovered]:
-    """Of the windows of the fitted records."""
+    """Returns the recovered forces of the windows of the fitted records."""
     out = []
     for named in found.named:
         candidate = named.effect.candidate
@@ -88,7 +88,7 @@ def _of_records(found: RecordsDiscovery) -> list[Recovered]:
 
 
 def _if_simulated(recover: Callable[[], RecoveredForce | None]) -> RecoveredForce | None:
-    """A recovered force; None where the law with a changed parameter, or a rival's, diverges."""
+    """Returns a recovered force; None where the changed law, or a rival's, diverges."""
     try:
         return recover()
     except DivergenceError:

@@ -19,7 +19,7 @@ WIDEST = 1e8  # ratio of its highest frequency to its lowest
 
 
 def eigenvalue_figure(systems: Sequence[LinearSystem], labels: Sequence[str]) -> Figure:
-    """Frequency and damping ratio of the modes that decay, one colour per system.
+    """Returns a figure of frequency and damping ratio of decaying modes, one colour per system.
 
     Args:
         systems: continuous.
@@ -46,7 +46,7 @@ def response_figure(
     discrete: LinearSystem | None = None,
     units: Mapping[str, str] | None = None,
 ) -> Figure:
-    """Magnitude and phase of the outputs from the inputs with the same number, over frequency.
+    """Returns a figure of the responses of outputs to inputs of the same number, over frequency.
 
     Args:
         system: continuous.
@@ -79,7 +79,7 @@ def response_figure(
 
 
 def _unit_of(pairs: Sequence[tuple[str, str, str]], units: Mapping[str, str]) -> str:
-    """The unit that all pairs of output and input share, else what it is made of."""
+    """Returns the unit that all pairs of output and input share, else what it is made of."""
     told = {(units.get(output, ""), units.get(driven, "")) for output, driven, _ in pairs}
     over, under = told.pop() if len(told) == 1 else ("", "")
     if not (over and under):

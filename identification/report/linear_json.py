@@ -15,7 +15,7 @@ MATRICES = ("A", "B", "C", "D")
 
 
 def system_to_json(system: LinearSystem, rate: float | None = None) -> dict[str, Any]:
-    """A continuous system with its minimal realisation, its modes, and its discrete form.
+    """Returns a continuous system as plain values: minimal realisation, modes, discrete form.
 
     Args:
         system: continuous.
@@ -45,7 +45,7 @@ def system_to_json(system: LinearSystem, rate: float | None = None) -> dict[str,
 
 
 def mode_to_json(mode: Mode, states: tuple[str, ...]) -> dict[str, Any]:
-    """A mode by its eigenvalue, and the states that take part most.
+    """Returns a mode as plain values: its eigenvalue, and the states that take part most.
 
     Args:
         mode: the mode.
@@ -60,7 +60,7 @@ def mode_to_json(mode: Mode, states: tuple[str, ...]) -> dict[str, Any]:
 
 
 def leading(mode: Mode, states: tuple[str, ...]) -> list[str]:
-    """The states of the largest participation, the largest first.
+    """Returns the states of the largest participation, the largest first.
 
     Args:
         mode: the mode.

@@ -15,7 +15,7 @@ HEAD = ("mode", "frequency [Hz]", "damping", "states that take part most")
 
 
 def mode_rows(system: LinearSystem) -> list[tuple[str, str, str, str]]:
-    """Number, frequency, damping and leading states of the modes, those of zero in one row.
+    """Returns number, frequency, damping and leading states of the modes, those of zero in one row.
 
     Args:
         system: continuous.
@@ -31,7 +31,7 @@ def mode_rows(system: LinearSystem) -> list[tuple[str, str, str, str]]:
 
 
 def minimal_sentence(small: Minimal, order: int) -> str:
-    """How many states the minimal realisation has, and what was dropped.
+    """Returns a sentence on how many states the minimal realisation has, and what was dropped.
 
     Args:
         small: the minimal realisation.
@@ -50,7 +50,7 @@ def linear_sections(
     rate: float | None,
     units: Mapping[str, str] | None = None,
 ) -> list[Section]:
-    """What a report says of linear systems at some operating points.
+    """Returns the sections of a report on linear systems at some operating points.
 
     Args:
         systems: continuous.
@@ -77,7 +77,7 @@ def linear_sections(
 
 
 def slowest_and_fastest(found: Sequence[Mode]) -> str:
-    """One sentence on the swinging modes.
+    """Returns one sentence on the swinging modes.
 
     Args:
         found: modes of a system.

@@ -16,7 +16,7 @@ _LARGEST_VIDEO = 64 * 2**20  # bytes
 
 
 def drawing(figure: Figure, prefix: str, caption: str) -> Any:
-    """An `<svg>` element, or an `<img>` of pixels where that would be too large."""
+    """Returns an `<svg>` element, or an `<img>` of pixels where that would be too large."""
     import io
 
     from markupsafe import Markup
@@ -35,11 +35,11 @@ def drawing(figure: Figure, prefix: str, caption: str) -> Any:
 
 
 def image_source(path: Path) -> str:
-    """A JPEG as the address of an `<img>`."""
+    """Returns a JPEG as the address of an `<img>`."""
     return "data:image/jpeg;base64," + b64encode(read_bytes(path, what="picture (.jpg)")).decode()
 
 
 def video_source(path: Path) -> str:
-    """An mp4 as the address of a `<video>`."""
+    """Returns an mp4 as the address of a `<video>`."""
     film = read_bytes(path, _LARGEST_VIDEO, "shorter film (.mp4), which fits into a page")
     return "data:video/mp4;base64," + b64encode(film).decode()

@@ -11,17 +11,17 @@ RETUNED = 0.05  # the explanation without an effect gets a sentence above this c
 
 
 def named_sentences(found: Discovery, named: NamedEffect) -> str:
-    """All that is said of a named effect."""
+    """Returns all that is said of a named effect."""
     return f"{_named(found, named)}{_retuned(found, named)}{_outside(named)}{_agreement(named)}"
 
 
 def diff_line(named: NamedEffect) -> str:
-    """A named effect as a line of a diff of the model."""
+    """Returns a named effect as a line of a diff of the model."""
     return f"+ {describe_effect(named.candidate)}: {describe_sizes(named)}"
 
 
 def _named(found: Discovery, named: NamedEffect) -> str:
-    """A sentence on a named effect, or on the set that it belongs to where it is `one_of`."""
+    """Returns a sentence on a named effect, or on the set to which it belongs if it is `one_of`."""
     first = "Missing from the model" if named is found.named[0] else "Missing too"
     if named.one_of and named.rivals:
         rivals = [r for r in named.rivals if r.confidence >= 0.1 * named.confidence] or [
@@ -45,7 +45,7 @@ def _named(found: Discovery, named: NamedEffect) -> str:
 
 
 def _retuned(found: Discovery, named: NamedEffect) -> str:
-    """A sentence where a parameter farther from what was known of it would explain the same."""
+    """Returns a sentence where a parameter far from what was known would explain the same."""
     other = named.retuned
     if other.confidence < RETUNED:
         return ""
@@ -58,14 +58,14 @@ def _retuned(found: Discovery, named: NamedEffect) -> str:
 
 
 def _outside(named: NamedEffect) -> str:
-    """A sentence where a law that no catalogue lists may explain the same."""
+    """Returns a sentence where a law that no catalogue lists may explain the same."""
     if named.outside is None or named.outside.confidence < RETUNED:
         return ""
     return f" Or it is {describe_outside(named.outside)}."
 
 
 def _agreement(named: NamedEffect) -> str:
-    """On which of several records the effect holds."""
+    """Returns sentences on which of several records the effect holds."""
     proof = named.proof
     said = f" It holds on {', '.join(proof.agrees)}." if len(proof.agrees) > 1 else ""
     if proof.disagrees:
@@ -74,5 +74,5 @@ def _agreement(named: NamedEffect) -> str:
 
 
 def _percent(chance: float) -> str:
-    """A probability in percent; rounding makes no certainty of it."""
+    """Returns a probability in percent; rounding makes no certainty of it."""
     return "more than 99 %" if chance > 0.995 else f"{100 * chance:.0f} %"

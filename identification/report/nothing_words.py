@@ -13,7 +13,7 @@ from identification.report.error_words import error_words
 
 
 def nothing(found: Discovery) -> str:
-    """The paragraph that says that nothing is missing, as far as this log can tell."""
+    """Returns the paragraph that says that nothing is missing, as far as this log can tell."""
     seen, unseen = split_detectable(found.detectable)
     left = error_words([errors_of(found.before, found), floor(found)])[0]
     noise = error_words([errors_of(found.before, found), floor(found)], "")[1]
@@ -34,7 +34,7 @@ def nothing(found: Discovery) -> str:
 
 
 def _unlogged(found: Discovery) -> str:
-    """The errors of the inputs that are part of the noise, and on which the verdict rests."""
+    """Returns a sentence on input errors that count as noise, on which the verdict rests."""
     level, log = found.final.level, found.log
     (alone,) = error_words([sensors(found)], "")
     if not log.inputs.any():

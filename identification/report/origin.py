@@ -1,4 +1,4 @@
-"""Where a report comes from: version, command, data and date, for its foot."""
+"""The origin of a report: version, command, data and date, for its foot."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ PROGRAMS = ("inca", "inca_mj", "identification")
 
 
 def origin(data: Sequence[str] = ()) -> str:
-    """Lines that say what made a report.
+    """Returns lines that say what made a report.
 
     Args:
         data: names of the logs that it rests on.
@@ -28,7 +28,7 @@ def origin(data: Sequence[str] = ()) -> str:
 
 
 def _command(argv: Sequence[str]) -> str:
-    """The command line; empty where another program asked for the report."""
+    """Returns the command line; empty where another program asked for the report."""
     path = Path(argv[0]) if argv else Path()
     name = path.parent.name if path.name == "__main__.py" else path.name
     if name not in PROGRAMS:

@@ -40,7 +40,7 @@ class Table:
 
     @property
     def last_first(self) -> Table:
-        """The same with the last column behind the first, so that both stand on a narrow screen."""
+        """The table with the last column behind the first, so that both fit a narrow screen."""
         (name, *middle, last) = self.columns
         rows = tuple((first, end, *rest) for first, *rest, end in self.rows)
         return Table((name, last, *middle), rows)

@@ -17,14 +17,14 @@ if TYPE_CHECKING:
 
 
 def describe_parameter(parameter: Parameter) -> str:
-    """What a parameter is, with its letter before the place; its name where nobody said it."""
+    """Returns what a parameter is, its letter before the place; its name where that is not said."""
     if not parameter.short:
         return parameter.name
     return with_letter(parameter.short, parameter.letter)
 
 
 def with_letter(words: str, letter: str) -> str:
-    """Words with a letter of the equations before their first comma, where they have it not."""
+    """Returns words with a letter of the equations before their first comma, if they lack it."""
     if re.search(rf"(?<!\w){re.escape(letter)}(?!\w)", words):
         return words
     what, comma, where = words.partition(",")
@@ -34,7 +34,7 @@ def with_letter(words: str, letter: str) -> str:
 def parameter_words(
     parameters: Iterable[Parameter], effects: Iterable[Effect] = ()
 ) -> dict[str, str]:
-    """The words of some parameters by name.
+    """Returns the words of some parameters by name.
 
     Args:
         parameters: of a robot.
@@ -55,6 +55,6 @@ def parameter_words(
 
 
 def words_of(found: Discovery) -> dict[str, str]:
-    """The words of all parameters of a discovery by name."""
+    """Returns the words of all parameters of a discovery by name."""
     parameters = found.final.point.predictor.plant.parameters
     return parameter_words(parameters, [named.candidate.effect for named in found.named])

@@ -11,7 +11,7 @@ from identification.report.style import SERIES, STYLE, literal
 
 
 def profile_figure(known: Profile, unit: str) -> Figure:
-    """The rise of the cost against one parameter, with the line of 95 %."""
+    """Returns a figure of the rise of the cost against one parameter, with the line of 95 %."""
     with matplotlib.rc_context(STYLE):
         figure = Figure((5.2, 3.2), layout="constrained")
         ax = figure.subplots()

@@ -13,7 +13,7 @@ from identification.report.error_words import pair_words
 
 
 def record_gaps(found: Discovery) -> list[dict[str, Any]]:
-    """Per record: its name, its role, and the rms of free runs over its unseen samples.
+    """Returns for each record its name, its role, and the rms of free runs over unseen samples.
 
     A record of which every sample was fitted has no gap: its rms are None. Records are fitted whole
     where others confirm, and those others are all that is left.
@@ -39,7 +39,7 @@ def record_gaps(found: Discovery) -> list[dict[str, Any]]:
 
 
 def record_lines(found: Discovery) -> list[str]:
-    """The same as lines of text; nothing for a single record."""
+    """Returns the gaps of records as lines of text; none for a single record."""
     if not isinstance(found.log, JoinedLog):
         return []
     lines, gaps = ["unseen samples of each record:"], record_gaps(found)

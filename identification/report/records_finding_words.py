@@ -42,7 +42,7 @@ def _shifted_record(e: records_evidence.ShiftedRecord) -> str:
 
 
 def describe_shift(e: records_evidence.ShiftedRecord) -> str:
-    """How much later or earlier the inputs of a record seem to act, as a positive number."""
+    """Returns in words how much later or earlier the inputs of a record seem to act."""
     return f"{quantity(abs(e.shift), e.std, 's')} {'later' if e.shift > 0 else 'earlier'}"
 
 

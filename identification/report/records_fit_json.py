@@ -10,7 +10,7 @@ from identification.report.records_fit_verdict import records_fit_verdict
 
 
 def records_fit_to_json(found: RecordsFit) -> dict[str, Any]:
-    """The numbers and the verdict of a fit; unknown and infinite numbers are null."""
+    """Returns the numbers and the verdict of a fit; unknown and infinite numbers are null."""
     rows = zip(found.values.items(), found.std, found.start, found.at_bound, strict=True)
     shift = found.model.step_shift
     units = {p.name: p.unit for p in found.model.plant.parameters}
@@ -43,7 +43,7 @@ def records_fit_to_json(found: RecordsFit) -> dict[str, Any]:
 
 
 def _own(found: RecordsFit, record: str, role: str) -> dict[str, Any]:
-    """What a record that confirms has for itself; that of a fitted one is a parameter."""
+    """Returns the own values of a record that confirms; those of a fitted one are parameters."""
     own = found.own.get(record, {}) if role == "confirm" else {}
     values = {n: {"value": v, "std": finite_or_none(std)} for n, (v, std) in own.items()}
     return {"own": values} if values else {}

@@ -1,4 +1,4 @@
-"""What a fit of the windows of records means, in sentences that say what to do next."""
+"""The meaning of a fit of the windows of records, in sentences that say what to do next."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ MUCH = 3.0  # times the noise floor, beyond which a fit is told to lack somethin
 
 
 def records_fit_verdict(found: RecordsFit) -> list[str]:
-    """Is it worse than its start, did it converge, what is not told, and what is left.
+    """Returns sentences: is it worse than its start, did it converge, what is untold, what is left.
 
     That it is worse comes first, because nothing else matters then.
     """
@@ -45,7 +45,7 @@ def records_fit_verdict(found: RecordsFit) -> list[str]:
 
 
 def _blind(found: RecordsFit) -> list[str]:
-    """Directions that the windows tell less of than was known before."""
+    """Returns sentences on directions that the windows tell less of than was known before."""
     names, out = found.model.fit.problem.names, []
     for direction in found.blind:
         moved = in_words(direction, names)
@@ -65,7 +65,7 @@ def _blind(found: RecordsFit) -> list[str]:
 
 
 def _weak(found: RecordsFit) -> list[str]:
-    """Positive parameters of which the windows leave too little."""
+    """Returns a sentence on positive parameters of which the windows tell too little."""
     space = found.model.fit.problem.prior.space
     rows = zip(found.values.items(), found.std, space.logarithmic, strict=True)
     weak = [n for (n, v), std, positive in rows if positive and std > WEAK * abs(v)]
@@ -97,7 +97,7 @@ def _unknown_std(found: RecordsFit) -> list[str]:
 
 
 def _worse(found: RecordsFit) -> list[str]:
-    """Whether unseen records are predicted worse than with the values at the beginning."""
+    """Returns a sentence where unseen records are predicted worse than by the first values."""
     if found.worse is None:
         return []
     before, after = found.unseen_rms

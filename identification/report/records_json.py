@@ -16,7 +16,7 @@ from identification.report.finding_words import describe_finding
 
 
 def records_to_json(found: RecordsDiscovery) -> dict[str, Any]:
-    """The outcome as plain values; what is unknown or not finite is None."""
+    """Returns the outcome as plain values; what is unknown or not finite is None."""
     gaps, plant = {"before": found.before, "after": found.after}, found.nominal.plant
     record = {
         "verdict": found.verdict,
@@ -66,7 +66,7 @@ def _gap_to_json(gap: Gap) -> dict[str, Any]:
 
 
 def _values_to_json(model: WindowModel) -> dict[str, Any]:
-    """Fitted values, those of one record as `name [record]`, and what effects hold fixed."""
+    """Returns fitted values, of one record as `name [record]`, and what effects hold fixed."""
     values, std, shift = {**model.values, **model.fit.values}, model.told_std, model.step_shift
     return {
         name: {"value": value, "std": std.get(name), "step_shift": shift.get(name)}
@@ -90,7 +90,7 @@ def _refitted_to_json(effect: RefittedEffect, plant: Plant) -> dict[str, Any]:
 
 
 def _called(candidate: Candidate, plant: Plant) -> dict[str, Any]:
-    """Name and place; a curve of the data has no name, but says what it depends on."""
+    """Returns name and place; a curve of the data has no name, but says what it depends on."""
     effect, where = candidate.effect, candidate.where
     if not effect.is_curve:
         return {"name": effect.name, "where": where}

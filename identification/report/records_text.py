@@ -21,7 +21,7 @@ SHOWN = 6  # candidates with the best scores that are listed
 
 
 def records_text(found: RecordsDiscovery) -> str:
-    """All of it, in paragraphs."""
+    """Returns the whole discovery, in paragraphs."""
     parts = ["\n".join(records_verdict(found)), "\n".join(_records(found))]
     fitted = ["fitted values:", *text_table(*value_table(found))]
     if said := std_sentence(found.final, value_words(found), found.options):
@@ -51,7 +51,7 @@ def records_text(found: RecordsDiscovery) -> str:
 
 
 def best_scores(found: RecordsDiscovery) -> list[WindowScore]:
-    """The best score of each effect: its best place and shape."""
+    """Returns the best score of each effect: its best place and shape."""
     each: dict[str, WindowScore] = {}
     for score in found.scores:
         each.setdefault(score.candidate.effect.name, score)
@@ -59,7 +59,7 @@ def best_scores(found: RecordsDiscovery) -> list[WindowScore]:
 
 
 def rejected_lines(found: RecordsDiscovery) -> list[str]:
-    """What was tried and not proven: each effect at each place once, as it did best."""
+    """Returns lines on what was tried and not proven, each effect at each place once, the best."""
     each: dict[tuple[str, str], RefittedEffect] = {}
     for effect in found.rejected:
         each.setdefault(effect.candidate.key, effect)
@@ -67,7 +67,7 @@ def rejected_lines(found: RecordsDiscovery) -> list[str]:
 
 
 def search_time(seconds: Mapping[str, float]) -> str:
-    """How long the search took, without what is drawn after it."""
+    """Returns a sentence on how long the search took, without what is drawn after it."""
     return f"The search took {sum(seconds.values()):.1f} s."
 
 
@@ -82,12 +82,12 @@ def _shifts(shifts: Sequence[ShiftedRecord]) -> list[str]:
 
 
 def steps_taken(found: RecordsDiscovery) -> list[str]:
-    """What steps simulations took, and what finer ones would change."""
+    """Returns sentences on the steps that simulations took, and what finer ones would change."""
     return step_sentences(found.final, value_words(found), found.options, found.steps)
 
 
 def _records(found: RecordsDiscovery) -> list[str]:
-    """The error of each record, and where something is named that with it."""
+    """Returns lines on the error of each record, without and with what is named."""
     which = "without and with what is named" if found.named else "nothing is named"
     lines = [f"error of prediction over {found.horizon:g} s, {which}:"]
     pairs = pair_words([(e.before_by_unit, e.after_by_unit) for e in found.errors], "", DIGITS)

@@ -16,7 +16,7 @@ NOT_TOLD = "(std not known, because too few windows tell of it)"
 
 
 def value_with_std(value: float, std: float, unit: str, like: float = 0.0) -> str:
-    """A value with its std, and said so where the std cannot be known.
+    """Returns a value with its std in words, also where the std cannot be known.
 
     Args:
         value: in `unit`.
@@ -31,7 +31,7 @@ def value_with_std(value: float, std: float, unit: str, like: float = 0.0) -> st
 
 
 def value_table(found: RecordsDiscovery) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
-    """Head and rows: each fitted value, of the nominal model and of the one with what is named."""
+    """Returns head and rows of a table of fitted values, without and with what is named."""
     models = [found.nominal, found.final] if found.named else [found.nominal]
     is_begun = any(f.kind is FindingKind.WORSE_FIT for f in found.findings)
     like: dict[str, float] = {}
@@ -52,13 +52,13 @@ def value_table(found: RecordsDiscovery) -> tuple[tuple[str, ...], list[tuple[st
 
 
 def value_words(found: RecordsDiscovery) -> dict[str, str]:
-    """The words of the fitted values by name."""
+    """Returns the words of the fitted values by name."""
     effects = [named.effect.candidate.effect for named in found.named]
     return parameter_words(found.final.plant.parameters, effects)
 
 
 def text_table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
-    """The lines of a table for a terminal, its cells to the left."""
+    """Returns the lines of a table for a terminal, its cells to the left."""
     widths = [max(map(len, column)) for column in zip(head, *rows, strict=True)]
     return [
         "  " + "  ".join(c.ljust(w) for c, w in zip(row, widths, strict=True)).rstrip()
@@ -67,7 +67,7 @@ def text_table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
 
 
 def _values(model: WindowModel, like: Mapping[str, float], is_begun: bool) -> dict[str, str]:
-    """What was fitted, or was begun with, and what effects hold fixed, in words by name."""
+    """Returns what was fitted or begun with, and what effects hold fixed, in words by name."""
     std, parameters = model.told_std, model.plant.parameters
     out = {}
     for name, value in {**model.fit.values, **model.values}.items():

@@ -20,7 +20,7 @@ DIGITS = 3  # of errors over a horizon
 
 @verdict_of.register
 def records_verdict(found: RecordsDiscovery) -> list[str]:
-    """The verdict first, then what supports it."""
+    """Returns sentences: the verdict first, then what supports it."""
     bounds = bound_sentences(found.final.plant.parameters, at_bound(found))
     return [*_verdict(found), *bounds, *describe_scale(found.nominal)]
 
@@ -49,7 +49,7 @@ def _verdict(found: RecordsDiscovery) -> list[str]:
 
 
 def _nothing(found: RecordsDiscovery) -> str:
-    """That no candidate helps; where sensors do not make the error, no clean bill is given."""
+    """Returns a sentence: nothing is missing, or no effect is named as no candidate helps."""
     before, noise = _left(found)
     tried = "no candidate lowers the error of prediction on unseen data beyond chance"
     over = f"{before} over {found.horizon:g} s"
@@ -76,7 +76,7 @@ def _either(found: RecordsDiscovery) -> str:
 
 
 def _rest(found: RecordsDiscovery) -> str:
-    """How far the inputs would have to err to make what the sensors do not."""
+    """Returns a sentence on how far inputs would have to err to make what sensors do not."""
     if found.input_error < NO_ERROR:
         return " The sensors alone would make it."
     if not isfinite(found.input_error):
@@ -116,7 +116,7 @@ def _named(found: RecordsDiscovery, named: NamedByPrediction) -> str:
 
 
 def _twin(named: NamedByPrediction) -> str:
-    """The other name of the same force."""
+    """Returns the other name of the same force in words; "" where there is none."""
     if named.same_as is None:
         return ""
     return (
@@ -126,7 +126,7 @@ def _twin(named: NamedByPrediction) -> str:
 
 
 def _compared(named: NamedByPrediction, is_left: bool) -> str:
-    """What a confidence rests on."""
+    """Returns in words what a confidence rests on."""
     if not named.compared:
         when = "said while something is left" if is_left else "ever said"
         return f", the highest that is {when}, because no rival was near enough to be refitted"
@@ -135,7 +135,7 @@ def _compared(named: NamedByPrediction, is_left: bool) -> str:
 
 
 def _agreement(found: RecordsDiscovery, named: NamedByPrediction) -> str:
-    """On how many unseen records it helps, those left out that only repeat others."""
+    """Returns a sentence on how many unseen records it helps, without those that repeat others."""
     confirm = [r.log.name for r in found.records if r.role == "confirm"]
     distinct = [name for name in confirm if name not in found.repeats]
     helped = sum(name in named.agrees for name in distinct)
@@ -176,6 +176,6 @@ def _unknown(found: RecordsDiscovery) -> str:
 
 
 def _left(found: RecordsDiscovery) -> tuple[str, str]:
-    """What the nominal model leaves on unseen data, and what the sensors make of it."""
+    """Returns what the nominal model leaves on unseen data, and what the sensors make of it."""
     errors = found.before.rms_by_unit, found.noise_by_unit
     return error_words(errors, digits=DIGITS)[0], error_words(errors, "", DIGITS)[1]

@@ -13,7 +13,7 @@ from identification.report.records_values import value_with_std
 
 
 def describe_refitted(effect: RefittedEffect, plant: Plant) -> str:
-    """An effect of a robot with its sizes, and what it does for unseen records."""
+    """Returns an effect of a robot with its sizes, and what it does for unseen records."""
     return (
         f"{describe_there(effect.candidate, plant)}, {sizes_words(effect)}; the unseen mean"
         f" square error {fall_words(effect.prediction.fall)}, t = {effect.prediction.t:z.1f}"
@@ -22,7 +22,7 @@ def describe_refitted(effect: RefittedEffect, plant: Plant) -> str:
 
 
 def sizes_words(effect: RefittedEffect) -> str:
-    """Sizes and shapes, each with its std; no shape that no data tell."""
+    """Returns sizes and shapes in words with their std, but no shape that no data tell."""
     untold = {s.name for s in effect.candidate.effect.shapes}
     return ", ".join(
         f"{name} not felt" if np.isinf(std) else f"{name} = {value_with_std(v, std, unit)}"

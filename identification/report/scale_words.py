@@ -1,4 +1,4 @@
-"""How errors of outputs of several units are counted together, in a sentence."""
+"""The common scale of errors of outputs of several units, in a sentence."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from identification.quantities import quantity
 
 
 def describe_scale(model: WindowModel) -> list[str]:
-    """A sentence that says what a mean square over unlike outputs is; none for outputs alike.
+    """Returns a sentence on what a mean square over unlike outputs is; none for outputs alike.
 
     Args:
         model: fitted; its scale is the rms error of each output under the nominal model.

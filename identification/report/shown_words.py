@@ -1,4 +1,4 @@
-"""What a log would have shown: one line for each effect at its place, the hardest to see first.
+"""Effects that a log would have shown: one line for each at its place, the hardest to see first.
 
 The hardest come first because the others would have been seen: who reads that nothing is missing
 asks what may be missing all the same.
@@ -27,7 +27,7 @@ WHERE = (
 
 @dataclass(frozen=True)
 class Shown:
-    """What a log would have shown of an effect.
+    """The sizes of an effect that a log would have shown.
 
     Attributes:
         candidate: the effect at the place where it is judged.
@@ -49,7 +49,7 @@ class Shown:
 
 
 def shown_effects(detectable: Sequence[Detectable]) -> list[Shown]:
-    """What a log would have shown, one for each effect, the hardest to see first."""
+    """Returns what a log would have shown, one for each effect, the hardest to see first."""
     each: dict[str, list[Detectable]] = {}
     for d in detectable:
         each.setdefault(d.candidate.effect.name, []).append(d)
@@ -58,7 +58,7 @@ def shown_effects(detectable: Sequence[Detectable]) -> list[Shown]:
 
 
 def shown_lines(detectable: Sequence[Detectable]) -> list[str]:
-    """The same for a terminal: what never shows, the hardest of the others, and how many more."""
+    """Returns lines: what never shows, the hardest to see of the others, and how many more."""
     shown = shown_effects(detectable)
     never = [f"  {describe_effect(s.candidate)}" for s in shown if not s.is_seen]
     seen = [s for s in shown if s.is_seen]
@@ -71,7 +71,7 @@ def shown_lines(detectable: Sequence[Detectable]) -> list[str]:
 
 
 def shown_sentences(detectable: Sequence[Detectable]) -> str:
-    """The same in a paragraph, beside which a table lists all effects; "" for none."""
+    """Returns a paragraph on what a log would have shown, beside a table of all; "" for none."""
     shown = shown_effects(detectable)
     never = [describe_effect(s.candidate) for s in shown if not s.is_seen]
     seen = [s for s in shown if s.is_seen]
@@ -83,7 +83,7 @@ def shown_sentences(detectable: Sequence[Detectable]) -> str:
 
 
 def shown_rows(detectable: Sequence[Detectable]) -> list[tuple[str, str, str]]:
-    """The same as a table of all effects: effect and place, smallest seen, largest plausible."""
+    """Returns table rows of all effects: effect and place, smallest seen, largest plausible."""
     return [
         (
             describe_effect(s.candidate),
@@ -97,7 +97,7 @@ def shown_rows(detectable: Sequence[Detectable]) -> list[tuple[str, str, str]]:
 
 
 def sized(value: float, unit: str) -> str:
-    """A size; one without a unit is a share, in percent also where it is 1 or more."""
+    """Returns a size in words; without a unit it is a share, in percent also from 1 on."""
     if not isfinite(value):
         return "–"
     return quantity(value, unit=unit) if unit else f"{100 * value:.3g} %"
@@ -108,12 +108,12 @@ def _smallest(d: Detectable) -> str:
 
 
 def _named(d: Detectable, said: str, shown: Shown) -> str:
-    """A size with its name, where the effect has several."""
+    """Returns a size with its name, where the effect has several."""
     return f"{d.size} {said}" if len(shown.sizes) > 1 else said
 
 
 def _from(shown: Shown) -> str:
-    """From which sizes on an effect shows, and up to which it is plausible."""
+    """Returns in words from which size on an effect shows, and up to which it is plausible."""
     return ", ".join(
         f"{d.size} from {sized(d.smallest, d.unit)} on (plausible up to {sized(most, d.unit)})"
         if isfinite(most := largest(d))
@@ -123,7 +123,7 @@ def _from(shown: Shown) -> str:
 
 
 def _more(seen: Sequence[Shown]) -> list[str]:
-    """How many effects have no line."""
+    """Returns a line on how many effects have no line."""
     if len(seen) <= LISTED:
         return []
     count, share = len(seen) - LISTED, seen[LISTED].share

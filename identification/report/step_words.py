@@ -1,4 +1,4 @@
-"""Which steps simulations took, what a quarter of the model's step would change, and what to do."""
+"""The steps that simulations took, what a quarter of the step would change, and what to do."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def step_sentences(
     options: DiscoveryOptions | None = None,
     steps: tuple[float, float] | None = None,
 ) -> list[str]:
-    """One paragraph on the steps; none where they are the model's own and finer ones change little.
+    """Returns a paragraph on the steps; none where they are the model's and finer change little.
 
     Args:
         model: fitted.
@@ -60,7 +60,7 @@ def std_sentence(
     words: Mapping[str, str] | None = None,
     options: DiscoveryOptions | None = None,
 ) -> str:
-    """That the std leave out the error of the steps, where it is larger; "" where it is not.
+    """Returns a sentence where the error of the steps, which the std leave out, is larger; else "".
 
     It stands beside the std; `step_sentences` says by how much, and what to do.
 
@@ -84,7 +84,7 @@ def std_sentence(
 
 
 def _changed(model: WindowModel, words: Mapping[str, str], options: DiscoveryOptions) -> list[str]:
-    """What finer steps would do beyond what is told."""
+    """Returns clauses on what finer steps would do beyond what the std tell."""
     finer, std, said = model.finer, model.told_std, []
     names = model.fit.problem.names
     if far := finer.far(names, np.array([std[n] for n in names]), options):

@@ -1,4 +1,4 @@
-"""How figures look: colours that stay apart for the colour-blind (Okabe and Ito), and files."""
+"""The look of figures: colours that stay apart for the colour-blind (Okabe and Ito), and files."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ STYLE: Any = {
 
 
 def literal(text: str) -> str:
-    """A name as a figure shows it, letter by letter: `$` would begin a formula."""
+    """Returns a name as a figure shows it, letter by letter: `$` would begin a formula."""
     return text.replace("$", r"\$")
 
 

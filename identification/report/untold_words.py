@@ -1,4 +1,4 @@
-"""What a log does not tell of the parameters, in sentences that say what to do."""
+"""Sentences on what a log does not tell of the parameters, and what to do."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ ROUGH = 1e-4  # relative error of a sensitivity, which a smooth simulation stays
 
 
 def identifiable_sentences(fit: Fit) -> list[str]:
-    """Which parameters, or products of them, can be known from the log."""
+    """Returns sentences on which parameters, or products of them, can be known from the log."""
     found = fit.found
     if not len(found.blind):
         values = np.array(list(fit.estimate.values.values()))
@@ -58,7 +58,7 @@ def identifiable_sentences(fit: Fit) -> list[str]:
 def untold(
     symmetries: Sequence[ScalingSymmetry], names: Sequence[str], words: Mapping[str, str]
 ) -> str:
-    """What no output feels: single parameters, and those that trade off with others.
+    """Returns in words what no output feels: single parameters, and those that trade off.
 
     Args:
         symmetries: one or more.
@@ -79,7 +79,7 @@ def untold(
 
 
 def unresolved_words(found: Identifiability) -> str:
-    """What directions that differences cannot resolve lack, and which parameters that leaves."""
+    """Returns in words what differences cannot resolve, and which parameters have no std then."""
     moved = found.moved_by_unresolved
     names = [n for n, m in zip(found.names, moved, strict=True) if m]
     share = np.where(moved, found.errors / np.where(found.norms > 0, found.norms, np.inf), 0.0)
@@ -96,7 +96,7 @@ def unresolved_words(found: Identifiability) -> str:
 
 
 def weak_sentences(found: WindowEstimate) -> list[str]:
-    """Parameters of which the noise leaves too little, and what they trade off along."""
+    """Returns a sentence on parameters of which noise leaves too little, and how they trade off."""
     names, values = found.found.names, np.array(list(found.values.values()))
     known = ~found.found.undetermined & np.isfinite(found.std)
     weak = [n for n, v, s, k in zip(names, values, found.std, known, strict=True)
@@ -133,7 +133,7 @@ def scale_of_forces(logs: Sequence[Log]) -> str:
 
 
 def too_weak(names: Sequence[str], what: str) -> str:
-    """A sentence on parameters whose std is too large.
+    """Returns a sentence on parameters whose std is too large.
 
     Args:
         names: of one or more.
@@ -145,7 +145,7 @@ def too_weak(names: Sequence[str], what: str) -> str:
 
 
 def cure(names: Sequence[str]) -> str:
-    """What to do about them."""
+    """Returns a sentence on what to do about them."""
     if len(names) == 1:
         return "Fix it, or record a motion that tells more of it."
     return "Fix one of them, or record a motion that tells more of them."

@@ -35,7 +35,7 @@ DARK = {
 
 
 def svg(figure: Figure, prefix: str = "", title: str = "") -> str:
-    """A figure as an `<svg>` element that stands in HTML: no XML header, no foreign address.
+    """Returns a figure as an `<svg>` element in HTML, without XML header or foreign address.
 
     Args:
         figure: of matplotlib.
@@ -63,7 +63,7 @@ def svg(figure: Figure, prefix: str = "", title: str = "") -> str:
 
 
 def _name_lines(ax: Axes, k: int) -> list[dict[str, str]]:
-    """Names of the lines of some axes, under which a drawing has them, and their labels."""
+    """Names the lines of some axes for a drawing, and returns the names with the labels."""
     out = []
     for i, line in enumerate(ax.get_lines()):
         if np.size(line.get_xdata(orig=False)) > 2:
@@ -76,7 +76,7 @@ def _name_lines(ax: Axes, k: int) -> list[dict[str, str]]:
 def _tell(
     figure: Figure, ax: Axes, prefix: str, series: Sequence[dict[str, str]], every: Sequence[Axes]
 ) -> dict[str, Any]:
-    """What the script must know of some axes."""
+    """Returns what the script must know of some axes."""
     width, height = (float(POINTS * size) for size in figure.get_size_inches())
     place = ax.get_position()
     box = [place.x0 * width, (1 - place.y1) * height, place.x1 * width, (1 - place.y0) * height]
@@ -98,7 +98,7 @@ def _tell(
 
 
 def _range(axis: Axis, ends: tuple[float, float]) -> list[float | str]:
-    """First and last value of an axis, and its kind: one with words for ticks is fixed."""
+    """Returns first and last value of an axis, and its kind: one with words for ticks is fixed."""
     kind = axis.get_scale()
     words = isinstance(axis.get_major_locator(), FixedLocator)
     known = kind in ("linear", "log") and not words and ends[0] < ends[1]
@@ -106,7 +106,7 @@ def _range(axis: Axis, ends: tuple[float, float]) -> list[float | str]:
 
 
 def _label(every: Sequence[Axes], shared: Any, ax: Axes, which: str) -> str:
-    """The label of an axis, or of one that shares its values."""
+    """Returns the label of an axis, or of one that shares its values."""
     of = [ax, *(other for other in every if shared.joined(ax, other))]
     said = next((text for one in of if (text := getattr(one, f"get_{which}")())), which[0])
     return str(said).replace("\n", " ").replace(r"\$", "$")
@@ -120,7 +120,7 @@ def _with_variables(text: str) -> str:
 
 
 def _rounded(text: str) -> str:
-    """Paths with places of a hundredth of a point."""
+    """Returns the text with the numbers of paths rounded to a hundredth of a point."""
     return re.sub(
         r'\bd="([^"]*)"',
         lambda m: re.sub(r"-?\d+\.\d{3,}", lambda n: f"{float(n[0]):.2f}", m[0]),

@@ -15,7 +15,7 @@ _QUANTITY = re.compile(  # a number, its std, and a unit such as N m s/rad
 
 
 def whole_quantities(text: str) -> Markup:
-    """Text for a page in which no line ends between a number and its unit.
+    """Returns text for a page in which no line ends between a number and its unit.
 
     Args:
         text: as it is read; it is escaped.

@@ -18,7 +18,7 @@ from identification.windows.windows import windows
 def windows_figure(
     plant: Plant, log: Log, length: float, models: Mapping[str, Mapping[str, float]]
 ) -> Figure:
-    """The first output, predicted over windows that begin in their own best state, and the errors.
+    """Returns a figure of the first output, predicted from windows' best states, and the errors.
 
     Args:
         plant: the model.

@@ -45,6 +45,6 @@ def refuse_absurd_start(robot: Robot) -> None:
 
 
 def _largest(log: Log, output: str, is_measured: bool) -> float:
-    """The largest number of an output, or of its rate where that is not measured."""
+    """Returns the largest number of an output, or of its rate where that is not measured."""
     y = log.outputs[:, log.output_names.index(output)]
     return float(np.abs(y if is_measured else np.diff(y) / log.sampling_time).max())

@@ -70,7 +70,7 @@ class Alike:
         return (self.name, *self.deviations)
 
     def parameters(self, model: mujoco.MjModel, unit: str) -> dict[str, tuple[Parameter, float]]:
-        """The parameters by name, each with the std of its prior.
+        """Returns the parameters by name, each with the std of its prior.
 
         Args:
             model: the robot.
@@ -113,7 +113,7 @@ class Alike:
 
 
 def read_alike(content: Mapping[str, Any], path: Path, free: Sequence[str]) -> tuple[Alike, ...]:
-    """The tables under `spread` of a robot's TOML, or of a file of such tables.
+    """Returns the tables under `spread` of a robot's TOML, or of a file of such tables.
 
     Args:
         content: of the TOML.
@@ -151,5 +151,5 @@ def _alike(name: str, table: Any, path: Path) -> Alike:
 
 
 def _thing(path: str) -> str:
-    """What a path is about: "elbow" of "joint/elbow.damping"."""
+    """Returns what a path is about: "elbow" of "joint/elbow.damping"."""
     return path.partition("/")[2].partition("[")[0].rpartition(".")[0] or path

@@ -1,4 +1,4 @@
-"""What of the drives' forces a log cannot explain, whatever may be wrong with the model's numbers.
+"""The drives' forces that a log cannot explain, whatever may be wrong with the model's numbers.
 
     τ = Σ_b s_b (M_b(q) q̈ + c_b(q, q̇)) + Σ_p m_p (M_p(q) q̈ + c_p) + Σ_g γ_g g_g(q) + …
         … + d q̇ + f_c sign q̇ + f_0 + κ k (q - q_0)          s, κ in [1/4, 4], m_p, d, f_c ≥ 0
@@ -36,7 +36,7 @@ SCALAR = (int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE))
 
 @dataclass(frozen=True)
 class Freedom:
-    """What a model may lack more, and how smooth its motion is taken.
+    """The further forces that a model may lack, and how smooth its motion is taken.
 
     Attributes:
         has_springs: whether each joint may have a spring that the model lacks.
@@ -50,7 +50,7 @@ class Freedom:
 def unbalanced_share(
     model: mujoco.MjModel, log: Log, freedom: Freedom | None = None
 ) -> np.ndarray | None:
-    """η of the joint of each output, shape (ny,), without unit.
+    """Returns η of the joint of each output, shape (ny,), without unit.
 
     Args:
         model: with the log's actuators and sensors.
@@ -93,7 +93,7 @@ def unbalanced_share(
 def _shortest(
     model: mujoco.MjModel, log: Log, q: np.ndarray, wider: int
 ) -> tuple[Smooth, np.ndarray] | None:
-    """The motion through the shortest ψ that noise does not hide, and the forces of the drives.
+    """Returns the motion through the shortest ψ that noise does not hide, and the drives' forces.
 
     Args:
         model: of the robot.
@@ -116,7 +116,7 @@ def _shortest(
 
 @quiet()
 def _drive_forces(model: mujoco.MjModel, motion: Smooth) -> np.ndarray:
-    """Forces of the drives on the joints (n, nv)."""
+    """Returns the forces of the drives on the joints (n, nv)."""
     data, force = mujoco.MjData(model), np.empty(motion.v.shape)
     for k in range(len(force)):
         data.qpos, data.qvel, data.ctrl = motion.q[k], motion.v[k], motion.u[k]
@@ -128,7 +128,7 @@ def _drive_forces(model: mujoco.MjModel, motion: Smooth) -> np.ndarray:
 def _columns(
     model: mujoco.MjModel, motion: Smooth, freedom: Freedom
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """What may explain the forces, shape (n, nv, columns), and the bounds of the sizes."""
+    """Returns what may explain the forces, (n, nv, columns), and the bounds of the sizes."""
     moving = [b for b in range(1, model.nbody) if model.body_weldid[b] and model.body_mass[b] > 0]
     outer = [b for b in moving if not any(model.body_parentid[c] == b for c in moving)]
     reach = _size(model, moving)
@@ -165,7 +165,7 @@ def _columns(
 
 
 def _size(model: mujoco.MjModel, moving: list[int]) -> float:
-    """How far the centres of mass are apart, or from the base [m]."""
+    """Returns how far the centres of mass are apart, or from the base [m]."""
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
     centres = data.xipos[moving]

@@ -21,7 +21,7 @@ LARGE = 10.0  # a factor from here on is asked; a smaller one makes no step too 
 
 
 def blamed(robot: Robot, is_good: Callable[[Robot], bool]) -> str | None:
-    """What makes the simulation of a robot's log fail, and the cure; None where neither does.
+    """Returns what makes the simulation of a log fail, and the cure; None where neither does.
 
     Args:
         robot: of which a simulation of its log failed.
@@ -34,7 +34,7 @@ def blamed(robot: Robot, is_good: Callable[[Robot], bool]) -> str | None:
 
 
 def _without_factors(robot: Robot) -> Iterator[tuple[Robot, str]]:
-    """The robot with a log to which one factor, or none, was applied."""
+    """Yields the robot whose log lacks one large factor, or all of them, and the advice."""
     log, column = robot.log, robot.file.columns
     given = {n: f for n, f in log.factors.items() if abs(f) >= LARGE and n in log.columns}
     for names in [*([n] for n in given), *([[*given]] if len(given) > 1 else [])]:
@@ -49,7 +49,7 @@ def _without_factors(robot: Robot) -> Iterator[tuple[Robot, str]]:
 
 
 def _divided(log: Log, factors: dict[str, float]) -> Log:
-    """A log without some of its factors."""
+    """Returns a log without some of its factors."""
 
     def of(names: tuple[str, ...]) -> list[float]:
         return [factors.get(n, 1.0) for n in names]
@@ -59,7 +59,7 @@ def _divided(log: Log, factors: dict[str, float]) -> Log:
 
 
 def _without_start(robot: Robot) -> Iterator[tuple[Robot, str]]:
-    """The robot that begins where the log does, in one entry that its file gives, and in all."""
+    """Yields the robot begun as the log does, in one entry of its start or in all, and advice."""
     file = robot.file
     apart = given_apart(file, robot.plant.model, robot.log)
     for paths in [*([p] for p in apart), *([[*apart]] if len(apart) > 1 else [])]:
@@ -73,5 +73,5 @@ def _without_start(robot: Robot) -> Iterator[tuple[Robot, str]]:
 
 
 def _started(robot: Robot) -> Robot:
-    """A robot whose plant begins as its file and its log say now."""
+    """Returns a robot whose plant begins as its file and its log say now."""
     return replace(robot, plant=robot.plant_of(robot.log))

@@ -57,7 +57,7 @@ def solve_bounded(A: np.ndarray, b: np.ndarray, low: np.ndarray, high: np.ndarra
 
 
 def _triangle(A: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """R and Qᵀ b of A = Q R, or A and b themselves where they have no more rows than columns."""
+    """Returns R and Qᵀ b of A = Q R, or A and b where they have no more rows than columns."""
     if len(A) <= A.shape[1]:
         return A, b
     both: np.ndarray = np.linalg.qr(np.column_stack([A, b]), mode="r")  # type: ignore[assignment]

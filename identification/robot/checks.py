@@ -1,4 +1,4 @@
-"""What a robot's file, its model and its log must agree on, before anything is simulated."""
+"""Checks of what a robot's file, its model and its log must agree on, before a simulation."""
 
 from __future__ import annotations
 
@@ -179,7 +179,7 @@ def refuse_every(file: RobotFile, log: Log) -> None:
 
 
 def _left(log: Log, every: int) -> bool:
-    """Whether every n-th sample is enough for each part of a log."""
+    """Returns whether every n-th sample is enough for each part of a log."""
     time = log.time[: (len(log) - 1) // every * every + 1 : every]
     if len(time) < 2 * MIN_ROWS:
         return False

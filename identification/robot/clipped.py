@@ -17,7 +17,7 @@ LEAST = 0.01  # of an input's rms: less is cut off by the noise of a measured in
 
 
 def clipped_sentence(model: mujoco.MjModel, log: Log) -> str | None:
-    """One sentence on the input of which most is cut off; None where no input is cut off.
+    """Returns one sentence on the input of which most is cut off; None where no input is cut off.
 
     Args:
         model: with an actuator of the name of each input.

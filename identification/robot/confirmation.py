@@ -73,7 +73,7 @@ def _over_free_run(
     after: Mapping[str, float],
     models: tuple[str, str] = (AS_WRITTEN, FITTED),
 ) -> tuple[Confirmation, ...]:
-    """Two sets of values on the records, or on the unseen part of the only log."""
+    """Compares two sets of values on the records, or on the unseen part of the only log."""
     if not robot.records:
         return (compare_unseen(robot, before, after, models),)
     kept = keep_of_robot(after, robot.plant.effects)
@@ -81,7 +81,7 @@ def _over_free_run(
 
 
 def _over_windows(robot: Robot, fit: RobotFit, found: RecordsFit) -> tuple[Confirmation, ...]:
-    """The comparison that the fit has made already, or that of other records."""
+    """Returns the comparison that the fit has made already, or that of other records."""
     if not robot.records:
         return fit.unseen
     if [*map(id, robot.records)] == [*map(id, fit.robot.records)]:
@@ -99,7 +99,7 @@ def _over_windows(robot: Robot, fit: RobotFit, found: RecordsFit) -> tuple[Confi
 
 
 def _of_discovery(robot: Robot, found: RecordsDiscovery) -> tuple[Confirmation, ...]:
-    """What a discovery over a horizon has found on the robot's records."""
+    """Returns what a discovery over a horizon has found on the robot's records."""
     errors = {e.name: e for e in found.errors if e.role == "confirm"}
     for log in robot.records:
         if log.name not in errors:

@@ -1,4 +1,4 @@
-"""What a model lacks: of a robot that was read from its files, or of any nominal model."""
+"""The search for what a model lacks: a robot read from its files, or any nominal model."""
 
 from __future__ import annotations
 
@@ -111,7 +111,7 @@ def discover(
 
 
 def without_states(effects: Sequence[Effect]) -> tuple[Effect, ...]:
-    """The effects that need no states of joints: those are sought over a horizon alone.
+    """Returns the effects without states of joints: effects with these need a horizon.
 
     A Kalman filter along a free run would have to know how uncertain these states are.
     """

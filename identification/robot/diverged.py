@@ -18,7 +18,7 @@ from identification.robot.robot import Robot
 
 @contextmanager
 def told_of_factors(robot: Robot) -> Iterator[None]:
-    """A divergence inside is told with the factors of the robot's logs, or with where the step is.
+    """Raises a divergence inside anew, with the factors of the robot's logs, or where the step is.
 
     Raises:
         DivergenceError: one was raised inside.
@@ -44,7 +44,7 @@ def _next_step(robot: Robot) -> str:
 
 
 def _factors(log: Log, robot: Robot) -> list[str]:
-    """The factors of a log that change the size of its numbers, and what they make."""
+    """Returns the factors of a log that change the size of its numbers, and what they make."""
     column = robot.file.columns
     return [
         f"the factor {f:g} of {column.get(n, n)} under [factors] for log {log.name!r}, which makes"

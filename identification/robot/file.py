@@ -111,7 +111,7 @@ class RobotFile:
 
     @property
     def held(self) -> str:
-        """What is wrong where it tells of a parameter that is not free; "" where nothing is."""
+        """The error where it tells of a parameter that is not free; "" where there is none."""
         held = [name for name in self.records if name not in self.free]
         if not held:
             return ""

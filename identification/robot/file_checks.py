@@ -43,7 +43,7 @@ def check_table(table: Mapping[str, Any], kinds: Kinds, where: str) -> None:
 
 
 def read_own(content: Mapping[str, Any], path: Path) -> tuple[str, ...]:
-    """Names of the free parameters of which each log has a value of its own.
+    """Returns the names of the free parameters of which each log has a value of its own.
 
     Args:
         content: of the TOML.
@@ -65,7 +65,7 @@ def read_own(content: Mapping[str, Any], path: Path) -> tuple[str, ...]:
 
 
 def read_own_values(content: Mapping[str, Any], path: Path) -> dict[str, dict[str, float]]:
-    """By log, where the search of its own values begins.
+    """Returns, by log, the values at which the search of its own values begins.
 
     Args:
         content: of the TOML.
@@ -86,7 +86,7 @@ def read_own_values(content: Mapping[str, Any], path: Path) -> dict[str, dict[st
 
 
 def texts(values: list[Any], key: str, path: Path) -> tuple[str, ...]:
-    """Names, each once.
+    """Returns names as a tuple; refuses one that is no text or stands there twice.
 
     Args:
         values: of the key.
@@ -102,7 +102,7 @@ def texts(values: list[Any], key: str, path: Path) -> tuple[str, ...]:
 
 
 def numbers(values: list[Any], key: str, path: Path) -> tuple[float, ...]:
-    """Numbers above zero.
+    """Returns numbers as a tuple; refuses one that is not above zero.
 
     Args:
         values: of the key.

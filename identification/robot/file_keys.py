@@ -1,4 +1,4 @@
-"""Which keys the TOML of a robot has, and of which kind the value of each is."""
+"""The keys that the TOML of a robot has, and the kind of value that each takes."""
 
 from __future__ import annotations
 

@@ -19,7 +19,7 @@ FARTHEST = 100.0  # a value that changes by this factor is not believed
 
 
 def robot_fit_to_json(result: RobotFit, confirmed: Sequence[Confirmation] = ()) -> dict[str, Any]:
-    """The numbers and the verdict of a fit; unknown and infinite numbers are null.
+    """Returns the numbers and the verdict of a fit; unknown and infinite numbers are null.
 
     Args:
         result: the result of `fit`.
@@ -48,7 +48,7 @@ def robot_fit_to_json(result: RobotFit, confirmed: Sequence[Confirmation] = ()) 
 
 
 def _far(parameters: Mapping[str, Mapping[str, Any]]) -> list[str]:
-    """A sentence about values that changed by a factor that no robot explains."""
+    """Returns a sentence about values that changed by a factor that no robot explains."""
     far = [
         n for n, p in parameters.items()
         if p["initial"] and not 1 / FARTHEST < abs(p["value"] / p["initial"]) < FARTHEST

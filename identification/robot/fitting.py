@@ -51,17 +51,17 @@ class RobotFit:
 
     @property
     def shared(self) -> dict[str, float]:
-        """Those of the fitted values that hold for all records."""
+        """The fitted values that hold for all records."""
         return self.values if isinstance(self.found, Fit) else self.found.shared
 
     @property
     def own_values(self) -> dict[str, dict[str, float]]:
-        """By record and by name, the values that each record has for itself, in their units."""
+        """The values that each record has for itself, by record and by name, in their units."""
         return {} if isinstance(self.found, Fit) else self.found.model.own_values
 
     @property
     def std(self) -> dict[str, float]:
-        """Their std by name, in the same units; inf where a free run does not determine them."""
+        """Std of the values by name, in their units; inf where a free run does not tell them."""
         return dict(zip(self.values, self.found.std.tolist(), strict=True))
 
     @property
@@ -72,7 +72,7 @@ class RobotFit:
 
     @property
     def at_bound(self) -> dict[str, bool]:
-        """Whether a value lies on a bound, by name."""
+        """True where a value lies on a bound, by name."""
         return dict(zip(self.values, map(bool, self.found.at_bound), strict=True))
 
     @property

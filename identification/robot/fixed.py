@@ -12,7 +12,7 @@ from identification.robot.file import RobotFile
 
 
 def with_fixed(file: RobotFile, plant: JointPlant, effects: Sequence[Effect]) -> JointPlant:
-    """The plant with the values of effects' parameters that are not free.
+    """Returns the plant with the values of effects' parameters that are not free.
 
     Args:
         file: the robot's.

@@ -78,7 +78,7 @@ def impossible_sentence(robot: Robot, values: Mapping[str, float]) -> str:
 
 
 def _by_body(file: RobotFile) -> dict[str, list[str]]:
-    """The free parameters that are principal inertias, by body."""
+    """Returns the free parameters that are principal inertias, by body."""
     found: dict[str, list[str]] = {}
     for name in file.free:
         path = str(file.records.get(name, {}).get("path", name))

@@ -66,7 +66,7 @@ def without_untold(robot: Robot) -> Robot:
 
 
 def _idle(robot: Robot, log: Log) -> set[str]:
-    """The free parameters that no output of a log feels; none where it cannot be simulated."""
+    """Returns free parameters that no output of a log feels; none where it cannot be simulated."""
     names, plant = robot.file.free, robot.plant_of(log)
     values = plant.parameters.values()
     first = np.array([values[name] for name in names])
@@ -80,7 +80,7 @@ def _idle(robot: Robot, log: Log) -> set[str]:
 
 
 def _driven(log: Log) -> Log:
-    """The first samples of a log, with inputs of one throughout."""
+    """Returns the first samples of a log, with inputs of one throughout."""
     rows = slice(0, FEW)
     inputs = np.ones_like(log.inputs[rows])
     return replace(log, time=log.time[rows], inputs=inputs, outputs=log.outputs[rows],

@@ -33,7 +33,7 @@ def operating_points(
     inputs: Mapping[str, float] | None = None,
     trust: Sequence[str] = (),
 ) -> tuple[OperatingPoints, tuple[str, ...]]:
-    """Operating points of a robot, and the names of its outputs.
+    """Returns operating points of a robot, and the names of its outputs.
 
     Args:
         path: of the robot's TOML.
@@ -74,7 +74,7 @@ def operating_points(
 
 
 def _held(model: mujoco.MjModel, inputs: Mapping[str, float]) -> np.ndarray:
-    """Inputs by actuator as the model's controls, shape (nu,)."""
+    """Returns inputs by actuator as the model's controls, shape (nu,)."""
     known = input_names(model)
     for name in inputs:
         if name not in known:
@@ -83,7 +83,7 @@ def _held(model: mujoco.MjModel, inputs: Mapping[str, float]) -> np.ndarray:
 
 
 def _bare(file: RobotFile) -> ModelPlant:
-    """The model of a file with the values of its parameters, without effects.
+    """Returns the model of a file with the values of its parameters, without effects.
 
     Raises:
         InputError: it gives a value to an effect.

@@ -29,7 +29,7 @@ _LARGEST = 2**26  # [bytes]
 
 
 def robot_spec(file: RobotFile) -> tuple[mujoco.MjSpec, tuple[str, ...]]:
-    """The model of a robot, and what was added to it, in sentences.
+    """Returns the model of a robot, and what was added to it, in sentences.
 
     Args:
         file: the robot's.
@@ -91,7 +91,7 @@ def _divides(step: float, logs: Sequence[Log]) -> bool:
 
 
 def _urdf(root: ElementTree.Element, file: RobotFile) -> tuple[mujoco.MjSpec, tuple[str, ...]]:
-    """A URDF without meshes, with motors and sensors."""
+    """Returns the model of a URDF without meshes, with motors and sensors, and what was added."""
     _refuse_massless(root, file)
     forms = 0
     for link in root.iter("link"):

@@ -45,7 +45,7 @@ class MovingBody:
 def follow_bodies(
     model: mujoco.MjModel, q: np.ndarray, v: np.ndarray, a: np.ndarray, bodies: Sequence[int]
 ) -> dict[int, MovingBody]:
-    """Some bodies of a robot of hinges and slides along a motion.
+    """Returns some bodies of a robot of hinges and slides along a motion.
 
     Args:
         model: of the robot.
@@ -82,7 +82,7 @@ def follow_bodies(
 
 
 def inertial_force(body: MovingBody, mass: float, inertia: np.ndarray) -> np.ndarray:
-    """Forces that move a body, shape (n, nv).
+    """Returns the forces that move a body, shape (n, nv).
 
     Args:
         body: along the motion.
@@ -96,7 +96,7 @@ def inertial_force(body: MovingBody, mass: float, inertia: np.ndarray) -> np.nda
 
 
 def point_force(body: MovingBody, p: np.ndarray) -> np.ndarray:
-    """Forces that move 1 kg at a point of a body, shape (n, nv).
+    """Returns the forces that move 1 kg at a point of a body, shape (n, nv).
 
     Args:
         body: along the motion.
@@ -108,7 +108,7 @@ def point_force(body: MovingBody, p: np.ndarray) -> np.ndarray:
 
 
 def weights(body: MovingBody, p: np.ndarray) -> tuple[np.ndarray, ...]:
-    """Forces of 1 N along each axis of the world at a point, three of shape (n, nv).
+    """Returns the forces of 1 N along each axis of the world at a point, three of shape (n, nv).
 
     Args:
         body: along the motion.
@@ -119,7 +119,7 @@ def weights(body: MovingBody, p: np.ndarray) -> tuple[np.ndarray, ...]:
 
 
 def _jacobian(body: MovingBody, r: np.ndarray) -> np.ndarray:
-    """J(p), shape (n, 3, nv), of the point at r from the centre of mass, shape (n, 3)."""
+    """Returns J(p), shape (n, 3, nv), of the point at r from the centre of mass, shape (n, 3)."""
     return np.asarray(body.J_c + np.cross(body.J_ω, r[:, :, None], axis=1))
 
 

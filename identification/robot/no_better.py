@@ -20,7 +20,7 @@ LEAST = 0.01  # rise of the mean square that is told; the noise of a right fit m
 
 
 def no_better(result: RobotFit, confirmed: Sequence[Confirmation]) -> list[str]:
-    """One sentence where the fitted values predict worse, and this is not proven; else none.
+    """Returns a sentence where the fitted values predict worse, and this is not proven; else none.
 
     Args:
         result: the result of `fit`.
@@ -44,5 +44,5 @@ def no_better(result: RobotFit, confirmed: Sequence[Confirmation]) -> list[str]:
 
 
 def _over_all(rms: Sequence[float]) -> float:
-    """The rms over records, each of which counts alike."""
+    """Returns the rms over records, each of which counts alike."""
     return float(np.sqrt(np.mean(np.square(rms))))

@@ -14,7 +14,7 @@ from identification.robot.file_keys import KEYS
 
 
 def with_spread(file: RobotFile, word: str) -> RobotFile:
-    """A robot's file with its own spread ("usual"), without deviations ("none"), or with another.
+    """Returns a robot's file with its own spread ("usual"), no deviations ("none"), or another.
 
     Args:
         file: of the robot.

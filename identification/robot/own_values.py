@@ -24,7 +24,7 @@ from identification.robot.parameters import free_parameter
 def value_parameters(
     file: RobotFile, model: mujoco.MjModel, effects: Sequence[Effect], logs: Sequence[Log]
 ) -> list[Parameter]:
-    """The parameters of the model that some log gives a value, beside those of effects.
+    """Returns the parameters of the model that some log gives a value, beside those of effects.
 
     Args:
         file: the robot's.

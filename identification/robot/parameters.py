@@ -69,7 +69,7 @@ def _is_positive(record: Parameter, mean: float) -> bool:
 
 
 def effect_sizes(effects: Sequence[Effect]) -> dict[str, tuple[Parameter, float]]:
-    """The sizes of effects by name, each with the largest that is plausible, in its unit."""
+    """Returns the sizes of effects by name, each with the largest plausible one, in its unit."""
     return {p.name: (p, s.largest) for e in effects for s in e.sizes
             for p in effect_parameters(e) if p.symbol == s.name}  # fmt: skip
 
@@ -77,7 +77,7 @@ def effect_sizes(effects: Sequence[Effect]) -> dict[str, tuple[Parameter, float]
 def free_parameter(
     file: RobotFile, name: str, model: mujoco.MjModel, effects: Sequence[Effect], log: Log
 ) -> Free:
-    """A free parameter of a robot's file.
+    """Returns a free parameter of a robot's file.
 
     Raises:
         InputError: it is neither a path nor the size of an effect, its value is missing, its unit
@@ -92,14 +92,14 @@ def free_parameter(
 
 
 def _where(file: RobotFile, name: str) -> str:
-    """The key of a free parameter, and the file."""
+    """Returns the key of a free parameter, and the file."""
     return f"parameters.{name} in {file.path}" if name in file.records else f"free in {file.path}"
 
 
 def _free(
     file: RobotFile, name: str, model: mujoco.MjModel, effects: Sequence[Effect], log: Log
 ) -> Free:
-    """A parameter that is free by itself, or that a log gives a value."""
+    """Returns a parameter that is free by itself, or that a log gives a value."""
     said = file.records.get(name, {})
     given: dict[str, Any] = {k: said[k] for k in ("unit", "about") if k in said}
     given |= {k: float(said[k]) for k in ("value", "lower", "upper", "scale") if k in said}
@@ -140,7 +140,7 @@ def _free(
 
 
 def _alike(file: RobotFile, alike: Alike, name: str, model: mujoco.MjModel) -> Free:
-    """The common value of a spread, or a deviation from it."""
+    """Returns the common value of a spread, or a deviation from it."""
     with told_of(alike.where):
         unit = unit_of(model, alike.of[0])
     record, std = alike.parameters(model, unit)[name]
@@ -152,7 +152,7 @@ def _alike(file: RobotFile, alike: Alike, name: str, model: mujoco.MjModel) -> F
 
 
 def measured_start(model: mujoco.MjModel, path: str, log: Log, own: float) -> float:
-    """The first measured sample of an entry of the start; `own` where it is not measured.
+    """Returns the first measured sample of an entry of the start; `own` where it is not measured.
 
     A rate that is not measured itself is that of the measured position, where it is beyond noise.
     """
@@ -167,7 +167,7 @@ def measured_start(model: mujoco.MjModel, path: str, log: Log, own: float) -> fl
 def _in_model(
     path: str, name: str, model: mujoco.MjModel, log: Log, given: dict[str, Any], alone: bool
 ) -> tuple[Parameter, float]:
-    """A parameter that is a path into the model or into its start."""
+    """Returns a parameter that is a path into the model or into its start."""
     fields: dict[str, Any] = {"where": path, "unit": unit_of(model, path)}
     place = start_place(path, model)
     if place is not None:
@@ -216,7 +216,7 @@ def _possible(model: mujoco.MjModel, slot: Slot, alone: bool) -> dict[str, Any]:
 
 
 def _moved(model: mujoco.MjModel, place: tuple[str, int], log: Log) -> float:
-    """A magnitude that matters for an entry of the start: a small share of its motion."""
+    """Returns a magnitude that matters for an entry of the start: a small share of its motion."""
     columns = output_columns(model, log.output_names)
     if place in columns:
         return SURE * float(np.ptp(log.outputs[:, columns.index(place)])) or 1.0

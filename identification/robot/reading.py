@@ -115,7 +115,7 @@ def doubtful(robot: Robot) -> list[str]:
 
 
 def _remarks(robot: Robot, logs: Sequence[Log]) -> tuple[str, ...]:
-    """What was taken for granted, a sentence each."""
+    """Returns what was taken for granted, a sentence each."""
     file, own = robot.file, robot.plant.model
     if file.horizon is None:
         begun = [of(file, own, log) for log in logs for of in (start_sentence, apart_sentence)]

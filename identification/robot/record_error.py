@@ -51,7 +51,7 @@ class Confirmation:
         return f"On {self.log}: {before} rms {first}, {after} {second}; mean square {change}."
 
     def _by_unit(self) -> str:
-        """The errors of outputs of several units."""
+        """Returns the errors of outputs of several units in words."""
         first, second = self.models
         pairs = {u: (b, self.after_by_unit[u]) for u, b in self.before_by_unit.items()}
         before, after = error_words([self.before_by_unit, self.after_by_unit], digits=3)
@@ -60,7 +60,7 @@ class Confirmation:
 
 
 def of_record(error: RecordError, unit: str, models: tuple[str, str]) -> Confirmation:
-    """The errors that a fit or a discovery over a horizon has found on a record.
+    """Returns the errors that a fit or a discovery over a horizon has found on a record.
 
     Args:
         error: of the record.
@@ -119,14 +119,14 @@ def compare_unseen(
 
 
 def _compared(log: Log, errors: Sequence[np.ndarray], models: tuple[str, str]) -> Confirmation:
-    """Two models by their errors (…, ny)."""
+    """Compares two models by their errors (…, ny)."""
     a, b = (float(np.sqrt(np.mean(e**2))) for e in errors)
     each = [rms_by_unit(e, log) for e in errors]
     return Confirmation(log.name, a, b, log.output_unit, models, *each)
 
 
 def _change(before: float, after: float) -> str:
-    """Change of the mean square."""
+    """Returns the change of the mean square in words."""
     return f"{100 * ((after / before) ** 2 - 1) if before else 0.0:+z.0f} %"
 
 
@@ -138,7 +138,7 @@ def _errors(robot: Robot, log: Log, values: Mapping[str, float]) -> np.ndarray:
 
 
 def _plant(robot: Robot, log: Log, values: Mapping[str, float]) -> Plant:
-    """The plant of a record, with the states that the effects among some values need."""
+    """Returns the plant of a record, with the states that the effects among some values need."""
     plant = robot.plant_of(log)
     if not isinstance(plant, JointPlant):
         return plant

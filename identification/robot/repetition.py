@@ -34,12 +34,12 @@ class Repetition:
 
     @property
     def finding(self) -> dict[str, str | float]:
-        """As a finding of JSON."""
+        """The repetition as a finding of JSON."""
         return {"kind": "repeated motion", "log": self.log, "share": self.share}
 
 
 def find_repetitions(robot: Robot) -> tuple[Repetition, ...]:
-    """The confirming parts and records of a robot that repeat what is fitted."""
+    """Returns the confirming parts and records of a robot that repeat what is fitted."""
     fitted = [log.part("estimation") for log in (robot.log, *robot.others)]
     many = bool(robot.others) or robot.file.horizon is not None
     whole = many and bool(robot.records)  # then each log is fitted from end to end

@@ -102,20 +102,20 @@ class Robot:
                      if start_place(at[n].where, self.plant.model) is not None)  # fmt: skip
 
     def started(self, log: Log) -> dict[str, float]:
-        """The free parameters of the start, with the first measured values of another log."""
+        """Returns the start's free parameters with the first measured values of another log."""
         at = self.plant.parameters
         return {
             n: measured_start(self.plant.model, at[n].where, log, at[n].value) for n in self.starts
         }
 
     def plant_of(self, log: Log) -> JointPlant:
-        """The plant as it begins in a log, with the values that hold there."""
+        """Returns the plant as it begins in a log, with the values that hold there."""
         start = start_of(self.file, self.plant.model, log)
         plant = replace(self.plant, bare=replace(self.plant.bare, start=start))
         return plant.with_values(log.values) if log.values else plant
 
     def values_of(self, log: Log) -> dict[str, float]:
-        """What logs give a value of their own, by name: that of this log, or the model's."""
+        """Returns the values that logs give, by name: that of this log, or else the model's."""
         own = self.plant.parameters
         logs = (self.log, *self.others, *self.records, log)
         return {n: log.values.get(n, own[n].value) for each in logs for n in each.values}

@@ -47,7 +47,7 @@ class Pair:
 
 
 def different_units(model: mujoco.MjModel, log: Log, column: Mapping[str, str]) -> str | None:
-    """Which column has another unit than it says, and the cure; None where none has.
+    """Returns which column has another unit than it says, and the cure; None where none has.
 
     Args:
         model: with the log's actuators and sensors.
@@ -70,7 +70,7 @@ def different_units(model: mujoco.MjModel, log: Log, column: Mapping[str, str]) 
 
 
 def _pairs(model: mujoco.MjModel, log: Log) -> Iterator[Pair]:
-    """Positions with the measured rates, and with what drives want, of hinges and slides."""
+    """Yields positions with the measured rates, and with what drives want, of hinges and slides."""
     places = dict(zip(output_columns(model, log.output_names), log.output_names, strict=True))
     scalar = (int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE))
     wanted = wanted_units(model, log)
@@ -92,7 +92,7 @@ def _pairs(model: mujoco.MjModel, log: Log) -> Iterator[Pair]:
 
 
 def _of_rate(log: Log, y: np.ndarray, v: np.ndarray) -> float:
-    """b of a position and a rate, shape (n,) each."""
+    """Returns b of a position and a rate, shape (n,) each."""
     edges = np.linspace(0, len(y) - 1, min(PIECES, len(y) // 2) + 1).round().astype(int)
     means = (v[1:] + v[:-1]) / 2
     summed = np.concatenate([[0.0], np.cumsum(means * log.sampling_time)])
@@ -100,7 +100,7 @@ def _of_rate(log: Log, y: np.ndarray, v: np.ndarray) -> float:
 
 
 def _slope(x: np.ndarray, y: np.ndarray) -> float:
-    """b of y = b x + c; NaN where the line does not explain y."""
+    """Returns b of y = b x + c; NaN where the line does not explain y."""
     if len(x) < 3 or x.std() == 0 or y.std() == 0:
         return np.nan
     correlation = float(np.corrcoef(x, y)[0, 1])

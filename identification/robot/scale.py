@@ -42,7 +42,7 @@ def rescaled(
     signs: bool = True,
     alone: bool = True,
 ) -> tuple[Reading, str] | None:
-    """The unit in which the forces of the drives explain a motion that they else cannot.
+    """Returns the unit in which the forces of the drives explain a motion that they else cannot.
 
     A unit with a sign that is turned counts where it leaves less than a fifth of the unit alone.
 
@@ -85,7 +85,7 @@ def rescaled(
 
 
 def wanted_units(model: mujoco.MjModel, log: Log) -> dict[str, str]:
-    """SI units of the inputs that drives compare with their joint's own motion, by name.
+    """Returns SI units of the inputs that drives compare with their joint's own motion, by name.
 
     Args:
         model: with the log's actuators.
@@ -106,14 +106,14 @@ def wanted_units(model: mujoco.MjModel, log: Log) -> dict[str, str]:
 
 
 def _change(other: Log, log: Log) -> float:
-    """How far another reading is from a log: Σ |ln factor| over its columns."""
+    """Returns how far another reading is from a log: Σ |ln factor| over its columns."""
     pairs = (other.outputs, log.outputs), (other.inputs, log.inputs)
     sizes = [[np.abs(x).max(axis=0) for x in pair] for pair in pairs]
     return sum(float(np.abs(np.log(a[b > 0] / b[b > 0])).sum()) for a, b in sizes)
 
 
 def _least_share(model: mujoco.MjModel, log: Log) -> np.ndarray | None:
-    """η of each output (ny,), of the ψ that leaves least in all; None where it cannot be had."""
+    """Returns η of each output (ny,), of the ψ that leaves least; None where it cannot be had."""
     best: np.ndarray | None = None
     for wider in WIDER:
         left = unbalanced_share(model, log, replace(FREEDOM, wider=wider))

@@ -111,7 +111,7 @@ def is_hidden(
 
 
 def _kernels(w: int, h: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """ψ of half the length w, and those of the first and the second derivative."""
+    """Returns ψ of half the length w, and the kernels of the first and the second derivative."""
     x = np.arange(-w + 1, w) / w
     psi = np.pad((1 - x**2) ** 3, 2)
     psi /= psi.sum()
@@ -119,7 +119,7 @@ def _kernels(w: int, h: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def _filtered(signals: np.ndarray, kernel: np.ndarray) -> np.ndarray:
-    """Σ_i kernel_i y_{k+i} of columns (n, m), where the kernel fits."""
+    """Returns Σ_i kernel_i y_{k+i} of columns (n, m), where the kernel fits."""
     if not signals.shape[1]:  # of a free swing: it has samples, and no inputs
         return np.zeros((max(0, len(signals) - len(kernel) + 1), 0))
     return np.stack([np.correlate(y, kernel, "valid") for y in signals.T], axis=1)

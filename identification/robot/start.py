@@ -1,4 +1,4 @@
-"""Where a simulation of a log begins: its measured joints where and as fast as the log does.
+"""The start of a simulation of a log: its measured joints begin where and as fast as the log does.
 
     y(t) = c_0 + c_1 t + c_2 t²    on the first m samples;  position c_0, rate c_1
 
@@ -47,7 +47,7 @@ class Begin:
 
 
 def measured_begin(model: mujoco.MjModel, log: Log) -> dict[Place, Begin]:
-    """The measured entries of the initial state, by field and index: positions and rates.
+    """Returns the measured entries of the initial state, by field and index: positions and rates.
 
     Args:
         model: with the log's sensors.
@@ -81,12 +81,12 @@ def refuse_start(file: RobotFile, model: mujoco.MjModel) -> None:
 
 
 def _sizes(model: mujoco.MjModel) -> list[str]:
-    """The parts of the state that a model has."""
+    """Returns the parts of the state that a model has."""
     return [f for f, n in (("qpos", model.nq), ("qvel", model.nv), ("act", model.na)) if n]
 
 
 def start_of(file: RobotFile, model: mujoco.MjModel, log: Log) -> State:
-    """The initial state of a simulation of a log.
+    """Returns the initial state of a simulation of a log.
 
     Args:
         file: the robot's; what it gives under [start] stands, and with trust in the start all of
@@ -109,7 +109,7 @@ def start_of(file: RobotFile, model: mujoco.MjModel, log: Log) -> State:
 
 
 def moved_begin(file: RobotFile, model: mujoco.MjModel, log: Log) -> dict[Place, Begin]:
-    """What a log shows to begin elsewhere than the model, and the robot's file does not give.
+    """Returns what a log shows to begin elsewhere than the model, unless the robot's file gives it.
 
     Args:
         file: the robot's.
@@ -129,7 +129,7 @@ def moved_begin(file: RobotFile, model: mujoco.MjModel, log: Log) -> dict[Place,
 
 
 def _first(y: np.ndarray, h: float, noise: float) -> tuple[tuple[float, float], np.ndarray]:
-    """Value and rate of a signal at its first sample, and the std of both."""
+    """Returns value and rate of a signal at its first sample, and the std of both."""
     # A sample is rounded where it is stored, and a value of that size is no start.
     least = max(noise, 64 * np.finfo(float).eps * float(np.abs(y[: SPANS[0]]).max()))
     found: list[tuple[np.ndarray, np.ndarray]] = []

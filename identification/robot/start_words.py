@@ -1,4 +1,4 @@
-"""Where simulations of a log begin, in sentences: what differs from the model or from the log."""
+"""The start of simulations of a log, in sentences: what differs from the model or from the log."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ LISTED = 3  # joints that a sentence lists
 
 
 def start_sentence(file: RobotFile, model: mujoco.MjModel, log: Log) -> str | None:
-    """One sentence that says where a log begins elsewhere than the model; None where it does not.
+    """Returns one sentence on where a log begins elsewhere than the model; None where it does not.
 
     Args:
         file: the robot's.
@@ -40,7 +40,7 @@ def start_sentence(file: RobotFile, model: mujoco.MjModel, log: Log) -> str | No
 
 
 def given_apart(file: RobotFile, model: mujoco.MjModel, log: Log) -> dict[str, str]:
-    """What [start] of a robot's file gives elsewhere than a log begins, in words, by path."""
+    """Returns in words, by path, what [start] gives elsewhere than a log begins."""
     begins, found = measured_begin(model, log), {}
     for path, value in file.start.items():
         place = start_place(path, model)
@@ -54,7 +54,7 @@ def given_apart(file: RobotFile, model: mujoco.MjModel, log: Log) -> dict[str, s
 
 
 def apart_sentence(file: RobotFile, model: mujoco.MjModel, log: Log) -> str | None:
-    """One sentence that says what [start] gives elsewhere than a log begins; None where nothing.
+    """Returns one sentence on what [start] gives elsewhere than a log begins; None where nothing.
 
     Args:
         file: the robot's.
@@ -75,7 +75,7 @@ def apart_sentence(file: RobotFile, model: mujoco.MjModel, log: Log) -> str | No
 
 
 def made_up_sentence(file: RobotFile, model: mujoco.MjModel, log: Log) -> str | None:
-    """What `apart_sentence` means for values, in short, for beside them; None where nothing.
+    """Returns in short what `apart_sentence` means for values, to stand beside them, or None.
 
     Args:
         file: the robot's.
@@ -92,7 +92,7 @@ def made_up_sentence(file: RobotFile, model: mujoco.MjModel, log: Log) -> str | 
 
 
 def unused_sentence(file: RobotFile, model: mujoco.MjModel, log: Log) -> str | None:
-    """One sentence that says what of [start] is not used over a horizon; None where all is.
+    """Returns one sentence on what of [start] is not used over a horizon; None where all is.
 
     Args:
         file: the robot's, with a horizon.
@@ -113,17 +113,17 @@ def unused_sentence(file: RobotFile, model: mujoco.MjModel, log: Log) -> str | N
 
 
 def _first(paths: Collection[str]) -> str:
-    """The first few paths, and how many more there are."""
+    """Returns the first few paths, and how many more there are."""
     return " and ".join([*paths][:LISTED]) + _more(paths)
 
 
 def _more(items: Collection[object]) -> str:
-    """How many there are beside those that a sentence lists."""
+    """Returns in words how many there are beside those that a sentence lists."""
     return f" and {len(items) - LISTED} more" if len(items) > LISTED else ""
 
 
 def _what(field: str, begin: Begin, log: Log) -> tuple[str, str]:
-    """What an entry of the state is called by the output that shows it, and its unit."""
+    """Returns what an entry of the state is called by the output that shows it, and its unit."""
     unit = log.units.get(begin.output, "")
     if field != "qvel" or unit.endswith("/s"):
         return begin.output, unit

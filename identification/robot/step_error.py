@@ -79,7 +79,7 @@ def refuse_coarse_steps(robot: Robot) -> None:
 
 
 def _worst(robot: Robot) -> StepError | None:
-    """The largest error of the steps; None where the model cannot be simulated."""
+    """Returns the largest error of the steps; None where the model cannot be simulated."""
     try:
         return step_error(robot)
     except DivergenceError:
@@ -96,7 +96,7 @@ def _is_simulated(robot: Robot) -> bool:
 
 
 def step_error(robot: Robot) -> StepError:
-    """The error of the output with the largest ratio of error to noise.
+    """Returns the error of the output with the largest ratio of error to noise.
 
     Raises:
         DivergenceError: a simulation left the finite numbers.
@@ -116,7 +116,7 @@ def step_error(robot: Robot) -> StepError:
 
 
 def _error_of_prediction(robot: Robot, worst: StepError) -> float:
-    """Rms error of an output over the horizon with the values as written; 0 in a free run."""
+    """Returns an output's rms error over the horizon at the values as written; 0 in a free run."""
     horizon, log = robot.file.horizon, robot.log
     if horizon is None:
         return 0.0
@@ -128,14 +128,14 @@ def _error_of_prediction(robot: Robot, worst: StepError) -> float:
 
 
 def _noise(y: np.ndarray) -> np.ndarray:
-    """Std of the noise of each output; for an encoder that crosses few steps, that of its steps."""
+    """Returns the noise std of each output; for an encoder that crosses few steps, of its steps."""
     steps = np.abs(np.diff(y, axis=0))
     least = np.min(np.where(steps > 0, steps, np.inf), axis=0)
     return np.maximum.reduce([noise_floor(y), least / 12**0.5, NONE * np.ptp(y, axis=0)])
 
 
 def _cure(robot: Robot) -> str:
-    """Advice: the largest step of RK4 with an error below the noise, and how to set it."""
+    """Returns advice: the largest step of RK4 with an error below the noise, and how to set it."""
     option = robot.plant.model.opt
     has = int(option.integrator) == RK4
     for halvings in range(int(has), HALVINGS + 1):
@@ -155,7 +155,7 @@ def _cure(robot: Robot) -> str:
 
 
 def _stepped(robot: Robot, factor: float, integrator: int | None = None) -> Robot:
-    """The same robot with another timestep and, if given, another integrator."""
+    """Returns the robot with another timestep and, if given, another integrator."""
     model = copy.copy(robot.plant.bare.model)
     model.opt.timestep *= factor
     if integrator is not None:

@@ -1,4 +1,4 @@
-"""What touches along logs, in sentences, and whether a model is refused for it."""
+"""The bodies that touch along logs, in sentences, and whether a model is refused for them."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def touch_sentence(
 
 @contextmanager
 def told_of_touches(sentence: str) -> Iterator[None]:
-    """What refuses a log is told together with contacts that the log contradicts.
+    """Raises an error inside anew, together with contacts that the log contradicts.
 
     Args:
         sentence: of `touch_sentence`; "" where nothing is to be added.
@@ -82,7 +82,7 @@ def told_of_touches(sentence: str) -> Iterator[None]:
 
 
 def _is_fitted(robot: Robot, touch: Touch) -> bool:
-    """Whether a number of a geom that touches is free."""
+    """Returns whether a number of a geom that touches is free."""
     names = [robot.plant.model.geom(g).name for g in touch.geoms]
     paths = [str(robot.file.records.get(n, {}).get("path", n)) for n in robot.file.free]
     things = [path.removeprefix("geom/").rpartition(".")[0] for path in paths
@@ -91,14 +91,14 @@ def _is_fitted(robot: Robot, touch: Touch) -> bool:
 
 
 def _percent(share: float) -> str:
-    """A share of states in words, which is neither none nor all unless it truly is."""
+    """Returns a share of states in words, which is neither none nor all unless it truly is."""
     if 0.995 <= share < 1:
         return "nearly all"
     return f"{100 * share:.0f} %" if share >= 0.005 else "less than 1 %"
 
 
 def _who(robot: Robot, touches: Sequence[Touch]) -> str:
-    """Which bodies touch, in words."""
+    """Returns which bodies touch, in words."""
     model = robot.plant.model
     pairs = [" and ".join(_called(model, b, touch) for b in touch.bodies[::-1])
              for touch in touches[:LISTED]]  # fmt: skip
@@ -107,7 +107,7 @@ def _who(robot: Robot, touches: Sequence[Touch]) -> str:
 
 
 def _called(model: mujoco.MjModel, body: int, touch: Touch) -> str:
-    """A body in words; of the world the geom, which may be the ground."""
+    """Returns a body in words; of the world the geom, which may be the ground."""
     if body:
         return model.body(body).name or f"body {body}"
     geom = next(g for g in touch.geoms if not model.geom_bodyid[g])
@@ -116,17 +116,17 @@ def _called(model: mujoco.MjModel, body: int, touch: Touch) -> str:
 
 
 def _where(logs: Sequence[Log]) -> str:
-    """The logs in words."""
+    """Returns the logs in words."""
     return f"log {logs[0].name!r}" if len(logs) == 1 else f"the {len(logs)} logs"
 
 
 def _depth(touches: Sequence[Touch]) -> str:
-    """How deep geoms lie in each other, in words."""
+    """Returns how deep geoms lie in each other, in words."""
     return f"up to {quantity(max(touch.depth for touch in touches), unit='m')} deep"
 
 
 def _cure(robot: Robot, touches: Sequence[Touch]) -> str:
-    """The lines that switch touches off."""
+    """Returns the lines that switch touches off."""
     model, name = robot.plant.model, robot.file.model.name
     excludes, others = [], []
     for touch in touches[:LISTED]:
@@ -147,7 +147,7 @@ def _cure(robot: Robot, touches: Sequence[Touch]) -> str:
 
 
 def _given_pairs(model: mujoco.MjModel, touch: Touch) -> str:
-    """The elements <pair> of a model that let geoms touch."""
+    """Returns the elements <pair> of a model that let geoms touch."""
     each = zip(model.pair_geom1, model.pair_geom2, strict=True)
     names = [[model.geom(g).name for g in pair] for pair in each if {*pair} <= {*touch.geoms}]
     return " and ".join(f'<pair geom1="{a}" geom2="{b}"/>' for a, b in names)

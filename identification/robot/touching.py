@@ -105,7 +105,7 @@ def is_contradicted(robot: Robot, logs: Sequence[Log], touches: Sequence[Touch])
 
 @quiet()
 def _contacts(plant: JointPlant, log: Log) -> list[dict[tuple[int, int], tuple[set[int], float]]]:
-    """In each state that is looked at, the geoms of each pair of bodies and their depth."""
+    """Returns, by state, the geoms of each pair of bodies that touch, and their depth."""
     model, start = plant.model, plant.bare.start or own_start(plant.model)
     data, out = mujoco.MjData(model), []
     measured = [(i, k) for k, (field, i) in enumerate(output_columns(model, log.output_names))
@@ -129,6 +129,6 @@ def _contacts(plant: JointPlant, log: Log) -> list[dict[tuple[int, int], tuple[s
 
 
 def _left(plant: JointPlant, length: float, log: Log) -> float:
-    """What a model leaves unexplained of a log; all where it cannot be simulated."""
+    """Returns what a model leaves unexplained of a log; all where it cannot be simulated."""
     left = unexplained(plant, length, log)
     return np.inf if left is None else float(left.sum())

@@ -22,7 +22,7 @@ TRUST = {  # what a user may know better than a check
 
 
 def trusted(words: Sequence[Any], where: str, judged: Mapping[str, str] = TRUST) -> tuple[str, ...]:
-    """The judgements that a user overrules.
+    """Returns the judgements that a user overrules.
 
     Args:
         words: of those that are judged.

@@ -103,7 +103,7 @@ def plant_of_reading(plant: JointPlant, log: Log, other: Log) -> JointPlant:
 
 
 def _cure(log: Log, column: Mapping[str, str], model: mujoco.MjModel, file: RobotFile) -> str:
-    """What to write into the model, or into the log's TOML where the model's ranges allow it."""
+    """Returns what to write into the model, or the log's TOML where the model's ranges allow it."""
     names, factors = log.input_names, {column[n]: f for n, f in log.factors.items() if n in column}
     in_log = how_to_turn([column[n] for n in names], factors)
     if file.model.suffix.lower() == ".urdf":  # it has no gears that could be written

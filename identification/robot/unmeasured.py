@@ -87,7 +87,7 @@ def _falling_slides(model: mujoco.MjModel, log: Log) -> set[int]:
 
 
 def _refusal(file: RobotFile, model: mujoco.MjModel, log: Log, j: int) -> InputError:
-    """The error for joint j."""
+    """Returns the error for joint j."""
     kind, joint, body = (
         _WORDS[int(model.jnt_type[j])],
         model.joint(j).name,
@@ -131,7 +131,7 @@ def felt_trees(model: mujoco.MjModel, log: Log) -> set[int]:
 
 
 def _is_welded(model: mujoco.MjModel, body: int) -> bool:
-    """Whether an equality welds a body to one that does not move."""
+    """Returns whether an equality welds a body to one that does not move."""
     return any(
         {int(model.body_weldid[b]) for b in _bodies(model, e)} == {int(model.body_weldid[body]), 0}
         for e in np.flatnonzero((model.eq_type == _WELD) & model.eq_active0.astype(bool))
@@ -139,7 +139,7 @@ def _is_welded(model: mujoco.MjModel, body: int) -> bool:
 
 
 def _bodies(model: mujoco.MjModel, equality: np.integer) -> tuple[int, int]:
-    """The two bodies that an equality between bodies or sites ties to each other."""
+    """Returns the two bodies that an equality between bodies or sites ties to each other."""
     a, b = int(model.eq_obj1id[equality]), int(model.eq_obj2id[equality])
     if int(model.eq_objtype[equality]) == _SITE:
         return int(model.site_bodyid[a]), int(model.site_bodyid[b])
@@ -147,7 +147,7 @@ def _bodies(model: mujoco.MjModel, equality: np.integer) -> tuple[int, int]:
 
 
 def _line(file: RobotFile, kind: str) -> str:
-    """Where the model's file has a joint of a kind; the line where it has one alone."""
+    """Returns the line where the model's file has a joint of a kind; "" unless it has just one."""
     wanted = rf"type\s*=\s*[\"']{kind}[\"']" + ("|<freejoint" if kind == "free" else "")
     text = read_bytes(file.model, what=MODEL).decode(errors="replace")
     lines = [n for n, line in enumerate(text.splitlines(), 1) for _ in re.findall(wanted, line)]

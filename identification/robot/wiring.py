@@ -135,7 +135,7 @@ def refuse_miswired(robot: Robot, log: Log) -> None:
 
 
 def _telling(log: Log) -> Log:
-    """The beginning of a long log, in which every column moves as it does in all of it."""
+    """Returns the beginning of a long log, in which every column moves as it does in all of it."""
     signals, n = np.hstack([log.inputs, log.outputs]), MOST_SAMPLES
     enough = MOVES * signals.std(axis=0)
     while n < len(log) and (signals[:n].std(axis=0) < enough).any():
@@ -197,7 +197,7 @@ class _Balance:
         return self.own is not None and bool((self.own > NEEDED).any())
 
     def confirms(self, reading: Reading, left: np.ndarray) -> bool:
-        """Whether forces speak for a reading that leaves ε (ny,)."""
+        """Returns whether forces speak for a reading that leaves ε (ny,)."""
         k = list(reading.columns)
         if self.own is None:
             return bool((left[k] < UNEXPLAINED).all())
@@ -209,7 +209,7 @@ class _Balance:
 def _promising(
     plant: JointPlant, length: float, log: Log, readings: Iterable[Reading]
 ) -> Iterator[Reading]:
-    """The readings that a few windows do not speak against."""
+    """Yields the readings that a few windows do not speak against."""
     if log.duration < 2 * FEW_WINDOWS * length:
         yield from readings
         return
@@ -232,7 +232,7 @@ def lengths_of(robot: Robot, log: Log) -> list[float]:
 def _if_far_better(
     plant: JointPlant, length: float, log: Log, own: np.ndarray, reading: Reading
 ) -> np.ndarray | None:
-    """ε of a reading; None as soon as a part of the windows shows that it is not far better."""
+    """Returns ε of a reading; None as soon as a part of the windows is not far better."""
     of_reading = plant_of_reading(plant, log, reading.log)
     left = None
     for part in PARTS:
@@ -245,7 +245,7 @@ def _if_far_better(
 def _of_reading(
     plant: JointPlant, length: float, log: Log, other: Log, most: int = MOST_WINDOWS
 ) -> np.ndarray | None:
-    """ε of another reading of a log; see `unexplained`."""
+    """Returns ε of another reading of a log; see `unexplained`."""
     return unexplained(plant_of_reading(plant, log, other), length, other, most)
 
 

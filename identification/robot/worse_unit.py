@@ -14,7 +14,7 @@ LEAST = 0.1  # rise of the mean square of one unit that is told
 
 
 def worse_unit(confirmed: Sequence[Confirmation]) -> list[str]:
-    """One sentence that names the outputs that are predicted worse, where others are not.
+    """Returns one sentence that names the outputs that are predicted worse, where others are not.
 
     Args:
         confirmed: what was compared on each record that no fit has seen.
@@ -33,7 +33,7 @@ def worse_unit(confirmed: Sequence[Confirmation]) -> list[str]:
 
 
 def _rises(confirmed: Sequence[Confirmation]) -> dict[str, float]:
-    """Rise of the mean square by unit, over records, each of which counts alike."""
+    """Returns the rise of the mean square by unit, over records, each of which counts alike."""
     before, after = (
         _squares([getattr(c, name) for c in confirmed])
         for name in ("before_by_unit", "after_by_unit")
@@ -42,11 +42,11 @@ def _rises(confirmed: Sequence[Confirmation]) -> dict[str, float]:
 
 
 def _squares(each: Sequence[Mapping[str, float]]) -> dict[str, float]:
-    """Sums of squares over records, by unit."""
+    """Returns sums of squares over records, by unit."""
     units = dict.fromkeys(unit for errors in each for unit in errors)
     return {unit: sum(errors.get(unit, 0.0) ** 2 for errors in each) for unit in units}
 
 
 def _told(rises: Mapping[str, float]) -> str:
-    """The outputs with the change of their mean square."""
+    """Returns the outputs with the change of their mean square, in words."""
     return listed([f"the {kind(u)} (mean square {100 * r:+z.0f} %)" for u, r in rises.items()])

@@ -84,7 +84,7 @@ def write_robot(
 
 
 def _known(robot: Robot, name: str, value: float) -> dict[str, object]:
-    """Mean and std of the prior of a parameter that is written with a new value.
+    """Returns mean and std of the prior of a parameter that is written with a new value.
 
     Of the size of an effect that was named nothing was known but what is plausible.
     """
@@ -101,18 +101,18 @@ def _known(robot: Robot, name: str, value: float) -> dict[str, object]:
 
 
 def _unless(robot: Robot, name: str, known: float) -> dict[str, object]:
-    """The std, where the robot's file did not say it to the last digit."""
+    """Returns the std, where the robot's file did not say it to the last digit."""
     return {} if "known" in robot.file.records.get(name, {}) else {"known": known}
 
 
 def _means(names: Sequence[str], own_values: Mapping[str, Mapping[str, float]]) -> dict[str, float]:
-    """The mean over records of what each has for itself, by name."""
+    """Returns the mean over records of what each has for itself, by name."""
     each = {n: [own[n] for own in own_values.values() if n in own] for n in names}
     return {n: sum(values) / len(values) for n, values in each.items()}
 
 
 def _text(text: str) -> str:
-    """A basic string of TOML, written as JSON, whose escapes are valid in TOML too."""
+    """Returns a basic string of TOML, written as JSON, whose escapes are valid in TOML too."""
     return json.dumps(text, ensure_ascii=False)
 
 

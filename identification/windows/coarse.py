@@ -28,7 +28,7 @@ WINDOWS = 10  # on which slopes are compared
 
 
 def own_step(plant: Plant) -> float:
-    """The time step of the user's model [s], whatever steps simulations take."""
+    """Returns the time step of the user's model [s], whatever steps simulations take."""
     model = plant.bare.model if isinstance(plant, JointPlant) else plant.model
     return float(model.opt.timestep)
 
@@ -36,7 +36,7 @@ def own_step(plant: Plant) -> float:
 def with_longest_steps(
     parts: Sequence[Shooting], q: Sequence[np.ndarray], d: Sequence[np.ndarray]
 ) -> list[Shooting]:
-    """The same windows with the longest steps that change what is predicted by less than the bound.
+    """Returns the windows with the longest steps that change predictions by less than the bound.
 
     Args:
         parts: windows of each record, all of one plant.
@@ -61,7 +61,7 @@ def with_longest_steps(
 def with_longest_slope_steps(
     parts: Sequence[Shooting], q: Sequence[np.ndarray], d: Sequence[np.ndarray]
 ) -> list[Shooting]:
-    """The same windows with the longest steps of simulations for slopes that keep the bound.
+    """Returns the windows with the longest steps of simulations for slopes that keep the bound.
 
     Args:
         parts: windows of each record, all of one plant.
@@ -85,7 +85,7 @@ def with_longest_slope_steps(
 
 
 def _steps(parts: Sequence[Shooting]) -> Iterator[int]:
-    """Numbers of steps of the model that divide the samples of all records, above one."""
+    """Returns numbers of steps of the model, above one, that divide all records' samples."""
     each = [
         substeps(part.predictor.log.sampling_time, own_step(part.predictor.plant)) for part in parts
     ]
@@ -93,7 +93,7 @@ def _steps(parts: Sequence[Shooting]) -> Iterator[int]:
 
 
 def _most(each: Iterator[int], differs: Callable[[int], bool]) -> int:
-    """The largest of some numbers before the first that differs; one when there is none."""
+    """Returns the largest of some numbers before the first that differs; one when there is none."""
     best = 1
     for n in each:
         try:
@@ -106,12 +106,12 @@ def _most(each: Iterator[int], differs: Callable[[int], bool]) -> int:
 
 
 def _exceeds(errors: Sequence[np.ndarray], of: Sequence[np.ndarray], share: float) -> bool:
-    """Whether errors exceed a share of something in any of the last columns, in its norm."""
+    """Returns whether the norm of errors exceeds a share of that of `of` in any last column."""
     return bool(np.any(_norms(errors) > share * _norms(of)))
 
 
 def _norms(each: Sequence[np.ndarray]) -> np.ndarray:
-    """Norms of the last columns of some arrays, over all of them."""
+    """Returns the norm of each column (last axis) over all rows of some arrays."""
     rows = np.concatenate([x.reshape(-1, x.shape[-1]) for x in each])
     return np.asarray(np.linalg.norm(rows, axis=0))
 
@@ -119,7 +119,7 @@ def _norms(each: Sequence[np.ndarray]) -> np.ndarray:
 def _outputs(
     steps: int, parts: Sequence[Shooting], q: Sequence[np.ndarray], d: Sequence[np.ndarray]
 ) -> list[np.ndarray]:
-    """Outputs of windows, shape (W, L, ny) a record, with longer steps."""
+    """Returns outputs of windows, shape (W, L, ny) a record, with longer steps."""
     plant = parts[0].predictor.plant
     if isinstance(plant, JointPlant):
         parts = [_of(part, replace(plant, steps=steps)) for part in parts]
@@ -133,14 +133,14 @@ def _of(part: Shooting, plant: JointPlant) -> Shooting:
 def _some(
     part: Shooting, q: np.ndarray, d: np.ndarray, records: int
 ) -> tuple[Shooting, np.ndarray, np.ndarray]:
-    """A few windows of one record of so many."""
+    """Returns a few windows of one record of so many."""
     few = max(2, WINDOWS // records)
     at = np.unique(np.linspace(0, len(d) - 1, few).astype(int))
     return part.rows(at), q, d[at]
 
 
 def _columns(steps: int, part: Shooting, q: np.ndarray, d: np.ndarray) -> np.ndarray:
-    """Slopes of states and parameters, shape (W m, nx + p)."""
+    """Returns slopes of states and parameters, shape (W m, nx + p)."""
     plant = part.predictor.plant
     if isinstance(plant, JointPlant):
         part = _of(part, replace(plant, slope_steps=steps))

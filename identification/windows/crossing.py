@@ -18,7 +18,7 @@ from identification.windows.settling import Settled, search
 
 @dataclass(frozen=True)
 class Starts:
-    """Where a model begins the windows of a record.
+    """The starts of a record's windows under a model.
 
     Attributes:
         d: changes of the initial states, shape (W, nx).
@@ -30,7 +30,7 @@ class Starts:
 
 
 def best_starts(own: Starts, others: Sequence[Starts]) -> tuple[np.ndarray, np.ndarray]:
-    """Where the model with the least error begins each window, and whether that is another one.
+    """Returns each window's start by the model with the least error, and whether it is another one.
 
     Args:
         own: of a model.
@@ -51,7 +51,7 @@ def sought_from_others(
     held: HeldRecords, moves: Sequence[np.ndarray],
     starts: Sequence[tuple[np.ndarray, np.ndarray]], known: Sequence[np.ndarray] | None = None,
 ) -> tuple[Settled, ...]:  # fmt: skip
-    """Windows at given states, some of them sought again from others: the best of both.
+    """Returns windows at given states, some sought again from other states: the better of both.
 
     Args:
         held: the windows.

@@ -20,7 +20,7 @@ from identification.windows.tangents import Tangent, along_states
 
 @dataclass(frozen=True)
 class StatesStep:
-    """Where a trial step ends.
+    """The end of a trial step.
 
     Attributes:
         d: changes of the initial states there, shape (W, nx).
@@ -55,7 +55,7 @@ class EachWindow:
         return np.asarray(np.sum(self.tangent.r**2, axis=1))
 
     def step(self, μ: Cost) -> StatesStep:
-        """The damped step of each window."""
+        """Returns the damped step of each window."""
         at = self.tangent
         damping = np.asarray(μ)[:, None]
         along = np.einsum("wmk,wm->wk", at.U, at.r) * at.s / (at.s**2 + damping)
@@ -64,15 +64,15 @@ class EachWindow:
         return StatesStep(self.d + dd, self.windows.residual(self.d + dd), promised)
 
     def cost_after(self, step: StatesStep) -> np.ndarray:
-        """Sums of squares after a step, shape (W,)."""
+        """Returns sums of squares after a step, shape (W,)."""
         squares = np.sum(step.r**2, axis=1)
         return np.where(np.isfinite(squares), squares, np.inf)
 
     def bend(self, step: StatesStep, after: Cost, μ: Cost) -> None:
-        """The steps are never bent."""
+        """Does nothing: the steps are never bent."""
 
     def moved(self, step: StatesStep, taken: np.ndarray) -> EachWindow:
-        """The criteria after a step of those windows that accept it, with the slopes before it."""
+        """Returns the criteria after a step of windows that accept it, with slopes before it."""
         d, r = (np.where(taken[:, None], new, old)
                 for new, old in ((step.d, self.d), (step.r, self.tangent.r)))  # fmt: skip
         return replace(
@@ -80,7 +80,7 @@ class EachWindow:
         )
 
     def refreshed(self, at: np.ndarray) -> EachWindow:
-        """The same with new slopes of the windows `at`, a mask."""
+        """Returns the criteria with new slopes of the windows `at`, a mask."""
         if not at.any():
             return self
         slopes = self.windows.rows(at).slopes(self.d[at], self.tangent.r[at])
@@ -88,7 +88,7 @@ class EachWindow:
                        is_fresh=self.is_fresh | at)  # fmt: skip
 
     def rows(self, keep: np.ndarray) -> EachWindow:
-        """Some of the windows, by mask or by index."""
+        """Returns some of the windows, by mask or by index."""
         return EachWindow(
             self.windows.rows(keep), self.d[keep], self.tangent.rows(keep), self.is_fresh[keep]
         )

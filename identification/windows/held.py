@@ -47,7 +47,7 @@ class Prepared:
 
 @dataclass(frozen=True, kw_only=True)
 class HeldWindows:
-    """What does not change while the initial states of windows are sought.
+    """The data that do not change while the initial states of windows are sought.
 
     Attributes:
         predictors: of each record, all parameters held.
@@ -82,7 +82,7 @@ class HeldWindows:
     at: np.ndarray | None = None
 
     def rows(self, keep: np.ndarray) -> HeldWindows:
-        """Some of the windows, by mask or by index."""
+        """Returns some of the windows, by mask or by index."""
         whole = self.whole or self
         at = (np.arange(len(self.record)) if self.at is None else self.at)[keep]
         some = replace(
@@ -98,7 +98,7 @@ class HeldWindows:
 
     @property
     def model(self) -> mujoco.MjModel:
-        """The plant's."""
+        """The plant's model."""
         return self.predictors[0].plant.model
 
     @property
@@ -107,11 +107,11 @@ class HeldWindows:
         return int(np.prod(self.outputs.shape[1:]))
 
     def residual(self, d: np.ndarray) -> np.ndarray:
-        """r of all windows at d (W, nx), shape (W, L ny + nx); NaN where one diverges."""
+        """Returns r of all windows at d (W, nx), shape (W, L ny + nx); NaN where one diverges."""
         return self._joined(self._simulated((self.whole or self).for_residuals, [d])[0], d)
 
     def slopes(self, d: np.ndarray, r: np.ndarray) -> Tangent:
-        """All windows linearised at d (W, nx), where their residual is r (W, m), without S.
+        """Returns all windows linearised at d (W, nx), where their residual is r (W, m), without S.
 
         Raises:
             DivergenceError: a window beside them diverges.
@@ -147,7 +147,7 @@ class HeldWindows:
         return self.prepared(model, 1 + self.weight.shape[1])
 
     def prepared(self, model: mujoco.MjModel, moves: int) -> Prepared:
-        """Simulations of a model, so many moves of each window."""
+        """Returns the simulations of a model for a number of moves of each window."""
         inputs, every = slower(self.inputs, self.every, self.model, model)
         n = substeps(self.predictors[0].log.sampling_time / every, model.opt.timestep)
         numbers = [(slot, np.tile(column, moves)) for slot, column in self.numbers]
@@ -165,7 +165,7 @@ class HeldWindows:
         return tuple((self.predictors[k], which == k) for k in dict.fromkeys(first))
 
     def _simulated(self, prepared: Prepared, moves: Sequence[np.ndarray]) -> np.ndarray:
-        """Outputs of k moves of the states, shape (k, W, L, ny)."""
+        """Returns outputs of k moves of the states, shape (k, W, L, ny)."""
         W, k = len(self.record), len(moves)
         starts = [moved(self.model, self.first, d) for d in moves]
         begun = State(*(np.concatenate([getattr(s, f.name) for s in starts])
@@ -190,7 +190,7 @@ class HeldWindows:
 
 
 def at_values(part: Shooting, q: np.ndarray) -> Shooting:
-    """The windows of a record with all parameters held at q (p,), in coordinates."""
+    """Returns the windows of a record with all parameters held at q (p,), in coordinates."""
     names = part.predictor.names
     values = dict(zip(names, part.space.decode(q).tolist(), strict=True))
     predictor = replace(part.predictor, names=(), fixed={**part.predictor.fixed, **values})
@@ -198,7 +198,7 @@ def at_values(part: Shooting, q: np.ndarray) -> Shooting:
 
 
 def held_windows(part: Shooting) -> HeldWindows:
-    """The windows of a record that has no free parameter."""
+    """Returns the windows of a record that has no free parameter."""
     predictor, W = part.predictor, len(part.cut.starts)
     _, numbers = predictor.settings(_NONE)
     inputs, every, hold_kind = part.held_inputs(_NONE)

@@ -27,7 +27,7 @@ class HeldRecords:
     def residuals(
         self, moves: Sequence[np.ndarray], at: Sequence[np.ndarray] | None = None
     ) -> tuple[np.ndarray, ...]:
-        """r at moves of the states (W, nx), shape (W, L ny + nx) a record; NaN where one diverges.
+        """Returns r at moves of states (W, nx), (W, L ny + nx) a record; NaN where one diverges.
 
         Args:
             moves: one array a record.
@@ -46,7 +46,7 @@ class HeldRecords:
 
 
 def hold(parts: Sequence[Shooting]) -> HeldRecords:
-    """What the held parameters make of the windows of some records, one a record."""
+    """Returns the windows of some records with parameters held, grouped into batches."""
     each, groups = [held_windows(part) for part in parts], []
     rest = list(range(len(each)))
     while rest:
@@ -57,7 +57,7 @@ def hold(parts: Sequence[Shooting]) -> HeldRecords:
 
 
 def _is_alike(one: HeldWindows, other: HeldWindows) -> bool:
-    """Whether the windows of two records can be simulated in one batch."""
+    """Returns whether the windows of two records can be simulated in one batch."""
     return (
         one.predictors[0].plant is other.predictors[0].plant
         and [slot for slot, _ in one.numbers] == [slot for slot, _ in other.numbers]
@@ -72,7 +72,7 @@ def _is_alike(one: HeldWindows, other: HeldWindows) -> bool:
 
 
 def _together(each: Sequence[HeldWindows]) -> HeldWindows:
-    """The windows of several records that are alike, one record after the other."""
+    """Returns the windows of several records that are alike, one record after the other."""
     columns = zip(*([column for _, column in h.numbers] for h in each), strict=True)
     slots = [slot for slot, _ in each[0].numbers]
     first = State(

@@ -13,7 +13,7 @@ from identification.windows.windows import windows
 
 
 def joined(logs: Sequence[Log], length: float, name: str = "joined") -> Log:
-    """Records one after the other, each cut to whole windows.
+    """Returns records joined one after the other, each cut to whole windows.
 
     No window of this length crosses the border between two records. A free run and a discovery know
     nothing of these borders, so that only functions that start again in each window of this length

@@ -85,7 +85,7 @@ def settle(
 
 
 def search(held: HeldWindows, d: np.ndarray, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The best states of windows and the residuals there, sought from d (W, nx), where it is r.
+    """Returns the best states of windows and the residuals there, sought from d (W, nx) with r.
 
     Raises:
         DivergenceError: the simulation of a window diverged beside where the search begins.
@@ -107,7 +107,7 @@ def _begun(
 
 
 def _joined(each: Sequence[Tangent], d: np.ndarray) -> Tangent | None:
-    """Slopes of the states of all windows; None where they are of fewer states."""
+    """Returns slopes of the states of all windows; None where they are of fewer states."""
     if any(t.s.shape[1] != d.shape[1] for t in each):
         return None
     names = ("r", "U", "s", "Vt", "size")
@@ -118,7 +118,7 @@ def _joined(each: Sequence[Tangent], d: np.ndarray) -> Tangent | None:
 def _searched(
     at: EachWindow, expected: np.ndarray | None = None
 ) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
-    """The best states and the residuals there; a finished window is no longer simulated.
+    """Returns the best states and the residuals there; a finished window is no longer simulated.
 
     Args:
         at: the windows where the search begins.
@@ -149,7 +149,7 @@ def _searched(
 
 
 def _sought_again(held: HeldWindows, d: np.ndarray, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The same where windows that ended far worse than the others may end better from elsewhere.
+    """Returns states and residuals after windows that ended far worse are sought from elsewhere.
 
     Where a joint sticks in a window, its criterion has several minima.
     """

@@ -38,7 +38,7 @@ RK4 = int(mujoco.mjtIntegrator.mjINT_RK4)
 
 @dataclass(frozen=True)
 class Shooting:
-    """What does not change during a search over windows.
+    """The data that do not change during a search over windows.
 
     Attributes:
         predictor: the plant, the log and the names of p free parameters.
@@ -58,21 +58,21 @@ class Shooting:
     has_rough_slopes: bool = False
 
     def rows(self, keep: np.ndarray) -> Shooting:
-        """Some of the windows, by mask or by index."""
+        """Returns some of the windows, by mask or by index."""
         return replace(self, cut=self.cut.rows(keep), first=self.first.rows(keep))
 
     @property
     def times(self) -> np.ndarray:
-        """When each window begins in its record, shape (W,) [s]."""
+        """The time at which each window begins in its record, shape (W,) [s]."""
         log = self.predictor.log
         return log.begun + log.sampling_time * self.cut.starts
 
     def states(self, d: np.ndarray) -> State:
-        """x̄ ⊕ d, W rows."""
+        """Returns x̄ ⊕ d, W rows."""
         return moved(self.predictor.plant.model, self.first.states, d)
 
     def residual(self, q: np.ndarray, d: np.ndarray) -> np.ndarray:
-        """r of all windows at q and d (W, nx), shape (W, L ny + nx).
+        """Returns r of all windows at q and d (W, nx), shape (W, L ny + nx).
 
         Raises:
             DivergenceError: a window left the finite numbers.
@@ -80,20 +80,20 @@ class Shooting:
         return self.joined(self.outputs(q[None], [d])[0], d)
 
     def error(self, r: np.ndarray) -> np.ndarray:
-        """y - ŷ, shape (W, L, ny), of a residual of `residual`."""
+        """Returns y - ŷ, shape (W, L, ny), of a residual of `residual`."""
         outputs = self.cut.outputs
         whitened = r[:, : outputs[0].size].reshape(outputs.shape)
         return whitened @ np.linalg.inv(self.whitener).T
 
     def joined(self, y: np.ndarray, d: np.ndarray) -> np.ndarray:
-        """r, shape (W, L ny + nx), of outputs (W, L, ny) and d (W, nx)."""
+        """Returns r, shape (W, L ny + nx), of outputs (W, L, ny) and d (W, nx)."""
         left = (self.cut.outputs - y) @ self.whitener.T
         return np.hstack([left.reshape(len(d), -1), -d * self.first.weight])
 
     def outputs(
         self, q: np.ndarray, moves: Sequence[np.ndarray], is_rough: bool = False
     ) -> np.ndarray:
-        """Outputs of k points q (k, p), each over all windows from its d: (k, W, L, ny).
+        """Returns outputs of k points q (k, p), each over all windows from its d: (k, W, L, ny).
 
         Args:
             q: the points.
@@ -128,7 +128,7 @@ class Shooting:
         return y.reshape(len(q), W, *y.shape[1:])
 
     def held_inputs(self, values: np.ndarray) -> tuple[np.ndarray, int, str]:
-        """Inputs of all windows for k value sets, the number of inputs per sample, and their hold.
+        """Returns inputs of all windows for k value sets, their number per sample, and their hold.
 
         The plant changes the inputs of the whole log, because its effects may depend on inputs
         before the window.
@@ -149,7 +149,7 @@ class Shooting:
 
 
 def rough(plant: Plant) -> mujoco.MjModel:
-    """The model for slopes: a smooth one where the plant has it, one evaluation of it a step."""
+    """Returns the model for slopes: smooth where the plant has one, with one evaluation a step."""
     model: mujoco.MjModel = getattr(plant, "smooth", plant.model)
     if model.opt.integrator != RK4:
         return model
@@ -159,7 +159,7 @@ def rough(plant: Plant) -> mujoco.MjModel:
 
 
 def at_own_steps(model: mujoco.MjModel, own: mujoco.MjModel) -> mujoco.MjModel:
-    """A model whose steps may be longer, with the steps of another one."""
+    """Returns a model whose steps may be longer, with the steps of another one."""
     model = copy.copy(model)
     model.opt.timestep = own.opt.timestep
     return model
@@ -168,7 +168,7 @@ def at_own_steps(model: mujoco.MjModel, own: mujoco.MjModel) -> mujoco.MjModel:
 def slower(
     inputs: np.ndarray, every: int, model: mujoco.MjModel, other: mujoco.MjModel
 ) -> tuple[np.ndarray, int]:
-    """Inputs, `every` of them a sample, for another model whose steps may be longer.
+    """Returns inputs, `every` of them a sample, for another model whose steps may be longer.
 
     Args:
         inputs: shape (k, steps + 1, nu); the last one stands behind the last step.

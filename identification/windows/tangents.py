@@ -35,11 +35,11 @@ class Tangent:
     size: np.ndarray
 
     def rows(self, keep: np.ndarray) -> Tangent:
-        """Some of the windows, by mask or by index."""
+        """Returns some of the windows, by mask or by index."""
         return Tangent(**{f.name: getattr(self, f.name)[keep] for f in fields(self)})
 
     def with_rows(self, at: np.ndarray, other: Tangent) -> Tangent:
-        """The same with other values of the windows `at`, a mask or indices."""
+        """Returns the tangent with other values of the windows `at`, a mask or indices."""
         changed = {}
         for f in fields(self):
             changed[f.name] = np.array(getattr(self, f.name))
@@ -58,7 +58,7 @@ class Tangent:
         return int((self.s > 0).sum())
 
     def step(self, damping: float) -> tuple[np.ndarray, np.ndarray]:
-        """The damped step: Δq (p,) and Δd (W, nx)."""
+        """Returns the damped step: Δq (p,) and Δd (W, nx)."""
         against = np.swapaxes(self.U, 1, 2) @ self.S  # Uᵀ S, (W, nx, p)
         left = np.einsum("wmk,wm->wk", self.U, self.r)
         share = self.s**2 / (self.s**2 + damping)
@@ -75,7 +75,7 @@ class Tangent:
 
 
 def decomposed(r: np.ndarray, X: np.ndarray, S: np.ndarray) -> Tangent:
-    """The tangent of a residual r (W, m) with slopes X (W, m, nx) and S (W, m, p)."""
+    """Returns the tangent of a residual r (W, m) with slopes X (W, m, nx) and S (W, m, p)."""
     size = np.linalg.norm(X, axis=1)
     size = np.where(size > 0, size, 1.0)
     U, s, Vt = np.linalg.svd(X / size[:, None], full_matrices=False)
@@ -84,6 +84,6 @@ def decomposed(r: np.ndarray, X: np.ndarray, S: np.ndarray) -> Tangent:
 
 
 def along_states(t: Tangent, moves: np.ndarray) -> np.ndarray:
-    """X Δd of each window, shape (W, m)."""
+    """Returns X Δd of each window, shape (W, m)."""
     along = t.s * np.einsum("wkx,wx->wk", t.Vt, moves * t.size)
     return np.einsum("wmk,wk->wm", t.U, along)

@@ -1,4 +1,4 @@
-"""How well a model with given values predicts a log over a horizon, from any time of the log.
+"""The error with which a model with given values predicts a log over a horizon, from any time.
 
 r_w = y_w - ŷ_w(θ, x̄_w ⊕ d_w),   d_w the state at the start of window w that explains it best
 
@@ -26,7 +26,7 @@ from identification.windows.windows import Windows, first_states, some, spread, 
 def window_error(
     plant: Plant, log: Log, length: float, values: Mapping[str, float] | None = None
 ) -> np.ndarray:
-    """Errors of the outputs in windows of a log, each window from its best initial state.
+    """Returns the errors of the outputs in windows of a log, each from its best initial state.
 
     Args:
         plant: the model.
@@ -46,7 +46,7 @@ def window_error(
 
 
 def first_error(plant: Plant, log: Log, length: float, most: int, part: float = 1.0) -> np.ndarray:
-    """Errors in the same windows, each from the mean of the prior of its initial state.
+    """Returns errors in the same windows, each from the mean of the prior of its initial state.
 
     Args:
         plant: the model, with its own values.
@@ -70,7 +70,7 @@ def first_error(plant: Plant, log: Log, length: float, most: int, part: float = 
 def _fixed(
     plant: Plant, log: Log, cut: Windows, values: Mapping[str, float] | None
 ) -> tuple[Shooting, np.ndarray]:
-    """Windows of a model without free parameters, and zero changes of their states (W, nx)."""
+    """Returns a model's windows without free parameters, and zero changes of states (W, nx)."""
     none = np.zeros(0)
     predictor = Predictor(plant, log, (), dict(values or {}))
     sigma = float(np.sqrt(np.mean(noise_floor(log.outputs) ** 2))) or 1.0

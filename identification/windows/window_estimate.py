@@ -38,7 +38,7 @@ STEPS = (FORWARD_STEP, 100 * FORWARD_STEP)  # of the differences that the std re
 
 @dataclass(frozen=True, kw_only=True)
 class WindowEstimate:
-    """Where a search over windows ended.
+    """The result of a search over windows.
 
     Attributes:
         values: the estimates by name.
@@ -69,7 +69,7 @@ class WindowEstimate:
 
     @property
     def rms(self) -> float:
-        """Of the residual over all windows and outputs."""
+        """Rms of the residual over all windows and outputs."""
         return float(np.sqrt(np.mean(self.residual**2)))
 
 
@@ -146,7 +146,7 @@ def estimate_windows(
 
 
 def _resolved(at: WindowsAtPoint) -> Identifiability:
-    """What the windows show where a search ended, with the errors of their differences."""
+    """Returns what the windows show where a search ended, with the errors of their differences."""
     shooting, q, d = at.shooting, at.q, at.d
 
     def at_two_steps(step: float) -> tuple[np.ndarray, np.ndarray]:
@@ -158,7 +158,7 @@ def _resolved(at: WindowsAtPoint) -> Identifiability:
 
 
 def _felt(at: WindowsAtPoint) -> tuple[np.ndarray, tuple[str, ...], Log]:
-    """Sensitivities of the outputs to q, states projected out, for `refuse_without_effect`."""
+    """Returns sensitivities of outputs to q, states projected out, for `refuse_without_effect`."""
     shooting, tangent = at.shooting, at.tangent
     outputs, p = shooting.cut.outputs, tangent.S.shape[2]
     J = tangent.projected.reshape(*tangent.r.shape, p)[:, : outputs[0].size]

@@ -44,31 +44,31 @@ class WindowsAtPoint:
         return float(np.sum(self.tangent.r**2))
 
     def step(self, μ: Cost) -> tuple[np.ndarray, np.ndarray]:
-        """The step Δq (p,), which `after` clips to the bounds, and Δd (W, nx)."""
+        """Returns the step Δq (p,), which `after` clips to the bounds, and Δd (W, nx)."""
         return self.tangent.step(float(μ))
 
     def after(self, step: tuple[np.ndarray, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-        """q, clipped to its bounds, and d after a step."""
+        """Returns q, clipped to its bounds, and d after a step."""
         space = self.shooting.space
         return np.clip(self.q + step[0], space.lower, space.upper), self.d + step[1]
 
     def cost_after(self, step: tuple[np.ndarray, np.ndarray]) -> float:
-        """The sum of squares after a step."""
+        """Returns the sum of squares after a step."""
         try:
             return float(np.sum(self.shooting.residual(*self.after(step)) ** 2))
         except InputError:  # the simulation diverged, or the robot has no such start
             return np.inf
 
     def bend(self, step: tuple[np.ndarray, np.ndarray], after: Cost, μ: Cost) -> None:
-        """The steps are never bent."""
+        """Does nothing: the steps are never bent."""
 
     def moved(self, step: tuple[np.ndarray, np.ndarray], taken: np.ndarray) -> WindowsAtPoint:
-        """The criterion after a step."""
+        """Returns the criterion after a step."""
         return windows_at(self.shooting, *self.after(step))
 
 
 def windows_at(shooting: Shooting, q: np.ndarray, d: np.ndarray) -> WindowsAtPoint:
-    """All windows, linearised at q (p,) and d (W, nx).
+    """Returns all windows, linearised at q (p,) and d (W, nx).
 
     Raises:
         DivergenceError: a window left the finite numbers.
@@ -78,7 +78,7 @@ def windows_at(shooting: Shooting, q: np.ndarray, d: np.ndarray) -> WindowsAtPoi
 
 @dataclass(frozen=True)
 class WindowsEnd:
-    """Where a search ended.
+    """The end of a search.
 
     Attributes:
         at: the criterion at the last point.

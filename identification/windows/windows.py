@@ -46,7 +46,7 @@ class Windows:
     starts: np.ndarray
 
     def rows(self, keep: np.ndarray) -> Windows:
-        """Some of the windows, by mask or by index."""
+        """Returns some of the windows, by mask or by index."""
         return Windows(self.inputs[keep], self.outputs[keep], self.starts[keep])
 
 
@@ -78,7 +78,7 @@ def windows(log: Log, length: float) -> Windows:
 
 
 def spread(cut: Windows, most: int) -> Windows:
-    """At most so many of some windows, evenly spread over the record."""
+    """Returns at most `most` of some windows, evenly spread over the record."""
     n = len(cut.starts)
     return cut if n <= most else cut.rows(np.linspace(0, n - 1, most).astype(int))
 
@@ -110,13 +110,13 @@ class FirstStates:
     weight: np.ndarray
 
     def rows(self, keep: np.ndarray) -> FirstStates:
-        """The prior of some of the windows, by mask or by index."""
+        """Returns the prior of some of the windows, by mask or by index."""
         s = self.states
         return FirstStates(State(s.qpos[keep], s.qvel[keep], s.act[keep]), self.weight)
 
 
 def first_states(predictor: Predictor, values: np.ndarray, cut: Windows) -> FirstStates:
-    """States at the windows' starts: as measured, and from a free run where something is not.
+    """Returns states at windows' starts: as measured, and from a free run where something is not.
 
     Where the free run diverges, states that are not measured begin at the plant's start and are
     free without limit. Where all positions are measured, no free run is simulated.
@@ -155,7 +155,7 @@ def first_states(predictor: Predictor, values: np.ndarray, cut: Windows) -> Firs
 def extended(
     predictor: Predictor, values: np.ndarray, cut: Windows, first: FirstStates
 ) -> FirstStates:
-    """First states with those that a plant has beside its model's, at their end.
+    """Returns first states, extended by those that a plant has beside its model's.
 
     Args:
         predictor: the plant and the log.
@@ -173,7 +173,7 @@ def extended(
 
 
 def _measured(model: mujoco.MjModel, log: Log) -> State | None:
-    """The states of all samples where every position is measured, and nothing else is a state."""
+    """Returns the states of all samples; None where some states are not measured positions."""
     places = {i for field, i in output_columns(model, log.output_names) if field == "qpos"}
     if model.na or model.nq != model.nv or len(places) < model.nq:
         return None
@@ -197,7 +197,7 @@ def _put_measured(
 
 
 def _motion(model: mujoco.MjModel, run: State) -> np.ndarray:
-    """Rms distance of each tangent coordinate from the start of a run, shape (nx,)."""
+    """Returns the rms distance of each tangent coordinate from the start of a run, shape (nx,)."""
     first = State(*(np.broadcast_to(x[0], x.shape) for x in (run.qpos, run.qvel, run.act)))
     far = apart(model, first, run)
     parts = []
@@ -209,7 +209,7 @@ def _motion(model: mujoco.MjModel, run: State) -> np.ndarray:
 
 
 def moved(model: mujoco.MjModel, states: State, step: np.ndarray) -> State:
-    """States moved along their tangent (qpos, qvel, act), by one step for all or one for each."""
+    """Returns states moved along their tangent (qpos, qvel, act), by one step for all or each."""
     W, nv = len(states.qpos), model.nv
     steps = np.broadcast_to(step, (W, 2 * nv + model.na))
     if model.nq == nv:  # no quaternion
@@ -222,7 +222,7 @@ def moved(model: mujoco.MjModel, states: State, step: np.ndarray) -> State:
 
 
 def apart(model: mujoco.MjModel, states: State, others: State) -> np.ndarray:
-    """The steps that move states to others, the inverse of `moved`, shape (W, nx)."""
+    """Returns the steps that move states to others, the inverse of `moved`, shape (W, nx)."""
     if model.nq == model.nv:  # no quaternion
         turned = others.qpos - states.qpos
     else:
