@@ -1,4 +1,4 @@
-"""Where the files that come with the program lie."""
+"""The places of the files that come with the program."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ _HERE = Path(__file__).resolve().parent
 
 
 def model_path(name: str = "inca6d.xml") -> Path:
-    """The path of a model that comes with the program, installed or in a checkout.
+    """Returns the path of a model that comes with the program, installed or in a checkout.
 
     Args:
         name: of the file.
@@ -22,7 +22,7 @@ def model_path(name: str = "inca6d.xml") -> Path:
 
 
 def example_path(name: str = "log.csv") -> Path:
-    """The path of an example that comes with the program, installed or in a checkout.
+    """Returns the path of an example that comes with the program, installed or in a checkout.
 
     Args:
         name: of the file; a wheel holds `log.csv` with its `log.toml`, a checkout holds more.
@@ -34,7 +34,7 @@ def example_path(name: str = "log.csv") -> Path:
 
 
 def _shipped(folder: str, name: str) -> Path:
-    """In a wheel the folders lie in the package, in a checkout beside it, where a user looks."""
+    """Returns the path of a shipped file: in the package if in a wheel, else beside it."""
     places = (_HERE / folder, _HERE.parent / folder)
     for place in places:
         if (place / name).is_file():

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 
 def assignments(texts: Sequence[str], option: str, example: str = "m=0.2") -> dict[str, float]:
-    """The values of an option that is given as NAME=VALUE.
+    """Returns the values of an option that is given as NAME=VALUE.
 
     Args:
         texts: what was given.
@@ -41,7 +41,7 @@ def assignments(texts: Sequence[str], option: str, example: str = "m=0.2") -> di
 
 
 def effects_of(words: Sequence[str]) -> tuple[tuple[Effect, ...], dict[str, float]]:
-    """The effects of the catalogue that NAME.SIZE=VALUE words name, and their values.
+    """Returns the effects of the catalogue that NAME.SIZE=VALUE words name, and their values.
 
     NAME alone stands for its first size, NAME.SIZE@3 for drive 3.
 

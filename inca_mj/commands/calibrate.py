@@ -85,7 +85,7 @@ class Calibrate:
 
 
 def text(found: Calibration) -> str:
-    """The calibration for a terminal."""
+    """Returns the calibration as text for a terminal."""
     from inca_mj.report import calibration as told
 
     parts = [

@@ -1,4 +1,4 @@
-"""What the commands share: which robot, where results go, how they are said."""
+"""The parts that commands share: the robot, the place of results, and how they are said."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Values:
     """TOML file with exit points and connectors; the built-in ones are assumed."""
 
     def parameters(self) -> ParameterSet:
-        """The parameter set with the values replaced.
+        """Returns the parameter set with the values replaced.
 
         Raises:
             InputError: a value is malformed, unknown, given twice or out of bounds.
@@ -39,7 +39,7 @@ class Values:
         return parameter_set(self.set, values)
 
     def place(self) -> Geometry:
-        """The geometry.
+        """Returns the geometry.
 
         Raises:
             InputError: the file cannot be read as one.
@@ -84,7 +84,7 @@ class SavedRobot(Robot):
     """Folder of a twin that inca discover or inca calibrate saved; it has values of its own."""
 
     def check(self) -> None:
-        """As of `Robot`; a saved robot has its file, and no other is given beside it.
+        """Refuses what describes no robot, and options that do not go with a saved robot.
 
         Raises:
             InputError: it is not so.
@@ -105,7 +105,7 @@ class SavedRobot(Robot):
         return refuse_step(self.step)
 
     def twin(self, sampling_time: float) -> Twin:
-        """The robot, with a step that divides the sampling time [s].
+        """Returns the robot, with a step that divides the sampling time [s].
 
         Raises:
             InputError: there is no such twin, another robot is given beside it, or as `parameters`
@@ -121,7 +121,7 @@ class SavedRobot(Robot):
         return build_twin(self.parameters(), self.place(), timestep=step)
 
     def saved(self) -> Twin | None:
-        """The twin that was saved; None where no folder is given.
+        """Returns the twin that was saved; None where no folder is given.
 
         Raises:
             InputError: there is no such twin, or another robot is given beside it.

@@ -76,7 +76,7 @@ def compare_with(robot: SavedRobot, log: Log, trust: Sequence[str]) -> Compariso
 
 
 def summary(result: Comparison) -> str:
-    """The comparison as a text table; an output that never moves has no fit."""
+    """Returns the comparison as a text table; an output that never moves has no fit."""
     from identification.estimation.metrics import mean_fit
 
     rows = [

@@ -50,7 +50,7 @@ class Crosscheck:
 
 
 def summary(result: CrossCheck) -> str:
-    """The cross-check as a text table and its verdict."""
+    """Returns the cross-check as a text table and its verdict."""
     head = ("case", "step [ms]", "angle [rad]", "position [m]", "tension [N]")
     rows = [
         (

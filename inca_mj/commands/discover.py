@@ -152,7 +152,7 @@ class Discover:
 
 
 def as_json(found: Discovery, model: Path | None) -> dict[str, Any]:
-    """The outcome and the path of its model as plain values; what is not finite is null."""
+    """Returns the outcome and the path of its model as plain values; what is not finite is null."""
     from identification.report.discovery_json import discovery_to_json
 
     return {**discovery_to_json(found), "model": None if model is None else str(model)}
@@ -193,7 +193,7 @@ class _Report:
 
 
 def _without_zeros(robot: Twin) -> Twin:
-    """The twin without the parameters of effects that are zero, which need no row in a table."""
+    """Returns the twin without parameters of effects that are zero, which no table needs."""
     from dataclasses import replace
 
     shown = tuple(p for p in robot.parameters if p.where != "effect" or p.value)

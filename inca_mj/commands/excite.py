@@ -92,7 +92,7 @@ class Excite:
 
 
 def summary(result: Design) -> str:
-    """Std of every parameter under the PRBS and the design."""
+    """Returns the std of every parameter under the PRBS and the design."""
     found = result.best.found
     return table(
         ("parameter", "std, PRBS", "std, designed", "gain"),

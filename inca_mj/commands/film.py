@@ -127,7 +127,7 @@ class Film:
         self.robot.check()
 
     def _sources(self) -> tuple[Path, ...]:
-        """One source or two.
+        """Returns the sources, one or two.
 
         Raises:
             InputError: there are none, or more than two.
@@ -143,13 +143,13 @@ class Film:
         return self.source
 
     def _titles(self) -> list[str]:
-        """Those given, or the folders of two: run.npz and log.csv are names of many files."""
+        """Returns the given titles, or the names of the folders of two sources."""
         if self.title or len(self.source) == 1:
             return list(self.title)
         return [path.resolve().parent.name for path in self.source]
 
     def _scene(self, source: Path) -> Scene:
-        """What to film: a saved run, or a log beside the twin with the values that were asked."""
+        """Returns the scene of a saved run, or of a log beside the twin with the given values."""
         from inca_mj.commands.compare import compare_with
         from inca_mj.rendering.scene import make_scene
         from inca_mj.twin.judged import UNJUDGED

@@ -1,4 +1,4 @@
-"""What a film says while it is drawn: how long it takes, by the rate of its first frames."""
+"""The messages of a film while it is drawn: how long it takes, by the rate of its first frames."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class FilmProgress:
     _is_promised: bool = False
 
     def __call__(self, done: int, frames: int) -> None:
-        """One frame more.
+        """Counts one frame more.
 
         Args:
             done: frames that are drawn; some may have been before the first call.

@@ -13,7 +13,7 @@ MOST = 200  # points of one axis
 
 
 def grid_axes(words: Sequence[str]) -> dict[str, np.ndarray]:
-    """The axes of a grid from words such as `x=-0.4:0.4:5`.
+    """Returns the axes of a grid from words such as `x=-0.4:0.4:5`.
 
     Args:
         words: each NAME=LOW:HIGH:POINTS; lengths in m, angles in rad.

@@ -95,7 +95,7 @@ class Identify:
         return 0
 
     def _identify(self) -> Identification:
-        """What the options ask for.
+        """Returns the identification that the options ask for.
 
         Raises:
             InputError: two options do not go together, or as `inca_mj.workflows.identification`.
@@ -167,7 +167,7 @@ class Identify:
 
 
 def summary(result: Identification, fit: Fit) -> str:
-    """A fit as a text table and its verdict."""
+    """Returns a fit as a text table and its verdict."""
     from identification.estimation.metrics import mean_fit
     from identification.quantities import matched
     from identification.report.fit_verdict import fit_verdict

@@ -51,7 +51,7 @@ class Kinematics:
         return 0
 
     def _pose(self) -> np.ndarray | None:
-        """The six numbers, or None where a log is named.
+        """Returns the six numbers of a pose, or None where a log is named.
 
         Raises:
             InputError: nothing is given, or what is given is neither.
@@ -123,7 +123,7 @@ class Kinematics:
 
 
 def jacobian_text(cables: Cables) -> str:
-    """The Jacobian as a text table."""
+    """Returns the Jacobian as a text table."""
     from inca_mj.kinematics.jacobians import jacobian
 
     names = ("cable", "∂/∂x", "∂/∂y", "∂/∂z", "∂/∂ω_x [m]", "∂/∂ω_y [m]", "∂/∂ω_z [m]")
@@ -132,7 +132,7 @@ def jacobian_text(cables: Cables) -> str:
 
 
 def log_text(found: LogPoses) -> str:
-    """Some of the poses as a text table."""
+    """Returns some of the poses as a text table."""
     import numpy as np
 
     from inca_mj.twin.logs import POSE

@@ -99,7 +99,7 @@ class Linearize:
             check_file(self.log)
 
     def _models(self) -> tuple[tuple[LinearModel, ...], list[str], float]:
-        """The models, what their operating points are called, and the rate [Hz]."""
+        """Returns the models, the names of their operating points, and the rate [Hz]."""
         from inca_mj.linear.linearization import linearize
         from inca_mj.twin.logs import read_inca_log
         from inca_mj.twin.twin import build_twin
@@ -116,7 +116,7 @@ class Linearize:
         return models, labels, self.rate or 1 / log.sampling_time
 
     def _grid(self, model: LinearModel, rate: float) -> tuple[GriddedSystem, Any, Any]:
-        """The gridded model, its errors off the grid, and a run beside the twin."""
+        """Returns the gridded model, its errors off the grid, and a run beside the twin."""
         from inca_mj.commands.grid import grid_axes
         from inca_mj.linear.accuracy import interpolation_errors, random_points, run_error
         from inca_mj.linear.linearization import linearize_grid

@@ -66,7 +66,7 @@ class Sensitivity:
 
 
 def summary(found: Information) -> str:
-    """The ranking with the least std of every parameter."""
+    """Returns the ranking with the least std of every parameter."""
     std = dict(zip(found.names, zip(found.std, found.conditional, strict=True), strict=False))
     return table(
         ("parameter", "std", "others known"),

@@ -90,7 +90,7 @@ class Simulate:
         return 0
 
     def _resolved(self) -> Simulate:
-        """The command with what its figure needs, or with what is usual where nothing is given.
+        """Returns the command with the settings of its figure, or with the usual ones.
 
         Raises:
             InputError: there is no such figure, or options are given that would make another.
@@ -121,7 +121,7 @@ class Simulate:
         return replace(self, input=needs.input, duration=needs.duration, robot=robot, output=output)
 
     def _twin(self, sampling_time: float) -> Twin:
-        """The robot, with the force on it.
+        """Returns the robot, with the force on it.
 
         Raises:
             InputError: a point is given without a force, or as `SavedRobot.twin` and `with_force`.

@@ -92,7 +92,7 @@ class Statics:
 
 
 def summary(found: StaticAnalysis) -> str:
-    """Tensions and currents of the cables at the pose."""
+    """Returns tensions and currents of the cables at the pose."""
     held = found.held
     return table(
         ("cable", "low [N]", "high [N]", "tension [N]", "current [A]"),

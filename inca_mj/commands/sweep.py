@@ -24,7 +24,7 @@ class Sweep(SweepCommand):
         return super().run()
 
     def methods(self) -> Mapping[str, str]:
-        """The methods that a sweep may name: those on any robot, and those on INCA."""
+        """Returns the methods that a sweep may name: those on any robot, and those on INCA."""
         from inca_mj.sweeps import METHODS
 
         return METHODS

@@ -103,7 +103,7 @@ class Track:
 
 
 def summary(result: Tracking) -> dict[str, object]:
-    """What the command says in JSON."""
+    """Returns what the command says in JSON."""
     from inca_mj.workflows.remarks import remarks
 
     run = result.run

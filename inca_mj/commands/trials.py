@@ -54,7 +54,7 @@ class Trials:
 
 
 def summary(result: TrialResult) -> str:
-    """A trial as the thesis' table with a column of ours."""
+    """Returns a trial as the thesis' table with a column of ours."""
     from identification.report.fit_verdict import fit_verdict
 
     shown = result.to_json()

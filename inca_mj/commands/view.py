@@ -57,7 +57,7 @@ class View:
         return 0
 
     def _run(self, source: Path) -> Run:
-        """The run to play.
+        """Returns the run to play.
 
         Raises:
             InputError: the file is neither a run nor a log.

@@ -33,7 +33,7 @@ CONTROL_TIMESTEP = 0.01  # [s], the sampling time of the robot's own controller
 
 @dataclass(frozen=True, kw_only=True)
 class Gains:
-    """How strongly errors are corrected: two poles at -bandwidth.
+    """Gains of the correction of errors: two poles at -bandwidth.
 
     Attributes:
         bandwidth: ω_c, so that K_p = ω_c² and K_d = 2 ω_c [rad/s].
@@ -90,7 +90,7 @@ class Controller:
         self.needed: Needed | None = None  # as last asked of the inverse
 
     def currents(self, angle: np.ndarray, pose: Pose | None = None) -> np.ndarray:
-        """The currents until the next call, within the limits of the amplifiers.
+        """Returns the currents until the next call, within the limits of the amplifiers.
 
         Args:
             angle: φ as measured now, shape (8,) [rad].
@@ -118,7 +118,7 @@ class Controller:
 
 
 def _turn_to_upright(orientation: np.ndarray) -> np.ndarray:
-    """½ Σ r_j × r_dj for axes r_j of the body and those of the frame, shape (3,) [rad]."""
+    """Returns ½ Σ r_j × r_dj for axes r_j of the body and those of the frame, shape (3,) [rad]."""
     R = np.empty(9)
     mujoco.mju_quat2Mat(R, orientation)
     return np.cross(R.reshape(3, 3).T, np.eye(3)).sum(axis=0) / 2

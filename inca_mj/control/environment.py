@@ -37,7 +37,7 @@ def load_environment(
     privileged: bool = False,
     encoder_noise: float = 0.0,
 ) -> control.Environment:
-    """An environment with a robot, the law of its cables, and a task.
+    """Returns an environment with a robot, the law of its cables, and a task.
 
     Args:
         task: "hold", "reach" or "track".

@@ -86,7 +86,7 @@ class GymnasiumEnv(gymnasium.Env[Any, np.ndarray]):
         return dict(step.observation), float(step.reward), False, step.last(), {}
 
     def render(self) -> np.ndarray | None:
-        """A picture, shape (240, 320, 3) of bytes; None without a render mode."""
+        """Returns a picture, shape (240, 320, 3) of bytes; None without a render mode."""
         if self.render_mode is None:
             return None
         return np.asarray(self.wrapped.physics.render(240, 320, camera_id="front"))
@@ -99,7 +99,7 @@ class GymnasiumEnv(gymnasium.Env[Any, np.ndarray]):
 def load_gymnasium(
     task: str = "hold", seed: int | None = None, render_mode: str | None = None, **options: Any
 ) -> GymnasiumEnv:
-    """A Gymnasium environment with a robot and a task.
+    """Returns a Gymnasium environment with a robot and a task.
 
     Args:
         task: "hold", "reach" or "track".

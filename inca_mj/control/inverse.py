@@ -43,7 +43,7 @@ CURRENT_STEPS, CURRENT_ERROR = 30, 1e-9  # [A], of the search for the current
 
 @dataclass(frozen=True)
 class Tensions:
-    """What the tensions of a controlled robot should be.
+    """The tensions that a controlled robot should have.
 
     Attributes:
         near: t₀, to stay near to: above the springs' 4 N, so that all motors pull [N].
@@ -58,7 +58,7 @@ class Tensions:
 
 @dataclass(frozen=True)
 class Needed:
-    """What a motion needs.
+    """The currents, tensions and rates that a motion needs.
 
     Attributes:
         currents: of the motors, shape (8,) [A].
@@ -104,7 +104,7 @@ class Inverse:
     def needed(
         self, motion: Motion, more: np.ndarray, angle: np.ndarray, time: float = 0.0
     ) -> Needed:
-        """What an upright motion needs, at measured motor angles.
+        """Returns what an upright motion needs, at measured motor angles.
 
         Args:
             motion: of the platform.
@@ -145,14 +145,14 @@ class Inverse:
     def _limits(
         self, T: np.ndarray, currents: np.ndarray, R: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Least and largest tensions (8,) [N] of the amplifiers; T at `currents`, dT/di = K_t/R."""
+        """Returns tension limits (8,) [N] of the amplifiers; T at `currents`, dT/di = K_t/R."""
         slope, wanted = self._K_t / R, self.wanted
         low = np.maximum(wanted.low, T + (LOWEST_CURRENT - currents) * slope)
         high = np.minimum(wanted.high, T + (HIGHEST_CURRENT - currents) * slope)
         return low, np.maximum(low, high)
 
     def _strain_as_before(self) -> None:
-        """No-load lengths for the new pose that strain the cables as they were, or until taut."""
+        """Sets no-load lengths for the new pose that strain the cables as before, or until taut."""
         data, model = self._data, self.robot.model
         mujoco.mj_fwdPosition(model, data)
         self._d_0 = self._d_0 * (data.ten_length / self._length)
@@ -164,14 +164,14 @@ class Inverse:
             self._d_0 = np.where(slack, self._d_0 * (1 - self.wanted.near / self._λ), self._d_0)
 
     def _share(self, W: np.ndarray, w: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
-        """Tensions (8,) [N] of a wrench; the nearest ones, cut to the limits, where none exist."""
+        """Returns tensions (8,) [N] of a wrench; if none exist, the nearest, cut to the limits."""
         try:
             return distribute(W, w, low, high, self.wanted.near)
         except InputError:
             return np.clip(nearest(W, w, self.wanted.near), low, high)
 
     def _pull(self, d_0: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Tensions (8,) [N] and all that acts on the platform (6,) at no-load lengths."""
+        """Returns tensions (8,) [N] and all that acts on the platform (6,) at no-load lengths."""
         data = self._data
         data.act[:] = self._act
         data.act[:: self.robot.layout.states] = d_0
@@ -179,7 +179,7 @@ class Inverse:
         return data.sensordata[self._tension_sensors].copy(), data.qfrc_passive[:6].copy()
 
     def _wrench_matrix(self, T: np.ndarray, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """∂(wrench)/∂T, shape (6, 8), and -∂T/∂d₀, shape (8,) [N/m]."""
+        """Returns ∂(wrench)/∂T, shape (6, 8), and -∂T/∂d₀, shape (8,) [N/m]."""
         W, stiffness = np.empty((6, DRIVES)), np.empty(DRIVES)
         for k in range(DRIVES):
             d_0 = self._d_0.copy()
@@ -190,7 +190,7 @@ class Inverse:
         return W, stiffness
 
     def _swing(self, W: np.ndarray, v: np.ndarray) -> np.ndarray:
-        """The part of d̈ that comes from the cables' turning, shape (8,) [m/s²] (thesis 2.18).
+        """Returns the part of d̈ due to the cables' turning, shape (8,) [m/s²] (thesis 2.18).
 
         (v_bx² + v_by²)/d: the velocity across the cable.
         """
@@ -198,7 +198,7 @@ class Inverse:
         return (v[:3] @ v[:3] - along**2) / self._d_0
 
     def _currents(self, torque: np.ndarray) -> np.ndarray:
-        """The currents (8,) [A] that give torques (8,) [N m] to the motors."""
+        """Returns the currents (8,) [A] that give torques (8,) [N m] to the motors."""
         data, model = self._data, self.robot.model
         currents = torque / self._K_t
         for _ in range(CURRENT_STEPS):

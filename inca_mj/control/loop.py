@@ -20,7 +20,7 @@ NOTHING = np.empty((1, 0))
 
 @dataclass(frozen=True)
 class Controlled:
-    """What a controller gave and saw, N samples; `simulate(robot, currents)` is the run.
+    """The record of a controller, N samples; `simulate(robot, currents)` is the run.
 
     Attributes:
         currents: shape (N, 8) [A]; sample k is held until k+1.

@@ -1,4 +1,4 @@
-"""Where the platform is, from the motor angles alone, through elastic cables.
+"""The pose of the platform from the motor angles alone, through elastic cables.
 
     d₀ ← d₀ + (∂d₀/∂φ) Δφ,    ∂d₀/∂φ = -R d₀/d at the middle angle          (thesis 2.30)
     W T(d(x), d₀) + f(x) = M a + c           solved for the pose x by Newton steps
@@ -39,7 +39,7 @@ STEPS, NEAR = 20, 1e-9  # Newton steps, and the last of them [m, rad]
 
 @dataclass(frozen=True)
 class Pose:
-    """Where the platform is.
+    """The pose of the platform.
 
     Attributes:
         position: in O, shape (3,) [m].
@@ -68,7 +68,7 @@ class Observer:
         self._qpos = np.concatenate([begin.pose[:3], quaternion(*begin.pose[3:])])
 
     def seen(self, angle: np.ndarray, acceleration: np.ndarray, time: float = 0.0) -> Pose:
-        """The pose after the motors have turned to new angles.
+        """Returns the pose after the motors have turned to new angles.
 
         Args:
             angle: φ as measured, shape (8,) [rad].
@@ -103,7 +103,7 @@ class Observer:
         self._d_0, self._angle = self._d_0 + per_radian * turned, angle.copy()
 
     def _balance(self, acceleration: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """W, shape (6, 8), and the wrench that is missing for the acceleration, shape (6,)."""
+        """Returns W, shape (6, 8), and the wrench that the acceleration lacks, shape (6,)."""
         data, model = self._data, self.robot.model
         taut = self._forward_taut()
         inertial = np.zeros(model.nv)

@@ -1,4 +1,4 @@
-"""Where the platform should be: a point, a line, a circle, each with velocity and acceleration.
+"""The wanted motion of the platform: a point, line or circle, with velocity and acceleration.
 
     circle    p = c + r S(t/T) (cos θ, sin θ) in its plane,    θ̇ = Ω S(t/T - 1)
     line      p = p₀ + (p₁ - p₀) S(t/T)
@@ -23,7 +23,7 @@ PLANES = {"xy": (0, 1), "xz": (0, 2), "yz": (1, 2)}  # the axes that cos θ and 
 
 @dataclass(frozen=True)
 class Motion:
-    """Where the platform should be at one time, and how it should move there.
+    """The wanted place of the platform at one time, and its wanted motion there.
 
     Attributes:
         position: in O, shape (3,) [m].
@@ -40,7 +40,7 @@ class Path(Protocol):
     """A motion of the platform over time."""
 
     def at(self, time: float) -> Motion:
-        """The motion at a time [s] since the start."""
+        """Returns the motion at a time [s] since the start."""
         ...
 
 
@@ -55,13 +55,13 @@ class Point:
     position: tuple[float, float, float]
 
     def at(self, time: float) -> Motion:
-        """The motion at a time [s] since the start."""
+        """Returns the motion at a time [s] since the start."""
         return Motion(np.array(self.position), np.zeros(3), np.zeros(3))
 
 
 @dataclass(frozen=True)
 class Line:
-    """From one point to another on a straight line, with least jerk.
+    """A straight line from one point to another, with least jerk.
 
     Attributes:
         begin: in O, three numbers [m].
@@ -80,7 +80,7 @@ class Line:
         _refuse_small("duration", self.duration, "s")
 
     def at(self, time: float) -> Motion:
-        """The motion at a time [s] since the start."""
+        """Returns the motion at a time [s] since the start."""
         way = np.array(self.end) - self.begin
         _, s, s_1, s_2 = smooth_step(time / self.duration)
         T = self.duration
@@ -117,7 +117,7 @@ class Circle:
             raise unknown_name("plane", self.plane, PLANES)
 
     def at(self, time: float) -> Motion:
-        """The motion at a time [s] since the start."""
+        """Returns the motion at a time [s] since the start."""
         _, out, out_1, out_2 = smooth_step(time / self.ramp)
         area, s, s_1, _ = smooth_step(time / self.ramp - 1)
         θ = self.phase + self.rate * self.ramp * area
@@ -140,7 +140,7 @@ class Circle:
 
 
 def smooth_step(x: float) -> tuple[float, float, float, float]:
-    """∫S dx from 0, S, S' and S'' at x."""
+    """Returns ∫S dx from 0, S, S' and S'' at x."""
     if x <= 0:
         return 0.0, 0.0, 0.0, 0.0
     if x >= 1:

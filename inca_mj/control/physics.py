@@ -40,7 +40,7 @@ class Physics(dm_mujoco.Physics):
         super().reset(int(self.model.key("start").id) if keyframe_id is None else keyframe_id)
 
     def copy(self, share_model: bool = False) -> Physics:
-        """A copy with the same state and rest.
+        """Returns a copy with the same state and rest.
 
         Args:
             share_model: whether both have one model.
@@ -57,23 +57,23 @@ class Physics(dm_mujoco.Physics):
         self.data.act[:] = state.act
 
     def motor_angle(self) -> np.ndarray:
-        """Motor angles φ, shape (8,) [rad]."""
+        """Returns the motor angles φ, shape (8,) [rad]."""
         return self._drives("angle")
 
     def motor_rate(self) -> np.ndarray:
-        """True motor rates ω, shape (8,) [rad/s]."""
+        """Returns the true motor rates ω, shape (8,) [rad/s]."""
         return self._drives("rate")
 
     def tension(self) -> np.ndarray:
-        """Cable tensions T, shape (8,) [N]."""
+        """Returns the cable tensions T, shape (8,) [N]."""
         return self._drives("tension")
 
     def handle_position(self) -> np.ndarray:
-        """Position of the platform in O, shape (3,) [m]."""
+        """Returns the position of the platform in O, shape (3,) [m]."""
         return self.named.data.sensordata["position"].copy()
 
     def handle_orientation(self) -> np.ndarray:
-        """Orientation of the platform, unit quaternion w, x, y, z, shape (4,)."""
+        """Returns the orientation of the platform, unit quaternion w, x, y, z, shape (4,)."""
         return self.named.data.sensordata["orientation"].copy()
 
     def _drives(self, sensor: str) -> np.ndarray:
@@ -82,7 +82,7 @@ class Physics(dm_mujoco.Physics):
 
 
 def physics_of(robot: Twin) -> Physics:
-    """A robot as Physics, with a site that marks the target."""
+    """Returns a robot as Physics, with a site that marks the target."""
     spec = build(robot.parameters, robot.geometry, robot.layout)
     spec.option.timestep = robot.model.opt.timestep
     spec.worldbody.add_site(name=TARGET, size=[0.01, 0.01, 0.01], rgba=[0.1, 0.7, 0.2, 0.6])

@@ -36,7 +36,7 @@ LEVEL, LEVEL_MARGIN = 0.02, 0.3  # angle of the platform from upright [rad]
 
 
 class Handle(control.Task):
-    """What all tasks share: the start, the currents, the observations and the reward.
+    """The common part of all tasks: the start, the currents, the observations and the reward.
 
     Args:
         robot: the twin that is driven.
@@ -73,11 +73,11 @@ class Handle(control.Task):
         self._angle, self._rate, self._time = self._read(np.zeros(DRIVES)), np.zeros(DRIVES), 0.0
 
     def draw_path(self, begin: np.ndarray) -> Path:
-        """Where the platform should be in an episode that starts at `begin`, shape (3,) [m]."""
+        """Returns the wanted path in an episode that starts at `begin`, shape (3,) [m]."""
         raise NotImplementedError
 
     def action_spec(self, physics: Physics) -> specs.BoundedArray:
-        """Eight currents [A]."""
+        """Returns the specification of the action: eight currents [A]."""
         return specs.BoundedArray(
             (DRIVES,), float, LOWEST_CURRENT, HIGHEST_CURRENT, name="currents [A]"
         )
@@ -101,11 +101,11 @@ class Handle(control.Task):
         self._mark(physics)
 
     def asked(self, physics: Physics) -> Motion:
-        """The motion that is asked of the platform now."""
+        """Returns the motion that is asked of the platform now."""
         return self.path.at(physics.data.time)
 
     def get_observation(self, physics: Physics) -> Mapping[str, np.ndarray]:
-        """What the robot measures, and where the platform should be."""
+        """Returns what the robot measures, and where the platform should be."""
         asked = self.asked(physics)
         seen = OrderedDict(
             motor_angle=self._angle.copy(),
@@ -122,7 +122,7 @@ class Handle(control.Task):
         return seen
 
     def get_reward(self, physics: Physics) -> float:
-        """The reward between 0 and 1: it is 1 near the target and upright."""
+        """Returns the reward between 0 and 1: it is 1 near the target and upright."""
         distance = np.linalg.norm(physics.handle_position() - self.asked(physics).position)
         angle = 2 * np.arccos(np.clip(abs(physics.handle_orientation()[0]), 0, 1))
         near = rewards.tolerance(distance, (0, NEAR), NEAR_MARGIN)
@@ -149,7 +149,7 @@ class Hold(Handle):
         physics.named.data.xfrc_applied["platform", :3] = force
 
     def draw_path(self, begin: np.ndarray) -> Path:
-        """The target is the start itself."""
+        """Returns the start itself as the target."""
         return _still(begin)
 
 
@@ -157,7 +157,7 @@ class Reach(Handle):
     """Bring the platform to a target that it can hold."""
 
     def draw_path(self, begin: np.ndarray) -> Path:
-        """A random target in a box about the nominal start."""
+        """Returns a random target in a box about the nominal start."""
         own = self.robot.parameters
         centre = np.array([own[n].value for n in "xyz"])
         return _still(centre + self.random.uniform(-REACH, REACH))
@@ -169,7 +169,7 @@ class Track(Handle):
     spread = np.zeros(6)
 
     def draw_path(self, begin: np.ndarray) -> Path:
-        """The circle about the start, its way out in a random direction."""
+        """Returns the circle about the start; its way out has a random direction."""
         return Circle(centre=tuple(begin), phase=float(self.random.uniform(0, 2 * np.pi)))
 
 

@@ -93,7 +93,7 @@ def heat_rate(s, p):  # type: ignore[no-untyped-def]
 
 @dataclass(frozen=True)
 class _Rule:
-    """How a change of one parameter enters the law.
+    """The way in which a change of one parameter enters the law.
 
     Attributes:
         law: what a relative change c adds.

@@ -1,4 +1,4 @@
-"""What effects of this robot act on, what they know of it, and where they add to its law.
+"""The hooks of this robot's effects: what they act on, what they see, where they add to its law.
 
     i + Δi      current                    L + ΔL     path of the cable, with ∂ΔL/∂r
     R + ΔR      roller radius              T + ΔT     tension

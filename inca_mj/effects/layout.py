@@ -1,4 +1,4 @@
-"""Where the parameters of a set of effects live in the model of this robot.
+"""The places of the parameters of a set of effects in the model of this robot.
 
 Those of drives and cables in the rows of `actuator_user`, behind the law's own columns; those of
 the platform in its row of `body_user`; those of the inputs nowhere: they act before the model.

@@ -1,4 +1,4 @@
-"""Where points truly are, and what pushes the platform.
+"""True places of points, and what pushes the platform.
 
     pulley radius     Δd = r_p β + ℓ - √(h² + z²)          a swivelling pulley at the exit point
     anchor offset     Δd = |r - o| - |r|                   an exit point is not where it should be

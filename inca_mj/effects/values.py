@@ -28,31 +28,31 @@ _NOWHERE = Platform(
 
 
 def records(effects: Sequence[Effect]) -> tuple[Parameter, ...]:
-    """The parameters of some effects: `name.size` at all its places, `name.shape` once."""
+    """Returns the parameters of some effects: `name.size` at all its places, `name.shape` once."""
     return tuple(record for e in effects for record in effect_parameters(e))
 
 
 def with_effects(parameters: ParameterSet, effects: Sequence[Effect]) -> ParameterSet:
-    """A parameter set with those of some effects, zero where it does not name them already."""
+    """Returns a parameter set with those of some effects, zero where they are new."""
     known = {p.name for p in parameters}
     new = tuple(p for p in records(effects) if p.name not in known)
     return replace(parameters, records=(*parameters.records, *new))
 
 
 def drive_values(effect: Effect, values: Mapping[str, float]) -> np.ndarray:
-    """Sizes and shapes of an effect at each drive, shape (k, 8)."""
+    """Returns the sizes and shapes of an effect at each drive, shape (k, 8)."""
     return np.array([written_at(effect, thing, values) for thing in THINGS]).T
 
 
 def present(effect: Effect, values: Mapping[str, float]) -> bool:
-    """Whether any size of an effect is not zero."""
+    """Returns whether any size of an effect is not zero."""
     return any(values[name] != 0.0 for name in effect.every_size)
 
 
 def numbers(
     layout: Layout, names: Sequence[str], every: Values, model: mujoco.MjModel
 ) -> Iterator[tuple[Slot, float | np.ndarray]]:
-    """Entries of the rows of drives and platform that some parameters of effects change.
+    """Yields entries in the rows of drives and platform that some parameters of effects change.
 
     Args:
         layout: the effects and their columns.
@@ -76,7 +76,7 @@ def inputs(
     effects: Sequence[Effect], names: Sequence[str], own: Mapping[str, float], values: np.ndarray,
     held: np.ndarray, timestep: float,
 ) -> np.ndarray:  # fmt: skip
-    """Currents after the effects that act before the model, for n value sets.
+    """Returns the currents after the effects that act before the model, for n value sets.
 
     Returns:
         `held` itself where no such effect is there, else shape (n, steps, 8) [A].
@@ -89,14 +89,14 @@ def readings(
     effects: Sequence[Effect], names: Sequence[str], own: Mapping[str, float], values: np.ndarray,
     sensors: Sequence[str], perfect: np.ndarray,
 ) -> np.ndarray:  # fmt: skip
-    """What encoders say, for n value sets, from what perfect ones would say; see `Plant`."""
+    """Returns what encoders say, for n value sets, from what perfect ones would; see `Plant`."""
     every = effect_values.merged(own, names, values)
     things = [sensor.rpartition("_")[2] for sensor in sensors]
     return effect_values.changed_outputs(effects, things, every, perfect, len(values))
 
 
 def centre_of_mass(effects: Sequence[Effect], every: Values, n: int) -> np.ndarray:
-    """Where the effects put the centre of mass in n value sets, in body axes, shape (n, 3) [m]."""
+    """Returns the centre of mass with effects for n value sets, in body axes, shape (n, 3) [m]."""
     out = np.zeros((n, 3))
     for effect in (e for e in effects if "centre" in e.hooks):
         place: Any = effect.hooks["centre"]
@@ -109,7 +109,7 @@ def centre_of_mass(effects: Sequence[Effect], every: Values, n: int) -> np.ndarr
 def about_centre(
     geometry: Geometry, effects: Sequence[Effect], values: Mapping[str, float]
 ) -> Geometry:
-    """The geometry with its connectors as seen from where the centre of mass is."""
+    """Returns the geometry with its connectors as seen from the centre of mass."""
     (centre,) = centre_of_mass(effects, values, 1)
     if not centre.any():
         return geometry

@@ -57,7 +57,7 @@ class Along:
 def measure(
     angles: Array, currents: Array, sampling_time: float, hold: str = "zoh"
 ) -> tuple[Measured, int]:
-    """Angles and currents of a log, with the rates that the angles show.
+    """Returns the angles and currents of a log, with the rates that the angles show.
 
     Before its first sample the robot rests with all angles zero and no currents.
 
@@ -97,7 +97,7 @@ def measure(
 
 
 def poses_along(robot: ElasticRobot, measured: Measured, encoder: Array, ends: int) -> Along:
-    """Poses and tensions at each sample of a log that begins at rest with all angles zero.
+    """Returns poses and tensions at each sample of a log that begins at rest with all angles zero.
 
     Args:
         robot: its numbers.
@@ -131,7 +131,7 @@ def poses_along(robot: ElasticRobot, measured: Measured, encoder: Array, ends: i
 
 
 def no_load_path(angles: Array, path: Array, robot: ElasticRobot, T: Array) -> tuple[Array, Array]:
-    """d₀ of another robot along the same path of tensions: its change with the robot's numbers."""
+    """Returns d₀ of a robot with other numbers along the same path of tensions, and ∂d₀/∂T = 0."""
     return no_load_along(robot, angles, path), np.zeros_like(T)
 
 
@@ -140,7 +140,7 @@ def _fixed(d_0: Array, robot: ElasticRobot, T: Array) -> tuple[Array, Array]:
 
 
 def _rigid(robot: ElasticRobot, measured: Measured, σ: Array) -> tuple[Array, Array, Array]:
-    """Poses from the lengths alone, tensions by the drums; some samples in turn, others alike."""
+    """Returns poses from the lengths alone, one for every few samples, and tensions by drums."""
     T = np.maximum(drum_tension(robot, measured), 0)
     d_0, _ = no_load_of(measured.angles, robot, T)
     lengths = d_0 * (1 + T / robot.lambda_)

@@ -98,7 +98,7 @@ class Balance:
         return 1 - np.sum((self.J @ self.covariance) * self.J, axis=2)
 
     def shift(self, residual_change: Array) -> Array:
-        """How pose and tensions move when the residuals change, (N, 22) -> (N, 14).
+        """Returns how pose and tensions move when the residuals change, (N, 22) -> (N, 14).
 
         The first six are changes of x, y, z, roll, pitch, yaw [m, rad], the others of the tensions
         [N].
@@ -115,7 +115,7 @@ def balance(
     no_load: NoLoad,
     begin: tuple[Array, Array, Array],
 ) -> Balance:
-    """The most likely poses and tensions.
+    """Returns the most likely poses and tensions.
 
     Args:
         robot: its numbers.
@@ -151,7 +151,7 @@ def statements(
     at: tuple[Array, Array, Array],
     taut: Array,
 ) -> tuple[Array, Array]:
-    """Residuals, shape (N, 22), and their derivatives by twist and T, shape (N, 22, 14).
+    """Returns residuals, shape (N, 22), and their derivatives by twist and T, shape (N, 22, 14).
 
     Args:
         robot: its numbers.

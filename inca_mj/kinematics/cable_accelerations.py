@@ -25,7 +25,7 @@ Array = np.ndarray
 
 @dataclass(frozen=True)
 class CableAccelerations:
-    """How the rates of the cables change.
+    """Accelerations of the connectors, of the lengths, and of the cables' turning.
 
     Attributes:
         connectors: v̇_bi, in O, shape (..., 8, 3) [m/s^2].
@@ -39,7 +39,7 @@ class CableAccelerations:
 
 
 def accelerations(cables: Cables, twist: Array, twist_rate: Array) -> CableAccelerations:
-    """Accelerations of straight cables (thesis 2.17 - 2.22).
+    """Returns the accelerations of straight cables (thesis 2.17 - 2.22).
 
     Args:
         cables: of a pose, from `inverse`.

@@ -26,7 +26,7 @@ Array = np.ndarray
 
 @dataclass(frozen=True)
 class CableRates:
-    """How fast the cables move.
+    """Rates of the connectors, of the lengths, and of the cables' turning.
 
     Attributes:
         connectors: v_bi, in O, shape (..., 8, 3) [m/s].
@@ -40,7 +40,7 @@ class CableRates:
 
 
 def rates(cables: Cables, twist: Array) -> CableRates:
-    """Rates of the cables (thesis 2.11 - 2.16).
+    """Returns the rates of the cables (thesis 2.11 - 2.16).
 
     Args:
         cables: of a pose, from `inverse`.
@@ -58,5 +58,5 @@ def rates(cables: Cables, twist: Array) -> CableRates:
 
 
 def into_frames(cables: Cables, vectors: Array) -> Array:
-    """ᴬR_iᵀ a_i: vectors in O, shape (..., 8, 3), along the axes of each cable's frame."""
+    """Returns ᴬR_iᵀ a_i: vectors in O, shape (..., 8, 3), along the axes of each cable's frame."""
     return np.einsum("...ji,...j->...i", cables.frames, vectors)

@@ -1,4 +1,4 @@
-"""What lengths, drums and platform leave open along a log: variance components.
+"""Variance components: the std of what lengths, drums and platform leave open along a log.
 
     σ_d² = max((R σ_φ)², σ_L²)      a length: the encoder, or what geometry and parameters get wrong
     σ_T                             the balance of a drum: friction, accelerations between samples
@@ -54,7 +54,7 @@ FIRST = Components(length=1e-3, tension=1.0, force=0.3)  # where the search for 
 
 
 def weights_of(σ: Components, robot: ElasticRobot, encoder: Array) -> Weights:
-    """Std of all statements; `encoder` is that of each angle, shape (8,) [rad]."""
+    """Returns the std of all statements; `encoder` is that of each angle, shape (8,) [rad]."""
     ρ = np.linalg.norm(robot.geometry.B, axis=1).mean()
     return Weights(
         length=np.maximum(robot.R * encoder, σ.length),
@@ -72,7 +72,7 @@ def components(
     no_load: NoLoad,
     begin: tuple[Array, Array, Array],
 ) -> Components:
-    """The std that the residuals show.
+    """Returns the std that the residuals show.
 
     Args:
         robot: its numbers.
@@ -101,7 +101,7 @@ def _estimated(
     no_load: NoLoad,
     begin: tuple[Array, Array, Array],
 ) -> Components:
-    """The search for the std; one of the lengths that is zero stays zero."""
+    """Returns the std that the search finds; a std of the lengths that is zero stays zero."""
     least = max(LEAST, float(np.mean(robot.J / robot.R * encoder)) * measured.rate_noise)
     for _ in range(ROUNDS):
         weights = weights_of(σ, robot, encoder)

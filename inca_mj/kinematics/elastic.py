@@ -1,4 +1,4 @@
-"""What motor angles say of a robot with elastic cables: no-load lengths and tensions.
+"""No-load lengths and tensions of a robot with elastic cables, from its motor angles.
 
     d₀ = d₀(0) - ∫ R dφ/(1 + ε)                           what the rollers have wound  (thesis 2.30)
     d = d₀ (1 + T/λ),   ε = T/λ                           the cable at rest     (2.24, 2.25, 2.32)
@@ -85,7 +85,7 @@ class ElasticRobot:
 
 @dataclass(frozen=True, kw_only=True)
 class Measured:
-    """What was measured at N instants, a row each.
+    """Measurements at N instants, a row each.
 
     Attributes:
         angles: φ, shape (N, 8) [rad].
@@ -105,7 +105,7 @@ class Measured:
 def elastic_robot(
     values: Mapping[str, float], geometry: Geometry, tension: Array, no_load_length: Array
 ) -> ElasticRobot:
-    """The robot of plain values by name, in SI units, where all angles are zero.
+    """Returns the robot of plain values by name, in SI units, where all angles are zero.
 
     Args:
         values: of all parameters, those of single drives and points included.
@@ -128,7 +128,7 @@ def elastic_robot(
 
 
 def drum_tension(robot: ElasticRobot, measured: Measured) -> Array:
-    """T that balances each drum, shape (N, 8) [N] (thesis 2.39 - 2.41, corrected)."""
+    """Returns T that balances each drum, shape (N, 8) [N] (thesis 2.39 - 2.41, corrected)."""
     R, R_s, φ, ω = robot.R, robot.R_s, measured.angles, measured.rates
     F_s = np.maximum(0, R / R_s * robot.T_0 - robot.k_s * R_s * φ)
     friction = robot.b_v * ω + robot.b_c * np.tanh(robot.beta * ω)
@@ -138,7 +138,7 @@ def drum_tension(robot: ElasticRobot, measured: Measured) -> Array:
 
 
 def no_load_at_rest(robot: ElasticRobot, angles: Array, T: Array) -> tuple[Array, Array]:
-    """d₀ for one measurement, and its derivative by T (thesis 2.30, mean strain of both ends).
+    """Returns d₀ of a measurement and its derivative by T (thesis 2.30, mean strain of both ends).
 
     Args:
         robot: its numbers.
@@ -154,7 +154,7 @@ def no_load_at_rest(robot: ElasticRobot, angles: Array, T: Array) -> tuple[Array
 
 
 def no_load_along(robot: ElasticRobot, angles: Array, T: Array) -> Array:
-    """d₀ along a log that begins at rest with all angles zero, shape (N, 8) [m] (thesis 2.30).
+    """Returns d₀ along a log that begins at rest, all angles zero, shape (N, 8) [m] (thesis 2.30).
 
     Args:
         robot: its numbers.

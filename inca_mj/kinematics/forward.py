@@ -73,7 +73,7 @@ def pose_from_lengths(
     reach: float = REACH,
     tolerance: float = 1e-10,
 ) -> ForwardPose:
-    """The pose whose cable lengths come nearest (weighted least squares) to measured ones.
+    """Returns the pose whose cable lengths come nearest (weighted least squares) to measured ones.
 
     Args:
         lengths: measured cable lengths, shape (8,) [m].
@@ -118,7 +118,7 @@ def find(
     pulleys: Pulleys | None = None,
     tolerance: float = 1e-10,
 ) -> tuple[Array, Array, float]:
-    """The search of `pose_from_lengths` alone.
+    """Returns the result of the search of `pose_from_lengths` alone.
 
     Args:
         lengths: measured cable lengths, shape (8,) [m].
@@ -150,7 +150,7 @@ def _search(
     tolerance: float,
     free: int = 6,
 ) -> tuple[Array, Array, float]:
-    """Steps of Gauss and Newton, halved where they do not lower the error; `free` of a twist."""
+    """Takes Gauss-Newton steps, halved where the error grows; moves the first `free` of a twist."""
     position, R = begin
     there = cables_at(position, R, geometry, pulleys)
     error, last = (lengths - there.lengths) / σ, np.inf
@@ -173,7 +173,7 @@ def _search(
 
 
 def _covariance(there: Cables, pose: Array, σ: Array) -> Array:
-    """E (Lᵀ Σ⁻¹ L)⁺ Eᵀ, with infinite variances where a motion changes no length."""
+    """Returns E (Lᵀ Σ⁻¹ L)⁺ Eᵀ, with infinite variances where a motion changes no length."""
     L = jacobian(there) / σ[:, None]
     ρ = np.linalg.norm(there.arms, axis=1).mean()
     scale = np.array([1, 1, 1, 1 / ρ, 1 / ρ, 1 / ρ])

@@ -25,7 +25,7 @@ Array = np.ndarray
 
 @dataclass(frozen=True, kw_only=True)
 class Cables:
-    """Where the cables are at a pose, or at many poses.
+    """The cables at a pose, or at many poses.
 
     Attributes:
         arms: b_i, from P to B_i, in O, shape (..., 8, 3) [m].
@@ -57,7 +57,7 @@ class Cables:
 
 
 def inverse(pose: Array, geometry: Geometry, pulleys: Pulleys | None = None) -> Cables:
-    """The cables at a pose, or at many (thesis 2.6 - 2.10).
+    """Returns the cables at a pose, or at many (thesis 2.6 - 2.10).
 
     Args:
         pose: x, y, z [m], roll, pitch, yaw [rad], shape (..., 6).
@@ -81,7 +81,7 @@ def inverse(pose: Array, geometry: Geometry, pulleys: Pulleys | None = None) -> 
 def cables_at(
     position: Array, R: Array, geometry: Geometry, pulleys: Pulleys | None = None
 ) -> Cables:
-    """`inverse` from positions, shape (..., 3) [m], and rotations, shape (..., 3, 3)."""
+    """Returns `inverse` from positions, shape (..., 3) [m], and rotations, shape (..., 3, 3)."""
     b = geometry.B @ np.swapaxes(R, -1, -2)
     path = paths(position[..., None, :] + b - geometry.A, pulleys)
     return Cables(
@@ -95,7 +95,7 @@ def cables_at(
 
 
 def cables(position: Array, R: Array, geometry: Geometry) -> tuple[Array, Array]:
-    """Lengths d (8,) [m] and unit vectors s (8, 3) from exit to connector (thesis 2.7, 2.8)."""
+    """Returns lengths d (8,) [m] and unit vectors s (8, 3) to the connectors (thesis 2.7, 2.8)."""
     span = position + geometry.B @ R.T - geometry.A
     d = np.linalg.norm(span, axis=1)
     return d, span / d[:, None]

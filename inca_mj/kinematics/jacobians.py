@@ -24,7 +24,7 @@ SMALLEST = 1e-9  # a singular value below this share of the largest one counts a
 
 
 def length_jacobian(position: Array, R: Array, geometry: Geometry) -> Array:
-    """L = ∂ḋ/∂(v, ω), d the cable lengths and v, ω in O (thesis 2.15).
+    """Returns L = ∂ḋ/∂(v, ω), d the cable lengths and v, ω in O (thesis 2.15).
 
     Args:
         position: of the platform in O, shape (3,) [m].
@@ -39,7 +39,7 @@ def length_jacobian(position: Array, R: Array, geometry: Geometry) -> Array:
 
 
 def jacobian(cables: Cables) -> Array:
-    """L = ∂ḋ/∂(v, ω) at one pose or many, also over pulleys (thesis 2.15).
+    """Returns L = ∂ḋ/∂(v, ω) at one pose or many, also over pulleys (thesis 2.15).
 
     Args:
         cables: of a pose, from `inverse`.
@@ -52,7 +52,7 @@ def jacobian(cables: Cables) -> Array:
 
 
 def jacobian_rate(cables: Cables, twist: Array) -> Array:
-    """L̇ of a platform that moves.
+    """Returns L̇ of a platform that moves.
 
     Args:
         cables: of a pose, from `inverse`.
@@ -69,7 +69,7 @@ def jacobian_rate(cables: Cables, twist: Array) -> Array:
 
 
 def singular_values(cables: Cables) -> Array:
-    """Singular values of L with ω times ρ, the largest first.
+    """Returns the singular values of L with ω times ρ, the largest first.
 
     Args:
         cables: of a pose, from `inverse`.
@@ -83,7 +83,7 @@ def singular_values(cables: Cables) -> Array:
 
 
 def rank(cables: Cables) -> int:
-    """How many motions of the platform the lengths can tell, 6 where the pose is determined.
+    """Returns how many motions of the platform the lengths can tell, 6 if the pose is determined.
 
     Args:
         cables: of one pose.
@@ -93,7 +93,7 @@ def rank(cables: Cables) -> int:
 
 
 def condition(cables: Cables) -> float:
-    """Condition number of L with ω times ρ; infinite in a singular pose.
+    """Returns the condition number of L with ω times ρ; infinite in a singular pose.
 
     Args:
         cables: of one pose.

@@ -73,7 +73,7 @@ class Paths:
 
 
 def paths(spans: Array, pulleys: Pulleys | None = None) -> Paths:
-    """Paths of the cables; straight ones without pulleys (thesis 2.7, 2.8).
+    """Returns the paths of the cables; straight ones without pulleys (thesis 2.7, 2.8).
 
     Args:
         spans: from the exit points to the connectors, in O, shape (..., 8, 3) [m].
@@ -122,5 +122,5 @@ def _over_pulleys(spans: Array, pulleys: Pulleys) -> Paths:
 
 
 def _first(bad: Array) -> int:
-    """Number of the first cable that is bad in any of many poses."""
+    """Returns the number of the first cable that is bad in any of many poses."""
     return int(np.flatnonzero(bad.reshape(-1, bad.shape[-1]).any(axis=0))[0]) + 1

@@ -26,7 +26,7 @@ LEAST = 1e-3  # a drum without friction is in exact balance [N]
 
 
 def at_rest(angles: Array, currents: Array) -> Measured:
-    """One measurement at rest.
+    """Returns one measurement at rest.
 
     Args:
         angles: φ, shape (8,) [rad].
@@ -46,7 +46,7 @@ def at_rest(angles: Array, currents: Array) -> Measured:
 
 
 def rest_weights(robot: ElasticRobot, encoder: float, length: float = 0.0) -> Weights:
-    """Std of the statements at rest, by that of angles [rad] and of wrong geometry [m]."""
+    """Returns the std of the statements at rest, by that of angles [rad] and wrong geometry [m]."""
     return Weights(
         length=np.maximum(robot.R * encoder, length),
         tension=np.maximum(robot.held, LEAST),
@@ -58,7 +58,7 @@ def rest_weights(robot: ElasticRobot, encoder: float, length: float = 0.0) -> We
 def rest_pose(
     robot: ElasticRobot, measured: Measured, encoder: float = ENCODER
 ) -> tuple[Balance, Weights]:
-    """Pose and tensions of a robot at rest, and the std of the statements.
+    """Returns the pose and tensions of a robot at rest, and the std of the statements.
 
     Where the lengths disagree by more than the encoders explain, their std is what they show.
 
@@ -114,7 +114,7 @@ def _weighted(
     no_load: NoLoad,
     begin: tuple[Array, Array, Array],
 ) -> tuple[Balance, Weights]:
-    """The balance with the std of the lengths that their residuals show (Förstner 1979)."""
+    """Returns the balance with the std of the lengths that their residuals show (Förstner 1979)."""
     floor, length = float((robot.R * encoder).mean()), FIRST.length
     for _ in range(ROUNDS):
         weights = rest_weights(robot, encoder, max(length, floor))
@@ -131,5 +131,5 @@ def _weighted(
 
 
 def no_load_of(angles: Array, robot: ElasticRobot, T: Array) -> tuple[Array, Array]:
-    """`no_load_at_rest` with the angles first, so that they can be bound."""
+    """Returns `no_load_at_rest` with the angles first, so that they can be bound."""
     return no_load_at_rest(robot, angles, T)

@@ -25,7 +25,7 @@ UPRIGHT = 1e-9  # a smaller |cos θ| means that the platform stands at a pitch o
 
 
 def rotation(roll: float | Array, pitch: float | Array, yaw: float | Array) -> Array:
-    """Rotation ᴬR_B = Rz Ry Rx of the platform (thesis 2.1).
+    """Returns the rotation ᴬR_B = Rz Ry Rx of the platform (thesis 2.1).
 
     Args:
         roll: about x, shape (...) [rad].
@@ -46,7 +46,7 @@ def rotation(roll: float | Array, pitch: float | Array, yaw: float | Array) -> A
 
 
 def quaternion(roll: float, pitch: float, yaw: float) -> Array:
-    """Unit quaternion (w, x, y, z) of `rotation`.
+    """Returns the unit quaternion (w, x, y, z) of `rotation`.
 
     Args:
         roll: about x [rad].
@@ -68,7 +68,7 @@ def quaternion(roll: float, pitch: float, yaw: float) -> Array:
 
 
 def euler(quaternions: Array) -> Array:
-    """Roll, pitch, yaw [rad] of unit quaternions, shape (..., 4) -> (..., 3)."""
+    """Returns roll, pitch, yaw [rad] of unit quaternions, shape (..., 4) -> (..., 3)."""
     w, x, y, z = np.moveaxis(np.asarray(quaternions), -1, 0)
     roll = np.arctan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y))
     pitch = np.arcsin(np.clip(2 * (w * y - z * x), -1, 1))
@@ -77,7 +77,7 @@ def euler(quaternions: Array) -> Array:
 
 
 def euler_of(R: Array) -> Array:
-    """Roll, pitch, yaw [rad] of rotations, shape (..., 3, 3) -> (..., 3)."""
+    """Returns roll, pitch, yaw [rad] of rotations, shape (..., 3, 3) -> (..., 3)."""
     roll = np.arctan2(R[..., 2, 1], R[..., 2, 2])
     pitch = np.arcsin(np.clip(-R[..., 2, 0], -1, 1))
     yaw = np.arctan2(R[..., 1, 0], R[..., 0, 0])
@@ -85,7 +85,7 @@ def euler_of(R: Array) -> Array:
 
 
 def cross_matrix(vectors: Array) -> Array:
-    """[v]×, with [v]× u = v × u, shape (..., 3) -> (..., 3, 3)."""
+    """Returns [v]×, with [v]× u = v × u, shape (..., 3) -> (..., 3, 3)."""
     x, y, z = np.moveaxis(np.asarray(vectors, float), -1, 0)
     o = np.zeros_like(x)
     rows = ((o, -z, y), (z, o, -x), (-y, x, o))
@@ -93,7 +93,7 @@ def cross_matrix(vectors: Array) -> Array:
 
 
 def turn(vectors: Array) -> Array:
-    """Rotations by vectors [rad] (Rodrigues), shape (..., 3) -> (..., 3, 3)."""
+    """Returns rotations by vectors [rad] (Rodrigues), shape (..., 3) -> (..., 3, 3)."""
     angle = np.linalg.norm(vectors, axis=-1)[..., None, None]
     K = cross_matrix(vectors)
     # sin(a)/a and (1 - cos a)/a², which stay finite at a = 0
@@ -103,7 +103,7 @@ def turn(vectors: Array) -> Array:
 
 
 def body_rate_matrix(pose: Array) -> Array:
-    """J⁻¹ of ᴮω = J⁻¹ [φ̇ θ̇ ψ̇]ᵀ (thesis 2.4).
+    """Returns J⁻¹ of ᴮω = J⁻¹ [φ̇ θ̇ ψ̇]ᵀ (thesis 2.4).
 
     Args:
         pose: shape (..., 6) [m, rad].
@@ -119,7 +119,7 @@ def body_rate_matrix(pose: Array) -> Array:
 
 
 def euler_rate_matrix(pose: Array) -> Array:
-    """J of [φ̇ θ̇ ψ̇]ᵀ = J ᴮω (thesis 2.5, corrected).
+    """Returns J of [φ̇ θ̇ ψ̇]ᵀ = J ᴮω (thesis 2.5, corrected).
 
     Args:
         pose: shape (..., 6) [m, rad].
@@ -143,7 +143,7 @@ def euler_rate_matrix(pose: Array) -> Array:
 
 
 def pose_rate_matrix(pose: Array) -> Array:
-    """E of d(pose)/dt = E (v, ω), with v and ω along the axes of O (thesis 2.5).
+    """Returns E of d(pose)/dt = E (v, ω), with v and ω along the axes of O (thesis 2.5).
 
     Args:
         pose: shape (..., 6) [m, rad].

@@ -26,7 +26,7 @@ LOST = 1.0  # by which exchanged or turned angles still miss no length, in a fra
 def poses_with_stiff_cables(
     angles: np.ndarray, R: float | np.ndarray, start: np.ndarray, geometry: Geometry
 ) -> np.ndarray:
-    """Platform poses from motor angles, each sample starting from the last.
+    """Returns platform poses from motor angles, each sample starting from the last.
 
     Args:
         angles: motor angles φ, positive winds in, shape (N, 8) [rad].
@@ -60,7 +60,7 @@ def poses_with_stiff_cables(
 def _searched(
     lengths: np.ndarray, k: int, begin: tuple[np.ndarray, np.ndarray], geometry: Geometry
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Position and rotation of sample k, by the search that may halve its steps."""
+    """Returns the position and rotation of sample k, by the search that may halve its steps."""
     position, turned, last = find(lengths[k], geometry, begin, np.ones(DRIVES), tolerance=FINE)
     if last >= FINE:  # the search took all its steps, as it would at each sample that follows
         _refuse_lost(cables(position, turned, geometry)[0] - lengths[k], k)

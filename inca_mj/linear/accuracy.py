@@ -1,4 +1,4 @@
-"""How well a gridded model interpolates, and how well it predicts the twin.
+"""The errors of a gridded model: of its interpolation, and of its predictions of the twin.
 
 At points off the grid, beside the twin's own linearisation there:
 
@@ -51,7 +51,7 @@ class InterpolationError:
 
 @dataclass(frozen=True, kw_only=True)
 class RunError:
-    """How models predict the twin under a small PRBS about one point off the grid.
+    """Errors of models that predict the twin under a small PRBS about one point off the grid.
 
     Attributes:
         point: values of the scheduling variables by name.
@@ -74,7 +74,7 @@ class RunError:
 def interpolation_errors(
     robot: Twin, grid: GriddedSystem, points: int = 30, seed: int = 0
 ) -> tuple[InterpolationError, ...]:
-    """Errors of a gridded model at random points within its grid.
+    """Returns errors of a gridded model at random points within its grid.
 
     Args:
         robot: the twin that it is a model of.
@@ -103,7 +103,7 @@ def interpolation_errors(
 
 
 def random_points(grid: GriddedSystem, points: int, seed: int) -> list[dict[str, float]]:
-    """Random points within a grid.
+    """Returns random points within a grid.
 
     Args:
         grid: the grid.
@@ -173,7 +173,7 @@ def _pose(robot: Twin, point: dict[str, float]) -> Sequence[float]:
 
 
 def _eigenvalue_error(own: LinearSystem, other: LinearSystem) -> float:
-    """Largest relative distance of an eigenvalue from the nearest one of the other system."""
+    """Returns the largest relative distance of an eigenvalue from the other system's nearest."""
     theirs = np.array([mode.eigenvalue for mode in modes(other)])
     return max(
         float(np.abs(theirs - mode.eigenvalue).min() / abs(mode.eigenvalue))

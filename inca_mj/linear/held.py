@@ -32,7 +32,7 @@ STILL = 1e-6  # [m/s², rad/s²]; pretension is exact to 1e-9 N on 1e-4 kg m²
 
 
 def held_at(robot: Twin, poses: Sequence[Sequence[float]]) -> OperatingPoints:
-    """The robot at rest at some poses, with the currents that hold it there.
+    """Returns the robot at rest at some poses, with the currents that hold it there.
 
     Args:
         robot: the twin; its own start pose is that of its springs.

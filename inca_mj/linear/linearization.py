@@ -160,7 +160,7 @@ def linearize_grid(
 def _models(
     robot: Twin, points: OperatingPoints, outputs: Sequence[str]
 ) -> tuple[LinearModel, ...]:
-    """The models at some operating points; no time is told."""
+    """Returns the models at some operating points; their times are not set."""
     sensors = (*outputs, *LENGTHS, *TENSIONS)
     systems = to_thesis(linearize_model(points, sensors), points, robot.layout.states - 1)
     p = robot.parameters.values()
@@ -177,7 +177,7 @@ def _models(
 
 
 def _parted(system: LinearSystem) -> tuple[LinearSystem, LinearSystem, LinearSystem]:
-    """A system by its outputs: those asked for, the lengths and the tensions of the cables."""
+    """Returns a system parted by its outputs: those asked for, cable lengths and cable tensions."""
     n = len(system.outputs)
     cuts = (slice(0, n - 2 * DRIVES), slice(n - 2 * DRIVES, n - DRIVES), slice(n - DRIVES, n))
     first, second, third = (

@@ -25,7 +25,7 @@ TENSIONS = tuple(f"tension_{k}" for k in range(1, DRIVES + 1))
 
 
 def to_tension(system: LinearSystem, lengths: LinearSystem, robot: Twin) -> LinearSystem:
-    """A system at rest with tensions for no-load lengths.
+    """Returns a system at rest with tensions for no-load lengths.
 
     Args:
         system: in the thesis' states, at rest.

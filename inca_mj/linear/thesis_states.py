@@ -46,7 +46,7 @@ _ANGLES, _SPEEDS, NO_LOAD = slice(12, 20), slice(20, 28), slice(28, 36)
 def to_thesis(
     systems: tuple[LinearSystem, ...], points: OperatingPoints, own: int = 0
 ) -> tuple[LinearSystem, ...]:
-    """Linear systems in the thesis' states.
+    """Returns the linear systems in the thesis' states.
 
     Args:
         systems: M systems in MuJoCo's tangent space.
@@ -63,13 +63,13 @@ def to_thesis(
 
 
 def euler_rates(e: np.ndarray) -> np.ndarray:
-    """J of (2.5), [φ̇ θ̇ ψ̇]ᵀ = J ω, shape (3, 3), without unit; e = (φ, θ, ψ), shape (3,) [rad]."""
+    """Returns J of (2.5), [φ̇ θ̇ ψ̇]ᵀ = J ω, shape (3, 3) [-]; e = (φ, θ, ψ), shape (3,) [rad]."""
     (s, c), (cp, tp) = (np.sin(e[0]), np.cos(e[0])), (np.cos(e[1]), np.tan(e[1]))
     return np.array([[1, s * tp, c * tp], [0, c, -s], [0, s / cp, c / cp]])
 
 
 def _euler_rates_change(e: np.ndarray, ė: np.ndarray) -> np.ndarray:
-    """J̇ = ∂J/∂φ φ̇ + ∂J/∂θ θ̇."""
+    """Returns J̇ = ∂J/∂φ φ̇ + ∂J/∂θ θ̇."""
     (s, c), (sp, cp) = (np.sin(e[0]), np.cos(e[0])), (np.sin(e[1]), np.cos(e[1]))
     by_roll = np.array([[0, c * sp / cp, -s * sp / cp], [0, -s, -c], [0, c / cp, -s / cp]])
     by_pitch = np.array([[0, s, c], [0, 0, 0], [0, s * sp, c * sp]]) / cp**2
@@ -77,7 +77,7 @@ def _euler_rates_change(e: np.ndarray, ė: np.ndarray) -> np.ndarray:
 
 
 def _cross(a: np.ndarray) -> np.ndarray:
-    """The matrix of b -> a × b."""
+    """Returns the matrix of b -> a × b."""
     return np.array([[0, -a[2], a[1]], [a[2], 0, -a[0]], [-a[1], a[0], 0]])
 
 
@@ -112,6 +112,6 @@ def _one(system: LinearSystem, qpos: np.ndarray, own: int, names: tuple[str, ...
 
 
 def _activations(own: int) -> np.ndarray:
-    """Activations in the thesis' order: d₀ of all drives, then the effects' states by drive."""
+    """Returns activations in the thesis' order: d₀ of all drives, then effects' states by drive."""
     each = np.arange(DRIVES * (1 + own)).reshape(DRIVES, 1 + own)
     return np.concatenate([each[:, 0], each[:, 1:].ravel()])

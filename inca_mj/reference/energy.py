@@ -1,4 +1,4 @@
-"""Where the energy of the robot is, and where it goes.
+"""The energy of the robot: where it is stored, and where it goes.
 
 One cable, taut. Stretched from d₀ to d it stores E_c = ½ λ ε² d₀, with ε = (d − d₀)/d₀, so
 
@@ -72,7 +72,7 @@ class Power(NamedTuple):
 
 
 def energy(x: np.ndarray, q: np.ndarray) -> Energy:
-    """Energy stored at a state.
+    """Returns the energy stored at a state.
 
     Args:
         x: state, shape (36,).
@@ -99,7 +99,7 @@ def energy(x: np.ndarray, q: np.ndarray) -> Energy:
 
 
 def power(x: np.ndarray, i: np.ndarray, q: np.ndarray) -> Power:
-    """Power into the robot at a state.
+    """Returns the power into the robot at a state.
 
     Args:
         x: state, shape (36,).

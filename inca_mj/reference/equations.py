@@ -37,13 +37,13 @@ Vector = tuple[float, float, float]
 
 @compiled
 def dot(a: Vector, b: Vector) -> float:
-    """The scalar product aᵀb."""
+    """Returns the scalar product aᵀb."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 @compiled
 def cross(a: Vector, b: Vector) -> Vector:
-    """The vector product a × b."""
+    """Returns the vector product a × b."""
     return (
         a[1] * b[2] - a[2] * b[1],
         a[2] * b[0] - a[0] * b[2],
@@ -53,19 +53,19 @@ def cross(a: Vector, b: Vector) -> Vector:
 
 @compiled
 def vector(a: np.ndarray) -> Vector:
-    """Three numbers of an array, as a vector that costs no memory."""
+    """Returns three numbers of an array, as a vector that costs no memory."""
     return (a[0], a[1], a[2])
 
 
 @compiled
 def times(M: tuple[Vector, Vector, Vector], a: Vector) -> Vector:
-    """The product M a."""
+    """Returns the product M a."""
     return (dot(M[0], a), dot(M[1], a), dot(M[2], a))
 
 
 @compiled
 def transposed(M: tuple[Vector, Vector, Vector]) -> tuple[Vector, Vector, Vector]:
-    """Mᵀ."""
+    """Returns Mᵀ."""
     return (
         (M[0][0], M[1][0], M[2][0]),
         (M[0][1], M[1][1], M[2][1]),
@@ -75,7 +75,7 @@ def transposed(M: tuple[Vector, Vector, Vector]) -> tuple[Vector, Vector, Vector
 
 @compiled
 def rotation(euler: Vector) -> tuple[Vector, Vector, Vector]:
-    """R_AB = Rz(ψ) Ry(θ) Rx(φ), from platform axes to O (2.1); euler = (φ, θ, ψ) [rad]."""
+    """Returns R_AB = Rz(ψ) Ry(θ) Rx(φ), from platform axes to O (2.1); euler = (φ, θ, ψ) [rad]."""
     cr, cp, cy = cos(euler[0]), cos(euler[1]), cos(euler[2])
     sr, sp, sy = sin(euler[0]), sin(euler[1]), sin(euler[2])
     return (
@@ -87,7 +87,7 @@ def rotation(euler: Vector) -> tuple[Vector, Vector, Vector]:
 
 @compiled
 def euler_rate_matrix(euler: Vector) -> tuple[Vector, Vector, Vector]:
-    """The matrix of (2.5), [φ̇ θ̇ ψ̇]ᵀ = J ω; singular at pitch θ = ±90°.
+    """Returns the matrix of (2.5), [φ̇ θ̇ ψ̇]ᵀ = J ω; singular at pitch θ = ±90°.
 
     Misprint: the thesis prints sin φ for cos φ at (2, 2).
     """
@@ -97,7 +97,7 @@ def euler_rate_matrix(euler: Vector) -> tuple[Vector, Vector, Vector]:
 
 @compiled
 def cables(x: np.ndarray, q: np.ndarray) -> tuple[np.ndarray, ...]:
-    """The cables at a state: tension T, length d, rate ḋ, no-load rate ḋ₀, direction sᴮ.
+    """Returns the cables at a state: tension T, length d, rate ḋ, no-load rate ḋ₀, direction sᴮ.
 
     Args:
         x: state, shape (36,).
@@ -132,7 +132,7 @@ def cables(x: np.ndarray, q: np.ndarray) -> tuple[np.ndarray, ...]:
 
 @compiled
 def spring_force(φ_m: float, T_0: float, own: np.ndarray) -> float:
-    """Force F_s of one drum spring [N] (2.41); own: the drive's row of q.
+    """Returns the force F_s of one drum spring [N] (2.41); own: the drive's row of q.
 
     Misprint: the thesis prints R_s/R; at rest R_s F_s must balance R T(0), so it is R/R_s.
     """
@@ -142,7 +142,7 @@ def spring_force(φ_m: float, T_0: float, own: np.ndarray) -> float:
 
 @compiled
 def derivative(x: np.ndarray, i: np.ndarray, q: np.ndarray) -> np.ndarray:
-    """ẋ = f(x, i).
+    """Returns ẋ = f(x, i).
 
     Args:
         x: state, shape (36,), in the order of `inca_mj.reference.layout`.

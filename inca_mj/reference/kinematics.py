@@ -28,7 +28,7 @@ from inca_mj.robot.geometry import Geometry
 
 @dataclass(frozen=True)
 class CablePose:
-    """Where the cables are.
+    """The arms, lengths, directions and frames of the cables.
 
     Attributes:
         arms: b_i, from P to B_i, in O, shape (8, 3) [m].
@@ -47,7 +47,7 @@ class CablePose:
 
 @dataclass(frozen=True)
 class CableMotion:
-    """How the cables move: a velocity analysis, or an acceleration analysis.
+    """The motion of the cables: a velocity analysis, or an acceleration analysis.
 
     Attributes:
         connectors: v_b (or v̇_b) of B_i, in O, shape (8, 3) [m/s] ([m/s^2]).
@@ -61,17 +61,17 @@ class CableMotion:
 
 
 def rotation(euler: np.ndarray) -> np.ndarray:
-    """R_AB from roll, pitch, yaw [rad], shape (3, 3) (2.1)."""
+    """Returns R_AB from roll, pitch, yaw [rad], shape (3, 3) (2.1)."""
     return np.array(list(equations.rotation(equations.vector(np.asarray(euler, float)))))
 
 
 def euler_rate_matrix(euler: np.ndarray) -> np.ndarray:
-    """J of [φ̇ θ̇ ψ̇]ᵀ = J ω, shape (3, 3) (2.5, corrected)."""
+    """Returns J of [φ̇ θ̇ ψ̇]ᵀ = J ω, shape (3, 3) (2.5, corrected)."""
     return np.array(list(equations.euler_rate_matrix(equations.vector(np.asarray(euler, float)))))
 
 
 def body_rate_matrix(euler: np.ndarray) -> np.ndarray:
-    """J⁻¹ of ω = J⁻¹ [φ̇ θ̇ ψ̇]ᵀ, shape (3, 3) (2.3, 2.4).
+    """Returns J⁻¹ of ω = J⁻¹ [φ̇ θ̇ ψ̇]ᵀ, shape (3, 3) (2.3, 2.4).
 
     Misprint: 2.3 lacks both transposes. With them, ω along the body axes is
     (φ̇, 0, 0) + Rx(φ)ᵀ (0, θ̇, 0) + Rx(φ)ᵀ Ry(θ)ᵀ (0, 0, ψ̇).
@@ -83,7 +83,7 @@ def body_rate_matrix(euler: np.ndarray) -> np.ndarray:
 
 
 def geometric(p: np.ndarray, R_AB: np.ndarray, geometry: Geometry) -> CablePose:
-    """Lengths, directions and angles of the cables (2.6 - 2.10).
+    """Returns lengths, directions and angles of the cables (2.6 - 2.10).
 
     Args:
         p: position of P in O, shape (3,) [m].
@@ -101,7 +101,7 @@ def geometric(p: np.ndarray, R_AB: np.ndarray, geometry: Geometry) -> CablePose:
 
 
 def velocity(pose: CablePose, v_p: np.ndarray, ω_p: np.ndarray) -> CableMotion:
-    """Velocity of the connectors, ḋ and the cables' rates (2.11 - 2.16).
+    """Returns the velocity of the connectors, ḋ and the cables' rates (2.11 - 2.16).
 
     Args:
         pose: from `geometric`.
@@ -121,7 +121,7 @@ def acceleration(
     ω_p: np.ndarray,
     ω_p_rate: np.ndarray,
 ) -> CableMotion:
-    """Acceleration of the connectors, d̈ and the cables' angular accelerations (2.17 - 2.22).
+    """Returns acceleration of connectors, d̈ and the cables' angular accelerations (2.17 - 2.22).
 
     Args:
         pose: from `geometric`.
@@ -141,5 +141,5 @@ def acceleration(
 
 
 def _in_cable_frame(pose: CablePose, a: np.ndarray) -> np.ndarray:
-    """R_Aiᵀ a_i as rows x, y, z, shape (3, 8)."""
+    """Returns R_Aiᵀ a_i as rows x, y, z, shape (3, 8)."""
     return np.einsum("nki,nk->in", pose.frames, a)

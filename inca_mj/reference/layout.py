@@ -1,4 +1,4 @@
-"""Where each quantity sits: the 36 states in the thesis' order, and the packed numbers.
+"""The place of each quantity: the 36 states in the thesis' order, and the packed numbers.
 
 The right-hand side reads its constants from one flat array, so that a call from Python costs
 two microseconds; `inca_mj.reference.numbers.pack` fills it. Compiled code has these indices

@@ -28,7 +28,7 @@ def pack(
     force: Sequence[float] = NO_FORCE,
     force_at: Sequence[float] = NO_FORCE,
 ) -> np.ndarray:
-    """The numbers q of `derivative(x, i, q)`, shape (147,).
+    """Returns the numbers q of `derivative(x, i, q)`, shape (147,).
 
     The drum springs balance the pretension of the parameters' start pose; `force` is not part
     of that balance, it acts from the first instant on.

@@ -1,4 +1,4 @@
-"""What the equations say of one instant beside the rate of the state."""
+"""Outputs of the equations at one instant, beside the rate of the state."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Outputs:
 
 
 def outputs(x: np.ndarray, i: np.ndarray, q: np.ndarray) -> Outputs:
-    """The outputs at a state.
+    """Returns the outputs at a state.
 
     Args:
         x: state, shape (36,).

@@ -10,7 +10,7 @@ from inca_mj.reference.equations import derivative
 
 @compiled
 def rk4(x: np.ndarray, i: np.ndarray, q: np.ndarray, h: float, steps: int) -> np.ndarray:
-    """The state after `steps` steps of length h under constant currents.
+    """Returns the state after `steps` steps of length h under constant currents.
 
     Args:
         x: state, shape (36,).

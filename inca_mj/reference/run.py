@@ -1,4 +1,4 @@
-"""What a simulation of the reference returns."""
+"""The result of a simulation of the reference."""
 
 from __future__ import annotations
 

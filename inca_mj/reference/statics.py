@@ -45,12 +45,12 @@ class Rest:
 
 
 def wrench_matrix(pose: kinematics.CablePose) -> np.ndarray:
-    """W: wrench on the platform (force, torque about P, in O) per tension, shape (6, 8)."""
+    """Returns W: wrench on the platform (force, torque about P, in O) per tension, shape (6, 8)."""
     return -np.vstack([pose.directions.T, np.cross(pose.arms, pose.directions).T])
 
 
 def rest(parameters: ParameterSet, geometry: Geometry) -> Rest:
-    """The rest at the start pose (x, y, z, roll, pitch, yaw) of a parameter set.
+    """Returns the rest at the start pose (x, y, z, roll, pitch, yaw) of a parameter set.
 
     Args:
         parameters: needs `m`, `lambda` and the start pose; takes the deviations of λ and the

@@ -1,4 +1,4 @@
-"""What a film may be asked for; asked before anything is simulated or drawn."""
+"""Checks of what a film may be asked for, made before anything is simulated or drawn."""
 
 from __future__ import annotations
 

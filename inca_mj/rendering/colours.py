@@ -17,7 +17,7 @@ _COLORMAP, _END = "plasma", 0.88
 
 
 def shade(where: np.ndarray) -> np.ndarray:
-    """Colours of numbers in 0..1 on the tension scale, shape (..., 4) [0..1]."""
+    """Returns the colours of numbers in 0..1 on the tension scale, shape (..., 4) [0..1]."""
     from matplotlib import colormaps
 
     return np.asarray(colormaps[_COLORMAP](_END * np.clip(where, 0.0, 1.0)))
@@ -31,7 +31,7 @@ class TensionScale:
     high: float
 
     def __call__(self, tension: np.ndarray) -> np.ndarray:
-        """Colours of tensions [N], shape (n,) -> (n, 4)."""
+        """Returns the colours of tensions [N], shape (n,) -> (n, 4)."""
         tension = np.asarray(tension, float)
         colours = shade((tension - self.low) / (self.high - self.low))
         colours[tension <= 0] = SLACK
@@ -39,7 +39,7 @@ class TensionScale:
 
 
 def tension_scale(tension: np.ndarray) -> TensionScale:
-    """The scale of whole newtons that holds all tensions [N] of the cables that pull."""
+    """Returns the scale of whole newtons that holds all tensions [N] of the cables that pull."""
     pulling = tension[tension > 0]
     if not len(pulling):
         return TensionScale(0.0, 1.0)

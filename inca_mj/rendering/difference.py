@@ -53,7 +53,7 @@ class Difference:
         return float(np.max(length + _LEVER * np.linalg.norm(self.turned, axis=1)))
 
     def enlarged(self, times: float) -> np.ndarray:
-        """Positions of the measured robot with its difference so many times as large, (N, 15)."""
+        """Returns positions of the measured robot, its difference magnified, shape (N, 15)."""
         out = self.measured.copy()
         out[:, :3] = self.simulated[:, :3] + times * self.moved
         turned = Rotation.from_rotvec(times * self.turned) * _rotation(self.simulated)
@@ -62,7 +62,7 @@ class Difference:
 
 
 def common_factor(each: Sequence[Difference]) -> float:
-    """The largest of 1, 2, 5, 10, ... with which all differences have room in a close view."""
+    """Returns the largest of 1, 2, 5, 10, ... with which all differences fit in a close view."""
     largest = max(one.largest for one in each)
     if largest * _MOST <= ROOM:
         return _MOST

@@ -16,7 +16,7 @@ from identification.errors import InputError
 def encoder(
     path: Path, size: tuple[int, int], fps: float
 ) -> Iterator[Callable[[np.ndarray | None], None]]:
-    """A function that takes frames (height, width, 3); the file is complete when the block ends.
+    """Yields a function that takes frames (height, width, 3); the file is complete after the block.
 
     Args:
         path: of the mp4 file.

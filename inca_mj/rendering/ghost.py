@@ -1,4 +1,4 @@
-"""What the real robot did, as positions of the twin's model, so that it can be drawn beside it."""
+"""The measured robot as positions of the twin's model, so that it can be drawn beside it."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from inca_mj.twin.twin import Twin
 
 
 def ghost_positions(robot: Twin, angles: np.ndarray, poses: np.ndarray | None) -> np.ndarray:
-    """MuJoCo positions of the measured robot, shape (N, 15) [m, -, rad].
+    """Returns MuJoCo positions of the measured robot, shape (N, 15) [m, -, rad].
 
     Args:
         robot: the twin.
@@ -38,7 +38,7 @@ def ghost_positions(robot: Twin, angles: np.ndarray, poses: np.ndarray | None) -
 def ghost_difference(
     robot: Twin, simulated: np.ndarray, ghost: np.ndarray, is_pose_measured: bool
 ) -> Difference:
-    """A simulated robot beside the measured one.
+    """Returns a simulated robot beside the measured one.
 
     Args:
         robot: the twin.
@@ -52,7 +52,7 @@ def ghost_difference(
 
 
 def ghost_errors(off: Difference) -> tuple[np.ndarray, np.ndarray]:
-    """How far a simulated robot is from the measured one, sample by sample.
+    """Returns how far a simulated robot is from the measured one, sample by sample.
 
     Args:
         off: both robots.

@@ -69,7 +69,7 @@ def choose_backend() -> str:
 
 @contextmanager
 def renderer(model: mujoco.MjModel, width: int, height: int) -> Iterator[mujoco.Renderer]:
-    """An offscreen renderer of width x height pixels, freed when the block ends.
+    """Yields an offscreen renderer of width x height pixels, freed when the block ends.
 
     Raises:
         GraphicsError: no OpenGL context can be made here.
@@ -109,7 +109,7 @@ def draws_in_any_thread() -> bool:
 
 @contextmanager
 def drawing_thread() -> Iterator[Executor]:
-    """A thread in which a renderer may live: one of its own where OpenGL needs no window.
+    """Yields a thread in which a renderer may live: one of its own where OpenGL needs no window.
 
     Windows belong to the main thread (GLFW), so that what would draw in them draws here at once.
 

@@ -28,7 +28,7 @@ Box = tuple[int, int, int, int]  # left, top, right, bottom [px]
 
 @dataclass(frozen=True)
 class Outline:
-    """What is drawn of a robot, in pixels.
+    """The outline of a robot, in pixels.
 
     Attributes:
         shapes: convex polygons, shape (K, 2) each.
@@ -42,7 +42,7 @@ class Outline:
 def outline_of(
     model: mujoco.MjModel, data: mujoco.MjData, eye: Eye, size: tuple[int, int]
 ) -> Outline:
-    """The outline of a robot that was placed.
+    """Returns the outline of a robot that was placed.
 
     Args:
         model: with bodies of spheres and capsules; drums, which are cylinders, stay where they are.
@@ -67,7 +67,7 @@ def outline_of(
 
 
 def draw_outline(picture: np.ndarray, outline: Outline, colour: str, width: float) -> np.ndarray:
-    """The picture with the outline over it, shape (height, width, 3) of bytes.
+    """Returns the picture with the outline over it, shape (height, width, 3) of bytes.
 
     Args:
         picture: shape (height, width, 3) of bytes.
@@ -88,7 +88,7 @@ def draw_outline(picture: np.ndarray, outline: Outline, colour: str, width: floa
 def _edges(
     shapes: Sequence[np.ndarray], size: tuple[int, int], width: float
 ) -> Iterator[tuple[Box, Image.Image]]:
-    """The line round all shapes together, in parts: where in the picture each lies [px], and it."""
+    """Yields the line round all shapes in parts: the box of each in the picture [px], its image."""
     room, reach = round(width) + 2, max(1, round(_FINER * width / 2))
     for (left, top, right, bottom), inside in _groups(shapes, size, room):
         fine = Image.new("L", (_FINER * (right - left), _FINER * (bottom - top)))
@@ -103,7 +103,7 @@ def _edges(
 def _groups(
     shapes: Sequence[np.ndarray], size: tuple[int, int], room: int
 ) -> list[tuple[Box, list[np.ndarray]]]:
-    """Shapes whose boxes meet, `room` pixels round them included, with the box of each group.
+    """Returns groups of shapes whose boxes, widened by `room` pixels, meet; each with its box.
 
     The marks of the drums stand in all corners of a picture: one box would be all of it.
     """
@@ -130,7 +130,7 @@ def _meet(one: Box, other: Box) -> bool:
 
 
 def _extreme(of: np.ufunc, pixels: np.ndarray, reach: int) -> np.ndarray:
-    """The largest or the least pixel of the square round each, `reach` to every side."""
+    """Returns the largest or the least pixel of the square round each, `reach` to every side."""
     for axis in (0, 1):
         line = np.moveaxis(pixels, axis, 0)
         out = line.copy()
@@ -142,7 +142,7 @@ def _extreme(of: np.ufunc, pixels: np.ndarray, reach: int) -> np.ndarray:
 
 
 def _round(model: mujoco.MjModel, data: mujoco.MjData, i: int, eye: Eye) -> np.ndarray:
-    """Points on the rim of a sphere or a capsule, shape (K, 3) [m]."""
+    """Returns points on the rim of a sphere or a capsule, shape (K, 3) [m]."""
     right, up = eye.axes[:, 0], eye.axes[:, 1]
     radius, half = model.geom_size[i, :2]
     rim = radius * (np.cos(_CIRCLE)[:, None] * right + np.sin(_CIRCLE)[:, None] * up)
@@ -160,7 +160,7 @@ def _hull(corners: np.ndarray) -> np.ndarray:
 
 
 def _dashes(corners: np.ndarray, scale: float, size: tuple[int, int]) -> list[list[float]]:
-    """The dashes of a line through corners (K, 2) that are in the picture: x, y, x, y of each."""
+    """Returns the dashes of a line through corners (K, 2) in the picture: x, y, x, y of each."""
     out = []
     for a, b in pairwise(corners):
         length = float(np.linalg.norm(b - a))

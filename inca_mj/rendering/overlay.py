@@ -49,7 +49,7 @@ class Eye:
     fovy: float
 
     def pixels(self, points: np.ndarray, size: tuple[int, int]) -> np.ndarray:
-        """Columns and rows of points in O, shape (M, 3) -> (M, 2); NaN for what is not before it.
+        """Returns pixels of points in O, shape (M, 3) -> (M, 2); NaN for those not before the eye.
 
         Args:
             points: shape (M, 3) [m].
@@ -62,7 +62,7 @@ class Eye:
 
 
 def overlay(picture: np.ndarray, lines: Sequence[Line], eye: Eye) -> np.ndarray:
-    """The picture with lines over it, shape (height, width, 3) of bytes; later ones are on top."""
+    """Returns the picture with lines over it, later ones on top, (height, width, 3) of bytes."""
     image = Image.fromarray(picture)
     for line in lines:
         parts = _parts(eye.pixels(line.corners, image.size))
@@ -80,7 +80,7 @@ def overlay(picture: np.ndarray, lines: Sequence[Line], eye: Eye) -> np.ndarray:
 
 
 def _parts(corners: np.ndarray) -> list[np.ndarray]:
-    """The pieces between corners that are not seen or are far outside, each of shape (K, 2)."""
+    """Returns the pieces between corners that are unseen or far outside, each of shape (K, 2)."""
     seen = np.isfinite(corners).all(axis=1) & (np.abs(corners) < _FAR).all(axis=1)
     pieces = np.split(corners, np.flatnonzero(~seen))
     pieces = [pieces[0], *(piece[1:] for piece in pieces[1:])]  # all but the first begin unseen
@@ -90,7 +90,7 @@ def _parts(corners: np.ndarray) -> list[np.ndarray]:
 def _box(
     parts: Sequence[np.ndarray], width: float, size: tuple[int, int]
 ) -> tuple[int, int, int, int] | None:
-    """The part of the picture that holds the pieces; None where none is in the picture [px]."""
+    """Returns the box that holds the pieces [px]; None where none is in the picture."""
     if not parts:
         return None
     corners, edge = np.vstack(parts), ceil(width) + 1

@@ -61,7 +61,7 @@ class Panel:
         self._boxes = [(x0, size[1] - y1, x1, size[1] - y0) for x0, y0, x1, y1 in boxes]
 
     def at(self, time: float) -> np.ndarray:
-        """The plots with the cursor at a time [s], shape (height, width, 3) of bytes."""
+        """Returns the plots with the cursor at a time [s], shape (height, width, 3) of bytes."""
         picture = self._still.copy()
         first, last = self._time
         part = (time - first) / (last - first)

@@ -1,4 +1,4 @@
-"""Where things stand in a frame of the film, and what is written on it."""
+"""The places of things in a frame of the film, and what is written on it."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Layout:
 
 
 def layout(size: tuple[int, int], camera: str, plots: bool, titled: bool = False) -> Layout:
-    """The scene on the left; the handle, 15 cm in 3 m, close up; plots below it.
+    """Returns boxes: the scene on the left; the handle, 15 cm in 3 m, close up; plots below it.
 
     A high frame has the scene above, beside its legend, and the rest below. A title has a strip
     of its own over all of it.
@@ -58,7 +58,7 @@ def layout(size: tuple[int, int], camera: str, plots: bool, titled: bool = False
 
 
 def em_of(height: int) -> int:
-    """The size of letters in a frame of a height [px]."""
+    """Returns the size of letters in a frame of a height [px]."""
     return max(8, round(height / 38))
 
 
@@ -69,7 +69,7 @@ def paste(frame: np.ndarray, box: Box, picture: np.ndarray) -> None:
 
 
 class Lettering:
-    """What is written on every frame, drawn once, and the clock, drawn each time."""
+    """The words on every frame, drawn once, and the clock, drawn each time."""
 
     def __init__(self, size: tuple[int, int], boxes: Layout, scale: TensionScale, *, ghost: bool,
                  assumed: bool, magnify: float | None, times: float,
@@ -153,7 +153,7 @@ class Lettering:
         corner[:] = np.asarray(image)
 
     def _title(self, pen: ImageDraw.ImageDraw, title: str, width: int) -> None:
-        """The title, as much of it as there is room for."""
+        """Draws the title, as much of it as there is room for."""
         font, room = self._font(1.15), width - 2 * self._em
         shown = title
         while shown and pen.textlength(shown, font) > room:
@@ -162,7 +162,7 @@ class Lettering:
 
     def _caption(self, pen: ImageDraw.ImageDraw, left: int, top: int, room: int,
                  times: float) -> None:  # fmt: skip
-        """What the close view shows, and by how much it enlarges a difference: as long as fits."""
+        """Writes what the close view shows and by how much it enlarges, in as many words as fit."""
         said, font = ["handle"], self._font(0.8)
         if times != 1:
             said = [f"handle; blue: difference drawn {times:g} times", f"difference × {times:g}"]
@@ -177,7 +177,7 @@ class Lettering:
         return ImageFont.truetype(file, max(6, round(ems * self._em)))
 
     def _card(self, pen: ImageDraw.ImageDraw, left: int, top: int, width: int, height: int) -> None:
-        """A pale ground that keeps letters readable where the robot passes behind them."""
+        """Draws a pale ground that keeps letters readable where the robot passes behind them."""
         inset = self._em // 3
         box = (left + inset, top + inset, left + width, top + height - inset)
         pen.rounded_rectangle(box, inset, fill=(255, 255, 255, 170))

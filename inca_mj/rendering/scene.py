@@ -1,4 +1,4 @@
-"""What a film shows: a run of the twin, and the real robot under the same currents as a ghost."""
+"""The content of a film: a run of the twin, and the real robot under its currents as a ghost."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class Scene:
             )
 
     def until(self, end: float) -> Scene:
-        """The samples up to `end` [s].
+        """Returns the samples up to `end` [s].
 
         Raises:
             InputError: fewer than two samples are left.
@@ -51,7 +51,7 @@ class Scene:
         return self.between(float("-inf"), end)
 
     def between(self, start: float, end: float) -> Scene:
-        """The samples from `start` to `end` [s], both included.
+        """Returns the samples from `start` to `end` [s], both included.
 
         Raises:
             InputError: fewer than two samples are left.
@@ -69,7 +69,7 @@ Source = Scene | Run | Comparison | Log | str | Path
 
 
 def make_scene(source: Source, seconds: float | None = None) -> Scene:
-    """The scene of a log, a run, a comparison, or of a file that holds a log or a run.
+    """Returns the scene of a log, a run, a comparison, or of a file that holds a log or a run.
 
     Args:
         source: a log is laid over the twin's prediction with the thesis' Table 3.2; `compare` it

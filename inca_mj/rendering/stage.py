@@ -28,7 +28,7 @@ _THIN = 480  # height of a picture in which the path is one pixel thick
 
 @dataclass(frozen=True, kw_only=True)
 class Look:
-    """How films look.
+    """The look of films.
 
     Attributes:
         camera: "front", "side" or "handle".
@@ -61,7 +61,7 @@ Begun = Callable[[], np.ndarray]  # waits for a frame, shape (height, width, 3) 
 
 @contextmanager
 def stage(scenes: Sequence[Scene], look: Look) -> Iterator[Callable[[float], Begun]]:
-    """A function that begins the frame of a time [s], and returns what waits for it.
+    """Yields a function that begins the frame of a time [s], and returns what waits for it.
 
     All views of a frame are drawn side by side, and the next frame may begin before one is had.
     Pictures of two scenes stand side by side, with one scale of the tensions, and their close views
@@ -130,7 +130,7 @@ class _Stage:
         return lambda: self._frame(time, drawn)
 
     def _frame(self, time: float, drawn: Sequence[tuple[Box, Future[np.ndarray]]]) -> np.ndarray:
-        """The picture of which the views are being drawn."""
+        """Returns the picture of which the views are being drawn."""
         frame = self.canvas.copy()
         for box, picture in drawn:
             paste(frame, box, picture.result())
@@ -184,7 +184,7 @@ def _stage(
 
 
 def _difference(shown: Scene) -> Difference | None:
-    """The simulated robot beside the measured one; None where none was measured."""
+    """Returns the simulated robot beside the measured one; None where none was measured."""
     if shown.angles is None:
         return None
     robot = shown.run.twin
@@ -193,7 +193,7 @@ def _difference(shown: Scene) -> Difference | None:
 
 
 def _between(time: np.ndarray, values: np.ndarray, at: float) -> np.ndarray:
-    """Values (N, m) at a time between samples, on a straight line; drawing norms quaternions."""
+    """Returns values (N, m) interpolated linearly at a time; drawing norms quaternions."""
     k = int(np.clip(np.searchsorted(time, at, "right") - 1, 0, len(time) - 2))
     part = (at - time[k]) / (time[k + 1] - time[k])
     first, last = values[k], values[k + 1].copy()

@@ -23,7 +23,7 @@ _MOST = 2000  # corners of a line, of a long run too
 
 @dataclass(frozen=True)
 class Trace:
-    """How a platform follows what is asked.
+    """The trace of a platform that follows what is asked.
 
     Attributes:
         time: sample times, shape (N,) [s].
@@ -38,11 +38,11 @@ class Trace:
     magnify: float = MAGNIFY
 
     def distance(self, at: float) -> float:
-        """Distance from what is asked at a time [s], between samples on a straight line [m]."""
+        """Returns the distance from what is asked at a time [s], linear between samples [m]."""
         return float(np.linalg.norm(_between(self.time, self.error, at)))
 
     def lines(self, at: float, thickness: float) -> tuple[Line, ...]:
-        """The trace of the last seconds, the whole path, and from the trace's end to what is asked.
+        """Returns the trace of the last seconds, the whole path, and a line from trace to target.
 
         Args:
             at: the time [s].
@@ -64,7 +64,7 @@ class Trace:
 
 
 def trace_of(run: Run, magnify: float = MAGNIFY) -> Trace | None:
-    """The trace of a run; None where nothing was asked."""
+    """Returns the trace of a run; None where nothing was asked."""
     if run.asked is None:
         return None
     return Trace(run.time, run.asked, run.position - run.asked, magnify)

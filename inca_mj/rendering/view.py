@@ -66,7 +66,7 @@ class View:
         ghost: np.ndarray | None,
         lines: Sequence[Line] = (),
     ) -> np.ndarray:
-        """The picture, shape (height, width, 3) of bytes.
+        """Returns the picture, shape (height, width, 3) of bytes.
 
         Args:
             qpos: positions of the simulated robot, shape (15,) [m, -, rad].
@@ -103,7 +103,7 @@ class View:
         return draw_outline(picture, outline, MEASURED, max(1.0, _EDGE * size[1]))
 
     def eye(self) -> Eye:
-        """The camera for the state that was drawn last."""
+        """Returns the camera for the state that was drawn last."""
         number = self.model.camera(self.camera).id
         return Eye(
             self.robot.cam_xpos[number].copy(),
@@ -139,7 +139,7 @@ def view(
 
 
 def _place(model: mujoco.MjModel, data: mujoco.MjData, qpos: np.ndarray) -> None:
-    """What drawing needs of a state: positions of bodies, lights, cameras and tendons."""
+    """Computes what drawing needs of a state: positions of bodies, lights, cameras and tendons."""
     data.qpos[:] = qpos
     mujoco.mj_kinematics(model, data)
     mujoco.mj_comPos(model, data)

@@ -1,4 +1,4 @@
-"""What a calibration found: sentences, tables, and plain values for JSON."""
+"""The results of a calibration: sentences, tables, and plain values for JSON."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ RARE = 0.01  # share of usual robots that have one or more values told as far fr
 
 
 def calibration_verdict(found: Calibration) -> list[str]:
-    """What the calibration means, in sentences."""
+    """Returns what the calibration means, in sentences."""
     n, length = len(found.logs), sum(log.duration for log in found.logs)
     records = "one record" if n == 1 else f"{n} records"
     before, after = (
@@ -70,7 +70,7 @@ def calibration_verdict(found: Calibration) -> list[str]:
 
 
 def untold(found: Calibration) -> tuple[str, ...]:
-    """Groups of which the records do not tell the single deviations."""
+    """Returns groups of which the records do not tell the single deviations."""
     out = []
     for group, names in found.spread.groups.items():
         left = np.mean([found.std[name] ** 2 for name in names]) / found.scatter[group] ** 2
@@ -81,7 +81,7 @@ def untold(found: Calibration) -> tuple[str, ...]:
 
 
 def unusual(found: Calibration) -> tuple[tuple[str, str, float], ...]:
-    """Values farther from the others than usual parts ever are, the farthest first.
+    """Returns values farther from the others than usual parts ever are, the farthest first.
 
     Returns:
         The group, the name of the deviation, and how many times the usual std it is. A robot whose
@@ -95,12 +95,12 @@ def unusual(found: Calibration) -> tuple[tuple[str, str, float], ...]:
 
 
 def _kind(found: Calibration, group: str) -> str:
-    """What the deviations of a group are of, in words."""
+    """Returns the kind of a group's deviations, in words."""
     return f"{POINTS[group]}s" if group in POINTS else found.robot.parameters[group].short
 
 
 def _far(found: Calibration, group: str, name: str, times: float) -> str:
-    """One value in words: where it is, how large, and how many times what is usual."""
+    """Returns one value in words: where it is, how large, and how many times what is usual."""
     number = name.partition("@")[2]
     if group in found.spread.points:
         axis = name.partition("@")[0][-1]
@@ -111,7 +111,7 @@ def _far(found: Calibration, group: str, name: str, times: float) -> str:
 
 
 def point_std(found: Calibration, point: str) -> tuple[float, float]:
-    """Rms std of points relative to one another, and in the frame [m].
+    """Returns the rms std of points relative to one another, and in the frame [m].
 
     Relative to one another: without the translations and turns of all of them together.
     """
@@ -127,7 +127,7 @@ def point_std(found: Calibration, point: str) -> tuple[float, float]:
 
 
 def common_rows(found: Calibration) -> list[tuple[str, str, str]]:
-    """Common values: what it is, nominal value, value with std."""
+    """Returns rows of common values: what it is, nominal value, value with std."""
     parameters, nominal = found.robot.parameters, found.fit.point.predictor.plant.parameters
     names = [n for n in (*EACH_DRIVE, "m", *INERTIAS, *POSE) if n in found.std]
     return [
@@ -138,7 +138,7 @@ def common_rows(found: Calibration) -> list[tuple[str, str, str]]:
 
 
 def drive_rows(found: Calibration) -> list[tuple[str, ...]]:
-    """Deviations of the drives: the parameter, then its deviation at each drive [%]."""
+    """Returns rows of deviations: the parameter, then its deviation at each drive [%]."""
     parameters, every = found.robot.parameters, range(1, DRIVES + 1)
     return [
         (describe_parameter(parameters[name]), *(_percent(found, f"{name}@{k}") for k in every))
@@ -147,7 +147,7 @@ def drive_rows(found: Calibration) -> list[tuple[str, ...]]:
 
 
 def point_rows(found: Calibration) -> list[tuple[str, ...]]:
-    """Displacements: the point, then x, y, z [mm]."""
+    """Returns rows of displacements: the point, then x, y, z [mm]."""
     return [
         (f"{point} {k}", *(_millimetres(found, f"{point}_{axis}@{k}") for axis in AXES))
         for point in POINTS
@@ -157,14 +157,14 @@ def point_rows(found: Calibration) -> list[tuple[str, ...]]:
 
 
 def gap_rows(found: Calibration) -> list[tuple[str, ...]]:
-    """Records: name, role, and the gap on unseen samples before and after."""
+    """Returns rows of records: name, role, and the gap on unseen samples before and after."""
     told = alike([rms for g in found.unseen for rms in (g.before, g.after)], "rad")
     pairs = zip(told[::2], told[1::2], strict=True)
     return [(g.name, g.role, *pair) for g, pair in zip(found.unseen, pairs, strict=True)]
 
 
 def calibration_json(found: Calibration) -> dict[str, Any]:
-    """The calibration as plain values."""
+    """Returns the calibration as plain values."""
     parameters, values, std = found.robot.parameters, found.values, found.std
 
     def row(name: str, unit: str) -> dict[str, Any]:

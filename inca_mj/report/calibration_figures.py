@@ -17,7 +17,7 @@ LARGE = 0.12  # length of the longest arrow, as a share of the frame
 
 
 def points_figure(found: Calibration, point: str = "exit") -> Figure:
-    """Where the points are, in three views, with enlarged arrows from their nominal places.
+    """Returns a figure of the points in three views, with enlarged arrows from nominal places.
 
     Args:
         found: the calibration.
@@ -52,7 +52,7 @@ def points_figure(found: Calibration, point: str = "exit") -> Figure:
 
 
 def drives_figure(found: Calibration) -> Figure:
-    """The deviation of each drive from the common value, with its std, a panel a parameter."""
+    """Returns a figure of each drive's deviation from the common value, with its std."""
     names, k = [*found.spread.drives], np.arange(1, DRIVES + 1)
     parameters = found.robot.parameters
     columns = min(5, len(names))
@@ -75,6 +75,6 @@ def drives_figure(found: Calibration) -> Figure:
 
 
 def _grid(values: dict[str, float], point: str) -> np.ndarray:
-    """Numbers of points by drive and axis, shape (8, 3)."""
+    """Returns numbers of points by drive and axis, shape (8, 3)."""
     every = range(1, DRIVES + 1)
     return np.array([[values[f"{point}_{axis}@{k}"] for axis in AXES] for k in every])

@@ -1,4 +1,4 @@
-"""How to cite the program, and the thesis whose equations it computes.
+"""Citations of the program, and of the thesis whose equations it computes.
 
 CITATION.cff at the root of the source is `to_cff()`; a test compares the two.
 """
@@ -53,7 +53,7 @@ KEYWORDS = (
 
 
 def software() -> Work:
-    """This program, in the version that is installed."""
+    """Returns this program, in the version that is installed."""
     try:
         number = version("inca-mj")
     except PackageNotFoundError:  # run from a source tree
@@ -70,22 +70,22 @@ def software() -> Work:
 
 
 def works() -> tuple[Work, ...]:
-    """What to cite: the program and the thesis."""
+    """Returns the works to cite: the program and the thesis."""
     return software(), THESIS
 
 
 def to_text() -> str:
-    """One sentence for each work."""
+    """Returns one sentence for each work."""
     return "\n".join(_sentence(work) for work in works())
 
 
 def to_bibtex() -> str:
-    """A BibTeX entry for each work."""
+    """Returns a BibTeX entry for each work."""
     return "\n\n".join(_entry(work) for work in works())
 
 
 def to_cff() -> str:
-    """The text of CITATION.cff (Citation File Format 1.2.0)."""
+    """Returns the text of CITATION.cff (Citation File Format 1.2.0)."""
     program = software()
     lines = [
         "cff-version: 1.2.0",

@@ -18,7 +18,7 @@ STRIP = 0.72  # height of a current's strip, of the distance between strips
 
 
 def simulation_figures(run: Run) -> dict[str, Figure]:
-    """The currents, and the four figures of the thesis' Figure 2.16, by name.
+    """Returns the currents, and the four figures of the thesis' Figure 2.16, by name.
 
     The caption of part (d) in the thesis repeats "angles of the motors", but its text speaks of
     roll, pitch and yaw; these are shown here.
@@ -37,7 +37,7 @@ def simulation_figures(run: Run) -> dict[str, Figure]:
 def currents_figure(
     time: np.ndarray, currents: np.ndarray, size: tuple[float, float] = (6.4, 3.4)
 ) -> Figure:
-    """The current of each motor in a strip of its own; all strips have one scale.
+    """Returns a figure of each motor's current in a strip of its own; all strips have one scale.
 
     Args:
         time: shape (N,) [s].
@@ -60,7 +60,7 @@ def currents_figure(
 
 
 def crosscheck_figure(rows: Sequence[Mapping[str, Any]], order: float | None) -> Figure:
-    """Largest difference of the two models over the step, with the slope of a 4th-order method.
+    """Returns a figure of the largest difference of the two models over the step, with slope 4.
 
     Args:
         rows: one row for each case and step: `case`, `step` [s], `max_angle_error` [rad],
@@ -101,7 +101,7 @@ def over_time(
     time: np.ndarray, label: str, values: np.ndarray, names: list[str],
     size: tuple[float, float] = (6.4, 3.4),
 ) -> Figure:  # fmt: skip
-    """Curves over time in one figure.
+    """Returns a figure of curves over time.
 
     Args:
         time: shape (N,) [s].
@@ -121,7 +121,7 @@ def over_time(
 
 
 def _slope(ax: Axes, rows: Sequence[Mapping[str, Any]], error: str) -> None:
-    """A dashed line with error ~ step⁴, just below the largest errors."""
+    """Draws a dashed line with error ~ step⁴, just below the largest errors."""
     steps = np.array(sorted({row["step"] for row in rows}))
     largest = max((row[error] or 0.0 for row in rows if row["step"] == steps[-1]), default=0.0)
     if largest > 0:

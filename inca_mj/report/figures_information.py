@@ -12,7 +12,7 @@ from identification.report.style import INK, SERIES, STYLE
 
 
 def std_figure(names: Sequence[str], stds: Mapping[str, np.ndarray]) -> Figure:
-    """Bars of the std of each parameter, one colour per experiment, on a logarithmic axis.
+    """Returns bars of the std of each parameter, one colour per experiment, on a logarithmic axis.
 
     Args:
         names: names of the p parameters.

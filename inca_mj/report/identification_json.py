@@ -32,7 +32,7 @@ Row = tuple[str, float, float, str, float, bool]
 def identification_json(
     result: Identification, profiles: Sequence[Profile] = (), seed: int = 0
 ) -> dict[str, Any]:
-    """The numbers and the verdict; unknown and infinite numbers are null."""
+    """Returns the numbers and the verdict; unknown and infinite numbers are null."""
     record = fit_to_json(result.fit)
     record["steps"] = [fit_to_json(fit) for fit in result.fits]
     record["verdict"] = identification_verdict(result)
@@ -62,7 +62,7 @@ def identification_json(
 
 
 def identification_verdict(result: Identification) -> list[str]:
-    """The verdict of the fit to believe, after sentences on its windows and its starts."""
+    """Returns the verdict of the fit to believe, after sentences on its windows and its starts."""
     if result.innovations is not None:
         return innovations_verdict(result.innovations)
     if result.windows is not None:
@@ -77,7 +77,7 @@ def identification_verdict(result: Identification) -> list[str]:
 
 
 def rows(result: Identification, fit: Fit) -> list[Row]:
-    """The rows of the table of parameters: first those of the windows, then those of the fit."""
+    """Returns the rows of the table of parameters: those of the windows, then those of the fit."""
     known = fit.estimate.predictor.plant.parameters
     w, e = result.windows, fit.estimate
     parts: list[tuple[Any, ...]] = []
@@ -95,7 +95,7 @@ def rows(result: Identification, fit: Fit) -> list[Row]:
 
 
 def windows_verdict(found: WindowEstimate, fit: Fit) -> list[str]:
-    """What the windows found, and how well their parameters predict a free run."""
+    """Returns what the windows found, and how well their parameters predict a free run."""
     floor, unit = float(np.sqrt(np.mean(fit.floor**2))), fit.estimate.predictor.log.output_unit
     said = window_sentences(found, floor, unit)
     unseen = ""
@@ -109,7 +109,7 @@ def windows_verdict(found: WindowEstimate, fit: Fit) -> list[str]:
 
 
 def innovations_verdict(found: InnovationsFit) -> list[str]:
-    """The verdict of an estimate by innovations: first on the noise, then on the fit."""
+    """Returns the verdict of an estimate by innovations: first on the noise, then on the fit."""
     fit, noise = found.fit, found.level
     said = [*search_sentences(fit)]
     if fit.estimate.status == "stopped":  # it says nothing of the model
@@ -175,7 +175,7 @@ def starts_sentence(errors: np.ndarray, unit: str) -> str:
 
 
 def profile_sentence(known: Profile) -> str:
-    """The 95 % interval of a profile."""
+    """Returns the 95 % interval of a profile in words."""
     low, high = known.interval
     said = f"{known.name}: {known.estimate:.6g}, 95 % interval [{low:.6g}, {high:.6g}]"
     return said + ("; open: the log does not bound it here" if known.open else "")

@@ -24,12 +24,12 @@ POSE_WORDS = ("x", "y", "z", "roll", "pitch", "yaw")
 
 
 def handle_share(mode: Mode) -> float:
-    """The share of the platform's pose and rates in a mode, between 0 and 1."""
+    """Returns the share of the platform's pose and rates in a mode, between 0 and 1."""
     return float(mode.participation[PLATFORM].sum())
 
 
 def handle_modes(model: LinearModel) -> list[Mode]:
-    """The swinging modes in which the platform has the largest share, the slowest first.
+    """Returns the swinging modes in which the platform has the largest share, the slowest first.
 
     Args:
         model: of the robot.
@@ -40,7 +40,7 @@ def handle_modes(model: LinearModel) -> list[Mode]:
 
 
 def handle_motion(mode: Mode, arm: float) -> str:
-    """Which motions of the platform a mode has: those of at least half the largest.
+    """Returns which motions of the platform a mode has: those of at least half the largest.
 
     Args:
         mode: the mode.
@@ -52,7 +52,7 @@ def handle_motion(mode: Mode, arm: float) -> str:
 
 
 def shape_figure(model: LinearModel) -> Figure:
-    """The platform at both ends of its swing in each of its modes, with the cables' first part.
+    """Returns a figure of the platform at both ends of its swing in each mode, with cable parts.
 
     Args:
         model: of the robot.
@@ -69,7 +69,7 @@ def shape_figure(model: LinearModel) -> Figure:
 
 
 def _draw_mode(axis: Any, model: LinearModel, mode: Mode, placed: Geometry) -> None:
-    """One mode: the platform at rest in grey, and both ends of its swing in colour."""
+    """Draws one mode: the platform at rest in grey, and both ends of its swing in colour."""
     p, e = model.system.x[POSITION], model.system.x[EULER]
     # The phase at which the platform is farthest out.
     shape = np.concatenate([mode.shape[POSITION], mode.shape[EULER]])
@@ -105,7 +105,7 @@ def _draw_mode(axis: Any, model: LinearModel, mode: Mode, placed: Geometry) -> N
 def _draw_handle(
     axis: Any, at: np.ndarray, centre: np.ndarray, exits: np.ndarray, colour: str, width: float
 ) -> None:
-    """The arms of the platform, and the first part of each cable."""
+    """Draws the arms of the platform, and the first part of each cable."""
     for point, far in zip(at, exits, strict=True):
         axis.plot(*np.stack([centre, point], axis=1), color=colour, lw=width)
         way = (far - point) / np.linalg.norm(far - point)
@@ -113,7 +113,7 @@ def _draw_handle(
 
 
 def spacing_figure(errors: Mapping[str, Sequence[tuple[float, float]]]) -> Figure:
-    """Largest error of the transfer function between the points of a grid, over their spacing.
+    """Returns the largest error of the transfer function between grid points, over their spacing.
 
     Args:
         errors: by what is interpolated and how, pairs of spacing [m] and error.

@@ -1,4 +1,4 @@
-"""What a report says of the robot's linear model and of its grid: sentences, tables, sections."""
+"""Sentences, tables and sections of a report on the robot's linear model and on its grid."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ HANDLE_HEAD = ("frequency [Hz]", "damping", "the platform moves along", "share o
 
 
 def model_to_json(model: LinearModel, rate: float) -> dict[str, Any]:
-    """A linear model of the robot as plain values.
+    """Returns a linear model of the robot as plain values.
 
     Args:
         model: of the robot.
@@ -47,7 +47,7 @@ def model_to_json(model: LinearModel, rate: float) -> dict[str, Any]:
 
 
 def handle_rows(model: LinearModel) -> list[tuple[str, str, str, str]]:
-    """The platform's modes: frequency, damping, motion, and the platform's share in them."""
+    """Returns the platform's modes: frequency, damping, motion, and the platform's share."""
     arm = float(np.linalg.norm(model.robot.geometry.B, axis=1).max())
     return [
         (f"{m.frequency:.1f}", f"{m.damping:.3f}", handle_motion(m, arm), f"{handle_share(m):.2f}")
@@ -56,7 +56,7 @@ def handle_rows(model: LinearModel) -> list[tuple[str, str, str, str]]:
 
 
 def model_sentences(model: LinearModel, label: str) -> list[str]:
-    """What matters about a linear model, in sentences.
+    """Returns what matters about a linear model, in sentences.
 
     Args:
         model: of the robot.
@@ -74,7 +74,7 @@ def model_sentences(model: LinearModel, label: str) -> list[str]:
 
 
 def model_sections(models: Sequence[LinearModel], labels: Sequence[str], rate: float) -> list:
-    """The sections on linear models of the robot.
+    """Returns the sections on linear models of the robot.
 
     Args:
         models: at some operating points.
@@ -97,7 +97,7 @@ def model_sections(models: Sequence[LinearModel], labels: Sequence[str], rate: f
 def grid_to_json(
     grid: GriddedSystem, errors: Sequence[InterpolationError], runs: Sequence[RunError]
 ) -> dict[str, Any]:
-    """A gridded model by its axes and its errors as plain values.
+    """Returns a gridded model by its axes and its errors as plain values.
 
     Args:
         grid: the gridded model.
@@ -121,7 +121,7 @@ def grid_to_json(
 def grid_sentences(
     errors: Sequence[InterpolationError], runs: Sequence[RunError]
 ) -> list[str]:  # fmt: skip
-    """How good a gridded model is, in sentences.
+    """Returns how good a gridded model is, in sentences.
 
     Args:
         errors: at points off the grid.

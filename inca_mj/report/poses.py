@@ -1,4 +1,4 @@
-"""What the kinematics say: JSON, text and sections of one pose and of poses along a log."""
+"""The results of the kinematics as JSON, text and sections, at one pose and along a log."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ INSIDE = 1.96  # std on each side that hold 95 % of a Gaussian
 
 
 def cables_json(pose: np.ndarray, cables: Cables) -> dict[str, Any]:
-    """A pose and its cables as plain values.
+    """Returns a pose and its cables as plain values.
 
     Args:
         pose: x, y, z [m], roll, pitch, yaw [rad], shape (6,).
@@ -40,7 +40,7 @@ def cables_json(pose: np.ndarray, cables: Cables) -> dict[str, Any]:
 
 
 def cables_verdict(cables: Cables, geometry: Geometry) -> list[str]:
-    """What the Jacobian says of a pose, in sentences."""
+    """Returns what the Jacobian says of a pose, in sentences."""
     said = []
     if rank(cables) < 6:
         said.append(
@@ -58,7 +58,7 @@ def cables_verdict(cables: Cables, geometry: Geometry) -> list[str]:
 
 
 def cables_rows(cables: Cables) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
-    """A table of the cables: heading and a row for each."""
+    """Returns a table of the cables: heading and a row for each."""
     head = ("cable", "length [m]", "direction", "φ [deg]", "θ [deg]")
     rows = [
         (
@@ -73,7 +73,7 @@ def cables_rows(cables: Cables) -> tuple[tuple[str, ...], list[tuple[str, ...]]]
 
 
 def cables_section(pose: np.ndarray, cables: Cables, geometry: Geometry) -> Section:
-    """The cables of a pose: picture and table."""
+    """Returns the section on the cables of a pose: picture and table."""
     head, rows = cables_rows(cables)
     place = ", ".join(f"{name} {x:zg}" for name, x in zip(POSE, pose, strict=True))
     return Section(
@@ -85,7 +85,7 @@ def cables_section(pose: np.ndarray, cables: Cables, geometry: Geometry) -> Sect
 
 
 def poses_json(found: LogPoses) -> dict[str, Any]:
-    """Poses along a log as plain values."""
+    """Returns poses along a log as plain values."""
     return {
         "samples": len(found.log),
         "encoder_std": found.encoder.tolist(),
@@ -104,7 +104,7 @@ def poses_json(found: LogPoses) -> dict[str, Any]:
 
 
 def poses_verdict(found: LogPoses) -> list[str]:
-    """What the poses are worth, in sentences."""
+    """Returns what the poses are worth, in sentences."""
     length, angle = 1e6 * found.std[:, :3].mean(), 1e3 * found.std[:, 3:].mean()
     said = [
         f"The mean std is {length:.0f} µm of the position and {angle:.2f} mrad of the angles.",
@@ -139,7 +139,7 @@ def poses_verdict(found: LogPoses) -> list[str]:
 
 
 def poses_section(found: LogPoses) -> Section:
-    """Poses along a log: figure and table."""
+    """Returns the section on poses along a log: figure and table."""
     against = _measured(found)
     columns: tuple[str, ...] = ("coordinate", "unit", "mean std", "of it noise")
     rows: list[tuple[object, ...]] = []
@@ -179,7 +179,7 @@ def write_poses(found: LogPoses, path: Path) -> Path:
 
 
 def _measured(found: LogPoses) -> dict[str, Any] | None:
-    """Errors against the pose in the log, where it has one."""
+    """Returns the errors against the pose in the log, where it has one."""
     if found.measured is None:
         return None
     error = found.pose - found.measured

@@ -17,7 +17,7 @@ _NAMES = ("x", "y", "z", "roll", "pitch", "yaw")
 
 
 def cables_figure(pose: np.ndarray, cables: Cables, geometry: Geometry) -> Figure:
-    """The frame, the cables and the platform in space.
+    """Returns a figure of the frame, the cables and the platform in space.
 
     Args:
         pose: x, y, z [m], roll, pitch, yaw [rad], shape (6,).
@@ -40,7 +40,7 @@ def cables_figure(pose: np.ndarray, cables: Cables, geometry: Geometry) -> Figur
 
 
 def poses_figure(found: LogPoses) -> Figure:
-    """Pose over time on the left; on the right its std, or its error where the log has a pose."""
+    """Returns a figure of the pose over time with its std, or its error if the log has a pose."""
     with matplotlib.rc_context(STYLE):
         figure = Figure((9.5, 5.6), layout="constrained")
         axes = figure.subplots(2, 2, sharex=True)

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def compare_verdict(result: Comparison) -> list[str]:
-    """What the comparison means, in sentences."""
+    """Returns what the comparison means, in sentences."""
     fit, error = result.fit_percent, 1e3 * float(result.rms.mean())
     cable = error * result.run.twin.parameters["R"].value
     said = [f"The mean fit is {mean_fit(fit)}."]
@@ -37,7 +37,7 @@ def compare_verdict(result: Comparison) -> list[str]:
 
 
 def compare_section(result: Comparison) -> Section:
-    """Measured and simulated angles, as MATLAB's `compare` shows them."""
+    """Returns the section on measured and simulated angles, as MATLAB's `compare` shows them."""
     from identification.report.compare_figure import compare_figure
 
     log = result.log
@@ -62,7 +62,7 @@ def compare_section(result: Comparison) -> Section:
 
 
 def run_section(run: Run) -> Section:
-    """The currents, and the four pictures of the thesis' Figure 2.16."""
+    """Returns the section on the currents, and the four pictures of the thesis' Figure 2.16."""
     from inca_mj.report.figures import simulation_figures
 
     return Section(
@@ -74,7 +74,7 @@ def run_section(run: Run) -> Section:
 
 
 def crosscheck_section(result: CrossCheck) -> Section:
-    """Two models of one robot that share no code."""
+    """Returns the section on two models of one robot that share no code."""
     from inca_mj.report.figures import crosscheck_figure
 
     keys = ("max_angle_error", "max_position_error", "max_tension_error")
@@ -93,7 +93,7 @@ def crosscheck_section(result: CrossCheck) -> Section:
 
 
 def model_section(robot: Twin) -> Section:
-    """Every number of the robot and where it comes from."""
+    """Returns the section on every number of the robot and where it comes from."""
     assumed = " These coordinates are assumed." if robot.geometry.assumed else ""
     words = parameter_words(robot.parameters, robot.effects)
     return Section(

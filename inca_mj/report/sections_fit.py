@@ -17,7 +17,7 @@ from inca_mj.workflows.identification import Identification
 
 
 def fit_section(result: Identification, fit: Fit, title: str) -> Section:
-    """Parameters with uncertainty, and the fit's verdict."""
+    """Returns the section on parameters with uncertainty, and the fit's verdict."""
     said = identification_verdict(result) if fit is result.fit else fit_verdict(fit)
     return Section(
         title,
@@ -39,7 +39,7 @@ def fit_section(result: Identification, fit: Fit, title: str) -> Section:
 
 
 def profile_section(fit: Fit, known: Profile) -> Section:
-    """The profile of one parameter: how well the others can compensate a change of it."""
+    """Returns the profile of one parameter: how well the others can compensate a change of it."""
     unit = fit.estimate.predictor.plant.parameters[known.name].unit
     return Section(
         f"Profile of {known.name}",

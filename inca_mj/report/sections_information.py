@@ -19,7 +19,7 @@ WEAK = 0.5  # a value with a larger relative std says little
 
 
 def information_verdict(found: Information) -> list[str]:
-    """Sentences on what can be determined and what cannot."""
+    """Returns sentences on what can be determined and what cannot."""
     kept, held = determinable(found)
     if held:
         said = [*lost_sentences(found), f"Hold {' and '.join(held)} fixed."]
@@ -47,7 +47,7 @@ def information_verdict(found: Information) -> list[str]:
 
 
 def lost_sentences(found: Information) -> list[str]:
-    """Sentences on what cannot be determined, because it is not felt or not resolved."""
+    """Returns sentences on what cannot be determined, because it is not felt or not resolved."""
     inner, said = found.found, []
     if inner.symmetries:
         known = ", ".join(map(str, found.combinations))
@@ -65,7 +65,7 @@ def _amount(found: Information, i: int) -> str:
 
 
 def information_json(found: Information) -> dict[str, Any]:
-    """The numbers as plain values."""
+    """Returns the numbers as plain values."""
     return {
         "parameters": {
             name: {
@@ -90,7 +90,7 @@ def information_json(found: Information) -> dict[str, Any]:
 
 
 def information_section(found: Information, about: str) -> Section:
-    """Least std of each parameter, if the others are unknown and if they are known."""
+    """Returns the least std of each parameter, if the others are unknown and if they are known."""
     from inca_mj.report.figures_information import std_figure
 
     order = [found.names.index(name) for name in found.ranking]
@@ -114,7 +114,7 @@ def information_section(found: Information, about: str) -> Section:
 
 
 def design_verdict(result: Design) -> list[str]:
-    """Sentences on how much better the design is than the thesis' PRBS, also where it is not."""
+    """Returns sentences on how the design compares with the thesis' PRBS."""
     worst, gain = result.worst_gain, result.gain
     names = result.best.found.names
     best, least = int(gain.argmax()), int(gain.argmin())
@@ -140,7 +140,7 @@ def design_verdict(result: Design) -> list[str]:
 
 
 def design_json(result: Design) -> dict[str, Any]:
-    """The numbers as plain values."""
+    """Returns the numbers as plain values."""
     far = result.best.extent
     rows = zip(
         result.best.found.names, result.prbs.found.std, result.best.found.std,
@@ -179,7 +179,7 @@ def _row(tried: Tried) -> tuple[object, ...]:
 
 
 def design_section(result: Design) -> Section:
-    """The designed input compared with the thesis' PRBS, and a table of standard inputs."""
+    """Returns the designed input compared with the thesis' PRBS, and a table of standard inputs."""
     from inca_mj.report.figures_information import std_figure
 
     names = result.best.found.names[: result.best.found.asked]

@@ -27,7 +27,7 @@ _PLANES = (
 
 
 def tension_figure(found: StaticAnalysis) -> Figure:
-    """Tensions of the eight cables at the pose, with their limits."""
+    """Returns a figure of the tensions of the eight cables at the pose, with their limits."""
     held, cable = found.held, np.arange(1, 9)
     with matplotlib.rc_context(STYLE):
         figure = Figure((6.4, 3.4), layout="constrained")
@@ -50,7 +50,7 @@ def tension_figure(found: StaticAnalysis) -> Figure:
 def slices_figure(
     robot: Robot, found: StaticAnalysis, kinds: tuple[Kind, ...], points: int = FINE
 ) -> Figure:
-    """Three slices of workspaces through the pose.
+    """Returns a figure of three slices of workspaces through the pose.
 
     Args:
         robot: its numbers.
@@ -84,7 +84,7 @@ def slices_figure(
 
 
 def cable_mass_figure(found: StaticAnalysis) -> Figure:
-    """How wrong the length of the massless line is, over the tension, for some masses."""
+    """Returns a figure of the massless line's length error over the tension, for some masses."""
     robot = found.robot
     at = lines(found.pose, robot.geometry)
     span = np.hypot(at.s[:, 0], at.s[:, 1]) * at.d
@@ -110,7 +110,7 @@ def cable_mass_figure(found: StaticAnalysis) -> Figure:
 
 
 def frequency_figure(found: StaticAnalysis) -> Figure:
-    """Frequencies of the platform and of its cables."""
+    """Returns a figure of the frequencies of the platform and of its cables."""
     rows: list[tuple[str, np.ndarray, str]] = [
         ("platform and drums", found.modes_free.frequency, INK),
         ("platform, drums locked", found.modes.frequency, MEASURED),

@@ -13,7 +13,7 @@ from inca_mj.workflows.statics import StaticAnalysis
 
 
 def statics_json(found: StaticAnalysis) -> dict[str, Any]:
-    """The record; `docs/json.md` explains its keys."""
+    """Returns the record; `docs/json.md` explains its keys."""
     held, rest = found.held, found.rest
     return {
         "pose": found.pose.tolist(),

@@ -17,7 +17,7 @@ from inca_mj.workflows.statics import StaticAnalysis
 
 
 def statics_verdict(found: StaticAnalysis) -> list[str]:
-    """What was found, in sentences."""
+    """Returns what was found, in sentences."""
     held, rest, push = found.held, found.rest, found.push
     x, y, z = rest.pose[:3]
     said = [
@@ -48,7 +48,7 @@ def statics_verdict(found: StaticAnalysis) -> list[str]:
 
 
 def mass_verdict(found: StaticAnalysis) -> list[str]:
-    """For which cables the massless straight line is good enough, in sentences."""
+    """Returns for which cables the massless straight line is good enough, in sentences."""
     said = []
     for rho in found.rho:
         rows = [e for e in found.line_errors if e.rho == rho]
@@ -73,7 +73,7 @@ def _near_words(begin: str, found: Interference) -> list[str]:
 
 
 def statics_sections(found: StaticAnalysis) -> list[Section]:
-    """The sections, with their figures."""
+    """Returns the sections, with their figures."""
     held = found.held
     sections = [
         Section(
@@ -126,7 +126,7 @@ MASS_COLUMNS = (
 
 
 def mass_rows(found: StaticAnalysis) -> tuple[tuple[object, ...], ...]:
-    """The table of the mass of the cables, with the columns `MASS_COLUMNS`."""
+    """Returns the table of the mass of the cables, with the columns `MASS_COLUMNS`."""
     return tuple(
         (1e3 * e.rho, e.tension, 1e6 * e.length, 1e3 * e.angle, 1e3 * e.force, 1e3 * e.force_half,
          1e2 * e.stiffness_lost, 1e3 * e.moved, "yes" if e.line_is_enough else "no")

@@ -43,7 +43,7 @@ _NOT_HIS = (
 
 
 def thesis_verdict(found: ThesisResults) -> list[str]:
-    """What the report means, in sentences."""
+    """Returns what the report means, in sentences."""
     rows = [
         f"{r.trial.number}: {r.trial.thesis_fit} % and {r.output_fit_percent.mean():.4f} %"
         for r in found.trials
@@ -57,7 +57,7 @@ def thesis_verdict(found: ThesisResults) -> list[str]:
 
 
 def thesis_sections(found: ThesisResults) -> list[Section]:
-    """The sections, in the order of the thesis."""
+    """Returns the sections, in the order of the thesis."""
     twin = found.figure_2_16.twin
     return [
         Section(
@@ -89,7 +89,7 @@ def thesis_sections(found: ThesisResults) -> list[Section]:
 
 
 def thesis_json(found: ThesisResults) -> dict[str, Any]:
-    """The printed numbers and ours as plain values."""
+    """Returns the printed numbers and ours as plain values."""
     return {
         "tables": {t.number: {"title": t.title, "columns": list(t.columns),
                               "rows": [list(row) for row in t.rows]} for t in TABLES.values()},
@@ -191,14 +191,14 @@ _FREE = (
 
 
 def _products(fit: Fit) -> str:
-    """A sentence for each product of parameters of which the log does not tell the factors."""
+    """Returns a sentence for each product of parameters whose factors the log does not tell."""
     return "".join(
         f" Only {c} can be known from the log, and not its factors." for c, _, _ in fit.combinations
     )
 
 
 def _motor_2(log: Log, model: np.ndarray, fit: np.ndarray) -> Figure:
-    """The angle of motor 2, which the thesis draws: data, model and their difference."""
+    """Returns the angle of motor 2, which the thesis draws: data, model and their difference."""
     return compare_figure(
         log.time, log.outputs[:, 1:2], model[:, 1:2], fit[1:2], ("angle of motor 2",), "rad",
         labels=("data", "estimated model"),
@@ -217,5 +217,5 @@ def _table(number: str) -> str:
 
 
 def numbered(sections: Sequence[Section]) -> list[str]:
-    """The numbers that the headings begin with, such as "Table 3.3", in order."""
+    """Returns the numbers that the headings begin with, such as "Table 3.3", in order."""
     return [s.title.partition(":")[0] for s in sections]

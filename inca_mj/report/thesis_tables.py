@@ -22,7 +22,7 @@ FIXED = "fixed"
 
 
 def parameter_table(number: str, name: str) -> Table:
-    """Table 2.1 or 3.2: the printed value of each parameter, and ours in SI units.
+    """Returns Table 2.1 or 3.2: the printed value of each parameter, and ours in SI units.
 
     Args:
         number: of the table.
@@ -38,7 +38,7 @@ def parameter_table(number: str, name: str) -> Table:
 
 
 def model_table(robot: Twin) -> Table:
-    """Table 3.1: the size of the model there and here."""
+    """Returns Table 3.1: the size of the model there and here."""
     model = robot.model
     ours = {
         "inputs": str(model.nu),
@@ -54,7 +54,7 @@ def model_table(robot: Twin) -> Table:
 
 
 def trial_table(number: str, result: TrialResult) -> Table:
-    """Tables 3.3 to 3.6: the thesis' estimates and ours.
+    """Returns one of Tables 3.3 to 3.6: the thesis' estimates and ours.
 
     Args:
         number: of the table.
@@ -74,7 +74,7 @@ def trial_table(number: str, result: TrialResult) -> Table:
 
 
 def step_table(number: str, fit: Fit, true: Mapping[str, float]) -> Table:
-    """Tables 3.7 and 3.8: the real robot as printed, and the simulated one with its true values.
+    """Returns Table 3.7 or 3.8: the real robot as printed, the simulated one with its true values.
 
     Args:
         number: of the table.
@@ -96,7 +96,7 @@ def step_table(number: str, fit: Fit, true: Mapping[str, float]) -> Table:
 
 
 def fits_table(number: str, fit: np.ndarray, loss: float) -> Table:
-    """The table beside Figures 3.4 to 3.7 and 3.10 to 3.13: fit of each motor, and the loss.
+    """Returns the table beside Figures 3.4 to 3.7 and 3.10 to 3.13: fit of each motor, and loss.
 
     Args:
         number: of the figure.
@@ -129,5 +129,5 @@ def _joined(values: Mapping[str, float], names: list[str]) -> str:
 
 
 def _number(value: float) -> str:
-    """Five digits; what is below a nanometre or a nanoradian is zero."""
+    """Returns a number in five digits; what is below a nanometre or a nanoradian is zero."""
     return "0" if abs(value) < 1e-9 else f"{value:.5g}"

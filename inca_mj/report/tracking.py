@@ -17,7 +17,7 @@ MAGNIFIED = 20.0  # errors in the drawing of the path
 
 
 def tracking_section(result: Tracking) -> Section:
-    """What a report says of a robot that followed a path."""
+    """Returns what a report says of a robot that followed a path."""
     rows = (
         ("from the asked point, root mean square", 1e3 * result.rms),
         ("from the asked point, largest", 1e3 * result.largest),
@@ -37,7 +37,7 @@ def tracking_section(result: Tracking) -> Section:
 
 
 def tracking_figure(results: Mapping[str, Tracking]) -> Figure:
-    """The path with errors drawn larger, and the distance over time, of several runs.
+    """Returns the path with errors drawn larger, and the distance over time, of several runs.
 
     Args:
         results: runs by what to call them, all on one path.

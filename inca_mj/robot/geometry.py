@@ -1,4 +1,4 @@
-"""Where the cables leave the frame and where they meet the platform.
+"""The points where the cables leave the frame and where they meet the platform.
 
 The thesis lost its coordinates. These are ASSUMED: a flat SPIDAR-G cross, two cables on each
 of four connectors, chosen because its unpowered equilibrium is stable, it has wrench closure,
@@ -106,7 +106,7 @@ INCA = Geometry(
 
 
 def geometry_of(record: Mapping[str, Any]) -> Geometry:
-    """The geometry of a record that was read from JSON, where rows are lists.
+    """Returns the geometry of a record that was read from JSON, where rows are lists.
 
     Args:
         record: the fields of a `Geometry` by name.

@@ -15,7 +15,7 @@ INPUTS = ("zero", "step", "prbs", "multisine")
 def make_input(
     kind: str, duration: float, sampling_time: float = 0.01, *, seed: int = 0
 ) -> np.ndarray:
-    """Currents of all drives [A], shape (N, 8) with N = duration / sampling_time + 1.
+    """Returns currents of all drives [A], shape (N, 8) with N = duration / sampling_time + 1.
 
     Args:
         kind: "zero"; "step": 2 A in motor 1, none in the others (thesis Figure 2.16);
@@ -46,7 +46,7 @@ def make_input(
 
 
 def sampling_time_of(rate: float) -> float:
-    """The sampling time of a rate [s].
+    """Returns the sampling time of a rate [s].
 
     Args:
         rate: [Hz].
@@ -62,7 +62,7 @@ def sampling_time_of(rate: float) -> float:
 
 
 def step(n: int, level: float = 2.0) -> np.ndarray:
-    """A constant current in motor 1 [A], shape (n, 8) (thesis section 2.4)."""
+    """Returns a constant current in motor 1 [A], shape (n, 8) (thesis section 2.4)."""
     currents = np.zeros((n, DRIVES))
     currents[:, 0] = level
     return currents
@@ -79,7 +79,7 @@ def prbs(
     high: float = 1.0,
     phases: np.ndarray | None = None,
 ) -> np.ndarray:
-    """Pseudo-random binary currents [A], shape (n, 8) (thesis section 3.2.1).
+    """Returns pseudo-random binary currents [A], shape (n, 8) (thesis section 3.2.1).
 
     A maximum-length sequence of 2^bits - 1 bits, each `bit_time` [s] long, between `low` and
     `high` [A]; the drives get the same sequence at different phases [bits], drawn
@@ -111,7 +111,7 @@ def multisine(
     band: tuple[float, float] = (0.1, 5.0),
     tones: int = 20,
 ) -> np.ndarray:
-    """Sums of sines with random phases [A], shape (n, 8), within mean ± amplitude.
+    """Returns sums of sines with random phases [A], shape (n, 8), within mean ± amplitude.
 
     The tones [Hz] are spread over `band` on a logarithmic scale, so that one record shows slow
     motion (friction) and fast motion (inertia).

@@ -38,7 +38,7 @@ TENSION, NO_LOAD_LENGTH = 1, 2  # what a user sensor on a drive shows: its senso
 
 @njit
 def no_load_rate(d: float, d_0: float, omega: float, R: float) -> float:
-    """Rate of the no-load length ḋ₀ [m/s]: the roller winds the cable in its strained state."""
+    """Returns the rate ḋ₀ of the no-load length [m/s]: the roller winds the strained cable."""
     return -R * omega * d_0 / d
 
 
@@ -46,14 +46,14 @@ def no_load_rate(d: float, d_0: float, omega: float, R: float) -> float:
 def tension(
     d: float, d_dot: float, d_0: float, d_0_dot: float, lambda_: float, b: float, more: float = 0.0
 ) -> float:  # fmt: skip
-    """Tension of the cable T [N], zero when slack; `more` is what candidate effects add."""
+    """Returns the tension of the cable T [N], zero when slack; `more` is what effects add."""
     T = lambda_ * (d - d_0) / d_0 + b * (d_dot - d_0_dot) + more
     return 0.0 if T < 0.0 else T  # written so that NaN stays NaN
 
 
 @njit
 def spring_force(phi: float, R: float, R_s: float, k_s: float, T_0: float) -> float:
-    """Force of the drum spring F_s [N].
+    """Returns the force of the drum spring F_s [N].
 
     Args:
         phi: motor angle φ, positive winds in [rad].
@@ -68,5 +68,5 @@ def spring_force(phi: float, R: float, R_s: float, k_s: float, T_0: float) -> fl
 
 @njit
 def coulomb_friction(omega: float, b_c: float, beta: float) -> float:
-    """Smooth Coulomb friction torque τ_c [N m]."""
+    """Returns the smooth Coulomb friction torque τ_c [N m]."""
     return b_c * (1.0 - 2.0 / (1.0 + exp(2.0 * beta * omega)))  # tanh, at half its cost

@@ -96,7 +96,7 @@ UNKNOWN = ("lambda", "b", "J", "b_v", "b_c", "beta")  # "arbitrary" or re-estima
 
 
 def parameter_set(name: str = "trial", values: Mapping[str, float] | None = None) -> ParameterSet:
-    """A named parameter set, with some values replaced.
+    """Returns a named parameter set, with some values replaced.
 
     Args:
         name: "simulation" (thesis Table 2.1) or "trial" (thesis Table 3.2).

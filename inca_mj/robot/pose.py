@@ -11,7 +11,7 @@ POSE = ("x", "y", "z", "roll", "pitch", "yaw")
 
 
 def pose_values(pose: Sequence[float]) -> Mapping[str, float]:
-    """A pose by the names of the robot's parameters.
+    """Returns a pose by the names of the robot's parameters.
 
     Args:
         pose: x, y, z [m], roll, pitch, yaw [rad].

@@ -29,7 +29,7 @@ DRIVE, POINT = "drive", "point"  # where a deviation goes, as `Parameter.where` 
 
 
 def deviations(names: tuple[str, ...] = EACH_DRIVE) -> Iterator[Parameter]:
-    """The relative deviation of each of some parameters at each drive."""
+    """Yields the relative deviation of each of some parameters at each drive."""
     common = parameter_set()
     for name in names:
         for k in range(1, DRIVES + 1):
@@ -41,7 +41,7 @@ def deviations(names: tuple[str, ...] = EACH_DRIVE) -> Iterator[Parameter]:
 
 
 def displacements() -> Iterator[Parameter]:
-    """The displacement of each exit point and connector along each axis."""
+    """Yields the displacement of each exit point and connector along each axis."""
     for point, about in POINTS.items():
         for k in range(1, DRIVES + 1):
             for axis in AXES:
@@ -53,14 +53,14 @@ def displacements() -> Iterator[Parameter]:
 
 
 def with_spread(parameters: ParameterSet) -> ParameterSet:
-    """The parameters with all deviations and displacements, zero where they are new."""
+    """Returns the parameters with all deviations and displacements, zero where they are new."""
     known = {p.name for p in parameters}
     new = (p for p in (*deviations(), *displacements()) if p.name not in known)
     return replace(parameters, records=(*parameters.records, *new))
 
 
 def at_drives(name: str, values: Mapping[str, float]) -> np.ndarray:
-    """A parameter at each drive, shape (8,), in its unit.
+    """Returns a parameter at each drive, shape (8,), in its unit.
 
     Args:
         name: of the common value.
@@ -71,7 +71,7 @@ def at_drives(name: str, values: Mapping[str, float]) -> np.ndarray:
 
 
 def displaced(geometry: Geometry, values: Mapping[str, float]) -> Geometry:
-    """The geometry with its points where the displacements put them; itself without any.
+    """Returns the geometry with its points where the displacements put them; itself without any.
 
     Args:
         geometry: the nominal points.

@@ -1,1 +1,1 @@
-"""What the eight cables can hold, how stiffly and where, and what their mass costs."""
+"""Statics of the eight cables: what they hold, how stiffly and where, and what their mass costs."""

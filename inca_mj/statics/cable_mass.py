@@ -1,4 +1,4 @@
-"""When the massless straight line is good enough: its errors over ρ, tension and pose.
+"""The range in which the massless straight line is good enough: its errors over ρ, T and pose.
 
 What a line without mass gets wrong, for a cable that has the tension T at its connector:
 
@@ -32,7 +32,7 @@ TENSION = (1.0, 4.0, 16.0)  # [N]
 
 @dataclass(frozen=True, kw_only=True)
 class LineError:
-    """What the massless straight line gets wrong at one pose, the worst of the eight cables.
+    """Errors of the massless straight line at one pose, the worst of the eight cables.
 
     Attributes:
         pose: x, y, z [m], roll, pitch, yaw [rad], shape (6,).
@@ -77,7 +77,7 @@ def line_errors(
     rho: Sequence[float] = RHO,
     tension: Sequence[float] = TENSION,
 ) -> tuple[LineError, ...]:
-    """The table over masses, tensions and poses.
+    """Returns the table over masses, tensions and poses.
 
     Args:
         robot: its numbers.

@@ -70,11 +70,11 @@ class Catenary:
         return bool(self.exit[2] >= self.connector[2])
 
     def tension(self, s: np.ndarray | float) -> np.ndarray:
-        """Tension at unstrained lengths s from the upper end, shape (n,) [m] -> [N]."""
+        """Returns the tension at unstrained lengths s from the upper end, shape (n,) [m] -> [N]."""
         return np.hypot(self.H, self.V - self.rho * GRAVITY * np.asarray(s, float))
 
     def points(self, count: int = 51) -> np.ndarray:
-        """The curve from the exit point to the connector, shape (count, 3) [m].
+        """Returns the curve from the exit point to the connector, shape (count, 3) [m].
 
         Args:
             count: how many points.
@@ -89,7 +89,7 @@ class Catenary:
         return curve if self.from_exit else curve[::-1]
 
     def force_on_connector(self) -> np.ndarray:
-        """What the cable does to the platform, in O, shape (3,) [N]."""
+        """Returns the force of the cable on the platform, in O, shape (3,) [N]."""
         across = self.exit[:2] - self.connector[:2]
         span = float(np.linalg.norm(across))
         along = across / span if span > 0 else across
@@ -103,7 +103,7 @@ class Catenary:
 def hang(
     exit: np.ndarray, connector: np.ndarray, no_load: float, rho: float, lambda_: float
 ) -> Catenary:
-    """The cable of a given unstrained length between two points.
+    """Returns the cable of a given unstrained length between two points.
 
     Args:
         exit: A, shape (3,) [m].
@@ -151,7 +151,7 @@ def hang(
 def pulled(
     exit: np.ndarray, connector: np.ndarray, tension: float, rho: float, lambda_: float
 ) -> Catenary:
-    """The cable that has a given tension at the connector; of two, the taut one.
+    """Returns the cable that has a given tension at the connector; of two, the taut one.
 
     Args:
         exit: A, shape (3,) [m].
@@ -186,7 +186,7 @@ def pulled(
 def _ends(
     A: np.ndarray, B: np.ndarray, H: float, rho: float, lambda_: float
 ) -> tuple[float, float]:
-    """V and d₀ of the cable with horizontal tension H between two points.
+    """Returns V and d₀ of the cable with horizontal tension H between two points.
 
     The cable that cannot stretch begins the search: d₀² = v² + (2 a sinh(h/2a))² with a = H/w, and
     V = (w/2) (v coth(h/2a) + d₀).
@@ -210,7 +210,7 @@ def _ends(
 
 
 def _span(A: np.ndarray, B: np.ndarray) -> float:
-    """Horizontal distance; of a plumb cable a little more than none [m]."""
+    """Returns the horizontal distance, a little more than none for a plumb cable [m]."""
     return max(float(np.hypot(*(B - A)[:2])), PLUMB * float(np.linalg.norm(B - A)))
 
 
@@ -230,7 +230,7 @@ def _checked(
 
 
 def sag(d: float, tension: float, rho: float) -> float:
-    """How far the middle of a taut cable hangs below the middle of its chord, ρ g d²/(8 T) [m].
+    """Returns the sag of a taut cable below the middle of its chord, ρ g d²/(8 T) [m].
 
     Args:
         d: length of the chord [m].
@@ -241,7 +241,7 @@ def sag(d: float, tension: float, rho: float) -> float:
 
 
 def sag_length(d: float, span: float, tension: float, rho: float) -> float:
-    """By how much the parabola is longer than its chord, (ρ g ℓ)² d/(24 T²) [m].
+    """Returns by how much the parabola is longer than its chord, (ρ g ℓ)² d/(24 T²) [m].
 
     Args:
         d: length of the chord [m].
@@ -253,7 +253,7 @@ def sag_length(d: float, span: float, tension: float, rho: float) -> float:
 
 
 def ernst_modulus(span: float, tension: float, rho: float, lambda_: float) -> float:
-    """Ernst's equivalent modulus λ/(1 + (ρ g ℓ)² λ/(12 T³)) [N].
+    """Returns Ernst's equivalent modulus λ/(1 + (ρ g ℓ)² λ/(12 T³)) [N].
 
     Args:
         span: horizontal length ℓ [m].
@@ -265,7 +265,7 @@ def ernst_modulus(span: float, tension: float, rho: float, lambda_: float) -> fl
 
 
 def _curve(s, H: float, V: float, w: float, lambda_: float):  # type: ignore[no-untyped-def]
-    """X and Z at s."""
+    """Returns X and Z at s."""
     V_s = V - w * s
     T_0, T_s = np.hypot(H, V), np.hypot(H, V_s)
     alike = V * V_s > 0  # then T_0 T_s − V V_s loses digits; its conjugate does not

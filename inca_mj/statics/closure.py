@@ -33,7 +33,7 @@ NOTHING = 1e-9  # a row of the null space of less is zero
 
 @dataclass(frozen=True)
 class Closure:
-    """What the cables of one pose span.
+    """Rank, condition and internal tension of the cables at one pose.
 
     Attributes:
         rank: of the wrench matrix, 6 where the cables move the platform in every direction.
@@ -55,7 +55,7 @@ class Closure:
 
 
 def closure(W: np.ndarray) -> Closure:
-    """Rank and closure of a wrench matrix, by a linear program.
+    """Returns the rank and closure of a wrench matrix, by a linear program.
 
     Args:
         W: wrench of the cables on the platform per tension, shape (6, n) [-, m].
@@ -105,7 +105,7 @@ def require_closure(found: Closure, pose: np.ndarray) -> None:
 
 
 def split(W: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Pseudo-inverses, null spaces and ranks of many wrench matrices, by Wᵀ = Q [L; 0].
+    """Returns pseudo-inverses, null spaces and ranks of many wrench matrices, by Wᵀ = Q [L; 0].
 
     Column k of Wᵀ lies in the span of those before it exactly if L_kk = 0, so the diagonal of L
     says whether the rank is 6.
@@ -127,7 +127,7 @@ def split(W: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def gap_margin(N: np.ndarray, full: np.ndarray) -> np.ndarray:
-    """By how much the free sector of the null space exceeds a half plane [rad], shape (N,).
+    """Returns by how much the free sector of the null space exceeds a half plane [rad], shape (N,).
 
     Positive where there is closure. It goes through zero continuously where the rank is 6, so the
     border of the workspace can be interpolated.

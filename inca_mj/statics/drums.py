@@ -25,7 +25,7 @@ STEPS = 12  # many more than enough: the equation is almost a straight line
 
 @dataclass(frozen=True)
 class Pull:
-    """What eight cables of given lengths do when their drums are in balance.
+    """The pull of eight cables of given lengths whose drums are in balance.
 
     Attributes:
         tension: T, shape (..., 8) [N].
@@ -41,7 +41,7 @@ class Pull:
 
 
 def pull(robot: Robot, d: np.ndarray, current: float | np.ndarray = 0.0) -> Pull:
-    """Tensions at given cable lengths, with constant currents and drums in balance.
+    """Returns tensions at given cable lengths, with constant currents and drums in balance.
 
     Args:
         robot: its numbers.
@@ -72,6 +72,6 @@ def pull(robot: Robot, d: np.ndarray, current: float | np.ndarray = 0.0) -> Pull
 
 
 def _over(a: float | np.ndarray, b: np.ndarray) -> np.ndarray:
-    """a/b, zero where b is zero."""
+    """Returns a/b, zero where b is zero."""
     shape = np.broadcast_shapes(np.shape(a), np.shape(b))
     return np.divide(a, b, where=np.broadcast_to(b, shape) != 0, out=np.zeros(shape))

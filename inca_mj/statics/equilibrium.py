@@ -1,4 +1,4 @@
-"""Where the platform rests with constant currents, by default with the power off.
+"""The rest of the platform under constant currents, by default with the power off.
 
     W(x) T(x) + f = 0,   f = weight and load;   T_i from the drum in balance (see `drums`)
 
@@ -59,7 +59,7 @@ class Equilibrium:
 def equilibrium(
     robot: Robot, current: float | np.ndarray = 0.0, load: np.ndarray = NONE
 ) -> Equilibrium:
-    """The rest near the start pose, under constant currents and a constant load.
+    """Returns the rest near the start pose, under constant currents and a constant load.
 
     Args:
         robot: its numbers.
@@ -127,7 +127,7 @@ def _solve(robot: Robot, current: np.ndarray, load: np.ndarray) -> np.ndarray:
 def _left(
     robot: Robot, pose: np.ndarray, current: np.ndarray, load: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """The wrench that is left, and K."""
+    """Returns the wrench that is left, and K."""
     at = lines(pose, robot.geometry)
     found: Pull = pull(robot, at.d, current)
     left = at.W @ found.tension - robot.weight + load
@@ -139,7 +139,7 @@ def _size(left: np.ndarray) -> float:
 
 
 def moved(pose: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """A pose after a small displacement and turn in O.
+    """Returns a pose after a small displacement and turn in O.
 
     Args:
         pose: x, y, z [m], roll, pitch, yaw [rad], shape (6,).

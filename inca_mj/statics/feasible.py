@@ -1,4 +1,4 @@
-"""Which wrenches the cables can exert within tension limits, over many poses at once.
+"""The wrenches that cables can exert within tension limits, over many poses at once.
 
 With T = W⁺ w + N λ (N: basis of the null space, rows n_i in the plane), w is feasible if some λ
 satisfies 16 linear inequalities. In the plane they have a common solution exactly if every
@@ -64,7 +64,7 @@ def wrench_margin(
     plus: np.ndarray, N: np.ndarray, full: np.ndarray, low: np.ndarray, high: np.ndarray,
     wanted: Wrenches,
 ) -> np.ndarray:  # fmt: skip
-    """How far the worst wrench of a set is inside what the cables can exert [N], shape (N,).
+    """Returns how far the worst wrench of a set is inside what cables can exert [N], shape (N,).
 
     Positive: all wrenches of the set are feasible; the number is a tension, because |y| = 1.
     Negative: some wrench of the set is not. −∞ where the rank is below 6.
@@ -108,5 +108,5 @@ def _margin(
 
 
 def _across(N: np.ndarray, a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """n_a × n_b of pairs of rows, shape (N, 56)."""
+    """Returns n_a × n_b of pairs of rows, shape (N, 56)."""
     return N[:, a, 0] * N[:, b, 1] - N[:, a, 1] * N[:, b, 0]

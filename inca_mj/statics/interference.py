@@ -1,4 +1,4 @@
-"""How near cables come to each other and to the platform.
+"""Distances of cables from each other and from the platform.
 
 Cables, arms and the grip are straight segments p + t u, q + t' v with t, t' in [0, 1]. The nearest
 points of two segments are either inside of both, where the connection is perpendicular to both, or
@@ -25,7 +25,7 @@ PARALLEL = 1e-12
 
 
 def segment_distance(p: np.ndarray, u: np.ndarray, q: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """Distances of segments p + t u and q + t' v, 0 ≤ t, t' ≤ 1, shape (...,) [m].
+    """Returns distances of segments p + t u and q + t' v, 0 ≤ t, t' ≤ 1, shape (...,) [m].
 
     Args:
         p: begin of the first segment, shape (..., 3) [m].
@@ -49,7 +49,7 @@ def segment_distance(p: np.ndarray, u: np.ndarray, q: np.ndarray, v: np.ndarray)
 
 
 def point_distance(x: np.ndarray, p: np.ndarray, u: np.ndarray) -> np.ndarray:
-    """Distances of points x from segments p + t u, shape (...,) [m].
+    """Returns distances of points x from segments p + t u, shape (...,) [m].
 
     Args:
         x: points, shape (..., 3) [m].
@@ -62,7 +62,7 @@ def point_distance(x: np.ndarray, p: np.ndarray, u: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Interference:
-    """What comes nearest along some poses.
+    """The smallest distances along some poses.
 
     Attributes:
         pairs: cables that share no anchor, as numbers from 1.
@@ -80,18 +80,18 @@ class Interference:
     platform: np.ndarray
 
     def nearest_pair(self) -> tuple[tuple[int, int], int]:
-        """The two cables that come nearest, and the number of the pose."""
+        """Returns the two cables that come nearest, and the number of the pose."""
         pose, pair = np.unravel_index(self.between.argmin(), self.between.shape)
         return self.pairs[pair], int(pose)
 
     def nearest_to_platform(self) -> tuple[int, int]:
-        """The cable that comes nearest to the platform, from 1, and the number of the pose."""
+        """Returns the cable that is nearest to the platform, from 1, and the number of the pose."""
         pose, cable = np.unravel_index(self.platform.argmin(), self.platform.shape)
         return int(cable) + 1, int(pose)
 
 
 def interference(poses: np.ndarray, geometry: Geometry) -> Interference:
-    """Distances between cables, and of cables from the platform, at poses.
+    """Returns distances between cables, and of cables from the platform, at poses.
 
     Args:
         poses: x, y, z [m], roll, pitch, yaw [rad], shape (N, 6).
@@ -117,7 +117,7 @@ def interference(poses: np.ndarray, geometry: Geometry) -> Interference:
 
 
 def _clearance(poses: np.ndarray, geometry: Geometry, A: np.ndarray, u: np.ndarray) -> np.ndarray:
-    """Distance of each cable from the surface of grip and arms, shape (N, 8) [m]."""
+    """Returns the distance of each cable from the surface of grip and arms, shape (N, 8) [m]."""
     R, P = turn(poses), poses[:, :3]
     ends = [(np.array(GRIP[0]), np.array(GRIP[1]), GRIP_RADIUS, np.zeros(DRIVES, bool))]
     for b in np.unique(geometry.B, axis=0):

@@ -46,14 +46,14 @@ class Lines:
 
 
 def turn(pose: np.ndarray) -> np.ndarray:
-    """Rotations Rz Ry Rx (thesis 2.1) of poses, shape (..., 6) [m, rad] -> (..., 3, 3)."""
+    """Returns rotations Rz Ry Rx (thesis 2.1) of poses, shape (..., 6) [m, rad] -> (..., 3, 3)."""
     pose = np.asarray(pose, float)
     angles = pose[..., :2:-1].reshape(-1, 3)  # yaw, pitch, roll
     return Rotation.from_euler("ZYX", angles).as_matrix().reshape(*pose.shape[:-1], 3, 3)
 
 
 def lines(pose: np.ndarray, geometry: Geometry) -> Lines:
-    """The straight cables at poses.
+    """Returns the straight cables at poses.
 
     Args:
         pose: x, y, z [m], roll, pitch, yaw [rad], shape (6,) or (N, 6).
@@ -78,7 +78,7 @@ def lines(pose: np.ndarray, geometry: Geometry) -> Lines:
 
 
 def lines_of_many(pose: np.ndarray, geometry: Geometry) -> Lines:
-    """`lines` without its checks, for grids: a cable is taken to be a millimetre at least.
+    """Returns `lines` without its checks, for grids: a cable is taken to be a millimetre at least.
 
     Args:
         pose: x, y, z [m], roll, pitch, yaw [rad], shape (..., 6).
@@ -129,7 +129,7 @@ class Robot:
 
 
 def static_robot(parameters: ParameterSet, geometry: Geometry) -> Robot:
-    """The robot of a parameter set, with its deviations of drives and displacements of points.
+    """Returns the robot of a parameter set, with deviations of its drives and displaced points.
 
     Args:
         parameters: values of all parameters; the start pose is among them.

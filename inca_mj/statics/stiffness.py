@@ -1,4 +1,4 @@
-"""How stiffly the cables hold the platform, and how it would swing on them.
+"""Stiffness with which the cables hold the platform, and modes in which it would swing.
 
 With x = (δp, δθ) a small displacement and turn in O, and f the wrench on the platform, δf = −K x.
 J = [s_iᵀ, (r_i × s_i)ᵀ], A_i = [1, −[r_i]×] the displacement of a connector, P_i = 1 − s_i s_iᵀ:
@@ -35,14 +35,14 @@ SMALL = 0.15  # a part of an eigenvector that is smaller than this is not told
 
 
 def cross_matrix(v: np.ndarray) -> np.ndarray:
-    """[v]×, shape (..., 3) -> (..., 3, 3), in the unit of v."""
+    """Returns [v]×, shape (..., 3) -> (..., 3, 3), in the unit of v."""
     x, y, z = np.moveaxis(np.asarray(v, float), -1, 0)
     o = np.zeros_like(x)
     return np.stack([o, -z, y, z, o, -x, -y, x, o], -1).reshape(*x.shape, 3, 3)
 
 
 def stiffness(at: Lines, tension: np.ndarray, k: np.ndarray) -> np.ndarray:
-    """K, shape (..., 6, 6) [N/m, N, N m/rad].
+    """Returns K, shape (..., 6, 6) [N/m, N, N m/rad].
 
     Args:
         at: the cables.
@@ -55,7 +55,7 @@ def stiffness(at: Lines, tension: np.ndarray, k: np.ndarray) -> np.ndarray:
 
 
 def geometric_stiffness(at: Lines, tension: np.ndarray) -> np.ndarray:
-    """The part of K that tensions make by turning the cables, shape (..., 6, 6).
+    """Returns the part of K that tensions make by turning the cables, shape (..., 6, 6).
 
     Args:
         at: the cables.
@@ -70,7 +70,7 @@ def geometric_stiffness(at: Lines, tension: np.ndarray) -> np.ndarray:
 
 
 def mass_matrix(robot: Robot, pose: np.ndarray) -> np.ndarray:
-    """M of the platform in O about its centre of mass, shape (6, 6) [kg, kg m^2].
+    """Returns M of the platform in O about its centre of mass, shape (6, 6) [kg, kg m^2].
 
     Args:
         robot: its numbers.
@@ -82,7 +82,7 @@ def mass_matrix(robot: Robot, pose: np.ndarray) -> np.ndarray:
 
 
 def with_drums(robot: Robot, at: Lines, tension: np.ndarray, no_load: np.ndarray) -> np.ndarray:
-    """Stiffness of platform and drums together, in the coordinates (δp, δθ, φ_1 … φ_8).
+    """Returns stiffness of platform and drums together, in the coordinates (δp, δθ, φ_1 … φ_8).
 
     A turn φ of a drum stretches its cable by R φ, and its spring by R_s φ:
 
@@ -119,7 +119,7 @@ class Axes:
 
 
 def principal(K: np.ndarray) -> tuple[Axes, Axes]:
-    """Stiffness against forces (the platform may turn) and against torques (it may move).
+    """Returns stiffness against forces (the platform may turn) and against torques (it may move).
 
     Args:
         K: stiffness at an equilibrium, shape (6, 6) [N/m, N, N m/rad].
@@ -143,7 +143,7 @@ def principal(K: np.ndarray) -> tuple[Axes, Axes]:
 
 @dataclass(frozen=True)
 class Modes:
-    """How the platform swings without damping, the slowest first.
+    """Modes in which the platform swings without damping, the slowest first.
 
     Attributes:
         frequency: shape (6,) [Hz]; NaN where the equilibrium is not stable.
@@ -157,7 +157,7 @@ class Modes:
 
 
 def modes(K: np.ndarray, M: np.ndarray, count: int = 6) -> Modes:
-    """The slowest modes of K x = ω² M x; the first six coordinates are those of the platform.
+    """Returns the slowest modes of K x = ω² M x; the platform's coordinates are the first six.
 
     Args:
         K: stiffness, shape (n, n) [N/m, N, N m/rad].
@@ -171,7 +171,7 @@ def modes(K: np.ndarray, M: np.ndarray, count: int = 6) -> Modes:
 
 
 def mode_words(x: np.ndarray, M: np.ndarray) -> str:
-    """A mode of the platform in words, by its share in the kinetic energy.
+    """Returns a mode of the platform in words, by its share in the kinetic energy.
 
     Args:
         x: displacement and turn, shape (6,), in the units of M.
@@ -188,7 +188,7 @@ def mode_words(x: np.ndarray, M: np.ndarray) -> str:
 
 
 def axis_words(v: np.ndarray) -> str:
-    """A direction in words: "z", or "x (0.8) and y (0.6)".
+    """Returns a direction in words: "z", or "x (0.8) and y (0.6)".
 
     Args:
         v: shape (3,), any unit.

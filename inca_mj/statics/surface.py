@@ -18,7 +18,7 @@ CLIP = 0.25  # margins far from the border do not move it: quantile of those ins
 def surface(
     axes: tuple[np.ndarray, np.ndarray, np.ndarray], margin: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Vertices and triangles of the surface where a margin is zero.
+    """Returns vertices and triangles of the surface where a margin is zero.
 
     Args:
         axes: coordinates of the grid along x, y and z, evenly spaced [m].

@@ -1,4 +1,4 @@
-"""How a wrench is shared among the cables: closed form, minimum norm, and with limits.
+"""Distribution of a wrench to the cables: closed form, minimum norm, and with limits.
 
     W T = w                                 6 equations for 8 tensions
     T = t₀ + W⁺ (w − W t₀)                  nearest to t₀ without limits; t₀ = 0: minimum norm
@@ -35,7 +35,7 @@ BALANCED = 1e-8  # largest relative error of W T = w and of the limits
 
 
 def nearest(W: np.ndarray, w: np.ndarray, t_0: float | np.ndarray = PRETENSION) -> np.ndarray:
-    """Tensions of a wrench that are nearest to t₀, without limits: T = t₀ + W⁺ (w − W t₀).
+    """Returns tensions of a wrench that are nearest to t₀, without limits: T = t₀ + W⁺ (w − W t₀).
 
     Some of them may be negative, which no cable can do; `distribute` keeps limits.
 
@@ -61,7 +61,7 @@ def distribute(
     high: float | np.ndarray,
     t_0: float | np.ndarray = PRETENSION,
 ) -> np.ndarray:
-    """Tensions of a wrench within limits, nearest to t₀: argmin |T − t₀|², W T = w, low ≤ T ≤ high.
+    """Returns tensions of a wrench, nearest to t₀: argmin |T − t₀|², W T = w, low ≤ T ≤ high.
 
     The solution is unique, and it is continuous in w wherever it exists.
 
@@ -101,7 +101,7 @@ def distribute(
 
 
 def _least(N: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
-    """λ of least norm with low ≤ N λ ≤ high; NaN where there is none."""
+    """Returns λ of least norm with low ≤ N λ ≤ high; NaN where there is none."""
     G, h = np.vstack([N, -N]), np.concatenate([low, -high])
     bounded = np.isfinite(h)
     G, h = G[bounded], h[bounded]
@@ -117,7 +117,7 @@ def _least(N: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
 
 
 def _split(W: np.ndarray, w: np.ndarray, t_0: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The tensions nearest to t₀, and an orthonormal basis of the null space of W."""
+    """Returns the tensions nearest to t₀, and an orthonormal basis of the null space of W."""
     U, s, V = np.linalg.svd(W)
     rank = int((s > RANK * s[0]).sum())
     T = t_0 + V[:rank].T @ ((U[:, :rank].T @ (w - W @ t_0)) / s[:rank])
@@ -145,7 +145,7 @@ def _checked(
 
 
 def _each(value: float | np.ndarray, name: str, n: int) -> np.ndarray:
-    """One tension for each of n cables."""
+    """Returns one tension for each of n cables."""
     if np.shape(value) not in ((), (n,)):
         raise InputError(
             f"{name} has shape {np.shape(value)}; give one tension, or one for each of {n} cables"

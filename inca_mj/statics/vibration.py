@@ -38,7 +38,7 @@ STRAIGHT = 1e-9  # Λ² below which sag changes no digit that counts
 
 
 def string_frequencies(d: float, tension: float, rho: float, count: int = 3) -> np.ndarray:
-    """Frequencies f_n of a taut string with ends at rest, shape (count,) [Hz].
+    """Returns the frequencies f_n of a taut string with ends at rest, shape (count,) [Hz].
 
     Args:
         d: length [m].
@@ -50,7 +50,7 @@ def string_frequencies(d: float, tension: float, rho: float, count: int = 3) -> 
 
 
 def irvine_parameter(span: float, tension: float, rho: float, lambda_: float) -> float:
-    """Irvine's Λ² = (ρ g ℓ/T)² λ/T: what sag stretches against what tension straightens.
+    """Returns Irvine's Λ² = (ρ g ℓ/T)² λ/T: what sag stretches against what tension straightens.
 
     Args:
         span: horizontal length ℓ of the chord [m].
@@ -62,7 +62,7 @@ def irvine_parameter(span: float, tension: float, rho: float, lambda_: float) ->
 
 
 def in_plane_frequency(d: float, span: float, tension: float, rho: float, lambda_: float) -> float:
-    """Frequency of the first symmetric mode in the vertical plane [Hz].
+    """Returns the frequency of the first symmetric mode in the vertical plane [Hz].
 
     Without sag it is that of the string, c/(2 d), and 2.86 times as much for a cable that sags and
     cannot stretch.
@@ -110,7 +110,7 @@ class Coupled:
 def coupled_modes(
     robot: Robot, pose: np.ndarray, at: Lines, tension: np.ndarray, rho: float, sines: int = SINES
 ) -> Coupled:
-    """The modes of platform and cables together.
+    """Returns the modes of platform and cables together.
 
     Args:
         robot: its numbers.
@@ -158,7 +158,7 @@ def coupled_modes(
 
 
 def _across(s: np.ndarray) -> np.ndarray:
-    """Two unit vectors that are perpendicular to s and to each other, shape (2, 3)."""
+    """Returns two unit vectors that are perpendicular to s and to each other, shape (2, 3)."""
     return np.linalg.svd(s[None])[2][1:]
 
 

@@ -1,4 +1,4 @@
-"""Where the platform can be at one orientation: three workspaces, as a field of margins.
+"""The places where the platform can be at one orientation: three workspaces, as margins.
 
     closure    every wrench can be exerted, if tensions may be as large as they like
     feasible   a set of wrenches can be exerted within the tension limits
@@ -41,7 +41,7 @@ MOST = 200  # cells along an edge: beyond, memory ends before patience
 
 @dataclass(frozen=True, kw_only=True)
 class DriveLimits:
-    """What the drives may do, and what the platform shall bear.
+    """Limits of the drives, and the loads that the platform shall bear.
 
     Attributes:
         current: smallest and largest current of a motor [A].
@@ -74,7 +74,7 @@ class DriveLimits:
 def tension_limits(
     robot: Robot, d: np.ndarray, limits: DriveLimits
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Smallest and largest tensions at rest with cables of given lengths.
+    """Returns the smallest and largest tensions at rest with cables of given lengths.
 
     Args:
         robot: its numbers.
@@ -89,7 +89,7 @@ def tension_limits(
 
 
 def margin(kind: Kind, robot: Robot, poses: np.ndarray, limits: DriveLimits) -> np.ndarray:
-    """How far poses are inside a workspace, shape (N,): [rad] for closure, else [N].
+    """Returns how far poses are inside a workspace, shape (N,): [rad] for closure, else [N].
 
     Args:
         kind: "closure", "feasible" or "static".
@@ -134,7 +134,7 @@ class Workspace:
 
     @property
     def inside(self) -> np.ndarray:
-        """Which points of the grid are inside, shape (X, Y, Z) of bool."""
+        """True where a point of the grid is inside, shape (X, Y, Z) of bool."""
         return self.margin > 0
 
     @property
@@ -153,7 +153,7 @@ def workspace(
     cells: int = 24,
     seed: int = 0,
 ) -> Workspace:
-    """The workspace at a constant orientation.
+    """Returns the workspace at a constant orientation.
 
     Args:
         kind: "closure", "feasible" or "static".

@@ -1,4 +1,4 @@
-"""What inputs say of the parameters of robots that differ: std before any fit, and limits kept."""
+"""Information of inputs on parameters of robots that differ: std before a fit, and limits kept."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ def excitation(settings: ExcitationSettings, seed: Seed) -> dict[str, Any]:
 
 
 def excitation_findings(records: Sequence[Record]) -> Findings:
-    """Std of each parameter by input: geometric means over the robots."""
+    """Returns the std of each parameter by input: geometric means over the robots."""
     inputs = list(dict.fromkeys(r["set.input"] for r in records))
     names = list(dict.fromkeys(n for r in records for n in r["names"]))
     found, rows = {}, []

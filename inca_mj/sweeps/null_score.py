@@ -90,7 +90,7 @@ def _setting(settings: NullSettings) -> HiddenSetting:
 
 @lru_cache(maxsize=1)  # the sensitivities of all candidates are hundreds of megabytes
 def _fitted(settings: NullSettings) -> tuple[Any, Any]:
-    """The fit of a robot and the sensitivities of all candidates; the same in every worker."""
+    """Returns the fit of a robot and sensitivities of all candidates, the same in every worker."""
     from inca_mj.sweeps.scoring import fit_nominal
 
     log = world(settings.robot, setting=_setting(settings)).log
@@ -101,7 +101,7 @@ def _fitted(settings: NullSettings) -> tuple[Any, Any]:
 def _residual(
     point: Any, setting: HiddenSetting, coloured: bool, rng: np.random.Generator
 ) -> np.ndarray:
-    """Measured less predicted of a model that lacks nothing, shape (N, ny) [rad]."""
+    """Returns measured less predicted angles of a model that lacks nothing, shape (N, ny) [rad]."""
     from identification.model.predictor import output_columns
     from identification.model.rollout import rollout
 
@@ -119,7 +119,7 @@ def _residual(
 
 
 def null_findings(records: Sequence[Record]) -> Findings:
-    """The rate of false names, with and without an error of the currents, and which names."""
+    """Returns the rate of false names, with and without an error of the currents, and the names."""
     found, rows = {}, []
     for coloured in sorted({r["set.coloured"] for r in records}):
         mine = [r for r in records if r["set.coloured"] is coloured]

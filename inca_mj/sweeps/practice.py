@@ -71,7 +71,7 @@ def practice_discovery(settings: PracticeSettings, seed: Seed) -> dict[str, Any]
 
 
 def truth_of(log: Path) -> dict[str, Any]:
-    """The label of a log as the columns `TRUTH`.
+    """Returns the label of a log as the columns `TRUTH`.
 
     Raises:
         InputError: there is no label of it.

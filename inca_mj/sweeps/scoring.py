@@ -11,7 +11,7 @@ from identification import Log
 
 @lru_cache(maxsize=2)  # a worker meets few rates
 def nominal_plant(sampling_time: float, spread: str, settled: bool) -> Any:
-    """The nominal model with every candidate compiled in, once for each worker."""
+    """Returns the nominal model with every candidate compiled in, once for each worker."""
     from inca_mj.effects.catalogue import CATALOGUE
     from inca_mj.robot.parameters import parameter_set
     from inca_mj.robot.spread import with_spread
@@ -30,7 +30,7 @@ def nominal_plant(sampling_time: float, spread: str, settled: bool) -> Any:
 
 
 def fit_nominal(log: Log, spread: str, *, settled: bool) -> tuple[Any, Any, Sequence[Any]]:
-    """The nominal model fitted to a log, the sensitivities of candidates, and their scores.
+    """Returns the nominal model fitted to a log, the sensitivities of candidates, and their scores.
 
     Candidates of one drive are scored at those places only where the effect scores best on all.
 
@@ -65,7 +65,7 @@ def fit_nominal(log: Log, spread: str, *, settled: bool) -> tuple[Any, Any, Sequ
 
 
 def named(scores: Sequence[Any]) -> list[str]:
-    """Effects, places: those candidates that are beyond chance and plausible."""
+    """Returns the candidates that are beyond chance and plausible, as "effect, place" each."""
     from identification.discovery.options import DiscoveryOptions
     from identification.discovery.scoring.significance import select_significant
 

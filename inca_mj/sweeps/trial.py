@@ -13,7 +13,7 @@ from identification.sweep.words import setting
 
 @dataclass(frozen=True, kw_only=True)
 class TrialSettings:
-    """Which trial; every field says what it is in its metadata.
+    """The settings of a trial; every field says what it is in its metadata.
 
     Raises:
         InputError: there is no such trial, or the seed is negative.

@@ -45,7 +45,7 @@ def world_score(settings: WorldSettings, seed: Seed) -> dict[str, Any]:
 
 
 def score_findings(records: Sequence[Record]) -> Findings:
-    """By hidden effect, how often it comes first."""
+    """Returns how often each hidden effect comes first."""
     by_name: dict[str, list[Record]] = {}
     for record in records:
         by_name.setdefault(" + ".join(record["hidden"]) or "nothing", []).append(record)

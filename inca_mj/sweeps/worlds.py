@@ -107,7 +107,7 @@ class WorldSettings:
         )
 
     def setting(self, number: int) -> HiddenSetting:
-        """How a world of a number is measured.
+        """Returns how a world of a number is measured.
 
         Raises:
             InputError: a number is out of its range, or the input is unknown.
@@ -121,7 +121,7 @@ class WorldSettings:
 
 
 def make_world(settings: WorldSettings, seed: Seed) -> tuple[list[Log], dict[str, Any]]:
-    """The logs of a world, and its truth: the columns `WORLD` and `TRUTH`.
+    """Returns the logs of a world, and its truth: the columns `WORLD` and `TRUTH`.
 
     Raises:
         InputError: no size of an effect shows so much.
@@ -151,7 +151,7 @@ def make_world(settings: WorldSettings, seed: Seed) -> tuple[list[Log], dict[str
 
 
 def _drawn(settings: WorldSettings, number: int) -> tuple[str, list[str], list[str], float]:
-    """The kind of a world, the names of its effects, those in reserve, and their ratio.
+    """Returns the kind of a world, the names of its effects, those in reserve, and their ratio.
 
     One in reserve takes the place of one that leaves too little with every size of a robot; an
     effect that is asked for has none.
@@ -172,7 +172,7 @@ def _drawn(settings: WorldSettings, number: int) -> tuple[str, list[str], list[s
 
 
 def _effects(settings: WorldSettings, number: int, names: list[str]) -> list[HiddenEffect]:
-    """The effects of a world by name; the robot stands with all of them."""
+    """Returns the effects of a world by name; the robot stands with all of them."""
     drawn: list[Any] = [
         draw_effect(name, number, other_shape=settings.wrong_shapes and name in SHAPES)
         for name in names

@@ -10,7 +10,7 @@ from inca_mj.twin.twin import Twin
 
 
 def angles_under(plant: Twin, log: Log, currents: np.ndarray) -> np.ndarray:
-    """The twin's angles from its start on, shape (m, n, k) [rad]; NaN where they are not finite.
+    """Returns the twin's angles from its start, shape (m, n, k) [rad]; NaN where not finite.
 
     Args:
         plant: the twin.

@@ -1,4 +1,4 @@
-"""How the robot looks: floor, frame, drums, handle, light, cameras, without mass or contact."""
+"""The look of the robot: floor, frame, drums, handle, light, cameras, without mass or contact."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def _add(body: Any, kind: Any, rgba: list[float], **how: Any) -> None:
 
 
 def dress_world(spec: mujoco.MjSpec, geometry: Geometry) -> None:
-    """Floor, aluminium frame around the exit points, one light, cameras, frame size of films."""
+    """Adds floor, aluminium frame around the exit points, light, cameras, frame size of films."""
     spec.visual.global_.offwidth, spec.visual.global_.offheight = 1920, 1080
     spec.visual.quality.shadowsize = 0  # shadows cost a CPU renderer most of its frame rate
     spec.visual.headlight.ambient = [0.55, 0.55, 0.55]
@@ -78,7 +78,7 @@ def dress_world(spec: mujoco.MjSpec, geometry: Geometry) -> None:
 
 
 def _frame(world: Any, geometry: Geometry) -> None:
-    """Bars along the edges of the box around the exit points, 8 cm outside of it."""
+    """Adds bars along the edges of the box around the exit points, 8 cm outside of it."""
     low, high = geometry.A.min(0) - [0.12, 0.12, 0.1], geometry.A.max(0) + [0.12, 0.12, 0.06]
     corners = np.array([[(low, high)[i][0], (low, high)[j][1]] for i, j in np.ndindex(2, 2)])
     for x, y in corners:
@@ -92,7 +92,7 @@ def _frame(world: Any, geometry: Geometry) -> None:
 
 
 def dress_drum(drum: Any, axis: list[float]) -> None:
-    """A roller, a motor behind it, and a mark on the rim that shows the turn."""
+    """Adds a roller, a motor behind it, and a mark on the rim that shows the turn."""
     along = np.array(axis)
     ends = np.concatenate([-0.02 * along, 0.02 * along])
     _add(drum, _CYLINDER, STEEL, fromto=ends, size=[0.045, 0, 0])
@@ -103,7 +103,7 @@ def dress_drum(drum: Any, axis: list[float]) -> None:
 
 
 def dress_platform(platform: Any, geometry: Geometry) -> None:
-    """A hub, an arm to each connector, the handle, and a camera that travels with it."""
+    """Adds a hub, an arm to each connector, the handle, and a camera that travels with it."""
     platform.add_camera(
         name="handle",
         pos=HANDLE_EYE,
@@ -122,7 +122,7 @@ def dress_platform(platform: Any, geometry: Geometry) -> None:
 
 
 def _look(eye: list[float], target: list[float]) -> list[float]:
-    """x and y axes of a camera at `eye` that looks at `target`, z up."""
+    """Returns x and y axes of a camera at `eye` that looks at `target`, z up."""
     back = np.subtract(eye, target)
     x = np.cross([0, 0, 1], back)
     y = np.cross(back, x)

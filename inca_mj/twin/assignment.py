@@ -1,4 +1,4 @@
-"""Which column belongs to each row, where every column belongs to one row only."""
+"""The assignment of one column to each row, where every column belongs to one row only."""
 
 from __future__ import annotations
 

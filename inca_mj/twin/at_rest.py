@@ -1,4 +1,4 @@
-"""How candidate effects change the start: the paths of the cables, the load, the elasticity.
+"""The change of the start by candidate effects: the cables' paths, the load, the elasticity.
 
 The usual start is that of the nominal model, with the true lengths of the cables: T(0) holds the
 nominal robot, the drum springs balance T(0), and d₀(0) = λ d/(λ + T(0)). The effects act from then
@@ -31,7 +31,7 @@ UNKNOWN = dict.fromkeys(Drive._fields, np.nan)
 
 @dataclass(frozen=True, kw_only=True)
 class Change:
-    """How the effects that are present change the robot at rest.
+    """The change of the robot at rest by the effects that are present.
 
     Attributes:
         longer: Δd of each cable, shape (8,) [m].
@@ -53,7 +53,7 @@ class Change:
     stiffening: tuple[Effect, ...]
 
     def strain(self, T: np.ndarray) -> np.ndarray:
-        """ε(0) at tensions T, shape (8,)."""
+        """Returns ε(0) at tensions T, shape (8,)."""
         lambda_ = at_drives("lambda", self.values)
         strain, last, error = T / lambda_, np.zeros(DRIVES), -T
         for _ in range(SECANTS if self.stiffening else 0):
@@ -80,7 +80,7 @@ class Change:
 def change_at_rest(
     values: Mapping[str, float], pose: np.ndarray, geometry: Geometry, layout: Layout
 ) -> Change | None:
-    """The change by the effects that are present in `values`, at a pose; None without a change.
+    """Returns the change by the effects present in `values`, at a pose; None without a change.
 
     Args:
         values: of all parameters, in SI units.
@@ -138,7 +138,7 @@ def _evaluate(effect: Effect, hook: str, s: Drive | Platform, p: np.ndarray) -> 
 
 
 def own_states(values: Mapping[str, float], strain: np.ndarray, layout: Layout) -> np.ndarray:
-    """The effects' own states at the start, shape (8, states).
+    """Returns the effects' own states at the start, shape (8, states).
 
     Args:
         values: of all parameters, in SI units.
@@ -158,7 +158,7 @@ def own_states(values: Mapping[str, float], strain: np.ndarray, layout: Layout) 
 
 
 def _started(effect: Effect, strain: float, p: tuple[float, ...]) -> float:
-    """An effect's own state at the start of one drive; zero where it says nothing."""
+    """Returns an effect's own state at the start of one drive; zero where it says nothing."""
     start: Any = effect.hooks.get("start")
     return 0.0 if start is None else float(start.py_func(_drive(strain=strain, x=0.0), p))
 
@@ -168,6 +168,6 @@ def _drive(**known: float) -> Any:
 
 
 def _touches(effect: Effect, settled: bool) -> bool:
-    """Whether an effect can change anything at rest."""
+    """Returns whether an effect can change anything at rest."""
     more = {"force", "tension", "wrench", "radius"} & effect.hooks.keys()
     return "path" in effect.hooks or (settled and bool(more))

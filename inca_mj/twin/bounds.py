@@ -13,7 +13,7 @@ from identification.kalman.options import option
 
 @dataclass(frozen=True, kw_only=True)
 class WiringBounds:
-    """From where on a log's angles and currents are believed to be others than it says.
+    """Bounds beyond which a log's angles and currents are believed to be others than it says.
 
     Every field has its unit, reason and source in its metadata (`dataclasses.fields`). γ is the
     share of the motion that the twin does not explain (`inca_mj.twin.other_currents`), κ the one

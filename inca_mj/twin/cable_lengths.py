@@ -26,7 +26,7 @@ SMALL = 1e-6  # added to JᵀJ, where poses without a unique motion must not sto
 
 
 def unreached_share(plant: Twin, angles: np.ndarray) -> np.ndarray:
-    """κ of several logs, without unit; inf where no search ends.
+    """Returns κ of several logs, without unit; inf where no search ends.
 
     Args:
         plant: the twin, with its geometry and the pose where all angles are zero.
@@ -56,7 +56,7 @@ def unreached_share(plant: Twin, angles: np.ndarray) -> np.ndarray:
 
 
 def likely_orders(plant: Twin, angles: np.ndarray, most: int) -> np.ndarray:
-    """The orders of the angles that have least κ near the pose at rest, shape (most, 8).
+    """Returns the orders of the angles that have least κ near the pose at rest, shape (most, 8).
 
     All 40320 orders are compared, with the slopes of the cables' lengths at rest; column k of the
     angles in an order is that of drive order[k].
@@ -79,6 +79,6 @@ def likely_orders(plant: Twin, angles: np.ndarray, most: int) -> np.ndarray:
 
 
 def some(angles: np.ndarray) -> np.ndarray:
-    """Samples of angles from the first one on that are enough to judge κ, shape (n, 8) [rad]."""
+    """Returns the first samples of angles that are enough to judge κ, shape (n, 8) [rad]."""
     rows = np.linspace(0, len(angles) - 1, min(SAMPLES, len(angles))).round().astype(int)
     return angles[rows] - angles[0]

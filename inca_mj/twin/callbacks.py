@@ -71,7 +71,7 @@ def _has_drives(m):  # type: ignore[no-untyped-def]
 
 @internal
 def _key(m, i):  # type: ignore[no-untyped-def]
-    """Key of the effects of drive i; zero where it has none, NaN where i is no drive."""
+    """Returns the key of the effects of drive i; zero where it has none, NaN if i is no drive."""
     if drive(m, i, law.ACTUATOR_TAG) != law.TAG:
         return np.nan
     return drive(m, i, KEY) if word(m, M.nuser_actuator) > KEY else 0.0
@@ -79,13 +79,13 @@ def _key(m, i):  # type: ignore[no-untyped-def]
 
 @internal
 def _motor_dof(m, i):  # type: ignore[no-untyped-def]
-    """Degree of freedom of the motor of drive i."""
+    """Returns the degree of freedom of the motor of drive i."""
     return integer(m, M.jnt_dofadr, integer(m, M.actuator_trnid, 2 * i))
 
 
 @internal
 def _current(m, d, i):  # type: ignore[no-untyped-def]
-    """Current of drive i, within its limits [A]."""
+    """Returns the current of drive i, within its limits [A]."""
     u = integer(m, M.actuator_ctrladr, i)
     current = double(d, D.ctrl, u)
     if load_byte(word(m, M.actuator_ctrllimited) + u):
@@ -96,13 +96,13 @@ def _current(m, d, i):  # type: ignore[no-untyped-def]
 
 @internal
 def _row(m, i):  # type: ignore[no-untyped-def]
-    """Address of the row of drive i in `actuator_user`."""
+    """Returns the address of the row of drive i in `actuator_user`."""
     return word(m, M.actuator_user) + 8 * word(m, M.nuser_actuator) * i
 
 
 @internal
 def _act(m, d, i):  # type: ignore[no-untyped-def]
-    """Address of the activations of drive i: d₀, then the states of its effects."""
+    """Returns the address of the activations of drive i: d₀, then the states of its effects."""
     return word(d, D.act) + 8 * integer(m, M.actuator_actadr, i)
 
 
@@ -119,7 +119,7 @@ def _begin(m, d, i):  # type: ignore[no-untyped-def]
 
 @inlined
 def _begun(m, d, i, line):  # type: ignore[no-untyped-def]
-    """Drive i as the hooks before the tension see it."""
+    """Returns drive i as the hooks before the tension see it."""
     joint, k = integer(m, M.actuator_trnid, 2 * i), line.k
     return Drive(
         time=load_constant(d + 8 * D.time),
@@ -139,7 +139,7 @@ def _begun(m, d, i, line):  # type: ignore[no-untyped-def]
 
 @internal
 def _current_beside(m, d, i):  # type: ignore[no-untyped-def]
-    """Current of actuator i where that is a drive, else zero [A]."""
+    """Returns the current of actuator i where that is a drive, else zero [A]."""
     if i < 0 or i >= word(m, M.nactuator) or drive(m, i, law.ACTUATOR_TAG) != law.TAG:
         return 0.0
     return _current(m, d, i)
@@ -148,7 +148,7 @@ def _current_beside(m, d, i):  # type: ignore[no-untyped-def]
 def callbacks(
     key: float, on_drives: Sequence[Term], on_platform: Sequence[Term]
 ) -> dict[str, Function]:
-    """The four callbacks of the law with a set of candidate effects, before they are compiled.
+    """Returns the four callbacks of the law with some candidate effects, before compilation.
 
     Args:
         key: key of the set, which its drives carry; zero for a set without effects.
@@ -164,7 +164,7 @@ def callbacks(
 
     @inlined
     def winding(m, d, i, line):  # type: ignore[no-untyped-def]
-        """Drive i with all that follows from its state."""
+        """Returns drive i with all that follows from its state."""
         s, k = _begun(m, d, i, line), line.k
         length, rate, R = s.d, line.rate, s.R
         gx, gy, gz, more = 0.0, 0.0, 0.0, 0.0
@@ -235,7 +235,7 @@ def callbacks(
 
     @inlined
     def sent(m, d, i, line):  # type: ignore[no-untyped-def]
-        """Current of drive i with what effects add to it [A]."""
+        """Returns the current of drive i with what effects add to it [A]."""
         current = _current(m, d, i)
         if some:
             beside = (_current_beside(m, d, i - 1), _current_beside(m, d, i + 1))

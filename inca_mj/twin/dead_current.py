@@ -36,7 +36,7 @@ from inca_mj.twin.twin import Twin
 def dead_current(
     plant: Twin, part: Log, predicted: np.ndarray
 ) -> tuple[str, tuple[str, ...]] | None:
-    """Which logged current stands still, by what that is told, and the cure; None if none does.
+    """Returns which logged current stands still, what tells it, and the cure; None if none does.
 
     Args:
         plant: the twin.
@@ -72,7 +72,7 @@ def dead_current(
 def _missing(
     plant: Twin, log: Log, dead: list[int], signs: np.ndarray, own: float
 ) -> np.ndarray | None:
-    """The currents that drives had, shape (n, drives) [A]; None if the others still do not fit.
+    """Returns the currents that drives had, shape (n, drives) [A]; None if others do not fit.
 
     Args:
         plant: the twin.
@@ -96,7 +96,7 @@ def _missing(
 
 
 def _likely(plant: Twin, log: Log, still: list[int]) -> Iterator[tuple[list[int], np.ndarray]]:
-    """Drives whose currents may be missing, each with the signs of all currents, shape (8,)."""
+    """Yields drives whose currents may be missing, with the signs of all currents, shape (8,)."""
     right = np.ones(log.inputs.shape[1])
     yield from (([k], right) for k in still)
     if 1 < len(still) <= BOUNDS.max_dead:
@@ -113,7 +113,7 @@ def _likely(plant: Twin, log: Log, still: list[int]) -> Iterator[tuple[list[int]
 
 
 def _said(part: Log, dead: list[int], currents: np.ndarray, signs: np.ndarray) -> str:
-    """What tells it, and the cure.
+    """Returns what tells that currents are dead, and the cure, in words.
 
     Args:
         part: the first motion.

@@ -29,11 +29,11 @@ FIELDS = frozenset((*M._fields, *D._fields))  # everything the callbacks touch
 
 @internal
 def drive(m, i, column):  # type: ignore[no-untyped-def]
-    """A number of drive i: row i of `actuator_user`."""
+    """Returns a number of drive i: row i of `actuator_user`."""
     return double(m, M.actuator_user, word(m, M.nuser_actuator) * i + column)
 
 
 @internal
 def cable(m, k, column):  # type: ignore[no-untyped-def]
-    """A number of cable k: row k of `tendon_user`."""
+    """Returns a number of cable k: row k of `tendon_user`."""
     return double(m, M.tendon_user, word(m, M.nuser_tendon) * k + column)

@@ -1,4 +1,4 @@
-"""What the model files say of themselves.
+"""Notes in the model files on the files themselves.
 
 A file says it three times, because MuJoCo shows nothing of a model's meaning by itself: as a
 comment at its head, for who opens it in an editor; as the custom text `read_me`, for a program
@@ -54,17 +54,17 @@ _PLAIN = """
 
 
 def law_notes(parameters: ParameterSet, geometry: Geometry) -> str:
-    """The comment of a model file that needs the law."""
+    """Returns the comment of a model file that needs the law."""
     return _filled(_LAW, parameters, geometry)
 
 
 def plain_notes(parameters: ParameterSet, geometry: Geometry) -> str:
-    """The comment of a model file that needs MuJoCo only."""
+    """Returns the comment of a model file that needs MuJoCo only."""
     return _filled(_PLAIN, parameters, geometry)
 
 
 def short_law_note() -> str:
-    """The text `read_me` of a model that needs the law; MJCF keeps it in one line."""
+    """Returns the text `read_me` of a model that needs the law; MJCF keeps it in one line."""
     return (
         "The cables pull only with the law of inca_mj (in Python: inca_mj.build_twin()). In MuJoCo"
         " alone the platform falls; inca6d_plain.xml is the approximation that needs MuJoCo only."
@@ -72,7 +72,7 @@ def short_law_note() -> str:
 
 
 def short_plain_note() -> str:
-    """The text `read_me` of the model that needs MuJoCo only."""
+    """Returns the text `read_me` of the model that needs MuJoCo only."""
     return (
         "The INCA 6D linearised about its start, for MuJoCo alone; the twin itself is inca6d.xml"
         " with the law of inca_mj."

@@ -67,7 +67,7 @@ def follow(
 
 
 def places_of(log: Log, currents: np.ndarray) -> np.ndarray:
-    """Which logged current each drive had, and with which sign, as a signed permutation (8, 8).
+    """Returns which logged current each drive had, and its sign, as a signed permutation (8, 8).
 
     Args:
         log: n samples.
@@ -84,7 +84,7 @@ def places_of(log: Log, currents: np.ndarray) -> np.ndarray:
 
 
 def shares_of(log: Log, currents: np.ndarray) -> np.ndarray:
-    """W: how much of each logged current is in that of each drive, shape (8, 8), without unit.
+    """Returns W: the share of each logged current in that of each drive, (8, 8), without unit.
 
     Args:
         log: n samples.
@@ -98,7 +98,7 @@ def shares_of(log: Log, currents: np.ndarray) -> np.ndarray:
 
 
 def _low_pass(signals: np.ndarray, sampling_time: float) -> np.ndarray:
-    """L of held signals, shape (n, 8), at their samples; at rest before the first one."""
+    """Returns L of held signals, shape (n, 8), at their samples; at rest before the first one."""
     share, out = 1 - np.exp(-BANDWIDTH * sampling_time), signals.copy()
     for k in range(1, len(signals)):
         out[k] = out[k - 1] + share * (signals[k - 1] - out[k - 1])

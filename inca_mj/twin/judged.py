@@ -9,6 +9,6 @@ UNJUDGED = (*JUDGED,)  # for who draws a log as it is
 
 
 def overruled_by(*words: str) -> str:
-    """How the user overrules judgements, for the end of their message."""
+    """Returns how the user overrules judgements, for the end of their message."""
     known = " and that ".join(JUDGED[word] for word in words)
     return f"; if you know that {known}, write --trust {' '.join(words)}"

@@ -77,7 +77,7 @@ def read_inca_log(path: str | Path, trust: Sequence[str] | None = None) -> Log:
 
 
 def _how_to_begin_at_zero(first: float, noise: float) -> str:
-    """The cure for a log that does not begin at zero angles: another unit, or another beginning.
+    """Returns the cure for a log that does not begin at zero angles: another unit or beginning.
 
     Args:
         first: the angle at its first sample, as it is read [rad].
@@ -93,14 +93,14 @@ def _how_to_begin_at_zero(first: float, noise: float) -> str:
 
 
 def pose_of(log: Log) -> np.ndarray | None:
-    """The measured pose x, y, z [m], roll, pitch, yaw [rad], shape (N, 6), where it was logged."""
+    """Returns the measured pose x, y, z [m], roll, pitch, yaw [rad], shape (N, 6), if logged."""
     if not all(name in log.extras for name in POSE):
         return None
     return np.stack([log.extras[name] for name in POSE], axis=1)
 
 
 def run_to_log(run: Run, name: str = "run", notes: str = "") -> Log:
-    """A run as a log, with pose, velocities, tensions and no-load lengths as optional columns.
+    """Returns a run as a log; pose, velocities, tensions, no-load lengths are optional columns.
 
     Args:
         run: the result of `simulate`.

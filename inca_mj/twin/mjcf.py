@@ -36,7 +36,7 @@ ROTOR = 2e-15  # inertia MuJoCo demands of the drum's body beside the armature [
 def build(
     parameters: ParameterSet, geometry: Geometry, layout: Layout | None = None
 ) -> mujoco.MjSpec:
-    """The robot at its pretensioned start, as an editable `MjSpec`.
+    """Returns the robot at its pretensioned start, as an editable `MjSpec`.
 
     Args:
         parameters: the values, including those of the effects.
@@ -115,7 +115,7 @@ def check_inertia(values: Mapping[str, float]) -> None:
 
 
 def weigh(body: Any, mass: float, inertia: list[float]) -> None:
-    """Mass [kg] and principal inertia [kg m^2] about the body's own frame."""
+    """Sets the mass [kg] and principal inertia [kg m^2] about the body's own frame."""
     body.explicitinertial = True
     body.mass, body.inertia, body.ipos = mass, inertia, [0, 0, 0]
 
@@ -123,7 +123,7 @@ def weigh(body: Any, mass: float, inertia: list[float]) -> None:
 def _drive(
     spec: mujoco.MjSpec, k: int, parameters: ParameterSet, geometry: Geometry, layout: Layout
 ) -> None:
-    """Drum, motor, cable and current actuator of drive k."""
+    """Adds drum, motor, cable and current actuator of drive k."""
     p = parameters.values()
     own = {name: float(at_drives(name, p)[k - 1]) for name in EACH_DRIVE}
     exit_point = np.array(geometry.exits[k - 1])

@@ -40,7 +40,7 @@ def uninstall() -> None:
 
 @cache
 def _law(key: float, on_drives: tuple[Term, ...], on_platform: tuple[Term, ...]) -> installer.Law:
-    """The law of the drives with a set of effects."""
+    """Returns the law of the drives with a set of effects."""
 
     def check() -> None:
         refuse_unfit_functions(DRIVE, on_drives)

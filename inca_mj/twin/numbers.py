@@ -29,7 +29,7 @@ def model_numbers(
     model: mujoco.MjModel, parameters: ParameterSet, geometry: Geometry, layout: Layout,
     names: Sequence[str], every: Values, n: int,
 ) -> Numbers:  # fmt: skip
-    """The entries of the model that some parameters change.
+    """Returns the entries of the model that some parameters change.
 
     Args:
         model: with the names of the robot.
@@ -52,7 +52,7 @@ def model_numbers(
 def _in_paths(
     model: mujoco.MjModel, parameters: ParameterSet, names: Sequence[str], every: Values
 ) -> Entries:
-    """Parameters that stand in the model, at each drive by itself where they differ."""
+    """Returns parameters that stand in the model, at each drive by itself where they differ."""
     touched = {name.partition("@")[0] for name in names}
     for parameter in parameters:
         name = parameter.name
@@ -69,7 +69,7 @@ def _in_paths(
 def _exits(
     model: mujoco.MjModel, geometry: Geometry, names: Sequence[str], every: Values
 ) -> Entries:
-    """The exit points that some parameters displace."""
+    """Returns the exit points that some parameters displace."""
     for k in range(DRIVES):
         for j, axis in enumerate(AXES):
             name = f"exit_{axis}@{k + 1}"
@@ -82,7 +82,7 @@ def _connectors(
     model: mujoco.MjModel, geometry: Geometry, layout: Layout, names: Sequence[str],
     every: Values, n: int,
 ) -> Entries:  # fmt: skip
-    """The connectors as seen from the centre of mass, where some parameters move them or it."""
+    """Returns the connectors seen from the centre of mass, where parameters move them or it."""
     touched = {name.partition(".")[0] for name in names}
     moves_centre = any("centre" in e.hooks and e.name in touched for e in layout.effects)
     centre = centre_of_mass(layout.effects, every, n)

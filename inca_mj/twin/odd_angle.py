@@ -30,7 +30,7 @@ BOTH = (1.0, -1.0)  # signs
 def odd_angle(
     plant: Twin, y: np.ndarray, signs: tuple[float, ...] = BOTH
 ) -> tuple[int, float] | None:
-    """The angle that belongs to no pose with the others, and the factor with which it does.
+    """Returns the angle that belongs to no pose with the others, and the factor with which it does.
 
     Args:
         plant: the twin.
@@ -52,7 +52,7 @@ def odd_angle(
 
 
 def mended_angle(log: Log, k: int, factor: float) -> Log:
-    """A log of which an angle is multiplied; a factor near -1 is one of the sign alone.
+    """Returns a log with one angle multiplied; a factor near -1 changes the sign alone.
 
     Args:
         log: with all eight angles.
@@ -65,7 +65,7 @@ def mended_angle(log: Log, k: int, factor: float) -> Log:
 
 
 def odd_words(log: Log, k: int, factor: float) -> str:
-    """What tells that an angle is turned or of another scale, and the cure.
+    """Returns what tells that an angle is turned or of another scale, and the cure.
 
     Args:
         log: as it is read.
@@ -82,7 +82,7 @@ def odd_words(log: Log, k: int, factor: float) -> str:
 
 
 def scaled_words(name: str, factor: float) -> str:
-    """What tells that an angle is of another scale, and the cure.
+    """Returns what tells that an angle is of another scale, and the cure.
 
     Args:
         name: of the angle.
@@ -95,7 +95,7 @@ def scaled_words(name: str, factor: float) -> str:
 
 
 def as_factor(name: str, factor: float) -> str:
-    """What the TOML must say of a column that has to be multiplied."""
+    """Returns what the TOML must say of a column that has to be multiplied."""
     return (
         f"write {toml_key(name)} = {factor:.2g} under [factors] of the log's TOML, or, if {name}"
         " already has a factor there, multiply that factor by this one (it is an estimate; the true"
@@ -104,7 +104,7 @@ def as_factor(name: str, factor: float) -> str:
 
 
 def _as_unit(name: str, factor: float) -> str:
-    """What the TOML must say of an angle that has to be multiplied."""
+    """Returns what the TOML must say of an angle that has to be multiplied."""
     for word, (si, of) in UNITS.items():
         if si == "rad" != word and 1 / NEAR < factor / of < NEAR:
             return f"{unit_lines({name: word})}, or correct the unit of {name} there"
@@ -112,12 +112,12 @@ def _as_unit(name: str, factor: float) -> str:
 
 
 def is_turned(factor: float) -> bool:
-    """Whether a factor is one of the sign and of nothing else."""
+    """Returns whether a factor changes the sign and nothing else."""
     return 1 / BOUNDS.beyond < -factor < BOUNDS.beyond
 
 
 def _shares(plant: Twin, y: np.ndarray, k: int, factors: np.ndarray) -> np.ndarray:
-    """κ of angles (n, 8) of which that of drive k is multiplied by each factor."""
+    """Returns κ of angles (n, 8) of which that of drive k is multiplied by each factor."""
     scaled = np.repeat(y[None], len(factors), axis=0)
     scaled[:, :, k] *= factors[:, None]
     return unreached_share(plant, scaled)

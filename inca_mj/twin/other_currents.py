@@ -39,7 +39,7 @@ from inca_mj.twin.twin import Twin
 def other_currents(
     plant: Twin, part: Log, predicted: np.ndarray, longer: Log | None
 ) -> tuple[Reading, str] | None:
-    """Other signs or places of currents, under which the twin moves as the log, and in words.
+    """Returns other signs or places of currents under which the twin moves as the log, with words.
 
     Args:
         plant: the twin.
@@ -60,7 +60,7 @@ def other_currents(
 def _nearest(
     plant: Twin, part: Log, own: float, tried: Sequence[np.ndarray], with_angles: bool
 ) -> tuple[Reading, str] | None:
-    """The places of currents under which the twin is nearest to a log, if it is near enough.
+    """Returns the places of currents under which the twin is nearest to a log, if near enough.
 
     Args:
         plant: the twin.
@@ -92,7 +92,7 @@ def _nearest(
 
 
 def _followed(plant: Twin, longer: Log, predicted: np.ndarray) -> Iterator[np.ndarray]:
-    """Places of the currents that the twin has when it follows the log, in the likeliest units."""
+    """Yields the places of currents with which the twin follows the log, in the likeliest units."""
     for factor in likely_units(longer, predicted):
         scaled = replace(longer, outputs=factor * longer.outputs)
         followed = follow(plant, scaled)
@@ -104,7 +104,7 @@ def _followed(plant: Twin, longer: Log, predicted: np.ndarray) -> Iterator[np.nd
 
 
 def likely_units(log: Log, predicted: np.ndarray) -> list[float]:
-    """The two factors to radians with which angles move nearest as far as the twin's.
+    """Returns the two factors to radians that bring the angles' motion nearest to the twin's.
 
     Wrong currents change how far the twin moves, so that the nearest may be a wrong one.
 
@@ -121,7 +121,7 @@ def likely_units(log: Log, predicted: np.ndarray) -> list[float]:
 
 
 def _single() -> Iterator[np.ndarray]:
-    """Places of currents where one has the other sign, all have, or two are exchanged."""
+    """Yields places of currents where one has the other sign, all have, or two are exchanged."""
     right = np.eye(DRIVES)
     for k in range(DRIVES):
         yield right * np.where(np.arange(DRIVES) == k, -1.0, 1.0)
@@ -131,7 +131,7 @@ def _single() -> Iterator[np.ndarray]:
 
 
 def _places_of_angles(part: Log, predicted: np.ndarray) -> np.ndarray:
-    """P that brings the angles nearest to the twin's, by the cosines between them."""
+    """Returns P that brings the angles nearest to the twin's, by the cosines between them."""
     cosine = alike(predicted, part.outputs - part.outputs[0])
     k, m = np.arange(len(cosine)), assigned(np.abs(cosine))
     P = np.zeros_like(cosine)
@@ -140,14 +140,14 @@ def _places_of_angles(part: Log, predicted: np.ndarray) -> np.ndarray:
 
 
 def is_right(part: Log, predicted: np.ndarray) -> bool:
-    """Whether every angle is as near to the twin's as one of a right log."""
+    """Returns whether every angle is as near to the twin's as one of a right log."""
     return bool(
         (1 - np.diag(alike(part.outputs - part.outputs[0], predicted)) <= BOUNDS.right).all()
     )
 
 
 def apart(part: Log, predicted: np.ndarray) -> float:
-    """γ of the angles of a log and the twin's from its first sample on, shape (n, k) [rad].
+    """Returns γ of the angles of a log and the twin's from its first sample on, shape (n, k) [rad].
 
     An angle that moves far more than the others is in another unit; it counts as the others do.
     """

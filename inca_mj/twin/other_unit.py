@@ -26,7 +26,7 @@ from inca_mj.twin.other_wiring import alike
 def other_unit(
     part: Log, predicted: np.ndarray, wiring_is_right: bool
 ) -> tuple[str, tuple[str, ...]] | None:
-    """What tells that angles are in another unit than radians, and the cure; None if nothing does.
+    """Returns what tells that angles are not in radians, and the cure; None if nothing does.
 
     Args:
         part: the first motion, n samples of angles that all move.
@@ -68,7 +68,7 @@ def other_unit(
 
 
 def _how_to_convert(columns: Sequence[str], scale: float) -> str:
-    """What the TOML must say of angles that move so many times as far as the twin's."""
+    """Returns what the TOML must say of angles that move so many times as far as the twin's."""
     fitting = (word for word, (si, factor) in UNITS.items()
                if si == "rad" and 1 / NEAR < scale * factor < NEAR)  # fmt: skip
     word = next(fitting, None)

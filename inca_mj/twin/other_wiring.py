@@ -17,7 +17,7 @@ from inca_mj.twin.bounds import BOUNDS
 
 
 def other_wiring(part: Log, predicted: np.ndarray) -> tuple[Reading, str] | None:
-    """Another wiring of the first motion that explains it as a right log's, and that in words.
+    """Returns another wiring that explains the first motion as a right log's, and that in words.
 
     Args:
         part: the first motion, n samples of angles that all move.
@@ -41,7 +41,7 @@ def other_wiring(part: Log, predicted: np.ndarray) -> tuple[Reading, str] | None
 
 
 def _several(part: Log, y: np.ndarray, predicted: np.ndarray) -> Iterator[Reading]:
-    """What is wrong with several encoders at once: signs, and an exchange of more than two."""
+    """Yields readings with several wrong encoders: signs, and an exchange of more than two."""
     names, back = part.output_names, np.flatnonzero((y * predicted).sum(axis=0) < 0).tolist()
     if 1 < len(back) < y.shape[1]:
         outputs = turned(part.outputs, back)
@@ -72,6 +72,6 @@ def _several(part: Log, y: np.ndarray, predicted: np.ndarray) -> Iterator[Readin
 
 
 def alike(y: np.ndarray, predicted: np.ndarray) -> np.ndarray:
-    """Cosines between measured and predicted angles, each (N, n): entry i, j of y_i and ŷ_j."""
+    """Returns cosines of measured and predicted angles, each (N, n): entry i, j of y_i and ŷ_j."""
     sizes = np.linalg.norm(y, axis=0)[:, None] * np.linalg.norm(predicted, axis=0)
     return np.asarray(y.T @ predicted / sizes)

@@ -43,7 +43,7 @@ SPOOL = 1.0  # length of the wound part of a tendon at the start [m]; no motor t
 
 
 def build_plain(parameters: ParameterSet | None = None, geometry: Geometry = INCA) -> mujoco.MjSpec:
-    """The linearised robot at rest, as an editable `MjSpec` that needs MuJoCo only.
+    """Returns the linearised robot at rest, as an editable `MjSpec` that needs MuJoCo only.
 
     Args:
         parameters: the values; the thesis' Table 3.2 when None.
@@ -99,7 +99,7 @@ def _platform(
 def _drive(
     spec: mujoco.MjSpec, k: int, parameters: ParameterSet, geometry: Geometry, begin: Start
 ) -> None:
-    """Motor k as a slide joint along a post of the frame, and its cable."""
+    """Adds motor k as a slide joint along a post of the frame, and its cable."""
     p = parameters.values()
     own = {name: float(at_drives(name, p)[k - 1]) for name in EACH_DRIVE}
     R, T_0 = own["R"], float(begin.tension[k - 1])

@@ -24,19 +24,19 @@ Line: Any = namedtuple("Line", "k body length rate x y z rx ry rz")
 
 @internal
 def connector(m, k):  # type: ignore[no-untyped-def]
-    """Site where cable k ends."""
+    """Returns the site where cable k ends."""
     return integer(m, M.wrap_objid, integer(m, M.tendon_adr, k) + 1)
 
 
 @internal
 def exit_point(m, k):  # type: ignore[no-untyped-def]
-    """Site where cable k leaves the frame."""
+    """Returns the site where cable k leaves the frame."""
     return integer(m, M.wrap_objid, integer(m, M.tendon_adr, k))
 
 
 @inlined
 def found_line(m, d, k):  # type: ignore[no-untyped-def]
-    """Cable k as MuJoCo has it."""
+    """Returns cable k as MuJoCo has it."""
     a, b = exit_point(m, k), connector(m, k)
     body = integer(m, M.site_bodyid, b)
     return Line(
@@ -52,7 +52,7 @@ def found_line(m, d, k):  # type: ignore[no-untyped-def]
 
 @inlined
 def drawn_line(m, d, k):  # type: ignore[no-untyped-def]
-    """Cable k from where the numbers of the model put its ends, in a frame that rests."""
+    """Returns cable k from where the numbers of the model put its ends, in a frame that rests."""
     b = connector(m, k)
     body, a = integer(m, M.site_bodyid, b), _arm(m, d, exit_point(m, k))
     r, on = _arm(m, d, b), 3 * integer(m, M.site_bodyid, exit_point(m, k))
@@ -68,13 +68,13 @@ def drawn_line(m, d, k):  # type: ignore[no-untyped-def]
 
 @internal
 def dof(m, body):  # type: ignore[no-untyped-def]
-    """First degree of freedom of a body's free joint."""
+    """Returns the first degree of freedom of a body's free joint."""
     return integer(m, M.jnt_dofadr, integer(m, M.body_jntadr, body))
 
 
 @internal
 def turned(d, body, x, y, z):  # type: ignore[no-untyped-def]
-    """R (x, y, z): from body axes to O."""
+    """Returns R (x, y, z): from body axes to O."""
     at = word(d, D.xmat) + 72 * body
     return (
         load_constant(at) * x + load_constant(at + 8) * y + load_constant(at + 16) * z,
@@ -85,7 +85,7 @@ def turned(d, body, x, y, z):  # type: ignore[no-untyped-def]
 
 @internal
 def _arm(m, d, site):  # type: ignore[no-untyped-def]
-    """From a body's frame to a site of it, as the model's numbers say, in O [m]."""
+    """Returns the vector from a body's frame to its site, by the model's numbers, in O [m]."""
     at = word(m, M.site_pos) + 24 * site  # an evaluation may exchange these numbers
     x, y, z = load_double(at), load_double(at + 8), load_double(at + 16)
     return turned(d, integer(m, M.site_bodyid, site), x, y, z)
@@ -93,7 +93,7 @@ def _arm(m, d, site):  # type: ignore[no-untyped-def]
 
 @internal
 def turned_back(d, body, x, y, z):  # type: ignore[no-untyped-def]
-    """Rᵀ (x, y, z): from O to body axes."""
+    """Returns Rᵀ (x, y, z): from O to body axes."""
     at = word(d, D.xmat) + 72 * body
     return (
         load_constant(at) * x + load_constant(at + 24) * y + load_constant(at + 48) * z,
@@ -104,13 +104,13 @@ def turned_back(d, body, x, y, z):  # type: ignore[no-untyped-def]
 
 @internal
 def cross(a, b):  # type: ignore[no-untyped-def]
-    """a × b."""
+    """Returns a × b."""
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
 @internal
 def velocity(m, d, body, arm):  # type: ignore[no-untyped-def]
-    """Velocity of a point of the platform, in O [m/s]; the arm is that from the body's frame."""
+    """Returns the velocity of a point of the platform in O [m/s]; the arm starts at the body."""
     at = dof(m, body)
     w = turned(
         d, body, double(d, D.qvel, at + 3), double(d, D.qvel, at + 4), double(d, D.qvel, at + 5)
@@ -125,7 +125,7 @@ def velocity(m, d, body, arm):  # type: ignore[no-untyped-def]
 
 @internal
 def _add(m, d, body, force, torque):  # type: ignore[no-untyped-def]
-    """A force and a torque, both in O, on the free joint of a body."""
+    """Adds a force and a torque, both in O, to the free joint of a body."""
     at = word(d, D.qfrc_passive) + 8 * dof(m, body)
     own = turned_back(d, body, torque[0], torque[1], torque[2])
     for a in range(3):
@@ -135,19 +135,19 @@ def _add(m, d, body, force, torque):  # type: ignore[no-untyped-def]
 
 @internal
 def push(m, d, line, force):  # type: ignore[no-untyped-def]
-    """A force [N], in O, on the platform where a cable pulls at it."""
+    """Puts a force [N], in O, on the platform where a cable pulls at it."""
     _add(m, d, line.body, force, cross((line.rx, line.ry, line.rz), force))
 
 
 @internal
 def wrench(m, d, body, w):  # type: ignore[no-untyped-def]
-    """A force [N] at the centre of mass and a torque [N m], both in O, on the platform."""
+    """Puts a force [N] at the centre of mass and a torque [N m], both in O, on the platform."""
     _add(m, d, body, (w[0], w[1], w[2]), (w[3], w[4], w[5]))
 
 
 @internal
 def platform(d, at, body):  # type: ignore[no-untyped-def]
-    """What effects on the platform see; `at` is its first degree of freedom."""
+    """Returns what effects on the platform see; `at` is its first degree of freedom."""
     v, R = word(d, D.qvel) + 8 * at, word(d, D.xmat) + 72 * body
     return Platform(
         time=load_constant(d + 8 * D.time),

@@ -28,7 +28,7 @@ from inca_mj.twin.twin import Twin
 
 
 def renamed_drives(plant: Twin, part: Log, predicted: np.ndarray) -> tuple[Reading, str] | None:
-    """Another order of the drives under which the twin moves as the log.
+    """Returns another order of the drives under which the twin moves as the log.
 
     Args:
         plant: the twin.

@@ -20,7 +20,7 @@ from identification.logs.readings import Reading
 
 @dataclass(frozen=True)
 class Places:
-    """Where the columns of a log belong.
+    """The places of the columns of a log.
 
     Attributes:
         angles: P, shape (k, k).
@@ -37,7 +37,7 @@ class Places:
 
 
 def rewired(part: Log, places: Places) -> Reading:
-    """A log read with other places and signs.
+    """Returns a log read with other places and signs.
 
     Args:
         part: as it is read, n samples of k angles.
@@ -59,7 +59,7 @@ def rewired(part: Log, places: Places) -> Reading:
 
 
 def _said(renamed: dict[str, str], turned: Sequence[str]) -> str:
-    """What the columns would be."""
+    """Returns what the columns would be, in words."""
     said = []
     if renamed:
         said.append(f"were {listed(sorted(renamed))} exchanged")
@@ -69,7 +69,7 @@ def _said(renamed: dict[str, str], turned: Sequence[str]) -> str:
 
 
 def _cure(renamed: dict[str, str], turned: Sequence[str], factors: Mapping[str, float]) -> str:
-    """What to write into the TOML of the log."""
+    """Returns what to write into the TOML of the log."""
     if not renamed:
         return how_to_turn(turned, factors)
     turn = f", and {how_to_turn(turned, renamed=True)}" if turned else ""

@@ -83,7 +83,7 @@ class Run:
         return self.qvel[:, 6:]
 
     def until(self, end: float) -> Run:
-        """The samples up to `end` [s].
+        """Returns the samples up to `end` [s].
 
         Raises:
             InputError: fewer than two samples are left.
@@ -91,7 +91,7 @@ class Run:
         return self.between(float("-inf"), end)
 
     def between(self, start: float, end: float) -> Run:
-        """The samples from `start` to `end` [s], both included.
+        """Returns the samples from `start` to `end` [s], both included.
 
         Raises:
             InputError: fewer than two samples are left.
@@ -101,7 +101,7 @@ class Run:
 
 
 def rows_of(time: np.ndarray, start: float, end: float) -> slice:
-    """The samples from `start` to `end` [s], both included.
+    """Returns the samples from `start` to `end` [s], both included.
 
     Raises:
         InputError: they are fewer than two.
@@ -165,7 +165,7 @@ def simulate(
 
 
 def readings(robot: Twin, at: State) -> tuple[np.ndarray, np.ndarray]:
-    """Tensions [N] and cable lengths [m] in given states, each of shape (N, 8)."""
+    """Returns tensions [N] and cable lengths [m] in given states, each of shape (N, 8)."""
     batch = Batch(robot.model, len(at.qpos), 1)
     for name in ("qpos", "qvel", "act"):
         batch.bind(name)[:] = getattr(at, name)
@@ -223,7 +223,7 @@ def load_run(path: str | Path, effects: Sequence[Effect] = EVERY) -> Run:
 
 
 def _arrays(run: Run) -> dict[str, Any]:
-    """The arrays that a run has, by name."""
+    """Returns the arrays that a run has, by name."""
     optional = {name: getattr(run, name) for name in _OPTIONAL}
     return {
         **{name: getattr(run, name) for name in _ARRAYS},

@@ -51,7 +51,7 @@ def save_twin(robot: Twin, folder: str | Path) -> tuple[Path, Path]:
 
 
 def twin_to_record(robot: Twin) -> dict[str, Any]:
-    """What is needed to build a twin again, as plain values."""
+    """Returns what is needed to build a twin again, as plain values."""
     values = robot.parameters.values()
     return {
         "set": robot.parameters.name,
@@ -147,7 +147,7 @@ def _read(path: Path) -> dict[str, Any]:
 def _known(
     wanted: Sequence[dict[str, Any]], effects: Sequence[Effect], source: Path
 ) -> tuple[Effect, ...]:
-    """The effects of these names, with these laws."""
+    """Returns the effects of these names, with these laws."""
     at_hand = {e.name: e for e in effects}
     missing = [e["name"] for e in wanted if e["name"] not in at_hand]
     if missing:
@@ -194,7 +194,7 @@ def _same(model: mujoco.MjModel, path: Path) -> None:
 
 
 def _physics(one: mujoco.MjModel, other: mujoco.MjModel) -> Iterator[tuple[str, Any, Any]]:
-    """The physics of two models: the name of each field, and what it is in both."""
+    """Yields the physics of two models: the name of each field, and what it is in both."""
     for name in dir(one):
         if name.startswith(_PHYSICS) and not name.endswith(_LOOKS):
             a, b = getattr(one, name), getattr(other, name)

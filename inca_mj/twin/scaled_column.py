@@ -30,7 +30,7 @@ from inca_mj.twin.twin import Twin
 
 
 def scaled_angle(plant: Twin, part: Log, predicted: np.ndarray) -> str | None:
-    """Which angle is far too small or too large beside the others, and the cure; None if none is.
+    """Returns which angle is far too small or large beside the others, and the cure, or None.
 
     Args:
         plant: the twin.
@@ -51,7 +51,7 @@ def scaled_angle(plant: Twin, part: Log, predicted: np.ndarray) -> str | None:
 
 
 def scaled_current(plant: Twin, part: Log, longer: Log, predicted: np.ndarray) -> str | None:
-    """Which current is far too small or too large beside the others, and the cure; None if none is.
+    """Returns which current is far too small or large beside the others, and the cure, or None.
 
     Args:
         plant: the twin.
@@ -82,7 +82,7 @@ def scaled_current(plant: Twin, part: Log, longer: Log, predicted: np.ndarray) -
 
 
 def _odd_one(plant: Twin, log: Log) -> tuple[int, float] | None:
-    """The current that is farthest from the proportion of the others, and its factor."""
+    """Returns the current that is farthest from the proportion of the others, and its factor."""
     followed = follow(plant, log)
     if followed is None:
         return None

@@ -55,7 +55,7 @@ class Start:
 def pretension(
     pose: np.ndarray, geometry: Geometry, m: float, change: Change | None = None
 ) -> np.ndarray:
-    """Tensions T(0), shape (8,) [N], nearest to 4 N each that hold a platform of mass m [kg].
+    """Returns tensions T(0), shape (8,) [N], nearest to 4 N, that hold a platform of mass m [kg].
 
     Args:
         pose: x, y, z [m], roll, pitch, yaw [rad], shape (6,).
@@ -95,7 +95,7 @@ def pretension(
 
 
 def start(parameters: ParameterSet, geometry: Geometry, layout: Layout = NO_EFFECTS) -> Start:
-    """The start that parameters and geometry imply: T(0) and d₀(0) follow from pose, m and λ.
+    """Returns the start implied by parameters and geometry: T(0), d₀(0) from pose, m and λ.
 
     Raises:
         InputError: for the reasons of `pretension`.
@@ -106,7 +106,7 @@ def start(parameters: ParameterSet, geometry: Geometry, layout: Layout = NO_EFFE
 def start_from(
     values: Mapping[str, float], geometry: Geometry, layout: Layout = NO_EFFECTS
 ) -> Start:
-    """`start` from plain values by name, in SI units, with the changes by candidate effects."""
+    """Returns `start` from plain values by name, in SI units, with changes by candidate effects."""
     pose = np.array([values[name] for name in ("x", "y", "z", "roll", "pitch", "yaw")])
     placed, λ = displaced(geometry, values), at_drives("lambda", values)
     moved = about_centre(placed, layout.effects, values)
@@ -133,7 +133,7 @@ def starts_from(
     own: Mapping[str, float], names: Sequence[str], values: np.ndarray, geometry: Geometry,
     layout: Layout = NO_EFFECTS,
 ) -> list[Start]:  # fmt: skip
-    """`start_from` for n value sets.
+    """Returns `start_from` for n value sets.
 
     Sets that agree with the first in all values that its start was made of share that start: most
     columns of a Jacobian move a parameter that no start asks for.
@@ -179,5 +179,5 @@ class _Asked(Mapping[str, float]):
 
 
 def activations(begin: Start) -> np.ndarray:
-    """The twin's activations at a start: d₀ of each drive, then its effects' own states."""
+    """Returns the twin's activations at a start: d₀ of each drive, then its effects' own states."""
     return np.column_stack([begin.no_load_length, begin.own]).ravel()

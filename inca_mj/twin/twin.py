@@ -54,7 +54,7 @@ class Twin:
 
     @cached_property
     def layout(self) -> Layout:
-        """Where the parameters of its effects are in the model."""
+        """The places of the parameters of its effects in the model."""
         return Layout(self.effects, self.settled)
 
     @property
@@ -63,12 +63,12 @@ class Twin:
         return start(self.parameters, self.geometry, self.layout)
 
     def state(self) -> State:
-        """The start as a MuJoCo state."""
+        """Returns the start as a MuJoCo state."""
         native.install(self.layout)
         return start_state(self.start)
 
     def with_values(self, values: Mapping[str, float]) -> Twin:
-        """The twin with other values, without compiling again.
+        """Returns the twin with other values, without compiling again.
 
         Raises:
             InputError: a name is unknown, a value out of bounds, or the start has no pretension.
@@ -86,7 +86,7 @@ class Twin:
         return replace(self, parameters=parameters, model=model)
 
     def settings(self, names: Sequence[str], values: np.ndarray) -> tuple[State, Numbers]:
-        """Initial states and model numbers of n value sets, for `identification.Predictor`.
+        """Returns initial states and model numbers of n value sets, for `identification.Predictor`.
 
         The start follows from the parameters, which the thesis could not achieve: T(0) follows from
         pose and m, and d₀(0) follows from T(0), pose and λ.
@@ -119,7 +119,7 @@ class Twin:
         self, names: Sequence[str], values: np.ndarray, held: np.ndarray, timestep: float,
         begun: float = 0.0,
     ) -> np.ndarray:  # fmt: skip
-        """The currents that reach the motors, after effects that act on them; see `Plant`.
+        """Returns the currents that reach the motors, after effects that act on them; see `Plant`.
 
         Args:
             names: parameters that differ from the twin's own.
@@ -133,7 +133,7 @@ class Twin:
     def outputs(
         self, names: Sequence[str], values: np.ndarray, sensors: Sequence[str], readings: np.ndarray
     ) -> np.ndarray:
-        """What the encoders say, after effects that act on them; see `Plant`."""
+        """Returns what the encoders say, after effects that act on them; see `Plant`."""
         own = self.parameters.values()
         return effect_readings(self.effects, names, own, values, sensors, readings)
 
@@ -182,7 +182,7 @@ def build_twin(
 def rebuild(
     robot: Twin, *, timestep: float | None = None, effects: Sequence[Effect] | None = None
 ) -> Twin:
-    """A twin with another step or other effects, its values kept.
+    """Returns a twin with another step or other effects, its values kept.
 
     Args:
         robot: the twin.
@@ -212,7 +212,7 @@ def write_values(
 
 
 def start_state(begin: Start) -> State:
-    """A start as a MuJoCo state: qpos (15,), qvel (14,), act (8 (1 + own states),)."""
+    """Returns a start as a MuJoCo state: qpos (15,), qvel (14,), act (8 (1 + own states),)."""
     drives = len(begin.tension)
     qpos = np.concatenate([begin.pose[:3], quaternion(*begin.pose[3:]), np.zeros(drives)])
     return State(qpos, np.zeros(6 + drives), activations(begin))

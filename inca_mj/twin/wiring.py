@@ -98,7 +98,7 @@ def refuse_miswired(log: Log, plant: Twin, trust: Sequence[str] = ()) -> None:
 def _other_wiring(
     plant: Twin, part: Log, predicted: np.ndarray, longer: Log | None
 ) -> tuple[Reading, str] | None:
-    """Another wiring of the angles or of the currents: the one that comes nearer to the twin."""
+    """Returns another wiring of the angles or of the currents, whichever is nearer to the twin."""
     angles = other_wiring(part, predicted)
     if angles is not None and longer is not None and _tears(plant, part, angles[0].log):
         angles = None
@@ -115,7 +115,7 @@ def _other_wiring(
 
 
 def _tears(plant: Twin, part: Log, other: Log) -> bool:
-    """Whether the angles of another reading belong to no poses, and those as they are read do."""
+    """Returns whether another reading's angles belong to no poses, while those as read do."""
     own, new = unreached_share(plant, np.stack([some(log.outputs) for log in (part, other)]))
     return bool(new > BOUNDS.as_near * own)
 
@@ -123,24 +123,24 @@ def _tears(plant: Twin, part: Log, other: Log) -> bool:
 def _scaled(
     plant: Twin, part: Log, longer: Log, predicted: np.ndarray
 ) -> tuple[str, tuple[str, ...]] | None:
-    """What tells that one column is far too small or too large, and what this judges."""
+    """Returns what tells that one column is far too small or too large, and what this judges."""
     said = scaled_angle(plant, part, predicted) or scaled_current(plant, part, longer, predicted)
     return None if said is None else (said, ("units",))
 
 
 def _longer(log: Log, part: Log) -> Log:
-    """The first motion and what follows it, for what cannot drift away."""
+    """Returns the first motion and what follows it, for what cannot drift away."""
     return log.between(float(part.time[0]), float(part.time[-1]) + BEGINNING)
 
 
 def _moving(part: Log, predicted: np.ndarray) -> np.ndarray:
-    """Which angles of a log move, beside the twin's, which all do, shape (8,)."""
+    """Returns which angles of a log move, where all of the twin's do, shape (8,)."""
     y = part.outputs - part.outputs[0]
     return np.asarray(np.linalg.norm(y, axis=0) > DEAD * np.linalg.norm(predicted, axis=0))
 
 
 def _standing(part: Log, moves: np.ndarray) -> str:
-    """Which angles stand still, in words."""
+    """Returns which angles stand still, in words."""
     if not moves.any():
         return "nothing moves in the log though the currents would move the robot"
     names = listed(n for n, moving in zip(part.output_names, moves, strict=True) if not moving)
@@ -148,13 +148,13 @@ def _standing(part: Log, moves: np.ndarray) -> str:
 
 
 def _with_outputs(part: Log, kept: np.ndarray) -> Log:
-    """A log with some of its outputs, by a mask: what stands still has no sign and no scale."""
+    """Returns a log with the outputs that a mask keeps: what stands still has no sign or scale."""
     names = tuple(n for n, keep in zip(part.output_names, kept, strict=True) if keep)
     return replace(part, outputs=part.outputs[:, kept], output_names=names, units={}, extras={})
 
 
 def _first_motion(log: Log, plant: Twin) -> tuple[Log, np.ndarray] | None:
-    """The log until its first motion is over, n samples, and the twin's angles, shape (n, 8) [rad].
+    """Returns the log until its first motion ends, n samples, and the twin's angles (n, 8) [rad].
 
     None where the twin does not move, or cannot be simulated.
     """

@@ -67,7 +67,7 @@ class DerivativeErrors:
         return float(np.max([self.linear, self.angular, self.motor, self.no_load, self.tension]))
 
     def to_json(self) -> dict[str, float]:
-        """The errors by name."""
+        """Returns the errors by name."""
         return asdict(self)
 
 
@@ -120,7 +120,7 @@ def _random_values(base: ParameterSet, rng: np.random.Generator) -> dict[str, fl
 
 
 def _compare(robot: Twin, n: int, rng: np.random.Generator) -> tuple[list[float], float]:
-    """Largest relative errors (linear, angular, motor, no-load rate, tension), share of slack."""
+    """Returns largest relative errors (linear, angular, motor, no-load, tension), slack share."""
     x = random_states(n, displaced(robot.geometry, robot.parameters.values()), rng)
     i = rng.normal(0, 2, (n, DRIVES))
     q = pack(robot.parameters, robot.geometry)
@@ -148,7 +148,7 @@ def _compare(robot: Twin, n: int, rng: np.random.Generator) -> tuple[list[float]
 
 
 def _twin_outputs(robot: Twin, x: np.ndarray, i: np.ndarray) -> tuple[np.ndarray, ...]:
-    """qacc (n, 14), act_dot (n, 8) and tensions (n, 8) of the twin."""
+    """Returns qacc (n, 14), act_dot (n, 8) and tensions (n, 8) of the twin."""
     batch = Batch(robot.model, len(x), min(threads(), len(x)))
     state = to_mujoco(x)
     batch.bind("qpos")[:], batch.bind("qvel")[:] = state.qpos, state.qvel
@@ -163,7 +163,7 @@ def _twin_outputs(robot: Twin, x: np.ndarray, i: np.ndarray) -> tuple[np.ndarray
 def _magnitudes(
     robot: Twin, x: np.ndarray, i: np.ndarray, tension: np.ndarray
 ) -> tuple[np.ndarray, ...]:
-    """Of the terms summed in the accelerations: linear (n,), angular (n, 3), motor (n, 8)."""
+    """Returns sizes of terms in the accelerations: linear (n,), angular (n, 3), motor (n, 8)."""
     p = robot.parameters.values()
     T = np.maximum(tension, PRETENSION)
     I_P = np.array([p["I_x"], p["I_y"], p["I_z"]])

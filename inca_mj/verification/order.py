@@ -1,4 +1,4 @@
-"""How fast the twin's error falls with its step.
+"""The order with which the twin's error falls with its step.
 
     e(h) ≈ c₄ h⁴ + c₂ h²
 
@@ -24,13 +24,13 @@ Errors = Sequence[float | None] | np.ndarray
 
 
 def slope(steps: Steps, errors: Errors) -> float | None:
-    """Slope of log error against log step; None when fewer than two steps show it."""
+    """Returns the slope of log error against log step; None when fewer than two steps show it."""
     h, e = _resolved(steps, errors)
     return float(np.polyfit(np.log(h), np.log(e), 1)[0]) if len(h) > 1 else None
 
 
 def crossing(steps: Steps, errors: Errors) -> float:
-    """The step h = √(c₂/c₄) below which the h² term leads; 0 when it cannot be seen."""
+    """Returns the step h = √(c₂/c₄) below which the h² term leads; 0 when it cannot be seen."""
     h, e = _resolved(steps, errors)
     if len(h) < 3:
         return 0.0
@@ -42,7 +42,7 @@ def crossing(steps: Steps, errors: Errors) -> float:
 
 
 def leading_slope(steps: Steps, errors: Errors) -> float | None:
-    """Slope over the steps where RK4's own error leads.
+    """Returns the slope over the steps where RK4's own error leads.
 
     That is where c₄ h⁴ is twice c₂ h² or more, less the longest step while two others are left:
     it is the nearest to RK4's limit of stability, |λ| h = 2.8 (2 ms have 1.6 and 1.9 in the

@@ -1,4 +1,4 @@
-"""What the cross-check found, what it is judged by, and that in sentences."""
+"""The findings of the cross-check, what it is judged by, and that in sentences."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ class CrossCheck:
         return (verdict, *judged, *self._observations(), *self.notes)
 
     def to_json(self) -> dict[str, Any]:
-        """All of it as plain JSON values."""
+        """Returns the whole result as plain JSON values."""
         return {
             "rows": [dict(row) for row in self.rows],
             "order": self.order,
@@ -118,7 +118,7 @@ class CrossCheck:
             )
 
     def _diverged_at_model_step(self) -> bool:
-        """Whether a run diverged at a step that the limits are set for, or below."""
+        """Returns whether a run diverged at a step that the limits are set for, or below."""
         longest = max(STEPS_JUDGED) * (1 + 1e-6)
         return any(row["max_angle_error"] is None and row["step"] <= longest for row in self.rows)
 
@@ -150,7 +150,7 @@ class CrossCheck:
 
 
 def _judge(row: Row, angle: float) -> Check:
-    """Whether a run keeps the limits that follow from one on its angles [rad]."""
+    """Returns whether a run keeps the limits that follow from one on its angles [rad]."""
     limits = {
         "angle": (angle, "rad"),
         "position": (POSITION_PER_ANGLE * angle, "m"),

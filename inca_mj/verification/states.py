@@ -20,7 +20,7 @@ STRETCH = 1e-3  # cables are strained and slackened up to this strain: tensions 
 
 
 def to_mujoco(x: np.ndarray) -> State:
-    """States of the reference, shape (n, 36), as states of the twin."""
+    """Returns states of the reference, shape (n, 36), as states of the twin."""
     rows = np.atleast_2d(x)
     v = [rotation(*row[at.EULER]) @ row[at.VELOCITY] for row in rows]
     q = [quaternion(*row[at.EULER]) for row in rows]
@@ -32,7 +32,7 @@ def to_mujoco(x: np.ndarray) -> State:
 
 
 def random_states(n: int, geometry: Geometry, rng: np.random.Generator) -> np.ndarray:
-    """States far from rest, shape (n, 36); about half of the cables are slack.
+    """Returns states far from rest, shape (n, 36); about half of the cables are slack.
 
     Positions within the middle two thirds of the frame, angles to 60°, and velocities as the
     robot's fastest motions have them.

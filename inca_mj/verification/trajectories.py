@@ -55,7 +55,7 @@ class Case:
 
 
 def make_case(name: str, parameters: ParameterSet, geometry: Geometry, duration: float) -> Case:
-    """A case by name.
+    """Returns a case by name.
 
     Args:
         name: one of `CASES`.
@@ -82,7 +82,7 @@ def make_case(name: str, parameters: ParameterSet, geometry: Geometry, duration:
 
 
 def run_reference(case: Case, parameters: ParameterSet, geometry: Geometry) -> ReferenceRun:
-    """The reference, by its adaptive method.
+    """Returns a run of the reference, by its adaptive method.
 
     Raises:
         DivergenceError: its pitch came to 90°, where Euler angles are singular.
@@ -97,7 +97,7 @@ def compare_runs(
     geometry: Geometry,
     timestep: float,
 ) -> tuple[Row, str]:
-    """Largest differences of the twin at one step from the reference.
+    """Returns the largest differences of the twin at one step from the reference.
 
     Args:
         case: start and currents.

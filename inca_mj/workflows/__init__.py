@@ -1,1 +1,1 @@
-"""What a user does with the twin, one verb in each file."""
+"""The actions of a user with the twin, one verb in each file."""

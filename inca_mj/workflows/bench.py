@@ -57,7 +57,7 @@ class Bench:
     limits: Limits
 
     def attempt(self, name: str, run: Run, resolved: bool = False) -> Tried:
-        """The information that a run gives, from 2 p simulations.
+        """Returns the information that a run gives, from 2 p simulations.
 
         Args:
             name: in words.
@@ -78,7 +78,7 @@ class Bench:
         return Tried(name, run, far, found, far.within(self.limits))
 
     def fitted(self, recipe: Recipe, n: int) -> tuple[Recipe, Run] | None:
-        """The recipe with the largest tried swing that keeps the limits, and its run."""
+        """Returns the recipe with the largest tried swing that keeps the limits, and its run."""
         for scale in SCALES:
             smaller = replace(recipe, scale=scale)
             try:
@@ -91,7 +91,7 @@ class Bench:
 
 
 def standard_inputs(n: int) -> list[tuple[str, np.ndarray]]:
-    """Inputs that people try, the thesis' PRBS first: names and currents, shape (n, 8) [A]."""
+    """Returns inputs that people try, the thesis' PRBS first: names and currents (n, 8) [A]."""
     levels = [(0.5, 1.0, 0.25), (0.5, 1.0, 0.1), (0.5, 1.0, 0.05), (0.25, 1.25, 0.1), (0, 2, 0.1)]
     return [
         *(

@@ -43,7 +43,7 @@ FEWEST = 50  # unseen samples of a record on which a calibration is judged
 
 @dataclass(frozen=True)
 class RecordGap:
-    """How far free runs are off on a record, on samples that no fit of physical values has seen.
+    """The error of free runs on a record, on samples that no fit of physical values has seen.
 
     Attributes:
         name: of the record.
@@ -201,7 +201,7 @@ def _refuse_split(log: Log) -> None:
 
 
 def nominal_model(plant: Twin, spread: Spread, records: int = 1) -> NominalModel:
-    """The nominal model of a search: a robot, what is known of it, and own poses of records.
+    """Returns the nominal model of a search: a robot, its known values, and own poses of records.
 
     Args:
         plant: the robot with its deviations (`with_spread`) and own poses (`with_own`).
@@ -221,7 +221,7 @@ def nominal_model(plant: Twin, spread: Spread, records: int = 1) -> NominalModel
 
 
 def _robot_of(plant: Twin, values: Mapping[str, float]) -> Twin:
-    """The robot at fitted values: displacements become its geometry, and records' poses go."""
+    """Returns the robot at fitted values, its geometry displaced, without the poses of records."""
     source = "calibrated from logs"
     known = plant.parameters.with_values(values, source)
     moved = displaced(plant.geometry, known.values())
@@ -234,7 +234,7 @@ def _robot_of(plant: Twin, values: Mapping[str, float]) -> Twin:
 
 
 def _gap(log: Log, robots: Sequence[Twin], fits: Sequence[Refit], number: int) -> RecordGap:
-    """The gap on the second half of a record, of which the first half was fitted."""
+    """Returns the gap on the second half of a record, of which the first half was fitted."""
     starts = [values_of_record(fit.point.values, number) for fit in fits]
     before, after = (
         _rms(log, robot, {name: start[name] for name in POSE})
@@ -244,7 +244,7 @@ def _gap(log: Log, robots: Sequence[Twin], fits: Sequence[Refit], number: int) -
 
 
 def _confirmed(log: Log, robots: Sequence[Twin]) -> RecordGap:
-    """The gap on the second half of a record, of which the first half only tells the start."""
+    """Returns the gap on the second half of a record; its first half only tells the start."""
     from identification.kalman.estimate import estimate_innovations
 
     before, after = (
@@ -255,7 +255,7 @@ def _confirmed(log: Log, robots: Sequence[Twin]) -> RecordGap:
 
 
 def _rms(log: Log, robot: Twin, start: Mapping[str, float]) -> float:
-    """Rms of a free run over the samples after the part `estimation` [rad]."""
+    """Returns the rms of a free run over the samples after the part `estimation` [rad]."""
     from identification.model.predictor import Predictor
 
     predicted = Predictor(robot, log, (), start).predict(np.empty((1, 0)))[0]

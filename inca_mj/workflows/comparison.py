@@ -39,7 +39,7 @@ class Comparison:
     rms: np.ndarray
 
     def to_json(self) -> dict[str, Any]:
-        """The numbers as plain values."""
+        """Returns the numbers as plain values."""
         return {
             "fit_percent": [finite_or_none(f) for f in self.fit_percent],
             "rms": self.rms.tolist(),
@@ -103,7 +103,7 @@ def compare_twin(
 
 
 def start_of(log: Log, parameters: ParameterSet) -> ParameterSet:
-    """The parameters with the start pose of the log, if it has one and they give no other."""
+    """Returns parameters with the start pose of the log, if it has one and they give no other."""
     pose = pose_of(log)
     nominal = parameter_set().values()
     if pose is None or any(parameters[name].value != nominal[name] for name in POSE):
@@ -112,7 +112,7 @@ def start_of(log: Log, parameters: ParameterSet) -> ParameterSet:
 
 
 def timestep_for(sampling_time: float, largest: float = TIMESTEP) -> float:
-    """The largest step that divides the sampling time and is no more than `largest` [s].
+    """Returns the largest step that divides the sampling time and is no more than `largest` [s].
 
     Raises:
         InputError: `largest` is not between 1e-6 and 0.1 s.

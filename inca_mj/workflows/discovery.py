@@ -115,13 +115,13 @@ def discover(
 
 
 def _whole(log: Log) -> Log:
-    """A record of which every sample is fitted."""
+    """Returns a record of which every sample is fitted."""
     end = float(log.time[-1]) + log.sampling_time
     return replace(log, splits={"estimation": (float(log.time[0]), end)})
 
 
 def _begun(log: Log) -> Log:
-    """A record of which only the beginning is fitted."""
+    """Returns a record of which only the beginning is fitted."""
     first, last = float(log.time[0]), float(log.time[-1]) + log.sampling_time
     told = min(first + TOLD, (first + last) / 2)
     return replace(log, splits={"estimation": (first, told), "validation": (told, last)})

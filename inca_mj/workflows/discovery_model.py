@@ -18,7 +18,7 @@ from inca_mj.twin.twin import Twin, build_twin
 
 
 def named_twin(found: Discovery) -> Twin:
-    """The robot at the values of the final fit, with the named effects and no other candidates.
+    """Returns the robot at the values of the final fit, with the named effects alone.
 
     Raises:
         InputError: the discovery was not made with a twin of this robot.
@@ -28,7 +28,7 @@ def named_twin(found: Discovery) -> Twin:
 
 
 def nominal_twin(found: Discovery) -> Twin:
-    """The robot at the values of the fit without effects.
+    """Returns the robot at the values of the fit without effects.
 
     Raises:
         InputError: the discovery was not made with a twin of this robot.
@@ -37,7 +37,7 @@ def nominal_twin(found: Discovery) -> Twin:
 
 
 def _twin(fit: Refit, names: Set[str], values: Mapping[str, float]) -> Twin:
-    """The robot of a fit, with the effects of some names at some values."""
+    """Returns the robot of a fit, with the effects of some names at some values."""
     plant = fit.point.predictor.plant
     if not isinstance(plant, Twin):
         raise InputError(
@@ -60,6 +60,6 @@ def _twin(fit: Refit, names: Set[str], values: Mapping[str, float]) -> Twin:
 
 
 def rerun(robot: Twin, log: Log) -> Run:
-    """The robot under the currents of a log, or of the first record of a joined one."""
+    """Returns the robot under the currents of a log, or of the first record of a joined one."""
     log = records_of(log)[0][1]
     return simulate(robot, log.inputs, log.sampling_time, hold_kind=log.hold)

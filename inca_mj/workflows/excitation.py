@@ -138,7 +138,7 @@ def excite(
 
 
 def _search(bench: Bench, n: int, budget: int, seed: int) -> Iterator[tuple[Recipe, Tried]]:
-    """Recipes that keep the limits, with their information: half random, half near the best."""
+    """Yields recipes within the limits, with their information: half random, half near the best."""
     rng = np.random.default_rng(seed)
     best: tuple[Recipe, float] | None = None
     count = 0

@@ -70,7 +70,7 @@ class Identification:
         return searches + (self.windows.seconds if self.windows else 0.0)
 
     def fit_of(self, name: str) -> Fit:
-        """The fit to believe; if it holds the parameter fixed, another fit that estimates it."""
+        """Returns the fit to believe; if it holds the parameter fixed, one that estimates it."""
         has = (f for f in (self.fit, *self.fits) if name in f.estimate.space.names)
         return next(has, self.fit)
 
@@ -144,6 +144,6 @@ def identify(
 
 
 def better(*fits: Fit) -> int:
-    """Index of the fit with the smallest error on unseen data, or on its own where none is."""
+    """Returns the index of the fit with least error on unseen data, or on its own if none is."""
     errors = [fit.rms if fit.validation_rms is None else fit.validation_rms for fit in fits]
     return errors.index(min(errors))

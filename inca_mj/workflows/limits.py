@@ -1,4 +1,4 @@
-"""What an input may do to the robot: currents, tensions and workspace, seen in a simulation.
+"""The limits of what an input may do: currents, tensions and workspace, seen in a simulation.
 
     low ≤ i_k ≤ high;    T_k > margin;    |p - p(0)| ≤ reach in x, y, z;    angle(R(0)ᵀ R) ≤ turn
 
@@ -58,7 +58,7 @@ class Limits:
 
 @dataclass(frozen=True)
 class Extent:
-    """How far currents, tensions and pose went in a run.
+    """The extent of currents, tensions and pose in a run.
 
     Attributes:
         low: smallest current [A].
@@ -75,7 +75,7 @@ class Extent:
     turn: float
 
     def within(self, limits: Limits) -> bool:
-        """Whether a run kept the limits."""
+        """Returns whether a run kept the limits."""
         slack = 1e-12  # for rounding errors
         return (
             self.low >= limits.low - slack
@@ -87,7 +87,7 @@ class Extent:
 
 
 def extent(run: Run) -> Extent:
-    """How far a run went; between quaternions c₀ and c the angle is 2 arccos |c₀ᵀ c|."""
+    """Returns how far a run went; between quaternions c₀ and c the angle is 2 arccos |c₀ᵀ c|."""
     turns = np.abs(run.qpos[:, 3:7] @ run.qpos[0, 3:7])
     return Extent(
         float(run.currents.min()),

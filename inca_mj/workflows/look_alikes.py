@@ -1,4 +1,4 @@
-"""Which input would tell two look-alikes apart.
+"""The input that would tell two look-alikes apart.
 
     d(u) = ‖(I - P) ∂ŷ/∂η η‖/σ,    P projects onto the nominal parameters and the rival
 
@@ -42,7 +42,7 @@ class Contrast:
 
 
 def tell_apart(found: Discovery, named: NamedEffect) -> Contrast | None:
-    """The input that tells a named effect best from its first rival; None if none can be run."""
+    """Returns the input that tells a named effect best from its first rival; None if none can."""
     fit, rival = found.final, named.rivals[0].candidate
     own = _distance(fit.point, fit.point.log, named.candidate, rival, fit.level.sigma)
     tried = {}
@@ -59,7 +59,7 @@ def tell_apart(found: Discovery, named: NamedEffect) -> Contrast | None:
 
 
 def told(found: Discovery) -> Discovery:
-    """The discovery, with advice on the input that would tell its look-alikes apart."""
+    """Returns the discovery, with advice on the input that would tell its look-alikes apart."""
     named = tuple(
         replace(n, advice=sentence(contrast))
         if n.one_of and n.rivals and (contrast := tell_apart(found, n)) is not None
@@ -70,7 +70,7 @@ def told(found: Discovery) -> Discovery:
 
 
 def sentence(contrast: Contrast) -> str:
-    """The advice: what to do next."""
+    """Returns the advice: what to do next."""
     if contrast.distance < max(TELLS, 1.5 * contrast.own):
         return (
             "No input that was tried would tell them apart better"
@@ -84,7 +84,7 @@ def sentence(contrast: Contrast) -> str:
 
 
 def _distance(point: Point, log: Log, named: Candidate, rival: Candidate, sigma: float) -> float:
-    """d under the inputs of a log, with both effects linearised about their absence."""
+    """Returns d under the inputs of a log, with both effects linearised about their absence."""
     values = point.values
     gone = dict.fromkeys(named.sizes, 0.0)
     keep = [i for i, n in enumerate(point.space.names) if not n.startswith(f"{named.effect.name}.")]

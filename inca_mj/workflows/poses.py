@@ -1,4 +1,4 @@
-"""Where the platform is, by the motors: of a robot at rest, and along a log, with std.
+"""The pose of the platform by the motors: of a robot at rest, and along a log, with std.
 
     std² = noise² + Σ_p (∂pose/∂p σ_p)²
 
@@ -102,7 +102,7 @@ def pose_at_rest(
     encoder: float = ENCODER,
     std: Mapping[str, float] | None = None,
 ) -> RestingPose:
-    """The pose of a robot at rest from its motor angles, through elastic cables.
+    """Returns the pose of a robot at rest from its motor angles, through elastic cables.
 
     Args:
         angles: φ, zero where the robot stood at its start pose, shape (8,) [rad].
@@ -149,7 +149,7 @@ def log_poses(
     std: Mapping[str, float] | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> LogPoses:
-    """The pose along a log from motor angles and currents, with its std at each sample.
+    """Returns the pose along a log from motor angles and currents, with its std at each sample.
 
     Args:
         log: of the robot, which begins at rest at its start pose with all angles zero.
@@ -201,7 +201,7 @@ def _robot(values: Mapping[str, float], geometry: Geometry) -> ElasticRobot:
 
 
 def _noise(found: Balance) -> np.ndarray:
-    """Std of pose and tensions by noise, shape (N, 14)."""
+    """Returns the std of pose and tensions by noise, shape (N, 14)."""
     pose = np.diagonal(found.pose_covariance, axis1=1, axis2=2)
     tension = np.diagonal(found.covariance, axis1=1, axis2=2)[:, 6:]
     return np.sqrt(np.hstack([pose, tension]))
@@ -216,7 +216,7 @@ def _by_parameters(
     no_load: NoLoad,
     found: Balance,
 ) -> np.ndarray:
-    """Std of pose and tensions by parameters, shape (N, 14)."""
+    """Returns the std of pose and tensions by parameters, shape (N, 14)."""
     square = np.zeros((len(found.tension), 14))
     at = found.position, found.R, found.tension
     for name, σ in known.items():
@@ -230,7 +230,7 @@ def _by_parameters(
 
 
 def _known(parameters: ParameterSet, std: Mapping[str, float]) -> Mapping[str, float]:
-    """The std that are given, each checked.
+    """Returns the std that are given, each checked.
 
     Raises:
         InputError: a name is unknown, or a std is negative or not finite.

@@ -19,7 +19,7 @@ CENTRE = (0.0, 0.0, 0.0)
 
 
 def with_force(robot: Twin, force: Sequence[float], at: Sequence[float] = CENTRE) -> Twin:
-    """The twin with a constant force on its platform, as a part of its law.
+    """Returns the twin with a constant force on its platform, as a part of its law.
 
     A run of it is saved, reloaded and filmed with the force.
 

@@ -44,7 +44,7 @@ class Recipe:
     scale: float = 1.0
 
     def settings(self, limits: Limits) -> dict[str, float]:
-        """What the numbers mean, in units; without the phases."""
+        """Returns what the numbers mean, in units; without the phases."""
         own = self.numbers[: _OWN[self.kind]]
         width = limits.high - limits.low
         if self.kind == "prbs":
@@ -66,7 +66,7 @@ class Recipe:
         }
 
     def currents(self, n: int, sampling_time: float, limits: Limits) -> np.ndarray:
-        """The input [A], shape (n, 8)."""
+        """Returns the input [A], shape (n, 8)."""
         s = self.settings(limits)
         phases = self.numbers[_OWN[self.kind] :]
         if self.kind == "prbs":
@@ -91,7 +91,7 @@ class Recipe:
 def draw(
     kind: Literal["multisine", "prbs"], rng: np.random.Generator, *, guess: bool = False
 ) -> Recipe:
-    """A random recipe; if it is a first guess, only its phases are random."""
+    """Returns a random recipe; if it is a first guess, only its phases are random."""
     numbers = rng.random(_OWN[kind] + _PHASES[kind])
     if guess:
         numbers[: _OWN[kind]] = _GUESS[kind]
@@ -99,7 +99,7 @@ def draw(
 
 
 def changed(recipe: Recipe, rng: np.random.Generator, size: float, share: float = 0.3) -> Recipe:
-    """A neighbour: a share of the numbers moves by about `size`; phases wrap around."""
+    """Returns a neighbour: a share of the numbers moves by about `size`; phases wrap around."""
     moves = (
         size * rng.standard_normal(len(recipe.numbers)) * (rng.random(len(recipe.numbers)) < share)
     )

@@ -1,4 +1,4 @@
-"""What a run did that a user should know first: slack cables, a robot that left its room."""
+"""Remarks on a run that a user should know first: slack cables, a robot that left its room."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from inca_mj.twin.run import Run
 
 
 def remarks(run: Run) -> tuple[str, ...]:
-    """Sentences on a run whose numbers are right and of little use; none for a usual run.
+    """Returns sentences on a run whose numbers are right and of little use; none for a usual run.
 
     Args:
         run: the run.

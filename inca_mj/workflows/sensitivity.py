@@ -1,4 +1,4 @@
-"""What a log can say about parameters of the robot, before a fit."""
+"""The information of a log on parameters of the robot, before a fit."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def planned_experiment(
     duration: float = DURATION,
     timestep: float = TIMESTEP,
 ) -> Experiment:
-    """The experiment of the twin under the currents of a log, or under the thesis' PRBS.
+    """Returns the experiment of the twin under the currents of a log, or under the thesis' PRBS.
 
     Args:
         log: the log whose currents are used; the thesis' PRBS when None.
@@ -72,7 +72,7 @@ def sensitivity(
     duration: float = DURATION,
     timestep: float = TIMESTEP,
 ) -> Information:
-    """How well the angles determine parameters, and which only together; the pose is unknown.
+    """Returns how well angles determine parameters, and which only together; the pose is unknown.
 
     Args:
         log: the log whose currents are used; the thesis' PRBS when None.
@@ -97,7 +97,7 @@ def sensitivity(
 def robot_information(
     trial: Experiment, names: Sequence[str], resolved: bool = True
 ) -> Information:
-    """What an experiment would say of some parameters, where the start pose is unknown too.
+    """Returns what an experiment would say of some parameters; the start pose is unknown too.
 
     Args:
         trial: an experiment with the twin.

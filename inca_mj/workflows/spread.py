@@ -1,4 +1,4 @@
-"""What is known of a robot before a fit: its common values, and how much its parts differ.
+"""The knowledge of a robot before a fit: its common values, and how much its parts differ.
 
     value at drive k = common value (1 + δ_k),      δ_k ~ N(0, s²)       s of the parameter
     point            = nominal place + e,           e ~ N(0, s²)         s of exits, of connectors
@@ -32,7 +32,7 @@ WORDS = ("none", "usual")
 
 @dataclass(frozen=True)
 class Spread:
-    """How much the parts of a robot differ from what they should be, each number a std.
+    """Differences of the parts of a robot from what they should be, each number a std.
 
     Attributes:
         drives: relative deviation of a drive, by the name of a parameter.
@@ -70,7 +70,7 @@ NONE = Spread({}, {}, 0.0, "all drives alike, all points where the drawing has t
 
 
 def spread_of(word: str) -> Spread:
-    """The spread that a user names: none, usual, or a TOML file.
+    """Returns the spread that a user names: none, usual, or a TOML file.
 
     Raises:
         InputError: it is neither a word nor a file that can be read.

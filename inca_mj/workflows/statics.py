@@ -37,7 +37,7 @@ from inca_mj.twin.logs import pose_of
 
 @dataclass(frozen=True, kw_only=True)
 class Held:
-    """How the cables hold the platform at a pose.
+    """The hold of the cables on the platform at a pose.
 
     Attributes:
         low: smallest tensions that the drives can give, shape (8,) [N].
@@ -205,7 +205,7 @@ def _held(robot: Robot, at: Lines, load: np.ndarray, limits: DriveLimits) -> Hel
 
 
 def _current(robot: Robot, d: np.ndarray, T: np.ndarray, springs: np.ndarray) -> np.ndarray:
-    """Currents with which the drums balance tensions T, shape (8,) [A]."""
+    """Returns the currents with which the drums balance tensions T, shape (8,) [A]."""
     current = robot.R * (T - springs) / robot.K_t
     for _ in range(
         4
@@ -216,7 +216,7 @@ def _current(robot: Robot, d: np.ndarray, T: np.ndarray, springs: np.ndarray) ->
 
 
 def _reachable(pose: np.ndarray, geometry: Geometry) -> np.ndarray:
-    """The pose, if it is one and lies inside the frame.
+    """Returns the pose, if it is one and lies inside the frame.
 
     Raises:
         InputError: it is not six finite numbers, or lies outside the box of the exit points.
@@ -237,7 +237,7 @@ def _reachable(pose: np.ndarray, geometry: Geometry) -> np.ndarray:
 
 
 def _poses_along(log: Log, robot: Robot) -> np.ndarray:
-    """Poses of a log, shape (N, 6): measured, else from the angles, with stiff cables."""
+    """Returns poses of a log, shape (N, 6): measured, else from the angles, with stiff cables."""
     measured = pose_of(log)
     if measured is not None:
         return measured

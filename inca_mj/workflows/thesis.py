@@ -71,11 +71,11 @@ TRIALS = (
 
 
 def trial_data(robot: Twin, seed: int = 0) -> Log:
-    """The data of the trials, without noise: 5 s of the thesis' PRBS."""
+    """Returns the data of the trials, without noise: 5 s of the thesis' PRBS."""
     return run_to_log(simulate(robot, make_input("prbs", DURATION, seed=seed)), "trial data")
 
 
 def with_noise(log: Log, seed: int) -> Log:
-    """Each output sample times 1 + e, e uniform in ±5 % (thesis, footnote of section 3.2.3)."""
+    """Returns a log with outputs times 1 + e, e uniform in ±5 % (thesis, footnote of 3.2.3)."""
     error = np.random.default_rng(seed).uniform(-NOISE, NOISE, log.outputs.shape)
     return replace(log, outputs=log.outputs * (1 + error))

@@ -15,7 +15,7 @@ from identification.errors import unknown_name
 
 @dataclass(frozen=True)
 class FigureSettings:
-    """What a figure of the thesis shows.
+    """The settings that a figure of the thesis needs.
 
     Attributes:
         input: of `make_input`.
@@ -38,7 +38,7 @@ FIGURES = {
 
 
 def figure_settings(number: str) -> FigureSettings:
-    """The settings of a figure by its number in the thesis.
+    """Returns the settings of a figure by its number in the thesis.
 
     Raises:
         InputError: no run of the model gives a figure of that number.

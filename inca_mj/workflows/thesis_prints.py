@@ -1,4 +1,4 @@
-"""What the thesis prints: its tables and the numbers of its figures, cell by cell.
+"""The printed numbers of the thesis: its tables and its figures, cell by cell.
 
 Numbers are kept as they are printed, misprints included; only powers of ten are written with an e.
 The curves of the figures are lost: of Figures 3.4 to 3.13 the fits and losses beside them are left.

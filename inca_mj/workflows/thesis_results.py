@@ -37,7 +37,7 @@ ENCODER = 6e-4  # std of the angles of the stand-in [rad]
 
 @dataclass(frozen=True, kw_only=True)
 class ThesisResults:
-    """What was computed again.
+    """The results that were computed again.
 
     Attributes:
         figure_2_16: the run of Figure 2.16.
@@ -54,7 +54,7 @@ class ThesisResults:
     procedure: Identification
 
     def validation(self, fit: Fit) -> Comparison:
-        """The whole stand-in log against a step's model, as Figures 3.11 and 3.13 show it."""
+        """Returns the whole stand-in log against a step's model, as in Figures 3.11 and 3.13."""
         plant = fit.estimate.predictor.plant
         if not isinstance(plant, Twin):
             raise TypeError("the procedure was not made with a twin")
@@ -63,7 +63,7 @@ class ThesisResults:
 
 
 def stand_in_log(seed: int = 0) -> Log:
-    """A log of a simulated robot with Table 3.2: 10 s of PRBS at 100 Hz, encoders with noise.
+    """Returns a log of a simulated robot with Table 3.2: 10 s of PRBS at 100 Hz, noisy encoders.
 
     Args:
         seed: of the PRBS' phases and of the noise.

@@ -37,7 +37,7 @@ class TrialResult:
     loss: float
 
     def to_json(self) -> dict[str, Any]:
-        """The numbers as plain values."""
+        """Returns the numbers as plain values."""
         true = parameter_set("trial").values()
         values = self.fit.estimate.values
         return {
@@ -130,7 +130,7 @@ def trials(
 
 
 def monte_carlo(seeds: int, progress: Callable[[str], None] | None = None) -> dict[str, Any]:
-    """Trial 4 with many realisations of the noise, which the thesis proposed and did not do.
+    """Runs trial 4 with many noise realisations, which the thesis proposed and did not do.
 
     Args:
         seeds: number of realisations.

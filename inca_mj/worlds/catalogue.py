@@ -89,7 +89,7 @@ SHAPES: dict[str, dict[str, float | bool]] = {
 
 
 def effect(name: str, *, drive: int | None = None, other_shape: bool = False) -> HiddenEffect:
-    """An effect of its default size.
+    """Returns an effect of its default size.
 
     Args:
         name: canonical name, of `ALL_EFFECTS`.
@@ -110,7 +110,7 @@ def effect(name: str, *, drive: int | None = None, other_shape: bool = False) ->
 
 
 def draw_effect(name: str, seed: int, *, other_shape: bool = False) -> HiddenEffect:
-    """An effect with drive, signs, direction and frequency drawn by chance.
+    """Returns an effect with drive, signs, direction and frequency drawn by chance.
 
     Sizes are between half and twice the default; give `world` a ratio to choose them.
 

@@ -1,4 +1,4 @@
-"""What every effect is: a frozen record that knows where in the equations its numbers go."""
+"""The common base of effects: a frozen record that knows where in the equations it acts."""
 
 from __future__ import annotations
 
@@ -70,17 +70,17 @@ class HiddenEffect:
         return self.acts_on
 
     def values(self) -> dict[str, float]:
-        """All numbers of the law by name, without the place."""
+        """Returns all numbers of the law by name, without the place."""
         return {f.name: getattr(self, f.name) for f in fields(self) if f.name != "drive"}
 
     @property
     def most(self) -> float:
-        """By what its sizes can be multiplied so that a robot may still have it."""
+        """The factor by which its sizes can grow so that a robot may still have it."""
         size = hypot(*(getattr(self, name) for name in self.sizes))
         return self.largest / (size * self.reach ** getattr(self, "exponent", 0.0))
 
     def scaled(self, factor: float) -> Self:
-        """The same effect with its sizes times `factor`; its shape stays."""
+        """Returns the same effect with its sizes times `factor`; its shape stays."""
         return replace(self, **{name: factor * getattr(self, name) for name in self.sizes})
 
     def put(self, numbers: HiddenNumbers) -> None:
@@ -106,7 +106,7 @@ class HiddenDriveEffect(HiddenEffect):
         return self.acts_on if self.drive is None else f"drive {self.drive}"
 
     def column(self, numbers: HiddenNumbers, column: int) -> np.ndarray:
-        """A view of one column of D, the rows of this effect's drives only."""
+        """Returns a view of one column of D, the rows of this effect's drives only."""
         rows = slice(None) if self.drive is None else slice(self.drive - 1, self.drive)
         return numbers.D[rows, column]
 

@@ -40,7 +40,7 @@ EDGE = 1e-9  # a rotor this near to an edge of its gap pushes it: rounding must 
 
 @compiled
 def changed(t: float, heat: float, own: np.ndarray, D: np.ndarray) -> np.ndarray:
-    """The numbers of a drive at a time, of which one may drift or jump."""
+    """Returns the numbers of a drive at a time, of which one may drift or jump."""
     which = int(D[at.CHANGED]) - 1
     if which < 0:
         return own
@@ -54,14 +54,14 @@ def changed(t: float, heat: float, own: np.ndarray, D: np.ndarray) -> np.ndarray
 
 @compiled
 def radius(ψ: float, R: float, D: np.ndarray) -> float:
-    """R_k at the drum angle ψ [m]; D: the drive's row."""
+    """Returns R_k at the drum angle ψ [m]; D: the drive's row."""
     change = D[at.RADIUS_ERROR] + D[at.ECC_COS] * cos(ψ) + D[at.ECC_SIN] * sin(ψ)
     return R * (1.0 + change) + D[at.LAYER] * ψ
 
 
 @compiled
 def drum_rate(φ: float, ψ: float, ω: float, h: float) -> float:
-    """ψ̇ of the play operator: ω where the rotor pushes an edge of the gap, else 0 [rad/s]."""
+    """Returns ψ̇ of the play operator: ω where the rotor pushes the gap's edge, else 0 [rad/s]."""
     edge = h - EDGE
     if h == 0.0 or (φ - ψ >= edge and ω > 0.0) or (φ - ψ <= -edge and ω < 0.0):
         return ω
@@ -70,7 +70,7 @@ def drum_rate(φ: float, ψ: float, ω: float, h: float) -> float:
 
 @compiled
 def elastic(ε: float, ε_v: float, λ: float, D: np.ndarray) -> float:
-    """Tension of the springs of a cable [N]: λ ε (1 + κ ε^n) + c λ (ε − ε_v)."""
+    """Returns the tension of a cable's springs [N]: λ ε (1 + κ ε^n) + c λ (ε − ε_v)."""
     T = λ * ε
     if D[at.CABLE_HARD] != 0.0:
         T += λ * ε * D[at.CABLE_HARD] * abs(ε) ** D[at.CABLE_POWER]
@@ -81,7 +81,7 @@ def elastic(ε: float, ε_v: float, λ: float, D: np.ndarray) -> float:
 
 @compiled
 def sagging(T: float, K: float) -> float:
-    """The root of T' = T + K/T'² [N], K [N^3]: a hanging cable is longer, and never quite slack."""
+    """Returns the root of T' = T + K/T'² [N], K [N^3]: a hanging cable is never quite slack."""
     root = max(0.0, T) + K ** (1.0 / 3.0)
     if T < 0.0:
         root = min(root, sqrt(-K / T))
@@ -94,7 +94,7 @@ def sagging(T: float, K: float) -> float:
 @compiled
 def tension(d: float, d_0: float, stretch: float, ε_v: float, span: float, g: float,
             own: np.ndarray, D: np.ndarray) -> float:  # fmt: skip
-    """T of one cable [N]; stretch: ḋ − ḋ₀ [m/s], span: horizontal [m]."""
+    """Returns T of one cable [N]; stretch: ḋ − ḋ₀ [m/s], span: horizontal [m]."""
     λ, b = own[base.LAMBDA], own[base.B]
     T = elastic((d - d_0) / d_0, ε_v, λ, D) + b * stretch
     if D[at.SAG] != 0.0 and D[at.LINE_WEIGHT] > 0.0:
@@ -105,7 +105,7 @@ def tension(d: float, d_0: float, stretch: float, ε_v: float, span: float, g: f
 
 @compiled
 def friction(ω: float, φ: float, RT: float, own: np.ndarray, D: np.ndarray) -> float:
-    """Torque that brakes a rotor [N m]; RT: load of the cable [N m]."""
+    """Returns the torque that brakes a rotor [N m]; RT: load of the cable [N m]."""
     b_v, b_c, β = own[base.B_V], own[base.B_C], own[base.BETA]
     σ = tanh(β * ω)
     level = b_c * (1.0 + D[at.COULOMB_ERROR]) + D[at.LOAD] * RT
@@ -122,7 +122,7 @@ def friction(ω: float, φ: float, RT: float, own: np.ndarray, D: np.ndarray) ->
 
 @compiled
 def spring(φ: float, ω: float, RT_0: float, own: np.ndarray, D: np.ndarray) -> float:
-    """F_s of one drum spring [N]; RT_0: the load that it balances at φ = 0 [N m]."""
+    """Returns F_s of one drum spring [N]; RT_0: the load that it balances at φ = 0 [N m]."""
     R_s, k_s, β = own[base.R_S], own[base.K_S], own[base.BETA]
     s = R_s * φ
     F = RT_0 / R_s - k_s * s
@@ -133,7 +133,7 @@ def spring(φ: float, ω: float, RT_0: float, own: np.ndarray, D: np.ndarray) ->
 
 @compiled
 def motor(t: float, i: float, heat: float, φ: float, own: np.ndarray, D: np.ndarray) -> float:
-    """Torque of a motor [N m]."""
+    """Returns the torque of a motor [N m]."""
     loss = D[at.HEAT_LOSS] * heat
     if D[at.DRIFT_TIME] > 0.0:
         loss += D[at.DRIFT] * D[at.DRIFT_TIME] * (1.0 - exp(-t / D[at.DRIFT_TIME]))
@@ -149,7 +149,7 @@ def motor(t: float, i: float, heat: float, φ: float, own: np.ndarray, D: np.nda
 
 @compiled
 def shake(t: float, D: np.ndarray) -> tuple[Vector, Vector]:
-    """Offset [m] and velocity [m/s] of an exit point in O."""
+    """Returns the offset [m] and velocity [m/s] of an exit point in O."""
     w, a = D[at.SHAKE_RATE], vector(D[at.SHAKE_X :])
     if w == 0.0:
         return (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
@@ -159,7 +159,7 @@ def shake(t: float, D: np.ndarray) -> tuple[Vector, Vector]:
 
 @compiled
 def drag(v: Vector, P: np.ndarray) -> Vector:
-    """Force of the air along the body axes [N]; v: velocity along them [m/s]."""
+    """Returns the force of the air along the body axes [N]; v: velocity along them [m/s]."""
     speed = sqrt(dot(v, v))
     if P[at.DRAG] == 0.0 or speed == 0.0:
         return (0.0, 0.0, 0.0)

@@ -41,7 +41,7 @@ B = np.array([35 / 384, 0, 500 / 1113, 125 / 192, -2187 / 6784, 11 / 84])
 
 @compiled
 def limited(i: float, D: np.ndarray) -> float:
-    """A current after the amplifier's limit [A]."""
+    """Returns a current after the amplifier's limit [A]."""
     i_max = D[at.CURRENT_LIMIT]
     if i_max == np.inf:
         return i
@@ -113,7 +113,7 @@ def advance(t_0: float, span: float, x: np.ndarray, i_c: np.ndarray, i_m: np.nda
 @compiled
 def trajectory(x_0: np.ndarray, currents: np.ndarray, T_s: float, q: np.ndarray, D: np.ndarray,
                P: np.ndarray, step: float) -> np.ndarray:  # fmt: skip
-    """States at the samples, shape (n, 60); NaN from the sample on where it diverges.
+    """Returns states at the samples, shape (n, 60); NaN from the sample on where it diverges.
 
     Args:
         x_0: first state, shape (60,).

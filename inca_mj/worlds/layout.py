@@ -1,4 +1,4 @@
-"""Where each number of a world sits, beside those of `inca_mj.reference.layout`.
+"""The place of each number of a world, beside those of `inca_mj.reference.layout`.
 
 The state grows by what some effects remember. Every effect is a column that is zero (or infinite,
 for a limit) where the effect is off, so that one compiled right-hand side serves every world.

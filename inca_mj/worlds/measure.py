@@ -1,4 +1,4 @@
-"""What an encoder says of an angle, and what an amplifier hides of a current.
+"""The readings of an encoder, and what an amplifier hides of a current.
 
 y = Δ round((φ + σ w)/Δ),  Δ = 2π/counts,  w white            rms √(σ² + Δ²/12)
 e_k+1 = a e_k + √(1 − a²) e_rms w,  a = e^(−T_s/τ)            first-order low-pass, stationary
@@ -10,7 +10,7 @@ import numpy as np
 
 
 def encode(angles: np.ndarray, counts: int, noise: float, rng: np.random.Generator) -> np.ndarray:
-    """Angles as encoders give them [rad], same shape.
+    """Returns angles as encoders give them [rad], same shape.
 
     Args:
         angles: true angles [rad].
@@ -26,7 +26,7 @@ def encode(angles: np.ndarray, counts: int, noise: float, rng: np.random.Generat
 
 
 def noise_rms(counts: int, noise: float) -> float:
-    """Rms of the measurement noise [rad]."""
+    """Returns the rms of the measurement noise [rad]."""
     Δ = 2 * np.pi / counts if counts else 0.0
     return float(np.sqrt(noise**2 + Δ**2 / 12))
 
@@ -34,7 +34,7 @@ def noise_rms(counts: int, noise: float) -> float:
 def coloured(
     shape: tuple[int, int], sampling_time: float, rms: float, time: float, rng: np.random.Generator
 ) -> np.ndarray:
-    """An error of the currents, low-passed white noise, independent by column [A].
+    """Returns an error of the currents, low-passed white noise, independent by column [A].
 
     Args:
         shape: samples and drives (n, 8).

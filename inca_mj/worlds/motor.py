@@ -91,7 +91,7 @@ class HiddenCurrentSaturation(HiddenDriveEffect):
         self.column(numbers, at.CURRENT_SOFT)[:] = self.soft
 
     def scaled(self, factor: float) -> Self:
-        """What is lost of the largest current is `factor` times as much."""
+        """Returns a saturation that takes `factor` times as much of the largest current."""
         if factor == 0:
             return replace(self, i_max=inf)
         if self.soft:  # i − i_max tanh(i/i_max) ≈ i³/(3 i_max²)

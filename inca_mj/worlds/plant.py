@@ -51,7 +51,7 @@ class HiddenPlant:
 def make_plant(
     parameters: ParameterSet, geometry: Geometry, effects: Sequence[HiddenEffect] = ()
 ) -> HiddenPlant:
-    """A robot at rest at the start pose of its parameters.
+    """Returns a robot at rest at the start pose of its parameters.
 
     Args:
         parameters: true values; deviations of its drives and displacements of its points count
@@ -93,7 +93,7 @@ def make_plant(
 def simulate_world(
     plant: HiddenPlant, currents: np.ndarray, sampling_time: float = 0.01, step: float | None = None
 ) -> np.ndarray:
-    """States of a plant at the samples, shape (n, 60).
+    """Returns states of a plant at the samples, shape (n, 60).
 
     Args:
         plant: from `make_plant`.
@@ -147,7 +147,7 @@ def _pretension(
 
 
 def _strain(T: float, λ: float, D: np.ndarray) -> float:
-    """ε of λ ε (1 + κ ε^n) = T, by Newton from ε = T/λ."""
+    """Returns ε of λ ε (1 + κ ε^n) = T, by Newton from ε = T/λ."""
     κ, n = D[at.CABLE_HARD], D[at.CABLE_POWER]
     ε = T / λ
     for _ in range(30 if κ != 0.0 else 0):

@@ -23,7 +23,7 @@ from inca_mj.reference.equations import Vector
 
 @compiled
 def path(ds: Vector, r: float, side: float) -> tuple[float, Vector]:
-    """Length of the path [m], and its gradient by the connector, a unit vector in O.
+    """Returns the length of the path [m], and its gradient by the connector, a unit vector in O.
 
     Args:
         ds: from A to the connector, in O [m].

@@ -1,4 +1,4 @@
-"""How large an effect is, as the part that a robot without it cannot absorb.
+"""The size of an effect, as the part that a robot without it cannot absorb.
 
     e(s)  = φ(with s times the effect) − φ(without), all samples and drives, as encoders read it
     S     = ∂φ/∂(base parameters, start pose), by forward differences of the world without effects
@@ -45,7 +45,7 @@ LITTLE = 0.1  # of r: where r₁ is less, nearly all of r is curvature
 
 
 class HiddenAbsorbed:
-    """What a robot can absorb, for one input: by its base parameters, its start, and its parts."""
+    """The part that a robot can absorb for one input: by base parameters, start and parts."""
 
     def __init__(
         self,
@@ -86,20 +86,20 @@ class HiddenAbsorbed:
         self._inverse = np.linalg.inv(np.eye(D.shape[1]) + self._parts.T @ self._parts)
 
     def rms(self, effects: Sequence[HiddenEffect]) -> float:
-        """Rms of what the robot cannot absorb of these effects, r σ [rad]."""
+        """Returns the rms of what the robot cannot absorb of these effects, r σ [rad]."""
         e = self._angles(self._robot[0], effects) - self._without
         e -= self._basis @ (self._basis.T @ e)
         seen = self._parts.T @ e
         return float(np.sqrt((e @ e - seen @ self._inverse @ seen) / e.size))
 
     def is_absorbed(self, effect: HiddenEffect) -> bool:
-        """Whether nearly nothing is left of an effect to first order, r₁ < r/10."""
+        """Returns whether nearly nothing is left of an effect to first order, r₁ < r/10."""
         if effect.is_part or not effect.is_smooth or not self._parts.size:
             return False
         return self.rms([effect.scaled(SMALL)]) < SMALL * LITTLE * self.rms([effect])
 
     def _column(self, name: str, h: float) -> np.ndarray:
-        """What a change h of a parameter does to all angles [rad]."""
+        """Returns what a change h of a parameter does to all angles [rad]."""
         moved = self._robot[0].with_values({name: self._robot[0][name].value + h})
         return self._angles(moved, ()) - self._without
 
@@ -115,7 +115,7 @@ class UnreachedError(InputError):
 
 
 def sized(effect: HiddenEffect, absorbed: HiddenAbsorbed, goal: float) -> HiddenEffect:
-    """The effect with a size whose unabsorbed rms is `goal` [rad], to 2 %.
+    """Returns the effect with a size whose unabsorbed rms is `goal` [rad], to 2 %.
 
     Raises:
         UnreachedError: no size that a robot may have gives it, or a change of parameters would.
@@ -129,7 +129,7 @@ def sized(effect: HiddenEffect, absorbed: HiddenAbsorbed, goal: float) -> Hidden
 
 
 def _solved(effect: HiddenEffect, absorbed: HiddenAbsorbed, goal: float) -> HiddenEffect:
-    """The effect with a size that solves r(s) σ = goal."""
+    """Returns the effect with a size that solves r(s) σ = goal."""
     # Sizes and rms of two trials; the first stands for no effect at all.
     below, above = (0.0, 0.0), (np.inf, np.inf)
     s, r, most = min(1.0, effect.most), 0.0, effect.most
@@ -154,7 +154,7 @@ def _solved(effect: HiddenEffect, absorbed: HiddenAbsorbed, goal: float) -> Hidd
 
 
 def _too_small(effect: HiddenEffect, r: float, goal: float) -> str:
-    """Why an effect of the largest size is not enough."""
+    """Returns why an effect of the largest size is not enough."""
     sizes = ", ".join(f"{name} = {getattr(effect, name):.3g}" for name in effect.sizes)
     return (
         f"{effect.name}: of the largest size that a robot may have ({sizes}) {r:.3g} rad cannot be"
@@ -165,7 +165,7 @@ def _too_small(effect: HiddenEffect, r: float, goal: float) -> str:
 def _next(
     s: float, r: float, goal: float, below: tuple[float, float], above: tuple[float, float]
 ) -> float:
-    """The next size: the chord's where both sides are known, else the proportional one."""
+    """Returns the next size: the chord's where both sides are known, else the proportional one."""
     (s_1, r_1), (s_2, r_2) = below, above
     if np.isfinite(r_2):
         if r_1 == 0.0:

@@ -18,7 +18,7 @@ POSITION, ANGLES = ("x", "y", "z"), ("roll", "pitch", "yaw")
 
 
 def true_robot(seed: int, setting: HiddenSetting) -> ParameterSet:
-    """The robot of a seed, at the start of its first record.
+    """Returns the robot of a seed, at the start of its first record.
 
     Raises:
         InputError: a value is out of its bounds.
@@ -37,7 +37,7 @@ def true_robot(seed: int, setting: HiddenSetting) -> ParameterSet:
 def elsewhere(
     robot: ParameterSet, offset: float, tilt: float, rng: np.random.Generator
 ) -> ParameterSet:
-    """The same robot at another start, as `HiddenSetting.offset` and `tilt` say it.
+    """Returns the same robot at another start, as `HiddenSetting.offset` and `tilt` say it.
 
     Raises:
         InputError: a value is out of its bounds.

@@ -33,7 +33,7 @@ BETWEEN = 5  # simulated states a sample, where angles between samples are asked
 
 @dataclass(frozen=True)
 class Motion:
-    """How the motors turn.
+    """The motion of the motors.
 
     Attributes:
         time: of the samples, shape (n,) [s].
@@ -46,18 +46,18 @@ class Motion:
     between: CubicHermiteSpline
 
     def at(self, time: np.ndarray) -> np.ndarray:
-        """Angles at any times, shape (m, k) [rad]."""
+        """Returns angles at any times, shape (m, k) [rad]."""
         return np.asarray(self.between(np.clip(time, self.time[0], self.time[-1])))
 
 
 class HiddenEncoderFault(HiddenDriveEffect):
-    """What an encoder adds to the angle; it changes nothing of the robot."""
+    """A fault that an encoder adds to the angle; it changes nothing of the robot."""
 
     def put(self, numbers: HiddenNumbers) -> None:
         """Change nothing."""
 
     def added(self, motion: Motion) -> np.ndarray:
-        """What the encoders add if all have the fault, shape (n, k) [rad]."""
+        """Returns what the encoders add if all have the fault, shape (n, k) [rad]."""
         raise NotImplementedError
 
 
@@ -71,7 +71,7 @@ class HiddenEncoderScale(HiddenOneDriveEffect, HiddenEncoderFault):
     s: float = 0.003
 
     def added(self, motion: Motion) -> np.ndarray:
-        """The scale adds s φ, shape (n, k) [rad]."""
+        """Returns what the scale adds, s φ, shape (n, k) [rad]."""
         return self.s * motion.angles
 
 
@@ -86,7 +86,7 @@ class HiddenEncoderEccentricity(HiddenOneDriveEffect, HiddenEncoderFault):
     b: float = 0.005
 
     def added(self, motion: Motion) -> np.ndarray:
-        """The eccentric disc adds a cos φ + b sin φ, shape (n, k) [rad]."""
+        """Returns what the eccentric disc adds, a cos φ + b sin φ, shape (n, k) [rad]."""
         return np.asarray(self.a * np.cos(motion.angles) + self.b * np.sin(motion.angles))
 
 
@@ -101,7 +101,7 @@ class HiddenEncoderLag(HiddenEncoderFault):
     late: bool = False
 
     def added(self, motion: Motion) -> np.ndarray:
-        """The read angle less the true one, shape (n, k) [rad]."""
+        """Returns the read angle less the true one, shape (n, k) [rad]."""
         if self.late:
             return motion.at(motion.time - self.tau) - motion.angles
         return lagged(motion, self.tau) - motion.angles
@@ -118,13 +118,13 @@ class HiddenEncoderJump(HiddenOneDriveEffect, HiddenEncoderFault):
     t_s: float = 0.5
 
     def added(self, motion: Motion) -> np.ndarray:
-        """The jump adds c where t ≥ t_s, shape (n, k) [rad]."""
+        """Returns what the jump adds, c where t ≥ t_s, shape (n, k) [rad]."""
         late = motion.time >= self.t_s - 1e-9
         return self.c * np.repeat(late[:, None], motion.angles.shape[1], axis=1)
 
 
 def lagged(motion: Motion, tau: float) -> np.ndarray:
-    """x at the samples, τ ẋ = φ − x from rest: exact where φ is straight, shape (n, k) [rad]."""
+    """Returns x of τ ẋ = φ − x from rest, exact where φ is straight, shape (n, k) [rad]."""
     if tau == 0.0:
         return motion.angles
     n = (len(motion.time) - 1) * FINE
@@ -146,7 +146,7 @@ def simulate_angles(
     sampling_time: float,
     step: float | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Angles of the motors, and what their encoders read without noise, each (n, 8) [rad].
+    """Returns angles of the motors, and what their encoders read without noise, each (n, 8) [rad].
 
     Args:
         plant: from `make_plant`, with the same effects.

@@ -1,4 +1,4 @@
-"""How a world is made and measured, and the currents that drive it."""
+"""The making and the measuring of a world, and the currents that drive it."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _INPUTS = {"prbs": prbs, "multisine": multisine}
 
 @dataclass(frozen=True, kw_only=True)
 class HiddenSetting:
-    """How a world is made and measured.
+    """The making and the measuring of a world.
 
     Attributes:
         input: "prbs" or "multisine".
@@ -86,7 +86,7 @@ class HiddenSetting:
 
 
 def make_currents(seed: int, setting: HiddenSetting) -> np.ndarray:
-    """The commanded currents of a world, shape (n, 8) [A]."""
+    """Returns the commanded currents of a world, shape (n, 8) [A]."""
     n, T_s, low, high = setting.samples, setting.sampling_time, setting.low, setting.high
     if setting.input == "prbs":
         return prbs(n, T_s, seed=seed, low=low, high=high)

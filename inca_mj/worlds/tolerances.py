@@ -1,4 +1,4 @@
-"""How far a robot that was built is from its drawing.
+"""The deviations from its drawing of a robot that was built.
 
     value at drive k = common value (1 + δ_k),      δ_k uniform in ± the half-width of the parameter
     exit point       = nominal place + e,           e ~ N(0, s²) in each coordinate
@@ -25,7 +25,7 @@ _FIELDS = {"lambda": "lambda_"}  # a word of Python's own cannot be a field
 
 @dataclass(frozen=True, kw_only=True)
 class Tolerances:
-    """How much drives, points and platform of a robot differ from what they should be.
+    """Differences of drives, points and platform of a robot from what they should be.
 
     Attributes:
         R: largest relative deviation of a drive's roller radius from the common value; the
@@ -84,7 +84,7 @@ class Tolerances:
 
 
 def usual_std(parameters: ParameterSet, tolerances: Tolerances) -> dict[str, float]:
-    """Std of each parameter that the tolerances move, by name; empty for `EXACT`.
+    """Returns the std of each parameter that tolerances move, by name; empty for `EXACT`.
 
     A uniform deviation has the half-width over √3 as its std; inertias and mass have it times their
     value.
@@ -116,7 +116,7 @@ AS_BUILT = Tolerances(
 def as_built(
     parameters: ParameterSet, tolerances: Tolerances, rng: np.random.Generator
 ) -> ParameterSet:
-    """A robot within its tolerances; the same parameters where these are `EXACT`.
+    """Returns a robot within its tolerances; the same parameters where these are `EXACT`.
 
     Everything is drawn, so that no tolerance changes what another one gives.
 

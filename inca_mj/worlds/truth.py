@@ -1,4 +1,4 @@
-"""What is true of a world, kept apart from what its log says."""
+"""The truth about a world, kept apart from what its log says."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ class HiddenTruth:
         return tuple(effect.values() for effect in self.effects)
 
     def as_dict(self) -> dict[str, Any]:
-        """All of it but the arrays, for a file of labels."""
+        """Returns everything but the arrays, for a file of labels."""
         return {
             "seed": self.seed,
             "effects": [

@@ -32,7 +32,7 @@ def world(
     setting: HiddenSetting | None = None,
     geometry: Geometry = INCA,
 ) -> HiddenWorld:
-    """A log of a robot with these effects, and the truth about it.
+    """Returns a log of a robot with these effects, and the truth about it.
 
     One seed gives one robot, input and noise, whatever the effects are.
 
@@ -70,7 +70,7 @@ def records(
     geometry: Geometry = INCA,
     others: Sequence[HiddenEffect] = (),
 ) -> tuple[HiddenWorld, ...]:
-    """Logs of one robot with these effects, each with an input, a start and noise of its own.
+    """Returns logs of one robot with these effects, each with its own input, start and noise.
 
     The first is that of `world` with the first input, to the last bit.
 
@@ -125,7 +125,7 @@ def _sized(
     absorbed: HiddenAbsorbed,
     goals: Sequence[float],
 ) -> tuple[HiddenEffect, ...]:
-    """As many effects as there are goals, with the sizes that leave these [rad]."""
+    """Returns as many effects as there are goals, with the sizes that leave these [rad]."""
     chosen: list[HiddenEffect] = []
     refused: UnreachedError | None = None
     for e in (*effects, *others):
@@ -150,7 +150,7 @@ def _record(
     setting: HiddenSetting,
     u: np.ndarray,
 ) -> HiddenWorld:
-    """A log of a robot under the currents u; `number` is empty for the first."""
+    """Returns a log of a robot under the currents u; `number` is empty for the first."""
     error = coloured(
         u.shape, setting.sampling_time, setting.error_rms, setting.error_time,
         np.random.default_rng([seed, 2, *number]),
