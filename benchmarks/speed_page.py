@@ -93,23 +93,27 @@ def _notes(rows: Sequence[dict[str, Any]]) -> list[str]:
 
 def searches(rows: Sequence[dict[str, Any]]) -> str:
     """The searches of the newest commit beside those of the one that it was compared with."""
-    old, new = [*dict.fromkeys(row["commit"] for row in rows)][-2:]
-    by = {(row["case"], row["commit"]): row for row in rows}
+    new = rows[-1]["commit"]
+    old = next(row["commit"] for row in reversed(rows) if row["commit"] != new)
+    by = {(row["case"], row["commit"]): row for row in rows}  # of a case the newest rows
+    cases = [case for case, commit in by if commit == new]
     lines = [
         "", "## Searches by two commits in one run", "",
-        f"Both commits answered each case in one run, each search on {rows[-1]['processors']}"
-        " processors of its own beside others, with laws that were compiled already;"
+        "Both commits answered each case in one run, each search on processors of its own, with"
+        " laws that were compiled already;"
         " `benchmarks/searches.py` takes such rows. A search that did not end within the run has"
         " the seconds at which it was ended. *Same* means the same verdict, names and places; the"
         " last column is the largest difference of a size in its std.", "",
-        f"| case | {old} [s] | {new} [s] | processor time [s] | peak memory [MB] | same | sizes |",
-        "| --- " * 7 + "|",
+        f"| case | processors | {old} [s] | {new} [s] | processor time [s] | peak memory [MB] |"
+        " same | sizes |",
+        "| --- " * 8 + "|",
     ]  # fmt: skip
-    for case in dict.fromkeys(row["case"] for row in rows):
+    for case in cases:
         a, b = by.get((case, old), {}), by.get((case, new), {})
         both = a.get("verdict") is not None and b.get("verdict") is not None
         lines.append(
-            f"| {case} | {_seconds(a)} | {_seconds(b)} | {_pair(a, b, 'processor_seconds')} |"
+            f"| {case} | {b['processors']} | {_seconds(a)} | {_seconds(b)} |"
+            f" {_pair(a, b, 'processor_seconds')} |"
             f" {_pair(a, b, 'megabytes')} | {_same(a, b) if both else ''} |"
             f" {_apart(a, b) if both and _same(a, b) == 'yes' else ''} |"
         )
