@@ -32,6 +32,7 @@ from golden_logs import write_logs
 ROOT = Path(__file__).resolve().parents[1]
 KEPT = ROOT / "benchmarks" / "golden"
 DATA = ROOT.parent / "shared" / "data"
+SHOWN = 12  # differences of a case
 DIGITS = 4  # that are kept and compared where the machine is another one
 TIMES = {"seconds", "stages", "versions", "configuration", "processor_seconds"}  # told by no answer
 A_TIME = re.compile(r"\b\d+(\.\d+)? ?(s|min|ms)\b")
@@ -41,10 +42,10 @@ QUICK: tuple[tuple[str, str, str], ...] = (
     ("compare", INCA, "compare EXAMPLES/log.csv"),
     ("identify", INCA, "identify EXAMPLES/log.csv --free lambda b J K_t"),
     ("linearize", INCA, "linearize --pose 0.2 0 1.3 0 0 0"),
-    ("pendulum_fit", ANY, "fit MADE/pendulum.toml MADE/pendulum.csv"),
-    ("pendulum_fit_free_run", ANY, "fit MADE/pendulum_free.toml MADE/pendulum.csv"),
-    ("pendulum", ANY, "discover MADE/pendulum.toml MADE/pendulum.csv"),
-    ("cart", ANY, "discover MADE/cart.toml MADE/cart.csv"),
+    ("pendulum_fit", ANY, "fit MADE/pendulum.toml MADE/pendulum_log.csv"),
+    ("pendulum_fit_free_run", ANY, "fit MADE/pendulum_free.toml MADE/pendulum_log.csv"),
+    ("pendulum", ANY, "discover MADE/pendulum.toml MADE/pendulum_log.csv"),
+    ("cart", ANY, "discover MADE/cart.toml MADE/cart_log.csv"),
     ("shipped_alike", INCA, "discover EXAMPLES/log.csv --spread none --no-film"),
 )
 REST: tuple[tuple[str, str, str], ...] = (
@@ -57,10 +58,10 @@ REST: tuple[tuple[str, str, str], ...] = (
     ("spread_robot", INCA, "discover DATA/practice_robots/robot_02_a.csv --no-film"),
     ("three_records", INCA, "discover DATA/practice_robots/robot_07_a.csv"
      " DATA/practice_robots/robot_07_b.csv DATA/practice_robots/robot_07_c.csv --no-film"),
-    ("cart_free_run", ANY, "discover MADE/cart_free.toml MADE/cart.csv"),
-    ("arm", ANY, "discover MADE/arm.toml MADE/arm.csv"),
-    ("arm_null", ANY, "discover MADE/arm.toml MADE/arm_null.csv"),
-    ("elastic", ANY, "discover MADE/elastic.toml MADE/elastic.csv"),
+    ("cart_free_run", ANY, "discover MADE/cart_free.toml MADE/cart_log.csv"),
+    ("arm", ANY, "discover MADE/arm.toml MADE/arm_log.csv"),
+    ("arm_null", ANY, "discover MADE/arm.toml MADE/arm_null_log.csv"),
+    ("elastic", ANY, "discover MADE/elastic.toml MADE/elastic_log.csv"),
     ("elbow", ANY, "discover EXAMPLES/elbow/elbow.toml EXAMPLES/elbow/first.csv"
      " --confirm EXAMPLES/elbow/second.csv"),
     ("linearize_arm", ANY, "linearize MADE/arm.toml"),
@@ -76,6 +77,10 @@ def main() -> int:
     parser.add_argument("--write", action="store_true", help="keep the answers")
     given = parser.parse_args()
     cases = [*QUICK, *(() if given.quick and not given.only else REST)]
+    names = [case[0] for case in cases]
+    unknown = [name for name in given.only or () if name not in names]
+    if unknown:
+        parser.error(f"no case {', '.join(unknown)}; the cases are {', '.join(names)}")
     cases = [case for case in cases if not given.only or case[0] in given.only]
     different = 0
     with tempfile.TemporaryDirectory() as made, tempfile.TemporaryDirectory() as trees:
@@ -87,6 +92,10 @@ def main() -> int:
                 print(f"{name}: skipped, its logs are not here", flush=True)
                 continue
             now = answer(ROOT, program, line, folders)
+            if now["code"] not in (0, 1) or not now["result"]:
+                print(f"{name}: no answer, {' '.join(now['said'])}", flush=True)
+                different += 1
+                continue
             if given.write:
                 keep(name, now)
                 print(f"{name}: kept", flush=True)
@@ -94,15 +103,18 @@ def main() -> int:
             before = kept(name) if other is None else answer(other, program, line, folders)
             lines = [*differences(before, now if other else rounded(now))]
             different += bool(lines)
-            print(f"{name}: {'differs' if lines else 'equal'}", *lines[:12], sep="\n  ", flush=True)
+            more = [f"and {len(lines) - SHOWN} more"] if len(lines) > SHOWN else []
+            told = "differs" if lines else "equal"
+            print(f"{name}: {told}", *lines[:SHOWN], *more, sep="\n  ", flush=True)
     return int(different > 0)
 
 
 def checkout(commit: str, folder: Path) -> Path:
     """Returns a folder with the files of a commit."""
-    packed = subprocess.run(
-        ["git", "archive", commit], cwd=ROOT, capture_output=True, check=True
-    ).stdout
+    done = subprocess.run(["git", "archive", commit], cwd=ROOT, capture_output=True, check=False)
+    if done.returncode:
+        sys.exit(f"golden.py: {done.stderr.decode().strip()}")
+    packed = done.stdout
     with tarfile.open(fileobj=io.BytesIO(packed)) as archive:
         archive.extractall(folder, filter="data")
     return folder
@@ -124,6 +136,7 @@ def answer(tree: Path, program: str, line: str, folders: Mapping[str, str]) -> d
         return {
             "code": done.returncode,
             "result": without_times(found, places),
+            "said": [without_places(each, places) for each in done.stderr.splitlines()],
             "text": [without_places(each, places) for each in done.stdout.splitlines()],
             "report": [without_places(each, places) for each in page],
         }
@@ -197,6 +210,7 @@ def rounded(found: Any) -> Any:
 
 def keep(name: str, now: dict[str, Any]) -> None:
     """Write an answer into the folder of those that are kept."""
+    KEPT.mkdir(exist_ok=True)
     text = json.dumps(rounded(now), indent=1, ensure_ascii=False)
     (KEPT / f"{name}.json").write_text(text + "\n", encoding="utf-8")
 

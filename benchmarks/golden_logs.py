@@ -88,14 +88,14 @@ ROBOTS: Mapping[str, Robot] = {
 
 
 def write_logs(folder: Path) -> None:
-    """Write NAME.xml, NAME.toml, NAME_free.toml (of a free run) and NAME.csv of each robot."""
+    """Write NAME.xml, NAME.toml, NAME_free.toml (of a free run) and NAME_log.csv of each robot."""
     for seed, (name, robot) in enumerate(ROBOTS.items()):
         (folder / f"{name}.xml").write_text(robot.model, encoding="utf-8")
         listed = ", ".join(f'"{path}"' for path in robot.free)
         text = f'model = "{name}.xml"\nfree = [{listed}]\n'
         (folder / f"{name}.toml").write_text(f"{text}horizon = 0.2\n", encoding="utf-8")
         (folder / f"{name}_free.toml").write_text(text, encoding="utf-8")
-        _write_log(robot, folder / f"{name}.csv", seed)
+        _write_log(robot, folder / f"{name}_log.csv", seed)
 
 
 def _write_log(robot: Robot, path: Path, seed: int) -> None:

@@ -167,14 +167,15 @@ def add_drawings(draft: Draft, what: str, write: Callable[[], object]) -> bool:
             write()
             draft.save()
     except Exception as error:  # a full disk, too: what was saved before is whole
-        _note_without(what, error)
+        reason = str(error).replace(str(draft.folder), str(draft.place))
+        _note_without(what, reason or type(error).__name__, f" in {draft.place}")
         return False
     return True
 
 
-def _note_without(what: str, error: Exception) -> None:
+def _note_without(what: str, error: Exception | str, where: str = "") -> None:
     reason = (str(error).strip() or type(error).__name__).splitlines()[0]
-    note(f"no {what}: {reason}; the results are kept without")
+    note(f"no {what}: {reason}; the results are kept without{where}")
 
 
 def import_without_graphics(*, own_methods: bool = False) -> None:

@@ -26,7 +26,8 @@ def step_shift(
 ) -> np.ndarray:  # fmt: skip
     """Returns by how much each value would move with a quarter of the model's step, shape (p,).
 
-    NaN where the plant's step cannot be changed, or where it cannot be simulated with a finer one.
+    NaN where the plant's step cannot be changed, where it cannot be simulated with a finer one, and
+    of a value that a bound holds.
 
     Args:
         estimate: where a search ended.
@@ -45,6 +46,10 @@ def step_shift(
         finely = replace(predictor, plant=plant).predict(values)[0]
     except (DivergenceError, InputError):
         return unknown
+    free = ~estimate.space.on_bound(q)
+    S, prior = S[:, free], prior[:, free]
     g = S.T @ whiten((predicted - finely)[:, :, None])[:, 0]
     A = S.T @ S + prior.T @ prior
-    return np.asarray(np.linalg.pinv(A, rcond=1e-14, hermitian=True) @ g) * estimate.space.slope(q)
+    out = unknown
+    out[free] = np.linalg.pinv(A, rcond=1e-14, hermitian=True) @ g
+    return out * estimate.space.slope(q)

@@ -31,6 +31,8 @@ from identification.logs.by_unit import by_unit, rms_by_unit
 from identification.logs.log import Log
 from identification.logs.noise import noise_floor
 
+FAR = 2.0  # [std]; a smaller shift, which is known to first order only, may have the other sign
+
 
 @dataclass(frozen=True, kw_only=True)
 class Fit:
@@ -80,11 +82,11 @@ class Fit:
 
     @property
     def far(self) -> dict[str, float]:
-        """The values that a finer step would move by more than a std, the farthest first [std]."""
+        """The values that a finer step would move by more than `FAR`, the farthest first [std]."""
         with np.errstate(divide="ignore", invalid="ignore"):
             moved = np.abs(self.step_shift) / self.std
         names = self.estimate.space.names
-        return {names[k]: float(moved[k]) for k in np.argsort(-moved) if moved[k] > 1}
+        return {names[k]: float(moved[k]) for k in np.argsort(-moved) if moved[k] > FAR}
 
     @property
     def rms(self) -> float:
@@ -166,7 +168,9 @@ def assess(estimate: Estimate, validation: Log | None = None) -> Fit:
         floor=noise_floor(log.outputs),
         tests=residual_tests(residual, log.inputs),
         information=information_of(resolved, space),
-        step_shift=step_shift(estimate, predicted, S, prior, whiten),
+        step_shift=np.where(
+            np.isfinite(std_q), step_shift(estimate, predicted, S, prior, whiten), np.nan
+        ),
     )
 
 

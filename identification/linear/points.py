@@ -93,7 +93,8 @@ class Points:
         ends = np.cumsum([part.shape[1] for part in parts])
         self._places = {f: slice(*ends[k : k + 2]) for k, f in enumerate(STATE[1:])}
         self._results = results
-        self._owners = owners_of(at.model) if tuple(results) == RATES else {}
+        is_shared = tuple(results) == RATES and not self._begins(at.act)
+        self._owners = owners_of(at.model) if is_shared else {}
         self._actuator_of = np.repeat(  # of each activation; none where its law gives no share
             np.where(
                 np.isin(np.arange(at.model.nactuator), [*self._owners.values()]),
@@ -168,6 +169,11 @@ class Points:
         other = with_entries(self._base.models[0], change.numbers)
         return Case(states, (), other, shares, change.courses)
 
+    def _begins(self, act: np.ndarray) -> bool:
+        """Returns whether an actuator's first activation is zero, where its law begins anew."""
+        first = self._base.models[0].actuator_actadr
+        return bool((act[:, first[first >= 0]] == 0).any())
+
     def _actuators(self, change: Change) -> tuple[int, ...]:
         """Returns the actuators that alone read what differs; empty if there are other readers."""
         if not self._owners or "ctrl" in change.fields:
@@ -177,6 +183,8 @@ class Points:
         for name, values in change.fields.items():
             differs = (self._base.states[:, self._places[name]] != values).any(axis=0)
             if name == "act":
+                if self._begins(np.atleast_2d(values)):
+                    return ()
                 some |= {*self._actuator_of[differs].tolist()}
             else:
                 some |= {self._owners.get((name, int(k)), -1) for k in np.flatnonzero(differs)}

@@ -4,8 +4,8 @@
 
 f_i are the forces of actuator i with all that its law adds, a_i its activations, p_i the numbers
 that it alone reads: its share. Another value of p_i or a_i changes nothing but f_i and g_i, so that
-the change of the rates is M⁻¹ Δf_i and Δg_i. Nor does the angle of a balanced rotor that turns in
-the frame (`is_balanced_rotor`). It costs the law of one actuator and no other law, no
+the change of the rates is M⁻¹ Δf_i and Δg_i. The same holds of the angle and the rate of a balanced
+rotor that turns in the frame (`is_balanced_rotor`). It costs the law of one actuator and no other law, no
 actuators and no kinematics. It holds where no constraint acts, which would answer the force.
 """
 
@@ -26,6 +26,14 @@ _ANSWERED, _LEFT_OUT = (
     int(_BITS.mjDSBL_CONSTRAINT), int(_BITS.mjDSBL_ACTUATION | _BITS.mjDSBL_DAMPER)
 )  # fmt: skip
 
+# What limits the force of an actuator, or adds to it what its share does not have.
+_OTHER_FORCES = (
+    "actuator_forcelimited", "actuator_actlimited", "jnt_actfrclimited", "jnt_actgravcomp",
+    "actuator_gainprm", "actuator_damping", "actuator_dampingpoly", "tendon_stiffness",
+    "tendon_stiffnesspoly", "tendon_damping", "tendon_dampingpoly", "dof_dampingpoly",
+    "jnt_stiffnesspoly",
+)  # fmt: skip
+
 # (array of the model, row in it) or (field of the state, index in it) -> actuator
 Owners = Mapping[tuple[str, int], int]
 
@@ -34,12 +42,11 @@ _laws_of, _call = table(SHARE), caller(SIGNATURES[SHARE])
 
 def has_shares(model: mujoco.MjModel) -> bool:
     """Returns whether the share of an actuator may be taken alone, where its law gives one."""
-    flags = int(model.opt.disableflags)
-    limits = (
-        model.actuator_forcelimited, model.actuator_actlimited, model.jnt_actfrclimited,
-        model.jnt_actgravcomp,
-    )  # fmt: skip
-    return bool(flags & _ANSWERED) and not flags & _LEFT_OUT and not np.concatenate(limits).any()
+    option = model.opt
+    is_free = option.disableflags & _ANSWERED and not option.disableflags & _LEFT_OUT
+    rest = [np.any(getattr(model, field)) for field in _OTHER_FORCES]
+    rest += [option.density, option.viscosity, option.disableactuator]
+    return bool(is_free) and not any(rest)
 
 
 def is_balanced_rotor(model: mujoco.MjModel, joint: int) -> bool:

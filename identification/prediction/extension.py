@@ -18,7 +18,12 @@ from identification.model.predictor import Plant
 from identification.prediction.first_fit import FINE, Begun, shapes_of
 from identification.prediction.fit import solve
 from identification.prediction.model import WindowModel, predict_fitted
-from identification.prediction.problem import with_longer_steps, with_unknowns
+from identification.prediction.problem import (
+    Problem,
+    with_longer_steps,
+    with_own_steps,
+    with_unknowns,
+)
 from identification.prediction.records import Record
 from identification.prediction.unseen import HORIZON
 
@@ -73,7 +78,32 @@ def with_fitting_steps(
     task = with_longer_steps(fit.problem, fit.q, fit.moves)
     if _steps(task.plant) >= _steps(model.plant):
         return model
-    found = solve(task, fit.q, fit.moves, tolerance=FINE, most=MOST_REFIT)
+    return _refitted(model, task, horizon, confirm)
+
+
+def at_own_steps(model: WindowModel, horizon: float, confirm: Sequence[Record]) -> WindowModel:
+    """Returns the model refitted with the steps of the user's model, as the last fit of a search.
+
+    Longer steps err by a share of what is left, and in the same direction in every window: beside
+    the std of many windows that is much.
+
+    Args:
+        model: fitted.
+        horizon: [s].
+        confirm: records that no fit may see.
+
+    Raises:
+        DivergenceError: it cannot be simulated with these steps.
+    """
+    task = with_own_steps(model.fit.problem)
+    return model if task is model.fit.problem else _refitted(model, task, horizon, confirm)
+
+
+def _refitted(
+    model: WindowModel, task: Problem, horizon: float, confirm: Sequence[Record]
+) -> WindowModel:
+    """Returns the model refitted from where it is, with the simulations of another task."""
+    found = solve(task, model.fit.q, model.fit.moves, tolerance=FINE, most=MOST_REFIT)
     fixed = {n: v for c in model.candidates for n, v in (*c.fixed.items(), *c.whole.items())}
     seen = predict_fitted(task.plant, confirm, horizon, model.scale, found, fixed, model.unseen)
     return replace(model, fit=found, unseen=seen)

@@ -15,6 +15,7 @@ from functools import cached_property
 
 import numpy as np
 
+from identification.effects.jointed import JointPlant
 from identification.errors import DivergenceError
 from identification.model.predictor import Plant, Predictor
 from identification.prediction.records import Record
@@ -264,6 +265,22 @@ def with_longer_steps(
     if not is_for_slopes:
         parts = with_longest_steps(parts, each, moves)
     return replace(problem_, parts=tuple(with_longest_slope_steps(parts, each, moves)))
+
+
+def with_own_steps(problem_: Problem) -> Problem:
+    """Returns the same windows whose predictions are simulated with the steps of the user's model.
+
+    Slopes may still take longer ones: they only say where a search goes.
+
+    Args:
+        problem_: of one plant.
+    """
+    plant = problem_.plant
+    if not isinstance(plant, JointPlant) or plant.steps == 1:
+        return problem_
+    own = replace(plant, steps=1)
+    parts = (replace(p, predictor=replace(p.predictor, plant=own)) for p in problem_.parts)
+    return replace(problem_, parts=tuple(parts))
 
 
 def with_scale(problem_: Problem, scale: np.ndarray) -> Problem:

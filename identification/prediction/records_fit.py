@@ -11,16 +11,18 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
 from identification.blas import one_blas_thread
+from identification.discovery.attempts import attempt
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
 from identification.errors import InputError
 from identification.estimation.options import Progress
 from identification.logs.log import Log
+from identification.prediction.extension import at_own_steps
 from identification.prediction.fit import WindowFit
 from identification.prediction.model import WindowModel
 from identification.prediction.nominal_fit import begin, fit_nominal
@@ -199,8 +201,9 @@ def fit_records(
         raise InputError(NO_HORIZON)
     clock = time.perf_counter()
     records = as_records(fit, confirm, values)
-    model = fit_nominal(base, records, progress)
     unseen = [r for r in records if r.role == "confirm"]
+    found = fit_nominal(base, records, progress)
+    model = attempt(None, partial(at_own_steps, found, base.horizon, unseen)) or found
     begun = predict(model.plant, unseen, base.horizon, model.scale, {}, model.unseen)
     unknowns = model.fit.problem.unknowns
     start = unknowns.all.space.decode(begin(base, unknowns))

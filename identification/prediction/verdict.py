@@ -23,6 +23,7 @@ from identification.logs.log import Log
 from identification.logs.replay import REPLAYED, replayed_share
 from identification.prediction.clocks import record_shifts
 from identification.prediction.evidence import compute_confidence
+from identification.prediction.extension import at_own_steps
 from identification.prediction.input_error import needed_input_error
 from identification.prediction.model import WindowModel
 from identification.prediction.record_errors import error_unit, errors_by_unit, record_errors
@@ -46,6 +47,7 @@ def conclude(state: RecordsState) -> RecordsDiscovery:
     Args:
         state: the finished state.
     """
+    state = _at_own_steps(state)
     task, nominal, model = state.task, state.nominal, state.model
     options = task.options
     rejected = listed_once([_refitted(c.model, c, 0.0) for c in state.rejected])
@@ -101,6 +103,18 @@ def conclude(state: RecordsState) -> RecordsDiscovery:
         findings=findings, shifts=shifts, repeats=_repeats(task.records), seconds=state.seconds,
         failed=state.failed,
     )  # fmt: skip
+
+
+def _at_own_steps(state: RecordsState) -> RecordsState:
+    """Returns the state whose final model is fitted with the steps of the user's model.
+
+    Values that are worse after a fit than before it are kept as they were, and none is fitted.
+    """
+    task, model = state.task, state.model
+    if state.worse_fit is not None and not model.candidates:
+        return state
+    final = attempt(None, partial(at_own_steps, model, task.horizon, task.confirm)) or model
+    return replace(state, model=final, nominal=final if state.nominal is model else state.nominal)
 
 
 def _repeats(records: Sequence[Record]) -> tuple[str, ...]:

@@ -40,11 +40,12 @@ def _steps(fit: Fit) -> list[str]:
     if not far:
         return []
     step = float(fit.estimate.predictor.plant.model.opt.timestep)
-    told = [f"{name} by {held(far[name])} std" for name in [*far][:SHOWN]]
+    moves = dict(zip(fit.estimate.space.names, fit.step_shift.tolist(), strict=True))
+    told = [f"{name} by {moves[name]:+.2g}, {held(far[name])} std" for name in [*far][:SHOWN]]
     more = f" and {len(far) - SHOWN} more" if len(far) > SHOWN else ""
     return [
         f"A quarter of the model's step, {quantity(step / FINER, unit='s')}, would move"
-        f" {', '.join(told)}{more}, of which the std tell nothing. Where this matters, write"
+        f" {'; '.join(told)}{more}; the std tell nothing of this. Where this matters, write"
         f' timestep="{step / FINER:.6g}" into the <option> of the model, and do this once more.'
     ]
 

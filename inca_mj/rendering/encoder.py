@@ -11,6 +11,10 @@ import numpy as np
 
 from identification.errors import InputError
 
+FAILED = (
+    "ffmpeg cannot write the film; make room for it, or set IMAGEIO_FFMPEG_EXE to a working ffmpeg"
+)
+
 
 @contextmanager
 def encoder(
@@ -40,11 +44,25 @@ def encoder(
         try:
             writer.send(frame)
         except (OSError, RuntimeError) as error:  # it died, its disk is full, or there is none
-            raise InputError(
-                "ffmpeg cannot write the film; make room for it, or set IMAGEIO_FFMPEG_EXE to a"
-                " working ffmpeg"
-            ) from error
+            raise InputError(FAILED) from error
 
     with closing(writer):
         send(None)  # starts the program
         yield send
+    # What fails behind the last frame, such as a disk that is full then, ffmpeg tells nobody.
+    if not _is_whole(path):
+        raise InputError(FAILED)
+
+
+def _is_whole(path: Path) -> bool:
+    """Returns whether a film has its index, and each of its parts to its end."""
+    with path.open("rb") as file:
+        size, at, kinds = path.stat().st_size, 0, set()
+        while at + 8 <= size:
+            file.seek(at)
+            length, kind = int.from_bytes(file.read(4), "big"), file.read(4)
+            if length < 8:  # of a part that was never ended
+                return False
+            kinds.add(kind)
+            at += length
+    return at == size and b"moov" in kinds

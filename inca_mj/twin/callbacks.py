@@ -304,8 +304,9 @@ def owners(model: mujoco.MjModel, key: float) -> dict[tuple[str, int], int]:
     out: dict[tuple[str, int], int] = {}
     if model.nuser_actuator < law.ACTUATOR_COLUMNS or model.nuser_tendon < law.TENDON_COLUMNS:
         return out
-    if len({*model.wrap_objid.tolist()}) < model.nwrap:
-        return out  # two cables end at one point
+    cables = model.actuator_user[:, law.CABLE].tolist()
+    if len({*model.wrap_objid.tolist()}) < model.nwrap or len({*cables}) < len(cables):
+        return out  # two cables end at one point, or two drives pull at one cable
     for i, row in enumerate(model.actuator_user):
         if row[law.ACTUATOR_TAG] == law.TAG and (row[KEY] if len(row) > KEY else 0.0) == key:
             k, joint = int(row[law.CABLE]), model.actuator_trnid[i, 0]

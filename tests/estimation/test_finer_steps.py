@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from types import SimpleNamespace
+from unittest import mock
 
 import mujoco
 import numpy as np
@@ -61,15 +62,30 @@ def test_it_is_the_change_of_a_fit_with_a_finer_step(both):
     assert (np.abs(fine.step_shift) < 0.5 * np.abs(coarse.step_shift)).all()
 
 
-def test_what_moves_by_more_than_a_std_is_told_with_the_step_that_mends_it(both):
+def test_what_moves_by_more_than_two_std_is_told_with_the_step_that_mends_it(both):
     coarse, _ = both
     (said,) = [line for line in fit_verdict(coarse) if "A quarter of the model's step" in line]
     assert 'write timestep="0.0005"' in said
     assert all(name in said for name in coarse.estimate.space.names)
-    still = replace(coarse, step_shift=0.9 * coarse.std)
+    still = replace(coarse, step_shift=1.9 * coarse.std)
     unknown = replace(coarse, step_shift=np.full(2, np.nan))
     for each in (still, unknown):
         assert not [line for line in fit_verdict(each) if "quarter" in line]
+
+
+def test_of_a_value_on_a_bound_nothing_is_told_and_the_others_answer_without_it(both):
+    estimate = both[0].estimate
+    space = estimate.space
+    held = replace(estimate, space=replace(space, lower=np.array([estimate.q[0], -np.inf])))
+    assert held.space.on_bound(held.q).tolist() == [True, False]
+    S, y = np.array([[1.0, 0.5], [0.0, 2.0]]), np.zeros((2, 1))
+    plant = SimpleNamespace(with_step=lambda factor: held.predictor.plant)
+    asked = replace(held, predictor=replace(held.predictor, plant=plant))
+    finely = [np.array([[1.0], [4.0]])]
+    with mock.patch.object(type(held.predictor), "predict", return_value=finely):
+        shift = step_shift(asked, y, S, np.zeros((2, 2)), lambda J: J.reshape(-1, J.shape[2]))
+    assert np.isnan(shift[0])
+    assert shift[1] == pytest.approx(-(0.5 + 8.0) / 4.25 * held.space.slope(held.q)[1])
 
 
 def test_a_plant_without_another_step_and_a_search_that_was_stopped_tell_nothing(both):

@@ -14,7 +14,7 @@ from identification.errors import DivergenceError
 from identification.model.coordinates import NOTHING, coordinates
 from identification.model.predictor import Predictor
 from identification.model.rollout import substeps
-from identification.prediction.extension import with_fitting_steps
+from identification.prediction.extension import at_own_steps, with_fitting_steps
 from identification.prediction.fit import solve
 from identification.prediction.model import WindowModel, predict_fitted
 from identification.prediction.problem import (
@@ -220,20 +220,43 @@ def test_inputs_of_longer_steps_are_means_of_those_of_the_model(samples, k, n):
     np.testing.assert_array_equal(made[:, -1], inputs[:, -1])
 
 
-def test_a_model_that_explains_more_takes_the_steps_that_its_own_error_allows():
-    own = plant(stiffness=900.0)
-    logs = [record(seed=k, samples=300, plant=own, noise=1e-6) for k in (3, 4)]
+def rough_model(own, noise, steps):
+    """A fit whose simulations take so many steps of the model at once, and what confirms it."""
+    logs = [record(seed=k, samples=300, plant=own, noise=noise) for k in (3, 4)]
     fitted, confirm = Record(logs[0], "fit"), [Record(logs[1], "confirm")]
     names, scale = ("J", "d"), np.array([1e-3])
     space = coordinates(own.parameters, names, np.array([*TRUTH.values()]))
     prior = Prior(space, space.encode(np.array([*TRUTH.values()])), np.zeros(2))
-    long = replace(own, steps=4)
+    long = replace(own, steps=steps)
     task = problem(long, [fitted], prior, Prior(), 0.2, {}, scale)
     q = prior.mean
     found = solve(task, q, task.settled(q, no_moves(task))[0])
     seen = predict_fitted(long, confirm, 0.2, scale, found, {})
-    rough = WindowModel((), found, seen, scale)
+    return WindowModel((), found, seen, scale), confirm
+
+
+def test_a_model_that_explains_more_takes_the_steps_that_its_own_error_allows():
+    rough, confirm = rough_model(plant(stiffness=900.0), 1e-6, 4)
     fine = with_fitting_steps(rough, 0.2, confirm)
     assert fine.plant.steps < 4
     assert fine.fit.cost < 0.5 * rough.fit.cost
     assert with_fitting_steps(fine, 0.2, confirm) is fine
+
+
+def test_the_last_fit_is_that_of_a_search_with_the_steps_of_the_model():
+    own = plant(stiffness=900.0)
+    rough, confirm = rough_model(own, 1e-6, 4)
+    exact, _ = rough_model(own, 1e-6, 1)
+    last = at_own_steps(rough, 0.2, confirm)
+    assert last.steps == (own.model.opt.timestep,) * 2
+    assert at_own_steps(last, 0.2, confirm) is last
+    std = np.array([*exact.std.values()])
+    far, left = (
+        np.abs(np.array([*m.fit.values.values()]) - [*exact.fit.values.values()]) / std
+        for m in (rough, last)
+    )
+    assert far.max() > 2  # what the longer steps moved [std]
+    assert left.max() < 0.1
+    assert last.fit.cost == pytest.approx(exact.fit.cost, rel=1e-2)
+    seen, want = (np.mean(np.concatenate(m.unseen.at_horizon)) for m in (last, exact))
+    assert seen == pytest.approx(want, rel=0.1)

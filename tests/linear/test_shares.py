@@ -1,5 +1,6 @@
 """The share of one actuator moves the rates as an evaluation of the whole model does."""
 
+from dataclasses import replace
 from unittest import mock
 
 import mujoco
@@ -118,13 +119,37 @@ def test_the_angle_of_a_rotor_that_more_than_its_cable_feels_is_no_share(robot, 
 
 @pytest.mark.parametrize(
     ("field", "value"),
-    [("actuator_forcelimited", 1), ("jnt_actfrclimited", 1), ("actuator_actlimited", 1)],
-)
-def test_a_force_that_mujoco_limits_is_evaluated_whole(robot, field, value):
+    [
+        ("actuator_forcelimited", 1), ("jnt_actfrclimited", 1), ("actuator_actlimited", 1),
+        ("actuator_gainprm", 1.0), ("tendon_stiffness", 2.0), ("tendon_damping", 2.0),
+        ("dof_dampingpoly", 1e-3), ("jnt_stiffnesspoly", 1e-3), ("actuator_damping", 1e-3),
+    ],
+)  # fmt: skip
+def test_a_force_that_mujoco_limits_or_adds_to_is_evaluated_whole(robot, field, value):
     model = without_sensors(robot.model)
     assert {name for name, _ in owners_of(model)} == ALONE
     getattr(model, field)[0] = value
     assert owners_of(model) == {}
+
+
+@pytest.mark.parametrize("option", ["density", "viscosity", "disableactuator"])
+def test_a_medium_and_groups_that_are_switched_off_are_evaluated_whole(robot, option):
+    model = without_sensors(robot.model)
+    setattr(model.opt, option, 1)
+    assert owners_of(model) == {}
+
+
+def test_where_a_law_begins_anew_it_is_evaluated_whole(robot):
+    at = states(robot)
+    first = at.model.actuator_actadr[0]
+    begun = at.act.copy()
+    begun[1, first] = 0.0
+    number = [(Slot("actuator_user", (0,), law.R), 0.05)]
+    changes = [Change({"act": begun}), Change({}, number)]
+    assert Points(at)._actuators(changes[0]) == ()
+    at = replace(at, act=begun)
+    for change, rates in zip(changes[1:], Points(at).each(changes[1:]), strict=True):
+        np.testing.assert_array_equal(rates, one_by_one(at, change))
 
 
 @pytest.mark.parametrize("bit", ["CONSTRAINT", "ACTUATION", "DAMPER"])
@@ -137,6 +162,9 @@ def test_a_force_that_mujoco_answers_or_leaves_out_is_evaluated_whole(robot, bit
 def test_cables_that_end_at_one_point_or_at_a_moving_one_have_no_share(robot):
     model = without_sensors(robot.model)
     model.wrap_objid[2] = model.wrap_objid[0]
+    assert owners_of(model) == {}
+    model = without_sensors(robot.model)
+    model.actuator_user[1, law.CABLE] = model.actuator_user[0, law.CABLE]
     assert owners_of(model) == {}
     model = without_sensors(robot.model)
     model.site_bodyid[model.site("exit_1").id] = model.body("platform").id
