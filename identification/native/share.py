@@ -5,8 +5,9 @@
 f_i are the forces of actuator i with all that its law adds, a_i its activations, p_i the numbers
 that it alone reads: its share. Another value of p_i or a_i changes nothing but f_i and g_i, so that
 the change of the rates is M⁻¹ Δf_i and Δg_i. The same holds of the angle and the rate of a balanced
-rotor that turns in the frame (`is_balanced_rotor`). It costs the law of one actuator and no other law, no
-actuators and no kinematics. It holds where no constraint acts, which would answer the force.
+rotor that turns in the frame (`is_balanced_rotor`). It costs the law of one actuator and no other
+law, no actuators and no kinematics. It holds where no constraint acts, which would answer the
+force, and where nothing else adds forces to those of the actuator.
 """
 
 from __future__ import annotations
