@@ -47,7 +47,6 @@ class OnRobot:
         if not self.logs:
             raise InputError("no log is given; write LOG behind the robot's file")
         read_robot_file(self.robot)  # refuses a wrong file before the imports that are slow
-        self.output.tell("preparing the robot and its laws, which are compiled once a machine")
         from identification.robot.reading import read_robot
 
         robot = read_robot(
