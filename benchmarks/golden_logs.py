@@ -18,20 +18,24 @@ LINK = (
     '<geom type="capsule" size="0.02" fromto="0 0 0 0 0 -0.4" mass="0.5" contype="0"'
     ' conaffinity="0"/>'
 )
-PENDULUM = f"""<mujoco><option timestep="0.002"/><worldbody><body><joint name="j1" axis="0 1 0"
+PENDULUM = f"""<mujoco>
+  <option timestep="0.002" integrator="RK4"/><worldbody><body><joint name="j1" axis="0 1 0"
   damping="0.05" armature="0.005"/>{LINK}</body></worldbody><actuator><motor name="u1" joint="j1"/>
   </actuator><sensor><jointpos name="j1" joint="j1"/></sensor></mujoco>"""
-CART = """<mujoco><option timestep="0.002"/><worldbody><body><joint name="j1" type="slide"
+CART = """<mujoco>
+  <option timestep="0.002" integrator="RK4"/><worldbody><body><joint name="j1" type="slide"
   axis="1 0 0" damping="2" stiffness="6"/><geom size="0.05" mass="2" contype="0" conaffinity="0"/>
   </body></worldbody><actuator><motor name="u1" joint="j1"/></actuator>
   <sensor><jointpos name="j1" joint="j1"/></sensor></mujoco>"""
-ARM = f"""<mujoco><option timestep="0.002"/><worldbody><body><joint name="j1" axis="0 1 0"
+ARM = f"""<mujoco>
+  <option timestep="0.002" integrator="RK4"/><worldbody><body><joint name="j1" axis="0 1 0"
   damping="0.1" armature="0.01"/>{LINK}<body pos="0 0 -0.4"><joint name="j2" axis="0 1 0"
   damping="0.05" armature="0.005"/>{LINK}</body></body></worldbody><actuator>
   <motor name="u1" joint="j1"/><motor name="u2" joint="j2"/></actuator><sensor>
   <jointpos name="j1" joint="j1"/><jointpos name="j2" joint="j2"/></sensor></mujoco>"""
 # The motor's side carries the sensor; the stiff model has both inertias on one joint.
-GEARED = f"""<mujoco><option timestep="0.001"/><worldbody><body><joint name="j1" axis="0 1 0"
+GEARED = f"""<mujoco>
+  <option timestep="0.001" integrator="RK4"/><worldbody><body><joint name="j1" axis="0 1 0"
   armature="0.02" damping="0.05"/><geom size="0.01" mass="0.001" contype="0" conaffinity="0"/>
   <body><joint name="load" axis="0 1 0" stiffness="8" damping="0.02"/>{LINK}</body></body>
   </worldbody><actuator><motor name="u1" joint="j1"/></actuator>
