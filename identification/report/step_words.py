@@ -37,11 +37,14 @@ def step_sentences(
     model_step, finer = quantity(own, unit="s"), own / FINER
     said = f"Simulations took steps of {model_step}, as the model says."
     if taken > own:
+        is_last_own = model.steps[0] <= own
         said = (
-            f"Simulations took steps of {quantity(taken, unit='s')} where the model has"
-            f" {model_step}: this changes what is predicted by less than"
-            f" {100 * OUTPUT_ERROR:.0f} % of its error."
+            f"{'The search' if is_last_own else 'Simulations'} took steps of"
+            f" {quantity(taken, unit='s')} where the model has {model_step}: this changes what is"
+            f" predicted by less than {100 * OUTPUT_ERROR:.0f} % of its error."
         )
+        if is_last_own:
+            said += " The last fit took the steps of the model."
     if not model.finer.is_known:
         return [said]
     said += (

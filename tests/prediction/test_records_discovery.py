@@ -160,7 +160,7 @@ def test_steps_that_are_longer_than_the_models_are_told(tmp_path):
         assert records_to_json(same)["timestep"] == {
             "simulated": pytest.approx(steps * own_step), "model": own_step
         }  # fmt: skip
-        is_told = "Simulations took steps of 10 ms where the model has 5 ms"
+        is_told = "The search took steps of 10 ms where the model has 5 ms"
         assert (is_told in records_text(same)) == (steps > 1)
         page = text_of(write_records_report(same, tmp_path).read_text())
         assert (is_told in page) == (steps > 1)

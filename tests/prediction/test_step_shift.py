@@ -112,8 +112,8 @@ def test_longer_steps_and_the_check_with_finer_ones_are_one_paragraph(elbow):
     model = elbow[0].model
     std, steps = np.array([*model.told_std.values()]), (0.01, 0.005)
     taken = (
-        "Simulations took steps of 10 ms where the model has 5 ms: this changes what is predicted"
-        " by less than 5 % of its error."
+        "The search took steps of 10 ms where the model has 5 ms: this changes what is predicted"
+        " by less than 5 % of its error. The last fit took the steps of the model."
     )
     checked = " The last fit was checked with a quarter of the model's step, 1.25 ms: "
     for values, error, words in (
