@@ -160,14 +160,14 @@ class Points:
             return Case(states, entries, courses=change.courses, actuators=actuators)
         # Sensors of positions are read with the positions.
         if change.is_derived or "qpos" in change.fields or not {*self._results} <= {*RATES}:
-            shares = "nothing"
+            keeps = "nothing"
         else:
-            shares = "positions" if "qvel" in change.fields else "velocities"
+            keeps = "positions" if "qvel" in change.fields else "velocities"
         if not change.is_derived:
             numbers = [_entry(*number) for number in change.numbers]
-            return Case(states, numbers, None, shares, change.courses)
+            return Case(states, numbers, None, keeps, change.courses)
         other = with_entries(self._base.models[0], change.numbers)
-        return Case(states, (), other, shares, change.courses)
+        return Case(states, (), other, keeps, change.courses)
 
     def _begins(self, act: np.ndarray) -> bool:
         """Returns whether an actuator's first activation is zero, where its law begins anew."""

@@ -38,7 +38,6 @@ from identification.native.compose import rates, total
 from identification.native.decorators import inlined, internal
 from identification.native.element import Function, Term
 from identification.native.memory import load_byte, load_constant, load_double, store_double
-from identification.native.share import is_balanced_rotor
 from identification.native.table import SHARE, is_compiled
 from identification.native.tuples import replacer
 from inca_mj.effects.hooks import DRIVE, PLATFORM, Drive
@@ -78,6 +77,12 @@ def _key(m, i):  # type: ignore[no-untyped-def]
 
 
 @internal
+def cable_of(m, i):  # type: ignore[no-untyped-def]
+    """Returns the index of the cable of drive i."""
+    return np.int64(drive(m, i, law.CABLE))
+
+
+@internal
 def _motor_dof(m, i):  # type: ignore[no-untyped-def]
     """Returns the degree of freedom of the motor of drive i."""
     return integer(m, M.jnt_dofadr, integer(m, M.actuator_trnid, 2 * i))
@@ -111,7 +116,7 @@ def _begin(m, d, i):  # type: ignore[no-untyped-def]
     """Give the cable of drive i its no-load length after a reset, which left it at zero."""
     act = _act(m, d, i)
     if load_double(act) == 0.0:
-        k = np.int64(drive(m, i, law.CABLE))
+        k = cable_of(m, i)
         lambda_ = cable(m, k, law.LAMBDA)
         d_0 = lambda_ * double(d, D.ten_length, k) / (lambda_ + drive(m, i, law.T_0))
         store_double(act, d_0)
@@ -216,7 +221,7 @@ def callbacks(
             own = _key(m, i)
             if own == key:
                 _begin(m, d, i)
-                line = found_line(m, d, np.int64(drive(m, i, law.CABLE)))
+                line = found_line(m, d, cable_of(m, i))
                 pull_as_found(m, d, i, line)
                 body = line.body
             elif own == own and not is_compiled(own):
@@ -246,19 +251,19 @@ def callbacks(
     def act_dyn(m, d, i):  # type: ignore[no-untyped-def]
         if not _has_drives(m) or _key(m, i) != key:
             return 0.0
-        now = winding(m, d, i, found_line(m, d, np.int64(drive(m, i, law.CABLE))))
+        now = winding(m, d, i, found_line(m, d, cable_of(m, i)))
         wind(m, d, i, now)
         return now.d_0_dot
 
     def act_bias(m, d, i):  # type: ignore[no-untyped-def]
         if not _has_drives(m) or _key(m, i) != key:
             return 0.0
-        return sent(m, d, i, found_line(m, d, np.int64(drive(m, i, law.CABLE))))
+        return sent(m, d, i, found_line(m, d, cable_of(m, i)))
 
     def share(m, d, i):  # type: ignore[no-untyped-def]
         if not _has_drives(m) or _key(m, i) != key:
             return 0.0
-        line = drawn_line(m, d, np.int64(drive(m, i, law.CABLE)))
+        line = drawn_line(m, d, cable_of(m, i))
         now = winding(m, d, i, line)
         s, at = now.drive, word(d, D.qfrc_passive) + 8 * _motor_dof(m, i)
         along = -s.T / line.length
@@ -281,7 +286,7 @@ def callbacks(
             own, at = _key(m, i), word(d, D.sensordata) + 8 * integer(m, M.sensor_adr, s)
             shown = double(m, M.sensor_user, word(m, M.nuser_sensor) * s)
             if own == key and shown == law.TENSION:
-                line = found_line(m, d, np.int64(drive(m, i, law.CABLE)))
+                line = found_line(m, d, cable_of(m, i))
                 store_double(at, winding(m, d, i, line).drive.T)
             elif own == key and shown == law.NO_LOAD_LENGTH:
                 store_double(at, load_constant(_act(m, d, i)))
@@ -292,33 +297,3 @@ def callbacks(
         "passive": passive, "act_dyn": act_dyn, "act_bias": act_bias, "sensor": sensor,
         SHARE: share,
     }  # fmt: skip
-
-
-def owners(model: mujoco.MjModel, key: float) -> dict[tuple[str, int], int]:
-    """Returns which numbers of a model a drive of a law alone reads, by array and row.
-
-    Args:
-        model: any model; one that is no twin, or has another set of effects, has none of these.
-        key: of the set.
-    """
-    out: dict[tuple[str, int], int] = {}
-    if model.nuser_actuator < law.ACTUATOR_COLUMNS or model.nuser_tendon < law.TENDON_COLUMNS:
-        return out
-    cables = model.actuator_user[:, law.CABLE].tolist()
-    if len({*model.wrap_objid.tolist()}) < model.nwrap or len({*cables}) < len(cables):
-        return out  # two cables end at one point, or two drives pull at one cable
-    for i, row in enumerate(model.actuator_user):
-        if row[law.ACTUATOR_TAG] == law.TAG and (row[KEY] if len(row) > KEY else 0.0) == key:
-            k, joint = int(row[law.CABLE]), model.actuator_trnid[i, 0]
-            a, b = model.wrap_objid[model.tendon_adr[k] : model.tendon_adr[k] + 2]
-            if model.body_weldid[model.site_bodyid[a]] or model.tendon_num[k] != 2:
-                continue  # a share takes the cable from one point to the other, the first at rest
-            out |= {
-                ("actuator_user", i): i, ("actuator_gear", i): i, ("tendon_user", k): i,
-                ("dof_damping", int(model.jnt_dofadr[joint])): i,
-                ("site_pos", int(a)): i, ("site_pos", int(b)): i,
-            }  # fmt: skip
-            if is_balanced_rotor(model, joint):
-                out["qpos", int(model.jnt_qposadr[joint])] = i
-                out["qvel", int(model.jnt_dofadr[joint])] = i
-    return out

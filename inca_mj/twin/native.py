@@ -14,8 +14,9 @@ from identification.native.element import Term
 from identification.native.hook_checks import refuse_unfit_functions
 from inca_mj.effects.hooks import DRIVE, PLATFORM
 from inca_mj.effects.layout import Layout
-from inca_mj.twin.callbacks import callbacks, owners
+from inca_mj.twin.callbacks import callbacks
 from inca_mj.twin.fields import FIELDS
+from inca_mj.twin.owners import owners
 
 
 def install(layout: Layout | None = None) -> None:
