@@ -41,7 +41,7 @@ def _steps(fit: Fit) -> list[str]:
         return []
     step = float(fit.estimate.predictor.plant.model.opt.timestep)
     moves = dict(zip(fit.estimate.space.names, fit.step_shift.tolist(), strict=True))
-    told = [f"{name} by {moves[name]:+.2g}, {held(far[name])} std" for name in [*far][:SHOWN]]
+    told = [f"{name} by {moves[name]:+z.2g}, {held(far[name])} std" for name in [*far][:SHOWN]]
     more = f" and {len(far) - SHOWN} more" if len(far) > SHOWN else ""
     return [
         f"A quarter of the model's step, {quantity(step / FINER, unit='s')}, would move"
