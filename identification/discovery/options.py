@@ -6,9 +6,10 @@ is judgement. `docs/discovery.md` lists every option; a TOML file may set any of
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 
+from identification.discovery.passes import refuse_unknown
 from identification.discovery.prediction_options import PredictionOptions
 from identification.effects.effect import FARTHEST
 from identification.errors import InputError, unknown_name
@@ -25,6 +26,8 @@ class DiscoveryOptions(PredictionOptions):
     Raises:
         InputError: a value is no number, or lies outside the range that makes sense.
     """
+
+    without: tuple[str, ...] = ()  # passes that are left out, of `identification.discovery.passes`
 
     # The search.
     min_samples: int = option(
@@ -225,6 +228,10 @@ class DiscoveryOptions(PredictionOptions):
         "judgement", least=1.0,
     )  # fmt: skip
 
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        refuse_unknown(self.without)
+
 
 def read_options(path: str | Path) -> DiscoveryOptions:
     """Returns the options of a TOML file of lines `name = value`; defaults where none is given.
@@ -243,6 +250,7 @@ def read_options(path: str | Path) -> DiscoveryOptions:
         if name not in known:
             raise unknown_name(f"option in {path}:", name, known)
     try:
-        return DiscoveryOptions(**values)
+        found = DiscoveryOptions(**values)
+        return replace(found, without=tuple(found.without))
     except InputError as error:
         raise InputError(f"{path}: {error}") from None

@@ -1,21 +1,17 @@
-"""The state of a search, and its steps: the nominal fit, rounds of selection, and pruning.
+"""The search by the innovations of a free run: its state, and the moves that it is asked.
 
 fit the nominal model  ->  score all candidates  ->  refit the best  ->  prove on unseen samples
                                    ^_____________________________________________|   again, with it
-then parts that deviate by more than parts do  ->  pruning
+then parts that deviate by more than parts do  ->  drop, exchange
 """
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable, Mapping
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import partial
-from typing import Literal
 
-from identification.discovery.attempts import Failed, attempt, collected, tell_lost
+from identification.discovery.attempts import collected, tell_lost
 from identification.discovery.deviants import accept_deviants, within_bounds
-from identification.discovery.effect_results import RejectedEffect
 from identification.discovery.fitted_model import (
     AcceptedEffect,
     FittedModel,
@@ -23,6 +19,9 @@ from identification.discovery.fitted_model import (
     has_candidate,
     score_candidates,
 )
+from identification.discovery.moves import Move, SearchState, Watch, asked_anew
+from identification.discovery.moves import next_state as next_of
+from identification.discovery.passes import uses
 from identification.discovery.scoring.scores import Score
 from identification.discovery.scoring.sensitivities import (
     Sensitivity,
@@ -33,53 +32,28 @@ from identification.discovery.scoring.sensitivities import (
 from identification.discovery.selection.forward_selection import select_effect
 from identification.discovery.selection.kinds import improve_kinds
 from identification.discovery.selection.pairs import find_pair
-from identification.discovery.selection.pruning import prune
+from identification.discovery.selection.pruning import eliminate, exchange
 from identification.discovery.task import DiscoveryTask
 from identification.estimation.options import Progress
 from identification.kalman.hierarchy import estimate_scatter
 from identification.model.sensitivity import refuse_without_effect
 from identification.quantities import held
 
-Stage = Literal["selection", "deviants", "pruning", "finished"]
-
 
 @dataclass(frozen=True, kw_only=True)
-class SearchState:
-    """All that a search knows after a step.
+class InnovationSearch(SearchState):
+    """A search by the innovations of a free run.
 
     Attributes:
-        task: what is asked.
-        stage: what the next step does.
-        nominal: the fitted model without effects.
         sensitivities: of all candidates, at the model; of those that it has, at the fit before.
-        nominal_scores: of all candidates on the nominal fit, the best first.
-        model: the fitted model with the accepted effects.
-        accepted: the effects that were accepted, in that order.
-        scores: of the candidates that the model does not have, on it, the best first.
-        rejected: what the last round refitted and did not accept, the best first.
-        seconds: wall time by kind of work [s].
-        failed: what was tried and could not be evaluated.
+        unproven: the likeliest model of the last round that is half proven; None without one.
     """
 
-    task: DiscoveryTask
-    stage: Stage
-    nominal: FittedModel
     sensitivities: tuple[Sensitivity, ...]
-    nominal_scores: tuple[Score, ...]
-    model: FittedModel
-    accepted: tuple[AcceptedEffect, ...]
-    scores: tuple[Score, ...]
-    rejected: tuple[RejectedEffect, ...]
-    seconds: Mapping[str, float]
-    failed: tuple[Failed, ...] = ()
-
-    @property
-    def is_finished(self) -> bool:
-        """Whether there is nothing left to try."""
-        return self.stage == "finished"
+    unproven: FittedModel | None = None
 
 
-def first_state(task: DiscoveryTask, progress: Progress) -> SearchState:
+def first_state(task: DiscoveryTask, progress: Progress) -> InnovationSearch:
     """Returns the state after the nominal fit: nothing is accepted, and all candidates are scored.
 
     Args:
@@ -90,7 +64,7 @@ def first_state(task: DiscoveryTask, progress: Progress) -> SearchState:
         InputError: a free parameter has no effect on any output.
         DivergenceError: the nominal model cannot be simulated.
     """
-    watch = _Watch()
+    watch = Watch()
     nominal = fit_model(task, (), {})
     refuse_without_effect(nominal.refit.point.J, task.nominal_model.names, task.log)
     if task.nominal_model.scattering:
@@ -103,33 +77,17 @@ def first_state(task: DiscoveryTask, progress: Progress) -> SearchState:
     scores = score_candidates(nominal, sensitivities, task.options)
     watch.stop("scores")
     progress(f"{len(scores)} candidates scored, {scores[0].candidate.effect.name} first")
-    return SearchState(
-        task=task, stage="selection", nominal=nominal, sensitivities=sensitivities,
+    state = InnovationSearch(
+        task=task, moves=(), nominal=nominal, sensitivities=sensitivities,
         nominal_scores=scores, model=nominal, accepted=(), scores=scores, rejected=(),
         seconds=watch.seconds, failed=tuple(failed),
     )  # fmt: skip
+    return replace(state, moves=asked_anew(state, MOVES))
 
 
-def next_state(state: SearchState, progress: Progress) -> SearchState:
-    """Returns the state after one more step; a finished state stays as it is.
-
-    A step that fails is told and skipped: what was found before it stands.
-
-    Args:
-        state: the state before.
-        progress: is told a line per refit.
-    """
-    if state.is_finished:
-        return state
-    steps: dict[Stage, tuple[Callable[[], SearchState], Stage]] = {
-        "selection": (partial(_select, state, progress), "deviants"),
-        "deviants": (partial(_deviate, state, progress), "pruning"),
-        "pruning": (partial(_prune, state), "finished"),
-    }
-    step, after = steps[state.stage]
-    with collected(progress, state.failed) as failed:
-        new = attempt(f"the {state.stage}", step) or replace(state, stage=after)
-    return replace(new, failed=tuple(failed))
+def next_state(state: InnovationSearch, progress: Progress) -> InnovationSearch:
+    """Returns the state after one more move, as `identification.discovery.moves.next_state`."""
+    return next_of(state, MOVES, progress)
 
 
 def _with_scatter(task: DiscoveryTask, nominal: FittedModel) -> tuple[DiscoveryTask, FittedModel]:
@@ -141,47 +99,85 @@ def _with_scatter(task: DiscoveryTask, nominal: FittedModel) -> tuple[DiscoveryT
     return task, fit_model(task, (), nominal.refit.point.values, nominal)
 
 
-def _select(state: SearchState, progress: Progress) -> SearchState:
-    """Returns the state after a round of selection: an effect or a pair is added, or none."""
-    task, watch = state.task, _Watch(state.seconds)
-    most = task.options.max_effects - len(state.accepted)
-    selection = select_effect(task, state.model, state.scores, progress)
-    new = selection.accepted
-    if selection.unproven is not None and most >= 2:
-        first = selection.unproven
-        along = _compute_all_sensitivities(task, first, state.sensitivities)
-        new = find_pair(task, state.model, first, along, progress)
+def add_effect(state: InnovationSearch, progress: Progress) -> InnovationSearch:
+    """Returns the state with the best effect that unseen samples prove, or what was refitted."""
+    watch = Watch(state.seconds)
+    selection = select_effect(state.task, state.model, state.scores, progress)
     watch.stop("refits")
-    if not new:
-        rejected = selection.rejected
-        return replace(state, stage="deviants", rejected=rejected, seconds=watch.seconds)
-    accepted, model = (*state.accepted, *new), new[-1].model
-    if len(accepted) > 1:
-        accepted, model = improve_kinds(task, accepted, model, state.sensitivities)
-        watch.stop("refits")
-    state = replace(state, accepted=accepted, rejected=())
-    return _scored(state, model, "selection" if most > len(new) else "pruning", watch)
+    if selection.accepted:
+        return _grown(state, selection.accepted, watch)
+    return replace(
+        state, rejected=selection.rejected, unproven=selection.unproven, seconds=watch.seconds
+    )
 
 
-def _deviate(state: SearchState, progress: Progress) -> SearchState:
+def add_pair(state: InnovationSearch, progress: Progress) -> InnovationSearch:
+    """Returns the state with two effects of which none was proven alone."""
+    task, first = state.task, state.unproven
+    if first is None or state.room < 2:
+        return state
+    watch = Watch(state.seconds)
+    along = _compute_all_sensitivities(task, first, state.sensitivities)
+    new = find_pair(task, state.model, first, along, progress)
+    watch.stop("refits")
+    return _grown(state, new, watch) if new else replace(state, seconds=watch.seconds)
+
+
+def add_deviants(state: InnovationSearch, progress: Progress) -> InnovationSearch:
     """Makes effects of parts that deviate by more than parts do, once no candidate is left.
 
     Before, a part may deviate only because the model lacks something else.
     """
-    task, watch = state.task, _Watch(state.seconds)
-    room = task.options.max_effects - len(state.accepted)
-    parent, new = accept_deviants(task, state.model, room, progress)
+    task, watch = state.task, Watch(state.seconds)
+    parent, new = accept_deviants(task, state.model, state.room, progress)
     watch.stop("refits")
     if not new:
-        return replace(state, stage="pruning", seconds=watch.seconds)
-    task, model = within_bounds(task), new[-1].model
+        return replace(state, seconds=watch.seconds)
     nominal = state.nominal if state.accepted else parent
     accepted = (*state.accepted, *new)
-    state = replace(state, task=task, nominal=nominal, accepted=accepted, rejected=())
-    return _scored(state, model, "selection" if room > len(new) else "pruning", watch)
+    state = replace(state, task=within_bounds(task), nominal=nominal, accepted=accepted)
+    return _scored(replace(state, rejected=(), unproven=None), new[-1].model, watch)
 
 
-def _scored(state: SearchState, model: FittedModel, stage: Stage, watch: _Watch) -> SearchState:
+def drop_effects(state: InnovationSearch, progress: Progress) -> InnovationSearch:
+    """Returns the state without effects that later ones have made needless."""
+    del progress
+    watch = Watch(state.seconds)
+    kept, model = eliminate(state.task, state.accepted, state.model)
+    return _pruned(state, kept, model, watch)
+
+
+def exchange_effects(state: InnovationSearch, progress: Progress) -> InnovationSearch:
+    """Returns the state with rivals in the place of effects, where the model is then better."""
+    del progress
+    watch = Watch(state.seconds)
+    kept, model = exchange(
+        state.task, state.nominal, state.accepted, state.model, state.sensitivities
+    )
+    return _pruned(state, kept, model, watch)
+
+
+MOVES = (
+    Move("add_effect", add_effect, grows=True),
+    Move("add_pair", add_pair, grows=True),
+    Move("add_deviants", add_deviants, grows=True),
+    Move("drop_effects", drop_effects),
+    Move("exchange_effects", exchange_effects),
+)
+
+
+def _grown(
+    state: InnovationSearch, new: Sequence[AcceptedEffect], watch: Watch
+) -> InnovationSearch:
+    """Returns the state with more effects, each of its likeliest kind beside the others."""
+    accepted, model = (*state.accepted, *new), new[-1].model
+    if len(accepted) > 1 and uses(state.task.options, "other_kinds"):
+        accepted, model = improve_kinds(state.task, accepted, model, state.sensitivities)
+        watch.stop("refits")
+    return _scored(replace(state, accepted=accepted, rejected=(), unproven=None), model, watch)
+
+
+def _scored(state: InnovationSearch, model: FittedModel, watch: Watch) -> InnovationSearch:
     """Returns the state with a model that has more effects, and the scores of all others on it.
 
     What was missing has moved the trajectory: a friction's sensitivity along the wrong one, where
@@ -192,23 +188,20 @@ def _scored(state: SearchState, model: FittedModel, stage: Stage, watch: _Watch)
     scores = score_candidates(model, sensitivities, state.task.options)
     watch.stop("scores")
     return replace(
-        state, stage=stage, model=model, sensitivities=sensitivities, scores=scores,
-        seconds=watch.seconds,
-    )  # fmt: skip
+        state, model=model, sensitivities=sensitivities, scores=scores, seconds=watch.seconds
+    )
 
 
-def _prune(state: SearchState) -> SearchState:
-    """Drop or exchange accepted effects; the search is then finished."""
-    task, watch = state.task, _Watch(state.seconds)
-    kept, model = prune(task, state.nominal, state.accepted, state.model, state.sensitivities)
+def _pruned(
+    state: InnovationSearch, kept: tuple[AcceptedEffect, ...], model: FittedModel, watch: Watch
+) -> InnovationSearch:
+    """Returns the state with fewer or other effects, and the scores of all others on its model."""
     watch.stop("refits")
     scores = state.scores
     if model is not state.model:
-        scores = score_candidates(model, state.sensitivities, task.options)
+        scores = score_candidates(model, state.sensitivities, state.task.options)
         watch.stop("scores")
-    return replace(
-        state, stage="finished", model=model, accepted=kept, scores=scores, seconds=watch.seconds
-    )
+    return replace(state, model=model, accepted=kept, scores=scores, seconds=watch.seconds)
 
 
 def _compute_all_sensitivities(
@@ -231,16 +224,3 @@ def _compute_all_sensitivities(
     alone = compute_sensitivities(point, left)
     tell_lost(left, (s.candidate for s in alone))
     return kept + common + alone
-
-
-class _Watch:
-    """Wall time by kind of work [s], added to what was measured before."""
-
-    def __init__(self, before: Mapping[str, float] | None = None) -> None:
-        self.seconds = dict(before or {})
-        self.last = time.perf_counter()
-
-    def stop(self, work: str) -> None:
-        now = time.perf_counter()
-        self.seconds[work] = self.seconds.get(work, 0.0) + now - self.last
-        self.last = now

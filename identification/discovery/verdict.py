@@ -23,14 +23,14 @@ from identification.discovery.result import Discovery, Verdict
 from identification.discovery.scoring.detectability import list_detectable
 from identification.discovery.scoring.hidden import list_hidden
 from identification.discovery.scoring.sensitivities import compute_sensitivities
-from identification.discovery.state import SearchState
+from identification.discovery.state import InnovationSearch
 from identification.logs.by_unit import by_unit
 
 # With these findings a model is not believed, and nothing is named that leaves anything.
 DISBELIEVED = (FindingKind.PARAMETERS_AT_LIMIT, FindingKind.OVERSIZED_EFFECT)
 
 
-def find_remaining(state: SearchState) -> tuple[Finding, ...]:
+def find_remaining(state: InnovationSearch) -> tuple[Finding, ...]:
     """Returns what the model of a finished search leaves unexplained; empty if it explains all."""
     options, model = state.task.options, state.model
     named = [a.candidate.effect.name for a in state.accepted]
@@ -47,7 +47,7 @@ def find_remaining(state: SearchState) -> tuple[Finding, ...]:
     return (*find_input_hold(state.nominal.refit, options), *findings)
 
 
-def _find_oversized(state: SearchState, named: Sequence[str]) -> tuple[Finding, ...]:
+def _find_oversized(state: InnovationSearch, named: Sequence[str]) -> tuple[Finding, ...]:
     """Finds a candidate beyond belief that explains more than named effects with fitted shapes.
 
     What jumps is scored at a few times only, so that its first score may be a small one.
@@ -108,7 +108,7 @@ def decide(
     return "unknown effect" if named or findings else "nothing missing"
 
 
-def conclude(state: SearchState) -> Discovery:
+def conclude(state: InnovationSearch) -> Discovery:
     """Returns the outcome of a finished search.
 
     Args:

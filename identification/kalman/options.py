@@ -80,7 +80,7 @@ class KalmanOptions:
     )  # fmt: skip
 
     def __post_init__(self) -> None:
-        for f in fields(self):
+        for f in (f for f in fields(self) if f.metadata):
             value, least, most = getattr(self, f.name), f.metadata["least"], f.metadata["most"]
             whole = isinstance(f.default, int)
             number = isinstance(value, Integral if whole else Real) and not isinstance(value, bool)

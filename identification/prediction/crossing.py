@@ -70,8 +70,9 @@ def at_their_best(
 
 
 def at_all_lengths(
-    parent: WindowModel, children: Sequence[WindowModel], horizon: float, confirm: Sequence[Record]
-) -> tuple[WindowModel, tuple[WindowModel | None, ...]]:
+    parent: WindowModel, children: Sequence[WindowModel], horizon: float,
+    confirm: Sequence[Record], crosses: bool = True,
+) -> tuple[WindowModel, tuple[WindowModel | None, ...]]:  # fmt: skip
     """Returns a parent and its children, which predict windows of every length at their best.
 
     Args:
@@ -79,6 +80,7 @@ def at_all_lengths(
         children: models with one of them each, of which some have predicted the horizon alone.
         horizon: [s].
         confirm: records that no fit may see.
+        crosses: whether windows of each may begin where those of the others do.
 
     Returns:
         The model, and the others in their order; None for one that cannot be simulated over the
@@ -87,7 +89,7 @@ def at_all_lengths(
     tasks = [(c.candidates[-1], partial(_completed, c, parent, horizon, confirm)) for c in children]
     found = [*attempt_each(tasks)]
     whole = [c for c in found if c is not None]
-    if not whole:
+    if not whole or not crosses:
         return parent, tuple(found)
     lengths = [n for n in parent.unseen.lengths if n != 1.0]
 

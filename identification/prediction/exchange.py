@@ -15,6 +15,7 @@ import numpy as np
 
 from identification.discovery.attempts import attempt, refuse_infinite
 from identification.discovery.options import DiscoveryOptions
+from identification.discovery.passes import uses
 from identification.estimation.options import Progress
 from identification.prediction.crossing import at_their_best
 from identification.prediction.extension import MOST_REFIT
@@ -49,7 +50,9 @@ def without_contradicted(
         with_it = exchanged(rest[0].model, records, horizon)
         if with_it is None:
             return (*rest, *contradicted), None
-        parent, (with_it,) = at_their_best(without, [with_it], horizon, unseen)
+        parent = without
+        if uses(options, "states_of_others"):
+            parent, (with_it,) = at_their_best(without, [with_it], horizon, unseen)
         if not is_contradicted(parent, with_it, options):
             return (*rest, *contradicted), with_it
         c = rest[0].candidate

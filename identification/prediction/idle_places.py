@@ -24,8 +24,8 @@ from identification.prediction.several_places import at_places, is_felt, places_
 def without_idle_places(
     model: WindowModel, accepted: Sequence[Contender], nominal_model: NominalModel,
     confirm: Sequence[Record], options: DiscoveryOptions, progress: Progress,
-) -> tuple[WindowModel, tuple[Contender, ...]]:  # fmt: skip
-    """Returns the model and the accepted effects, without places that are no longer needed.
+) -> tuple[WindowModel, tuple[Contender, ...], tuple[Contender, ...]]:  # fmt: skip
+    """Returns the model, its effects without places that are no longer needed, and none in doubt.
 
     Args:
         model: with all of the accepted effects.
@@ -49,7 +49,7 @@ def without_idle_places(
         model = smaller
         others = old.model.candidates[:-1]
         out.append(replace(old, model=replace(old.model, candidates=(*others, fewer))))
-    return model, tuple(out)
+    return model, tuple(out), ()
 
 
 def _fewer(model: WindowModel, c: Candidate, options: DiscoveryOptions) -> Candidate | None:

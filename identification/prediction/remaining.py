@@ -28,14 +28,14 @@ from identification.prediction.clocks import told_shifts
 from identification.prediction.result import (
     RefittedEffect,
 )
-from identification.prediction.state import RecordsState, rise
+from identification.prediction.state import WindowSearch, rise
 from identification.prediction.unseen import Unseen
 
 FEWEST = 3  # records: of two nobody knows which one is different
 
 
 def find_remaining(
-    state: RecordsState, rejected: Sequence[RefittedEffect], shifts: Sequence[ShiftedRecord]
+    state: WindowSearch, rejected: Sequence[RefittedEffect], shifts: Sequence[ShiftedRecord]
 ) -> tuple[Finding, ...]:
     """Returns what the final model leaves: errors above the sensors' noise, and doubtful effects.
 
@@ -65,7 +65,7 @@ def find_remaining(
     return tuple(out)
 
 
-def _error_left(state: RecordsState) -> RemainingError | None:
+def _error_left(state: WindowSearch) -> RemainingError | None:
     """Returns the error above the sensors' noise; None where the noise alone explains it."""
     options, ratio = state.task.options, noise_ratio(state)
     names, ratios = state.task.records[0].log.output_names, output_ratios(state.model.unseen)
@@ -81,14 +81,14 @@ def output_ratios(unseen: Unseen) -> np.ndarray:
     return np.sqrt(np.divide(squares, noise, out=np.zeros_like(squares), where=noise > 0))
 
 
-def noise_ratio(state: RecordsState) -> float:
+def noise_ratio(state: WindowSearch) -> float:
     """Returns the final model's rms error on unseen records over that of the sensors' noise."""
     unseen = state.model.unseen
     square = float(np.mean(np.concatenate(unseen.at_horizon)))
     return float(np.sqrt(square / unseen.floor)) if unseen.floor else np.inf
 
 
-def different_records(state: RecordsState) -> list[DifferentRecord]:
+def different_records(state: WindowSearch) -> list[DifferentRecord]:
     """Returns records that the final model predicts much worse than the others, by Welch's t-test.
 
     The sample are logarithms of the windows' mean squares, and the records are paid for.

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
+from identification.discovery.passes import uses
 from identification.effects.effect import Candidate
 from identification.estimation.options import Progress
 from identification.prediction.crossing import at_their_best
@@ -55,8 +56,8 @@ def find_rivals(
 def prune(
     model: WindowModel, accepted: Sequence[Contender], nominal_model: NominalModel,
     confirm: Sequence[Record], options: DiscoveryOptions, progress: Progress,
-) -> tuple[WindowModel, tuple[int, ...]]:  # fmt: skip
-    """Returns the model without needless effects, and which of the accepted ones stay.
+) -> tuple[WindowModel, tuple[Contender, ...], tuple[Contender, ...]]:  # fmt: skip
+    """Returns the model without needless effects, those that stay, and none that are in doubt.
 
     An effect is needless where unseen records are predicted as well without it, by chance or but
     for too little to matter. The last one was just proven.
@@ -69,15 +70,15 @@ def prune(
         options: what is beyond chance, and matters.
         progress: is told what is no longer needed.
     """
-    keep = list(range(len(accepted)))
-    for k, old in enumerate(accepted[:-1]):
+    kept = [*accepted]
+    for old in accepted[:-1]:
         rest = [c for c in model.candidates if c.key != old.candidate.key]
         without = as_good_without(model, rest, nominal_model, confirm, options)
         if without is not None:
             progress(f"{old.candidate.effect.name}, {old.candidate.where}: no longer needed")
             model = without
-            keep.remove(k)
-    return model, tuple(keep)
+            kept = [k for k in kept if k is not old]
+    return model, tuple(kept), ()
 
 
 def as_good_without(
@@ -100,6 +101,8 @@ def as_good_without(
     if without is None:
         return None
     horizon = float(nominal_model.horizon or 0.0)
-    without, (best,) = at_their_best(without, [model], horizon, confirm)
+    best = model
+    if uses(options, "states_of_others"):
+        without, (best,) = at_their_best(without, [model], horizon, confirm)
     doubt = find_doubt(compare(without.unseen, best.unseen), 1, options)
     return without if doubt in NEEDLESS else None

@@ -13,6 +13,7 @@ from dataclasses import replace
 
 from identification.discovery.attempts import tell_lost
 from identification.discovery.options import DiscoveryOptions
+from identification.discovery.passes import uses
 from identification.discovery.scoring.sensitivities import list_common, list_single
 from identification.effects.effect import Candidate, Effect
 from identification.prediction.contenders import is_plausible, is_significant
@@ -46,9 +47,13 @@ def score_all(
         s for s in found if is_significant(s, len(found), options) and is_plausible(s, options)
     ]
     asked = [s for s in beyond if id(s.candidate) in again or not is_many]
-    known = find_imitated(model.fit, asked, options)
-    found, beyond = ([s for s in each if s.candidate.key not in known] for each in (found, beyond))
-    several = several_scores(model.fit, beyond, options)
+    if uses(options, "imitated_effects"):
+        known = find_imitated(model.fit, asked, options)
+        found, beyond = (
+            [s for s in each if s.candidate.key not in known] for each in (found, beyond)
+        )
+    is_each = uses(options, "several_places")
+    several = several_scores(model.fit, beyond, options) if is_each else []
     return tuple(sorted((*found, *several), key=lambda s: -s.fall))
 
 

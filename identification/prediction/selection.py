@@ -16,6 +16,7 @@ import numpy as np
 
 from identification.discovery.attempts import attempt_each, refuse_infinite
 from identification.discovery.options import DiscoveryOptions
+from identification.discovery.passes import uses
 from identification.effects.effect import Candidate
 from identification.estimation.options import Progress
 from identification.prediction.contenders import (
@@ -50,6 +51,7 @@ class Contender:
         numbers: that it adds to the model, those of each record counted.
         criterion: E, what speaks for it against the model without it (`evidence`).
         doubt: why it is not proven; None where it is.
+        alternatives: what else was refitted in its place and may be meant, once it is accepted.
     """
 
     model: WindowModel
@@ -58,6 +60,7 @@ class Contender:
     numbers: int
     criterion: float
     doubt: Doubt | None
+    alternatives: tuple[Contender, ...] = ()
 
     @property
     def is_proven(self) -> bool:
@@ -92,7 +95,7 @@ def refit_contenders(
     """
     windows = sum(len(p.cut.starts) for p in model.fit.problem.parts)
     chosen = list_contenders(scores, options, windows * len(model.scale))
-    refits = len(chosen)
+    refits, crosses = len(chosen), uses(options, "states_of_others")
 
     def refit(each: Sequence[Begun]) -> list[WindowModel]:
         tasks = [(b.candidate, partial(_refit, model, b, horizon, confirm)) for b in each]
@@ -107,11 +110,14 @@ def refit_contenders(
     def judge(
         parent: WindowModel, children: Sequence[WindowModel]
     ) -> tuple[WindowModel, list[Contender]]:
-        parent, best = at_their_best(parent, children, horizon, confirm)
+        best = tuple(children)
+        if crosses:
+            parent, best = at_their_best(parent, children, horizon, confirm)
         each = {k: _judged(parent, c, refits, options, worse_fit) for k, c in enumerate(best)}
         # the other lengths decide nothing where the horizon itself refutes
         some = [k for k, c in each.items() if c.doubt not in REFUTED]
-        parent, whole = at_all_lengths(parent, [best[k] for k in some], horizon, confirm)
+        some_models = [best[k] for k in some]
+        parent, whole = at_all_lengths(parent, some_models, horizon, confirm, crosses)
         for k, c in zip(some, whole, strict=True):
             if c is None:
                 del each[k]
@@ -122,7 +128,7 @@ def refit_contenders(
     children = refit(_near_best(_begun(model, chosen, scores, options), options))
     parent, out = judge(model, children)
     proven = [c for c in out if c.is_proven]
-    if proven:
+    if proven and uses(options, "simpler_laws"):
         best = max(proven, key=lambda c: c.criterion)
         tried = {c.candidate.key for c in out}
         simpler = list_simpler(best.candidate, scores, options)

@@ -1,21 +1,24 @@
-"""The state of a discovery by prediction, and its steps.
+"""The search by predictions over a horizon: its state, and the moves that it is asked.
 
 fit the nominal model  ->  score all candidates  ->  refit the best  ->  predict unseen records
                                    ^_____________________________________________|   again, with it
+then drop effects and places, and what a curve of the data does
 """
 
 from __future__ import annotations
 
-import time
-from collections.abc import Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
 
-from identification.discovery.attempts import Failed, attempt, collected
+from identification.discovery.attempts import attempt, collected
+from identification.discovery.moves import Move, SearchState, Watch, asked_anew
+from identification.discovery.moves import next_state as next_of
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
+from identification.discovery.passes import uses
 from identification.effects.effect import Effect
 from identification.errors import InputError
 from identification.estimation.options import Progress
@@ -31,7 +34,6 @@ from identification.prediction.one_curve import with_one_curve
 from identification.prediction.proof import find_doubt
 from identification.prediction.records import Record
 from identification.prediction.rivals import find_rivals, prune
-from identification.prediction.scores import WindowScore
 from identification.prediction.screening import score_all
 from identification.prediction.selection import (
     Contender,
@@ -67,46 +69,30 @@ class RecordsTask:
 
 
 @dataclass(frozen=True, kw_only=True)
-class RecordsState:
-    """All that a search knows after a step.
+class WindowSearch(SearchState):
+    """A search by predictions over a horizon; its effects are `Contender`s.
 
     Attributes:
-        task: what is asked.
-        is_finished: whether there is nothing left to try.
         begun: errors of the values with which the fit began, on the records that confirm; over the
             horizon alone where that refutes them.
-        nominal: the fitted model without effects.
-        nominal_scores: of all candidates on it, the best first.
-        model: the fitted model with the accepted effects.
-        accepted: the effects with the models in which they were accepted, in that order.
-        alternatives: what else was refitted in the place of each.
-        scores: of the candidates that the model lacks, the best first.
-        rejected: what the last round refitted and did not accept, the best first.
-        seconds: wall time by kind of work [s].
         worse_fit: errors of the fitted values on the records that confirm, where they are worse
             than those of the values with which the fit began: the search then begins with the
             latter. None where they are not.
         exchanged: the model with the roles of the records exchanged; None where it was not needed.
-        failed: what was tried and could not be evaluated.
     """
 
-    task: RecordsTask
-    is_finished: bool
     begun: Unseen
-    nominal: WindowModel
-    nominal_scores: tuple[WindowScore, ...]
-    model: WindowModel
-    accepted: tuple[Contender, ...]
-    alternatives: tuple[tuple[Contender, ...], ...]
-    scores: tuple[WindowScore, ...]
-    rejected: tuple[Contender, ...]
-    seconds: Mapping[str, float]
     worse_fit: Unseen | None = None
     exchanged: WindowModel | None = None
-    failed: tuple[Failed, ...] = ()
+
+    @property
+    def room(self) -> int:
+        """How many effects more may be named."""
+        options = self.task.options
+        return int(min(options.max_effects, options.max_horizon_effects)) - len(self.accepted)
 
 
-def first_state(task: RecordsTask, progress: Progress) -> RecordsState:
+def first_state(task: RecordsTask, progress: Progress) -> WindowSearch:
     """Returns the state after the nominal fit, with all candidates scored.
 
     Args:
@@ -128,7 +114,7 @@ def first_state(task: RecordsTask, progress: Progress) -> RecordsState:
         begun = predict(nominal.plant, task.confirm, task.horizon, nominal.scale, {},
                         nominal.unseen)  # fmt: skip
         refuted = find_doubt(compare(nominal.unseen, begun), 1, task.options)
-    if refuted is None:
+    if refuted is None and uses(task.options, "values_of_start"):
         worse = nominal.unseen
         progress(
             "the fitted values predict unseen records worse (mean square"
@@ -142,11 +128,12 @@ def first_state(task: RecordsTask, progress: Progress) -> RecordsState:
     watch.stop("scores")
     if scores:
         progress(f"{len(scores)} candidates scored, {scores[0].candidate.effect.name} first")
-    return RecordsState(
-        task=task, is_finished=False, begun=begun, nominal=nominal, nominal_scores=scores,
-        model=nominal, accepted=(), alternatives=(), scores=scores, rejected=(),
+    state = WindowSearch(
+        task=task, moves=(), begun=begun, nominal=nominal, nominal_scores=scores,
+        model=nominal, accepted=(), scores=scores, rejected=(),
         seconds=watch.seconds, worse_fit=worse, failed=tuple(failed),
     )  # fmt: skip
+    return replace(state, moves=asked_anew(state, MOVES))
 
 
 def _refuse_few(unseen: Unseen, horizon: float) -> None:
@@ -164,24 +151,13 @@ def _refuse_few(unseen: Unseen, horizon: float) -> None:
         )
 
 
-def next_state(state: RecordsState, progress: Progress) -> RecordsState:
-    """Returns the state after one more round; a finished state stays as it is.
-
-    A round that fails is told and ends the search: what was found before it stands.
-
-    Args:
-        state: the state before.
-        progress: is told a line per refit.
-    """
-    if state.is_finished:
-        return state
-    with collected(progress, state.failed) as failed:
-        new = attempt("the next round", partial(_round, state, progress))
-    return replace(new or replace(state, is_finished=True), failed=tuple(failed))
+def next_state(state: WindowSearch, progress: Progress) -> WindowSearch:
+    """Returns the state after one more move, as `identification.discovery.moves.next_state`."""
+    return next_of(state, MOVES, progress)
 
 
-def _round(state: RecordsState, progress: Progress) -> RecordsState:
-    """Returns the state after a round."""
+def add_effect(state: WindowSearch, progress: Progress) -> WindowSearch:
+    """Returns the state with the best effect that unseen records prove, or what was refitted."""
     task, watch = state.task, Watch(state.seconds)
     parent, tried = refit_contenders(
         state.model, state.scores, task.horizon, task.confirm, task.options, progress,
@@ -193,10 +169,8 @@ def _round(state: RecordsState, progress: Progress) -> RecordsState:
     while model is None:  # a model that its own steps let diverge is none: the next one is asked
         tried, other_side = _checked(state, tried, progress)
         if not tried or not tried[0].is_proven:
-            state = replace(state, rejected=tried)
-            state = attempt("the pruning", partial(_pruned, state, progress)) or state
             watch.stop("refits")
-            return replace(state, is_finished=True, seconds=watch.seconds)
+            return replace(state, rejected=tried, seconds=watch.seconds)
         best = tried[0]
         shorter = partial(with_fitting_steps, best.model, task.horizon, task.confirm)
         model = attempt(best.candidate, shorter)
@@ -205,20 +179,15 @@ def _round(state: RecordsState, progress: Progress) -> RecordsState:
     scores = score_all(model, task.effects, task.options)
     others = find_rivals(tried[1:], state.model, state.scores, best.model, scores, task.options)
     watch.stop("scores")
-    accepted = (*state.accepted, best)
-    is_last = len(accepted) >= min(task.options.max_effects, task.options.max_horizon_effects)
-    state = replace(
-        state, is_finished=is_last, model=model,
-        accepted=accepted, alternatives=(*state.alternatives, others), scores=scores, rejected=(),
-        seconds=watch.seconds, exchanged=other_side,
+    accepted = (*state.accepted, replace(best, alternatives=others))
+    return replace(
+        state, model=model, accepted=accepted, scores=scores, rejected=(), seconds=watch.seconds,
+        exchanged=other_side,
     )  # fmt: skip
-    if not is_last:
-        return state
-    return attempt("the pruning", partial(_pruned, state, progress)) or state
 
 
 def _checked(
-    state: RecordsState, tried: tuple[Contender, ...], progress: Progress
+    state: WindowSearch, tried: tuple[Contender, ...], progress: Progress
 ) -> tuple[tuple[Contender, ...], WindowModel | None]:
     """Returns contenders, contradicted ones unproven, and the first one with roles exchanged.
 
@@ -226,7 +195,8 @@ def _checked(
     """
     task = state.task
     begun_elsewhere = state.worse_fit is not None and not state.accepted
-    if begun_elsewhere or not tried or not tried[0].is_proven:
+    is_asked = uses(task.options, "exchange_roles") and not begun_elsewhere
+    if not is_asked or not tried or not tried[0].is_proven:
         return tried, None
     without = state.exchanged or exchanged(state.model, task.records, task.horizon)
     if without is None:
@@ -234,38 +204,78 @@ def _checked(
     return without_contradicted(tried, without, task.records, task.horizon, task.options, progress)
 
 
-def _pruned(state: RecordsState, progress: Progress) -> RecordsState:
-    """Returns the state without needless effects, and without laws that a curve may have left."""
+Change = tuple[WindowModel, tuple[Contender, ...], tuple[Contender, ...]]
+
+
+def _finishing(
+    change: Callable[[WindowSearch, Progress], Change],
+) -> Callable[[WindowSearch, Progress], WindowSearch]:
+    """Returns the move that a change makes: its model, its effects, and those that it lost."""
+
+    def make(state: WindowSearch, progress: Progress) -> WindowSearch:
+        watch = Watch(state.seconds)
+        model, accepted, lost = change(state, progress)
+        watch.stop("refits")
+        return replace(
+            state, model=model, accepted=accepted, rejected=(*lost, *state.rejected),
+            seconds=watch.seconds,
+        )  # fmt: skip
+
+    make.__doc__ = change.__doc__
+    return make
+
+
+@_finishing
+def drop_effects(state: WindowSearch, progress: Progress) -> Change:
+    """Returns the state without effects that later ones have made needless."""
+    return prune(state.model, state.accepted, *_rest(state), progress)
+
+
+@_finishing
+def drop_places(state: WindowSearch, progress: Progress) -> Change:
+    """Returns the state without places at which an effect that has several does nothing."""
+    return without_idle_places(state.model, state.accepted, *_rest(state), progress)
+
+
+@_finishing
+def curve_for_laws(state: WindowSearch, progress: Progress) -> Change:
+    """Returns the state with one curve of the data in the place of several laws at a joint."""
+    base, confirm, options = _rest(state)
+    return with_one_curve(
+        state.model, state.accepted, base, state.task.effects, confirm, options, progress
+    )
+
+
+@_finishing
+def drop_beside_curves(state: WindowSearch, progress: Progress) -> Change:
+    """Returns the state without laws that were found only beside a curve of the data."""
+    base, confirm, _ = _rest(state)
+    return without_laws_beside_curves(state.model, state.accepted, base, confirm, progress)
+
+
+@_finishing
+def drop_drawn_laws(state: WindowSearch, progress: Progress) -> Change:
+    """Returns the state without laws whose work a later curve of the data does."""
+    return without_drawn_laws(state.model, state.accepted, *_rest(state), progress)
+
+
+MOVES = (
+    Move("add_effect", add_effect, grows=True),
+    Move("drop_effects", drop_effects),
+    Move("drop_places", drop_places),
+    Move("curve_for_laws", curve_for_laws),
+    Move("drop_beside_curves", drop_beside_curves),
+    Move("drop_drawn_laws", drop_drawn_laws),
+)
+
+
+def _rest(state: WindowSearch) -> tuple[NominalModel, list[Record], DiscoveryOptions]:
+    """Returns what each of the moves that finish a search is told of the task."""
     task = state.task
-    rest = task.nominal_model, task.confirm, task.options, progress
-    model, keep = prune(state.model, state.accepted, *rest)
-    model, accepted = without_idle_places(model, [state.accepted[k] for k in keep], *rest)
-    others = {a.candidate.key: state.alternatives[k] for a, k in zip(accepted, keep, strict=True)}
-    base, confirm = task.nominal_model, task.confirm
-    model, accepted, several = with_one_curve(model, accepted, base, task.effects, *rest[1:])
-    model, accepted, lost = without_laws_beside_curves(model, accepted, base, confirm, progress)
-    model, accepted, drawn = without_drawn_laws(model, accepted, *rest)
-    return replace(
-        state, model=model, accepted=accepted, rejected=(*several, *drawn, *lost, *state.rejected),
-        alternatives=tuple(others.get(a.candidate.key, ()) for a in accepted),
-    )  # fmt: skip
+    return task.nominal_model, task.confirm, task.options
 
 
 def rise(begun: Unseen, fitted: Unseen) -> float:
     """Returns the relative rise of the mean square at the horizon from before a fit to after it."""
     before, after = (float(np.mean(np.concatenate(u.at_horizon))) for u in (begun, fitted))
     return after / before - 1
-
-
-class Watch:
-    """Wall time by kind of work [s], added to what was measured before."""
-
-    def __init__(self, before: Mapping[str, float] | None = None) -> None:
-        self.seconds = dict(before or {})
-        self.last = time.perf_counter()
-
-    def stop(self, work: str) -> None:
-        """Count the time since the last stop as this kind of work."""
-        now = time.perf_counter()
-        self.seconds[work] = self.seconds.get(work, 0.0) + now - self.last
-        self.last = now

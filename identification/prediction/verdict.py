@@ -36,12 +36,12 @@ from identification.prediction.result import (
     Verdict,
 )
 from identification.prediction.selection import Contender, evidences
-from identification.prediction.state import RecordsState, rise
+from identification.prediction.state import WindowSearch, rise
 from identification.prediction.twins import find_twin
 from identification.prediction.unseen import Unseen
 
 
-def conclude(state: RecordsState) -> RecordsDiscovery:
+def conclude(state: WindowSearch) -> RecordsDiscovery:
     """Returns the outcome of a finished search.
 
     Args:
@@ -54,10 +54,7 @@ def conclude(state: RecordsState) -> RecordsDiscovery:
     shifts = record_shifts(task, model)
     findings = find_remaining(state, rejected, shifts)
     limit = options.left_confidence if findings else options.max_confidence
-    named = tuple(
-        _named(state, a, others, limit)
-        for a, others in zip(state.accepted, state.alternatives, strict=True)
-    )
+    named = tuple(_named(state, a, limit) for a in state.accepted)
     sure = all(n.effect.confidence >= 0.5 or n.one_of for n in named)
     doubtful = any(f.kind is FindingKind.UNPROVEN_EFFECT for f in findings)
     different = any(
@@ -105,7 +102,7 @@ def conclude(state: RecordsState) -> RecordsDiscovery:
     )  # fmt: skip
 
 
-def _at_own_steps(state: RecordsState) -> RecordsState:
+def _at_own_steps(state: WindowSearch) -> WindowSearch:
     """Returns the state whose final model is fitted with the steps of the user's model.
 
     Values that are worse after a fit than before it are kept as they were, and none is fitted.
@@ -129,21 +126,18 @@ def _repeats(records: Sequence[Record]) -> tuple[str, ...]:
     return tuple(repeats)
 
 
-def _named(
-    state: RecordsState, accepted: Contender, others: Sequence[Contender], limit: float
-) -> NamedByPrediction:
+def _named(state: WindowSearch, accepted: Contender, limit: float) -> NamedByPrediction:
     """Returns an accepted effect at the values of the final model, with its rivals.
 
     Args:
         state: the finished state.
         accepted: the effect.
-        others: what was refitted in its place.
         limit: the upper limit of the confidence.
     """
     options, mine = state.task.options, accepted.candidate
     is_final = any(c.key == mine.key for c in state.model.candidates)
     is_law = not mine.effect.is_curve  # which curves may imitate, but are no rival of its name
-    others = [o for o in others if not (is_law and o.candidate.effect.is_curve)]
+    others = [o for o in accepted.alternatives if not (is_law and o.candidate.effect.is_curve)]
     final = state.model if is_final else accepted.model
     twin = find_twin(final, mine)
     others = [o for o in others if o.candidate.effect.name != twin]  # the same is no rival
@@ -202,7 +196,7 @@ def _refitted(model: WindowModel, contender: Contender, confidence: float) -> Re
     )  # fmt: skip
 
 
-def _is_worse(state: RecordsState) -> bool:
+def _is_worse(state: WindowSearch) -> bool:
     """Returns whether the fit worsens predictions enough to matter, and no effect explains why."""
     if state.worse_fit is None or state.accepted:
         return False

@@ -13,7 +13,7 @@ from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.scoring.scores import score
 from identification.discovery.scoring.sensitivities import Sensitivity
-from identification.discovery.state import SearchState, first_state, next_state
+from identification.discovery.state import InnovationSearch, first_state, next_state
 from identification.discovery.task import DiscoveryTask
 from identification.effects.effect import Candidate, Effect, Size
 from identification.kalman.linear import LinearPlant
@@ -188,7 +188,7 @@ def disturbed(error=0.0, **values):
     return record(robot, 500, seed=11, error=error + wander(500, 0.03, 0.1, seed=8))
 
 
-def stepped(state: SearchState) -> list[SearchState]:
+def stepped(state: InnovationSearch) -> list[InnovationSearch]:
     """A state and all that follow it, the finished one last."""
     seen = [state]
     while not seen[-1].is_finished:
@@ -197,6 +197,6 @@ def stepped(state: SearchState) -> list[SearchState]:
 
 
 @cache
-def searched(**values) -> list[SearchState]:
+def searched(**values) -> list[InnovationSearch]:
     """Every state of a search in a disturbed log."""
     return stepped(first_state(task(disturbed(**values)), print))

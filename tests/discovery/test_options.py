@@ -12,7 +12,7 @@ from identification import InputError
 from identification.discovery.options import DiscoveryOptions, read_options
 
 ROOT = Path(__file__).parents[2]
-FIELDS = fields(DiscoveryOptions)
+FIELDS = [field for field in fields(DiscoveryOptions) if field.metadata]  # of one number each
 
 
 def row_of(field):
@@ -64,6 +64,8 @@ def test_a_file_sets_what_it_names_and_leaves_the_rest(tmp_path):
         ("temperature = nan", "temperature is nan"),
         ("[discovery]\nmax_effects = 1", "unknown option in .*: 'discovery'"),
         ("min_proof_t = ", "is not TOML"),
+        ('without = ["add_pear"]', "did you mean 'add_pair'"),
+        ('without = "add_pair"', "give a list of names of passes"),
     ],
 )
 def test_a_wrong_file_is_refused_in_one_sentence(tmp_path, refusal, text, says):

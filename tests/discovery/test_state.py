@@ -26,8 +26,12 @@ def states():
 
 
 def test_each_step_accepts_an_effect_or_ends_the_selection(states):
-    assert [s.stage for s in states] == ["selection"] * 3 + ["deviants", "pruning", "finished"]
-    assert [len(s.accepted) for s in states] == [0, 1, 2, 2, 2, 2]
+    growing = ["add_effect", "add_pair", "add_deviants"]
+    asked = [*growing, "drop_effects", "exchange_effects"]
+    assert [[m.name for m in s.moves] for s in states] == [asked] * 3 + [
+        asked[k:] for k in range(1, 6)
+    ]
+    assert [len(s.accepted) for s in states] == [0, 1] + 6 * [2]
     assert set(names(states[-1])) == {"offset", "rubbing"}
     for state in states:
         assert {c.effect.name for c in state.model.candidates} == set(names(state))
@@ -65,7 +69,7 @@ def test_no_more_effects_are_accepted_than_the_options_admit(states):
     one = replace(OPTIONS, max_effects=1)
     state = replace(states[0], task=replace(states[0].task, options=one))
     state = next_state(state, print)
-    assert state.stage == "pruning"
+    assert [m.name for m in state.moves] == ["drop_effects", "exchange_effects"]
     assert names(state) == names(states[1])
 
 

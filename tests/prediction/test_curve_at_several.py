@@ -82,7 +82,7 @@ def state_with_a_curve():
         numbers=16, criterion=50.0, doubt=None,
     )  # fmt: skip
     return replace(
-        state, model=model, accepted=(claim,), alternatives=((),), is_finished=True,
+        state, model=model, accepted=(claim,), moves=(),
         rejected=(replace(claim, doubt="chance"),),
     )  # fmt: skip
 

@@ -134,7 +134,7 @@ def test_a_failure_while_a_search_ends_leaves_what_was_found(monkeypatch):
 
 
 @pytest.mark.usefixtures("undrawn")
-@pytest.mark.parametrize("step", ["refit_contenders", "find_rivals", "_pruned"])
+@pytest.mark.parametrize("step", ["refit_contenders", "find_rivals", "prune"])
 def test_a_round_that_fails_as_a_whole_ends_the_search_with_what_was_found(
     step, monkeypatch, tmp_path
 ):

@@ -71,7 +71,7 @@ def pruned(shoulder, elbow):
 
 
 def test_a_place_without_the_effect_is_left_out_and_the_other_keeps_its_size():
-    before, after, (claim,), said = pruned(0.0, 0.01)
+    before, after, (claim,), _, said = pruned(0.0, 0.01)
     assert claim.candidate.where == "joint elbow"
     assert claim.candidate.sizes == after.candidates[-1].sizes == SIZES[1:]
     assert after.fit.values[SIZES[1]] == pytest.approx(0.01, abs=4 * after.std[SIZES[1]])
@@ -81,7 +81,7 @@ def test_a_place_without_the_effect_is_left_out_and_the_other_keeps_its_size():
 
 
 def test_a_model_with_the_effect_at_all_its_places_stays_as_it_is():
-    before, after, (claim,), said = pruned(0.02, 0.01)
+    before, after, (claim,), _, said = pruned(0.02, 0.01)
     assert after is before
     assert places_of(claim.candidate.where) == PLACES
     assert said == []
@@ -99,5 +99,5 @@ def test_an_effect_at_one_place_is_not_asked():
     c = SimpleNamespace(where="joint elbow", effect=SimpleNamespace(own=False))
     claim = SimpleNamespace(candidate=c)
     assert without_idle_places("model", [claim], None, (), DiscoveryOptions(), print) == (
-        "model", (claim,),
+        "model", (claim,), (),
     )  # fmt: skip

@@ -32,6 +32,7 @@ from identification.discovery.fitted_model import (
     try_fit,
 )
 from identification.discovery.options import DiscoveryOptions
+from identification.discovery.passes import uses
 from identification.discovery.proof import prove
 from identification.discovery.scoring.outliers import list_at_outliers
 from identification.discovery.scoring.scores import Score
@@ -81,9 +82,13 @@ def select_effect(
     options = task.options
     refitted = _refit_candidates(task, model, scores, progress)
     if refitted:
-        best = improve_shape(task, model, refitted[0], scores)
-        refitted = improve_rivals(task, best, refitted[1:])
-        if not model.candidates:
+        best, *others = refitted
+        if uses(options, "other_shapes"):
+            best = improve_shape(task, model, best, scores)
+        refitted = [best, *others]
+        if uses(options, "kinds_of_rivals"):
+            refitted = improve_rivals(task, best, others)
+        if not model.candidates and uses(options, "begin_anew"):
             refitted = begin_anew(task, refitted, scores)
     rejected: list[RejectedEffect] = []
     unproven: FittedModel | None = None
@@ -98,8 +103,8 @@ def select_effect(
         if (gain > 0 and is_confirmed(proof, options, tried)) or (
             is_small and not find_input_error(new.validation, options)
         ):
-            others = tuple(refitted[:k] + refitted[k + 1 :])
-            return Selection(accepted=(AcceptedEffect(new, proof, gain, others),))
+            instead = tuple(refitted[:k] + refitted[k + 1 :])
+            return Selection(accepted=(AcceptedEffect(new, proof, gain, instead),))
         is_half_proven = is_sure or (is_wanted and is_relevant(proof, options))
         if is_half_proven and unproven is None:
             unproven = new
@@ -115,6 +120,7 @@ def _refit_candidates(
     scores = (*scores, *_sharpen(model, scores, task.options))
     chosen = _select_contenders(select_significant(scores, task.options), task.options)
     is_hidden = not chosen and bool(model.refit.level.noise.ratio)
+    is_hidden = is_hidden and uses(task.options, "hidden_effects")
     if is_hidden:
         chosen = _select_likeliest(scores, task.options)
     refitted = []
@@ -147,9 +153,12 @@ def _sharpen(
     likely = [s for s in scores if s.p_value * len(scores) < options.significance]
     ranked = (select_significant(scores, options), select_plausible(likely, options))
     near = {id(s): s for some in ranked for s in _select_contenders(some, options)}
-    finer = [c for s in near.values() for c in list_between(s.candidate)]
-    every, log = [s.candidate for s in scores], model.refit.point.log
-    finer += list_at_outliers(every, model.innovations, log, options)
+    finer: list[Candidate] = []
+    if uses(options, "finer_shapes"):
+        finer += [c for s in near.values() for c in list_between(s.candidate)]
+    if uses(options, "jumps_at_outliers"):
+        every, log = [s.candidate for s in scores], model.refit.point.log
+        finer += list_at_outliers(every, model.innovations, log, options)
     if not finer:
         return ()
     return score_candidates(model, compute_sensitivities(model.refit.point, finer), options)

@@ -31,26 +31,6 @@ from identification.discovery.task import DiscoveryTask
 from identification.effects.effect import Candidate
 
 
-def prune(
-    task: DiscoveryTask,
-    nominal: FittedModel,
-    accepted: Sequence[AcceptedEffect],
-    model: FittedModel,
-    sensitivities: Sequence[Sensitivity],
-) -> tuple[tuple[AcceptedEffect, ...], FittedModel]:
-    """Returns the effects that are kept or take the place of others, and the model with them.
-
-    Args:
-        task: the nominal model, the log and the options.
-        nominal: the fitted model without effects.
-        accepted: the effects in the order in which they were added.
-        model: the model with all of them.
-        sensitivities: of all candidates.
-    """
-    kept, model = eliminate(task, accepted, model)
-    return exchange(task, nominal, kept, model, sensitivities)
-
-
 def eliminate(
     task: DiscoveryTask, accepted: Sequence[AcceptedEffect], model: FittedModel
 ) -> tuple[tuple[AcceptedEffect, ...], FittedModel]:

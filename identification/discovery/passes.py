@@ -1,0 +1,76 @@
+"""The passes of a search beside its fits and scores: what each does, and whether it is left out.
+
+Each of them answers a way in which a plain forward selection went wrong. None is needed to search:
+`DiscoveryOptions.without` leaves out any of them, so that a benchmark can measure on many worlds
+what it changes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from types import MappingProxyType
+from typing import Protocol
+
+from identification.errors import InputError, unknown_name
+
+# By the name that leaves it out. Passes of a free run come first, those of a horizon follow.
+PASSES = MappingProxyType({
+    "add_effect": "adds the effect that explains most, where unseen data prove it",
+    "add_pair": "adds two effects of which none is proven alone, because each hides the other",
+    "add_deviants": "makes effects of parts that deviate by more than parts do",
+    "drop_effects": "drops an effect that later ones have made needless",
+    "exchange_effects": "puts a rival in the place of an effect, where the model with it is better",
+    "other_kinds": "exchanges the kind of an accepted effect once another effect is beside it",
+    "kinds_of_rivals": "fits each rival in its likeliest kind, so that none loses by its kind",
+    "other_shapes": "fits the next likely and the usual shape of the best effect",
+    "finer_shapes": "scores likely effects at more values of their shapes, as a refit asks",
+    "jumps_at_outliers": "scores jumps of a sensor where the outputs jump",
+    "begin_anew": "refits from the nominal values where a parameter ended at a limit",
+    "hidden_effects": "refits effects beyond no level where the noise model may hide them",
+    "exchange_roles": "asks whether an effect holds where fitted and unseen records change places",
+    "simpler_laws": "fits laws with fewer numbers that act as the best one does",
+    "several_places": "scores an effect with a size of its own at each of several places",
+    "imitated_effects": "leaves out a candidate that the free parameters of the model imitate",
+    "states_of_others": "lets windows begin where another model begins them with less error",
+    "values_of_start": "begins at the given values where fitted ones predict unseen records worse",
+    "drop_places": "drops places at which an effect that has several does nothing after all",
+    "curve_for_laws": "puts one curve of the data in the place of several laws at a joint",
+    "drop_beside_curves": "drops laws that were found only beside a curve of the data",
+    "drop_drawn_laws": "drops a law whose work a later curve of the data does",
+})  # fmt: skip
+
+
+class Without(Protocol):
+    """Options that leave out passes."""
+
+    @property
+    def without(self) -> Collection[str]:
+        """Names of the passes that are left out."""
+
+
+def uses(options: Without, name: str) -> bool:
+    """Returns whether a search with these options makes a pass.
+
+    Args:
+        options: of the search.
+        name: of the pass.
+    """
+    if name not in PASSES:
+        raise KeyError(name)
+    return name not in options.without
+
+
+def refuse_unknown(names: object) -> None:
+    """Refuse what is no list of names of passes.
+
+    Args:
+        names: to be left out.
+
+    Raises:
+        InputError: it is no list, or one of the names is unknown.
+    """
+    if not isinstance(names, tuple | list):
+        raise InputError(f"option without is {names!r}; give a list of names of passes")
+    for name in map(str, names):
+        if name not in PASSES:
+            raise unknown_name("pass of a search to leave out:", name, PASSES)

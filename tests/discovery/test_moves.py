@@ -1,0 +1,116 @@
+"""A search asks its moves in their order; each that adds an effect lets all be asked again."""
+
+import re
+from dataclasses import replace
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+from identification.discovery import state as innovations
+from identification.discovery.moves import Move, SearchState, asked_anew, next_state
+from identification.discovery.passes import PASSES, uses
+from identification.errors import InputError
+from identification.prediction import state as windows
+
+ROOT = Path(__file__).parents[2]
+STILL = ("drop_effects", "exchange_effects")
+
+
+def begun(most=8, without=()):
+    options = SimpleNamespace(max_effects=most, without=without)
+    return SearchState(
+        task=SimpleNamespace(options=options), moves=(), nominal=None, nominal_scores=(),
+        model=None, accepted=(), scores=(), rejected=(), seconds={},
+    )  # fmt: skip
+
+
+def finding(name, effects, asked):
+    """A move that adds those of some effects, one a time, which the state lacks."""
+
+    def make(state, progress):
+        asked.append(name)
+        new = [e for e in effects if e not in state.accepted][:1]
+        return replace(state, accepted=(*state.accepted, *new))
+
+    return Move(name, make, grows=True)
+
+
+def searched(state, every):
+    state = replace(state, moves=asked_anew(state, every))
+    while not state.is_finished:
+        state = next_state(state, every, lambda line: None)
+    return state
+
+
+def moves(asked):
+    def nothing(state, progress):
+        asked.append("drop_effects")
+        return state
+
+    return (
+        finding("add_effect", ["a", "b"], asked), finding("add_pair", ["c"], asked),
+        Move("drop_effects", nothing),
+    )  # fmt: skip
+
+
+def test_after_each_effect_all_moves_are_asked_again_and_the_last_ones_once():
+    asked = []
+    end = searched(begun(), moves(asked))
+    assert end.accepted == ("a", "b", "c")
+    first, second = "add_effect", "add_pair"
+    assert asked == [first, first, first, second, first, second, "drop_effects"]
+
+
+@pytest.mark.parametrize("most", [1, 2, 3])
+def test_where_there_is_room_for_no_more_nothing_is_added(most):
+    asked = []
+    end = searched(begun(most), moves(asked))
+    assert end.accepted == ("a", "b", "c")[:most]
+    assert asked[-1] == "drop_effects"
+    assert asked.count("drop_effects") == 1
+
+
+def test_a_move_that_is_left_out_is_not_asked():
+    asked = []
+    assert searched(begun(without=("add_effect",)), moves(asked)).accepted == ("c",)
+    assert "add_effect" not in asked
+
+
+def test_a_move_that_fails_is_told_and_the_next_ones_are_asked():
+    def fails(state, progress):
+        raise InputError("a matrix is singular; take another")
+
+    asked = []
+    every = (Move("add_deviants", fails, grows=True), *moves(asked))
+    end = searched(begun(), every)
+    assert end.accepted == ("a", "b", "c")
+    assert [f.name for f in end.failed] == ["the move add deviants"]
+
+
+def test_every_move_of_both_searches_has_a_reason_and_can_be_left_out():
+    for every in (innovations.MOVES, windows.MOVES):
+        for move in every:
+            assert move.name in PASSES
+            state = begun(without=(move.name,))
+            assert move not in asked_anew(state, every)
+            assert len(asked_anew(state, every)) == len(every) - 1
+
+
+def test_every_pass_is_asked_for_by_some_code():
+    folder = ROOT / "identification"
+    text = "".join(p.read_text(encoding="utf-8") for p in folder.rglob("*.py"))
+    asked = {*re.findall(r'uses\([\w.]+, "(\w+)"\)', text), *re.findall(r'Move\("(\w+)"', text)}
+    assert asked == {*PASSES}
+
+
+def test_a_pass_that_there_is_not_is_no_switch():
+    with pytest.raises(KeyError):
+        uses(SimpleNamespace(without=()), "add_pear")
+
+
+def test_the_page_lists_every_pass_with_what_it_does():
+    page = (ROOT / "docs" / "discovery.md").read_text(encoding="utf-8")
+    rows = dict(re.findall(r"^\| `(\w+)` \| ([^|]+) \|$", page, re.M))
+    expected = "\n".join(f"| `{name}` | {does} |" for name, does in PASSES.items())
+    assert {name: rows.get(name) for name in PASSES} == dict(PASSES), expected
