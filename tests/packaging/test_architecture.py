@@ -9,7 +9,7 @@ import pytest
 ROOT = Path(__file__).parents[2]
 PACKAGES = ("identification", "inca_mj")
 ARCHITECTURE = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
-GUIDES = [ROOT / "CONTRIBUTING.md", *(ROOT / "docs").glob("*.md"), ROOT / "README.md"]
+GUIDES = [ROOT / "CONTRIBUTING.md", *(ROOT / "docs").rglob("*.md"), ROOT / "README.md"]
 
 
 def section(title):

@@ -12,8 +12,8 @@ PACKAGES = ("identification", "inca_mj", "inca_mj.kinematics", "identification.s
 # Searches, drawing, and what reads the result of a search (`test_results_read_alike.py` runs it).
 SLOW = {"discover", "fit", "identify", "trials", "film", "crosscheck", "found"}
 BLOCKS = [
-    pytest.param(text, id=f"{path.name}-{number}")
-    for path in (ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")))
+    pytest.param(text, id=f"{path.relative_to(ROOT)}-{number}")
+    for path in (ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md")))
     for number, text in enumerate(
         re.findall(r"^```python\n(.*?)^```", path.read_text(encoding="utf-8"), re.M | re.S), 1
     )

@@ -23,7 +23,7 @@ from identification.shown import Shown, verdict_of
 ROOT = Path(__file__).parents[2]
 ELBOW = ROOT / "examples" / "elbow"
 FEW = ("coulomb_friction", "stribeck_friction", "quadratic_friction", "offset")
-README, ANY_ROBOT = ROOT / "README.md", ROOT / "docs" / "any_robot.md"
+README, YOUR_ROBOT = ROOT / "README.md", ROOT / "docs" / "robot" / "index.md"
 
 
 @cache
@@ -92,7 +92,7 @@ def test_readme_reads_a_result_of_both_kinds(monkeypatch, capsys):
     assert kinds == {"Discovery", "RecordsDiscovery"}
 
 
-@pytest.mark.parametrize("source", [*reading(ANY_ROBOT), *reading(README)])
+@pytest.mark.parametrize("source", [*reading(YOUR_ROBOT), *reading(README)])
 def test_every_loop_of_the_documents_reads_every_result(source, found, monkeypatch):
     loop = source[source.index("for named in found.named") :].split("\nrobot = ")[0]
     names = {"discovery_text": discovery_text, "found": found}

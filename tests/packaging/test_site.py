@@ -22,7 +22,7 @@ NAV = {group: pages for entry in SITE["nav"] for group, pages in entry.items()}
 MADE = {"contributing.md", "changelog.md"}  # of files that lie outside docs/
 PAGES = sorted(path.relative_to(DOCS).as_posix() for path in DOCS.rglob("*.md"))
 NOTEBOOKS = sorted(DOCS.rglob("*.ipynb"))
-TUTORIALS = [page for page in NAV["Start"] + NAV["Tutorials"] if page in PAGES]
+TUTORIALS = [page for page in NAV["Start"] + NAV["Tutorials"] + NAV["Your robot"] if page in PAGES]
 PROGRAMS = {
     "inca": (inca_mj.cli.Command, "inca"),
     "identification": (identification.commands.cli.Command, "identification"),
