@@ -73,7 +73,7 @@ def _name(
     options, mine = task.options, effect.candidate
     # An effect that is named itself is no rival of another named effect.
     others = [m for m in effect.alternatives if _key(m.candidates[-1]) not in names]
-    loss, retuned = retune(final.refit, task.nominal_model, mine, options)
+    loss, retuned = retune(final.refit, task.nominal_model, mine)
     spared = len(mine.free) * float(np.log(len(final.refit.point.log)))
     bic = [m.negative_bic for m in (effect.model, *others)]
     drawn = [_worth_of_curve(final, mine, c, options) for c in curves]

@@ -20,6 +20,8 @@ from identification.effects.effect import Candidate
 from identification.kalman.refit import Refit
 
 FEW = 5  # steps of a fit that only says how far a model is from the data
+# Of a logarithm: a parameter this near to the end of its range is at its limit.
+LIMIT_DISTANCE = 0.02
 FAR = 10.0  # times what BIC asks for the sizes of an effect, beyond which it is needed
 
 
@@ -178,7 +180,7 @@ def collect_parameters(
     return out
 
 
-def list_parameters_at_limit(model: FittedModel, options: DiscoveryOptions) -> tuple[str, ...]:
+def list_parameters_at_limit(model: FittedModel) -> tuple[str, ...]:
     """Returns positive parameters of the nominal model that end at a limit of plausible values."""
     point = model.refit.point
     room = np.minimum(point.q - point.space.lower, point.space.upper - point.q)
@@ -188,7 +190,7 @@ def list_parameters_at_limit(model: FittedModel, options: DiscoveryOptions) -> t
         for c in model.candidates
         for shape in c.effect.shapes
     }
-    at_limit = point.space.logarithmic & (room < options.limit_distance)
+    at_limit = point.space.logarithmic & (room < LIMIT_DISTANCE)
     return tuple(
         n for n, at in zip(point.space.names, at_limit, strict=True) if at and n not in of_effects
     )

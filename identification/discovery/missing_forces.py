@@ -17,8 +17,7 @@ import numpy as np
 
 from identification.blas import one_blas_thread
 from identification.kalman.linear import LinearPlant, linearise
-from identification.kalman.noise_fit import compute_unit_ratio, fit_noise
-from identification.kalman.options import KalmanOptions
+from identification.kalman.noise_fit import START_CORRELATION_TIME, compute_unit_ratio, fit_noise
 from identification.kalman.refit import Refit
 from identification.kalman.smoother import smooth
 
@@ -47,12 +46,11 @@ class MissingForce:
     share: float
 
 
-def estimate_missing_forces(fit: Refit, options: KalmanOptions) -> tuple[MissingForce, ...]:
+def estimate_missing_forces(fit: Refit) -> tuple[MissingForce, ...]:
     """Returns the missing forces of every group of degrees of freedom.
 
     Args:
         fit: the nominal model, fitted.
-        options: the correlation times that are admitted.
 
     Raises:
         DivergenceError: the model cannot be simulated.
@@ -61,8 +59,8 @@ def estimate_missing_forces(fit: Refit, options: KalmanOptions) -> tuple[Missing
     groups = _groups(point.predictor.plant.model)
     dofs = [d for _, of, _, _ in groups for d in of]
     plant = linearise(point.predictor, point.space.decode(point.q), forces=dofs)
-    Ts, time, out, done = point.log.sampling_time, options.start_correlation_time, [], 0
-    known = point.e, point.J, fit.prior, Ts, options
+    Ts, time, out, done = point.log.sampling_time, START_CORRELATION_TIME, [], 0
+    known = point.e, point.J, fit.prior, Ts
     with one_blas_thread():
         none = fit_noise(plant, *known, levels=(0.0,), fine=False)
         for where, of, names, units in groups:

@@ -11,6 +11,7 @@ from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate
 from identification.errors import InputError
 from identification.estimation.options import Progress
+from identification.kalman.noise_fit import START_CORRELATION_TIME
 from identification.kalman.point import Point, evaluate_point
 from identification.kalman.refit import Refit, refit
 from identification.logs.log import Log
@@ -19,6 +20,9 @@ from identification.model.parameter import Parameter, ParameterSet
 from identification.model.predictor import Plant, Predictor
 
 STEPS = 20  # of a fit, at most
+# Of a logarithm, for the prior of a shape about the grid value with the best score; the grids are
+# about as coarse.
+SHAPE_STD = 1.0
 SMALL = 1e-3  # of a probe: the search for a size begins at least this far from zero
 
 
@@ -142,7 +146,7 @@ def fit_with_effects(
     known = {*nominal_model.names, *shapes}
     middle = {**own, **nominal_model.mean}
     mean = space.encode(np.where([n in known for n in names], [middle[n] for n in names], first))
-    of_shapes = np.full(len(shapes), 1 / options.shape_std)
+    of_shapes = np.full(len(shapes), 1 / SHAPE_STD)
     weight = np.concatenate([1 / nominal_model.prior_std, np.zeros(len(sizes)), of_shapes])
     level, beside = (None, None) if near is None else (near.level, near.point)
     predictor = Predictor(nominal_model.plant, log, names, fixed)
@@ -152,7 +156,7 @@ def fit_with_effects(
         point = evaluate_point(predictor, space, space.encode(first), beside, small)
     if level is not None:
         # The correlation time that was found without the effect may have been the effect's own.
-        level = replace(level, noise=level.noise.lasting(options.start_correlation_time))
+        level = replace(level, noise=level.noise.lasting(START_CORRELATION_TIME))
     is_near = near is not None and near.point.space.names == names
     found = refit(point, mean, weight, options, steps, level, progress, is_near, least)
     if near is None or not _is_less_likely(found, near) or nominal_model.is_bounded:

@@ -1,7 +1,8 @@
-"""All judgement constants of a discovery in one record: what it takes to be named.
+"""The judgement constants of a discovery that a user may set: what it takes to be named.
 
 Statistics give the distributions; how sure is sure enough, and how large is large enough to matter,
-is judgement. `docs/discovery.md` lists every option; a TOML file may set any of them.
+is judgement. `docs/discovery.md` lists every option, and a TOML file may set any of them. Every
+other constant stands in the module that reads it, with its reason.
 """
 
 from __future__ import annotations
@@ -10,15 +11,14 @@ from dataclasses import dataclass, fields, replace
 from pathlib import Path
 
 from identification.discovery.passes import refuse_unknown
-from identification.discovery.prediction_options import PredictionOptions
 from identification.effects.effect import FARTHEST
 from identification.errors import InputError, unknown_name
 from identification.files import read_toml
-from identification.kalman.options import option
+from identification.kalman.options import KalmanOptions, option
 
 
 @dataclass(frozen=True, kw_only=True)
-class DiscoveryOptions(PredictionOptions):
+class DiscoveryOptions(KalmanOptions):
     """Options of what a discovery believes, those of the noise model and of a horizon among them.
 
     Every field has its unit, reason and source in its metadata (`dataclasses.fields`).
@@ -48,6 +48,12 @@ class DiscoveryOptions(PredictionOptions):
         " gain nothing by a further one.",
         "judgement", least=1,
     )  # fmt: skip
+    max_horizon_effects: int = option(
+        3, "effects",
+        "Over a horizon: largest number of effects that are named; each further one costs minutes"
+        " of an arm, all places of which are refitted.",
+        "judgement", least=1,
+    )  # fmt: skip
     nominal_factor: float = option(
         3.0, "factor",
         "A positive parameter of the nominal model stays within this factor of its nominal value; a"
@@ -59,17 +65,6 @@ class DiscoveryOptions(PredictionOptions):
         "A part of a robot that deviates from the others by more is no scatter: it is an effect,"
         " and the nominal model does not follow it.",
         "0.3 % of a normal distribution", least=1.0,
-    )  # fmt: skip
-    limit_distance: float = option(
-        0.02, "of a logarithm",
-        "A parameter this near to the end of its range counts as at its limit.",
-        "judgement",
-    )  # fmt: skip
-    shape_std: float = option(
-        1.0, "of a logarithm",
-        "Std of the prior of a shape about the grid value with the best score; the grids are about"
-        " as coarse.",
-        "judgement", least=1e-6,
     )  # fmt: skip
 
     # Scores, and which candidates are refitted.
@@ -83,12 +78,6 @@ class DiscoveryOptions(PredictionOptions):
         40, "blocks",
         "Blocks of the fitted samples whose scatter checks a score without the noise model.",
         "White 1980 for the test, judgement for the number", least=8,
-    )  # fmt: skip
-    max_jumps: int = option(
-        3, "times",
-        "Largest number of times at which an output jumps and a jump of its sensor is tried; a log"
-        " with more of them has another fault.",
-        "judgement", least=1,
     )  # fmt: skip
     size_factor: float = option(
         FARTHEST, "of the largest plausible size",
@@ -167,34 +156,12 @@ class DiscoveryOptions(PredictionOptions):
         "An effect is named when its name is at least as likely as not, or one of the set's names.",
         "even odds", most=1.0,
     )  # fmt: skip
-    max_named_input_error: float = option(
-        1.0, "of the inputs' own motion",
-        "Nothing that leaves anything is named where the inputs would have to err by more: the"
-        " inputs of the log are then not what moved the robot.",
+    max_input_error: float = option(
+        0.05, "of the inputs' own rms",
+        "Over a horizon: an error of prediction that inputs make which are off by no more, constant"
+        " over each window, is no reason to say that something is missing; currents and commanded"
+        " torques are seldom better.",
         "judgement",
-    )  # fmt: skip
-    other_hold_share: float = option(
-        0.5, "of the inputs' error",
-        "The other hold of the inputs is reported when the inputs' error with it is smaller than"
-        " this.",
-        "judgement", most=1.0,
-    )  # fmt: skip
-    error_knots: int = option(
-        12, "knots",
-        "Knots of the curves over input, output and rate that an error of the inputs may follow.",
-        "judgement", least=2,
-    )  # fmt: skip
-    regressor_share: float = option(
-        0.1, "of the power of a missing force",
-        "The regressor that a missing force follows is reported above this share.",
-        "judgement", most=1.0,
-    )  # fmt: skip
-    detection_noncentrality: float = option(
-        35.0, "(size/std)²",
-        "An effect of this size is found in 9 of 10 logs: (4.6 + 1.3)², where t = 4.6 is what the"
-        " blocks demand at a chance of 0.01 over 200 candidates and 1.3 is the normal quantile of"
-        " 0.9.",
-        "noncentral F distribution",
     )  # fmt: skip
 
     # The confidence.
@@ -220,12 +187,6 @@ class DiscoveryOptions(PredictionOptions):
         0.2, "probability",
         "A rival that is more likely than this makes the answer a set of look-alikes.",
         "judgement", most=1.0,
-    )  # fmt: skip
-    retuned_factor: float = option(
-        3.0, "of the prior std",
-        "What the nominal model's parameters could explain without an effect is judged with priors"
-        " that are wider by this factor.",
-        "judgement", least=1.0,
     )  # fmt: skip
 
     def __post_init__(self) -> None:

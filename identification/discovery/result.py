@@ -91,11 +91,11 @@ class Discovery(Shown):
         """The forces that the nominal model lacks, by where they act; computed when asked for."""
         if self.verdict == "nothing missing":
             return ()
-        return estimate_missing_forces(self.nominal, self.options)
+        return estimate_missing_forces(self.nominal)
 
     @cached_property
     def located(self) -> tuple[Finding, ...]:
         """Places where the nominal model fails; empty if nothing is missing; computed on demand."""
         if self.verdict == "nothing missing":
             return ()
-        return locate_error(self.nominal, self.missing_forces, self.options)
+        return locate_error(self.nominal, self.missing_forces)

@@ -16,22 +16,22 @@ from scipy.optimize import lsq_linear
 
 from identification.discovery.effect_results import Retuned
 from identification.discovery.nominal_model import NominalModel
-from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate
 from identification.kalman.problem import linearise_criterion
 from identification.kalman.refit import Refit
 
+# Factor by which the prior std of the nominal model's parameters are larger where these may explain
+# what an effect does.
+PRIOR_WIDENING = 3.0
 
-def retune(
-    fit: Refit, nominal: NominalModel, candidate: Candidate, options: DiscoveryOptions
-) -> tuple[float, Retuned]:
+
+def retune(fit: Refit, nominal: NominalModel, candidate: Candidate) -> tuple[float, Retuned]:
     """Returns the loss of a fit without an effect when the nominal parameters may replace it.
 
     Args:
         fit: the fit with the effect.
         nominal: the nominal model, whose parameters may move.
         candidate: the effect.
-        options: how much wider the priors are.
 
     Returns:
         The loss, of twice the log likelihood, and how far the parameters would have to move; its
@@ -45,7 +45,7 @@ def retune(
         return np.inf, Retuned(nominal.names[0], 0.0, 0.0)
     kind = [n for n, (effect, _) in nominal.deviants.items() if effect == candidate.effect.name]
     wider = own & ~np.isin(names, kind)
-    prior = np.where(wider, fit.prior / options.retuned_factor, fit.prior)
+    prior = np.where(wider, fit.prior / PRIOR_WIDENING, fit.prior)
     problem = linearise_criterion(fit.point, fit.level, fit.mean, prior)
     lower, upper = space.lower - q, space.upper - q
     _, with_it = _minimise(problem.rows, problem.target, lower, upper)

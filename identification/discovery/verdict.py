@@ -29,6 +29,10 @@ from identification.logs.by_unit import by_unit
 # With these findings a model is not believed, and nothing is named that leaves anything.
 DISBELIEVED = (FindingKind.PARAMETERS_AT_LIMIT, FindingKind.OVERSIZED_EFFECT)
 
+# Of the inputs' own motion. Where they would have to err by more, they are not what moved the
+# robot, and nothing is named that leaves anything.
+MAX_BELIEVED_INPUT_ERROR = 1.0
+
 
 def find_remaining(state: InnovationSearch) -> tuple[Finding, ...]:
     """Returns what the model of a finished search leaves unexplained; empty if it explains all."""
@@ -44,7 +48,7 @@ def find_remaining(state: InnovationSearch) -> tuple[Finding, ...]:
     )
     if not findings:
         return ()
-    return (*find_input_hold(state.nominal.refit, options), *findings)
+    return (*find_input_hold(state.nominal.refit), *findings)
 
 
 def _find_oversized(state: InnovationSearch, named: Sequence[str]) -> tuple[Finding, ...]:
@@ -99,7 +103,7 @@ def decide(
         model: the fitted model with them.
         options: when effects are named although something is left.
     """
-    is_believed = model.refit.relative_input_error < options.max_named_input_error and not _has(
+    is_believed = model.refit.relative_input_error < MAX_BELIEVED_INPUT_ERROR and not _has(
         findings, *DISBELIEVED
     )
     explains_most = explained > options.min_explained_share and is_believed

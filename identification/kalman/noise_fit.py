@@ -19,11 +19,13 @@ import numpy as np
 from identification.blas import one_blas_thread
 from identification.kalman.linear import LinearPlant
 from identification.kalman.noise_model import Noise, Whitener, augment
-from identification.kalman.options import KalmanOptions
 from identification.kalman.recursion import propagate
 from identification.kalman.whitened import Whitened, keep, whiten
 from identification.pool import run_parts, split
 
+START_CORRELATION_TIME = 0.03  # [s] of the inputs' error, at which the search for the noise begins
+# [s] at most: a noise that lasts without limit would explain a constant force.
+MAX_CORRELATION_TIME = 0.3
 TOGETHER = 4  # noises that are tried at once: each takes the memory of the sensitivities
 FIRST, LAST = 1.6, 1.15  # factors with which the pattern search begins and ends
 # Multiples of the ρ of a point nearby that are tried; the last two where the second beats the first
@@ -111,7 +113,6 @@ def fit_noise(
     J: np.ndarray,
     prior: np.ndarray,
     sampling_time: float,
-    options: KalmanOptions,
     near: NoiseLevel | None = None,
     fine: bool = True,
     levels: Sequence[float] = LEVELS,
@@ -125,13 +126,12 @@ def fit_noise(
         J: sensitivities, shape (N, ny, p).
         prior: 1/std of each parameter's prior, shape (p,).
         sampling_time: [s].
-        options: the correlation times that are admitted.
         near: the noise of a point nearby, to begin at, where one is known.
         fine: whether ρ and τ are refined by a pattern search, or only chosen from the grid.
         levels: the grid of ρ/ρ₀ where no noise is known.
         largest: largest error of the inputs that is believed on the grid, in the inputs' unit.
     """
-    time, likeliest = options.start_correlation_time, _Likeliest()
+    likeliest = _Likeliest()
     with one_blas_thread():
 
         def at(noise: Noise) -> NoiseLevel:
@@ -154,11 +154,12 @@ def fit_noise(
             if len(found) < 2 or found[1].log_likelihood > found[0].log_likelihood:
                 found += believed(near.noise, AROUND[2:])
         if len(found) < 2:  # no noise is known nearby, or only that of ρ = 0 is believed
+            time = START_CORRELATION_TIME
             unit = Noise(compute_unit_ratio(plant, sampling_time, time), time)
             silent = near is not None and not near.noise.ratio
             found = believed(unit, ROUGH if silent and not fine else levels)
         best = _best(found)
-        times = sampling_time / 3, options.max_correlation_time  # below the first it is white
+        times = sampling_time / 3, MAX_CORRELATION_TIME  # below the first it is white
         best = refine_noise(best, at, times) if fine and best.noise.ratio else best
     likeliest.keep(best)
     return best

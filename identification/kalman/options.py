@@ -49,17 +49,6 @@ class KalmanOptions:
         " reported.",
         "judgement",
     )  # fmt: skip
-    max_correlation_time: float = option(
-        0.3, "s",
-        "Longest correlation time of the inputs' error; a noise that lasts without limit would"
-        " explain a constant force.",
-        "judgement", least=1e-6,
-    )  # fmt: skip
-    start_correlation_time: float = option(
-        0.03, "s",
-        "Correlation time of the inputs' error at which the search for the noise begins.",
-        "judgement", least=1e-6,
-    )  # fmt: skip
     structure_level: float = option(
         1e-4, "probability",
         "A test of what a model leaves unexplained counts below this p-value; it is small because"
@@ -71,12 +60,6 @@ class KalmanOptions:
         "Structure that explains less than this share does not count as a missing effect; a"
         " linearised predictor of a nonlinear robot leaves as much.",
         "judgement", most=1.0,
-    )  # fmt: skip
-    approach_factor: float = option(
-        0.97, "of the rms of innovations or free run",
-        "While the noise is only roughly known, a step that brings the rms below this share of the"
-        " best one counts as progress.",
-        "judgement", least=0.1, most=1.0,
     )  # fmt: skip
 
     def __post_init__(self) -> None:

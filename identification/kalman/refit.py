@@ -38,6 +38,9 @@ APPROACHED = 0.1  # the same of the first part of a search, which only comes nea
 DAMPING = Damping(first=0.0, raised=10.0, lowered=10.0, least=1e-4, floor=0.0)
 TRIES = 6  # attempts at a step, each damped ten times as much as the one before
 FEWER = 2  # the same where columns are borrowed, which are then computed anew
+# While the noise is only roughly known, a step makes progress if it brings the rms of the
+# innovations or of the free run below this share of the best one.
+PROGRESS_SHARE = 0.97
 PATIENCE = 2  # successive steps without progress after which a search ends
 
 
@@ -138,17 +141,17 @@ def descend(
         Whether the search ended before it had used all steps.
     """
     believed = np.inf if is_near else largest_input_error(point, options)
-    level = estimate_noise(point, prior, options, near, largest=believed)
+    level = estimate_noise(point, prior, near, largest=believed)
     yield point, level
     for fine in (True,) if is_near else (False, True):
         ended = (ENDED if fine else APPROACHED) * len(point.q)
         if fine:
-            level = estimate_noise(point, prior, options, level, fine)
+            level = estimate_noise(point, prior, level, fine)
             yield point, level
         last, largest = point, np.inf if fine else believed
         problem = linearise_criterion(point, level, mean, prior)
         best, most, nearest, idle = (point, level), problem.log_posterior, _rms(point), 0
-        move = partial(_move, options=options, largest=largest)
+        move = partial(_move, largest=largest)
         trials = levenberg_marquardt(problem, move, DAMPING)
         while steps and idle < PATIENCE and not (fine and _is_refuted(problem, options)):
             if problem.expected_fall(problem.step(0.0)) < ended:
@@ -170,8 +173,8 @@ def descend(
             yield point, level
             # Every point has its own linearisation and noise, so the likelihood may also fall.
             likely, off = problem.log_posterior, _rms(point)
-            gain = ended if fine else -point.e.size * float(np.log(options.approach_factor))
-            better = likely > most + gain or (not fine and off < options.approach_factor * nearest)
+            gain = ended if fine else -point.e.size * float(np.log(PROGRESS_SHARE))
+            better = likely > most + gain or (not fine and off < PROGRESS_SHARE * nearest)
             if better or likely > most:
                 best = point, level
             most, nearest, idle = max(likely, most), min(off, nearest), 0 if better else idle + 1
@@ -181,9 +184,7 @@ def descend(
     return steps > 0
 
 
-def _move(
-    problem: Problem, step: np.ndarray, taken: np.ndarray, options: KalmanOptions, largest: float
-) -> Problem:
+def _move(problem: Problem, step: np.ndarray, taken: np.ndarray, largest: float) -> Problem:
     """Returns the criterion about the point after a step, with the noise of that point."""
     point = problem.point
     change = np.abs(step[point.space.logarithmic]).max(initial=0.0)
@@ -195,7 +196,7 @@ def _move(
         near = point if change < SIMILAR else None
         there = evaluate_point(point.predictor, point.space, q, near, point.small, run)
     point = there
-    level = estimate_noise(point, problem.prior, options, problem.level, largest=largest)
+    level = estimate_noise(point, problem.prior, problem.level, largest=largest)
     return linearise_criterion(point, level, problem.mean, problem.prior)
 
 
@@ -240,7 +241,6 @@ def conclude(
 def estimate_noise(
     point: Point,
     prior: np.ndarray,
-    options: KalmanOptions,
     near: NoiseLevel | None,
     fine: bool = False,
     largest: float = np.inf,
@@ -250,10 +250,9 @@ def estimate_noise(
     Args:
         point: the plant with its residual.
         prior: 1/std of each prior, zero where there is none, shape (p,).
-        options: the correlation times that are admitted.
         near: the noise of a point nearby, where one is known.
         fine: whether the noise is refined by a search.
         largest: largest error of the inputs that is believed before, in the inputs' unit.
     """
     linear, e, J, Ts = point.linear, point.e, point.J, point.log.sampling_time
-    return fit_noise(linear, e, J, prior, Ts, options, near, fine, largest=largest)
+    return fit_noise(linear, e, J, prior, Ts, near, fine, largest=largest)

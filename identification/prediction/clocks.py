@@ -35,6 +35,8 @@ from identification.prediction.told_std import degrees_of_freedom, told_std
 from identification.prediction.unknowns import Prior
 
 SHIFT = "time_shift"  # the effect
+# Of the sampling time: a smaller shift that may be chance stands in the JSON alone.
+MIN_SHOWN_SHIFT = 0.1
 SHARE = 4  # a record by itself has this part of the windows' steps: one number needs no more
 
 
@@ -96,9 +98,9 @@ def shown_shifts(
     Args:
         shifts: of `record_shifts`.
         records: all of them.
-        options: what is beyond chance, and how small a part is.
+        options: what is beyond chance.
     """
-    least = {_called(r): options.told_clock_shift * r.log.sampling_time for r in records}
+    least = {_called(r): MIN_SHOWN_SHIFT * r.log.sampling_time for r in records}
     return [
         s for s in shifts
         if s.chance * len(records) < options.significance or abs(s.shift) >= least[s.record]

@@ -10,6 +10,11 @@ from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate
 from identification.prediction.scores import WindowScore
 
+# In a round, fitted to some of the windows; the best `max_refits`, and those near, to all.
+MAX_CONTENDERS = 6
+MAX_CURVES = 3  # of the data, fitted in a round: of speed, of position, and of one thing more
+MAX_SIMPLER_LAWS = 2  # with fewer numbers, refitted beside the best one
+
 
 def list_contenders(
     scores: Sequence[WindowScore], options: DiscoveryOptions, errors: int
@@ -33,7 +38,7 @@ def list_contenders(
         return errors * s.gain - len(s.size) * np.log(max(2, errors))
 
     best = max([promised(s) for s in laws], default=0.0)
-    return [*laws, *[s for s in curves if promised(s) > best][: options.max_curves]]
+    return [*laws, *[s for s in curves if promised(s) > best][:MAX_CURVES]]
 
 
 def _best_few(
@@ -51,7 +56,7 @@ def _best_few(
         if s.gain > max(least, own):
             out.append(s)
             best.setdefault(s.candidate.effect.name, s.gain)
-    return out[: options.max_begun]
+    return out[:MAX_CONTENDERS]
 
 
 def is_significant(s: WindowScore, count: int, options: DiscoveryOptions) -> bool:
@@ -84,7 +89,7 @@ def list_simpler(
             continue
         if is_significant(s, len(scores), options) and is_plausible(s, options):
             each.setdefault(c.effect.name, s)
-    return [*each.values()][: options.max_simpler]
+    return [*each.values()][:MAX_SIMPLER_LAWS]
 
 
 def count_numbers(c: Candidate) -> int:

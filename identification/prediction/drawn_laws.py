@@ -5,8 +5,8 @@
 
 A cause that is in no catalogue is first explained by its nearest neighbour, as well as that can,
 and then a curve draws what is left. The two together are one unlisted force, and no name: the curve
-alone does what the law did. Where m_3 - m_4 is less than `drawn_share` of m_1 - m_2, the law is
-told and not named. A law whose cause is another one than the curve's explains as much as before.
+alone does what the law did. Where m_3 - m_4 is less than `SHARE_BESIDE_CURVE` of m_1 - m_2, the law
+is told and not named. A law whose cause is another one than the curve's explains as much as before.
 """
 
 from __future__ import annotations
@@ -17,7 +17,6 @@ from dataclasses import replace
 import numpy as np
 
 from identification.discovery.nominal_model import NominalModel
-from identification.discovery.options import DiscoveryOptions
 from identification.estimation.options import Progress
 from identification.prediction.extension import refitted
 from identification.prediction.model import WindowModel
@@ -25,12 +24,14 @@ from identification.prediction.records import Record
 from identification.prediction.selection import Contender
 from identification.prediction.several_places import places_of
 
+# Of what a law explained alone: it must still explain as much beside a curve of the same joint.
+SHARE_BESIDE_CURVE = 0.5
 ON_JOINTS = {"force", "friction"}  # hooks of what a curve, which is a force, may do as well
 
 
 def without_drawn_laws(
     model: WindowModel, accepted: Sequence[Contender], nominal_model: NominalModel,
-    confirm: Sequence[Record], options: DiscoveryOptions, progress: Progress,
+    confirm: Sequence[Record], progress: Progress,
 ) -> tuple[WindowModel, tuple[Contender, ...], tuple[Contender, ...]]:  # fmt: skip
     """Returns the model without laws that a later curve at their joint makes needless.
 
@@ -39,7 +40,6 @@ def without_drawn_laws(
         accepted: in their order.
         nominal_model: the other free parameters, and the horizon.
         confirm: records that no fit may see.
-        options: which share of its work a law must keep.
         progress: is told which laws are left out.
 
     Returns:
@@ -57,7 +57,7 @@ def without_drawn_laws(
         if without is None:
             continue
         beside = _mean_square(without) - _mean_square(model)
-        if beside < options.drawn_share * _explained(law):
+        if beside < SHARE_BESIDE_CURVE * _explained(law):
             progress(f"{effect.name}, {law.candidate.where}: a curve does the same, and more")
             model, kept = without, [a for a in kept if a is not law]
             lost.append(replace(law, doubt="drawn"))

@@ -13,7 +13,7 @@ from functools import partial
 import numpy as np
 
 from identification.discovery.attempts import attempt
-from identification.discovery.options import DiscoveryOptions
+from identification.discovery.nominal_model import SHAPE_STD
 from identification.discovery.scoring.sensitivities import iterate_shapes
 from identification.effects.effect import Candidate
 from identification.errors import InputError
@@ -56,32 +56,29 @@ class Begun:
     q: np.ndarray
 
 
-def begin(parent: WindowModel, scores: Sequence[WindowScore], options: DiscoveryOptions) -> Begun:
+def begin(parent: WindowModel, scores: Sequence[WindowScore]) -> Begun:
     """Returns an effect fitted to some of the windows, from the best of several starts.
 
     Args:
         parent: the model without it.
         scores: of the effect on the parent, one for each start: where shapes and sizes begin.
-        options: what is believed of shapes.
 
     Raises:
         InputError: it cannot be simulated from any start, whatever the size.
     """
     starts = [s for one in scores for s in (_shaped(one) if one.candidate.effect.state else [one])]
-    begun = [
-        b for b in (_begun(parent, score, options.shape_std) for score in starts) if b is not None
-    ]
+    begun = [b for b in (_begun(parent, score) for score in starts) if b is not None]
     if not begun:
         c = scores[0].candidate
         raise InputError(f"{c.effect.name}, {c.where} cannot be simulated at any size")
     return min(begun, key=lambda b: b.cost)
 
 
-def _begun(parent: WindowModel, score: WindowScore, shape_std: float) -> Begun | None:
+def _begun(parent: WindowModel, score: WindowScore) -> Begun | None:
     """Returns the fit of some windows; None where it cannot be simulated at any size."""
     c = score.candidate
     parent = model_for(parent, c)
-    task, fixed = _task(parent, c, shape_std)
+    task, fixed = _task(parent, c)
     at = picks(parent.fit.tangents)
     few, begun = thinned(task, at), thinned_moves(parent.fit.moves, at)
     near = thinned_tangents(parent.fit.tangents, at)
@@ -106,11 +103,11 @@ def _begun(parent: WindowModel, score: WindowScore, shape_std: float) -> Begun |
     return Begun(found.cost, windows, c, parent, fixed, task, found.q)
 
 
-def _task(parent: WindowModel, c: Candidate, shape_std: float) -> tuple[Problem, dict[str, float]]:
+def _task(parent: WindowModel, c: Candidate) -> tuple[Problem, dict[str, float]]:
     """Returns the problem with the parameters of one more effect, and the values held fixed."""
     plant, old = parent.plant, parent.fit.problem.unknowns
-    sizes = _free(plant, c, [n for n in c.free if n not in old.local.names], shape_std)
-    shapes = _free(plant, c, [n for n in shapes_of(c) if n not in old.local.names], shape_std)
+    sizes = _free(plant, c, [n for n in c.free if n not in old.local.names])
+    shapes = _free(plant, c, [n for n in shapes_of(c) if n not in old.local.names])
     shared, own = old.shared.plus(shapes), old.own
     shared, own = (shared, own.plus(sizes)) if c.effect.own else (shared.plus(sizes), own)
     free = (*shared.names, *own.names)
@@ -133,7 +130,7 @@ def _shaped(score: WindowScore) -> list[WindowScore]:
     ]
 
 
-def _free(plant: Plant, c: Candidate, names: Sequence[str], shape_std: float) -> Prior:
+def _free(plant: Plant, c: Candidate, names: Sequence[str]) -> Prior:
     """Returns the prior of an effect's parameters: none of sizes, shapes near the grid's value."""
     if not names:
         return Prior()
@@ -141,7 +138,7 @@ def _free(plant: Plant, c: Candidate, names: Sequence[str], shape_std: float) ->
     start = [_away(plant.parameters, n, 0.0) if n in c.sizes else values[n] for n in names]
     first = inside(plant.parameters, names, np.array(start))
     space = coordinates(plant.parameters, names, first, linear=c.sizes)
-    weight = np.array([0.0 if n in c.sizes else 1 / shape_std for n in names])
+    weight = np.array([0.0 if n in c.sizes else 1 / SHAPE_STD for n in names])
     return Prior(space, space.encode(first), weight)
 
 

@@ -4,7 +4,7 @@ Where the error at the horizon is that of the sensors, nothing is left that an e
 a record could explain. Among many that are tried one gains by luck, so that such a doubt counts
 only where more than `min_gap_share` is left above the sensors' noise. All outputs together say that
 least of one that errs while the others, which the nominal model predicts as well, do not: an output
-by itself counts where its error is more than `max_output_ratio` times its noise.
+by itself counts where its error is more than `MAX_OUTPUT_RATIO` times its noise.
 """
 
 from __future__ import annotations
@@ -31,6 +31,10 @@ from identification.prediction.result import (
 from identification.prediction.state import WindowSearch, rise
 from identification.prediction.unseen import Unseen
 
+# Of an output's error to its noise, which its own differences tell to a tenth or two.
+MAX_OUTPUT_RATIO = 1.5
+# Of a record's rms error to that of the others: beyond it, and beyond chance, it is reported.
+DIFFERENT_RECORD_RATIO = 2.0
 FEWEST = 3  # records: of two nobody knows which one is different
 
 
@@ -70,7 +74,7 @@ def _error_left(state: WindowSearch) -> RemainingError | None:
     options, ratio = state.task.options, noise_ratio(state)
     names, ratios = state.task.records[0].log.output_names, output_ratios(state.model.unseen)
     worst = int(np.argmax(ratios))
-    if len(names) > 1 and ratios[worst] > max(options.max_output_ratio, ratio):
+    if len(names) > 1 and ratios[worst] > max(MAX_OUTPUT_RATIO, ratio):
         return RemainingError(float(ratios[worst]), names[worst])
     return RemainingError(ratio) if ratio > 1 + options.min_gap_share else None
 
@@ -111,7 +115,7 @@ def different_records(state: WindowSearch) -> list[DifferentRecord]:
         rest = np.concatenate([e for n, e in errors.items() if n != name])
         ratio = float(np.exp((mine.mean() - rest.mean()) / 2))
         chance = mean_above_other(mine, rest)
-        if ratio > options.different_ratio and chance * len(errors) < options.significance:
+        if ratio > DIFFERENT_RECORD_RATIO and chance * len(errors) < options.significance:
             out.append(DifferentRecord(name, ratio, chance))
     return out
 

@@ -18,6 +18,9 @@ from identification.prediction.scores import WindowScore
 from identification.prediction.selection import Contender
 from identification.prediction.unseen import compare
 
+# Of what an effect explained: one that still explains more beside the named one is missing too, and
+# no rival of it.
+RIVAL_SHARE = 0.5
 # By what was measured, or by what is believed of its size.
 CONTRADICTED: tuple[Doubt, ...] = ("lengths", "record", "bound", "exchange")
 NEEDLESS: tuple[Doubt, ...] = ("chance", "little")  # others make up for it
@@ -25,7 +28,7 @@ NEEDLESS: tuple[Doubt, ...] = ("chance", "little")  # others make up for it
 
 def find_rivals(
     others: Sequence[Contender], before: WindowModel, scores: Sequence[WindowScore],
-    after: WindowModel, then: Sequence[WindowScore], options: DiscoveryOptions,
+    after: WindowModel, then: Sequence[WindowScore],
 ) -> tuple[Contender, ...]:  # fmt: skip
     """Returns other contenders that explain less than half as much once the best one is there.
 
@@ -40,7 +43,6 @@ def find_rivals(
         scores: of all candidates on that model.
         after: the model with it.
         then: scores on this one.
-        options: how much is as much.
     """
     was, still = (
         {s.candidate.key: s.fall * model.fit.cost for s in reversed(each)}
@@ -49,7 +51,7 @@ def find_rivals(
     return tuple(
         o for o in others
         if o.doubt not in CONTRADICTED and o.prediction.t > 0
-        and still.get(o.candidate.key, 0.0) < options.rival_share * was.get(o.candidate.key, 0.0)
+        and still.get(o.candidate.key, 0.0) < RIVAL_SHARE * was.get(o.candidate.key, 0.0)
     )  # fmt: skip
 
 

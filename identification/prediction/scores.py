@@ -20,7 +20,6 @@ from scipy.linalg import block_diag
 
 from identification.chances import f_above
 from identification.discovery.attempts import attempt, refuse_infinite
-from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate
 from identification.model.coordinates import coordinates
 from identification.model.parameter import ParameterSet
@@ -29,6 +28,9 @@ from identification.prediction.joint_states import rows_for
 from identification.prediction.point import projected
 from identification.progress import counted
 
+# Of an effect's part in the outputs: with less left by the free parameters it is one of them by
+# another name.
+MIN_UNIMITATED_SHARE = 0.01
 SMALL = 1e-4  # of a probe, by which a size is moved to see whether free parameters imitate it
 BATCH = 24  # columns at a time: bounds the memory of their trajectories
 
@@ -79,22 +81,19 @@ def window_scores(fit: WindowFit, candidates: Sequence[Candidate]) -> tuple[Wind
     return tuple(sorted(out, key=lambda s: -s.fall))
 
 
-def find_imitated(
-    fit: WindowFit, scores: Sequence[WindowScore], options: DiscoveryOptions
-) -> set[tuple[str, str]]:
+def find_imitated(fit: WindowFit, scores: Sequence[WindowScore]) -> set[tuple[str, str]]:
     """Returns effects, with their places, that free parameters imitate: the same by another name.
 
     Args:
         fit: the model without them.
         scores: of those that are asked for, the best first.
-        options: of how little they must leave.
     """
     base, asked = _Base(fit), {s.candidate.key: s.candidate for s in reversed(scores)}
     imitated: list[Candidate] = []
     for group in _groups([*asked.values()]):
-        found = attempt(None, partial(base.imitated, group, options.imitated_share))
+        found = attempt(None, partial(base.imitated, group, MIN_UNIMITATED_SHARE))
         if found is None:  # one of them: the others are asked for without it
-            each = (attempt(c, partial(base.imitated, [c], options.imitated_share)) for c in group)
+            each = (attempt(c, partial(base.imitated, [c], MIN_UNIMITATED_SHARE)) for c in group)
             found = [c for some in each if some for c in some]
         imitated += found
     return {c.key for c in imitated}

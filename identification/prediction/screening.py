@@ -2,7 +2,7 @@
 
 A score of one place is worth as much as one of all places, and a shape that is best for all places
 together may be wrong for each of them. So every shape is scored at every place. Where these are
-more than `max_scored`, they are scored on one window of `THIN`, and what then explains a share of
+more than `MAX_SCORED`, they are scored on one window of `THIN`, and what then explains a share of
 the best is scored again on all windows; some windows miss what happens seldom, such as a limit.
 """
 
@@ -23,6 +23,9 @@ from identification.prediction.scores import WindowScore, find_imitated, window_
 from identification.prediction.several_places import several_scores
 from identification.prediction.thinning import picks, thinned, thinned_moves, thinned_tangents
 
+MAX_SCORED = 300  # candidates that are scored on all windows at once: a minute of one core
+MAX_SCORED_SHAPES = 2  # of an effect at a place, scored on all windows after that on some
+
 
 def score_all(
     model: WindowModel, effects: Sequence[Effect], options: DiscoveryOptions
@@ -35,7 +38,7 @@ def score_all(
         options: what is beyond chance, and what is promising.
     """
     listed = _listed(model, effects)
-    is_many = len(listed) > options.max_scored
+    is_many = len(listed) > MAX_SCORED
     few = window_scores(some_windows(model.fit) if is_many else model.fit, listed)
     promising = _promising(few, options)
     again = {id(c) for c in promising}
@@ -48,7 +51,7 @@ def score_all(
     ]
     asked = [s for s in beyond if id(s.candidate) in again or not is_many]
     if uses(options, "imitated_effects"):
-        known = find_imitated(model.fit, asked, options)
+        known = find_imitated(model.fit, asked)
         found, beyond = (
             [s for s in each if s.candidate.key not in known] for each in (found, beyond)
         )
@@ -100,6 +103,6 @@ def _promising(scores: Sequence[WindowScore], options: DiscoveryOptions) -> list
     for s in plausible:
         key = s.candidate.key
         count[key] = count.get(key, 0) + 1
-        if s.gain >= least and count[key] <= options.max_scored_shapes:
+        if s.gain >= least and count[key] <= MAX_SCORED_SHAPES:
             out.append(s.candidate)
     return out

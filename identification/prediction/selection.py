@@ -37,6 +37,7 @@ from identification.prediction.unseen import Prediction, Unseen, compare
 from identification.progress import counted
 from identification.quantities import fall_words
 
+STRONG_BIC = 10.0  # "very strong evidence" of one law against another (Kass and Raftery 1995)
 REFUTED: tuple[Doubt, ...] = ("numbers", "chance")  # by windows of the horizon alone
 
 
@@ -125,7 +126,7 @@ def refit_contenders(
                 each[k] = _judged(parent, c, refits, options, worse_fit)
         return parent, [*each.values()]
 
-    children = refit(_near_best(_begun(model, chosen, scores, options), options))
+    children = refit(_near_best(_begun(model, chosen, scores), options))
     parent, out = judge(model, children)
     proven = [c for c in out if c.is_proven]
     if proven and uses(options, "simpler_laws"):
@@ -133,7 +134,7 @@ def refit_contenders(
         tried = {c.candidate.key for c in out}
         simpler = list_simpler(best.candidate, scores, options)
         rest = [s for s in simpler if s.candidate.key not in tried]
-        more = refit(_begun(model, rest, scores, options))
+        more = refit(_begun(model, rest, scores))
         if more:
             parent, out = judge(parent, [*(c.model for c in out), *more])
     for c in out:
@@ -143,13 +144,10 @@ def refit_contenders(
 
 
 def _begun(
-    model: WindowModel, chosen: Sequence[WindowScore], scores: Sequence[WindowScore],
-    options: DiscoveryOptions,
-) -> list[Begun]:  # fmt: skip
+    model: WindowModel, chosen: Sequence[WindowScore], scores: Sequence[WindowScore]
+) -> list[Begun]:
     """Returns effects fitted to some of the windows; those that cannot be simulated are told."""
-    tasks = [
-        (s.candidate, partial(begin, model, [s, *list_starts(s, scores)], options)) for s in chosen
-    ]
+    tasks = [(s.candidate, partial(begin, model, [s, *list_starts(s, scores)])) for s in chosen]
     return [begun for begun in attempt_each(tasks) if begun is not None]
 
 
@@ -157,7 +155,7 @@ def _near_best(begun: Sequence[Begun], options: DiscoveryOptions) -> list[Begun]
     """Returns the few best on some windows, and those that these cannot tell from them."""
     each = [(_evidence_of_some(b), b) for b in begun]
     each.sort(key=lambda pair: -pair[0])
-    least = min((e for e, _ in each[: options.max_refits]), default=0.0) - options.strong_bic
+    least = min((e for e, _ in each[: options.max_refits]), default=0.0) - STRONG_BIC
     return [b for e, b in each if e > least]
 
 
@@ -220,7 +218,7 @@ def _ranked(found: Sequence[Contender], options: DiscoveryOptions) -> tuple[Cont
         best = out[0]
         apart = best.criterion - c.criterion
         fewer = c.numbers < best.numbers
-        if c.is_proven and fewer and apart < options.strong_bic:
+        if c.is_proven and fewer and apart < STRONG_BIC:
             each = evidences([best, c])[:, 1:]
             if np.mean(each[1] >= each[0]) > options.significance:
                 out = [c, *(o for o in out if o is not c)]

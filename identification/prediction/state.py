@@ -177,7 +177,7 @@ def add_effect(state: WindowSearch, progress: Progress) -> WindowSearch:
         tried = tried if model else tried[1:]
     watch.stop("refits")
     scores = score_all(model, task.effects, task.options)
-    others = find_rivals(tried[1:], state.model, state.scores, best.model, scores, task.options)
+    others = find_rivals(tried[1:], state.model, state.scores, best.model, scores)
     watch.stop("scores")
     accepted = (*state.accepted, replace(best, alternatives=others))
     return replace(
@@ -256,7 +256,8 @@ def drop_beside_curves(state: WindowSearch, progress: Progress) -> Change:
 @_finishing
 def drop_drawn_laws(state: WindowSearch, progress: Progress) -> Change:
     """Returns the state without laws whose work a later curve of the data does."""
-    return without_drawn_laws(state.model, state.accepted, *_rest(state), progress)
+    base, confirm, _ = _rest(state)
+    return without_drawn_laws(state.model, state.accepted, base, confirm, progress)
 
 
 MOVES = (

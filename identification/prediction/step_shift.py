@@ -18,10 +18,14 @@ from functools import partial
 import numpy as np
 
 from identification.discovery.attempts import attempt
-from identification.discovery.prediction_options import PredictionOptions
 from identification.model.finer import finer
 from identification.prediction.fit import WindowFit
 from identification.prediction.point import projected
+
+TOLD_SHIFT = 1.0  # std of a value: a smaller one is within what the std tells
+# Of the error of the fitted windows: below it a fifth of the mean square comes from the steps, and
+# is nothing that is missing.
+TOLD_ERROR = 0.9
 
 
 @dataclass(frozen=True)
@@ -42,27 +46,24 @@ class StepShift:
         """Whether the windows could be simulated with finer steps."""
         return bool(np.isfinite(self.error) or np.isfinite(self.values).any())
 
-    def far(
-        self, names: Sequence[str], std: np.ndarray, options: PredictionOptions
-    ) -> dict[str, float]:
+    def far(self, names: Sequence[str], std: np.ndarray) -> dict[str, float]:
         """Returns the values that finer steps would move far enough to be told, the farthest first.
 
         Args:
             names: of the values, p of them.
             std: shape (p,), in their units; NaN where it is not known.
-            options: how far is told.
 
         Returns:
             By name, how far [std].
         """
         with np.errstate(divide="ignore", invalid="ignore"):
             moved = np.abs(self.values) / std
-        far = [int(k) for k in np.argsort(-moved) if moved[k] > options.told_step_shift]
+        far = [int(k) for k in np.argsort(-moved) if moved[k] > TOLD_SHIFT]
         return {names[k]: float(moved[k]) for k in far}
 
-    def is_lower(self, options: PredictionOptions) -> bool:
+    def is_lower(self) -> bool:
         """Returns whether finer steps would lower the error by so much that it is told."""
-        return self.error < options.told_step_error
+        return self.error < TOLD_ERROR
 
 
 def step_shift(found: WindowFit) -> StepShift:

@@ -40,6 +40,8 @@ from identification.prediction.state import WindowSearch, rise
 from identification.prediction.twins import find_twin
 from identification.prediction.unseen import Unseen
 
+MIN_LISTED_CONFIDENCE = 0.02  # a rival that is less likely is not listed
+
 
 def conclude(state: WindowSearch) -> RecordsDiscovery:
     """Returns the outcome of a finished search.
@@ -146,7 +148,7 @@ def _named(state: WindowSearch, accepted: Contender, limit: float) -> NamedByPre
     rivals = [
         _refitted(o.model, o, float(share))
         for o, share in zip(others, shares[1:], strict=True)
-        if share > options.listed_confidence
+        if share > MIN_LISTED_CONFIDENCE
     ]
     effect = _refitted(final, accepted, min(limit, float(shares[0])))
     confirm = state.task.confirm

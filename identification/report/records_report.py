@@ -84,7 +84,7 @@ def _candidates(found: RecordsDiscovery) -> Section:
 
 def _values(found: RecordsDiscovery) -> Section:
     head, rows = value_table(found)
-    steps = std_sentence(found.final, value_words(found), found.options)
+    steps = std_sentence(found.final, value_words(found))
     return Section(
         "Parameters",
         "Std by blocks of windows, whose errors need not be white; unknown where too few windows"

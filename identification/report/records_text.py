@@ -24,7 +24,7 @@ def records_text(found: RecordsDiscovery) -> str:
     """Returns the whole discovery, in paragraphs."""
     parts = ["\n".join(records_verdict(found)), "\n".join(_records(found))]
     fitted = ["fitted values:", *text_table(*value_table(found))]
-    if said := std_sentence(found.final, value_words(found), found.options):
+    if said := std_sentence(found.final, value_words(found)):
         fitted.append(said)
     parts.append("\n".join(fitted))
     if shifts := shown_shifts(found.shifts, found.records, found.options):
@@ -83,7 +83,7 @@ def _shifts(shifts: Sequence[ShiftedRecord]) -> list[str]:
 
 def steps_taken(found: RecordsDiscovery) -> list[str]:
     """Returns sentences on the steps that simulations took, and what finer ones would change."""
-    return step_sentences(found.final, value_words(found), found.options, found.steps)
+    return step_sentences(found.final, value_words(found), found.steps)
 
 
 def _records(found: RecordsDiscovery) -> list[str]:

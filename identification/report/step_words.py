@@ -6,9 +6,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from identification.discovery.options import DiscoveryOptions
 from identification.model.finer import FINER
 from identification.prediction.model import WindowModel
+from identification.prediction.step_shift import TOLD_SHIFT
 from identification.quantities import held, quantity
 from identification.windows.coarse import OUTPUT_ERROR
 
@@ -18,7 +18,6 @@ SHOWN = 3  # values that are told, those that move most first
 def step_sentences(
     model: WindowModel,
     words: Mapping[str, str] | None = None,
-    options: DiscoveryOptions | None = None,
     steps: tuple[float, float] | None = None,
 ) -> list[str]:
     """Returns a paragraph on the steps; none where they are the model's and finer change little.
@@ -26,12 +25,10 @@ def step_sentences(
     Args:
         model: fitted.
         words: what to call the values by name; their names when None.
-        options: what is told; the defaults when None.
         steps: of the simulations and of the user's model [s]; those of `model` when None.
     """
-    options = options or DiscoveryOptions()
     taken, own = steps or model.steps
-    changed = _changed(model, words or {}, options)
+    changed = _changed(model, words or {})
     if taken <= own and not changed:
         return []
     model_step, finer = quantity(own, unit="s"), own / FINER
@@ -51,7 +48,7 @@ def step_sentences(
         f" The last fit was checked with a quarter of the model's step, {quantity(finer, unit='s')}"
     )
     if not changed:
-        return [f"{said}: no value would move by more than {held(options.told_step_shift)} std."]
+        return [f"{said}: no value would move by more than {held(TOLD_SHIFT)} std."]
     return [
         f"{said}: it would {', and would '.join(changed)}. Where this matters, write"
         f' timestep="{finer:.6g}" into the <option> of the model, and do this once more.'
@@ -61,7 +58,6 @@ def step_sentences(
 def std_sentence(
     model: WindowModel,
     words: Mapping[str, str] | None = None,
-    options: DiscoveryOptions | None = None,
 ) -> str:
     """Returns a sentence where the error of the steps, which the std leave out, is larger; else "".
 
@@ -70,32 +66,30 @@ def std_sentence(
     Args:
         model: as of `step_sentences`.
         words: as of `step_sentences`.
-        options: as of `step_sentences`.
     """
-    options = options or DiscoveryOptions()
     names, words = model.fit.problem.names, words or {}
     std = np.array([model.told_std[n] for n in names])
-    far = [*model.finer.far(names, std, options)]
+    far = [*model.finer.far(names, std)]
     if not far:
         return ""
     told = ", ".join(words.get(n, n) for n in far[:SHOWN])
     more = f" and {len(far) - SHOWN} more" if len(far) > SHOWN else ""
     return (
         "The std leave out the error of the simulation's steps, which is more than"
-        f" {held(options.told_step_shift)} std for {told}{more}."
+        f" {held(TOLD_SHIFT)} std for {told}{more}."
     )
 
 
-def _changed(model: WindowModel, words: Mapping[str, str], options: DiscoveryOptions) -> list[str]:
+def _changed(model: WindowModel, words: Mapping[str, str]) -> list[str]:
     """Returns clauses on what finer steps would do beyond what the std tell."""
     finer, std, said = model.finer, model.told_std, []
     names = model.fit.problem.names
-    if far := finer.far(names, np.array([std[n] for n in names]), options):
+    if far := finer.far(names, np.array([std[n] for n in names])):
         most = [*far][:SHOWN]
         told = ", ".join(f"{words.get(n, n)} by {held(far[n])} std" for n in most)
         more = f" and {len(far) - SHOWN} more" if len(far) > SHOWN else ""
         said.append(f"move {told}{more}, of which the std tell nothing")
-    if finer.is_lower(options):
+    if finer.is_lower():
         said.append(
             f"lower the error of the fitted windows to {held(finer.error)} of what it is: that part"
             " is of the steps, and nothing that is missing"

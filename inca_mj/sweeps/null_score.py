@@ -67,7 +67,7 @@ def null_score(settings: NullSettings, seed: Seed) -> dict[str, Any]:
     point, setting = fit.point, _setting(settings)
     e = _residual(point, setting, settings.coloured, seed.generator())
     drawn = replace(point, e=e)
-    level = fit_noise(point.linear, e, point.J, fit.prior, point.log.sampling_time, options)
+    level = fit_noise(point.linear, e, point.J, fit.prior, point.log.sampling_time)
     refit = replace(fit, point=drawn, level=level, mean=point.q)
     scores = score(refit, sensitivities, options)
     names = named(scores)

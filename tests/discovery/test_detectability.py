@@ -5,13 +5,13 @@ import pytest
 from discovery_cases import OPTIONS, linear_plant, point_of, scored, sensitivity
 from scipy.stats import f, ncf
 
-from identification.discovery.scoring.detectability import list_detectable
+from identification.discovery.scoring.detectability import DETECTION_NONCENTRALITY, list_detectable
 from identification.discovery.scoring.scores import Score
 from identification.effects.effect import Candidate, Effect, Size
 from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.noise_model import Noise
 
-NONCENTRALITY, BLOCKS = OPTIONS.detection_noncentrality, OPTIONS.score_blocks
+NONCENTRALITY, BLOCKS = DETECTION_NONCENTRALITY, OPTIONS.score_blocks
 PLACES = {"all": "", "drive 1": "@1", "drive 2": "@2"}
 
 

@@ -21,6 +21,7 @@ from discovery_cases import response as dense
 from identification import Log, Parameter, ParameterSet
 from identification.discovery.findings.finding import FindingKind
 from identification.discovery.findings.input_error import (
+    ERROR_KNOTS,
     draw_curves,
     find_input_error,
     fit_families,
@@ -112,8 +113,8 @@ def test_the_response_is_that_of_the_dense_plant():
 
 def test_curves_sum_to_one_and_each_is_of_one_input():
     x = np.random.default_rng(1).standard_normal((50, 3))
-    np.testing.assert_allclose(draw_curves(x, OPTIONS.error_knots).sum(axis=2), 1)
-    r = separate_inputs(draw_curves(x, OPTIONS.error_knots)).reshape(50, 3, 3, -1)
+    np.testing.assert_allclose(draw_curves(x, ERROR_KNOTS).sum(axis=2), 1)
+    r = separate_inputs(draw_curves(x, ERROR_KNOTS)).reshape(50, 3, 3, -1)
     for i in range(3):
         assert not np.delete(r[:, i], i, axis=1).any()
         np.testing.assert_allclose(np.sqrt(np.mean(r[:, i, i] ** 2, axis=0)), 1)
@@ -141,7 +142,7 @@ def test_crosstalk_is_told_with_its_size_and_the_input_that_feels_it(seed):
     felt = 0.1 * np.std(model.validation.log.inputs[:, 0])
     assert best.error[1] == pytest.approx(felt, rel=0.2)
     assert best.error[0] < 0.5 * best.error[1]
-    others = next(iter(list_families(model.validation, OPTIONS.error_knots))).r.reshape(-1, 2, 2, 2)
+    others = next(iter(list_families(model.validation, ERROR_KNOTS))).r.reshape(-1, 2, 2, 2)
     assert not np.einsum("niii->ni", others).any()  # its own input is not among them
     assert others[:, 0, 0, 1].any()
 

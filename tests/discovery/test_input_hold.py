@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from discovery_cases import OPTIONS, task
+from discovery_cases import task
 from joint_cases import DAMPING, MASS, SLIDER, run, slider_log
 from scipy.signal import lfilter
 
@@ -29,7 +29,7 @@ def moving(hold, samples=800):
 def found(log):
     plant = joint_plant(SLIDER, (MASS, DAMPING), log)
     model = NominalModel(plant, ("mass", "damping"), np.array([0.3, 0.3]))
-    return find_input_hold(fit_model(task(log, model=model), (), {}).refit, OPTIONS)
+    return find_input_hold(fit_model(task(log, model=model), (), {}).refit)
 
 
 @pytest.mark.parametrize(("true", "other"), [("foh", "zoh"), ("zoh", "foh")])

@@ -48,7 +48,7 @@ def test_a_force_that_the_model_lacks_is_seen_in_newtons():
     push = 0.4 * np.sin(2 * np.pi * 0.7 * STEP * np.arange(n))[:, None]  # of 5 N per unit
     log = record(slider(), n, error=push)
     fit = fit_with_effects(NominalModel(slider(), FREE, KNOWN / 100), log, (), {}, OPTIONS)
-    (missing,) = estimate_missing_forces(fit, OPTIONS)
+    (missing,) = estimate_missing_forces(fit)
     assert missing.where == "the actuated joints"
     assert missing.names == ("slide",)
     assert missing.units == ("N",)

@@ -20,14 +20,14 @@ def test_both_places_have_forces_in_their_units_and_sentences():
         NominalModel(plant, tuple(KNOWN), np.array([*KNOWN.values()])), DiscoveryOptions()
     )  # fmt: skip
     fit = fit_with_effects(nominal_model, log.part("estimation"), (), {}, options)
-    drives, platform = estimate_missing_forces(fit, options)
+    drives, platform = estimate_missing_forces(fit)
     assert (drives.where, platform.where) == ("the actuated joints", "platform")
     assert set(drives.units) == {"N m"}
     assert platform.units == ("N",) * 3 + ("N m",) * 3
     for missing in (drives, platform):
         assert missing.gain > 100
         assert 0.8 < missing.share <= 1
-    said = " ".join(map(describe_finding, locate_error(fit, (drives, platform), options)))
+    said = " ".join(map(describe_finding, locate_error(fit, (drives, platform))))
     assert "rms on the actuated joints would explain" in said
     assert "N and" in said
     assert "N m rms on platform would explain" in said

@@ -4,7 +4,11 @@ import numpy as np
 import pytest
 from discovery_cases import OPTIONS, record, slider, wander
 
-from identification.discovery.scoring.outliers import find_outlier_times, list_at_outliers
+from identification.discovery.scoring.outliers import (
+    MAX_JUMPS,
+    find_outlier_times,
+    list_at_outliers,
+)
 from identification.effects.effect import Candidate, Effect, Shape, Size
 from identification.effects.sensor_laws import encoder_jump
 from identification.logs.joined import join_logs
@@ -44,7 +48,7 @@ def test_the_largest_outliers_come_first_each_once(log):
     near = find_outlier_times(E, log, h, OPTIONS)
     assert near == pytest.approx((300 * h, 100 * h, 102 * h))
     E[200:210] = 20.0
-    assert len(find_outlier_times(E, log, h, OPTIONS)) == OPTIONS.max_jumps
+    assert len(find_outlier_times(E, log, h, OPTIONS)) == MAX_JUMPS
 
 
 def test_times_are_those_of_the_record(log):

@@ -52,7 +52,7 @@ def fitted(name, true, start=None, shape=None, known=(), steps=0):
     weak = np.full(len(q), 1e-3)
     if steps:
         return refit(point, q, weak, DiscoveryOptions(), steps=steps), candidate
-    level = estimate_noise(point, weak, DiscoveryOptions(), None)
+    level = estimate_noise(point, weak, None)
     return conclude(point, level, q, weak, 0), candidate
 
 

@@ -18,7 +18,7 @@ from discovery_cases import (
 
 from identification import Parameter, ParameterSet
 from identification.discovery.nominal_model import NominalModel, fit_with_effects
-from identification.discovery.retuning import retune
+from identification.discovery.retuning import PRIOR_WIDENING, retune
 from identification.effects.effect import Candidate, Effect, Size
 from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.noise_model import Noise
@@ -49,14 +49,14 @@ def _rows(seed):
 
 def test_what_nothing_imitates_loses_all_that_it_explains():
     J = 7 * _rows(1).reshape(40, 2, 2)
-    loss, _ = retune(_fit(J, [0.0, 0.3]), _known(), CANDIDATE, OPTIONS)
+    loss, _ = retune(_fit(J, [0.0, 0.3]), _known(), CANDIDATE)
     assert loss == pytest.approx((7 * 0.3 / SIGMA) ** 2, rel=1e-9)
 
 
 def test_a_limit_has_no_size_that_could_go_to_zero():
     size = Size("c", "", 1.0, 0.02, 1, present=1.0)
     limit = Candidate(Effect("limit", "c", (size,), places={"joint": ""}), "joint", {})
-    loss, other = retune(_fit(7 * _rows(1).reshape(40, 2, 2), [0.0, 0.3]), _known(), limit, OPTIONS)
+    loss, other = retune(_fit(7 * _rows(1).reshape(40, 2, 2), [0.0, 0.3]), _known(), limit)
     assert loss == np.inf
     assert other.distance == 0
 
@@ -64,8 +64,8 @@ def test_a_limit_has_no_size_that_could_go_to_zero():
 def test_what_a_base_parameter_imitates_loses_what_the_wider_prior_holds_against_it():
     column = 7 * _rows(2)[:, :1]
     J = np.hstack([column, column]).reshape(40, 2, 2)
-    loss, other = retune(_fit(J, [0.1, 0.3]), _known(), CANDIDATE, OPTIONS)
-    data, held, total = 49 / SIGMA**2, 1 / (OPTIONS.retuned_factor * PRIOR) ** 2, 0.1 + 0.3
+    loss, other = retune(_fit(J, [0.1, 0.3]), _known(), CANDIDATE)
+    data, held, total = 49 / SIGMA**2, 1 / (PRIOR_WIDENING * PRIOR) ** 2, 0.1 + 0.3
     assert loss == pytest.approx(data * held / (data + held) * total**2, rel=1e-6)
     assert other.parameter == "p0"
     assert other.distance == pytest.approx(data / (data + held) * total / PRIOR, rel=1e-6)
@@ -75,7 +75,7 @@ def test_a_part_that_deviates_is_not_made_ordinary_by_a_wider_prior_of_its_own_k
     column = 7 * _rows(2)[:, :1]
     fit = _fit(np.hstack([column, column]).reshape(40, 2, 2), [0.1, 0.3])
     kind = {"p0": (CANDIDATE.effect.name, "another joint")}
-    loss, _ = retune(fit, _known(deviants=kind), CANDIDATE, OPTIONS)
+    loss, _ = retune(fit, _known(deviants=kind), CANDIDATE)
     data, held = 49 / SIGMA**2, 1 / PRIOR**2
     assert loss == pytest.approx(data * held / (data + held) * (0.1 + 0.3) ** 2, rel=1e-6)
 
@@ -98,7 +98,7 @@ def test_a_brake_is_no_more_than_damping_that_nobody_expected():
     )  # damping to 6 %: it looks doubled
     candidate = Candidate(brake, "joint", {})
     fit = fit_with_effects(known, log, (candidate,), {"brake.b": -2.0}, OPTIONS)
-    loss, other = retune(fit, known, candidate, OPTIONS)
+    loss, other = retune(fit, known, candidate)
     assert other.parameter == "damping"
     assert other.distance == pytest.approx(1 / 0.06, rel=0.05)  # linearised: Δd = d
-    assert loss == pytest.approx((other.distance / OPTIONS.retuned_factor) ** 2, rel=0.05)
+    assert loss == pytest.approx((other.distance / PRIOR_WIDENING) ** 2, rel=0.05)

@@ -34,12 +34,15 @@ def test_a_finding_without_a_name_is_an_unknown_effect_whatever_it_is(finding):
 
 
 @pytest.mark.parametrize("finding", FINDINGS, ids=lambda f: f.kind)
-def test_a_name_stands_beside_a_finding_where_it_explains_most_of_a_believed_model(finding):
+def test_a_name_stands_beside_a_finding_where_it_explains_most_of_a_believed_model(
+    finding, monkeypatch
+):
     right = "unknown effect" if finding.kind in REFUTING else "named"
     assert verdict(NAMED, (finding,)) == right
     assert verdict(NAMED, (finding,), explained=LITTLE) == "unknown effect"
     assert verdict(NAMED, (finding,), input_error=1.0) == "unknown effect"
-    more = replace(OPTIONS, min_explained_share=0.0, max_named_input_error=2.0)
+    more = replace(OPTIONS, min_explained_share=0.0)
+    monkeypatch.setattr(verdicts, "MAX_BELIEVED_INPUT_ERROR", 2.0)
     assert verdict(NAMED, (finding,), LITTLE, 1.0, more) == right
 
 

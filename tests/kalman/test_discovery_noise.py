@@ -2,11 +2,12 @@
 
 import numpy as np
 import pytest
-from discovery_cases import OPTIONS, STEP, covariance, linear_plant
+from discovery_cases import STEP, covariance, linear_plant
 
 from identification.kalman.linear import LinearPlant
 from identification.kalman.noise_fit import (
     LEVELS,
+    START_CORRELATION_TIME,
     compute_unit_ratio,
     evaluate_noise,
     fit_noise,
@@ -14,7 +15,7 @@ from identification.kalman.noise_fit import (
 from identification.kalman.noise_model import Noise, build_whitener
 
 SIGMA = 2e-3
-TIME = OPTIONS.start_correlation_time
+TIME = START_CORRELATION_TIME
 
 
 def cart(samples=150):
@@ -35,9 +36,7 @@ def drawn(plant, noise, rng, n):
 def test_ratio_and_sigma_are_recovered_within_their_scatter():
     rng, plant, truth = np.random.default_rng(1), cart(250), Noise(300.0, 0.1)
     J = rng.standard_normal((250, 1, 2))
-    found = [
-        fit_noise(plant, e, J, np.zeros(2), STEP, OPTIONS) for e in drawn(plant, truth, rng, 8)
-    ]
+    found = [fit_noise(plant, e, J, np.zeros(2), STEP) for e in drawn(plant, truth, rng, 8)]
     # ρ √τ is what a slow plant feels: it is known better than either.
     felt = np.log([f.noise.ratio * f.noise.time**0.5 / (300 * 0.1**0.5) for f in found])
     sigma = np.array([f.sigma for f in found]) / SIGMA
@@ -53,7 +52,7 @@ def test_the_correlation_time_is_told_from_others():
     for time in (0.03, 0.3):
         e = drawn(plant, Noise(400.0, time), rng, 1)[0]
         true, prior = Noise(400.0, time), np.zeros(0)
-        found = fit_noise(plant, e, J, prior, STEP, OPTIONS)
+        found = fit_noise(plant, e, J, prior, STEP)
         assert time / 5 < found.noise.time < 5 * time
         at_truth = evaluate_noise(build_whitener(plant, true, STEP), true, e, J, prior)
         assert found.log_likelihood > at_truth.log_likelihood - 0.5  # as likely as the truth
@@ -64,7 +63,7 @@ def test_where_there_is_none_it_finds_none_or_what_no_output_notices():
     unit = compute_unit_ratio(plant, STEP, 0.03)
     J = rng.standard_normal((150, 1, 2))
     found = [
-        fit_noise(plant, SIGMA * rng.standard_normal((150, 1)), J, np.zeros(2), STEP, OPTIONS)
+        fit_noise(plant, SIGMA * rng.standard_normal((150, 1)), J, np.zeros(2), STEP)
         for _ in range(12)
     ]
     assert np.mean([f.noise.ratio == 0 for f in found]) >= 0.4
@@ -75,17 +74,15 @@ def test_where_there_is_none_it_finds_none_or_what_no_output_notices():
 def test_no_more_error_of_the_inputs_is_taken_for_granted_than_is_believed(share):
     rng, plant, truth = np.random.default_rng(5), cart(), Noise(300.0, 0.03)
     J, prior, e = np.zeros((150, 1, 0)), np.zeros(0), drawn(plant, truth, rng, 1)[0]
-    free = fit_noise(plant, e, J, prior, STEP, OPTIONS, fine=False)
-    held = fit_noise(plant, e, J, prior, STEP, OPTIONS, fine=False, largest=share * free.input_std)
+    free = fit_noise(plant, e, J, prior, STEP, fine=False)
+    held = fit_noise(plant, e, J, prior, STEP, fine=False, largest=share * free.input_std)
     unit = Noise(compute_unit_ratio(plant, STEP, TIME), TIME)
     tried = [evaluate_noise(build_whitener(plant, n, STEP), n, e, J, prior)
              for n in map(unit.scaled, LEVELS)]  # fmt: skip
     believed = [t.log_likelihood for t in tried if t.input_std <= share * free.input_std]
     assert held.input_std <= share * free.input_std
     assert held.log_likelihood == max(believed)
-    again = fit_noise(
-        plant, e, J, prior, STEP, OPTIONS, free, fine=False, largest=share * free.input_std
-    )
+    again = fit_noise(plant, e, J, prior, STEP, free, fine=False, largest=share * free.input_std)
     assert again.input_std <= share * free.input_std
 
 
@@ -102,7 +99,7 @@ def test_its_level_is_no_less_likely_than_the_truth():
     rng, plant, truth = np.random.default_rng(4), cart(), Noise(300.0, 0.1)
     J = rng.standard_normal((150, 1, 2))
     for e in drawn(plant, truth, rng, 5):
-        found = fit_noise(plant, e, J, np.zeros(2), STEP, OPTIONS)
+        found = fit_noise(plant, e, J, np.zeros(2), STEP)
         true = evaluate_noise(build_whitener(plant, truth, STEP), truth, e, J, np.zeros(2))
         assert found.log_likelihood > true.log_likelihood - 1.5
 

@@ -121,9 +121,9 @@ def test_a_search_ends_at_the_likeliest_point_since_its_noise_was_sharpened(monk
     begun = shaken()
     sharpened = []
 
-    def spy(point, prior, options, near, fine=False, largest=np.inf):
+    def spy(point, prior, near, fine=False, largest=np.inf):
         sharpened.append(fine)
-        return estimate_noise(point, prior, options, near, fine, largest)
+        return estimate_noise(point, prior, near, fine, largest)
 
     monkeypatch.setattr("identification.kalman.refit.estimate_noise", spy)
     points = [*descend(begun.point, begun.mean, begun.prior, OPTIONS, steps=steps)]

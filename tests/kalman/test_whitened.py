@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from discovery_cases import OPTIONS, STEP, linear_plant, point_of
+from discovery_cases import STEP, linear_plant, point_of
 
 from identification.kalman import problem as module
 from identification.kalman.noise_fit import NoiseLevel, evaluate_noise, fit_noise
@@ -23,7 +23,7 @@ def case(seed=1):
 def test_the_noise_that_is_found_has_been_whitened_with(fine, monkeypatch):
     plant, e, J = case()
     prior = np.array([0.0, 1.0, 2.0])
-    level = fit_noise(plant, e, J, prior, STEP, OPTIONS, fine=fine)
+    level = fit_noise(plant, e, J, prior, STEP, fine=fine)
     fresh = evaluate_noise(build_whitener(plant, level.noise, STEP), level.noise, e, J, prior)
     assert level == fresh
     found = whiten(plant, J, level.noise, STEP)
@@ -34,7 +34,7 @@ def test_the_noise_that_is_found_has_been_whitened_with(fine, monkeypatch):
 
 def test_other_columns_another_plant_and_another_noise_are_whitened_anew():
     plant, e, J = case()
-    level = fit_noise(plant, e, J, np.zeros(3), STEP, OPTIONS, fine=False)
+    level = fit_noise(plant, e, J, np.zeros(3), STEP, fine=False)
     known = whiten(plant, J, level.noise, STEP)
     for other in (
         whiten(plant, J.copy(), level.noise, STEP),

@@ -12,11 +12,18 @@ from numba import njit
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate, Effect, Shape, Size
 from identification.model.parameter import Parameter, ParameterSet
+from identification.prediction import selection
 from identification.prediction.contenders import count_numbers, list_contenders, list_simpler
 from identification.prediction.evidence import compute_confidence, evidence
 from identification.prediction.proof import is_at_bound
 from identification.prediction.scores import WindowScore
-from identification.prediction.selection import Contender, _near_best, _ranked, evidences
+from identification.prediction.selection import (
+    STRONG_BIC,
+    Contender,
+    _near_best,
+    _ranked,
+    evidences,
+)
 
 OPTIONS = DiscoveryOptions()
 
@@ -77,16 +84,17 @@ def behind(best, evidence_lost):
 def test_what_some_windows_cannot_tell_from_the_few_best_is_refitted_too():
     few = OPTIONS.max_refits
     apart = [behind(1.0, 100.0 * k) for k in range(few)]  # each surely better than the next
-    near = behind(apart[-1], 0.9 * OPTIONS.strong_bic)
-    far = behind(apart[-1], 1.1 * OPTIONS.strong_bic)
+    near = behind(apart[-1], 0.9 * STRONG_BIC)
+    far = behind(apart[-1], 1.1 * STRONG_BIC)
     kept = _near_best([begun(far), begun(near), *map(begun, apart)], OPTIONS)
     assert [b.cost for b in kept] == [*apart, near]
     assert _near_best([], OPTIONS) == []
 
 
-def test_an_effect_with_more_numbers_must_be_that_much_better_on_some_windows():
+def test_an_effect_with_more_numbers_must_be_that_much_better_on_some_windows(monkeypatch):
     few, more = begun(1.0, numbers=3), begun(behind(1.0, -0.5 * np.log(100)), numbers=4)
-    assert _near_best([more, few], replace(OPTIONS, max_refits=1, strong_bic=1e-6)) == [few]
+    monkeypatch.setattr(selection, "STRONG_BIC", 1e-6)
+    assert _near_best([more, few], replace(OPTIONS, max_refits=1)) == [few]
 
 
 def test_chance_keeps_a_score_out():

@@ -76,7 +76,7 @@ def state_with_a_curve():
     state = first_state(task, lambda line: None)
     parent = state.model
     (score,) = window_scores(parent.fit, [over_both("curve_speed")])
-    model = with_effect(parent, begin(parent, [score], task.options), HORIZON, task.confirm)
+    model = with_effect(parent, begin(parent, [score]), HORIZON, task.confirm)
     claim = Contender(
         model=model, prediction=compare(parent.unseen, model.unseen), gains=np.ones(9),
         numbers=16, criterion=50.0, doubt=None,
@@ -143,8 +143,7 @@ def test_a_curve_over_several_joints_does_what_a_law_at_one_of_them_did():
     law = replace(law, prediction=replace(law.prediction, fall=0.5))
     base, said = state.task.nominal_model, []
     _, kept, lost = without_drawn_laws(
-        state.model, [law, *state.accepted], base, state.task.confirm, DiscoveryOptions(),
-        said.append,
+        state.model, [law, *state.accepted], base, state.task.confirm, said.append
     )  # fmt: skip
     assert [*kept] == [*state.accepted]
     assert [a.doubt for a in lost] == ["drawn"]

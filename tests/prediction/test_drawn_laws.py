@@ -14,7 +14,6 @@ from identification.prediction.drawn_laws import without_drawn_laws
 from identification.prediction.one_curve import with_one_curve
 from identification.prediction.proof import has_size
 
-OPTIONS = DiscoveryOptions()
 LAW = njit(lambda s, p: 0.0)
 SIZES = (Size("c", "N", 1.0, 0.1, about=""),)
 BASE = SimpleNamespace(horizon=0.2)
@@ -59,7 +58,7 @@ def after_curve(monkeypatch, every, without):
 
     monkeypatch.setattr(drawn_laws, "refitted", refit)
     whole = model(0.1, *(a.candidate for a in every))
-    new, kept, lost = without_drawn_laws(whole, every, BASE, (), OPTIONS, told.append)
+    new, kept, lost = without_drawn_laws(whole, every, BASE, (), told.append)
     assert len(told) == len(lost)
     assert all(a.doubt == "drawn" for a in lost)
     assert names(c for c in kept) == [c.effect.name for c in new.candidates]
@@ -120,7 +119,8 @@ def in_their_place(monkeypatch, every, theirs, curve, doubt=None):
     monkeypatch.setattr(one_curve, "evidence", lambda *_: np.array([[theirs]]))
     whole = model(0.2, *(a.candidate for a in every))
     effects = [accepted("curve_position").candidate.effect]
-    new, kept, lost = with_one_curve(whole, every, BASE, effects, (), OPTIONS, lambda line: None)
+    options = DiscoveryOptions()
+    new, kept, lost = with_one_curve(whole, every, BASE, effects, (), options, lambda line: None)
     assert names_of(new.candidates) == names(kept)
     assert all(a.doubt == "drawn" for a in lost)
     return names(kept), names(lost), asked
@@ -169,4 +169,4 @@ def test_a_law_needs_a_size_that_is_known_and_a_curve_a_size(name, std, has):
             values={size: value}, problem=SimpleNamespace(names=(size,)), std={size: std}
         )
         whole = SimpleNamespace(std={size: std}, fit=fit, candidates=(candidate,))
-        assert has_size(whole, OPTIONS) == is_there
+        assert has_size(whole, DiscoveryOptions()) == is_there

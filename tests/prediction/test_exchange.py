@@ -37,7 +37,7 @@ def pair(second):
         logs[1] = record(2, plant=pendulum())
     every = as_records(logs[:2], logs[2:])
     without = fit_nominal(nominal_model(), every)
-    begun = begin(without, window_scores(without.fit, list_common(law())), OPTIONS)
+    begun = begin(without, window_scores(without.fit, list_common(law())))
     with_it = with_effect(without, begun, HORIZON, [r for r in every if r.role == "confirm"])
     return every, without, with_it
 

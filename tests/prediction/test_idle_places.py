@@ -55,7 +55,7 @@ def named(shoulder, elbow):
     effect = at_several(every, PLACES)
     shape = {s.name: s.values[0] for s in effect.shapes}
     (score,) = window_scores(parent.fit, [Candidate(effect, next(iter(effect.places)), shape)])
-    model = with_effect(parent, begin(parent, [score], DiscoveryOptions()), HORIZON, roles[2:])
+    model = with_effect(parent, begin(parent, [score]), HORIZON, roles[2:])
     claim = Contender(
         model=model, prediction=compare(parent.unseen, model.unseen), gains=np.zeros(0),
         numbers=2, criterion=0.0, doubt=None,

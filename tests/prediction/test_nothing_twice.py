@@ -7,7 +7,6 @@ from functools import cache
 import numpy as np
 from records_cases import nominal_model, records
 
-from identification.discovery.options import DiscoveryOptions
 from identification.discovery.scoring.sensitivities import list_common
 from identification.effects.joint_plant import candidates
 from identification.prediction.fit import solve
@@ -76,11 +75,11 @@ def test_a_fit_whose_first_residuals_are_known_ends_where_it_ends_without_them(m
 
 
 def test_what_free_parameters_imitate_is_the_same_for_candidates_together_and_one_by_one():
-    model, options = fitted(), DiscoveryOptions()
+    model = fitted()
     names = ("inertia_mismatch", "offset", "quadratic_friction", "cogging")
     effects = [e for e in candidates(model.plant, ()) if e.name in names]
     scores = window_scores(model.fit, list_common(effects))
-    together = find_imitated(model.fit, scores, options)
+    together = find_imitated(model.fit, scores)
     assert ("inertia_mismatch", "body arm") in together
     assert len(together) < len({s.candidate.key for s in scores})
-    assert together == set().union(*(find_imitated(model.fit, [s], options) for s in scores))
+    assert together == set().union(*(find_imitated(model.fit, [s]) for s in scores))

@@ -4,10 +4,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from identification.discovery.options import DiscoveryOptions
-from identification.prediction.rivals import CONTRADICTED, find_rivals
+from identification.prediction.rivals import CONTRADICTED, RIVAL_SHARE, find_rivals
 
-OPTIONS = DiscoveryOptions()
 BEFORE, AFTER = (SimpleNamespace(fit=SimpleNamespace(cost=cost)) for cost in (100.0, 50.0))
 
 
@@ -22,7 +20,7 @@ def scores(fall, key=("other", "joint")):
 
 
 def rivals(other, still=0.0):
-    return find_rivals([other], BEFORE, scores(0.4), AFTER, scores(still), OPTIONS)
+    return find_rivals([other], BEFORE, scores(0.4), AFTER, scores(still))
 
 
 @pytest.mark.parametrize("doubt", [None, "chance", "numbers", "little", "size"])
@@ -43,6 +41,6 @@ def test_a_law_that_predicts_unseen_records_no_better_is_no_rival_however_well_i
 
 def test_what_explains_as_much_beside_the_name_is_missing_too_and_no_rival():
     other = law()
-    least = OPTIONS.rival_share * 0.4 * BEFORE.fit.cost / AFTER.fit.cost
+    least = RIVAL_SHARE * 0.4 * BEFORE.fit.cost / AFTER.fit.cost
     assert rivals(other, 0.9 * least) == (other,)
     assert rivals(other, 1.1 * least) == ()

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from identification import Log, fit
-from identification.discovery.options import DiscoveryOptions
 from identification.model.finer import FINER
+from identification.prediction import step_shift as step_shifts
 from identification.prediction.step_shift import StepShift, step_shift
 from identification.report.records_fit_verdict import records_fit_verdict
 from identification.report.step_words import std_sentence, step_sentences
@@ -126,13 +126,14 @@ def test_longer_steps_and_the_check_with_finer_ones_are_one_paragraph(elbow):
         assert bool(words) or said == taken
 
 
-def test_the_options_say_what_is_told(elbow):
+def test_what_is_told_is_what_is_beyond_the_limits(elbow, monkeypatch):
     model = elbow[0].model
     std = np.array([*model.told_std.values()])
     other = with_finer(model, 2.3 * std, 0.8)
     assert len(step_sentences(other)) == 1
-    bold = DiscoveryOptions(told_step_shift=3.0, told_step_error=0.5)
-    assert step_sentences(other, options=bold) == []
+    monkeypatch.setattr(step_shifts, "TOLD_SHIFT", 3.0)
+    monkeypatch.setattr(step_shifts, "TOLD_ERROR", 0.5)
+    assert step_sentences(other) == []
 
 
 def test_a_finer_step_moves_nothing_where_all_is_smooth(elbow):

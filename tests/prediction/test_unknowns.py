@@ -58,7 +58,7 @@ def test_records_whose_clocks_differ_have_a_shift_each():
     assert effect.own
     score = window_scores(parent.fit, list_common([effect]))[0]
     assert score.size.shape == (2,)
-    child = with_effect(parent, begin(parent, [score], DiscoveryOptions()), base.horizon, roles[2:])
+    child = with_effect(parent, begin(parent, [score]), base.horizon, roles[2:])
     found = [child.fit.values[f"time_shift.tau@drive [record {k}]"] for k in (1, 2)]
     np.testing.assert_allclose(found, SHIFTS[:2], atol=1e-3)
     value, _ = child.unseen.own["record 3"]["time_shift.tau@drive"]

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from records_cases import FREE, HORIZON, nominal_model, pendulum, record, records
 
-from identification.discovery.options import DiscoveryOptions
 from identification.discovery.scoring.sensitivities import list_common
 from identification.effects.joint_plant import candidates
 from identification.prediction import point
@@ -142,7 +141,7 @@ def test_a_child_never_explains_less_than_its_parent(name):
     (score, *_) = scored(parent, name)
     child = with_effect(
         parent,
-        begin(parent, [score], DiscoveryOptions()),
+        begin(parent, [score]),
         HORIZON,
         as_records(logs[:2], logs[2:])[2:],
     )
@@ -175,7 +174,7 @@ def test_a_parameter_without_effect_is_refused(refusal):
 def test_a_free_parameter_by_another_name_is_imitated_and_a_law_is_not():
     """The arm's inertia is free as its armature, so that no other inertia of it is missing."""
     found = scored(rubbed(), "inertia_mismatch", "transmitted_load_friction")
-    known = find_imitated(rubbed().fit, found, DiscoveryOptions())
+    known = find_imitated(rubbed().fit, found)
     assert {name for name, _ in known} == {"inertia_mismatch"}
 
 

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from records_cases import FREE, HORIZON, nominal_model, pendulum, records
 
-from identification.discovery.options import DiscoveryOptions
 from identification.discovery.scoring.sensitivities import list_common
 from identification.effects.joint_plant import candidates
 from identification.prediction.extension import with_effect
@@ -38,7 +37,7 @@ def fitted(true, name):
     parent = fit_nominal(replace(base, plant=base.plant.with_values(known)), logs)
     effect = next(e for e in candidates(pendulum(), FREE) if e.name == name)
     (score, *_) = window_scores(parent.fit, list_common([effect]))
-    start = begin(parent, [score], DiscoveryOptions())
+    start = begin(parent, [score])
     return with_effect(parent, start, HORIZON, logs[2:]), score.candidate
 
 

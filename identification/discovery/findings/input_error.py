@@ -31,6 +31,8 @@ from identification.discovery.validation import Validation
 from identification.kalman.noise_model import Whitener
 from identification.kalman.point import evaluate_sensitivities
 
+ERROR_KNOTS = 12  # of the curves over input, output and rate that an error of the inputs may follow
+
 
 @dataclass(frozen=True)
 class ErrorFamily:
@@ -98,7 +100,7 @@ def fit_families(validation: Validation, options: DiscoveryOptions) -> tuple[Fam
 
     Args:
         validation: the prediction of the whole log by a fitted model.
-        options: the numbers of knots and blocks.
+        options: the number of blocks.
     """
     if not (validation.filter.A.size and validation.log.inputs.shape[1]):
         return ()
@@ -109,7 +111,7 @@ def fit_families(validation: Validation, options: DiscoveryOptions) -> tuple[Fam
         return ()
     with one_blas_thread():
         F = validation.filter(J) / fit.level.sigma
-        families = list_families(validation, options.error_knots)
+        families = list_families(validation, ERROR_KNOTS)
         each = [_fit_family(validation, J, F, f, options.proof_blocks) for f in families]
     return tuple(each)
 

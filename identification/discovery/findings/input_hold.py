@@ -12,19 +12,19 @@ from functools import partial
 from identification.discovery.attempts import attempt
 from identification.discovery.findings.evidence import InputHold
 from identification.discovery.findings.finding import Finding, FindingKind
-from identification.discovery.options import DiscoveryOptions
 from identification.kalman.point import evaluate_point
 from identification.kalman.refit import Refit, estimate_noise
 
 HOLDS = ("foh", "zoh")  # straight lines, steps
+# Of the inputs' error: the other hold is reported where it leaves less than this.
+OTHER_HOLD_SHARE = 0.5
 
 
-def find_input_hold(fit: Refit, options: DiscoveryOptions) -> tuple[Finding, ...]:
+def find_input_hold(fit: Refit) -> tuple[Finding, ...]:
     """Returns the other hold of the inputs if it makes their error far smaller; else nothing.
 
     Args:
         fit: the nominal model, fitted.
-        options: how much smaller the error has to be.
     """
     point = fit.point
     if not point.log.inputs.any():  # of a free swing, which no hold changes
@@ -35,8 +35,8 @@ def find_input_hold(fit: Refit, options: DiscoveryOptions) -> tuple[Finding, ...
     there = attempt(None, evaluate)
     if there is None:
         return ()
-    level = estimate_noise(there, fit.prior, options, fit.level)
-    if level.input_std >= options.other_hold_share * fit.level.input_std:
+    level = estimate_noise(there, fit.prior, fit.level)
+    if level.input_std >= OTHER_HOLD_SHARE * fit.level.input_std:
         return ()
     unit = point.log.units.get(point.log.input_names[0], "")
     evidence = InputHold(other, unit, level.input_std, fit.level.input_std)

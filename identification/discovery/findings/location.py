@@ -17,30 +17,28 @@ from identification.discovery.findings.evidence import (
 )
 from identification.discovery.findings.finding import Finding, FindingKind
 from identification.discovery.missing_forces import MissingForce
-from identification.discovery.options import DiscoveryOptions
 from identification.kalman.refit import Refit
 from identification.logs.noise import noise_floor
 
+# Of the power of a missing force: the regressor that it follows is reported from this share on.
+TOLD_REGRESSOR_SHARE = 0.1
 TENTHS = 10  # intervals into which the fitted samples are divided
 STEEP = 3.0  # of the sign of a rate, smoothed by tanh, per std of the rate
 SLOW = 0.3  # width of "near zero", in std of the rate
 
 
-def locate_error(
-    fit: Refit, forces: Sequence[MissingForce], options: DiscoveryOptions
-) -> tuple[Finding, ...]:
+def locate_error(fit: Refit, forces: Sequence[MissingForce]) -> tuple[Finding, ...]:
     """Returns findings on where the nominal model fails on the fitted samples.
 
     Args:
         fit: the nominal model, fitted.
         forces: the forces that it lacks.
-        options: from which share on the regressor of a force is told.
     """
     return (
         Finding(FindingKind.WORST_OUTPUT, _worst_output(fit)),
         Finding(FindingKind.WORST_INTERVAL, _worst_interval(fit)),
         Finding(FindingKind.MEDIAN_FREQUENCY, _median_frequency(fit)),
-        *(Finding(FindingKind.MISSING_FORCE, _summarise(fit, f, options)) for f in forces),
+        *(Finding(FindingKind.MISSING_FORCE, _summarise(fit, f)) for f in forces),
     )
 
 
@@ -79,7 +77,7 @@ def _median_frequency(fit: Refit) -> MedianFrequency:
     return MedianFrequency(float(max(half, f[1])))
 
 
-def _summarise(fit: Refit, force: MissingForce, options: DiscoveryOptions) -> ForceEvidence:
+def _summarise(fit: Refit, force: MissingForce) -> ForceEvidence:
     units, rms = tuple(dict.fromkeys(force.units)), []
     for unit in units:
         mine = [u == unit for u in force.units]
@@ -91,7 +89,7 @@ def _summarise(fit: Refit, force: MissingForce, options: DiscoveryOptions) -> Fo
         units=units,
         rms=tuple(rms),
         share=force.share,
-        regressor=best if shares[best] >= options.regressor_share else None,
+        regressor=best if shares[best] >= TOLD_REGRESSOR_SHARE else None,
         regressor_share=shares[best],
     )
 

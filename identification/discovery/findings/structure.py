@@ -38,7 +38,7 @@ def find_structure(model: FittedModel, options: DiscoveryOptions) -> tuple[Findi
     if white.is_correlated(options):
         correlated = CorrelatedInnovations(white.predictable, white.p_correlation)
         out.append(Finding(FindingKind.CORRELATED_INNOVATIONS, correlated))
-    if names := list_parameters_at_limit(model, options):
+    if names := list_parameters_at_limit(model):
         out.append(Finding(FindingKind.PARAMETERS_AT_LIMIT, ParametersAtLimit(names)))
     if model.refit.relative_input_error > options.allowed_input_error:
         out.append(Finding(FindingKind.LARGE_INPUT_ERROR, _input_error(model)))

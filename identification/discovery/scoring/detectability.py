@@ -1,6 +1,6 @@
 """The smallest effects that a log would have shown, without which "nothing missing" says little.
 
-An effect of size η is found with probability 0.9 when (η/std)² is `detection_noncentrality`.
+An effect of size η is found with probability 0.9 when (η/std)² is `DETECTION_NONCENTRALITY`.
 """
 
 from __future__ import annotations
@@ -13,6 +13,10 @@ from identification.discovery.effect_results import Detectable
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.scoring.scores import Score
 
+# (4.6 + 1.3)² of a noncentral F: t = 4.6 is what the blocks demand at a chance of 0.01 over 200
+# candidates, and 1.3 is the normal quantile of 0.9.
+DETECTION_NONCENTRALITY = 35.0
+
 
 def list_detectable(scores: Sequence[Score], options: DiscoveryOptions) -> tuple[Detectable, ...]:
     """Returns the smallest size of each effect that would have been found, ordered by name.
@@ -22,7 +26,7 @@ def list_detectable(scores: Sequence[Score], options: DiscoveryOptions) -> tuple
 
     Args:
         scores: of all candidates on the final model, the best first.
-        options: the noncentrality that is found, and the sizes that are believed.
+        options: the sizes that are believed.
     """
     chosen: dict[str, Score] = {}
     for s in scores:
@@ -31,7 +35,7 @@ def list_detectable(scores: Sequence[Score], options: DiscoveryOptions) -> tuple
     out = []
     for _, s in sorted(chosen.items()):
         for size, std in zip(s.candidate.effect.sizes, s.std, strict=True):
-            smallest = float(np.sqrt(options.detection_noncentrality) * std)
+            smallest = float(np.sqrt(DETECTION_NONCENTRALITY) * std)
             largest = options.size_factor * size.largest
             is_testable = np.isfinite(smallest) and 0 < smallest <= largest
             out.append(

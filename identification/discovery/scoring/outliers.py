@@ -18,6 +18,9 @@ from identification.effects.effect import Candidate
 from identification.logs.joined import records_of
 from identification.logs.log import Log
 
+# Times of jumps of an output that are tried; a log with more of them has another fault.
+MAX_JUMPS = 3
+
 
 def find_outlier_times(
     innovations: np.ndarray, log: Log, apart: float, options: DiscoveryOptions
@@ -28,14 +31,14 @@ def find_outlier_times(
         innovations: in units of σ, shape (N, ny).
         log: whose samples they are.
         apart: outliers that are nearer than that are one [s].
-        options: what is beyond chance, and how many are asked for.
+        options: what is beyond chance.
     """
     size = np.abs(innovations).max(axis=1)
     time = np.concatenate([record.time - record.time[0] for _, record in records_of(log)])
     least = normal_level(options.significance / (2 * innovations.size))
     out: list[float] = []
     for k in np.argsort(-size):
-        if size[k] < least or len(out) == options.max_jumps:
+        if size[k] < least or len(out) == MAX_JUMPS:
             break
         if all(abs(time[k] - other) >= apart for other in out):
             out.append(float(time[k]))

@@ -32,7 +32,7 @@ def begin_anew(
     Returns:
         For each of these effects the likeliest model, the likeliest effect first.
     """
-    if not refitted or not list_parameters_at_limit(refitted[0], task.options):
+    if not refitted or not list_parameters_at_limit(refitted[0]):
         return [*refitted]
     best = [_likeliest(task, model, scores) for model in refitted]
     return sorted(best, key=lambda model: model.negative_bic, reverse=True)

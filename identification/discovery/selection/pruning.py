@@ -53,9 +53,7 @@ def _is_needed(task: DiscoveryTask, model: FittedModel, candidate: Candidate) ->
     To first order: `FAR` times what BIC asks leaves room for what is not linear. Of a limit, whose
     size is not estimated, this says nothing.
     """
-    retuned = attempt(
-        None, partial(retune, model.refit, task.nominal_model, candidate, task.options)
-    )
+    retuned = attempt(None, partial(retune, model.refit, task.nominal_model, candidate))
     loss = retuned[0] if retuned else np.inf
     asked = len(candidate.free) * np.log(len(model.refit.point.log))
     return bool(np.isfinite(loss) and loss > FAR * asked)
