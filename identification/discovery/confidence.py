@@ -23,12 +23,13 @@ from identification.blas import one_blas_thread
 from identification.discovery.attempts import attempt
 from identification.discovery.effect_results import NamedEffect, Outside, Rival
 from identification.discovery.fitted_model import AcceptedEffect, FittedModel, collect_parameters
-from identification.discovery.free_curves import NODES, Curve, find_curves
+from identification.discovery.free_curves import Curve, find_curves
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.replacement import replace_effect
 from identification.discovery.retuning import retune
 from identification.discovery.scoring.sensitivities import Sensitivity
 from identification.discovery.task import DiscoveryTask
+from identification.effects.curve_laws import NODES
 from identification.effects.effect import CURVE, Candidate
 from identification.kalman.noise_model import build_whitener
 

@@ -24,8 +24,8 @@ import numpy as np
 
 from identification.discovery.effect_results import Proof
 from identification.discovery.fitted_model import (
-    FAR,
-    FEW,
+    NEEDED_BIC_RATIO,
+    ROUGH_FIT_STEPS,
     AcceptedEffect,
     FittedModel,
     is_confirmed,
@@ -161,9 +161,9 @@ def _fit_without(
     """
     out = {candidate.key for candidate in candidates}
     rest = tuple(c for c in model.candidates if c.key not in out)
-    few = try_fit(task, rest, values, model, FEW)
+    few = try_fit(task, rest, values, model, ROUGH_FIT_STEPS)
     count = sum(len(candidate.sizes) for candidate in candidates)
-    far = FAR * count * float(np.log(len(model.refit.point.log)))
+    far = NEEDED_BIC_RATIO * count * float(np.log(len(model.refit.point.log)))
     if few is None or few.negative_bic < model.negative_bic - far:
         return few
     return try_fit(task, rest, few.refit.point.values, few)

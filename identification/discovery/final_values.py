@@ -11,7 +11,7 @@ from identification.discovery.result import Discovery
 from identification.effects.effect import Effect
 from identification.kalman.refit import Refit
 
-AT_BOUND = 1e-6  # relative distance from a bound that is on it
+BOUND_TOLERANCE = 1e-6  # relative: a value this near to a bound lies on it
 
 
 def collect_final_values(found: Discovery) -> dict[str, float]:
@@ -61,5 +61,5 @@ def list_at_bound(fit: Refit, names: Collection[str]) -> list[str]:
     each = ((parameters[n], value) for n, value in fit.point.values.items() if n in names)
     return [
         p.name for p, value in each
-        if any(isclose(value, bound, rel_tol=AT_BOUND) for bound in (p.lower, p.upper) if bound)
+        if any(isclose(value, b, rel_tol=BOUND_TOLERANCE) for b in (p.lower, p.upper) if b)
     ]  # fmt: skip

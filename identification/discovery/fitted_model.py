@@ -9,7 +9,7 @@ import numpy as np
 
 from identification.discovery.attempts import attempt, refuse_infinite
 from identification.discovery.effect_results import Proof
-from identification.discovery.nominal_model import STEPS, fit_with_effects
+from identification.discovery.nominal_model import MAX_FIT_STEPS, fit_with_effects
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.proof import allowed_chance
 from identification.discovery.scoring.scores import Score, score
@@ -19,10 +19,11 @@ from identification.discovery.validation import Validation, validate
 from identification.effects.effect import Candidate
 from identification.kalman.refit import Refit
 
-FEW = 5  # steps of a fit that only says how far a model is from the data
+ROUGH_FIT_STEPS = 5  # steps of a fit that only says how far a model is from the data
 # Of a logarithm: a parameter this near to the end of its range is at its limit.
 LIMIT_DISTANCE = 0.02
-FAR = 10.0  # times what BIC asks for the sizes of an effect, beyond which it is needed
+# Of an effect's gain to what BIC asks for its sizes, above which it is needed.
+NEEDED_BIC_RATIO = 10.0
 
 
 @dataclass(frozen=True)
@@ -89,7 +90,7 @@ def fit_model(
     candidates: tuple[Candidate, ...],
     start: Mapping[str, float],
     near: FittedModel | None = None,
-    steps: int = STEPS,
+    steps: int = MAX_FIT_STEPS,
     least: float = -np.inf,
 ) -> FittedModel:
     """Fit the nominal model with some effects, and validate it.
@@ -118,7 +119,7 @@ def try_fit(
     candidates: tuple[Candidate, ...],
     start: Mapping[str, float],
     near: FittedModel | None = None,
-    steps: int = STEPS,
+    steps: int = MAX_FIT_STEPS,
     least: float = -np.inf,
     tried: Candidate | None = None,
 ) -> FittedModel | None:
@@ -214,7 +215,7 @@ def is_far_likelier(candidate: Candidate, gain: float, samples: int) -> bool:
         gain: of twice the log likelihood with it, less what BIC asks.
         samples: that were fitted.
     """
-    return gain > FAR * len(candidate.estimated) * np.log(samples)
+    return gain > NEEDED_BIC_RATIO * len(candidate.estimated) * np.log(samples)
 
 
 def is_confirmed(proof: Proof, options: DiscoveryOptions, tried: int = 1) -> bool:

@@ -20,8 +20,8 @@ from identification.kalman.linear import Linearisation, linearise_along
 from identification.kalman.trajectory import Trajectory
 from identification.model.predictor import Predictor
 
-ACTS = 0.01  # of the largest rms: a degree of freedom with less force is not acted on
-LEAST = 1e-12  # [N or N m] a smaller force is rounding
+MIN_ACTING_SHARE = 0.01  # of the largest rms: a degree of freedom with less force is not acted on
+ROUNDING_FORCE = 1e-12  # [N or N m] a smaller force is rounding
 JOINTS = (int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE))
 
 
@@ -64,7 +64,7 @@ class ForceAlong:
     def is_timed(self) -> bool:
         """Whether the first force would be another one at another time."""
         force = self.forces[0]
-        return bool(np.abs(self.late - force).max() > ACTS * np.abs(force).max())
+        return bool(np.abs(self.late - force).max() > MIN_ACTING_SHARE * np.abs(force).max())
 
 
 @dataclass(frozen=True)
@@ -129,9 +129,9 @@ def forces_along(stretches: Sequence[Stretch], predicted: np.ndarray) -> ForceAl
 def _dofs(model: mujoco.MjModel, force: np.ndarray) -> tuple[list[int], int]:
     """Returns degrees of freedom on which a force (M, nv) acts, and the kind of their joints."""
     rms = np.sqrt(np.mean(force**2, axis=0))
-    if rms.max(initial=0.0) < LEAST:
+    if rms.max(initial=0.0) < ROUNDING_FORCE:
         return [], 0
-    dofs = np.flatnonzero(rms > ACTS * rms.max()).tolist()
+    dofs = np.flatnonzero(rms > MIN_ACTING_SHARE * rms.max()).tolist()
     kinds = {int(model.jnt_type[model.dof_jntid[d]]) for d in dofs}
     kind = min(kinds)
     return (dofs, kind) if len(kinds) == 1 and kind in JOINTS else ([], 0)

@@ -1,18 +1,18 @@
 """A forecast of the memory and time of a search, told before it takes them.
 
-    bytes   = BASE + MODELS b + (1 + KEPT) D
-    D       = 8 max(N LINEAR n_x²,  n (n_y (p + m) + LINEAR n_x² + c F + c_u n_u (s + P)))
-    F       = max(2 I n_f, 2 I n_v + OUTPUTS n_y)
-    seconds = BEGUN + t₁ (FIT + FITS p + SCORES m)        t₁ the processor time of one simulation
+    bytes   = BASE_BYTES + MODEL_COPIES b + (1 + KEPT_SHARE) D
+    D       = 8 max(N L,  n (n_y (p + m) + L + c F + c_u n_u (s + P))),     L = LINEAR_MATRICES n_x²
+    F       = max(2 I n_f, 2 I n_v + OUTPUT_COPIES n_y)
+    seconds = BASE_SECONDS + t₁ (SEARCH_RUNS + PARAMETER_RUNS p + SIZE_RUNS m)
 
-of N samples, n of them fitted, with n_y outputs, n_u inputs, p parameters, m sizes of effects,
-c = min(m, 128) columns that are computed at once, at most c_u of them for effects of inputs, n_v
+of N samples, n of them fitted, with n_y outputs, n_u inputs, p parameters, m sizes of effects, c =
+min(m, 128) columns that are computed at once, at most c_u of them for effects of inputs, n_v
 velocities, n_f velocities and activations, n_x states, s steps of the simulation in a sample, P
-points and I intervals of the trajectory in one, and a model of b bytes. A sensitivity of each
-output to each size is kept. The model is linearised at n samples in a fit, and at N where it is
-validated. The forcings of c columns lie in memory twice while they are put together; after that
-only those that outputs feel, beside what the columns do to the outputs. Inputs are kept at each
-step and at each point.
+points and I intervals of the trajectory in one, a model of b bytes, and one simulation that takes
+the processor time t₁. A sensitivity of each output to each size is kept. The model is linearised at
+n samples in a fit, and at N where it is validated. The forcings of c columns lie in memory twice
+while they are put together; after that only those that outputs feel, beside what the columns do to
+the outputs. Inputs are kept at each step and at each point.
 
 The constants follow the arrays that a search allocates, and were compared with the peak memory and
 the processor time of searches of the INCA and of chains of bodies (benchmarks/forecast.py). The
@@ -28,31 +28,35 @@ from pathlib import Path
 
 import numpy as np
 
-from identification.discovery.scoring.sensitivities import BATCH, list_common, list_single
+from identification.discovery.scoring.sensitivities import (
+    MAX_BATCH_COLUMNS,
+    list_common,
+    list_single,
+)
 from identification.discovery.task import DiscoveryTask
 from identification.errors import InputError
 from identification.files import read_text
-from identification.kalman.trajectory import FINE, INTERVALS
+from identification.kalman.trajectory import FINE_POINTS, INTERVALS
 from identification.logs.joined import rows_of
 from identification.model.predictor import Predictor
 from identification.model.rollout import substeps
 
-BASE = 28e6  # [bytes] of compiled code and libraries that only a search loads
-MODELS = 96  # copies of the model, for changes of it that are evaluated together
-LINEAR = 4  # matrices of n_x² for a sample: transitions and effects of rates over the intervals
-OUTPUTS = 6  # copies of the outputs of c columns: of sensors, of q and v, and what they sum up to
+BASE_BYTES = 28e6  # of compiled code and libraries that only a search loads
+MODEL_COPIES = 96  # for changes of the model that are evaluated together
+LINEAR_MATRICES = 4  # of n_x² for a sample: transitions and effects of rates over the intervals
+OUTPUT_COPIES = 6  # of the outputs of c columns: of sensors, of q and v, and what they sum up to
 # The C library keeps freed arrays below 32 MiB for the process (M_MMAP_THRESHOLD of glibc): the
 # share is as measured of what was in use, and no more than three arrays of that size.
-KEPT = 0.7
-MOST_KEPT = 3 * 32 * 2.0**20  # [bytes]
-BEGUN = 1.5  # [s] that a search takes, however short the log
+KEPT_SHARE = 0.7
+MAX_KEPT_BYTES = 3 * 32 * 2.0**20  # three arrays of 32 MiB
+BASE_SECONDS = 1.5  # of a search, however short the log
 # Simulations that fits cost: each linearises the model, whitens its residuals, and evaluates each
 # parameter. A search that finds nothing makes one fit, and one of each candidate that it rejects.
-FIT, FITS = 43.0, 1.7
-SCORES = 0.07  # simulations that a size of a candidate costs; it shares the linearisation
-_SHORT = 400  # samples of the simulation that is timed
-_TRIES = 6  # simulations, of which the fastest counts: programs beside it make others slower
-_TOLD = 60.0, 2.0**30  # [s] and [bytes] from which a forecast is worth a line
+SEARCH_RUNS, PARAMETER_RUNS = 43.0, 1.7
+SIZE_RUNS = 0.07  # simulations that a size of a candidate costs; it shares the linearisation
+_TIMED_SAMPLES = 400  # of the simulation that is timed
+_TIMED_RUNS = 6  # of which the fastest counts: programs beside it make others slower
+_MIN_TOLD = 60.0, 2.0**30  # [s] and [bytes] from which a forecast is worth a line
 
 
 @dataclass(frozen=True)
@@ -81,7 +85,7 @@ class Forecast:
     @property
     def is_large(self) -> bool:
         """Whether it is worth a line."""
-        seconds, memory = _TOLD
+        seconds, memory = _MIN_TOLD
         return self.seconds > seconds or self.memory > memory
 
 
@@ -102,12 +106,13 @@ def forecast(task: DiscoveryTask) -> Forecast:
     on_inputs = sum(len(c.sizes) for c in every if "input" in c.effect.hooks)
     parameters = len(task.nominal_model.names)
     numbers = _numbers(task, sizes, on_inputs)
-    seconds = BEGUN + (FIT + FITS * parameters + SCORES * sizes) * _simulated(task)
-    kept = min(KEPT * 8 * numbers, MOST_KEPT)
-    fixed = BASE + MODELS * float(model.nbuffer)
+    runs = SEARCH_RUNS + PARAMETER_RUNS * parameters + SIZE_RUNS * sizes
+    seconds = BASE_SECONDS + runs * _simulated(task)
+    kept = min(KEPT_SHARE * 8 * numbers, MAX_KEPT_BYTES)
+    fixed = BASE_BYTES + MODEL_COPIES * float(model.nbuffer)
     memory = fixed + 8 * numbers + kept
     # A log that is a little shorter keeps no less, where it keeps as much as it can.
-    fixed += kept if kept == MOST_KEPT else 0.0
+    fixed += kept if kept == MAX_KEPT_BYTES else 0.0
     return Forecast(len(log), memory, seconds, fixed)
 
 
@@ -116,13 +121,14 @@ def _numbers(task: DiscoveryTask, sizes: int, on_inputs: int) -> float:
     log, model = task.log, task.nominal_model.plant.model
     fitted, outputs = int(rows_of(log, "estimation").sum()), log.outputs.shape[1]
     steps = substeps(log.sampling_time, model.opt.timestep)
-    intervals, points = min(INTERVALS, steps), min(FINE, steps)
+    intervals, points = min(INTERVALS, steps), min(FINE_POINTS, steps)
     forced = 2 * intervals * (model.nv + model.na)
-    felt = 2 * intervals * model.nv + OUTPUTS * outputs
+    felt = 2 * intervals * model.nv + OUTPUT_COPIES * outputs
     inputs = log.inputs.shape[1] * (steps + points)
-    linear = LINEAR * (2 * model.nv + model.na) ** 2
+    linear = LINEAR_MATRICES * (2 * model.nv + model.na) ** 2
     kept = outputs * (len(task.nominal_model.names) + sizes)
-    columns = min(sizes, BATCH) * max(forced, felt) + min(on_inputs, BATCH) * inputs
+    batch, of_inputs = min(sizes, MAX_BATCH_COLUMNS), min(on_inputs, MAX_BATCH_COLUMNS)
+    columns = batch * max(forced, felt) + of_inputs * inputs
     return float(max(len(log) * linear, fitted * (kept + linear + columns)))
 
 
@@ -173,9 +179,9 @@ def _simulated(task: DiscoveryTask) -> float:
     own = task.nominal_model.plant.parameters
     values = np.array([[own[name].value for name in names]])
     predictor = Predictor(task.nominal_model.plant, task.log, names)
-    samples = min(_SHORT, len(task.log))
+    samples = min(_TIMED_SAMPLES, len(task.log))
     seconds = []
-    for _ in range(_TRIES):
+    for _ in range(_TIMED_RUNS):
         began = time.process_time()  # other programs may have the processor meanwhile
         predictor.predict(values, samples)
         seconds.append(time.process_time() - began)

@@ -16,10 +16,10 @@ from identification.discovery.force_along import ForceAlong
 from identification.discovery.law_regressors import Regressor
 from identification.kalman import response
 
-NODES = 20
-APART = 2e-3  # of the range of x: nodes nearer than this are one
-LEAST = 10  # samples between two nodes
-MOST = 4000  # places at which a law is looked at for its bends
+CURVE_NODES = 20  # in the place of a law; half as many on each side of zero
+MIN_NODE_DISTANCE = 2e-3  # of the range of x: nodes nearer than this are one
+MIN_NODE_SAMPLES = 10  # between two nodes
+MAX_FORCE_POINTS = 4000  # at which a recovered force is looked at: its curve needs no more
 
 
 @dataclass(frozen=True)
@@ -56,10 +56,11 @@ def place_nodes(regressor: Regressor, force: np.ndarray) -> Nodes:
     order = np.argsort(x, kind="stable")
     x, f = x[order], f[order]
     if regressor.along != "rate":
-        at = _between(x, f, NODES)
+        at = _between(x, f, CURVE_NODES)
         return Nodes(at, np.zeros(len(at), int))
     parts = [(s, s * x > 0) for s in (-1, 1)]
-    each = [(s, _between(x[of], f[of], NODES // 2)) for s, of in parts if of.sum() >= LEAST]
+    sides = [(s, of) for s, of in parts if of.sum() >= MIN_NODE_SAMPLES]
+    each = [(s, _between(x[of], f[of], CURVE_NODES // 2)) for s, of in sides]
     return Nodes(
         np.concatenate([at for _, at in each]),
         np.concatenate([np.full(len(at), s) for s, at in each]),
@@ -69,14 +70,14 @@ def place_nodes(regressor: Regressor, force: np.ndarray) -> Nodes:
 def _between(x: np.ndarray, force: np.ndarray, count: int) -> np.ndarray:
     """Returns nodes over ascending x: half of them by the samples, half by the law's changes."""
     share = np.linspace(0, 1, count // 2 + 1)
-    few = x[:: max(1, len(x) // MOST)]
+    few = x[:: max(1, len(x) // MAX_FORCE_POINTS)]
     law = np.interp(few, x, force)
     changed = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(law)))])
     bends = np.interp(share * changed[-1], changed, few)
     kept = [x[0]]
     for node in np.union1d(np.quantile(x, share), bends):
         between = np.searchsorted(x, node) - np.searchsorted(x, kept[-1])
-        if node - kept[-1] > APART * (x[-1] - x[0]) and between >= LEAST:
+        if node - kept[-1] > MIN_NODE_DISTANCE * (x[-1] - x[0]) and between >= MIN_NODE_SAMPLES:
             kept.append(node)
     return np.array(kept)
 

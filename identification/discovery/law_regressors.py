@@ -3,12 +3,12 @@
     u(x) = Σ_i (f_(i+1) - f_(i))² / 2 Σ f²        f_(i): the forces in the order of x
 
 u is 0 where f is a smooth function of x, and 1 where it is none (von Neumann 1941). The first of
-these with u below `ENOUGH` is taken: the time, where the force knows it; the joint's rate; the
-angle within one period of a law that repeats; its position; the force of its own drives. A friction
-may also be a function of one of them when it is counted against the motion. Where none is enough,
-it is the one with the least u, if this is below `FAIR`: where a joint turns, a friction is any
-force below its level. Else, as where a law is a product of two of them, it is what the law
-multiplies by its size.
+these with u below `EXPLAINED_TOLERANCE` is taken: the time, where the force knows it; the joint's
+rate; the angle within one period of a law that repeats; its position; the force of its own drives.
+A friction may also be a function of one of them when it is counted against the motion. Where none
+is enough, it is the one with the least u, if this is below `FAIR_TOLERANCE`: where a joint turns, a
+friction is any force below its level. Else, as where a law is a product of two of them, it is what
+the law multiplies by its size.
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ import numpy as np
 from identification.discovery.force_along import ForceAlong
 from identification.effects.effect import Candidate
 
-ENOUGH = 0.01
-FAIR = 0.1
-MOST = 0.8  # of the points: where a joint is held, no law of friction shows
-HELD = 2e-3  # of the top speed: below it a friction may hold the joint
+EXPLAINED_TOLERANCE = 0.01  # of a force: what may be left of it by the quantity that it follows
+FAIR_TOLERANCE = 0.1  # the same where no quantity is enough, and the best one is taken
+LAW_POINTS_SHARE = 0.8  # of the points: where a joint is held, no law of friction shows
+HELD_SPEED_SHARE = 2e-3  # of the top speed: below it a friction may hold the joint
 SLIDE = int(mujoco.mjtJoint.mjJNT_SLIDE)
 
 
@@ -73,7 +73,7 @@ def find_regressor(
     q, v, force = along.position, along.rate, along.forces[0]
     x, f = ("m", "N") if along.kind == SLIDE else ("rad", "N m")
     plain, against = np.ones_like(v), -np.where(v < 0, -1.0, 1.0)
-    moving = (np.abs(v) > HELD * np.abs(v).max()) & ~along.turning
+    moving = (np.abs(v) > HELD_SPEED_SHARE * np.abs(v).max()) & ~along.turning
 
     def follows(what: str, of: np.ndarray, turn: np.ndarray, unit: str) -> Regressor:
         return Regressor(
@@ -91,11 +91,11 @@ def find_regressor(
     for turn in (plain, against):
         options += [follows("position", q, turn, x), follows("drive", along.drives, turn, f)]
     for option in options:
-        if unexplained(option, force) < ENOUGH:
+        if unexplained(option, force) < EXPLAINED_TOLERANCE:
             return option
     best = min(options, key=lambda option: unexplained(option, force))
     size = _single(candidate, values)
-    if size and unexplained(best, force) > FAIR:
+    if size and unexplained(best, force) > FAIR_TOLERANCE:
         return follows("law", force / size, plain, "")
     return best
 
@@ -122,7 +122,7 @@ def find_reading(
             ("reading", own, unit), ("rate", rate, f"{unit}/s"), ("time", times, "s")
         )
     ]  # fmt: skip
-    return min(options, key=lambda option: unexplained(option, error) > ENOUGH)
+    return min(options, key=lambda option: unexplained(option, error) > EXPLAINED_TOLERANCE)
 
 
 def unexplained(regressor: Regressor, force: np.ndarray) -> float:
@@ -138,7 +138,8 @@ def _is_of_time(along: ForceAlong, turn: np.ndarray) -> bool:
     order = np.argsort(time, kind="stable")
     expected = np.interp(along.late_time.ravel(), time[order], f[order])
     off = (turn * along.late).ravel() - expected
-    return float(np.quantile(np.abs(off), MOST)) < ENOUGH * float(np.abs(f).max())
+    near = float(np.quantile(np.abs(off), LAW_POINTS_SHARE))
+    return near < EXPLAINED_TOLERANCE * float(np.abs(f).max())
 
 
 def _waves(candidate: Candidate, values: Mapping[str, float]) -> float | None:

@@ -19,11 +19,11 @@ from identification.model.coordinates import Coordinates, coordinates
 from identification.model.parameter import Parameter, ParameterSet
 from identification.model.predictor import Plant, Predictor
 
-STEPS = 20  # of a fit, at most
+MAX_FIT_STEPS = 20  # of a fit
 # Of a logarithm, for the prior of a shape about the grid value with the best score; the grids are
 # about as coarse.
 SHAPE_STD = 1.0
-SMALL = 1e-3  # of a probe: the search for a size begins at least this far from zero
+MIN_START_SHARE = 1e-3  # of a probe: the search for a size begins at least this far from zero
 
 
 @dataclass(frozen=True)
@@ -101,7 +101,7 @@ def fit_with_effects(
     candidates: Sequence[Candidate],
     start: Mapping[str, float],
     options: DiscoveryOptions,
-    steps: int = STEPS,
+    steps: int = MAX_FIT_STEPS,
     near: Refit | None = None,
     progress: Progress | None = None,
     least: float = -np.inf,
@@ -135,7 +135,7 @@ def fit_with_effects(
     }
     names = (*nominal_model.names, *sizes, *shapes)
     own = {**parameters.values(), **{n: v for c in candidates for n, v in c.fixed.items()}}
-    begin = {**own, **start, **{n: _nonzero(parameters[n], {**own, **start}[n]) for n in sizes}}
+    begin = {**own, **start, **{n: nonzero(parameters[n], {**own, **start}[n]) for n in sizes}}
     first = np.array([_inside(parameters[n], begin[n]) for n in names])
     space = coordinates(parameters, names, first, linear=(*sizes, *nominal_model.linear))
     space = _within_factor(space, parameters, nominal_model.names, options.nominal_factor)
@@ -229,9 +229,9 @@ def _within_held(space: Coordinates, held: Mapping[str, tuple[float, float]]) ->
     return replace(space, lower=np.maximum(space.lower, low), upper=np.minimum(space.upper, high))
 
 
-def _nonzero(record: Parameter, value: float) -> float:
+def nonzero(record: Parameter, value: float) -> float:
     """Returns the value of a size, moved away from zero where it is too near to it."""
-    least = SMALL * record.scale
+    least = MIN_START_SHARE * record.scale
     return value if abs(value) > least else least * (1 if record.upper > 0 else -1)
 
 

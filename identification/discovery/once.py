@@ -13,8 +13,8 @@ from typing import Protocol, TypeVar
 
 from identification.effects.effect import Candidate
 
-SAME = 0.1  # of the std: values are told to two digits of it
-DIGITS = 1e-3  # relative, of values whose std is not known
+SAME_STDS = 0.1  # of the std: values are told to two digits of it
+SAME_RELATIVE = 1e-3  # of values whose std is not known
 
 
 class Refitted(Protocol):
@@ -51,6 +51,6 @@ def _is_same(a: Refitted, b: Refitted) -> bool:
         return False
     pairs = ((a.parameters[name], b.parameters[name]) for name in a.parameters)
     return all(
-        isclose(x, y, rel_tol=DIGITS, abs_tol=SAME * std if isfinite(std) else 0.0)
+        isclose(x, y, rel_tol=SAME_RELATIVE, abs_tol=SAME_STDS * std if isfinite(std) else 0.0)
         for (x, std, _), (y, _, _) in pairs
     )

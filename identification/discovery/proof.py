@@ -27,8 +27,8 @@ from identification.discovery.options import DiscoveryOptions
 from identification.discovery.validation import Validation
 from identification.logs.joined import records_of
 
-SHORTEST = 5  # samples of a block at least
-MOST_FLIPS = 32  # blocks whose flips are counted, 2^16 sums of each half
+MIN_PROOF_SAMPLES = 5  # of a block of unseen samples
+MAX_FLIPPED_BLOCKS = 32  # 2^16 sums of each half; of more blocks neighbours are added
 ROUNDING = 1e-12  # of the blocks' sizes: sums that differ by less are one
 
 
@@ -45,7 +45,8 @@ def prove(without: Validation, with_it: Validation, options: DiscoveryOptions) -
     fewer = np.sum(without.innovations**2 - E**2, axis=1) / 2
     gain = fewer[~with_it.seen]
     blocks = _blocks(gain, options)
-    each = [(name, part) for name, part in _by_record(with_it, fewer) if len(part) >= 2 * SHORTEST]
+    least = 2 * MIN_PROOF_SAMPLES
+    each = [(name, part) for name, part in _by_record(with_it, fewer) if len(part) >= least]
     floor = with_it.refit.level.sigma**2 + with_it.disturbance**2
     above = without.rms**2 - min(floor, with_it.rms**2)
     closed = without.rms**2 - with_it.rms**2
@@ -93,9 +94,10 @@ def flip_chance(blocks: np.ndarray) -> float:
     (`scipy.stats.permutation_test` draws flips by chance beyond a dozen blocks.)
 
     Args:
-        blocks: gain of each block, shape (B,); with more than `MOST_FLIPS`, neighbours are added.
+        blocks: gain of each block, shape (B,); of more than `MAX_FLIPPED_BLOCKS`, neighbours are
+            added.
     """
-    while len(blocks) > MOST_FLIPS:
+    while len(blocks) > MAX_FLIPPED_BLOCKS:
         blocks = np.add.reduceat(blocks, np.arange(0, len(blocks), 2))
     half = len(blocks) // 2
     one, other = (_signed_sums(part) for part in (blocks[:half], blocks[half:]))
@@ -115,7 +117,7 @@ def _signed_sums(blocks: np.ndarray) -> np.ndarray:
 
 def _blocks(gain: np.ndarray, options: DiscoveryOptions) -> np.ndarray:
     """Returns the gains of blocks of neighbouring samples, shape (B,)."""
-    count = min(options.proof_blocks, len(gain) // SHORTEST)
+    count = min(options.proof_blocks, len(gain) // MIN_PROOF_SAMPLES)
     starts = np.linspace(0, len(gain), count, endpoint=False).astype(int)
     return np.add.reduceat(gain, starts)
 

@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 
 from identification.discovery.force_along import ForceAlong, Stretch, forces_along
-from identification.kalman.trajectory import COARSE, Trajectory, average_inputs, follow
+from identification.kalman.trajectory import COARSE_POINTS, Trajectory, average_inputs, follow
 from identification.model.numbers import with_numbers
 from identification.model.predictor import Predictor
 from identification.model.rollout import hold, substeps, without_sensors
@@ -39,7 +39,7 @@ def force_of_records(
     each = [_with(predictor, of).records() for of in chosen]
     stretches = []
     for k, (record, columns) in enumerate(whole.records()):
-        along = follow(record, _row(values)[0, columns], COARSE)
+        along = follow(record, _row(values)[0, columns], COARSE_POINTS)
         reached = [
             _reached(own[k][0], _row(of)[:, own[k][1]], along)
             for own, of in zip(each, chosen, strict=True)

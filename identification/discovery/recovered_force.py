@@ -21,8 +21,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from identification.discovery.force_along import ACTS, ForceAlong
-from identification.discovery.free_nodes import MOST, Nodes, place_nodes, respond
+from identification.discovery.force_along import MIN_ACTING_SHARE, ForceAlong
+from identification.discovery.free_nodes import MAX_FORCE_POINTS, Nodes, place_nodes, respond
 from identification.discovery.law_regressors import (
     Regressor,
     find_reading,
@@ -32,11 +32,11 @@ from identification.discovery.law_regressors import (
 from identification.effects.effect import Candidate
 from identification.logs.log import Log
 
-LINE = 60  # bins of a law's line
-MIXED = 0.2  # u of a force that is shown as a function of one quantity, at most
-NEAR = 200  # one of so many samples is near to a node
-STEP = 0.1  # of a std: for the derivatives of a law by its parameters
-WEAK = 1.0  # of the law's largest force: a point with a larger std tells nothing
+LINE_BINS = 60  # of a law's line
+MAX_SHOWN_U = 0.2  # of a force that is shown as a function of one quantity
+NEAR_NODE_DIVISOR = 200  # one of so many samples is near to a node
+DERIVATIVE_STEP = 0.1  # of a std: for the derivatives of a law by its parameters
+MAX_POINT_STD = 1.0  # of the law's largest force: a point with a larger std tells nothing
 
 
 @dataclass(frozen=True)
@@ -102,7 +102,7 @@ class Shown:
     @property
     def is_mixed(self) -> bool:
         """Whether the law's force is no function of one quantity."""
-        return unexplained(self.follows, self.forces[0]) > MIXED
+        return unexplained(self.follows, self.forces[0]) > MAX_SHOWN_U
 
 
 def show_forces(candidate: Candidate, values: Mapping[str, float], along: ForceAlong) -> Shown:
@@ -135,7 +135,7 @@ def show_readings(
     """
     errors = [said - own for said in readings]
     rms = np.sqrt(np.mean(errors[0] ** 2, axis=0))
-    at = np.flatnonzero(rms > ACTS * rms.max())
+    at = np.flatnonzero(rms > MIN_ACTING_SHARE * rms.max())
     if not rms.max() > 0:
         return None
     unit = log.units.get(log.output_names[int(at[0])], "")
@@ -167,7 +167,7 @@ def law_steps(candidate: Candidate, std: Mapping[str, float]) -> dict[str, float
         std: of fitted values, by name, in their units; a parameter that no data tell is not moved.
     """
     known = {name: std.get(name, 0.0) for name in candidate.estimated}
-    return {name: STEP * float(s) for name, s in known.items() if 0 < s < np.inf}
+    return {name: DERIVATIVE_STEP * float(s) for name, s in known.items() if 0 < s < np.inf}
 
 
 def moved_by(
@@ -230,10 +230,10 @@ def _edges(x: Regressor, law: np.ndarray) -> np.ndarray:
     """Returns bin edges: evenly spaced, at equally many samples, and where a law bends."""
     at, f = x.samples(law)
     order = np.argsort(at, kind="stable")
-    few = at[order][:: max(1, len(at) // MOST)]
+    few = at[order][:: max(1, len(at) // MAX_FORCE_POINTS)]
     force = np.interp(few, at[order], f[order])
     changed = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(force)))])
-    share = np.linspace(0, 1, LINE + 1)
+    share = np.linspace(0, 1, LINE_BINS + 1)
     bends = np.interp(share * changed[-1], changed, few)
     even = at.min() + share * np.ptp(at)
     turn = [0.0] if x.along == "rate" and at.min() < 0 < at.max() else []
@@ -255,7 +255,7 @@ def _points(
 ) -> LawLine:
     """Returns the points of the free curve, without those that the samples hardly determine."""
     at = np.array([_at(*law, x, side) for x, side in zip(nodes.x, nodes.side, strict=True)])
-    told = std < WEAK * np.abs(law[1]).max()
+    told = std < MAX_POINT_STD * np.abs(law[1]).max()
     return LawLine(nodes.x[told], (at + c)[told], std[told])
 
 
@@ -263,7 +263,7 @@ def _at(x: np.ndarray, force: np.ndarray, node: float, side: int) -> float:
     """Returns a law at a node, by a straight line through samples near it, on its side of zero."""
     mine = x * side >= 0 if side else np.ones(len(x), bool)
     x, force = x[mine] - node, force[mine]
-    near = np.argsort(np.abs(x))[: max(3, len(x) // NEAR)]
+    near = np.argsort(np.abs(x))[: max(3, len(x) // NEAR_NODE_DIVISOR)]
     if np.ptp(x[near]) == 0:
         return float(force[near].mean())
     return float(np.polynomial.Polynomial.fit(x[near], force[near], 1)(0.0))

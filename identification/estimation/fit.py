@@ -31,7 +31,8 @@ from identification.logs.by_unit import by_unit, rms_by_unit
 from identification.logs.log import Log
 from identification.logs.noise import noise_floor
 
-FAR = 2.0  # [std]; a smaller shift, which is known to first order only, may have the other sign
+# Std: a smaller shift, known to first order only, may have the other sign.
+MIN_TOLD_SHIFT = 2.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -82,11 +83,12 @@ class Fit:
 
     @property
     def far(self) -> dict[str, float]:
-        """The values that a finer step would move by more than `FAR`, the farthest first [std]."""
+        """Values that a finer step moves by more than `MIN_TOLD_SHIFT`, farthest first [std]."""
         with np.errstate(divide="ignore", invalid="ignore"):
             moved = np.abs(self.step_shift) / self.std
         names = self.estimate.space.names
-        return {names[k]: float(moved[k]) for k in np.argsort(-moved) if moved[k] > FAR}
+        order = np.argsort(-moved)
+        return {names[k]: float(moved[k]) for k in order if moved[k] > MIN_TOLD_SHIFT}
 
     @property
     def rms(self) -> float:

@@ -32,7 +32,7 @@ from identification.estimation.combination import (
     known_products,
 )
 
-UNMOVED = 1e-3  # an entry of a direction of norm 1 that is smaller than this is round-off
+ENTRY_ROUNDING = 1e-3  # an entry of a direction of norm 1 that is smaller than this is round-off
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -95,7 +95,7 @@ class Identifiability:
 
     def _moves(self, powers: np.ndarray) -> np.ndarray:
         """Returns whether each blind direction moves each product of powers (m, p): (m, blind)."""
-        least = UNMOVED * np.linalg.norm(powers, axis=1)[:, None]
+        least = ENTRY_ROUNDING * np.linalg.norm(powers, axis=1)[:, None]
         off = self._std(powers)[:, None] * self.leaks
         return np.abs(powers @ self.blind.T) > np.maximum(least, off)
 

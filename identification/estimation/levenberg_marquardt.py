@@ -21,6 +21,9 @@ from typing import Generic, Protocol, TypeVar
 
 import numpy as np
 
+# Of the gain that a linearisation promises: a step that keeps less shows that it does not serve.
+KEPT_GAIN = 0.5
+
 Step = TypeVar("Step")
 Cost = float | np.ndarray  # of one criterion, or of W independent ones, shape (W,)
 

@@ -24,8 +24,9 @@ from identification.model.coordinates import Coordinates, coordinates
 from identification.model.predictor import Plant
 from identification.progress import counted
 
-ENOUGH = 1.5  # times the noise floor: a search that ends below it is good enough
-ELSEWHERE = 0.1  # of the spread, for coordinates that are no logarithms, such as a pose
+# Of the error to the noise floor: a search that ends below it is good enough.
+ENOUGH_NOISE_RATIO = 1.5
+LINEAR_SPREAD_SHARE = 0.1  # of the spread, for coordinates that are no logarithms, such as a pose
 
 
 @dataclass(frozen=True)
@@ -107,7 +108,7 @@ def estimate_from(
             best = found
         costs.append(ended)
         rms.append(float(np.sqrt(np.mean(error**2))))
-        is_enough = relative(rms_by_unit(error, log), floor) < ENOUGH
+        is_enough = relative(rms_by_unit(error, log), floor) < ENOUGH_NOISE_RATIO
         if is_enough or found.status == "stopped":
             break
     if best is None:
@@ -118,7 +119,7 @@ def estimate_from(
 def _around(space: Coordinates, first: np.ndarray, n: int, spread: float, seed: int) -> np.ndarray:
     """Returns the first start and n - 1 others around it, inside the bounds, shape (n, p)."""
     q = space.encode(first)
-    reach = np.where(space.logarithmic, spread, ELSEWHERE * spread)
+    reach = np.where(space.logarithmic, spread, LINEAR_SPREAD_SHARE * spread)
     low, high = np.maximum(space.lower, q - reach), np.minimum(space.upper, q + reach)
     share = np.random.default_rng(seed).uniform(0.01, 0.99, (n - 1, len(q)))
     return np.concatenate([first[None], space.decode(low + share * (high - low))])

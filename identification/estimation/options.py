@@ -10,7 +10,7 @@ import numpy as np
 
 from identification.errors import InputError
 
-HORIZONS = (0.05, 0.2, 0.5, 1.0)
+HORIZONS = (0.05, 0.2, 0.5, 1.0)  # of the log: a short one keeps a search from local minima
 Progress = Callable[[str], None]
 Status = Literal["converged", "iterations", "stopped"]
 

@@ -25,9 +25,9 @@ from identification.estimation.estimation import estimate as search
 from identification.estimation.fit import Fit
 from identification.progress import stage
 
-LEVEL = chi2_level(0.05, 1)  # 3.84
-REACH = 3.0  # std to each side, unless points are given
-WIDEST = 0.5  # of q to each side where the std is larger or infinite
+PROFILE_LEVEL = chi2_level(0.05, 1)  # 3.84
+REACH_STDS = 3.0  # to each side, unless points are given
+MAX_REACH = 0.5  # of q to each side where the std is larger or infinite
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -116,7 +116,7 @@ def _scale(fit: Fit, j: int, bottom: float) -> float:
 def _spread(fit: Fit, j: int, points: int) -> np.ndarray:
     """Returns values evenly spaced in q_j, inside the bounds."""
     space, q = fit.estimate.space, fit.estimate.q
-    reach = min(REACH * _std_q(fit, j), WIDEST)
+    reach = min(REACH_STDS * _std_q(fit, j), MAX_REACH)
     moves = np.tile(q, (points, 1))
     moves[:, j] += np.linspace(-reach, reach, points)
     inside = (moves[:, j] > space.lower[j]) & (moves[:, j] < space.upper[j])
@@ -153,10 +153,10 @@ def _crossing(values: np.ndarray, rise: np.ndarray, best: float, side: int) -> f
     inner_value, inner = best, 0.0
     for i in beyond:
         root = float(np.sqrt(max(0.0, rise[i])))
-        if root > np.sqrt(LEVEL):
+        if root > np.sqrt(PROFILE_LEVEL):
             if np.isinf(root):  # there is no simulation here, so the rise is not known
                 break
-            share = (np.sqrt(LEVEL) - inner) / (root - inner)
+            share = (np.sqrt(PROFILE_LEVEL) - inner) / (root - inner)
             return float(inner_value + share * (values[i] - inner_value))
         inner_value, inner = float(values[i]), root
     return side * np.inf

@@ -21,9 +21,10 @@ from identification.estimation.combination import ScalingSymmetry
 from identification.model.coordinates import Coordinates
 from identification.model.predictor import Predictor
 
-LONG = 0.1  # of q: the move to each side that proves a symmetry
-LARGEST_DENOMINATOR = 4  # of the powers, the largest being 1
-SEEN = 1.0  # norm of a change of all outputs in units of the noise, from which it can be seen
+SYMMETRY_MOVE = 0.1  # of q: the move to each side that proves a symmetry
+MAX_DENOMINATOR = 4  # of the powers, the largest being 1
+# Norm of a change of all outputs in units of the noise, from which it can be seen.
+VISIBLE_CHANGE = 1.0
 
 # whitens (samples, ny, k) into k columns, shape (n, k), so that the noise has the std 1
 Whiten = Callable[[np.ndarray], np.ndarray]
@@ -65,10 +66,11 @@ def _unseen(
 ) -> bool:
     """Returns whether a long move along v changes the outputs by less than the noise."""
     try:
-        ahead, behind = predictor.predict(space.decode(np.stack([q + LONG * v, q - LONG * v])))
+        move = SYMMETRY_MOVE * v
+        ahead, behind = predictor.predict(space.decode(np.stack([q + move, q - move])))
     except (DivergenceError, InputError):  # no start or no simulation is possible there
         return False
-    return bool(np.linalg.norm(whiten((ahead - behind)[:, :, None])) < SEEN)
+    return bool(np.linalg.norm(whiten((ahead - behind)[:, :, None])) < VISIBLE_CHANGE)
 
 
 def _candidates(
@@ -113,6 +115,6 @@ def _parallel(
 def _rounded(v: np.ndarray) -> tuple[Fraction, ...]:
     """Returns the nearest small fractions, the largest being 1 and the first positive."""
     v = v / np.abs(v).max()
-    powers = [Fraction(float(x)).limit_denominator(LARGEST_DENOMINATOR) for x in v]
+    powers = [Fraction(float(x)).limit_denominator(MAX_DENOMINATOR) for x in v]
     first = next(x for x in powers if x)
     return tuple(x if first > 0 else -x for x in powers)

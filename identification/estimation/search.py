@@ -2,8 +2,8 @@
 
 - The outputs at a point are simulated once, for the residual and for the sensitivities.
 - Sensitivities are forward differences from these outputs.
-- A horizon ends at a relative gain of `ROUGH` if a longer one follows; the last horizon ends at the
-  `tolerance` of the options.
+- A horizon ends at a relative gain of `ROUGH_TOLERANCE` if a longer one follows; the last horizon
+  ends at the `tolerance` of the options.
 - No sensitivities are computed at the point where the search ends.
 - Sensitivities are kept where the outputs changed as they had promised (see `slopes`).
 """
@@ -29,10 +29,11 @@ from identification.model.sensitivity import (
 )
 from identification.progress import USUAL, stage
 
-ROUGH = 1e-2  # relative gain at which a horizon ends, if a longer one follows
-HOLD = (1.0, 0.1)  # pull towards the last result, on a short horizon and on the whole log
-CLOSER = 0.1  # if a horizon that is longer by less than this share diverges, the search fails
-EXACT = 1e-11  # residual over outputs below which only round-off is left
+ROUGH_TOLERANCE = 1e-2  # relative gain at which a search ends that another one follows
+PULL_WEIGHTS = (1.0, 0.1)  # towards the last result, on a short horizon and on the whole log
+# If a horizon that is longer by less than this share diverges, the search fails.
+CLOSE_HORIZON_SHARE = 0.1
+EXACT_RESIDUAL = 1e-11  # over the outputs: below it only round-off is left
 
 
 class _Settled(Exception):
@@ -108,11 +109,11 @@ class Search:
         status: Status = "converged"
         reached, ahead = 0.0, list(self.options.horizons)
         while ahead:
-            rough = self.options.tolerance if ahead[0] == 1 else ROUGH
+            rough = self.options.tolerance if ahead[0] == 1 else ROUGH_TOLERANCE
             try:
                 status = self.solve(self.samples(ahead[0]), max(rough, self.options.tolerance))
             except DivergenceError:
-                if reached == 0 or ahead[0] < (1 + CLOSER) * reached:
+                if reached == 0 or ahead[0] < (1 + CLOSE_HORIZON_SHARE) * reached:
                     raise
                 ahead.insert(0, (reached + ahead[0]) / 2)
             else:
@@ -143,12 +144,12 @@ class Search:
         self.error(self.best, samples)  # if the start diverges, the caller is told
         weight = self.weight[:samples]
         measured = (weight * self.predictor.log.outputs[:samples]) @ self.whitener.T
-        exact = EXACT**2 * float(np.sum(measured**2))
+        exact = EXACT_RESIDUAL**2 * float(np.sum(measured**2))
         linear = self.options.loss == "linear"
         cost = gain = np.inf
         origin = self.best
         size = np.where(self.space.logarithmic, 1.0, np.maximum(1.0, np.abs(origin)))
-        hold = HOLD[samples == len(self.predictor.log)] / size
+        hold = PULL_WEIGHTS[samples == len(self.predictor.log)] / size
 
         slopes: Slopes | None = None
 

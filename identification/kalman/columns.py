@@ -13,17 +13,17 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from identification.estimation.slopes import SLOPE_ERROR
 from identification.kalman.linear import Linearisation
 from identification.kalman.sensitivity_equations import can_solve, solve_sensitivities
 from identification.model.coordinates import Coordinates
 from identification.model.predictor import Predictor
+from identification.model.sensitivity import STEP
 
-STEP = 1e-4  # of q, for forward differences of simulations
-# The same for differences of accelerations, as a share: large ones nearly cancel each other, such
-# as those of an anchor that moves and of the cable that is longer at rest for it.
-SHORTER = 1e-2
-MANY = 12  # columns, beyond which the equations are worth it
-WRONG = 0.1  # share by which a simulation may differ from the sensitivity equations
+# Of STEP, and of an effect's probe, for differences of accelerations: large ones nearly cancel each
+# other, such as those of an anchor that moves and of the cable that is longer at rest for it.
+EQUATION_STEP_SHARE = 1e-2
+MAX_SIMULATED_COLUMNS = 12  # with more, the sensitivity equations are worth it
 
 
 def compute_columns(
@@ -52,8 +52,8 @@ def compute_columns(
         J[..., j] = known[space.names[j]]
     moves = np.diag(np.where(q + STEP > space.upper, -STEP, STEP))[asked]
     # Columns that are borrowed are of a point nearby: those beside them need not be exact either.
-    if (len(moves) > MANY or known) and can_solve(predictor, records):
-        short = SHORTER * moves
+    if (len(moves) > MAX_SIMULATED_COLUMNS or known) and can_solve(predictor, records):
+        short = EQUATION_STEP_SHARE * moves
         S = _solve(predictor, space, q, records, short, short.sum(axis=1))
         to = space.inside(q + STEP * _along(S, asked))
         (ahead,) = predictor.predict(space.decode(to[None]))
@@ -88,8 +88,8 @@ def _along(columns: np.ndarray, asked: np.ndarray) -> np.ndarray:
 
 
 def _agree(one: np.ndarray, other: np.ndarray) -> bool:
-    """Returns whether two changes of the outputs agree to a relative error of `WRONG`."""
-    return bool(np.linalg.norm(one - other) <= WRONG * np.linalg.norm(other))
+    """Returns whether two changes of the outputs agree to a relative error of `SLOPE_ERROR`."""
+    return bool(np.linalg.norm(one - other) <= SLOPE_ERROR * np.linalg.norm(other))
 
 
 def do_equations_hold(
@@ -109,7 +109,7 @@ def do_equations_hold(
     """
     if not J.size or not can_solve(predictor, records):
         return False
-    to = space.inside(q + SHORTER * STEP * _along(J, np.ones(len(q), bool)))
-    size = np.array([SHORTER * STEP])
+    to = space.inside(q + EQUATION_STEP_SHARE * STEP * _along(J, np.ones(len(q), bool)))
+    size = np.array([EQUATION_STEP_SHARE * STEP])
     solved = _solve(predictor, space, q, records, (to - q)[None], size)[..., 0]
     return _agree(solved * size, J @ (to - q))

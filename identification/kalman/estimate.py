@@ -34,8 +34,8 @@ from identification.model.coordinates import coordinates
 from identification.model.predictor import Plant, Predictor
 from identification.model.sensitivity import refuse_without_effect, without_effect
 
-FEWEST = 50  # samples that are needed to tell the noise of the sensors from that of the inputs
-HOLD = 0.1  # 1/std of a ridge on q, which holds directions that have no effect on the outputs
+MIN_SAMPLES = 50  # with fewer, the noise of the sensors cannot be told from that of the inputs
+RIDGE_WEIGHT = 0.1  # 1/std of q: holds directions that have no effect on the outputs
 
 
 @dataclass(frozen=True)
@@ -99,9 +99,9 @@ def estimate_innovations(
     began = time.perf_counter()
     weights = Options(priors=dict(priors or {}))
     part = log.part("estimation")
-    if len(part) < FEWEST:
+    if len(part) < MIN_SAMPLES:
         raise InputError(
-            f"the log has {len(part)} samples to fit; innovations need at least {FEWEST}"
+            f"the log has {len(part)} samples to fit; innovations need at least {MIN_SAMPLES}"
         )
     for name in (*names, *(start or {}), *weights.priors):
         plant.parameters[name]
@@ -110,7 +110,7 @@ def estimate_innovations(
     space = coordinates(plant.parameters, names, first)
     predictor = Predictor(plant, part, tuple(names), dict(start or {}))
     mean = space.encode(first)
-    prior = np.maximum(prior_weight(weights, names), HOLD)
+    prior = np.maximum(prior_weight(weights, names), RIDGE_WEIGHT)
     begun = evaluate_point(predictor, space, mean)
     if without_effect(begun.J, part.outputs).any():
         refuse_without_effect(begun.J, space.names, part)

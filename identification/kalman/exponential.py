@@ -6,10 +6,10 @@
 
 D balances the states' units by powers of two, which rounds nothing (Parlett, Reinsch 1969): an
 elastic cable in metres beside angles makes a matrix of norm 1e5, whose doublings cost more than all
-else; balanced it is 10. The series is taken where no X is longer than `LONGEST`, and doubled from
-there. How long a matrix is for a series tell its powers, |X⁴|^¼ and |X⁵|^⅕ (Al-Mohy, Higham 2009,
-theorem 4.2), of oscillations less than half its norm. The polynomial is taken in groups of five
-powers (Paterson, Stockmeyer 1973), with 8 products of matrices in place of 23.
+else; balanced it is 10. The series is taken where no X is longer than `MAX_SERIES_NORM`, and
+doubled from there. How long a matrix is for a series tell its powers, |X⁴|^¼ and |X⁵|^⅕ (Al-Mohy,
+Higham 2009, theorem 4.2), of oscillations less than half its norm. The polynomial is taken in
+groups of five powers (Paterson, Stockmeyer 1973), with 8 products of matrices in place of 23.
 All is compiled: between its products a matrix stays in a processor's own cache, and
 `scipy.linalg.expm`, which takes the matrices one by one as well, takes ten times as long.
 """
@@ -29,10 +29,10 @@ from identification.native.cache import compile_once
 from identification.native.decorators import internal
 from identification.pool import run_parts, split
 
-LONGEST = 2.8  # 2.8^25/26! is below the rounding of doubles
-GROUP = 5
+MAX_SERIES_NORM = 2.8  # 2.8^25/26! is below the rounding of doubles
+GROUP = 5  # powers of X that are kept: a series of 25 terms is summed in groups of as many
 SERIES = np.array([1 / factorial(k + 1) for k in range(GROUP**2)]).reshape(GROUP, GROUP)
-TOGETHER = 64  # matrices of one call, so that the threads end together
+MATRICES_PER_CALL = 64  # so that the threads end together
 
 _DOUBLES: Any = types.CPointer(types.float64)
 _SIGNATURE = types.void(*[types.int64] * 3, *[_DOUBLES] * 6)
@@ -61,7 +61,7 @@ def transitions(
         addresses = (a.ctypes.data_as(POINTER(c_double)) for a in arrays)
         run(some.stop - some.start, nx, forced, *addresses)
 
-    run_parts(part, split(len(F), TOGETHER))
+    run_parts(part, split(len(F), MATRICES_PER_CALL))
     return A, Γ
 
 
@@ -86,8 +86,8 @@ def _exponentials(n, nx, forced, F_, duration_, D_, series_, A_, Γ_):  # type: 
         for power in range(2, GROUP + 1):
             np.dot(X[power - 1], X[1], X[power])
         longest = max(_norm(X[GROUP - 1]) ** (1 / (GROUP - 1)), _norm(X[GROUP]) ** (1 / GROUP))
-        is_long = LONGEST < longest < np.inf
-        doublings = int(np.ceil(np.log2(longest / LONGEST))) if is_long else 0
+        is_long = MAX_SERIES_NORM < longest < np.inf
+        doublings = int(np.ceil(np.log2(longest / MAX_SERIES_NORM))) if is_long else 0
         for power in range(1, GROUP + 1):
             X[power] *= 0.5 ** (doublings * power)
         φ[:] = 0.0

@@ -24,9 +24,9 @@ import numpy as np
 from identification.kalman.problem import linearise_criterion
 from identification.kalman.refit import Refit
 
-ROUNDS = 200  # of EM, each of which costs one inverse of FᵀF
-ENDED = 1e-3  # relative change of every s below which EM ends
-LEAST = 1e-2  # of the table's s: below it a deviation moves nothing that a log would show
+MAX_EM_ROUNDS = 200  # each costs one inverse of FᵀF
+EM_TOLERANCE = 1e-3  # relative change of every s below which EM ends
+MIN_STD_SHARE = 1e-2  # of the table's s: below it a deviation moves nothing that a log would show
 
 
 def estimate_scatter(fit: Refit, groups: Mapping[str, Sequence[str]]) -> dict[str, float]:
@@ -44,18 +44,18 @@ def estimate_scatter(fit: Refit, groups: Mapping[str, Sequence[str]]) -> dict[st
     x = point.q - fit.mean
     H, b = F.T @ F, F.T @ (y + F @ x)
     prior, s = fit.prior.copy(), dict(table)
-    for _ in range(ROUNDS):
+    for _ in range(MAX_EM_ROUNDS):
         V = np.linalg.inv(H + np.diag(prior**2))
         power = (V @ b) ** 2 + np.diag(V)
         new = {
-            g: float(np.clip(_most_probable(power[at]), LEAST * table[g], table[g]))
+            g: float(np.clip(_most_probable(power[at]), MIN_STD_SHARE * table[g], table[g]))
             for g, at in places.items()
         }
         moved = max((abs(new[g] / s[g] - 1) for g in new), default=0.0)
         s = new
         for g, at in places.items():
             prior[at] = 1 / s[g]
-        if moved < ENDED:
+        if moved < EM_TOLERANCE:
             break
     return s
 

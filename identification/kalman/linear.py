@@ -25,7 +25,7 @@ from identification.kalman.derivatives import (
     state_derivatives,
 )
 from identification.kalman.exponential import transitions
-from identification.kalman.trajectory import COARSE, Trajectory, follow_records
+from identification.kalman.trajectory import COARSE_POINTS, Trajectory, follow_records
 from identification.model.predictor import Predictor, output_columns
 
 
@@ -102,7 +102,10 @@ def linearise(predictor: Predictor, values: np.ndarray, forces: Sequence[int] = 
 
 
 def linearise_records(
-    predictor: Predictor, values: np.ndarray, forces: Sequence[int] = (), points: int = COARSE
+    predictor: Predictor,
+    values: np.ndarray,
+    forces: Sequence[int] = (),
+    points: int = COARSE_POINTS,
 ) -> tuple[Linearisation, ...]:
     """Returns the linearisation of each record of a log; see `linearise`.
 
@@ -113,7 +116,7 @@ def linearise_records(
         points: at which it is known what acts, for each sample. Slopes need few: what a change adds
             may turn with the angle of a motor within an interval, and slopes do not.
     """
-    coarse, fine = follow_records(predictor, values, COARSE, points)
+    coarse, fine = follow_records(predictor, values, COARSE_POINTS, points)
     return tuple(
         replace(linearise_along(record, each, forces), along=along)
         for (record, _), each, along in zip(predictor.records(), coarse, fine, strict=True)

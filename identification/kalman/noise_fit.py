@@ -26,12 +26,13 @@ from identification.pool import run_parts, split
 START_CORRELATION_TIME = 0.03  # [s] of the inputs' error, at which the search for the noise begins
 # [s] at most: a noise that lasts without limit would explain a constant force.
 MAX_CORRELATION_TIME = 0.3
-TOGETHER = 4  # noises that are tried at once: each takes the memory of the sensitivities
-FIRST, LAST = 1.6, 1.15  # factors with which the pattern search begins and ends
+NOISES_AT_ONCE = 4  # each takes the memory of the sensitivities
+FIRST_FACTOR, LAST_FACTOR = 1.6, 1.15  # with which the pattern search begins and ends
 # Multiples of the ρ of a point nearby that are tried; the last two where the second beats the first
-AROUND = (1.0, 0.3, 0.05, 0.0)
-ROUGH = (0.0, 0.1, 1.0)  # ρ/ρ₀ that are tried where a point nearby had no error of the inputs
-LEVELS = (0.0, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0)  # ρ/ρ₀ that are tried at first
+NEARBY_FACTORS = (1.0, 0.3, 0.05, 0.0)
+SILENT_LEVELS = (0.0, 0.1, 1.0)  # ρ/ρ₀ where a point nearby had no error of the inputs
+# Levels ρ/ρ₀ that are tried where no noise is known.
+FIRST_LEVELS = (0.0, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0)
 
 
 @dataclass(frozen=True)
@@ -115,7 +116,7 @@ def fit_noise(
     sampling_time: float,
     near: NoiseLevel | None = None,
     fine: bool = True,
-    levels: Sequence[float] = LEVELS,
+    levels: Sequence[float] = FIRST_LEVELS,
     largest: float = np.inf,
 ) -> NoiseLevel:
     """Returns the most likely noise of a residual; what it whitens of J is kept (see `whiten`).
@@ -144,20 +145,20 @@ def fit_noise(
 
         def believed(noise: Noise, factors: Sequence[float]) -> list[NoiseLevel]:
             each = [noise.scaled(f) for f in factors]
-            some = split(len(each), TOGETHER)
+            some = split(len(each), NOISES_AT_ONCE)
             tried = [level for few in some for level in run_parts(at, each[few])]
             return [level for level in tried if level.input_std <= largest]
 
         found: list[NoiseLevel] = []
         if near is not None and near.noise.ratio:
-            found = believed(near.noise, AROUND[:2])
+            found = believed(near.noise, NEARBY_FACTORS[:2])
             if len(found) < 2 or found[1].log_likelihood > found[0].log_likelihood:
-                found += believed(near.noise, AROUND[2:])
+                found += believed(near.noise, NEARBY_FACTORS[2:])
         if len(found) < 2:  # no noise is known nearby, or only that of ρ = 0 is believed
             time = START_CORRELATION_TIME
             unit = Noise(compute_unit_ratio(plant, sampling_time, time), time)
             silent = near is not None and not near.noise.ratio
-            found = believed(unit, ROUGH if silent and not fine else levels)
+            found = believed(unit, SILENT_LEVELS if silent and not fine else levels)
         best = _best(found)
         times = sampling_time / 3, MAX_CORRELATION_TIME  # below the first it is white
         best = refine_noise(best, at, times) if fine and best.noise.ratio else best
@@ -197,9 +198,9 @@ def refine_noise(
         at: gives the level of a noise.
         times: shortest and longest correlation time [s].
     """
-    step, alone = FIRST, True  # first ρ alone, because at a wrong ρ a wrong τ is likely
+    step, alone = FIRST_FACTOR, True  # first ρ alone, because at a wrong ρ a wrong τ is likely
     known = [best]
-    while step > LAST:
+    while step > LAST_FACTOR:
         near = [(step, 1.0), (1 / step, 1.0)]
         near += [] if alone else [(1.0, step**2), (1.0, step**-2)]
         moved = [_moved(best.noise, r, τ, times) for r, τ in near]

@@ -9,7 +9,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from identification.kalman.columns import MANY, compute_columns
+from identification.estimation.slopes import SLOPE_ERROR
+from identification.kalman.columns import MAX_SIMULATED_COLUMNS, compute_columns
 from identification.kalman.linear import (
     Linearisation,
     LinearPlant,
@@ -23,8 +24,6 @@ from identification.logs.joined import records_of
 from identification.logs.log import Log
 from identification.model.coordinates import Coordinates
 from identification.model.predictor import Predictor
-
-HOLDS = 0.1  # share by which outputs may miss what the columns of a point say of a short step
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -112,7 +111,7 @@ def _linearise(run: Run) -> tuple[Linearisation, ...]:
 
 def is_costly(point: Point) -> bool:
     """Returns whether a point has so many columns that they are kept after a short step."""
-    return len(point.q) > MANY
+    return len(point.q) > MAX_SIMULATED_COLUMNS
 
 
 def shift_point(point: Point, q: np.ndarray, run: Run | None = None) -> Point | None:
@@ -133,7 +132,7 @@ def shift_point(point: Point, q: np.ndarray, run: Run | None = None) -> Point | 
     run = run or Run(point.predictor, point.space.decode(inside))
     e = point.log.outputs - run.outputs
     expected, found = point.J @ (inside - point.q), point.e - e
-    if np.linalg.norm(found - expected) > HOLDS * np.linalg.norm(found):
+    if np.linalg.norm(found - expected) > SLOPE_ERROR * np.linalg.norm(found):
         return None
     return replace(point, q=inside, e=e, is_borrowed=True)
 

@@ -19,19 +19,18 @@ from scipy.linalg import solve_triangular
 from scipy.optimize import lsq_linear
 
 from identification.errors import DivergenceError, InputError
-from identification.estimation.levenberg_marquardt import Cost
+from identification.estimation.levenberg_marquardt import KEPT_GAIN, Cost
 from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.noise_model import Whitener
 from identification.kalman.point import Point
 from identification.kalman.run import Run
 from identification.kalman.whitened import keep, whiten
 
-LARGEST = 0.5  # largest step of a logarithm: a parameter changes by at most 65 % at a time
-ALONG = 0.1  # h: the share of the step at which the second derivative is taken
+MAX_LOG_STEP = 0.5  # a parameter changes by at most 65 % at a time
+BEND_STEP = 0.1  # h: the share of the step at which the second derivative is taken
 # Condition of the columns up to which their products are taken in place of themselves: the products
-# lose 1e-16 SOUND² of a step, far less than the columns, which are differences, are off themselves.
-SOUND = 1e5
-SHORT = 0.5  # share of the expected fall below which a step is bent
+# lose 1e-16 MAX_CONDITION² of a step, far less than the columns, which are differences, are off.
+MAX_CONDITION = 1e5
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -93,17 +92,17 @@ class Problem:
         None where the step itself falls far enough, to the cost `after`, and where the plant
         cannot be simulated along it.
         """
-        if self.cost - after >= SHORT * self.expected_fall(move):
+        if self.cost - after >= KEPT_GAIN * self.expected_fall(move):
             return None
-        ahead = self.residual(self.point.q + ALONG * move)
+        ahead = self.residual(self.point.q + BEND_STEP * move)
         if ahead is None:
             return None
-        curve = 2 / ALONG**2 * (ahead - self.target + ALONG * self.rows @ move)
+        curve = 2 / BEND_STEP**2 * (ahead - self.target + BEND_STEP * self.rows @ move)
         return move + self._least(curve / 2, μ, move)
 
     def _least(self, target: np.ndarray, μ: Cost, begun: np.ndarray) -> np.ndarray:
         """Returns the damped δ that minimises ‖target - F δ‖ within bounds left after `begun`."""
-        point, size = self.point, np.where(self.point.space.logarithmic, LARGEST, np.inf)
+        point, size = self.point, np.where(self.point.space.logarithmic, MAX_LOG_STEP, np.inf)
         lower = np.minimum(np.maximum(point.space.lower - point.q, -size) - begun, 0.0)
         upper = np.maximum(np.minimum(point.space.upper - point.q, size) - begun, 0.0)
         scale, R, Q = self._factor
@@ -125,7 +124,7 @@ class Problem:
         scale = np.sqrt(np.diag(self.curvature)) + 1e-300
         try:
             R = np.linalg.cholesky(self.curvature / np.outer(scale, scale)).T
-            if np.linalg.cond(R) < SOUND:
+            if np.linalg.cond(R) < MAX_CONDITION:
                 return scale, R, None
         except np.linalg.LinAlgError:
             pass

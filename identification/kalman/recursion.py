@@ -28,7 +28,7 @@ from identification.pool import run_parts, split
 
 # Columns that are filtered together: their states stay in a processor's own cache, and products
 # with fewer columns take longer for each of them.
-TOGETHER = 192
+COLUMNS_PER_CALL = 192
 
 _DOUBLES: Any = types.CPointer(types.float64)
 _SIZE: Any = types.int64
@@ -78,7 +78,7 @@ def filter_innovations(
     def part(some: slice) -> None:
         _call(run, (n, A.shape[1], ny, p, some.start, some.stop), (*given, out))
 
-    run_parts(part, split(p, TOGETHER))
+    run_parts(part, split(p, COLUMNS_PER_CALL))
     return out
 
 

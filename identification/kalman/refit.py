@@ -26,18 +26,20 @@ from identification.kalman.point import Point, evaluate_point, is_costly, shift_
 from identification.kalman.problem import Problem, linearise_criterion
 from identification.progress import counted
 
-NEAR = 0.02  # relative change of the parameters after which columns and linearisation may hold
+# Relative change of the parameters after which columns and linearisation may still hold.
+SHORT_CHANGE = 0.02
 # Relative change of the parameters after which columns of small ones still hold: columns that are a
 # tenth off cost a Gauss-Newton step a hundredth of its gain, which is quadratic about the optimum.
-SIMILAR = 0.1
+SIMILAR_CHANGE = 0.1
 # Expected fall of the criterion for each parameter, in units of the noise, below which a search
 # ends: the parameters are then, as a root mean square, within a tenth of their std of the optimum.
-ENDED = 0.01
-APPROACHED = 0.1  # the same of the first part of a search, which only comes near: within a third
+END_FALL = 0.01
+# The same of the first part of a search, which only comes near: within a third.
+APPROACH_END_FALL = 0.1
 # Gauss-Newton steps until one fails; the columns of the rows are scaled to length 1
 DAMPING = Damping(first=0.0, raised=10.0, lowered=10.0, least=1e-4, floor=0.0)
-TRIES = 6  # attempts at a step, each damped ten times as much as the one before
-FEWER = 2  # the same where columns are borrowed, which are then computed anew
+MAX_ATTEMPTS = 6  # at a step, each damped ten times as much as the one before
+MAX_BORROWED_ATTEMPTS = 2  # where columns are borrowed, which are then computed anew
 # While the noise is only roughly known, a step makes progress if it brings the rms of the
 # innovations or of the free run below this share of the best one.
 PROGRESS_SHARE = 0.97
@@ -144,7 +146,7 @@ def descend(
     level = estimate_noise(point, prior, near, largest=believed)
     yield point, level
     for fine in (True,) if is_near else (False, True):
-        ended = (ENDED if fine else APPROACHED) * len(point.q)
+        ended = (END_FALL if fine else APPROACH_END_FALL) * len(point.q)
         if fine:
             level = estimate_noise(point, prior, level, fine)
             yield point, level
@@ -158,7 +160,7 @@ def descend(
                 break
             if fine and _posterior(point, level, mean, prior) < least:
                 break
-            tries = FEWER if point.is_borrowed else TRIES
+            tries = MAX_BORROWED_ATTEMPTS if point.is_borrowed else MAX_ATTEMPTS
             trial = next((t for t in islice(trials, tries) if t.taken), None)
             if trial is None and point.is_borrowed:
                 point = evaluate_point(point.predictor, point.space, point.q, None, point.small)
@@ -188,12 +190,12 @@ def _move(problem: Problem, step: np.ndarray, taken: np.ndarray, largest: float)
     """Returns the criterion about the point after a step, with the noise of that point."""
     point = problem.point
     change = np.abs(step[point.space.logarithmic]).max(initial=0.0)
-    is_short = change < NEAR and is_costly(point)
+    is_short = change < SHORT_CHANGE and is_costly(point)
     q = point.q + step
     run = problem.run_at(q)
     there = shift_point(point, q, run) if is_short else None
     if there is None:
-        near = point if change < SIMILAR else None
+        near = point if change < SIMILAR_CHANGE else None
         there = evaluate_point(point.predictor, point.space, q, near, point.small, run)
     point = there
     level = estimate_noise(point, problem.prior, problem.level, largest=largest)

@@ -18,7 +18,7 @@ from numba import carray, types
 from identification.native.cache import compile_once
 from identification.pool import run_parts, threads
 
-TOGETHER = 64  # columns of one recursion
+COLUMNS_PER_RECURSION = 64  # at most, so that all threads have some
 _DOUBLES: Any = types.CPointer(types.float64)
 _INTS: Any = types.CPointer(types.int64)
 _SIGNATURE = types.void(*[types.int64] * 6, *[_DOUBLES] * 4, _INTS, _DOUBLES)
@@ -45,7 +45,7 @@ def respond(
     out = np.empty((m, L // every + 1, len(wanted)))
     A, Γ, first, g = (np.ascontiguousarray(a, float) for a in (A, Γ, first, g))
     run, workers = _compiled(), threads()
-    width = max(1, min(TOGETHER, -(-m // workers)))
+    width = max(1, min(COLUMNS_PER_RECURSION, -(-m // workers)))
     chunks = [slice(k, min(k + width, m)) for k in range(0, m, width)]
 
     def part(k: int) -> None:

@@ -11,7 +11,7 @@ from functools import cached_property
 
 import numpy as np
 
-from identification.kalman.trajectory import COARSE, Trajectory, follow_records
+from identification.kalman.trajectory import COARSE_POINTS, Trajectory, follow_records
 from identification.model.predictor import Predictor
 from identification.model.protocol import with_states
 
@@ -35,7 +35,7 @@ class Run:
     @cached_property
     def along(self) -> tuple[Trajectory, ...]:
         """The trajectory of each record."""
-        (each,) = follow_records(self.predictor, self.values, COARSE)
+        (each,) = follow_records(self.predictor, self.values, COARSE_POINTS)
         return tuple(each)
 
     @cached_property

@@ -30,9 +30,9 @@ from identification.model.rollout import State, hold, substeps
 
 Courses = Sequence[Callable[[np.ndarray], np.ndarray]]  # from times [s] to factors
 ALWAYS: Courses = (np.ones_like,)
-SHIFT = 1e-3  # of states that no output feels, to see whether a candidate reads them
-FEW = 50  # points at which this is seen
-LAST_DIGITS = 1e-12  # of the largest rate
+UNFELT_SHIFT = 1e-3  # of states that no output feels, to see whether a candidate reads them
+PROBED_POINTS = 50  # at which this is seen
+RATE_ROUNDING = 1e-12  # of the largest rate
 
 
 def can_solve(predictor: Predictor, records: Sequence[Linearisation]) -> bool:
@@ -179,8 +179,8 @@ def _reads_what_it_changes(linear: Linearisation, changes: Sequence[Entries]) ->
     felt = linear.felt[linear.along.model.nv :]
     if felt.all() or not changes:
         return np.zeros(len(changes), bool)
-    some = linear.along.some(FEW)
-    points, away = Points(some), {"act": some.act + SHIFT * ~felt[some.model.nv :]}
+    some = linear.along.some(PROBED_POINTS)
+    points, away = Points(some), {"act": some.act + UNFELT_SHIFT * ~felt[some.model.nv :]}
     nominally = points.rates()[:, ~felt]
     pairs = zip(
         points.each(Change({}, own) for own in changes),
@@ -197,7 +197,7 @@ def _reads_what_it_changes(linear: Linearisation, changes: Sequence[Entries]) ->
 
 def _differ(some: np.ndarray, others: np.ndarray) -> bool:
     """Returns whether rates differ by more than rounding, which depends on the order of sums."""
-    return bool((np.abs(some - others) > LAST_DIGITS * np.abs(others).max(axis=0)).any())
+    return bool((np.abs(some - others) > RATE_ROUNDING * np.abs(others).max(axis=0)).any())
 
 
 def _first(linear: Linearisation, start: State, n: int) -> np.ndarray:

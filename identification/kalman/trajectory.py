@@ -25,7 +25,7 @@ from identification.pool import run_parts
 # Intervals of a sample, where the step of the simulation allows as many: a state of the rate
 # 100 1/s that is sampled at 100 Hz changes by half over one of them.
 INTERVALS = 2
-COARSE, FINE = INTERVALS, 3 * INTERVALS  # P, likewise
+COARSE_POINTS, FINE_POINTS = INTERVALS, 3 * INTERVALS  # P, likewise
 POINTS = ("qpos", "qvel", "moved", "act", "inputs", "time")  # fields with a row for each point
 
 

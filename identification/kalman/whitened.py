@@ -17,9 +17,9 @@ import numpy as np
 from identification.kalman.linear import LinearPlant
 from identification.kalman.noise_model import Noise, Whitener, build_whitener
 
-KEPT = 2  # at the point where a search is, and at the one from which it came
+KEPT_POINTS = 2  # where a search is, and where it came from
 
-_kept: deque[Whitened] = deque(maxlen=KEPT)
+_kept: deque[Whitened] = deque(maxlen=KEPT_POINTS)
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,12 +13,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-PER_RECORD = 20  # blocks of a record at most, of two windows where it has two; as `proof_blocks`
+# Blocks of a record at most, of two windows where it has two; as `proof_blocks`.
+MAX_BLOCKS_PER_RECORD = 20
 
 
 def count_blocks(windows: int) -> int:
     """Returns how many blocks a record with so many windows has."""
-    return min(PER_RECORD, max(1, windows // 2))
+    return min(MAX_BLOCKS_PER_RECORD, max(1, windows // 2))
 
 
 def block_gains(

@@ -37,7 +37,7 @@ from identification.prediction.unknowns import Prior
 SHIFT = "time_shift"  # the effect
 # Of the sampling time: a smaller shift that may be chance stands in the JSON alone.
 MIN_SHOWN_SHIFT = 0.1
-SHARE = 4  # a record by itself has this part of the windows' steps: one number needs no more
+ALONE_STEPS = MOST_STEPS // 4  # of the windows of one record: one number needs no more
 
 
 def record_shifts(task: RecordsTask, model: WindowModel) -> tuple[ShiftedRecord, ...]:
@@ -116,7 +116,7 @@ def _alone(model: WindowModel, record: Record, horizon: float) -> WindowFit:
     """Returns the fit of one record at the model's values: its states settled, nothing free."""
     values = {**model.values, **model.own_values.get(record.log.name, {})}
     task = problem(
-        model.plant, [record], Prior(), Prior(), horizon, values, model.scale, MOST_STEPS // SHARE
+        model.plant, [record], Prior(), Prior(), horizon, values, model.scale, ALONE_STEPS
     )
     moves, r = task.settled(np.zeros(0), no_moves(task), is_thorough=True)
     return solve(task, np.zeros(0), moves, known=r)

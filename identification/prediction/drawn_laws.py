@@ -5,7 +5,7 @@
 
 A cause that is in no catalogue is first explained by its nearest neighbour, as well as that can,
 and then a curve draws what is left. The two together are one unlisted force, and no name: the curve
-alone does what the law did. Where m_3 - m_4 is less than `SHARE_BESIDE_CURVE` of m_1 - m_2, the law
+alone does what the law did. Where m_3 - m_4 is less than `OWN_SHARE` of m_1 - m_2, the law
 is told and not named. A law whose cause is another one than the curve's explains as much as before.
 """
 
@@ -21,11 +21,10 @@ from identification.estimation.options import Progress
 from identification.prediction.extension import refitted
 from identification.prediction.model import WindowModel
 from identification.prediction.records import Record
+from identification.prediction.rivals import OWN_SHARE
 from identification.prediction.selection import Contender
 from identification.prediction.several_places import places_of
 
-# Of what a law explained alone: it must still explain as much beside a curve of the same joint.
-SHARE_BESIDE_CURVE = 0.5
 ON_JOINTS = {"force", "friction"}  # hooks of what a curve, which is a force, may do as well
 
 
@@ -57,7 +56,7 @@ def without_drawn_laws(
         if without is None:
             continue
         beside = _mean_square(without) - _mean_square(model)
-        if beside < SHARE_BESIDE_CURVE * _explained(law):
+        if beside < OWN_SHARE * _explained(law):
             progress(f"{effect.name}, {law.candidate.where}: a curve does the same, and more")
             model, kept = without, [a for a in kept if a is not law]
             lost.append(replace(law, doubt="drawn"))

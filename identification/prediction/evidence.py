@@ -20,8 +20,7 @@ from identification.prediction.blocks import block_gains
 from identification.prediction.model import WindowModel
 from identification.prediction.record_errors import scaled_squares
 
-RESAMPLES = 2000
-SEED = 0  # of the resampling, so that a verdict repeats
+RESAMPLES = 2000  # of the blocks: a probability is then known to a hundredth
 
 
 def all_gains(without: WindowModel, with_it: WindowModel) -> np.ndarray:
@@ -51,7 +50,7 @@ def evidence(
         outputs: n_y.
     """
     g = np.array(gains)  # (k, B)
-    rng = np.random.default_rng(SEED)
+    rng = np.random.default_rng(0)  # a verdict repeats
     drawn = rng.integers(0, g.shape[1], (RESAMPLES, g.shape[1]))
     means = np.concatenate([g.mean(axis=1)[:, None], g[:, drawn].mean(axis=2)], axis=1)
     price = np.array(numbers)[:, None] * np.log(max(2, windows))

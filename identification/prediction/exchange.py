@@ -18,16 +18,14 @@ from identification.discovery.options import DiscoveryOptions
 from identification.discovery.passes import uses
 from identification.estimation.options import Progress
 from identification.prediction.crossing import at_their_best
-from identification.prediction.extension import MOST_REFIT
-from identification.prediction.first_fit import FINE
+from identification.prediction.extension import MAX_LINEARISATIONS
+from identification.prediction.first_fit import REFIT_TOLERANCE
 from identification.prediction.fit import solve
 from identification.prediction.model import WindowModel, predict_fitted
-from identification.prediction.problem import MOST_STEPS, Problem, no_moves, problem
+from identification.prediction.problem import ROUGH_STEPS, Problem, no_moves, problem
 from identification.prediction.records import Record
 from identification.prediction.selection import Contender
 from identification.prediction.unseen import HORIZON, compare
-
-STEPS = MOST_STEPS // 3  # of the fit's windows, as of rough fits: it need not be proven once more
 
 
 def without_contradicted(
@@ -78,12 +76,11 @@ def exchanged(model: WindowModel, records: Sequence[Record], horizon: float) -> 
     old = model.fit.problem.unknowns
 
     def evaluate() -> WindowModel:
-        task = problem(
-            model.plant, fitted, old.shared, old.own, horizon, model.values, model.scale, STEPS
-        )
+        plant, values, scale = model.plant, model.values, model.scale
+        task = problem(plant, fitted, old.shared, old.own, horizon, values, scale, ROUGH_STEPS)
         q = _begin(task, model)
         moves, r = task.settled(q, no_moves(task), is_thorough=True)
-        found = solve(task, q, moves, tolerance=FINE, most=MOST_REFIT, known=r)
+        found = solve(task, q, moves, tolerance=REFIT_TOLERANCE, most=MAX_LINEARISATIONS, known=r)
         fixed = {n: v for n, v in model.values.items() if n not in old.local.names}
         unseen = predict_fitted(model.plant, confirm, horizon, model.scale, found, fixed,
                                 lengths=HORIZON)  # fmt: skip

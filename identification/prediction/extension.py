@@ -15,7 +15,7 @@ from identification.discovery.nominal_model import NominalModel
 from identification.effects.effect import Candidate
 from identification.effects.jointed import JointPlant
 from identification.model.predictor import Plant
-from identification.prediction.first_fit import FINE, Begun, shapes_of
+from identification.prediction.first_fit import REFIT_TOLERANCE, Begun, shapes_of
 from identification.prediction.fit import solve
 from identification.prediction.model import WindowModel, predict_fitted
 from identification.prediction.problem import (
@@ -27,7 +27,7 @@ from identification.prediction.problem import (
 from identification.prediction.records import Record
 from identification.prediction.unseen import HORIZON
 
-MOST_REFIT = 12  # its linearisations; an effect that takes more is not what is missing
+MAX_LINEARISATIONS = 12  # of a refit: an effect that takes more is not what is missing
 
 
 def with_effect(
@@ -48,7 +48,9 @@ def with_effect(
     """
     fit = begun.parent.fit
     moves, r = begun.task.settled(begun.q, fit.moves, fit.tangents, is_thorough=True)
-    found = solve(begun.task, begun.q, moves, tolerance=FINE, most=MOST_REFIT, known=r)
+    found = solve(
+        begun.task, begun.q, moves, tolerance=REFIT_TOLERANCE, most=MAX_LINEARISATIONS, known=r
+    )
     if not found.cost < parent.fit.cost:
         return None
     values = {n: v for o in parent.candidates for n, v in (*o.fixed.items(), *o.whole.items())}
@@ -103,7 +105,9 @@ def _refitted(
     model: WindowModel, task: Problem, horizon: float, confirm: Sequence[Record]
 ) -> WindowModel:
     """Returns the model refitted from where it is, with the simulations of another task."""
-    found = solve(task, model.fit.q, model.fit.moves, tolerance=FINE, most=MOST_REFIT)
+    found = solve(
+        task, model.fit.q, model.fit.moves, tolerance=REFIT_TOLERANCE, most=MAX_LINEARISATIONS
+    )
     fixed = {n: v for c in model.candidates for n, v in (*c.fixed.items(), *c.whole.items())}
     seen = predict_fitted(task.plant, confirm, horizon, model.scale, found, fixed, model.unseen)
     return replace(model, fit=found, unseen=seen)

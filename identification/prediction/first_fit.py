@@ -13,12 +13,11 @@ from functools import partial
 import numpy as np
 
 from identification.discovery.attempts import attempt
-from identification.discovery.nominal_model import SHAPE_STD
+from identification.discovery.nominal_model import SHAPE_STD, nonzero
 from identification.discovery.scoring.sensitivities import iterate_shapes
 from identification.effects.effect import Candidate
 from identification.errors import InputError
 from identification.model.coordinates import coordinates
-from identification.model.parameter import ParameterSet
 from identification.model.predictor import Plant
 from identification.prediction.fit import solve
 from identification.prediction.joint_states import model_for
@@ -28,9 +27,8 @@ from identification.prediction.scores import WindowScore, inside
 from identification.prediction.thinning import picks, thinned, thinned_moves, thinned_tangents
 from identification.prediction.unknowns import Prior
 
-SHARES = (1.0, 0.3, 0.05, 0.01)  # of the size that a score gives, to begin with
-FINE = 1e-3  # relative fall of the criterion at which the refit of an effect ends
-SMALL = 1e-3  # of a probe: where the search for a size begins that must not be zero
+START_SHARES = (1.0, 0.3, 0.05, 0.01)  # of the size that a score gives, at which a fit begins
+REFIT_TOLERANCE = 1e-3  # relative fall of the criterion at which the refit of an effect ends
 
 
 @dataclass(frozen=True)
@@ -84,7 +82,7 @@ def _begun(parent: WindowModel, score: WindowScore) -> Begun | None:
     near = thinned_tangents(parent.fit.tangents, at)
     least = parent.fit.problem.cost_of(parent.fit.q, [t.r for t in near])
     tried = []
-    for share in SHARES:
+    for share in START_SHARES:
         q = _begin(task, parent, score, share)
         # the states have made up for what was missing
         settled = attempt(None, partial(few.settled, q, begun, near))
@@ -98,7 +96,7 @@ def _begun(parent: WindowModel, score: WindowScore) -> Begun | None:
     if not tried:
         return None
     _, q, moves, r = min(tried, key=lambda t: t[0])
-    found = solve(few, q, moves, tolerance=FINE, known=r)
+    found = solve(few, q, moves, tolerance=REFIT_TOLERANCE, known=r)
     windows = sum(len(rows) for rows in at)
     return Begun(found.cost, windows, c, parent, fixed, task, found.q)
 
@@ -135,7 +133,7 @@ def _free(plant: Plant, c: Candidate, names: Sequence[str]) -> Prior:
     if not names:
         return Prior()
     values = {**plant.parameters.values(), **c.fixed}
-    start = [_away(plant.parameters, n, 0.0) if n in c.sizes else values[n] for n in names]
+    start = [nonzero(plant.parameters[n], 0.0) if n in c.sizes else values[n] for n in names]
     first = inside(plant.parameters, names, np.array(start))
     space = coordinates(plant.parameters, names, first, linear=c.sizes)
     weight = np.array([0.0 if n in c.sizes else 1 / SHAPE_STD for n in names])
@@ -156,7 +154,7 @@ def _begin(task: Problem, parent: WindowModel, score: WindowScore, share: float)
         for name, value in zip(c.sizes, sizes[k], strict=True):
             if name in unknowns.local.names:
                 at = unknowns.columns(k)[unknowns.local.names.index(name)]
-                q[at] = _away(parameters, name, share * value) / task.prior.space.scale[at]
+                q[at] = nonzero(parameters[name], share * value) / task.prior.space.scale[at]
     for k, name in enumerate(task.names):
         q[k] = old.get(name, q[k])
     return np.asarray(task.prior.space.inside(q))
@@ -165,10 +163,3 @@ def _begin(task: Problem, parent: WindowModel, score: WindowScore, share: float)
 def shapes_of(c: Candidate) -> list[str]:
     """Returns the names of the plant's parameters of an effect's free shapes."""
     return [c.effect.parameter(s.name, c.where) for s in c.effect.shapes if s.free]
-
-
-def _away(parameters: ParameterSet, name: str, value: float) -> float:
-    """Returns a size of at least a small value, so that it is not zero."""
-    record = parameters[name]
-    least = SMALL * record.scale
-    return value if abs(value) > least else least * (1 if record.upper > 0 else -1)

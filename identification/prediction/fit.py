@@ -30,9 +30,9 @@ from identification.windows.tangents import Tangent
 
 # Of the squared norms of the columns of X and S.
 DAMPING = Damping(first=1e-3, raised=5.0, lowered=10.0, least=1e-9, floor=1e-9)
-ROUGH = 1e-2  # relative fall of the criterion that ends a fit whose last digits do not matter
-FELT = 1e-20  # sum of squares of a column, in units of the errors' scale
-BLOCKS = 40  # of windows, over all records, for the std
+# Sum of squares of a column, in units of the errors' scale, below which no window feels it.
+COLUMN_ROUNDING = 1e-20
+STD_BLOCKS = 40  # of windows, over all records: their scatter gives the std
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -94,7 +94,7 @@ class WindowFit:
         A parameter is felt where its column of S is beyond rounding, or a prior tells it.
         """
         q, felt = self.q, self.problem.prior.weight > 0
-        felt |= sum(np.sum(t.S**2, axis=(0, 1)) for t in self.tangents) > FELT
+        felt |= sum(np.sum(t.S**2, axis=(0, 1)) for t in self.tangents) > COLUMN_ROUNDING
         std = np.sqrt(np.diag(self.covariance)) * self.problem.prior.space.slope(q)
         return np.where(felt, std, np.inf)
 
@@ -108,7 +108,7 @@ class WindowFit:
     def covariance(self) -> np.ndarray:
         """Covariance of q, shape (p, p)."""
         scores = np.concatenate([np.einsum("wmp,wm->wp", *projected(t)) for t in self.tangents])
-        blocks = min(BLOCKS, max(2, len(scores)))
+        blocks = min(STD_BLOCKS, max(2, len(scores)))
         g = np.array([part.sum(axis=0) for part in np.array_split(scores, blocks)])
         W2 = np.diag(self.problem.prior.weight**2)
         inverse = np.linalg.pinv(self.curvature, rcond=1e-14, hermitian=True)

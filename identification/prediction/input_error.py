@@ -19,7 +19,7 @@ from identification.prediction.point import projected
 from identification.windows.shooting import Shooting
 from identification.windows.tangents import Tangent
 
-STEP = 1e-3  # of an input's rms, by which it is moved
+INPUT_STEP = 1e-3  # of an input's rms, by which it is moved
 
 
 def needed_input_error(fit: WindowFit, floor: float) -> float:
@@ -51,14 +51,14 @@ def _sensitivity(
     at = part.joined(part.outputs(q[None], [d], is_rough=True)[0], d)
     for j in moving:
         step = np.zeros(len(size))
-        step[j] = STEP * size[j]
+        step[j] = INPUT_STEP * size[j]
         log = replace(part.predictor.log, inputs=part.predictor.log.inputs + step)
         moved = replace(
             part, predictor=replace(part.predictor, log=log),
             cut=replace(part.cut, inputs=part.cut.inputs + step),
         )  # fmt: skip
         r = part.joined(moved.outputs(q[None], [d], is_rough=True)[0], d)
-        out.append((at - r) / STEP)
+        out.append((at - r) / INPUT_STEP)
     S = np.stack(out, axis=-1)
     U = t.U * (t.s > 0)[:, None]
     return np.asarray(S - U @ (np.swapaxes(U, 1, 2) @ S))

@@ -14,12 +14,13 @@ import numpy as np
 from identification.discovery.nominal_model import NominalModel
 from identification.errors import InputError
 from identification.estimation.options import Progress
+from identification.estimation.search import ROUGH_TOLERANCE
 from identification.logs.noise import noise_floor
 from identification.model.coordinates import coordinates
-from identification.prediction.fit import ROUGH, WindowFit, solve
+from identification.prediction.fit import WindowFit, solve
 from identification.prediction.model import WindowModel, predict_fitted
 from identification.prediction.problem import (
-    MOST_STEPS,
+    ROUGH_STEPS,
     no_moves,
     problem,
     with_longer_steps,
@@ -29,11 +30,10 @@ from identification.prediction.records import Record
 from identification.prediction.unknowns import Prior, Unknowns
 from identification.prediction.unseen import Unseen
 
-GROWTH = (0.25, 0.5, 1.0)  # of the horizon
-FEWEST = 4  # samples of the shortest windows
-ROUGH_STEPS = MOST_STEPS // 3  # of the fits that only find where the last one begins
-SAME = 0.05  # relative change of the errors' scale below which it is settled
-MOST_SCALES = 6  # fits at most until it is
+HORIZON_GROWTH = (0.25, 0.5, 1.0)  # of the horizon
+MIN_WINDOW_SAMPLES = 4  # of the shortest windows
+SETTLED_CHANGE = 0.05  # relative change of the errors' scale below which it is settled
+MAX_SCALE_FITS = 6  # until it is settled
 
 
 def fit_nominal(
@@ -62,16 +62,16 @@ def fit_nominal(
     scale = _scale_of_change(fitted)
     values: dict[str, float] = {}
     found: WindowFit | None = None
-    for factor in GROWTH:
+    for factor in HORIZON_GROWTH:
         length = factor * horizon
-        if any(length < FEWEST * r.log.sampling_time for r in fitted) and factor < 1:
+        if any(length < MIN_WINDOW_SAMPLES * r.log.sampling_time for r in fitted) and factor < 1:
             continue
         task = problem(plant, fitted, shared, own, length, values, scale, ROUGH_STEPS)
         q = begin(nominal_model, task.unknowns) if found is None else found.q
         moves, _ = task.settled(q, no_moves(task))
         if factor == 1.0:
             task = with_longer_steps(task, q, moves, is_for_slopes=True)
-        found = solve(task, q, moves, tolerance=ROUGH, progress=_of(length, 0, progress))
+        found = solve(task, q, moves, tolerance=ROUGH_TOLERANCE, progress=_of(length, 0, progress))
         _refuse_idle(found)
         values, scale = found.shared, _rms(found)
     if found is None:
@@ -79,12 +79,12 @@ def fit_nominal(
     task, q = problem(plant, fitted, shared, own, horizon, values, scale), found.q
     moves, _ = task.settled(q, no_moves(task))
     task = with_longer_steps(task, q, moves)
-    for k in range(MOST_SCALES):
+    for k in range(MAX_SCALE_FITS):
         task, old = with_scale(task, scale), scale
         found = solve(task, q, moves, progress=_of(horizon, k + 1, progress))
         q, moves = found.q, found.moves
         scale = _rms(found)
-        if np.all(np.abs(np.log(scale / old)) < SAME):
+        if np.all(np.abs(np.log(scale / old)) < SETTLED_CHANGE):
             break
     confirm = [r for r in records if r.role == "confirm"]
     return WindowModel((), found, predict_fitted(task.plant, confirm, horizon, old, found, {}), old)

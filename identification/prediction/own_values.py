@@ -7,8 +7,9 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from identification.estimation.search import ROUGH_TOLERANCE
 from identification.model.predictor import Plant
-from identification.prediction.fit import ROUGH, solve
+from identification.prediction.fit import solve
 from identification.prediction.problem import no_moves, problem
 from identification.prediction.records import Record
 from identification.prediction.unknowns import Prior
@@ -44,7 +45,7 @@ def own_values(
             out.append(dict(zip(own.prior.names, start, strict=True)))
             continue
         mine = replace(task, parts=(part.rows(half),))
-        out.append(solve(mine, own.start, no_moves(mine), tolerance=ROUGH).of_record(0))
+        out.append(solve(mine, own.start, no_moves(mine), tolerance=ROUGH_TOLERANCE).of_record(0))
     return out[0], out[1]
 
 

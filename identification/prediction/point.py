@@ -21,15 +21,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from identification.errors import InputError
-from identification.estimation.levenberg_marquardt import Cost
+from identification.estimation.levenberg_marquardt import KEPT_GAIN, Cost
 from identification.model.coordinates import Coordinates
 from identification.prediction.problem import Problem, best_of
 from identification.windows.settling import settle
 from identification.windows.tangents import Tangent, along_states
 
-MANY = 12  # parameters, from which on slopes are kept: fewer cost less than the steps they save
-KEPT = 0.5  # of the promised gain; with less, slopes are too old, or states are sought anew
-FAR = 4.0  # times V, from where no states bring a step back: it is too long
+KEEP_SLOPES_FROM = 12  # parameters: with fewer, new slopes cost less than the steps they save
+# Of the cost after a step to that before it: beyond it no states bring the step back.
+REJECT_COST_RATIO = 4.0
 Moves = tuple[np.ndarray, ...]  # of the windows' states, one array (W, nx) a record
 
 
@@ -91,8 +91,8 @@ class AtPoint:
             moves, r = best_of(held, moves, self.moves, self._enough(expected))
             cost = self.problem.cost_of(q, r)
             hoped = self.cost - promised
-            is_short = hoped > self.tolerance * self.cost and self.cost - cost < KEPT * hoped
-            if is_short and cost < FAR * self.cost:
+            is_short = hoped > self.tolerance * self.cost and self.cost - cost < KEPT_GAIN * hoped
+            if is_short and cost < REJECT_COST_RATIO * self.cost:
                 settled = settle(held, moves, self.tangents, known=r, expected=expected)
                 moves, r = tuple(s.d for s in settled), tuple(s.r for s in settled)
                 cost = self.problem.cost_of(q, r)
@@ -110,7 +110,7 @@ class AtPoint:
     def moved(self, step: Step, taken: np.ndarray) -> AtPoint:
         """Returns the criterion after a step, with the slopes before it where they serve."""
         gain, promised = self.cost - step.cost, self.cost - step.promised
-        if len(self.q) < MANY or gain < KEPT * promised:
+        if len(self.q) < KEEP_SLOPES_FROM or gain < KEPT_GAIN * promised:
             return linearised(self.problem, step.q, step.moves, self.tolerance, step.residuals)
         each = zip(self.tangents, step.residuals, strict=True)
         return replace(
@@ -134,9 +134,8 @@ class AtPoint:
         """
         before = [np.sum(t.r**2, axis=1) for t in self.tangents]
         least = self.tolerance * float(np.mean(np.concatenate(before)))
-        return [
-            e + (1 - KEPT) * np.abs(b - e) + least for b, e in zip(before, expected, strict=True)
-        ]
+        pairs = zip(before, expected, strict=True)
+        return [e + (1 - KEPT_GAIN) * np.abs(b - e) + least for b, e in pairs]
 
     def _expected(self, dq: np.ndarray, dd: Sequence[np.ndarray]) -> list[np.ndarray]:
         """Returns the linearisation's sums of squares after a step, one array (W,) a record."""

@@ -35,7 +35,8 @@ from identification.windows.windows import first_states, spread, windows
 # Steps of a simulation of all windows. More windows only make estimates finer than what is missing
 # from the model makes them wrong, and each of some hundred simulations takes as much longer.
 MOST_STEPS = 24_000
-FEWEST_WINDOWS = 10  # of a record, so that blocks of them can be compared
+ROUGH_STEPS = MOST_STEPS // 3  # of fits that prove nothing, such as one that begins another
+MIN_WINDOWS = 10  # of a record, so that blocks of them can be compared
 
 
 @dataclass(frozen=True)
@@ -224,7 +225,7 @@ def most_windows(
 ) -> int:
     """Returns the most windows of each record to simulate, so that all take `most_steps`."""
     each = max(length / own_step(plant), 1.0)
-    return max(FEWEST_WINDOWS, int(most_steps / (each * max(1, len(records)))))
+    return max(MIN_WINDOWS, int(most_steps / (each * max(1, len(records)))))
 
 
 def no_moves(problem_: Problem) -> tuple[np.ndarray, ...]:

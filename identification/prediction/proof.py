@@ -6,11 +6,11 @@ from typing import Literal
 
 import numpy as np
 
+from identification.discovery.final_values import BOUND_TOLERANCE
 from identification.discovery.options import DiscoveryOptions
 from identification.prediction.model import WindowModel
 from identification.prediction.unseen import Prediction
 
-AT_BOUND = 1e-6  # relative distance from a bound that is on it
 Doubt = Literal[
     "numbers", "chance", "lengths", "record", "little", "size", "bound", "exchange", "curve",
     "drawn",
@@ -66,7 +66,7 @@ def is_at_bound(model: WindowModel) -> bool:
     values = {n: v for n, v in model.fit.values.items() if n.partition(" [")[0] in sizes}
     each = ((v, parameters[n.partition(" [")[0]]) for n, v in values.items())
     return any(
-        bound != 0 and np.isfinite(bound) and abs(v - bound) <= AT_BOUND * abs(bound)
+        bound != 0 and np.isfinite(bound) and abs(v - bound) <= BOUND_TOLERANCE * abs(bound)
         for v, p in each
         for bound in (p.lower, p.upper)
     )

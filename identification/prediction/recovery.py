@@ -18,6 +18,7 @@ import numpy as np
 
 from identification.blas import one_blas_thread
 from identification.discovery.force_along import forces_along
+from identification.discovery.free_nodes import MAX_FORCE_POINTS
 from identification.discovery.recovered_force import (
     RecoveredForce,
     Shown,
@@ -28,15 +29,13 @@ from identification.discovery.recovered_force import (
     show_readings,
 )
 from identification.effects.effect import Candidate
-from identification.prediction.fit import BLOCKS
+from identification.prediction.fit import STD_BLOCKS
 from identification.prediction.model import WindowModel
+from identification.prediction.problem import MIN_WINDOWS
 from identification.prediction.result import RefittedEffect
 from identification.prediction.window_forces import HeldWindows, stretches_of, with_values
 from identification.windows.shooting import Shooting
 from identification.windows.tangents import Tangent
-
-MOST = 4000  # samples, over all records, along which forces are computed
-FEWEST = 10  # windows of a record
 
 
 def recover_over_horizon(
@@ -93,7 +92,7 @@ def _windows(
 ) -> _Windows:  # fmt: skip
     fit = model.fit
     part, d, t = fit.problem.parts[record], fit.moves[record], fit.tangents[record]
-    most = max(FEWEST, MOST // (len(fit.moves) * part.cut.inputs.shape[1]))
+    most = max(MIN_WINDOWS, MAX_FORCE_POINTS // (len(fit.moves) * part.cut.inputs.shape[1]))
     at = np.unique(np.linspace(0, len(d) - 1, min(most, len(d))).astype(int))
     part, d, t = part.rows(at), d[at], t.rows(at)
     values = {**part.predictor.fixed, **fit.of_record(record)}
@@ -150,7 +149,7 @@ def _solve(each: Sequence[_Windows], S: np.ndarray) -> tuple[np.ndarray, np.ndar
     scores = np.concatenate(
         [np.einsum("wmi,wm->wi", s, r - s @ c) for s, r in zip(out, left, strict=True)]
     )
-    blocks = min(BLOCKS, max(2, len(scores)))
+    blocks = min(STD_BLOCKS, max(2, len(scores)))
     b = np.array([part.sum(axis=0) for part in np.array_split(scores, blocks)])
     by_blocks = np.diag(inverse @ (b.T @ b * blocks / (blocks - 1)) @ inverse)
     rest = np.concatenate([(r - s @ c).ravel() for s, r in zip(out, left, strict=True)])

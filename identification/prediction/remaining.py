@@ -35,7 +35,7 @@ from identification.prediction.unseen import Unseen
 MAX_OUTPUT_RATIO = 1.5
 # Of a record's rms error to that of the others: beyond it, and beyond chance, it is reported.
 DIFFERENT_RECORD_RATIO = 2.0
-FEWEST = 3  # records: of two nobody knows which one is different
+MIN_COMPARED_RECORDS = 3  # of two nobody knows which one is different
 
 
 def find_remaining(
@@ -109,7 +109,7 @@ def different_records(state: WindowSearch) -> list[DifferentRecord]:
             np.mean((e / scale) ** 2, axis=(1, 2)) + unseen.floor
         )
     out: list[DifferentRecord] = []
-    if len(errors) < FEWEST:
+    if len(errors) < MIN_COMPARED_RECORDS:
         return out
     for name, mine in errors.items():
         rest = np.concatenate([e for n, e in errors.items() if n != name])

@@ -18,9 +18,8 @@ from identification.prediction.scores import WindowScore
 from identification.prediction.selection import Contender
 from identification.prediction.unseen import compare
 
-# Of what an effect explained: one that still explains more beside the named one is missing too, and
-# no rival of it.
-RIVAL_SHARE = 0.5
+# Of what an effect explained: one that still explains as much beside another is missing too.
+OWN_SHARE = 0.5
 # By what was measured, or by what is believed of its size.
 CONTRADICTED: tuple[Doubt, ...] = ("lengths", "record", "bound", "exchange")
 NEEDLESS: tuple[Doubt, ...] = ("chance", "little")  # others make up for it
@@ -51,7 +50,7 @@ def find_rivals(
     return tuple(
         o for o in others
         if o.doubt not in CONTRADICTED and o.prediction.t > 0
-        and still.get(o.candidate.key, 0.0) < RIVAL_SHARE * was.get(o.candidate.key, 0.0)
+        and still.get(o.candidate.key, 0.0) < OWN_SHARE * was.get(o.candidate.key, 0.0)
     )  # fmt: skip
 
 

@@ -23,7 +23,7 @@ from identification.discovery.attempts import attempt, refuse_infinite
 from identification.effects.effect import Candidate
 from identification.model.coordinates import coordinates
 from identification.model.parameter import ParameterSet
-from identification.prediction.fit import BLOCKS, WindowFit
+from identification.prediction.fit import STD_BLOCKS, WindowFit
 from identification.prediction.joint_states import rows_for
 from identification.prediction.point import projected
 from identification.progress import counted
@@ -31,8 +31,9 @@ from identification.progress import counted
 # Of an effect's part in the outputs: with less left by the free parameters it is one of them by
 # another name.
 MIN_UNIMITATED_SHARE = 0.01
-SMALL = 1e-4  # of a probe, by which a size is moved to see whether free parameters imitate it
-BATCH = 24  # columns at a time: bounds the memory of their trajectories
+# Of a probe, by which a size is moved to see whether free parameters imitate it.
+IMITATION_STEP = 1e-4
+MAX_GROUP_COLUMNS = 24  # of candidates scored at once: bounds the memory of their trajectories
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -103,7 +104,7 @@ def _groups(candidates: Sequence[Candidate]) -> Iterator[list[Candidate]]:
     group: list[Candidate] = []
     for candidate in candidates:
         others = group and group[-1].effect.state != candidate.effect.state  # in another plant
-        if others or (group and sum(len(c.sizes) for c in (*group, candidate)) > BATCH):
+        if others or (group and sum(len(c.sizes) for c in (*group, candidate)) > MAX_GROUP_COLUMNS):
             yield group
             group = []
         group.append(candidate)
@@ -151,7 +152,7 @@ class _Base:
         Their steps are as small as those of the free parameters: where joints stick, a large one
         shows something else.
         """
-        S = np.vstack(self._columns(group, SMALL))
+        S = np.vstack(self._columns(group, IMITATION_STEP))
         size = np.linalg.norm(S, axis=0)
         left = np.linalg.norm(S - self.free @ (self.free.T @ S), axis=0)
         each = np.split(left < share * size, np.cumsum([len(c.sizes) for c in group])[:-1])
@@ -228,7 +229,7 @@ class _Base:
             windows.append(rows[done : done + W * m].reshape(W, m, -1).sum(axis=1))
             done += W * m
         each = np.concatenate(windows)
-        return np.array([b.sum(axis=0) for b in np.array_split(each, min(BLOCKS, len(each)))])
+        return np.array([b.sum(axis=0) for b in np.array_split(each, min(STD_BLOCKS, len(each)))])
 
 
 def inside(parameters: ParameterSet, names: Sequence[str], values: np.ndarray) -> np.ndarray:

@@ -16,8 +16,8 @@ from identification.prediction.fit import WindowFit
 from identification.prediction.scores import WindowScore, window_scores
 
 AND = " and "  # between places, in words
-MOST_EFFECTS = 4  # that are tried at several places; each takes a simulation for each of them
-ROUNDS = 3  # of leaving places out
+MAX_SPREAD_EFFECTS = 4  # that are tried at several places; each takes a simulation for each place
+MAX_LEAVING_ROUNDS = 3  # of leaving places out
 
 
 def at_several(effect: Effect, places: Sequence[str]) -> Effect:
@@ -73,9 +73,9 @@ def several_scores(
         if not s.candidate.effect.own and len(_single(s.candidate.effect)) > 1:
             first.setdefault(s.candidate.effect.name, s.candidate)
     out: list[WindowScore] = []
-    for c in [*first.values()][:MOST_EFFECTS]:
+    for c in [*first.values()][:MAX_SPREAD_EFFECTS]:
         places = _single(c.effect)
-        for _ in range(ROUNDS):
+        for _ in range(MAX_LEAVING_ROUNDS):
             found = window_scores(fit, [_at(c, places)])
             keep = felt_places(found[0], places, c.effect, options) if found else []
             if found and keep == places:

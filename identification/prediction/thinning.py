@@ -11,14 +11,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from identification.prediction.problem import FEWEST_WINDOWS, Problem
+from identification.prediction.problem import MIN_WINDOWS, Problem
 from identification.windows.tangents import Tangent
 
 THIN = 3  # n: one window of so many
 
 
 def picks(tangents: Sequence[Tangent], every: int = THIN) -> tuple[np.ndarray, ...]:
-    """Returns indices of one window of `every` a record, but of no fewer than `FEWEST_WINDOWS`.
+    """Returns indices of one window of `every` a record, but of no fewer than `MIN_WINDOWS`.
 
     Args:
         tangents: of a fitted model, one a record.
@@ -29,7 +29,7 @@ def picks(tangents: Sequence[Tangent], every: int = THIN) -> tuple[np.ndarray, .
 
 def kept(count: int, every: int) -> np.ndarray:
     """Returns the indices of the windows that are kept of `count` windows of a record."""
-    return np.arange(0, count, max(1, min(every, count // FEWEST_WINDOWS)))
+    return np.arange(0, count, max(1, min(every, count // MIN_WINDOWS)))
 
 
 def thinned(problem_: Problem, at: Sequence[np.ndarray]) -> Problem:

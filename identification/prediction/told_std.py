@@ -12,9 +12,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from identification.prediction.fit import BLOCKS, WindowFit, projected
+from identification.prediction.fit import STD_BLOCKS, WindowFit, projected
 
-FEWEST = 3.0  # degrees of freedom: the std is right within a factor 4 in 19 cases of 20
+MIN_FREEDOM = 3.0  # degrees of freedom: the std is right within a factor 4 in 19 cases of 20
 
 
 def told_std(found: WindowFit) -> np.ndarray:
@@ -28,7 +28,7 @@ def told_std(found: WindowFit) -> np.ndarray:
         found: a fit.
     """
     std = found.std
-    few = np.isfinite(std) & (degrees_of_freedom(found) < FEWEST)
+    few = np.isfinite(std) & (degrees_of_freedom(found) < MIN_FREEDOM)
     on_bound = found.problem.prior.space.on_bound(found.q)
     return np.where(few | (on_bound & np.isfinite(std)), np.nan, std)
 
@@ -41,7 +41,7 @@ def degrees_of_freedom(found: WindowFit) -> np.ndarray:
     """
     columns = (projected(t)[0] for t in found.tangents)
     windows = np.concatenate([np.swapaxes(S, 1, 2) @ S for S in columns])  # H_w, (W, p, p)
-    blocks = np.array_split(windows, min(BLOCKS, len(windows)))
+    blocks = np.array_split(windows, min(STD_BLOCKS, len(windows)))
     each = np.array([b.sum(axis=0) for b in blocks])
     W2 = np.diag(found.problem.prior.weight**2)
     a = np.linalg.pinv(each.sum(axis=0) + W2, rcond=1e-14, hermitian=True)

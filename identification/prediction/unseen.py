@@ -28,8 +28,8 @@ from identification.windows.settling import settle
 from identification.windows.shooting import Shooting
 from identification.windows.windows import Windows, first_states, spread, windows
 
-LENGTHS = (0.5, 1.0, 2.0)  # of the horizon
-HORIZON = (1.0,)  # alone
+LENGTHS = (0.5, 1.0, 2.0)  # of the horizon, over which an effect must predict better
+HORIZON = (1.0,)  # the horizon alone
 
 
 @dataclass(frozen=True, kw_only=True)

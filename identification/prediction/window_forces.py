@@ -13,13 +13,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from identification.discovery.force_along import Stretch
-from identification.kalman.trajectory import COARSE, average_inputs, divided
+from identification.kalman.trajectory import COARSE_POINTS, average_inputs, divided
 from identification.model.coordinates import NOTHING
 from identification.model.numbers import with_numbers
 from identification.model.rollout import hold, rollout, substeps, without_sensors
+from identification.windows.held import NO_VALUES
 from identification.windows.shooting import Shooting
-
-NONE = np.zeros((1, 0))  # the value set of a predictor whose values are all fixed
 
 
 @dataclass(frozen=True)
@@ -37,7 +36,7 @@ class HeldWindows:
     @property
     def outputs(self) -> np.ndarray:
         """The predicted outputs, shape (W, L, ny)."""
-        return self.part.outputs(NONE, [self.moves])[0]
+        return self.part.outputs(NO_VALUES, [self.moves])[0]
 
     @property
     def every(self) -> int:
@@ -48,7 +47,7 @@ class HeldWindows:
     @property
     def reaching(self) -> np.ndarray:
         """Inputs that reach the model at each step, shape (W, steps, nu)."""
-        inputs, each, kind = self.part.held_inputs(NONE)
+        inputs, each, kind = self.part.held_inputs(NO_VALUES)
         return hold(inputs, self.every, kind) if each == 1 else inputs[:, :-1]
 
 
@@ -79,20 +78,20 @@ def stretches_of(base: HeldWindows, sets: Sequence[HeldWindows]) -> list[Stretch
     plant, step = predictor.plant.model, predictor.plant.model.opt.timestep
     models, reaching = [], []
     for each in (base, *sets):
-        numbers = each.part.predictor.settings(NONE)[1]
+        numbers = each.part.predictor.settings(NO_VALUES)[1]
         models.append(with_numbers(without_sensors(plant), numbers, 0))
         reaching.append(each.reaching)
     held, W = reaching[1], len(law.moves)
     run = rollout(
-        plant, predictor.begun(NONE, law.part.states(law.moves)),
+        plant, predictor.begun(NO_VALUES, law.part.states(law.moves)),
         np.concatenate([held, held[:, -1:]], axis=1), step,
-        numbers=[(slot, np.repeat(column, W)) for slot, column in predictor.settings(NONE)[1]],
+        numbers=[(slot, np.repeat(column, W)) for slot, column in predictor.settings(NO_VALUES)[1]],
         record=("qpos", "qvel", "act") if plant.na else ("qpos", "qvel"), time=law.part.times,
     )  # fmt: skip
     out = []
     for w, begun in enumerate(law.part.times.tolist()):
         states = {field: x[w] for field, x in run.items()}
-        along = divided(models[1], states, held[w], every, begun, COARSE)
+        along = divided(models[1], states, held[w], every, begun, COARSE_POINTS)
         reached = [
             (model, average_inputs(inputs[w], along.steps, plant.nu)[0])
             for model, inputs in zip(models, reaching, strict=True)

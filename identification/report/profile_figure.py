@@ -6,7 +6,7 @@ import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 
-from identification.estimation.profiles import LEVEL, Profile
+from identification.estimation.profiles import PROFILE_LEVEL, Profile
 from identification.report.style import SERIES, STYLE, literal
 
 
@@ -17,7 +17,7 @@ def profile_figure(known: Profile, unit: str) -> Figure:
         ax = figure.subplots()
         seen = np.isfinite(known.rise)
         ax.plot(known.values[seen], known.rise[seen], "o-", color=SERIES[0], label="profile")
-        ax.axhline(LEVEL, color=SERIES[1], linestyle="--", label="95 %")
+        ax.axhline(PROFILE_LEVEL, color=SERIES[1], linestyle="--", label="95 %")
         ax.axvline(known.estimate, color=SERIES[2], linestyle=":", label="estimate")
         ax.set_xlabel(literal(f"{known.name} [{unit}]" if unit else known.name))
         ax.set_ylabel("rise of the cost, in s²")

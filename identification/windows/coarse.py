@@ -18,13 +18,13 @@ import numpy as np
 
 from identification.effects.jointed import JointPlant
 from identification.errors import DivergenceError
+from identification.estimation.slopes import SLOPE_ERROR
 from identification.model.predictor import Plant
 from identification.model.rollout import substeps
 from identification.windows.shooting import Shooting, tangent
 
-ERROR = 0.1  # ε_S: a step then misses a hundredth of what it can gain
 OUTPUT_ERROR = 0.05  # ε_y; its square is a tenth of the fall from which an effect matters
-WINDOWS = 10  # on which slopes are compared
+COMPARED_WINDOWS = 10  # on which slopes are compared
 
 
 def own_step(plant: Plant) -> float:
@@ -71,7 +71,7 @@ def with_longest_slope_steps(
 
     def differs(n: int) -> bool:
         coarse = [_columns(n, *at) for at in few]
-        return any(_exceeds([S_n - S], [S], ERROR)
+        return any(_exceeds([S_n - S], [S], SLOPE_ERROR)
                    for S, S_n in zip(exact, coarse, strict=True))  # fmt: skip
 
     plant = parts[0].predictor.plant
@@ -134,7 +134,7 @@ def _some(
     part: Shooting, q: np.ndarray, d: np.ndarray, records: int
 ) -> tuple[Shooting, np.ndarray, np.ndarray]:
     """Returns a few windows of one record of so many."""
-    few = max(2, WINDOWS // records)
+    few = max(2, COMPARED_WINDOWS // records)
     at = np.unique(np.linspace(0, len(d) - 1, few).astype(int))
     return part.rows(at), q, d[at]
 

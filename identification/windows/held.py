@@ -27,7 +27,7 @@ from identification.windows.shooting import Shooting, at_own_steps, rough, slowe
 from identification.windows.tangents import Tangent, decomposed
 from identification.windows.windows import moved
 
-_NONE = np.zeros((1, 0))  # values of no free parameter
+NO_VALUES = np.zeros((1, 0))  # the value set of a predictor whose values are all fixed
 
 
 @dataclass(frozen=True)
@@ -174,7 +174,7 @@ class HeldWindows:
         for predictor, own in parts if with_states(self.predictors[0].plant) else ():
             rows = State(*(getattr(begun, f.name)[own] for f in fields(State)))
             for f in fields(State):
-                getattr(begun, f.name)[own] = getattr(predictor.begun(_NONE, rows), f.name)
+                getattr(begun, f.name)[own] = getattr(predictor.begun(NO_VALUES, rows), f.name)
         at, times = np.arange(W) if self.at is None else self.at, np.tile(self.times, k)
         simulated = np.concatenate([at + j * len(prepared.controls) for j in range(k)])
         run = prepared.simulations.run(
@@ -185,7 +185,7 @@ class HeldWindows:
         for predictor, own in parts:
             if own.any():
                 mine = {f: x[own] for f, x in run.items()}
-                y[own] = predictor.outputs(_NONE, mine, times[own])
+                y[own] = predictor.outputs(NO_VALUES, mine, times[own])
         return y.reshape(k, W, *y.shape[1:])
 
 
@@ -200,8 +200,8 @@ def at_values(part: Shooting, q: np.ndarray) -> Shooting:
 def held_windows(part: Shooting) -> HeldWindows:
     """Returns the windows of a record that has no free parameter."""
     predictor, W = part.predictor, len(part.cut.starts)
-    _, numbers = predictor.settings(_NONE)
-    inputs, every, hold_kind = part.held_inputs(_NONE)
+    _, numbers = predictor.settings(NO_VALUES)
+    inputs, every, hold_kind = part.held_inputs(NO_VALUES)
     return HeldWindows(
         predictors=(predictor,), has_rough_slopes=part.has_rough_slopes, every=every,
         hold_kind=hold_kind,

@@ -12,7 +12,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from identification.errors import DivergenceError
-from identification.estimation.levenberg_marquardt import Damping, levenberg_marquardt
+from identification.estimation.levenberg_marquardt import (
+    KEPT_GAIN,
+    Damping,
+    levenberg_marquardt,
+)
 from identification.windows.each_window import EachWindow
 from identification.windows.held import HeldWindows
 from identification.windows.held_records import HeldRecords
@@ -22,12 +26,13 @@ from identification.windows.tangents import Tangent
 # direction that the outputs feel by a tenth of the others loses one per cent a step, and a window
 # in which a joint sticks, which takes no step before its damping is about one, is soon there.
 DAMPING = Damping(first=1e-4, raised=10.0, lowered=10.0, least=1e-4, floor=1e-4)
-MOST_DAMPING = 1e2
-STEPS = 20  # largest number of steps
-ENDED = 1e-3  # of the mean of the sums of squares: a window that changes by less is finished
-KEPT = 0.5  # of the promised gain; with less, slopes are too old
-FAR = 4.0  # times the median of the sums of squares; a window that is left worse is sought again
-AGAIN = (0.0, 0.5)  # of its changes, where it is begun again
+MAX_STATE_DAMPING = 1e2  # beyond it a window's state no longer moves
+MAX_STATE_STEPS = 20  # of the search of a window's state
+# Of the mean of the sums of squares: a window that changes by less is finished.
+FINISHED_CHANGE = 1e-3
+# Of a window's sum of squares to their median: above it the window is sought again.
+WORSE_RATIO = 4.0
+RESTART_SHARES = (0.0, 0.5)  # of its changes, where such a window begins again
 
 
 @dataclass(frozen=True)
@@ -127,20 +132,20 @@ def _searched(
     d, r = np.array(at.d), np.array(at.tangent.r)
     part, going, μ = at, np.arange(len(d)), None
     if expected is not None:
-        going = np.flatnonzero(at.cost - expected > ENDED * float(np.mean(at.cost)))
+        going = np.flatnonzero(at.cost - expected > FINISHED_CHANGE * float(np.mean(at.cost)))
         part = at.rows(going)
-    for _ in range(STEPS if going.size else 0):
-        enough = ENDED * float(np.mean(np.sum(r**2, axis=1)))
+    for _ in range(MAX_STATE_STEPS if going.size else 0):
+        enough = FINISHED_CHANGE * float(np.mean(np.sum(r**2, axis=1)))
         fresh = part.is_fresh
         trial = next(levenberg_marquardt(part, EachWindow.moved, DAMPING, μ))
         part = trial.criterion
         d[going], r[going] = part.d, part.tangent.r
         gain = trial.before - np.where(trial.taken, trial.after, trial.before)
         promised = trial.before - trial.step.promised
-        is_old = ~fresh & (promised > enough) & (gain < KEPT * promised)
+        is_old = ~fresh & (promised > enough) & (gain < KEPT_GAIN * promised)
         small = (np.abs(trial.after - trial.before) <= enough) | (promised <= enough)
         μ = np.where(is_old, trial.μ, trial.next)
-        keep = is_old | ~(small | (μ > MOST_DAMPING))
+        keep = is_old | ~(small | (μ > MAX_STATE_DAMPING))
         if not keep.any():
             break
         part, going, μ = part.rows(keep), going[keep], μ[keep]
@@ -154,16 +159,16 @@ def _sought_again(held: HeldWindows, d: np.ndarray, r: np.ndarray) -> tuple[np.n
     Where a joint sticks in a window, its criterion has several minima.
     """
     squares = np.sum(r**2, axis=1)
-    far = np.flatnonzero(squares > FAR * np.median(squares))
+    far = np.flatnonzero(squares > WORSE_RATIO * np.median(squares))
     if not far.size:
         return d, r
-    begun = np.concatenate([share * d[far] for share in AGAIN])
-    part = held.rows(np.tile(far, len(AGAIN)))
+    begun = np.concatenate([share * d[far] for share in RESTART_SHARES])
+    part = held.rows(np.tile(far, len(RESTART_SHARES)))
     first = part.residual(begun)
     if not np.isfinite(first).all():  # elsewhere it diverges: the states found stand
         return d, r
     at = EachWindow(part, begun, part.slopes(begun, first), np.ones(len(begun), bool))
-    for other, left in zip(*(np.split(x, len(AGAIN)) for x in _searched(at)), strict=True):
+    for other, left in zip(*(np.split(x, len(RESTART_SHARES)) for x in _searched(at)), strict=True):
         better = np.sum(left**2, axis=1) < np.sum(r[far] ** 2, axis=1)
         d[far[better]], r[far[better]] = other[better], left[better]
     return d, r

@@ -11,7 +11,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-FELT = 1e-6  # of the strongest direction of a state; weaker ones are not felt
+MIN_FELT_SHARE = 1e-6  # of the strongest direction of a state; weaker ones are not felt
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,7 +79,7 @@ def decomposed(r: np.ndarray, X: np.ndarray, S: np.ndarray) -> Tangent:
     size = np.linalg.norm(X, axis=1)
     size = np.where(size > 0, size, 1.0)
     U, s, Vt = np.linalg.svd(X / size[:, None], full_matrices=False)
-    s = np.where(s > FELT * s[:, :1], s, 0.0)
+    s = np.where(s > MIN_FELT_SHARE * s[:, :1], s, 0.0)
     return Tangent(r=r, S=S, U=U, s=s, Vt=Vt, size=size)
 
 

@@ -17,6 +17,7 @@ from identification.blas import one_blas_thread
 from identification.estimation.identifiability import Identifiability
 from identification.estimation.options import Progress
 from identification.estimation.resolution import resolve_columns, round_off
+from identification.estimation.search import ROUGH_TOLERANCE
 from identification.logs.log import Log
 from identification.logs.noise import noise_floor
 from identification.model.coordinates import coordinates
@@ -31,8 +32,7 @@ from identification.windows.window_search import (
 )
 from identification.windows.windows import apart, first_states, windows
 
-BELIEFS = 3  # the states' belief follows the values that were found with the last one
-ROUGH = 1e-2  # relative gain that ends a search which another follows
+BELIEF_ROUNDS = 3  # the states' belief follows the values that were found with the last one
 STEPS = (FORWARD_STEP, 100 * FORWARD_STEP)  # of the differences that the std rest on
 
 
@@ -112,11 +112,11 @@ def estimate_windows(
     C = np.eye(log.outputs.shape[1]) / sigma
     q, tangents = space.encode(first), 0
     begun = first_states(predictor, first, cut).states
-    for k in range(1, BELIEFS + 1):
+    for k in range(1, BELIEF_ROUNDS + 1):
         believed = first_states(predictor, space.decode(q), cut)
         shooting = Shooting(predictor, space, cut, believed, C)
         d = apart(plant.model, believed.states, begun)
-        enough = tolerance if k == BELIEFS else max(ROUGH, tolerance)
+        enough = tolerance if k == BELIEF_ROUNDS else max(ROUGH_TOLERANCE, tolerance)
         at = windows_at(shooting, q, d)
         if k == 1:  # later, a friction that the data do not want may well have gone to nothing
             refuse_without_effect(*_felt(at))

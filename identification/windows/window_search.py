@@ -19,7 +19,7 @@ from identification.windows.tangents import Tangent
 
 # relative to the squared norms of the columns of X and S
 DAMPING = Damping(first=1e-2, raised=5.0, lowered=10.0, least=1e-12, floor=1e-12)
-MOST_DAMPING = 1e8
+MAX_SEARCH_DAMPING = 1e8  # beyond it a search has ended
 
 
 @dataclass(frozen=True)
@@ -115,8 +115,8 @@ def _search(
     while True:
         trial = next(trials)
         if not trial.taken:
-            if trial.μ > MOST_DAMPING or np.abs(trial.step[0]).max() < tolerance:
-                return WindowsEnd(at, bool(trial.μ <= MOST_DAMPING), tangents)
+            if trial.μ > MAX_SEARCH_DAMPING or np.abs(trial.step[0]).max() < tolerance:
+                return WindowsEnd(at, bool(trial.μ <= MAX_SEARCH_DAMPING), tangents)
             continue
         before, at, tangents = at, trial.criterion, tangents + 1
         advance()

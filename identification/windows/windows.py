@@ -26,7 +26,7 @@ from identification.logs.log import Log
 from identification.model.predictor import Predictor, output_columns, with_states
 from identification.model.rollout import State, rollout
 
-LEAST = 1e-3  # smallest s_j, as a share of the largest motion in its field
+MIN_SCALE_SHARE = 1e-3  # of the largest motion in its field, for the smallest s_j
 
 
 @dataclass(frozen=True)
@@ -203,7 +203,7 @@ def _motion(model: mujoco.MjModel, run: State) -> np.ndarray:
     parts = []
     for part in np.split(far, [model.nv, 2 * model.nv], axis=1):
         size = np.sqrt(np.mean(part**2, axis=0))
-        parts.append(np.maximum(size, LEAST * size.max(initial=0.0)))
+        parts.append(np.maximum(size, MIN_SCALE_SHARE * size.max(initial=0.0)))
     size = np.concatenate(parts)
     return np.where(size > 0, size, np.inf)  # a field at rest does not show how far it may move
 

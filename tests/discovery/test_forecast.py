@@ -12,7 +12,11 @@ from identification.discovery import forecast as module
 from identification.discovery.forecast import Forecast, forecast, free_memory, refuse_large
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
-from identification.discovery.scoring.sensitivities import BATCH, list_common, list_single
+from identification.discovery.scoring.sensitivities import (
+    MAX_BATCH_COLUMNS,
+    list_common,
+    list_single,
+)
 from identification.discovery.search import discover
 from identification.discovery.state import first_state
 from identification.discovery.task import DiscoveryTask
@@ -65,9 +69,9 @@ def test_a_candidate_beyond_a_batch_costs_its_sensitivity_alone():
         sum(len(c.sizes) for c in (*list_common(some), *list_single([*first(some)])))
         for some in (fewer, every)
     ]
-    assert sizes[1] > sizes[0] >= BATCH  # on one output, of the half that is fitted
+    assert sizes[1] > sizes[0] >= MAX_BATCH_COLUMNS  # on one output, of the half that is fitted
     more = without_fixed(300) - without_fixed(300, fewer)
-    assert more == pytest.approx((1 + module.KEPT) * 8 * 150 * (sizes[1] - sizes[0]))
+    assert more == pytest.approx((1 + module.KEPT_SHARE) * 8 * 150 * (sizes[1] - sizes[0]))
 
 
 def first(effects):
@@ -83,9 +87,9 @@ def test_memory_is_linear_in_the_samples(effects):
 
 def test_what_the_library_keeps_has_an_end(monkeypatch):
     """Beyond it a longer log takes what its arrays take, and is cut by that."""
-    monkeypatch.setattr(module, "MOST_KEPT", 1e5)
+    monkeypatch.setattr(module, "MAX_KEPT_BYTES", 1e5)
     one, other = (forecast(task(n)) for n in (600, 900))
-    assert one.fixed == other.fixed == pytest.approx(module.BASE + 1e5, rel=0.1)
+    assert one.fixed == other.fixed == pytest.approx(module.BASE_BYTES + 1e5, rel=0.1)
     each = (other.memory - one.memory) / 300
     assert one.memory - one.fixed == pytest.approx(600 * each)
 
@@ -95,7 +99,8 @@ def test_a_search_holds_the_arrays_of_its_forecast(make):
     """The most that arrays take at once, once all code is loaded."""
     given = make(1000)
     needs, copies = forecast(given), float(given.nominal_model.plant.model.nbuffer)
-    data = (needs.memory - module.BASE - module.MODELS * copies) / (1 + module.KEPT)
+    fixed = module.BASE_BYTES + module.MODEL_COPIES * copies
+    data = (needs.memory - fixed) / (1 + module.KEPT_SHARE)
     first_state(make(200), lambda line: None)
     tracemalloc.start()
     try:

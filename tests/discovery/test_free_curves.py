@@ -20,14 +20,10 @@ from scipy.integrate import solve_ivp
 
 from identification import Log
 from identification.discovery.fitted_model import fit_model
-from identification.discovery.free_curves import (
-    NODES,
-    _respond,
-    find_curves,
-    list_curves,
-)
+from identification.discovery.free_curves import _respond, find_curves, list_curves
 from identification.discovery.replacement import replace_effect
 from identification.discovery.search import discover
+from identification.effects.curve_laws import NODES
 from identification.effects.effect import Candidate
 from identification.kalman.linear import LinearPlant
 from identification.kalman.problem import linearise_criterion

@@ -70,7 +70,8 @@ def test_what_the_fitted_samples_want_and_the_free_run_confirms_begins_a_pair(
         return replace(proof, gain=-100.0, t=-1.6, chance=0.94, fall=fall, above=fall)
 
     monkeypatch.setattr("identification.discovery.selection.forward_selection.prove", astray)
-    monkeypatch.setattr("identification.discovery.fitted_model.FAR", 1.0)  # of a short log
+    # The log is short.
+    monkeypatch.setattr("identification.discovery.fitted_model.NEEDED_BIC_RATIO", 1.0)
     answer = discover(nominal_model(), disturbed(**OFFSET, **RUBBING), EFFECTS)
     assert {n.candidate.effect.name for n in answer.named} == hidden
     assert hidden or answer.verdict == "unknown effect"

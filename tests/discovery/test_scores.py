@@ -5,7 +5,7 @@ import pytest
 from discovery_cases import covariance, linear_plant, point_of, scored, sensitivity
 from scipy.stats import chi2, kstest
 
-from identification.discovery.scoring.scores import SMALLER
+from identification.discovery.scoring.scores import RATIO_FACTORS
 from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.noise_model import Noise
 
@@ -41,7 +41,7 @@ def test_gain_size_and_std_are_those_of_brute_force(seed, ratio):
     G = np.hstack([F, S.reshape(n, 2)])
     ridge = np.hstack([np.diag(prior * sigma), np.zeros((P, 2))])
     best = {}
-    for share in SMALLER if ratio else (1.0,):
+    for share in RATIO_FACTORS if ratio else (1.0,):
         V = covariance(plant, noise.scaled(share))
         det = np.linalg.slogdet(V)[1]
         for name, columns, rows in (("without", F, ridge[:, :P]), ("with", G, ridge)):

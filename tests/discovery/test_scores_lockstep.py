@@ -18,7 +18,7 @@ from scipy.stats import f as f_distribution
 
 from identification.discovery.scoring import scores as module
 from identification.discovery.scoring.projection import Projection
-from identification.discovery.scoring.scores import SHORTEST, SMALLER
+from identification.discovery.scoring.scores import MIN_SCORE_SAMPLES, RATIO_FACTORS
 from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.noise_model import Noise, build_whitener
 
@@ -40,7 +40,7 @@ def slow_score(plant, noise, e, J, s):
     """Gain, size, std, p-values, identifiable share and noise of one candidate."""
     m, signs = s.S.shape[2], [size.sign for size in s.candidate.effect.sizes]
     n, found = e.size, []
-    for share in SMALLER if noise.ratio else (1.0,):
+    for share in RATIO_FACTORS if noise.ratio else (1.0,):
         filter_ = build_whitener(plant, noise.scaled(share), STEP)
         W = filter_(np.concatenate([e[..., None], J, s.S], axis=2)).reshape(n, -1)
         ridge = PRIOR * SIGMA
@@ -63,7 +63,7 @@ def slow_score(plant, noise, e, J, s):
     k, null = (max(range(len(found)), key=lambda i, of=of: found[i][of]) for of in (0, 1))
     likely, _, squares, _, size, H, left, refused, _ = found[k]
     half = 0.5 if m == 1 and signs[0] != 0 else 1.0
-    B = min(OPTIONS.score_blocks, N // SHORTEST)
+    B = min(OPTIONS.score_blocks, N // MIN_SCORE_SAMPLES)
     starts = np.linspace(0, N, B, endpoint=False).astype(int)
     g, moved = np.add.reduceat(left, starts, axis=0), H @ size
     W = moved @ np.linalg.pinv(g.T @ g, rcond=1e-12, hermitian=True) @ moved
@@ -77,7 +77,7 @@ def slow_score(plant, noise, e, J, s):
         "p_value": half * chi2.sf(fall, m),
         "block_p_value": 1.0 if refused else by_blocks,
         "identifiable": np.trace(found[null][5]) / max(found[null][8], 1e-300),
-        "ratio": noise.ratio * SMALLER[k],
+        "ratio": noise.ratio * RATIO_FACTORS[k],
     }
 
 
@@ -87,7 +87,7 @@ def slow_score(plant, noise, e, J, s):
     [(1, 0.0, 1.0), (2, 0.5, 0.0), (3, 0.5, 0.3), (4, 2.0, 1.0), (5, 2.0, 10.0)],
 )
 def test_every_score_is_that_of_the_slow_way(seed, ratio, missing, together, monkeypatch):
-    monkeypatch.setattr(module, "TOGETHER", together)
+    monkeypatch.setattr(module, "MAX_COLUMNS", together)
     rng = np.random.default_rng(seed)
     plant, noise = linear_plant(rng, N), Noise(ratio, 0.1)
     J = rng.standard_normal((N, NY, P))

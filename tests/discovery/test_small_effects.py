@@ -31,7 +31,7 @@ def names_where_the_second_moves_nothing(monkeypatch, times=10.0, structure=()):
 
     monkeypatch.setattr(f"{SELECTION}.prove", still)
     monkeypatch.setattr(f"{SELECTION}.find_structure", left)
-    monkeypatch.setattr("identification.discovery.fitted_model.FAR", times)
+    monkeypatch.setattr("identification.discovery.fitted_model.NEEDED_BIC_RATIO", times)
     answer = discover(nominal_model(), disturbed(**SIZES), EFFECTS)
     return {n.candidate.effect.name for n in answer.named}
 

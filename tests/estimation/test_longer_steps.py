@@ -11,6 +11,7 @@ from records_cases import AXIS, MJCF, PARAMETERS, STEP, record
 
 from identification.effects.joint_plant import joint_plant
 from identification.errors import DivergenceError
+from identification.estimation.slopes import SLOPE_ERROR
 from identification.model.coordinates import NOTHING, coordinates
 from identification.model.predictor import Predictor
 from identification.model.rollout import substeps
@@ -28,7 +29,6 @@ from identification.prediction.records import Record
 from identification.prediction.unknowns import Prior, Unknowns
 from identification.windows import shooting
 from identification.windows.coarse import (
-    ERROR,
     OUTPUT_ERROR,
     own_step,
     with_longest_slope_steps,
@@ -89,7 +89,7 @@ def test_the_steps_divide_the_sampling_time_and_keep_the_bound_nearly_everywhere
     part = cut(plant())
     n = chosen(part)
     assert substeps(STEP, FINE) % n == 0
-    assert error(part, n) < 1.5 * ERROR  # chosen on some windows, judged on all
+    assert error(part, n) < 1.5 * SLOPE_ERROR  # chosen on some windows, judged on all
 
 
 def test_errors_of_slopes_are_of_the_first_order_of_the_step():

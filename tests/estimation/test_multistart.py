@@ -52,7 +52,7 @@ def test_a_start_that_the_plant_cannot_have_is_passed_over(monkeypatch):
         return search(plant, log, names, start, *rest)
 
     monkeypatch.setattr(multistart, "estimate", picky)
-    monkeypatch.setattr(multistart, "ENOUGH", 0.0)
+    monkeypatch.setattr(multistart, "ENOUGH_NOISE_RATIO", 0.0)
     found = estimate_from(slider(stiffness=18.0), log, ("stiffness",), 3, 0)
     assert np.isfinite(found.rms).tolist() == [True, False, True]
 

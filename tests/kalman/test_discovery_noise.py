@@ -6,7 +6,7 @@ from discovery_cases import STEP, covariance, linear_plant
 
 from identification.kalman.linear import LinearPlant
 from identification.kalman.noise_fit import (
-    LEVELS,
+    FIRST_LEVELS,
     START_CORRELATION_TIME,
     compute_unit_ratio,
     evaluate_noise,
@@ -78,7 +78,7 @@ def test_no_more_error_of_the_inputs_is_taken_for_granted_than_is_believed(share
     held = fit_noise(plant, e, J, prior, STEP, fine=False, largest=share * free.input_std)
     unit = Noise(compute_unit_ratio(plant, STEP, TIME), TIME)
     tried = [evaluate_noise(build_whitener(plant, n, STEP), n, e, J, prior)
-             for n in map(unit.scaled, LEVELS)]  # fmt: skip
+             for n in map(unit.scaled, FIRST_LEVELS)]  # fmt: skip
     believed = [t.log_likelihood for t in tried if t.input_std <= share * free.input_std]
     assert held.input_std <= share * free.input_std
     assert held.log_likelihood == max(believed)

@@ -11,7 +11,7 @@ from test_discovery_linear import CRANE
 from identification import Log, Parameter, ParameterSet
 from identification.kalman.linear import extend, linearise
 from identification.kalman.point import evaluate_point, extend_point
-from identification.kalman.trajectory import COARSE, follow
+from identification.kalman.trajectory import COARSE_POINTS, follow
 from identification.logs.joined import join_logs
 from identification.model.coordinates import coordinates
 from identification.model.plant import ModelPlant
@@ -83,7 +83,7 @@ def test_only_the_rest_is_linearised_and_nothing_is_simulated_twice(monkeypatch)
     monkeypatch.setattr(derivatives, counted)
     monkeypatch.setattr(Predictor, "predict", None)
     found = extend_point(point, whole)
-    assert seen == [COARSE * (N - len(point.log))]
+    assert seen == [COARSE_POINTS * (N - len(point.log))]
     np.testing.assert_array_equal(found.e[: len(point.log)], point.e)
     np.testing.assert_array_equal(found.linear.A[: len(point.linear.A)], point.linear.A)
 
@@ -125,6 +125,6 @@ def test_where_more_states_are_felt_later_all_is_linearised():
         expected, A=expected.A[:9][:, small][:, :, small], B=expected.B[:9, small],
         C=expected.C[:, small], felt=kept,
     )  # fmt: skip
-    found = extend(known, own, follow(own, values, COARSE))
+    found = extend(known, own, follow(own, values, COARSE_POINTS))
     np.testing.assert_array_equal(found.felt, expected.felt)
     np.testing.assert_allclose(found.A, expected.A, rtol=1e-12, atol=1e-12)

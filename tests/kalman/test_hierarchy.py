@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from discovery_cases import STEP, linear_plant, point_of
 
-from identification.kalman.hierarchy import LEAST, estimate_scatter
+from identification.kalman.hierarchy import MIN_STD_SHARE, estimate_scatter
 from identification.kalman.linear import LinearPlant
 from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.noise_model import Noise
@@ -46,8 +46,8 @@ def test_scatters_of_two_groups_are_found():
 
 def test_parts_that_are_alike_have_no_scatter():
     found = [estimate_scatter(fit_of(np.zeros(P), 0.1, seed), groups()) for seed in range(10)]
-    assert np.median([s["even"] for s in found]) <= 2 * LEAST * TABLE
-    assert min(s["odd"] for s in found) >= LEAST * TABLE
+    assert np.median([s["even"] for s in found]) <= 2 * MIN_STD_SHARE * TABLE
+    assert min(s["odd"] for s in found) >= MIN_STD_SHARE * TABLE
 
 
 def test_what_the_data_do_not_tell_keeps_what_is_usual():

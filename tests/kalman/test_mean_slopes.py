@@ -12,7 +12,7 @@ from identification import Log, ParameterSet, Predictor
 from identification.kalman import linear, sensitivity_equations
 from identification.kalman.derivatives import input_derivatives, state_derivatives
 from identification.kalman.sensitivity_equations import solve_sensitivities
-from identification.kalman.trajectory import COARSE, follow
+from identification.kalman.trajectory import COARSE_POINTS, follow
 from identification.linear.points import Change, Points
 from identification.model.plant import ModelPlant
 from inca_mj.robot.inputs import make_input
@@ -38,8 +38,8 @@ def steep():
 
 def test_a_friction_counts_with_the_mean_of_its_slope(steep):
     """Of b_c tanh(β ω) that is b_c (tanh(β ω_1) - tanh(β ω_0))/(ω_1 - ω_0)."""
-    along = follow(steep, np.array([*STEEP.values()]), COARSE)
-    smooth = follow(steep, np.array([1e-9, STEEP["beta"]]), COARSE)
+    along = follow(steep, np.array([*STEEP.values()]), COARSE_POINTS)
+    smooth = follow(steep, np.array([1e-9, STEEP["beta"]]), COARSE_POINTS)
     found = state_derivatives(along)[0] - state_derivatives(replace(along, model=smooth.model))[0]
     nv, motors, beta = along.model.nv, np.arange(6, 14), STEEP["beta"]
     found = found[:, nv + motors, nv + motors]
@@ -82,7 +82,7 @@ def test_an_input_at_its_limit_has_two_slopes():
     u = np.array([1.0, 1.0, 0.3, 0.3, -1.0, -1.0, -1.0])[:, None]
     log = Log(time=0.02 * np.arange(7), inputs=u, outputs=np.zeros((7, 1)),
               input_names=("force",), output_names=("position",))  # fmt: skip
-    along = follow(Predictor(plant, log, ()), np.empty(0), COARSE)
+    along = follow(Predictor(plant, log, ()), np.empty(0), COARSE_POINTS)
     up, down = (each[:, 0, 0] for each in input_derivatives(along))
     sent = along.inputs[:, 0]
     np.testing.assert_allclose(up, np.where(sent < 1, 2.5, 0), atol=1e-6)  # gear over mass

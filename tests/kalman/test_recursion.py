@@ -6,7 +6,7 @@ from discovery_cases import STEP, linear_plant
 
 from identification.kalman.linear import LinearPlant
 from identification.kalman.noise_model import Noise, augment, build_whitener
-from identification.kalman.recursion import TOGETHER, filter_gains, propagate
+from identification.kalman.recursion import COLUMNS_PER_CALL, filter_gains, propagate
 
 
 def two_records(rng):
@@ -45,7 +45,7 @@ def test_variances_are_those_of_the_equations(system):
 
 
 @pytest.mark.parametrize("threads", ["1", "2"])
-@pytest.mark.parametrize("columns", [1, 7, 2 * TOGETHER + 3])
+@pytest.mark.parametrize("columns", [1, 7, 2 * COLUMNS_PER_CALL + 3])
 def test_all_columns_are_filtered_however_they_are_divided(threads, columns, monkeypatch):
     monkeypatch.setenv("INCA_MJ_THREADS", threads)
     rng = np.random.default_rng(2)

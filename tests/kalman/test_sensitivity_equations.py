@@ -20,7 +20,7 @@ from identification.kalman.derivatives import state_derivatives
 from identification.kalman.linear import linearise_records
 from identification.kalman.point import evaluate_point, shift_point
 from identification.kalman.sensitivity_equations import can_solve, solve_sensitivities
-from identification.kalman.trajectory import COARSE, FINE, follow
+from identification.kalman.trajectory import COARSE_POINTS, FINE_POINTS, follow
 from identification.linear.derivatives import shift_position
 from identification.logs.joined import join_logs
 from identification.model.coordinates import coordinates
@@ -33,7 +33,7 @@ from inca_mj.twin.logs import ANGLES, CURRENTS
 H = 0.02
 
 
-def solve(predictor, values, moves, points=COARSE):
+def solve(predictor, values, moves, points=COARSE_POINTS):
     records = linearise_records(predictor, values, points=points)
     assert can_solve(predictor, records)
     return solve_sensitivities(
@@ -144,7 +144,7 @@ def robot():
 
 def test_of_the_cable_robot_they_are_those_of_the_simulation(robot):
     predictor, space = robot.predictor, robot.space
-    records = linearise_records(predictor, space.decode(robot.q), points=FINE)
+    records = linearise_records(predictor, space.decode(robot.q), points=FINE_POINTS)
     assert do_equations_hold(predictor, space, robot.q, records, robot.J)
     h = 1e-4 * np.eye(len(NAMES))
     ahead, behind = (predictor.predict(space.decode(robot.q + s * h)) for s in (1, -1))
@@ -156,7 +156,7 @@ def test_of_the_cable_robot_they_are_those_of_the_simulation(robot):
 
 
 def test_the_derivatives_are_those_of_mujoco(robot):
-    along = follow(robot.predictor, robot.space.decode(robot.q), FINE).some(4)
+    along = follow(robot.predictor, robot.space.decode(robot.q), FINE_POINTS).some(4)
     along = replace(along, steps=np.arange(5), begins=np.arange(4))
     F = state_derivatives(along)[0]
     model = along.model
@@ -179,7 +179,7 @@ def test_the_derivatives_are_those_of_mujoco(robot):
 
 def test_an_orientation_is_shifted_as_mujoco_shifts_it(robot):
     model = robot.predictor.plant.model
-    along = follow(robot.predictor, robot.space.decode(robot.q), COARSE)
+    along = follow(robot.predictor, robot.space.decode(robot.q), COARSE_POINTS)
     qpos = along.states["qpos"][::50]
     for dof in range(model.nv):
         expected = qpos.copy()

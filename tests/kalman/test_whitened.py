@@ -57,7 +57,7 @@ def test_a_step_by_products_is_that_of_the_columns(damping, alike, monkeypatch):
     task = linearise_criterion(point_of(plant, e, J), level, np.ones(3), prior)
     np.testing.assert_allclose(task.curvature, task.rows.T @ task.rows, rtol=1e-12)
     quick = task.step(damping)
-    monkeypatch.setattr(module, "SOUND", 0.0)
+    monkeypatch.setattr(module, "MAX_CONDITION", 0.0)
     slow = replace(task).step(damping)
     fall = task.expected_fall(slow)
     assert task.expected_fall(quick) == pytest.approx(fall, rel=1e-9)

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from identification.prediction.blocks import PER_RECORD, block_gains, count_blocks
+from identification.prediction.blocks import MAX_BLOCKS_PER_RECORD, block_gains, count_blocks
 
 lengths = st.lists(st.integers(2, 90), min_size=1, max_size=3)
 
@@ -50,4 +50,4 @@ def test_windows_in_which_nothing_happens_do_not_decide() -> None:
 
 @pytest.mark.parametrize(("windows", "blocks"), [(1, 1), (3, 1), (10, 5), (40, 20), (999, 20)])
 def test_every_record_has_the_same_blocks_at_most(windows: int, blocks: int) -> None:
-    assert count_blocks(windows) == blocks <= PER_RECORD
+    assert count_blocks(windows) == blocks <= MAX_BLOCKS_PER_RECORD

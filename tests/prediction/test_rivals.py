@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from identification.prediction.rivals import CONTRADICTED, RIVAL_SHARE, find_rivals
+from identification.prediction.rivals import CONTRADICTED, OWN_SHARE, find_rivals
 
 BEFORE, AFTER = (SimpleNamespace(fit=SimpleNamespace(cost=cost)) for cost in (100.0, 50.0))
 
@@ -41,6 +41,6 @@ def test_a_law_that_predicts_unseen_records_no_better_is_no_rival_however_well_i
 
 def test_what_explains_as_much_beside_the_name_is_missing_too_and_no_rival():
     other = law()
-    least = RIVAL_SHARE * 0.4 * BEFORE.fit.cost / AFTER.fit.cost
+    least = OWN_SHARE * 0.4 * BEFORE.fit.cost / AFTER.fit.cost
     assert rivals(other, 0.9 * least) == (other,)
     assert rivals(other, 1.1 * least) == ()

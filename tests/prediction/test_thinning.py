@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from identification.prediction.problem import FEWEST_WINDOWS
+from identification.prediction.problem import MIN_WINDOWS
 from identification.prediction.thinning import THIN, kept
 
 
@@ -14,6 +14,6 @@ def test_one_window_of_three_is_kept_and_never_fewer_than_blocks_need(count):
     assert np.all(np.diff(at) > 0)
     assert at[0] == 0
     assert at[-1] < count
-    assert len(at) >= min(count, FEWEST_WINDOWS)
-    if count >= THIN * FEWEST_WINDOWS:
+    assert len(at) >= min(count, MIN_WINDOWS)
+    if count >= THIN * MIN_WINDOWS:
         assert np.all(np.diff(at) == THIN)

@@ -7,7 +7,7 @@ import pytest
 from scipy.stats import chi2
 
 from identification.prediction import told_std as module
-from identification.prediction.told_std import FEWEST, degrees_of_freedom, told_std
+from identification.prediction.told_std import MIN_FREEDOM, degrees_of_freedom, told_std
 
 
 def fitted(monkeypatch, S, weight):
@@ -51,5 +51,5 @@ def test_a_std_that_is_that_of_the_prior_is_known(monkeypatch):
 
 
 def test_the_fewest_degrees_of_freedom_make_a_std_right_within_a_factor_of_four():
-    low, high = (FEWEST / chi2.ppf([0.975, 0.025], FEWEST)) ** 0.5
+    low, high = (MIN_FREEDOM / chi2.ppf([0.975, 0.025], MIN_FREEDOM)) ** 0.5
     assert 1 / 4 < low < high < 4

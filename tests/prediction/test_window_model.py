@@ -72,7 +72,8 @@ def test_progress_says_the_length_of_windows_and_their_error_in_its_unit():
 def test_slopes_that_are_kept_lead_to_the_same_fit_with_fewer_linearisations(monkeypatch):
     logs = records(4, LOAD)
     each = rubbed()
-    monkeypatch.setattr(point, "MANY", 0)  # slopes are kept, however few parameters there are
+    # Slopes are kept, however few parameters there are.
+    monkeypatch.setattr(point, "KEEP_SLOPES_FROM", 0)
     kept = fitted(logs[:2], logs[2:])
     assert kept.fit.cost == pytest.approx(each.fit.cost, rel=1e-3)
     for name in FREE:

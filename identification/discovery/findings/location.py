@@ -22,9 +22,9 @@ from identification.logs.noise import noise_floor
 
 # Of the power of a missing force: the regressor that it follows is reported from this share on.
 TOLD_REGRESSOR_SHARE = 0.1
-TENTHS = 10  # intervals into which the fitted samples are divided
-STEEP = 3.0  # of the sign of a rate, smoothed by tanh, per std of the rate
-SLOW = 0.3  # width of "near zero", in std of the rate
+ERROR_INTERVALS = 10  # into which the fitted samples are divided, to tell when the error is worst
+SIGN_STEEPNESS = 3.0  # of the sign of a rate, smoothed by tanh, per std of the rate
+NEAR_ZERO_WIDTH = 0.3  # width of "near zero", in std of the rate
 
 
 def locate_error(fit: Refit, forces: Sequence[MissingForce]) -> tuple[Finding, ...]:
@@ -63,9 +63,9 @@ def _worst_output(fit: Refit) -> WorstOutput:
 
 def _worst_interval(fit: Refit) -> WorstInterval:
     log, e = fit.point.log, fit.point.e
-    starts = np.linspace(0, len(e), TENTHS, endpoint=False).astype(int)
+    starts = np.linspace(0, len(e), ERROR_INTERVALS, endpoint=False).astype(int)
     energy = np.add.reduceat(np.sum(e**2, axis=1), starts)
-    late, span = int(energy.argmax()), log.duration / TENTHS
+    late, span = int(energy.argmax()), log.duration / ERROR_INTERVALS
     return WorstInterval(late * span, (late + 1) * span, float(energy[late] / energy.sum()))
 
 
@@ -108,10 +108,10 @@ def list_regressors(fit: Refit) -> dict[str, np.ndarray]:
     if u.shape[1] == y.shape[1]:
         scale = rate.std(axis=0) + 1e-300
         out |= {
-            "rate sign": np.tanh(STEEP * rate / scale),
+            "rate sign": np.tanh(SIGN_STEEPNESS * rate / scale),
             "rate": rate,
             "rate size": np.abs(rate),
-            "rate near zero": rate * np.exp(-((rate / (SLOW * scale)) ** 2)),
+            "rate near zero": rate * np.exp(-((rate / (NEAR_ZERO_WIDTH * scale)) ** 2)),
             "rate squared": rate * np.abs(rate),
             "position": y,
         }

@@ -21,7 +21,7 @@ from identification.discovery.scoring.scores import Score
 from identification.discovery.scoring.significance import is_plausible
 from identification.kalman.noise_fit import NoiseLevel
 
-QUANTILE = normal_level(0.025)  # of a two-sided interval of 95 %
+NORMAL_QUANTILE = normal_level(0.025)  # of a two-sided interval of 95 %
 
 
 def list_hidden(
@@ -46,7 +46,7 @@ def list_hidden(
 
 def _most(s: Score) -> np.ndarray:
     """Returns the largest size of each kind that the log does not contradict, shape (m,)."""
-    most: np.ndarray = np.abs(s.size) + QUANTILE * s.std
+    most: np.ndarray = np.abs(s.size) + NORMAL_QUANTILE * s.std
     return most
 
 

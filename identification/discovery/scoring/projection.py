@@ -19,7 +19,8 @@ from identification.kalman.noise_model import Noise
 from identification.kalman.refit import Refit
 from identification.kalman.whitened import whiten
 
-LEAST = 1e-14  # of the largest eigenvalue of ΦᵀΦ: less is no direction that the outputs feel
+# Of the largest eigenvalue of ΦᵀΦ: less is no direction that the outputs feel.
+MIN_EIGENVALUE_SHARE = 1e-14
 
 
 @dataclass(frozen=True)
@@ -65,7 +66,7 @@ class Projection:
         self._ridge = fit.prior * fit.level.sigma
         below = self._ridge * (fit.mean - point.q)
         w, V = np.linalg.eigh(white.H + np.diag(self._ridge**2))
-        kept = w > LEAST * w.max(initial=0.0)
+        kept = w > MIN_EIGENVALUE_SHARE * w.max(initial=0.0)
         self._w, self._V = w[kept], V[:, kept]
         c = self._coefficients(self._F.T @ E + self._ridge * below)
         self._e, self._below = E - self._F @ c, below - self._ridge * c

@@ -44,10 +44,10 @@ from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.refit import Refit
 from identification.pool import run_parts, split
 
-SHORTEST = 10  # samples of a block at least
-TOGETHER, MEMORY = 96, 2**24  # columns that are projected at once, and bytes of them, at most
-NEAR = 1e-6  # of twice a log likelihood: far more than rounding, and of no account
-SMALLER = (1.0, 0.3, 0.1, 0.03, 0.01, 0.0)  # ρ that are tried, in units of the nominal model's
+MIN_SCORE_SAMPLES = 10  # of a block of fitted samples
+MAX_COLUMNS, MAX_COLUMN_BYTES = 96, 2**24  # that are projected at once
+LIKELIHOOD_ROUNDING = 1e-6  # of twice a log likelihood: far more than rounding, and of no account
+RATIO_FACTORS = (1.0, 0.3, 0.1, 0.03, 0.01, 0.0)  # of the nominal model's ρ, that are tried
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -85,7 +85,7 @@ def score(
         sensitivities: of the candidates, on the fitted samples.
         options: the number of blocks.
     """
-    blocks = max(1, min(options.score_blocks, len(fit.point.e) // SHORTEST))
+    blocks = max(1, min(options.score_blocks, len(fit.point.e) // MIN_SCORE_SAMPLES))
     with one_blas_thread():
         scorer = _scorer(fit, blocks)
         scorer.add([s for s in sensitivities if id(s) not in scorer.known])
@@ -96,7 +96,7 @@ def score(
 def _scorer(fit: Refit, blocks: int) -> _Scorer:
     """Returns what scores candidates on the last fit: a score does not depend on the others."""
     noise, samples = fit.level.noise, len(fit.point.e)
-    shares = SMALLER if noise.ratio else (1.0,)
+    shares = RATIO_FACTORS if noise.ratio else (1.0,)
     levels = run_parts(lambda share: Projection(fit, noise.scaled(share)), shares)
     return _Scorer(levels, np.linspace(0, samples, blocks, endpoint=False).astype(int))
 
@@ -109,7 +109,7 @@ def _numbers(sensitivities: Sequence[Sensitivity]) -> list[int]:
 def _groups(sensitivities: Sequence[Sensitivity], m: int) -> list[list[int]]:
     """Returns groups of indices of candidates with m sizes, as many as are projected at once."""
     places = [j for j, s in enumerate(sensitivities) if s.S.shape[2] == m]
-    most = min(TOGETHER // m, MEMORY // max(1, sensitivities[0].S[..., 0].nbytes * m))
+    most = min(MAX_COLUMNS // m, MAX_COLUMN_BYTES // max(1, sensitivities[0].S[..., 0].nbytes * m))
     return [places[some] for some in split(len(places), max(1, most))]
 
 
@@ -172,7 +172,7 @@ class _Scorer:
         best, every = null, np.arange(len(some))
         best.improve(every, first)
         for k in range(len(self.levels)):
-            near = every[2 * (bound[k] - best.likely) > -NEAR]
+            near = every[2 * (bound[k] - best.likely) > -LIKELIHOOD_ROUNDING]
             if k not in (self.null, self.largest) and near.size:
                 best.improve(near, self._try(k, S[:, :, near], signs[near]))
         return self._made(some, best, signs, p_value, identifiable)

@@ -15,20 +15,17 @@ import numpy as np
 
 from identification.discovery.attempts import attempt, refuse_infinite
 from identification.effects.effect import Candidate, Effect
-from identification.kalman.columns import do_equations_hold
+from identification.kalman.columns import EQUATION_STEP_SHARE, do_equations_hold
 from identification.kalman.linear import Linearisation, linearise_records
 from identification.kalman.point import Point
 from identification.kalman.sensitivity_equations import ALWAYS, Courses, solve_sensitivities
-from identification.kalman.trajectory import FINE
+from identification.kalman.trajectory import FINE_POINTS
 from identification.model.predictor import Predictor
 from identification.pool import each_part
 from identification.progress import counted
 
 LONG_AGO = 1e6  # before a record [s], later than any ramp lasts
-BATCH = 128  # columns that are computed at once, which bounds the memory of their trajectories
-# Share of its probe at which an effect enters the equations: large accelerations nearly cancel each
-# other there, such as those of an anchor that moves and of the cable that is longer at rest for it.
-SHORTER = 1e-2
+MAX_BATCH_COLUMNS = 128  # that are computed at once, which bounds the memory of their trajectories
 
 
 @dataclass(frozen=True)
@@ -157,7 +154,7 @@ def compute_beside(point: Point, candidates: Sequence[Candidate]) -> tuple[Sensi
 @lru_cache(maxsize=1)
 def _fine_records(point: Point) -> tuple[Linearisation, ...]:
     """Returns the linearisation at a point, as fine as candidates need; none where it fails."""
-    records = linearise_records(point.predictor, point.space.decode(point.q), points=FINE)
+    records = linearise_records(point.predictor, point.space.decode(point.q), points=FINE_POINTS)
     holds = do_equations_hold(point.predictor, point.space, point.q, records, point.J)
     return records if holds else ()
 
@@ -180,7 +177,7 @@ def _groups(candidates: Sequence[tuple[int, Candidate]]) -> Iterator[list[tuple[
     columns = 0
     for i, candidate in candidates:
         columns += len(candidate.effect.sizes)
-        if columns > BATCH and group:
+        if columns > MAX_BATCH_COLUMNS and group:
             yield group
             group, columns = [], len(candidate.effect.sizes)
         group.append((i, candidate))
@@ -198,7 +195,7 @@ def _solve(
         families.setdefault((i,) if alone else _family(candidate), []).append(i)
     one_each = [_long_begun(group[members[0]]) for members in families.values()]
     courses = [_courses([group[i] for i in members]) for members in families.values()]
-    predictor, values, rows, probes = _probe(point, one_each, SHORTER)
+    predictor, values, rows, probes = _probe(point, one_each, EQUATION_STEP_SHARE)
     of_rows = [of for c, of in zip(one_each, courses, strict=True) for _ in c.sizes]
     S = solve_sensitivities(predictor, records, values, rows, probes, of_rows)
     out: list[Sensitivity | None] = [None] * len(group)

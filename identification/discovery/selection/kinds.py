@@ -22,7 +22,7 @@ import numpy as np
 
 from identification.discovery.attempts import attempt
 from identification.discovery.fitted_model import (
-    FEW,
+    ROUGH_FIT_STEPS,
     AcceptedEffect,
     FittedModel,
     score_candidates,
@@ -172,7 +172,7 @@ def _list_limits(
     if not others:
         return []
     rest = tuple(c for c in model.candidates if c.key != old.key)
-    without = try_fit(task, rest, model.refit.point.values, model, FEW)
+    without = try_fit(task, rest, model.refit.point.values, model, ROUGH_FIT_STEPS)
     best: dict[tuple[float, ...], Score] = {}
     scores = score_candidates(without, others, task.options) if without else ()
     for s in sorted(scores, key=gain_of_whole, reverse=True):

@@ -15,8 +15,8 @@ import numpy as np
 
 from identification.discovery.attempts import attempt
 from identification.discovery.fitted_model import (
-    FAR,
-    FEW,
+    NEEDED_BIC_RATIO,
+    ROUGH_FIT_STEPS,
     AcceptedEffect,
     FittedModel,
     is_confirmed,
@@ -50,13 +50,13 @@ def eliminate(
 def _is_needed(task: DiscoveryTask, model: FittedModel, candidate: Candidate) -> bool:
     """Returns whether the model would be far less likely without an effect, with all re-tuned.
 
-    To first order: `FAR` times what BIC asks leaves room for what is not linear. Of a limit, whose
-    size is not estimated, this says nothing.
+    To first order: `NEEDED_BIC_RATIO` times what BIC asks leaves room for what is not linear. Of a
+    limit, whose size is not estimated, this says nothing.
     """
     retuned = attempt(None, partial(retune, model.refit, task.nominal_model, candidate))
     loss = retuned[0] if retuned else np.inf
     asked = len(candidate.free) * np.log(len(model.refit.point.log))
-    return bool(np.isfinite(loss) and loss > FAR * asked)
+    return bool(np.isfinite(loss) and loss > NEEDED_BIC_RATIO * asked)
 
 
 def exchange(
@@ -103,10 +103,10 @@ def _fit_rival(
     `least`.
     """
     rival = candidates[-1]
-    new = try_fit(task, candidates, begin, model, FEW, least, rival)
+    new = try_fit(task, candidates, begin, model, ROUGH_FIT_STEPS, least, rival)
     if new is None or new.negative_bic < model.negative_bic - margin:
         return None
-    if new.refit.steps < FEW and new.refit.log_posterior < least:
+    if new.refit.steps < ROUGH_FIT_STEPS and new.refit.log_posterior < least:
         return None
     return try_fit(task, candidates, new.refit.point.values, new, least=least, tried=rival)
 
@@ -134,7 +134,7 @@ def _list_rivals(
         for m in old.alternatives
         if old.model.negative_bic - m.negative_bic <= options.retry_share * old.gain
     }
-    without = try_fit(task, rest, model.refit.point.values, model, FEW)
+    without = try_fit(task, rest, model.refit.point.values, model, ROUGH_FIT_STEPS)
     scores = []
     if without is not None:
         scores = select_plausible(score_candidates(without, sensitivities, options), options)
