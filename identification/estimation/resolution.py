@@ -28,7 +28,7 @@ from identification.model.coordinates import Coordinates
 from identification.model.predictor import Predictor
 from identification.model.sensitivity import ROUND_OFF, STEP, two_sensitivities
 
-STEPS = (STEP, 100 * STEP)
+RESOLVED_STEPS = (STEP, 100 * STEP)  # of q: differences at both tell what the data resolve
 
 # at a step h: sensitivities at h and at 2 h, whitened, each of shape (n, p)
 AtTwoSteps = Callable[[float], tuple[np.ndarray, np.ndarray]]
@@ -110,7 +110,7 @@ def resolve(predictor: Predictor, space: Coordinates, q: np.ndarray, whiten: Whi
         return scaling_symmetries(predictor, space, q, whiten, S, errors)
 
     least = round_off(whiten(y[:, :, None]))
-    return resolve_columns(space.names, at, least, STEPS, symmetries)
+    return resolve_columns(space.names, at, least, RESOLVED_STEPS, symmetries)
 
 
 def round_off(y: np.ndarray) -> float:

@@ -33,7 +33,7 @@ from identification.windows.window_search import (
 from identification.windows.windows import apart, first_states, windows
 
 BELIEF_ROUNDS = 3  # the states' belief follows the values that were found with the last one
-STEPS = (FORWARD_STEP, 100 * FORWARD_STEP)  # of the differences that the std rest on
+STD_STEPS = (FORWARD_STEP, 100 * FORWARD_STEP)  # of the differences that the std rest on
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -150,11 +150,11 @@ def _resolved(at: WindowsAtPoint) -> Identifiability:
     shooting, q, d = at.shooting, at.q, at.d
 
     def at_two_steps(step: float) -> tuple[np.ndarray, np.ndarray]:
-        once = at.tangent if step == STEPS[0] else tangent(shooting, q, d, step)
+        once = at.tangent if step == STD_STEPS[0] else tangent(shooting, q, d, step)
         return once.projected, tangent(shooting, q, d, 2 * step).projected
 
     y = shooting.joined(np.zeros_like(shooting.cut.outputs), d) - at.tangent.r
-    return resolve_columns(shooting.space.names, at_two_steps, round_off(y), STEPS).found
+    return resolve_columns(shooting.space.names, at_two_steps, round_off(y), STD_STEPS).found
 
 
 def _felt(at: WindowsAtPoint) -> tuple[np.ndarray, tuple[str, ...], Log]:

@@ -11,7 +11,7 @@ from identification.estimation.estimation import Options, estimate
 from identification.estimation.fit import assess
 from identification.estimation.identifiability import identifiability
 from identification.estimation.information import information_of
-from identification.estimation.resolution import STEPS, resolve, resolve_columns
+from identification.estimation.resolution import RESOLVED_STEPS, resolve, resolve_columns
 from identification.kalman.estimate import estimate_innovations
 from identification.model.coordinates import Coordinates, coordinates
 from identification.model.plant import ModelPlant
@@ -44,7 +44,7 @@ def rough(seed, roughness, n=400, curvature=1e-3):
 def test_no_direction_is_felt_that_is_blind(roughness):
     for seed in range(40):
         _, at = rough(seed, roughness)
-        assert resolve_columns(NAMES, at, 1e-12, STEPS).found.rank <= 3
+        assert resolve_columns(NAMES, at, 1e-12, RESOLVED_STEPS).found.rank <= 3
 
 
 @pytest.mark.parametrize("roughness", [0.0, 1e-9, 1e-6, 1e-4])
@@ -52,7 +52,7 @@ def test_the_blind_direction_is_the_one_that_is_found(roughness):
     """And of its parameters alone there is no std, although it is only known roughly."""
     for seed in range(20):
         _, at = rough(seed, roughness)
-        found = resolve_columns(NAMES, at, 1e-12, STEPS).found
+        found = resolve_columns(NAMES, at, 1e-12, RESOLVED_STEPS).found
         assert found.rank == 3
         assert abs(found.blind[0] @ BLIND) > 0.99
         assert found.undetermined.tolist() == [True, True, False, False]
@@ -60,7 +60,8 @@ def test_the_blind_direction_is_the_one_that_is_found(roughness):
 
 
 def test_the_estimated_error_is_the_error():
-    for roughness, step in ((1e-3, STEPS[0]), (0.0, STEPS[0]), (1e-3, STEPS[1])):
+    short, long = RESOLVED_STEPS
+    for roughness, step in ((1e-3, short), (0.0, short), (1e-3, long)):
         for seed in range(10):
             exact, at = rough(seed, roughness, curvature=1.0)
             resolved = resolve_columns(NAMES, at, 1e-300, (step,))
@@ -82,16 +83,16 @@ def test_the_longer_step_is_taken_where_it_errs_less():
             for k in (1, 2)
         )  # fmt: skip
 
-    resolved = resolve_columns(("a", "b"), at, 1e-12, STEPS)
-    np.testing.assert_array_equal(resolved.S[:, 0], at(STEPS[1])[0][:, 0])
-    np.testing.assert_array_equal(resolved.S[:, 1], at(STEPS[0])[0][:, 1])
+    resolved = resolve_columns(("a", "b"), at, 1e-12, RESOLVED_STEPS)
+    np.testing.assert_array_equal(resolved.S[:, 0], at(RESOLVED_STEPS[1])[0][:, 0])
+    np.testing.assert_array_equal(resolved.S[:, 1], at(RESOLVED_STEPS[0])[0][:, 1])
     assert resolved.found.rank == 2
 
 
 def test_what_is_felt_does_not_depend_on_units():
     for seed in range(20):
         _, at = rough(seed, 1e-6)
-        resolved = resolve_columns(NAMES, at, 1e-12, STEPS[:1])
+        resolved = resolve_columns(NAMES, at, 1e-12, RESOLVED_STEPS[:1])
         units = np.array([1.0, 1e4, 1e-5, 30.0])
         scaled = identifiability(resolved.S * units, NAMES, resolved.E * units, 0.0)
         assert scaled.rank == resolved.found.rank == 3
@@ -101,7 +102,7 @@ def test_what_is_felt_does_not_depend_on_units():
 
 def test_the_same_experiment_twice_is_felt_more_and_resolved_as_well():
     _, at = rough(3, 1e-6)
-    resolved = resolve_columns(NAMES, at, 1e-12, STEPS[:1])
+    resolved = resolve_columns(NAMES, at, 1e-12, RESOLVED_STEPS[:1])
     space = Coordinates(NAMES, np.ones(4, bool), *(np.zeros(4) for _ in range(3)))
     once = information_of(resolved, space)
     twice = once.with_data(once)
