@@ -21,13 +21,17 @@ from identification.kalman.options import KalmanOptions, option
 class DiscoveryOptions(KalmanOptions):
     """Options of what a discovery believes, those of the noise model and of a horizon among them.
 
-    Every field has its unit, reason and source in its metadata (`dataclasses.fields`).
+    Every number has its unit, reason and source in its metadata (`dataclasses.fields`).
+
+    Attributes:
+        without: names of the passes that are left out, of `identification.discovery.passes`.
 
     Raises:
-        InputError: a value is no number, or lies outside the range that makes sense.
+        InputError: a value is no number, or lies outside the range that makes sense, or a pass is
+            unknown.
     """
 
-    without: tuple[str, ...] = ()  # passes that are left out, of `identification.discovery.passes`
+    without: tuple[str, ...] = ()
 
     # The search.
     min_samples: int = option(
