@@ -53,10 +53,9 @@ def study(robot: str, effect: str, seed: int, way: str, duration: float) -> dict
 
 def answer(toml: Path, a: Path, b: Path, way: str) -> dict[str, Any]:
     """What is named, and the errors on record b of what was fitted and of what was found."""
+
     from identification import discover, fit, read_robot
-    from identification.discovery.final_values import collect_final_values
     from identification.prediction.discovery import discover_records
-    from identification.prediction.result import RecordsDiscovery
     from identification.robot.record_error import compare_values
 
     robot = read_robot(toml, a, confirm=[b])
@@ -64,39 +63,28 @@ def answer(toml: Path, a: Path, b: Path, way: str) -> dict[str, Any]:
     fitted = fit(robot).values
     between = time.process_time()
     if way == "records":
-        found: Any = discover_records(
-            robot.nominal_model, [robot.log], robot.records, robot.candidates
-        )
+        found = discover_records(robot.nominal_model, [robot.log], robot.records, robot.candidates)
     else:
         found = discover(robot)
     end = time.process_time()
-    if isinstance(found, RecordsDiscovery):  # with what the other record has for itself
-        own = found.final.own_values.get(robot.records[0].name, {})
-        after = {**found.final.values, **own}
-    else:
-        after = collect_final_values(found)
-    named = [n.effect if isinstance(found, RecordsDiscovery) else n for n in found.named]
+    own = found.final.own_values.get(robot.records[0].name, {})
+    after = {**found.final.values, **own}  # with what the other record has for itself
     error = compare_values(robot, robot.records[0], fitted, after)
     written = compare_values(robot, robot.records[0], {}, {})
     return {
         "verdict": found.verdict,
         "named": [
             {"name": n.candidate.effect.name, "where": n.candidate.where,
-             "confidence": n.confidence, "one_of": whole.one_of,
-             "same_as": getattr(getattr(whole, "same_as", None), "name", None),
-             "rivals": [_name(r) for r in whole.rivals],
+             "confidence": n.confidence, "one_of": n.one_of,
+             "same_as": n.same_as.name if n.same_as else None,
+             "rivals": [rival.name for rival in n.rivals],
              "sizes": {name: p[0] for name, p in n.parameters.items()}}
-            for n, whole in zip(named, found.named, strict=True)
+            for n in found.named
         ],
         "scores": [[s.candidate.effect.name, s.candidate.where] for s in found.scores[:5]],
         "errors": {"written": written.before, "fit": error.before, "discover": error.after},
         "fitted": fitted, "fit_seconds": between - begin, "discover_seconds": end - between,
     }  # fmt: skip
-
-
-def _name(rival: Any) -> str:
-    """The effect of a rival, of either kind of discovery."""
-    return str(getattr(rival, "candidate", rival).effect.name)
 
 
 def tasks(given: argparse.Namespace) -> list[tuple[str, str, int]]:

@@ -106,7 +106,6 @@ _PUBLIC = {
     "Finding": "discovery.findings.finding",
     "FindingKind": "discovery.findings.finding",
     "collect_final_values": "discovery.final_values",
-    "RecordsDiscovery": "prediction.result",
     # words and figures
     "fit_verdict": "report.fit_verdict",
     "fit_to_json": "report.fit_json",
@@ -195,7 +194,6 @@ if TYPE_CHECKING:  # the same list, for type checkers and editors
     from identification.model.protocol import Plant as Plant
     from identification.model.rollout import State as State
     from identification.model.sensitivity import sensitivity as sensitivity
-    from identification.prediction.result import RecordsDiscovery as RecordsDiscovery
     from identification.report.compare_figure import compare_figure as compare_figure
     from identification.report.discovery_json import discovery_to_json as discovery_to_json
     from identification.report.discovery_text import discovery_text as discovery_text

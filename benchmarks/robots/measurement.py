@@ -13,10 +13,10 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from identification import InputError, JointPlant, read_robot
+from identification.discovery.result import Discovery
 from identification.prediction.discovery import discover_records
-from identification.prediction.result import RecordsDiscovery
-from identification.report.records_json import records_to_json
-from identification.report.records_text import records_text
+from identification.report.discovery_json import discovery_to_json
+from identification.report.discovery_text import discovery_text
 from identification.robot.robot import Robot
 from identification.sweep.code import commit
 from robots.changed import on_changed
@@ -27,9 +27,7 @@ from robots.written import write_model
 NOMINAL, FINAL, BEGUN = "nominal, fitted", "with what is named", "as begun"
 
 
-def discovered(
-    robot: MeasuredRobot, say: Callable[[str], None]
-) -> tuple[Robot, RecordsDiscovery, float]:
+def discovered(robot: MeasuredRobot, say: Callable[[str], None]) -> tuple[Robot, Discovery, float]:
     """The compiled robot, what a discovery on its records found, and the seconds it took.
 
     Raises:
@@ -63,9 +61,9 @@ def measure(robot: MeasuredRobot, say: Callable[[str], None]) -> dict[str, Any]:
         compiled, found, seconds = discovered(robot, say)
     except InputError as error:
         return {**record, "refused": str(error), "seconds": time.perf_counter() - begun}
-    say(records_text(found))
+    say(discovery_text(found))
     known = {p.name: p.value for p in robot.published}
-    record |= {"discovery": records_to_json(found), "seconds": seconds, **_busy(), "published": [
+    record |= {"discovery": discovery_to_json(found), "seconds": seconds, **_busy(), "published": [
         vars(p) for p in robot.published
     ]}  # fmt: skip
     record["scores"] = [
@@ -151,7 +149,7 @@ def _beside(
     return found
 
 
-def _sizes(compiled: Robot, found: RecordsDiscovery, published: dict[str, float]) -> dict[str, Any]:
+def _sizes(compiled: Robot, found: Discovery, published: dict[str, float]) -> dict[str, Any]:
     """Values of the nominal and of the final model by name, beside what others published."""
     own = compiled.plant.parameters
     sizes, every = {}, own.values()

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from identification import JointPlant, Log, Parameter, Plant, window_error
-from identification.prediction.result import RecordsDiscovery
+from identification.discovery.result import Discovery
 from identification.windows.windows import windows
 from robots.measured_robot import Free, MeasuredRobot
 from robots.measurement import discovered
@@ -43,7 +43,7 @@ def null_log(plant: Plant, log: Log, horizon: float, values: Mapping[str, float]
     return replace(log, time=log.time[rows], inputs=log.inputs[rows], outputs=outputs, splits={})
 
 
-def best_model(robot: MeasuredRobot, own: JointPlant, found: RecordsDiscovery) -> MeasuredRobot:
+def best_model(robot: MeasuredRobot, own: JointPlant, found: Discovery) -> MeasuredRobot:
     """The robot whose model has the named effects: their sizes are free, their shapes fixed."""
     values = found.final.values
     shapes = {f"{e.name}.{s.name}" for e in own.effects for s in e.shapes}
@@ -94,7 +94,7 @@ def null_study(
     for k in range(count):
         null = null_of(best, plant, values, k)
         _, answer, seconds = discovered(null, say)
-        named = [n.effect.candidate.effect.name for n in answer.named]
+        named = [n.candidate.effect.name for n in answer.named]
         rows.append({"verdict": answer.verdict, "named": named, "seconds": seconds})
         say(f"null {k + 1} of {count}: {rows[-1]}")
         yield {

@@ -15,9 +15,7 @@ from identification.commands.common import conclude
 from identification.commands.robots import OnRobot
 
 if TYPE_CHECKING:
-    from identification.prediction.result import RecordsDiscovery
     from identification.robot.repetition import Repetition
-    from identification.robot.robot import Robot
 
 
 @dataclass(frozen=True)
@@ -38,8 +36,6 @@ class Discover(OnRobot):
 
         options = None if self.options is None else read_options(self.options)
         robot = self.read()  # before the imports that are slow: a wrong file is refused at once
-        from identification.discovery.final_values import collect_final_values
-        from identification.prediction.result import RecordsDiscovery
         from identification.report.discovery_json import discovery_to_json
         from identification.report.discovery_report import write_discovery_report
         from identification.report.discovery_text import discovery_text
@@ -50,50 +46,26 @@ class Discover(OnRobot):
         from identification.robot.write import write_robot
 
         found = discover(robot, progress=self.output.tell, options=options)
-        if isinstance(found, RecordsDiscovery):
-            return self._keep_records(robot, found)
-        pairs = confirm(robot, found)
+        # Over a horizon the report has the errors of every record already.
+        pairs = confirm(robot, found) if found.horizon is None else ()
         repeated = find_repetitions(robot)
         told = [*doubtful(robot), *map(str, (*pairs, *repeated))]
-        record: dict[str, Any] = _with_repetitions(discovery_to_json(found), repeated)
-        record = {**record, "confirm": [vars(c) for c in pairs], "remarks": list(robot.remarks)}
+        record = {
+            **_with_repetitions(discovery_to_json(found), repeated),
+            "confirm": [vars(c) for c in pairs], "remarks": list(robot.remarks),
+        }  # fmt: skip
 
         def keep(out: Path) -> None:
             has = {
-                n for named in found.named for n in (*named.candidate.sizes, *named.candidate.fixed)
+                n for each in found.named for n in (*each.candidate.sizes, *each.candidate.fixed)
             }
-            values = {
-                n: v
-                for n, v in collect_final_values(found).items()
-                if n in (*robot.file.free, *has)
-            }
-            write_robot(robot, values, out / "robot.toml", self.output.out or out)
+            final = found.final.values
+            values = {n: v for n, v in final.items() if n in {*found.nominal.values, *has}}
+            own, place = found.final.own_values, self.output.out or out
+            write_robot(robot, values, out / "robot.toml", place, own_values=own)
 
         draw = self._timed(partial(write_discovery_report, found, sentences=told))
         conclude(self, record, "\n".join([discovery_text(found), *told]), keep, draw)
-        return 0
-
-    def _keep_records(self, robot: Robot, found: RecordsDiscovery) -> int:
-        """Say and keep a discovery on several records."""
-        from identification.report.records_json import records_to_json
-        from identification.report.records_report import write_records_report
-        from identification.report.records_text import records_text
-        from identification.robot.reading import doubtful
-        from identification.robot.repetition import find_repetitions
-        from identification.robot.write import write_robot
-
-        repeated = find_repetitions(robot)
-        told = [*doubtful(robot), *map(str, repeated)]
-        record = _with_repetitions(records_to_json(found), repeated)
-        record["remarks"] = list(robot.remarks)
-
-        def keep(out: Path) -> None:
-            values, own = found.final.values, found.final.own_values
-            place = self.output.out or out
-            write_robot(robot, values, out / "robot.toml", place, own_values=own)
-
-        draw = self._timed(partial(write_records_report, found, sentences=told))
-        conclude(self, record, "\n".join([records_text(found), *told]), keep, draw)
         return 0
 
     def _timed(self, draw: Callable[..., object]) -> Callable[[Path], None]:

@@ -93,8 +93,9 @@ def _name(
             Rival(m.candidates[-1], float(p), cosine, m.refit.point.values)
             for m, p, cosine in zip(others, of_rivals, cosines, strict=True)
         ),
+        compared=len(others),
         one_of=bool(others and of_rivals.max() > options.set_confidence),
-        gain=effect.gain,
+        bic_gain=effect.gain,
         proof=effect.proof,
         retuned=replace(retuned, confidence=float(probability[-1])),
         outside=_outside(curves[int(np.argmax(drawn))], probability[-2]) if curves else None,

@@ -1,14 +1,30 @@
-"""Results of a discovery on one effect: named, rejected, a rival, or the smallest that shows."""
+"""Results of a discovery on one effect: named, rejected, a rival, or the smallest that shows.
+
+    bic_gain    = 2 ln L(with) - 2 ln L(without) - k ln n       L: of the n fitted samples
+    evidence    = n_y W mean_b g_b - k ln W                     over all windows, fitted and unseen
+
+k numbers are added by the effect. A search along a free run has the first, one over a horizon the
+second (`identification.prediction.evidence`); they compare effects of one search only.
+
+An effect is proven by samples that no fit has seen. Along a free run flips of the signs of their
+blocks must be as seldom as a t above `min_proof_t` is for normal gains (3 % with 20 blocks), paid
+for by the number of tries where it is the last of several. Over a horizon Student's t of the blocks
+must exceed `min_proof_t`, and its chance times the number of refits stay below `significance` (1 %
+in all). Both also ask that the effect matters (`min_fall`). `Proof.test` names the test.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Protocol
+from math import nan
+from typing import Literal, Protocol
 
 import numpy as np
 
-from identification.effects.effect import Candidate
+from identification.effects.effect import Candidate, Effect
+
+Test = Literal["flips of signs", "Student's t"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -16,25 +32,34 @@ class Proof:
     """The gain of an effect on samples that no fit has seen.
 
     Attributes:
-        gain: log likelihood of the unseen samples with it minus without, under one noise.
+        test: the test that tells the chance.
         t: Student's t of the gain, by blocks.
-        chance: of a gain as large as this where blocks gain and lose alike, by flips of their
-            signs.
-        blocks: how many blocks there are.
-        share: of the mean square above sensors' noise and input errors, the share that it closes.
+        chance: of a gain as large as this by luck, by the test.
         fall: relative fall of the mean square of the judged error.
-        above: of the mean square above the sensors' noise, the share that it closes.
+        gain: log likelihood of the unseen samples with it minus without, under one noise; NaN
+            where no likelihood judges them.
+        blocks: how many blocks there are.
+        share: of the mean square above sensors' noise and input errors, the share that it closes;
+            NaN where that is not known of it alone.
+        above: of the mean square above the sensors' noise, the share that it closes; likewise.
+        falls: `fall` by the length of the predicted windows; empty for a free run.
+        records: mean gain of each unseen record, over its blocks; empty for a free run.
+        is_everywhere: whether windows of every length are predicted better.
         agrees: names of the records whose unseen samples it makes likelier.
         disagrees: names of the records whose unseen samples it makes less likely, beyond chance.
     """
 
-    gain: float
+    test: Test = "flips of signs"
     t: float
     chance: float
-    blocks: int
-    share: float
     fall: float
-    above: float
+    gain: float = nan
+    blocks: int
+    share: float = nan
+    above: float = nan
+    falls: tuple[float, ...] = ()
+    records: tuple[float, ...] = ()
+    is_everywhere: bool = True
     agrees: tuple[str, ...] = ()
     disagrees: tuple[str, ...] = ()
 
@@ -53,6 +78,29 @@ class Gap:
     rms: float
     fit_percent: np.ndarray
     rms_by_unit: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class RecordError:
+    """Errors of two models on one record; NaN and empty where no sample of it is judged.
+
+    Attributes:
+        name: of the record.
+        role: "fit" or "confirm".
+        before: rms of the model before (the nominal one, or the values with which a fit began),
+            over all outputs, in the outputs' unit where they have one, else in units of their
+            scale.
+        after: rms of the model after (the final one, or the fitted one).
+        before_by_unit: rms of the model before by the outputs' units, each in it.
+        after_by_unit: likewise of the model after.
+    """
+
+    name: str
+    role: str
+    before: float
+    after: float
+    before_by_unit: Mapping[str, float]
+    after_by_unit: Mapping[str, float]
 
 
 class _HasCandidate(Protocol):
@@ -82,14 +130,14 @@ class Rival(OfCandidate):
         candidate: the effect.
         confidence: probability that it is the right one of those considered.
         alike: cosine between its sensitivity and that of the named effect, with the nominal
-            model's parameters projected out.
-        values: of all parameters of the fit with it in the named effect's place, by name, in their
-            units.
+            model's parameters projected out; None where it is not computed.
+        values: of parameters of the fit with it in the named effect's place, by name, in their
+            units; those of the effect are among them.
     """
 
     candidate: Candidate
     confidence: float
-    alike: float
+    alike: float | None = None
     values: Mapping[str, float] = field(default_factory=dict)
 
 
@@ -130,16 +178,23 @@ class RejectedEffect(OfCandidate):
     Attributes:
         candidate: the effect.
         parameters: its sizes and shapes by name: value, std, unit.
-        gain: by how much it raises the negative BIC on the fitted samples.
+        bic_gain: by how much it raises the negative BIC on the fitted samples; NaN over a horizon.
         proof: what it does for unseen samples.
         outside: something like it that no catalogue lists and that is likelier, where it was.
+        evidence: what speaks for it over all windows; NaN for a free run.
+        doubt: why it is not proven, a word of `identification.prediction.proof.Doubt`; None where
+            it is, or where no reason is told.
+        confidence: that its name would have had.
     """
 
     candidate: Candidate
     parameters: Mapping[str, tuple[float, float, str]]
-    gain: float
+    bic_gain: float
     proof: Proof
     outside: Outside | None = None
+    evidence: float = nan
+    doubt: str | None = None
+    confidence: float = 0.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -151,25 +206,32 @@ class NamedEffect(OfCandidate):
         parameters: its sizes and shapes by name: value, std, unit.
         confidence: probability that the name is right among its rivals, 0 to 1.
         rivals: other effects that were refitted in its place.
+        compared: how many others were refitted in its place; some may be no rivals any more.
         one_of: whether the data cannot tell it from its first rival.
-        gain: by how much it raises the negative BIC on the fitted samples.
+        bic_gain: by how much it raises the negative BIC on the fitted samples; NaN over a horizon.
+        evidence: what speaks for it over all windows; NaN for a free run.
         proof: what it does for unseen samples.
-        retuned: the explanation without an effect.
+        retuned: the explanation without an effect; None where it was not computed.
         advice: the experiment that would tell it from its first rival, in a sentence.
         outside: something like it that no catalogue lists; None where no curve explains anything
             beside the named effects.
+        same_as: the effect that is the same force by another name, so that no record tells which
+            it is (`identification.prediction.twins`); None where there is none.
     """
 
     candidate: Candidate
     parameters: Mapping[str, tuple[float, float, str]]
     confidence: float
     rivals: tuple[Rival, ...]
+    compared: int
     one_of: bool
-    gain: float
+    bic_gain: float = nan
+    evidence: float = nan
     proof: Proof
-    retuned: Retuned
+    retuned: Retuned | None = None
     advice: str = ""
     outside: Outside | None = None
+    same_as: Effect | None = None
 
     @property
     def odds(self) -> float:
@@ -180,7 +242,24 @@ class NamedEffect(OfCandidate):
 
 
 @dataclass(frozen=True)
-class Hidden:
+class Unlogged:
+    """The unlogged error of the inputs that a fitted noise model has.
+
+    Attributes:
+        rms: of each input, in `unit`.
+        unit: of the inputs; "" where they have none.
+        time: for how long it keeps its value [s].
+        is_of_inputs: whether inputs move that could err; else it is a force on the joints.
+    """
+
+    rms: float
+    unit: str
+    time: float
+    is_of_inputs: bool
+
+
+@dataclass(frozen=True)
+class Hidden(OfCandidate):
     """An effect that is not named and that the fitted noise may hide.
 
     Attributes:
@@ -198,7 +277,7 @@ class Hidden:
 
 
 @dataclass(frozen=True)
-class Detectable:
+class Detectable(OfCandidate):
     """The smallest effect of a kind that a log would have shown.
 
     Attributes:

@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from math import isclose
 
-import numpy as np
-
 from identification.discovery.result import Discovery
 from identification.effects.effect import Effect
 from identification.kalman.refit import Refit
@@ -16,16 +14,7 @@ BOUND_TOLERANCE = 1e-6  # relative: a value this near to a bound lies on it
 
 def collect_final_values(found: Discovery) -> dict[str, float]:
     """Returns the values of all parameters of the final fit by name, named effects included."""
-    point = found.final.point
-    out = {**point.predictor.plant.parameters.values(), **point.values}
-    for named in found.named:
-        effect, where = named.candidate.effect, named.candidate.where
-        shapes = {shape.name for shape in effect.shapes}
-        for name, (value, _, _) in named.parameters.items():
-            # A shape is one parameter for all places.
-            key = f"{effect.name}.{name}" if name in shapes else effect.parameter(name, where)
-            out[key] = value
-    return out
+    return {**found.final.plant.parameters.values(), **found.final.values}
 
 
 def keep_of_robot(values: Mapping[str, float], effects: Sequence[Effect]) -> dict[str, float]:
@@ -40,13 +29,6 @@ def keep_of_robot(values: Mapping[str, float], effects: Sequence[Effect]) -> dic
     return {name: value for name, value in values.items() if name not in of_log}
 
 
-def collect_std(fit: Refit) -> dict[str, float]:
-    """Returns the std of a fit's free parameters by name, in their units; NaN at a bound."""
-    space, q = fit.point.space, fit.point.q
-    std = np.where(space.on_bound(q), np.nan, fit.std * space.slope(q))
-    return dict(zip(space.names, std.tolist(), strict=True))
-
-
 def list_at_bound(fit: Refit, names: Collection[str]) -> list[str]:
     """Returns those of some parameters that lie on a bound of their range.
 
@@ -57,8 +39,8 @@ def list_at_bound(fit: Refit, names: Collection[str]) -> list[str]:
         fit: a fit.
         names: of the parameters that are asked for.
     """
-    parameters = fit.point.predictor.plant.parameters
-    each = ((parameters[n], value) for n, value in fit.point.values.items() if n in names)
+    parameters = fit.plant.parameters
+    each = ((parameters[n], value) for n, value in fit.values.items() if n in names)
     return [
         p.name for p, value in each
         if any(isclose(value, b, rel_tol=BOUND_TOLERANCE) for b in (p.lower, p.upper) if b)

@@ -1,11 +1,22 @@
-"""The outcome of a discovery, and what it rests on."""
+"""The outcome of a discovery, and what it rests on, whichever search has found it.
+
+    floor_g = √(σ_g² + d_g²)        of the outputs of a unit g; d counts where it is believed
+    times   = √mean_g (rms_g/floor_g)²
+    share   = (times²(before) - times²(after))/(times²(before) - 1)      of a free run
+
+σ is the sensors' noise, d what unlogged errors of the inputs do to a free run. A search along a
+free run (`identification.discovery.search`) knows d, one over a horizon
+(`identification.prediction.discovery`) the horizon, the shifts of records in time and those that
+repeat others. What a search does not know is None or empty.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Literal
+from math import hypot, isfinite
+from typing import Literal, Protocol
 
 import numpy as np
 
@@ -15,18 +26,41 @@ from identification.discovery.effect_results import (
     Gap,
     Hidden,
     NamedEffect,
+    RecordError,
     RejectedEffect,
+    Rival,
+    Unlogged,
 )
 from identification.discovery.findings.finding import Finding
-from identification.discovery.findings.location import locate_error
-from identification.discovery.missing_forces import MissingForce, estimate_missing_forces
+from identification.discovery.findings.records_evidence import ShiftedRecord
+from identification.discovery.fitted import Fitted
+from identification.discovery.free_run import FreeRun
+from identification.discovery.missing_forces import MissingForce
 from identification.discovery.options import DiscoveryOptions
-from identification.discovery.scoring.scores import Score
-from identification.kalman.refit import Refit
-from identification.logs.log import Log
+from identification.discovery.recovered_force import RecoveredForce
+from identification.effects.effect import Candidate
+from identification.logs.by_unit import output_units, relative
+from identification.logs.record import Record
 from identification.shown import Shown
 
-Verdict = Literal["named", "nothing missing", "unknown effect"]
+Recover = Callable[[Candidate, Sequence[Rival]], RecoveredForce | None]
+Verdict = Literal["named", "nothing missing", "unknown effect", "unlisted effect"]
+
+
+class Scored(Protocol):
+    """A candidate with what it would explain, before it is fitted."""
+
+    @property
+    def candidate(self) -> Candidate:
+        """Effect, place and shapes."""
+
+    @property
+    def explains(self) -> float:
+        """How much it would explain, in the measure of `Discovery.scored_by`."""
+
+    @property
+    def p_value(self) -> float:
+        """Chance of as much by luck."""
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
@@ -34,68 +68,157 @@ class Discovery(Shown):
     """The outcome of a discovery.
 
     Attributes:
-        log: the whole log of N samples; its part `estimation` was fitted, the rest is unseen.
+        records: what was fitted and what confirmed; where no record confirms, and along a free run,
+            a part of each record is unseen.
         options: the judgement constants that were used.
         verdict: the outcome in a word.
         named: the missing effects, in the order in which they were found.
         rejected: effects that were refitted beside the named ones and not accepted, the best first.
+        nearest: the best of them that unseen samples prove, and that is too small to matter or not
+            the likeliest; None where there is none.
         unexplained: whether something is left that no named effect explains.
-        noise_rms: rms of the sensors' noise, estimated from the data, in the outputs' unit.
-        disturbance_rms: rms of what unlogged input errors do to the free run, by the noise model;
-            zero where these errors are not random.
-        noise_by_unit: what the filter leaves of the fitted samples, one step ahead, by the outputs'
-            units, each in it.
-        disturbance_by_unit: `disturbance_rms` likewise.
+        share: of the mean square above the noise on unseen data, how much the named effects take
+            away; None where nothing is above it.
+        horizon: over which records were predicted [s]; None for a free run.
+        unit: of errors and noise over all outputs; "" where these have several units, or none.
+        scale: rms error of each output under the nominal model, shape (ny,), in its unit, by which
+            its error is divided in a mean square; None where 1 counts alike in all outputs.
+        noise_rms: rms of the sensors' noise over all outputs, in `unit`.
+        noise_by_unit: the same by the outputs' units, each in it.
+        disturbance_rms: rms of what unlogged input errors do to the free run, by the noise model,
+            in `unit`; zero where these errors are not random, and over a horizon.
+        disturbance_by_unit: the same by the outputs' units, each in it.
+        input_error: rms error of the inputs that would make what the final model leaves: over a
+            horizon, of inputs that err by a constant in each window, or along a free run by the
+            noise model; a share of the inputs' own rms, or of their own motion.
+        unlogged: that error where a noise model has it; None where it was only computed.
         before: the gap of the fitted nominal model.
         after: the gap of the model with the named effects.
+        errors: of both models by record, in the order of `records`.
         nominal: the fit without effects.
         final: the fit with the named effects.
-        predicted_before: free run of the nominal fit over the whole log, shape (N, ny), in the
-            outputs' units.
-        predicted_after: free run of the final fit, shape (N, ny), in the outputs' units.
+        at_bound: the nominal model's parameters that end on a bound of their range in `final`.
         scores: of all candidates on the nominal fit, the best first.
         remaining: of the other candidates on the final fit, the best first.
-        detectable: the smallest effects that this log would have shown.
-        hidden: how large effects may be that the fitted noise hides, the likeliest first.
+        scored_by: the measure of scores: "gain", twice the log likelihood that a candidate adds at
+            once, or "fall", the share of the mean square of the fitted error that it takes away.
+        next_best: the best remaining candidate, where none was refitted beside a named effect, and
+            the chance that one of all does as well by luck; None where there is none.
+        detectable: the smallest effects that this log would have shown; empty over a horizon.
+        hidden: how large effects may be that the fitted noise hides, the likeliest first; likewise.
         findings: what the final model leaves unexplained; empty when it explains all.
+        shifts: of records whose inputs look shifted in time against their outputs; empty for a
+            free run.
+        repeats: names of the records that confirm, but whose motion is that of a fitted record or
+            of one that confirms before them; likewise.
         seconds: wall time by stage [s].
         failed: what was tried and could not be evaluated.
+        run: the free runs of both fits; None over a horizon.
+        recover: returns the force of a named effect, beside those of its rivals, as the data ask
+            for it; None where it has none. It raises DivergenceError.
     """
 
-    log: Log
+    records: tuple[Record, ...]
     options: DiscoveryOptions
     verdict: Verdict
     named: tuple[NamedEffect, ...]
     rejected: tuple[RejectedEffect, ...]
+    nearest: RejectedEffect | None = None
     unexplained: bool
+    share: float | None
+    horizon: float | None = None
+    unit: str
+    scale: np.ndarray | None = None
     noise_rms: float
-    disturbance_rms: float
     noise_by_unit: Mapping[str, float] = field(default_factory=dict)
+    disturbance_rms: float = 0.0
     disturbance_by_unit: Mapping[str, float] = field(default_factory=dict)
+    input_error: float
+    unlogged: Unlogged | None = None
     before: Gap
     after: Gap
-    nominal: Refit
-    final: Refit
-    predicted_before: np.ndarray
-    predicted_after: np.ndarray
-    scores: tuple[Score, ...]
-    remaining: tuple[Score, ...]
-    detectable: tuple[Detectable, ...]
-    hidden: tuple[Hidden, ...]
+    errors: tuple[RecordError, ...]
+    nominal: Fitted
+    final: Fitted
+    at_bound: tuple[str, ...]
+    scores: tuple[Scored, ...]
+    remaining: tuple[Scored, ...]
+    scored_by: Literal["gain", "fall"]
+    next_best: tuple[Scored, float] | None = None
+    detectable: tuple[Detectable, ...] = ()
+    hidden: tuple[Hidden, ...] = ()
     findings: tuple[Finding, ...]
+    shifts: tuple[ShiftedRecord, ...] = ()
+    repeats: tuple[str, ...] = ()
     seconds: Mapping[str, float]
     failed: tuple[Failed, ...] = ()
+    run: FreeRun | None = None
+    recover: Recover
 
     @cached_property
     def missing_forces(self) -> tuple[MissingForce, ...]:
-        """The forces that the nominal model lacks, by where they act; computed when asked for."""
-        if self.verdict == "nothing missing":
+        """The forces that the nominal model lacks, by where they act; computed when asked for.
+
+        Empty where nothing is missing, and over a horizon.
+        """
+        if self.verdict == "nothing missing" or self.run is None:
             return ()
-        return estimate_missing_forces(self.nominal)
+        return self.run.missing_forces()
 
     @cached_property
     def located(self) -> tuple[Finding, ...]:
-        """Places where the nominal model fails; empty if nothing is missing; computed on demand."""
-        if self.verdict == "nothing missing":
+        """Places where the nominal model fails; likewise."""
+        if self.verdict == "nothing missing" or self.run is None:
             return ()
-        return locate_error(self.nominal, self.missing_forces)
+        return self.run.located(self.missing_forces)
+
+    @property
+    def outputs(self) -> Mapping[str, str]:
+        """The unit of each output by name; "" where it has none."""
+        return output_units(self.records[0].log)
+
+    def errors_of(self, gap: Gap) -> Mapping[str, float]:
+        """Returns the rms of a gap by the outputs' units, each in its unit."""
+        return gap.rms_by_unit if len(gap.rms_by_unit) > 1 else {self.unit: gap.rms}
+
+    @property
+    def sensors(self) -> Mapping[str, float]:
+        """Rms of the sensors' noise by the outputs' units, each in its unit."""
+        several = len(self.noise_by_unit) > 1
+        return self.noise_by_unit if several else {self.unit: self.noise_rms}
+
+    @property
+    def floor_rms(self) -> float:
+        """Rms that sensors and unlogged input errors make of the true model, over all outputs.
+
+        Input errors count where they can be believed to be noise: where the model is believed, and
+        where they are no larger than `allowed_input_error`.
+        """
+        return hypot(self.noise_rms, self.disturbance_rms if self._is_believed else 0.0)
+
+    @property
+    def floor(self) -> Mapping[str, float]:
+        """`floor_rms` by the outputs' units, each in its unit."""
+        if len(self.noise_by_unit) < 2:
+            return {self.unit: self.floor_rms}
+        disturbed = self.disturbance_by_unit if self._is_believed else {}
+        return {unit: hypot(s, disturbed.get(unit, 0.0)) for unit, s in self.noise_by_unit.items()}
+
+    def times_noise(self, gap: Gap) -> float:
+        """Returns a gap relative to the noise, in one number; infinite where there is no noise."""
+        return relative(self.errors_of(gap), self.floor)
+
+    @property
+    def _is_believed(self) -> bool:
+        """Whether errors of the inputs pass for noise."""
+        is_small = self.input_error <= self.options.allowed_input_error
+        return self.verdict != "unknown effect" and is_small
+
+
+def closed_share(found: Discovery) -> float | None:
+    """Returns the share of power above the noise that named effects close; None without such."""
+    before, after = (found.times_noise(gap) ** 2 for gap in (found.before, found.after))
+    if not isfinite(before):
+        of = [found.errors_of(gap) for gap in (found.after, found.before)]
+        return min(1.0, max(0.0, 1 - relative(*of) ** 2)) if found.before.rms > 0 else None
+    return min(1.0, max(0.0, (before - after) / (before - 1))) if before > 1 else None

@@ -6,9 +6,12 @@ Only kinds and numbers of findings decide; words are made in `identification.rep
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
 
 from identification.discovery.confidence import name_effects
-from identification.discovery.effect_results import NamedEffect, RejectedEffect
+from identification.discovery.effect_results import NamedEffect, RejectedEffect, Unlogged
+from identification.discovery.final_values import list_at_bound
 from identification.discovery.findings.doubts import find_doubtful_effect, find_oversized_effect
 from identification.discovery.findings.finding import Finding, FindingKind
 from identification.discovery.findings.input_error import find_input_error
@@ -16,14 +19,19 @@ from identification.discovery.findings.input_hold import find_input_hold
 from identification.discovery.findings.robot_change import find_robot_change
 from identification.discovery.findings.structure import find_structure
 from identification.discovery.fitted_model import FittedModel, is_proven, score_candidates
+from identification.discovery.free_run import FreeRun
 from identification.discovery.once import listed_once
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.proof import prove
-from identification.discovery.result import Discovery, Verdict
+from identification.discovery.recovery import recover_force
+from identification.discovery.result import Discovery, Verdict, closed_share
 from identification.discovery.scoring.detectability import list_detectable
 from identification.discovery.scoring.hidden import list_hidden
+from identification.discovery.scoring.scores import Score
 from identification.discovery.scoring.sensitivities import compute_sensitivities
+from identification.discovery.scoring.significance import correct_p_value
 from identification.discovery.state import InnovationSearch
+from identification.kalman.refit import Refit
 from identification.logs.by_unit import by_unit
 
 # With these findings a model is not believed, and nothing is named that leaves anything.
@@ -123,7 +131,9 @@ def conclude(state: InnovationSearch) -> Discovery:
     findings = find_remaining(state)
     explained = compute_explained_share(nominal, model, findings, options)
     tried = len(state.rejected)
-    beside = [r for r in state.rejected if r.gain > 0 and is_proven(r.proof, options, tried)]
+    beside = [
+        r for r in state.rejected if r.bic_gain > 0 and is_proven(r.proof, options, tried)
+    ]  # fmt: skip
     limit = options.left_confidence if findings or beside else options.max_confidence
     share = explained if findings else 1.0
     every = name_effects(task, state.accepted, model, state.sensitivities, share, limit)
@@ -135,36 +145,47 @@ def conclude(state: InnovationSearch) -> Discovery:
         named, model, scores = (), nominal, state.nominal_scores
     unnamed = [n for n in every if n not in named]
     refused = (
-        RejectedEffect(n.candidate, n.parameters, n.gain, n.proof, n.outside) for n in unnamed
+        RejectedEffect(n.candidate, n.parameters, n.bic_gain, n.proof, n.outside) for n in unnamed
     )
     rejected = listed_once((*refused, *state.rejected))
+    proven = (r for r in rejected if r.bic_gain > 0 and is_proven(r.proof, options))
     is_random = not _has(findings, FindingKind.STRUCTURED_INPUT_ERROR)
     disturbed = by_unit(model.validation.disturbances, log)
-    return Discovery(
-        log=log,
-        options=options,
-        verdict=verdict,
-        named=named,
-        rejected=rejected,
-        unexplained=bool(findings or unnamed or (named and beside)),
-        noise_rms=model.refit.level.sigma,
-        disturbance_rms=model.validation.disturbance if is_random else 0.0,
+    run = FreeRun(log, nominal.refit, model.refit, nominal.validation.e, model.validation.e)
+    found = Discovery(
+        records=run.records, options=options, verdict=verdict, named=named, rejected=rejected,
+        nearest=next(proven, None), unexplained=bool(findings or unnamed or (named and beside)),
+        share=None, unit=log.output_unit, noise_rms=model.refit.level.sigma,
         noise_by_unit=by_unit(model.validation.noise, log),
+        disturbance_rms=model.validation.disturbance if is_random else 0.0,
         disturbance_by_unit={u: s if is_random else 0.0 for u, s in disturbed.items()},
-        before=nominal.validation.gap,
-        after=model.validation.gap,
-        nominal=nominal.refit,
-        final=model.refit,
-        predicted_before=log.outputs - nominal.validation.e,
-        predicted_after=log.outputs - model.validation.e,
-        scores=state.nominal_scores,
-        remaining=scores,
+        input_error=model.refit.relative_input_error, unlogged=_unlogged(model.refit),
+        before=nominal.validation.gap, after=model.validation.gap, errors=run.errors,
+        nominal=nominal.refit, final=model.refit,
+        at_bound=tuple(list_at_bound(model.refit, nominal.refit.point.space.names)),
+        scores=state.nominal_scores, remaining=scores, scored_by="gain",
+        next_best=_next(scores) if named and not rejected else None,
         detectable=list_detectable(scores, options),
-        hidden=list_hidden(scores, model.refit.level, options),
-        findings=findings,
-        seconds=state.seconds,
-        failed=state.failed,
-    )
+        hidden=list_hidden(scores, model.refit.level, options), findings=findings,
+        seconds=state.seconds, failed=state.failed, run=run,
+        recover=partial(recover_force, model.refit),
+    )  # fmt: skip
+    return replace(found, share=closed_share(found))
+
+
+def _unlogged(fit: Refit) -> Unlogged:
+    """Returns the error of the inputs, or of forces on the joints, that a fitted noise has."""
+    log = fit.point.log
+    unit = log.units.get(log.input_names[0], "") if log.input_names else ""
+    return Unlogged(fit.level.input_std, unit, fit.level.noise.time, bool(log.inputs.any()))
+
+
+def _next(scores: Sequence[Score]) -> tuple[Score, float] | None:
+    """Returns the best of some candidates, and the chance that one of them does so by luck."""
+    if not scores:
+        return None
+    best = max(scores, key=lambda s: s.gain)
+    return best, correct_p_value(best, len(scores))
 
 
 def _has(findings: Sequence[Finding], *kinds: FindingKind) -> bool:

@@ -82,6 +82,43 @@ class Fit:
     step_shift: np.ndarray
 
     @property
+    def values(self) -> dict[str, float]:
+        """The fitted values by name, in their units."""
+        return self.estimate.values
+
+    shared = values
+
+    @property
+    def own_values(self) -> dict[str, dict[str, float]]:
+        """No record has values that the others have not."""
+        return {}
+
+    @property
+    def start(self) -> np.ndarray:
+        """The values with which the fit began, in their units, shape (p,)."""
+        return self.estimate.start
+
+    @property
+    def converged(self) -> bool:
+        """Whether the search ended by itself."""
+        return self.estimate.status == "converged"
+
+    @property
+    def stopped(self) -> bool:
+        """Whether the user stopped the search; its best values are kept."""
+        return self.estimate.status == "stopped"
+
+    @property
+    def worse(self) -> None:
+        """The proof that the fit predicts unseen data worse, which nobody asks of a free run."""
+        return None
+
+    @property
+    def horizon(self) -> None:
+        """The length of the windows that were fitted [s]; None for a free run."""
+        return None
+
+    @property
     def far(self) -> dict[str, float]:
         """Values that a finer step moves by more than `MIN_TOLD_SHIFT`, farthest first [std]."""
         with np.errstate(divide="ignore", invalid="ignore"):

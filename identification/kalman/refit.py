@@ -24,6 +24,7 @@ from identification.kalman.noise_fit import NoiseLevel, fit_noise
 from identification.kalman.options import KalmanOptions
 from identification.kalman.point import Point, evaluate_point, is_costly, shift_point
 from identification.kalman.problem import Problem, linearise_criterion
+from identification.model.predictor import Plant
 from identification.progress import counted
 
 # Relative change of the parameters after which columns and linearisation may still hold.
@@ -70,6 +71,48 @@ class Refit:
     def log_posterior(self) -> float:
         """Log likelihood plus log density of the priors, up to a constant."""
         return _posterior(self.point, self.level, self.mean, self.prior)
+
+    @property
+    def plant(self) -> Plant:
+        """The plant with its own values."""
+        return self.point.predictor.plant
+
+    @property
+    def values(self) -> dict[str, float]:
+        """Values of all parameters that are not the plant's own, by name, in their units."""
+        return self.point.values
+
+    told_values = values
+
+    @property
+    def own_values(self) -> dict[str, dict[str, float]]:
+        """No record has values that the others have not."""
+        return {}
+
+    @property
+    def told_std(self) -> dict[str, float]:
+        """Std of the free parameters by name, in their units; NaN at a bound."""
+        space, q = self.point.space, self.point.q
+        std = np.where(space.on_bound(q), np.nan, self.std * space.slope(q))
+        return dict(zip(space.names, std.tolist(), strict=True))
+
+    @property
+    def at_bound(self) -> tuple[str, ...]:
+        """Names of the free parameters that lie on a bound of the search."""
+        space = self.point.space
+        on_bound = space.on_bound(self.point.q)
+        return tuple(n for n, at in zip(space.names, on_bound, strict=True) if at)
+
+    @property
+    def unlearned(self) -> dict[str, float]:
+        """Std of each free parameter over the std that was known before; 0 where none was."""
+        left = (self.std * self.prior).tolist()
+        return dict(zip(self.point.space.names, left, strict=True))
+
+    @property
+    def finer(self) -> None:
+        """The change of the fit with finer steps, for which nobody asks along a free run."""
+        return None
 
     @property
     def relative_input_error(self) -> float:

@@ -20,7 +20,7 @@ def by_unit(rms: np.ndarray, log: Log) -> dict[str, float]:
         rms: of each output, shape (ny,), in its unit.
         log: which outputs they are.
     """
-    units = [log.units.get(name, "") for name in log.output_names]
+    units = [*output_units(log).values()]
     return {
         unit: float(np.sqrt(np.mean(rms[[u == unit for u in units]] ** 2)))
         for unit in dict.fromkeys(units)
@@ -35,6 +35,11 @@ def rms_by_unit(errors: np.ndarray, log: Log) -> dict[str, float]:
         log: which outputs they are.
     """
     return by_unit(np.sqrt(np.mean(errors.reshape(-1, errors.shape[-1]) ** 2, axis=0)), log)
+
+
+def output_units(log: Log) -> dict[str, str]:
+    """Returns the unit of each output by name; "" where it has none."""
+    return {name: log.units.get(name, "") for name in log.output_names}
 
 
 def of_outputs(values: Mapping[str, float], log: Log) -> np.ndarray:

@@ -7,13 +7,13 @@ from collections.abc import Mapping, Sequence
 from identification.blas import one_blas_thread
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
+from identification.discovery.result import Discovery
 from identification.effects.effect import Effect
 from identification.errors import InputError
 from identification.estimation.options import Progress
 from identification.logs.log import Log
 from identification.prediction.records import as_records
 from identification.prediction.records_fit import NO_HORIZON
-from identification.prediction.result import RecordsDiscovery
 from identification.prediction.starts import without_starts
 from identification.prediction.state import RecordsTask, first_state, next_state
 from identification.prediction.verdict import conclude
@@ -28,7 +28,7 @@ def discover_records(
     progress: Progress | None = None,
     options: DiscoveryOptions | None = None,
     values: Mapping[str, Mapping[str, float]] | None = None,
-) -> RecordsDiscovery:
+) -> Discovery:
     """Name what a model lacks to explain records, judged by predictions over its horizon.
 
     Args:

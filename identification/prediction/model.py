@@ -12,15 +12,15 @@ from functools import cached_property
 
 import numpy as np
 
+from identification.discovery.fitted import StepShift
 from identification.effects.effect import Candidate
 from identification.model.predictor import Plant
 from identification.prediction.fit import WindowFit
 from identification.prediction.own_values import Own
 from identification.prediction.records import Record
-from identification.prediction.step_shift import StepShift, step_shift
+from identification.prediction.step_shift import step_shift
 from identification.prediction.told_std import told_std
 from identification.prediction.unseen import LENGTHS, Unseen, predict
-from identification.windows.coarse import own_step
 
 
 @dataclass(frozen=True)
@@ -49,6 +49,11 @@ class WindowModel:
         """Values of all parameters that are not the plant's own and hold for all records."""
         fixed = {n: v for c in self.candidates for n, v in (*c.fixed.items(), *c.whole.items())}
         return {**fixed, **self.fit.shared}
+
+    @property
+    def told_values(self) -> dict[str, float]:
+        """`values`, and what each fitted record has for itself as `name [record]`."""
+        return {**self.values, **self.fit.values}
 
     @property
     def own_values(self) -> dict[str, dict[str, float]]:
@@ -80,14 +85,17 @@ class WindowModel:
         return step_shift(self.fit)
 
     @property
-    def steps(self) -> tuple[float, float]:
-        """Time steps of the simulations and of the user's model [s]."""
-        return float(self.plant.model.opt.timestep), own_step(self.plant)
-
-    @property
     def step_shift(self) -> dict[str, float]:
         """The change of each free value with a quarter of the step, in its unit."""
         return dict(zip(self.fit.problem.names, self.finer.values.tolist(), strict=True))
+
+    @property
+    def unlearned(self) -> dict[str, float]:
+        """Std of each free value over the std that was known before; 0 where none was."""
+        prior = self.fit.problem.prior
+        slope = np.abs(prior.space.slope(self.fit.q))
+        left = prior.weight * np.array([*self.told_std.values()]) / slope
+        return dict(zip(self.fit.problem.names, left.tolist(), strict=True))
 
     @property
     def std(self) -> dict[str, float]:

@@ -8,40 +8,17 @@ s: scale of each output. Of one output, or of outputs of one scale, this is the 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 
 import numpy as np
 
+from identification.discovery.effect_results import RecordError
 from identification.logs.by_unit import by_unit
 from identification.logs.log import Log
 from identification.prediction.records import Record
 from identification.prediction.unseen import Unseen
 
 Errors = Sequence[np.ndarray]  # y - ŷ of windows (W, L, ny), one array a record
-
-
-@dataclass(frozen=True)
-class RecordError:
-    """Errors on one record, over windows of the horizon.
-
-    Attributes:
-        name: of the record.
-        role: "fit" or "confirm".
-        before: rms of the model before (the nominal one, or the values with which a fit began),
-            over all outputs, in the outputs' unit where they have one, else in units of their
-            scale.
-        after: rms of the model after (the final one, or the fitted one).
-        before_by_unit: rms of the model before by the outputs' units, each in it.
-        after_by_unit: likewise of the model after.
-    """
-
-    name: str
-    role: str
-    before: float
-    after: float
-    before_by_unit: Mapping[str, float]
-    after_by_unit: Mapping[str, float]
 
 
 def error_unit(log: Log, scale: np.ndarray) -> tuple[float, str]:

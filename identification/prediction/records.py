@@ -1,35 +1,15 @@
-"""Records of one robot: some are fitted, the others only confirm.
-
-Physics is shared by all records. Where each begins, and what its file says of it alone (a payload,
-a supply voltage), is its own.
-"""
+"""The records of one robot, made of its logs: some are fitted, the others only confirm."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from typing import Literal
+from dataclasses import replace
 
 from identification.errors import InputError
 from identification.logs.log import Log
 from identification.logs.overlap import refuse_different
-
-Role = Literal["fit", "confirm"]
-
-
-@dataclass(frozen=True)
-class Record:
-    """A log and what it is used for.
-
-    Attributes:
-        log: what was measured.
-        role: "fit" or "confirm".
-        values: values of the plant's parameters that hold for this record alone, by name.
-    """
-
-    log: Log
-    role: Role
-    values: Mapping[str, float] = field(default_factory=dict)
+from identification.logs.record import Record as Record
+from identification.logs.record import Role
 
 
 def as_records(

@@ -79,6 +79,21 @@ class RecordsFit:
         return self.model.fit.shared
 
     @property
+    def own_values(self) -> dict[str, dict[str, float]]:
+        """The values that each record has for itself, by record and by name, in their units."""
+        return self.model.own_values
+
+    @property
+    def stopped(self) -> bool:
+        """Whether the user stopped the search, which keeps no values over a horizon."""
+        return False
+
+    @property
+    def converged(self) -> bool:
+        """Whether the search ended by itself."""
+        return self.model.fit.converged
+
+    @property
     def std(self) -> np.ndarray:
         """Std of each value by blocks of windows, in its unit, shape (p,).
 

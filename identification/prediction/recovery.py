@@ -17,6 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from identification.blas import one_blas_thread
+from identification.discovery.effect_results import Rival
 from identification.discovery.force_along import forces_along
 from identification.discovery.free_nodes import MAX_FORCE_POINTS
 from identification.discovery.recovered_force import (
@@ -32,14 +33,13 @@ from identification.effects.effect import Candidate
 from identification.prediction.fit import STD_BLOCKS
 from identification.prediction.model import WindowModel
 from identification.prediction.problem import MIN_WINDOWS
-from identification.prediction.result import RefittedEffect
 from identification.prediction.window_forces import HeldWindows, stretches_of, with_values
 from identification.windows.shooting import Shooting
 from identification.windows.tangents import Tangent
 
 
 def recover_over_horizon(
-    model: WindowModel, candidate: Candidate, rivals: Sequence[RefittedEffect] = ()
+    model: WindowModel, candidate: Candidate, rivals: Sequence[Rival] = ()
 ) -> RecoveredForce | None:
     """Returns the force of an effect, recovered from the fitted windows.
 
@@ -88,7 +88,7 @@ class _Windows:
 
 def _windows(
     model: WindowModel, record: int, candidate: Candidate, steps: dict[str, float],
-    rivals: Sequence[RefittedEffect],
+    rivals: Sequence[Rival],
 ) -> _Windows:  # fmt: skip
     fit = model.fit
     part, d, t = fit.problem.parts[record], fit.moves[record], fit.tangents[record]
@@ -98,7 +98,7 @@ def _windows(
     values = {**part.predictor.fixed, **fit.of_record(record)}
     base = {**values, **dict.fromkeys(candidate.sizes, 0.0)}
     moved = [{**values, name: values[name] + step} for name, step in steps.items()]
-    sets = [values, *moved, *({**base, **_values_of(r)} for r in rivals)]
+    sets = [values, *moved, *({**base, **r.values} for r in rivals)]
     return _Windows(
         t, values, with_values(part, d, base), tuple(with_values(part, d, s) for s in sets)
     )
@@ -156,16 +156,6 @@ def _solve(each: Sequence[_Windows], S: np.ndarray) -> tuple[np.ndarray, np.ndar
     white = np.mean(rest**2) * np.diag(inverse)
     # A node in a few windows only has luck in its blocks, so that its variance is the larger one.
     return c, np.where(np.diag(H) > 0, np.sqrt(np.maximum(by_blocks, white)), np.inf)
-
-
-def _values_of(rival: RefittedEffect) -> dict[str, float]:
-    """Returns the values of a rival's law, by the plant's names."""
-    candidate = rival.candidate
-    own = {
-        candidate.effect.parameter(name, candidate.where): value
-        for name, (value, _, _) in rival.parameters.items()
-    }
-    return {**candidate.fixed, **candidate.whole, **own}
 
 
 def _is_alike(rival: Candidate, is_reading: bool) -> bool:

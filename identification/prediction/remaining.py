@@ -14,6 +14,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from identification.chances import mean_above_other
+from identification.discovery.effect_results import RejectedEffect
 from identification.discovery.findings.finding import Finding, FindingKind
 from identification.discovery.findings.records_evidence import (
     DifferentRecord,
@@ -25,9 +26,6 @@ from identification.discovery.findings.records_evidence import (
 from identification.effects.neighbours import phrase_there
 from identification.model.predictor import Plant
 from identification.prediction.clocks import told_shifts
-from identification.prediction.result import (
-    RefittedEffect,
-)
 from identification.prediction.state import WindowSearch, rise
 from identification.prediction.unseen import Unseen
 
@@ -39,7 +37,7 @@ MIN_COMPARED_RECORDS = 3  # of two nobody knows which one is different
 
 
 def find_remaining(
-    state: WindowSearch, rejected: Sequence[RefittedEffect], shifts: Sequence[ShiftedRecord]
+    state: WindowSearch, rejected: Sequence[RejectedEffect], shifts: Sequence[ShiftedRecord]
 ) -> tuple[Finding, ...]:
     """Returns what the final model leaves: errors above the sensors' noise, and doubtful effects.
 
@@ -55,7 +53,7 @@ def find_remaining(
     left = _error_left(state)
     places: set[tuple[str, str]] = set()  # each is told once, as it did best
     for r in rejected if left else ():
-        seen = r.prediction
+        seen = r.proof
         if seen.is_everywhere and seen.fall > 0 and seen.t > state.task.options.min_proof_t:
             unproven = _unproven(r, state.model.plant)
             if (unproven.name, unproven.where) not in places:
@@ -120,9 +118,9 @@ def different_records(state: WindowSearch) -> list[DifferentRecord]:
     return out
 
 
-def _unproven(r: RefittedEffect, plant: Plant) -> UnprovenEffect:
+def _unproven(r: RejectedEffect, plant: Plant) -> UnprovenEffect:
     c = r.candidate
     doubt = r.doubt or "chance"
     return UnprovenEffect(
-        c.effect.name, phrase_there(c, plant), c.where, r.prediction.fall, r.prediction.t, doubt
+        c.effect.name, phrase_there(c, plant), c.where, r.proof.fall, r.proof.t, doubt
     )

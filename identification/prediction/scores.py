@@ -58,6 +58,11 @@ class WindowScore:
     along: np.ndarray
 
     @property
+    def explains(self) -> float:
+        """The measure by which candidates are told: the fall."""
+        return self.fall
+
+    @property
     def gain(self) -> float:
         """-ln(1 - fall): of two candidates that leave little, one may leave half as much."""
         return float(-np.log(max(1e-12, 1 - self.fall)))

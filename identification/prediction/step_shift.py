@@ -11,59 +11,16 @@ integrator of any order errs by about Δ, and so does the estimate. H, S_w, P_w 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
 from identification.discovery.attempts import attempt
+from identification.discovery.fitted import StepShift
 from identification.model.finer import finer
 from identification.prediction.fit import WindowFit
 from identification.prediction.point import projected
-
-TOLD_SHIFT = 1.0  # std of a value: a smaller one is within what the std tells
-# Of the error of the fitted windows: below it a fifth of the mean square comes from the steps, and
-# is nothing that is missing.
-TOLD_ERROR = 0.9
-
-
-@dataclass(frozen=True)
-class StepShift:
-    """The change of a fit with a quarter of the model's step, to first order.
-
-    Attributes:
-        values: change of each value, shape (p,), in their units; zero where the windows do not feel
-            a value, NaN where they cannot be simulated with finer steps.
-        error: rms error of the fitted windows then, over what it is now; NaN likewise.
-    """
-
-    values: np.ndarray
-    error: float
-
-    @property
-    def is_known(self) -> bool:
-        """Whether the windows could be simulated with finer steps."""
-        return bool(np.isfinite(self.error) or np.isfinite(self.values).any())
-
-    def far(self, names: Sequence[str], std: np.ndarray) -> dict[str, float]:
-        """Returns the values that finer steps would move far enough to be told, the farthest first.
-
-        Args:
-            names: of the values, p of them.
-            std: shape (p,), in their units; NaN where it is not known.
-
-        Returns:
-            By name, how far [std].
-        """
-        with np.errstate(divide="ignore", invalid="ignore"):
-            moved = np.abs(self.values) / std
-        far = [int(k) for k in np.argsort(-moved) if moved[k] > TOLD_SHIFT]
-        return {names[k]: float(moved[k]) for k in far}
-
-    def is_lower(self) -> bool:
-        """Returns whether finer steps would lower the error by so much that it is told."""
-        return self.error < TOLD_ERROR
 
 
 def step_shift(found: WindowFit) -> StepShift:

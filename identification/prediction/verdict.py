@@ -15,10 +15,18 @@ import numpy as np
 
 from identification.chances import mean_above_zero
 from identification.discovery.attempts import attempt
-from identification.discovery.effect_results import Gap
+from identification.discovery.effect_results import (
+    Gap,
+    NamedEffect,
+    Proof,
+    RejectedEffect,
+    Rival,
+)
 from identification.discovery.findings.finding import FindingKind
 from identification.discovery.once import listed_once
 from identification.discovery.options import DiscoveryOptions
+from identification.discovery.result import Discovery, Verdict
+from identification.effects.effect import Candidate
 from identification.logs.log import Log
 from identification.logs.replay import REPLAYED, replayed_share
 from identification.prediction.clocks import record_shifts
@@ -28,22 +36,17 @@ from identification.prediction.input_error import needed_input_error
 from identification.prediction.model import WindowModel
 from identification.prediction.record_errors import error_unit, errors_by_unit, record_errors
 from identification.prediction.records import Record
+from identification.prediction.recovery import recover_over_horizon
 from identification.prediction.remaining import find_remaining
-from identification.prediction.result import (
-    NamedByPrediction,
-    RecordsDiscovery,
-    RefittedEffect,
-    Verdict,
-)
 from identification.prediction.selection import Contender, evidences
 from identification.prediction.state import WindowSearch, rise
 from identification.prediction.twins import find_twin
-from identification.prediction.unseen import Unseen
+from identification.prediction.unseen import Prediction, Unseen
 
 MIN_LISTED_CONFIDENCE = 0.02  # a rival that is less likely is not listed
 
 
-def conclude(state: WindowSearch) -> RecordsDiscovery:
+def conclude(state: WindowSearch) -> Discovery:
     """Returns the outcome of a finished search.
 
     Args:
@@ -52,12 +55,12 @@ def conclude(state: WindowSearch) -> RecordsDiscovery:
     state = _at_own_steps(state)
     task, nominal, model = state.task, state.nominal, state.model
     options = task.options
-    rejected = listed_once([_refitted(c.model, c, 0.0) for c in state.rejected])
+    rejected = listed_once([_rejected(state, c) for c in state.rejected])
     shifts = record_shifts(task, model)
     findings = find_remaining(state, rejected, shifts)
     limit = options.left_confidence if findings else options.max_confidence
     named = tuple(_named(state, a, limit) for a in state.accepted)
-    sure = all(n.effect.confidence >= 0.5 or n.one_of for n in named)
+    sure = all(n.confidence >= 0.5 or n.one_of for n in named)
     doubtful = any(f.kind is FindingKind.UNPROVEN_EFFECT for f in findings)
     different = any(
         f.kind in (FindingKind.DIFFERENT_RECORD, FindingKind.SHIFTED_RECORD) for f in findings
@@ -68,7 +71,7 @@ def conclude(state: WindowSearch) -> RecordsDiscovery:
         needed = needed_input_error(nominal.fit, nominal.unseen.floor)
     verdict: Verdict = "nothing missing"
     if named and sure:
-        curves = [n.effect.candidate.effect.is_curve for n in named]
+        curves = [n.candidate.effect.is_curve for n in named]
         verdict = "unlisted effect" if all(curves) else "named"
     elif (
         named
@@ -79,28 +82,30 @@ def conclude(state: WindowSearch) -> RecordsDiscovery:
     ):
         verdict = "unknown effect"
     if verdict == "unknown effect":
-        rejected, named, model = listed_once([*(n.effect for n in named), *rejected]), (), nominal
+        rejected, named, model = listed_once([*map(_unnamed, named), *rejected]), (), nominal
     floor = model.unseen.floor
     before, after = (float(np.mean(np.concatenate(m.unseen.at_horizon))) for m in (nominal, model))
     above = before - min(floor, after)
     log = task.records[0].log
     scale, unit = error_unit(log, nominal.scale)
-    return RecordsDiscovery(
+    return Discovery(
         records=task.records, options=options, horizon=task.horizon, verdict=verdict, named=named,
         rejected=rejected, share=float((before - after) / above) if above > 0 else 0.0,
         unexplained=verdict != "nothing missing" and (bool(findings) or not named),
-        noise_rms=scale * float(np.sqrt(floor)), unit=unit, input_error=needed,
-        noise_by_unit=errors_by_unit(model.unseen.noise, nominal.scale, log),
+        noise_rms=scale * float(np.sqrt(floor)), unit=unit, scale=nominal.scale,
+        input_error=needed, noise_by_unit=errors_by_unit(model.unseen.noise, nominal.scale, log),
         before=_gap(nominal.unseen, nominal.scale, log),
         after=_gap(model.unseen, nominal.scale, log),
         errors=record_errors(
             task.records, nominal.scale, (nominal.unseen, model.unseen),
             (nominal.fit.errors, model.fit.errors),
         ),
-        nominal=nominal, final=model,
+        nominal=nominal, final=model, scored_by="fall",
+        # Values with which a search began, because its fit was worse, lie inside their bounds.
+        at_bound=tuple(n for n in model.at_bound if n in nominal.fit.problem.names),
         scores=state.nominal_scores, remaining=state.scores if named else state.nominal_scores,
         findings=findings, shifts=shifts, repeats=_repeats(task.records), seconds=state.seconds,
-        failed=state.failed,
+        failed=state.failed, recover=partial(recover_over_horizon, model),
     )  # fmt: skip
 
 
@@ -128,7 +133,7 @@ def _repeats(records: Sequence[Record]) -> tuple[str, ...]:
     return tuple(repeats)
 
 
-def _named(state: WindowSearch, accepted: Contender, limit: float) -> NamedByPrediction:
+def _named(state: WindowSearch, accepted: Contender, limit: float) -> NamedEffect:
     """Returns an accepted effect at the values of the final model, with its rivals.
 
     Args:
@@ -145,34 +150,67 @@ def _named(state: WindowSearch, accepted: Contender, limit: float) -> NamedByPre
     others = [o for o in others if o.candidate.effect.name != twin]  # the same is no rival
     near = [accepted, *others]
     shares = compute_confidence(evidences(near))
-    rivals = [
-        _refitted(o.model, o, float(share))
-        for o, share in zip(others, shares[1:], strict=True)
-        if share > MIN_LISTED_CONFIDENCE
-    ]
-    effect = _refitted(final, accepted, min(limit, float(shares[0])))
-    confirm = state.task.confirm
-    seen = accepted.prediction
-    worse = [
-        r.log.name
-        for r, blocks in zip(confirm, seen.blocks, strict=True)
-        if len(blocks) > 2 and mean_above_zero(-blocks)[1] < options.significance
-    ]
-    return NamedByPrediction(
-        effect=effect, rivals=tuple(rivals),
-        one_of=bool(shares[1:].size and shares[1:].max() > options.set_confidence),
-        same_as=next((e for e in state.task.effects if e.name == twin), None),
+    candidate, parameters = _fitted(final, mine)
+    return NamedEffect(
+        candidate=candidate, parameters=parameters, confidence=min(limit, float(shares[0])),
+        rivals=tuple(
+            _rival(o, float(share))
+            for o, share in zip(others, shares[1:], strict=True)
+            if share > MIN_LISTED_CONFIDENCE
+        ),
         compared=len(others),
-        agrees=tuple(r.log.name for r, g in zip(confirm, seen.records, strict=True) if g > 0),
-        disagrees=tuple(worse),
+        one_of=bool(shares[1:].size and shares[1:].max() > options.set_confidence),
+        evidence=accepted.criterion, proof=_proof(state, accepted.prediction),
+        same_as=next((e for e in state.task.effects if e.name == twin), None),
     )  # fmt: skip
 
 
-def _refitted(model: WindowModel, contender: Contender, confidence: float) -> RefittedEffect:
-    """Returns an effect at the values of a model that has it."""
-    c = contender.candidate
-    plant, unknowns = model.plant, model.fit.problem.unknowns
-    values = {**model.values, **model.fit.values}
+def _proof(state: WindowSearch, seen: Prediction) -> Proof:
+    """Returns what an effect does for the records that confirm."""
+    names = [r.log.name for r in state.task.confirm]
+    worse = [len(b) > 2 and mean_above_zero(-b)[1] < state.task.options.significance
+             for b in seen.blocks]  # fmt: skip
+    return Proof(
+        test="Student's t", t=seen.t, chance=seen.chance, fall=seen.fall,
+        blocks=sum(map(len, seen.blocks)), falls=seen.falls, records=seen.records,
+        is_everywhere=seen.is_everywhere,
+        agrees=tuple(n for n, g in zip(names, seen.records, strict=True) if g > 0),
+        disagrees=tuple(n for n, is_worse in zip(names, worse, strict=True) if is_worse),
+    )  # fmt: skip
+
+
+def _rejected(state: WindowSearch, contender: Contender) -> RejectedEffect:
+    """Returns an effect that was refitted and not accepted, at the values of its own model."""
+    c = contender
+    candidate, parameters = _fitted(c.model, c.candidate)
+    proof = _proof(state, c.prediction)
+    return RejectedEffect(
+        candidate, parameters, np.nan, proof, evidence=c.criterion, doubt=c.doubt
+    )  # fmt: skip
+
+
+def _unnamed(named: NamedEffect) -> RejectedEffect:
+    """Returns an effect that is told as tried, because its name is not sure."""
+    n = named
+    return RejectedEffect(
+        n.candidate, n.parameters, np.nan, n.proof, evidence=n.evidence, confidence=n.confidence
+    )
+
+
+def _rival(contender: Contender, confidence: float) -> Rival:
+    """Returns another effect with the values of its law, at those of its own model."""
+    candidate, _ = _fitted(contender.model, contender.candidate)
+    every, own = contender.model.told_values, (*candidate.sizes, *candidate.fixed)
+    values = {n: float(every[n]) for n in own if n in every}
+    return Rival(candidate, confidence, values={**candidate.fixed, **candidate.whole, **values})
+
+
+def _fitted(
+    model: WindowModel, candidate: Candidate
+) -> tuple[Candidate, dict[str, tuple[float, float, str]]]:
+    """Returns an effect with its shape, and sizes and shapes by symbol: value, std, unit."""
+    c, plant, unknowns = candidate, model.plant, model.fit.problem.unknowns
+    values = model.told_values
     # A bound holds a value as it holds what is not estimated: neither has a std.
     std = {n: 0.0 if n in model.at_bound else s for n, s in model.told_std.items()}
     parameters = {}
@@ -191,11 +229,7 @@ def _refitted(model: WindowModel, contender: Contender, confidence: float) -> Re
             for r, own in model.unseen.own.items():
                 parameters[f"{said} [{r}]"] = (*own[name], record.unit)
     shape = {s.name: values[c.effect.parameter(s.name, c.where)] for s in c.effect.shapes}
-    return RefittedEffect(
-        candidate=replace(c, shape=shape), parameters=parameters,
-        prediction=contender.prediction, criterion=contender.criterion, confidence=confidence,
-        doubt=contender.doubt,
-    )  # fmt: skip
+    return replace(c, shape=shape), parameters
 
 
 def _is_worse(state: WindowSearch) -> bool:

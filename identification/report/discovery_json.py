@@ -1,4 +1,4 @@
-"""A discovery as plain values, for JSON."""
+"""A discovery as plain values, for JSON: the same keys whichever search has found it."""
 
 from __future__ import annotations
 
@@ -7,32 +7,35 @@ from typing import Any
 
 import numpy as np
 
-from identification.discovery.effect_results import Gap, NamedEffect
+from identification.discovery.effect_results import Gap, NamedEffect, RecordError
+from identification.discovery.fitted import Fitted
 from identification.discovery.result import Discovery
-from identification.prediction.result import RecordsDiscovery
+from identification.effects.effect import Candidate
+from identification.model.predictor import Plant
+from identification.report.curve_nodes import curve_nodes
 from identification.report.finding_json import (
     finding_to_json,
     finite,
-    outside_to_json,
     parameters_to_json,
+    proof_to_json,
     rejected_to_json,
 )
 from identification.report.finding_words import describe_finding
-from identification.report.record_gaps import record_gaps
-from identification.report.records_json import records_to_json
+from identification.windows.coarse import steps_of
 
 
-def discovery_to_json(found: Discovery | RecordsDiscovery) -> dict[str, Any]:
+def discovery_to_json(found: Discovery) -> dict[str, Any]:
     """Returns the outcome as plain values; what is unknown or not finite is None."""
-    if isinstance(found, RecordsDiscovery):
-        return records_to_json(found)
-    findings = (*found.located, *found.findings)
+    findings, plant = (*found.located, *found.findings), found.final.plant
     record = {
         "verdict": found.verdict,
-        "effects": [_named_to_json(named) for named in found.named],
-        "rejected": [rejected_to_json(rejected) for rejected in found.rejected],
+        "effects": [_named_to_json(named, plant) for named in found.named],
+        "rejected": [
+            {**rejected_to_json(r), **_called(r.candidate, plant)} for r in found.rejected
+        ],
         "failed": [asdict(failed) for failed in found.failed],
         "unexplained": found.unexplained,
+        "share": found.share,
         "gap": {
             "noise_rms": found.noise_rms,
             "disturbance_rms": found.disturbance_rms,
@@ -41,16 +44,23 @@ def discovery_to_json(found: Discovery | RecordsDiscovery) -> dict[str, Any]:
             "before": _gap_to_json(found.before),
             "after": _gap_to_json(found.after),
         },
-        "records": record_gaps(found),
+        "records": [_record_to_json(error) for error in found.errors],
+        "shifts": [asdict(shift) for shift in found.shifts],
+        "repeats": list(found.repeats),
+        "horizon": found.horizon,
+        "timestep": dict(zip(("simulated", "model"), steps_of(found.nominal.plant), strict=True)),
+        "input_error": found.input_error,
         "located": [describe_finding(finding) for finding in findings],
         "findings": [finding_to_json(finding) for finding in findings],
+        "nominal": _values_to_json(found.nominal),
+        "final": _values_to_json(found.final),
         "detectable": [
-            {"name": d.candidate.effect.name, "where": d.candidate.where, "parameter": d.size,
-             "smallest": d.smallest, "unit": d.unit}
+            {"name": d.name, "where": d.where, "parameter": d.size, "smallest": d.smallest,
+             "unit": d.unit}
             for d in found.detectable
         ],
         "hidden": [
-            {"name": h.candidate.effect.name, "where": h.candidate.where,
+            {"name": h.name, "where": h.where,
              "sizes": [{"parameter": n, "value": v, "most": most, "unit": unit}
                        for n, (v, most, unit) in h.sizes.items()],
              "taken": h.taken, "gain": h.gain}
@@ -76,27 +86,58 @@ def _gap_to_json(gap: Gap) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _named_to_json(named: NamedEffect) -> dict[str, Any]:
+def _record_to_json(error: RecordError) -> dict[str, Any]:
     return {
-        "name": named.candidate.effect.name,
-        "where": named.candidate.where,
+        "file": error.name, "role": error.role, "before": error.before, "after": error.after,
+        "before_by_unit": dict(error.before_by_unit) or None,
+        "after_by_unit": dict(error.after_by_unit) or None,
+    }  # fmt: skip
+
+
+def _values_to_json(model: Fitted) -> dict[str, Any]:
+    """Returns fitted values, of one record as `name [record]`, and what effects hold fixed."""
+    std, finer = model.told_std, model.finer
+    shift = {} if finer is None else dict(zip(std, finer.values.tolist(), strict=True))
+    return {
+        name: {"value": value, "std": std.get(name), "step_shift": shift.get(name)}
+        for name, value in model.told_values.items()
+    }
+
+
+def _called(candidate: Candidate, plant: Plant) -> dict[str, Any]:
+    """Returns name and place; a curve of the data has no name, but says what it depends on."""
+    effect, where = candidate.effect, candidate.where
+    if not effect.is_curve:
+        return {"name": effect.name, "where": where}
+    nodes = curve_nodes(candidate, plant)
+    each = {
+        f"joint {n.joint}": {"reads": n.reads, "nodes": n.at.tolist(), "nodes_unit": n.unit}
+        for n in nodes
+    }
+    return {
+        "name": "unlisted", "where": where, "depends_on": nodes[0].depends_on,
+        **({"joints": each} if len(nodes) > 1 else each[f"joint {nodes[0].joint}"]),
+    }  # fmt: skip
+
+
+def _named_to_json(named: NamedEffect, plant: Plant) -> dict[str, Any]:
+    proof = named.proof
+    return {
+        **_called(named.candidate, plant),
         "confidence": named.confidence,
         "parameters": parameters_to_json(named.parameters),
         "rivals": [
-            {"name": r.candidate.effect.name, "where": r.candidate.where,
-             "confidence": r.confidence}
-            for r in named.rivals
+            {**_called(r.candidate, plant), "confidence": r.confidence} for r in named.rivals
         ],
+        "compared": named.compared,
         "one_of": named.one_of,
-        "retuned": {
-            "parameter": named.retuned.parameter, "distance": named.retuned.distance,
-            "confidence": named.retuned.confidence,
-        },
-        "outside": outside_to_json(named.outside),
+        "same_as": named.same_as.name if named.same_as else None,
+        "bic_gain": named.bic_gain,
+        "evidence": named.evidence,
+        "retuned": None if named.retuned is None else asdict(named.retuned),
+        "outside": None if named.outside is None else asdict(named.outside),
         "advice": named.advice or None,
-        "proof": {
-            "gain": named.proof.gain, "t": named.proof.t, "chance": named.proof.chance,
-            "share": named.proof.share,
-        },
-        "agrees": list(named.proof.agrees), "disagrees": list(named.proof.disagrees),
-    }  # fmt: skip
+        "proof": proof_to_json(proof),
+        "agrees": list(proof.agrees),
+        "disagrees": list(proof.disagrees),
+    }

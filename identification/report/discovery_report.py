@@ -8,11 +8,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from identification.discovery.result import Discovery
-from identification.logs.joined import records_of
 from identification.report.discovery_sections import gap_section, rivals_section, where_section
 from identification.report.discovery_tables import (
     diff_section,
     parameters_section,
+    records_section,
+    shifts_section,
     unseen_section,
 )
 from identification.report.discovery_verdict import discovery_verdict
@@ -32,12 +33,14 @@ def discovery_sections(found: Discovery, files: str = "") -> list[Section]:
     """
     return [
         gap_section(found),
+        *records_section(found),
         *law_sections(found),
-        where_section(found),
+        *where_section(found),
         rivals_section(found),
         diff_section(found, files),
         _final_first(parameters_section(found)),
-        unseen_section(found),
+        *shifts_section(found),
+        *unseen_section(found),
     ]
 
 
@@ -84,12 +87,13 @@ def write_page(
     """
     if all(section.video is None for section in sections):  # the law stands where a film would
         sections = [replace(s, first=s.first or s.title == LAWS) for s in sections]
+    fitted = [record.log.name for record in found.records if record.role == "fit"]
     return write_report(
         folder / "report.html",
-        f"{found.log.name}: what the model lacks",
+        f"{', '.join(fitted)}: what the model lacks",
         [*discovery_verdict(found), *sentences],
         sections,
         good=found.is_good,
-        data=[log.name for _, log in records_of(found.log)],
+        data=[record.log.name for record in found.records],
         drawings=drawings,
     )

@@ -1,16 +1,57 @@
-"""Sections of a report that are tables: added effects, parameters, and what stays hidden."""
+"""Sections of a report that are tables: records, added effects, parameters, what stays hidden."""
 
 from __future__ import annotations
 
-from math import isfinite, isnan
+from math import isnan
 
-from identification.discovery.final_values import collect_final_values, collect_std
 from identification.discovery.result import Discovery
+from identification.prediction.clocks import shown_shifts
 from identification.quantities import quantity
-from identification.report.effect_words import describe_effect, describe_gains
+from identification.report.effect_words import describe_gains, describe_there
+from identification.report.error_words import pair_words
+from identification.report.finding_words import describe_shift, sentence
+from identification.report.fitted_values import value_table
 from identification.report.page import Section, Table
 from identification.report.parameter_words import words_of
 from identification.report.shown_words import shown_rows, shown_sentences
+from identification.report.step_words import std_sentence, step_sentences
+from identification.windows.coarse import steps_of
+
+DIGITS = 3  # of errors of records
+FITTED = "all of it was fitted"
+SHIFTS = (
+    "by how much the inputs of a record seem to act later or earlier than their time stamps say,"
+    " where both halves of it tell the same"
+)
+
+
+def record_rows(found: Discovery) -> list[tuple[str, ...]]:
+    """Returns rows of records: name, errors without and with what is named, and role."""
+    seen = [e for e in found.errors if not isnan(e.before)]
+    pairs = [(e.before_by_unit, e.after_by_unit) for e in seen]
+    words = dict(zip((id(e) for e in seen), pair_words(pairs, "", DIGITS), strict=True))
+    return [(e.name, *words.get(id(e), (FITTED, "")), e.role) for e in found.errors]
+
+
+def records_section(found: Discovery) -> list[Section]:
+    """Returns the section on the errors of each record; none for a single record of a free run."""
+    if found.horizon is None and len(found.errors) < 2:
+        return []
+    said = "Rms error of free runs over the unseen samples of each record."
+    if found.horizon is not None:
+        said = (
+            f"Rms error over windows of {found.horizon:g} s, each from the state that explains it"
+            " best. Nothing was fitted to the records that confirm."
+        )
+    head = ("record", "nominal model", "final model", "role")
+    table = Table(head, tuple(record_rows(found)))
+    return [Section("Error by record", " ".join([said, *steps_taken(found)]), table=table)]
+
+
+def steps_taken(found: Discovery) -> list[str]:
+    """Returns sentences on the steps that simulations took, and what finer ones would change."""
+    steps = steps_of(found.nominal.plant)
+    return step_sentences(found.final, words_of(found), steps)
 
 
 def diff_section(found: Discovery, files: str = "") -> Section:
@@ -22,73 +63,74 @@ def diff_section(found: Discovery, files: str = "") -> Section:
     """
     if not found.named:
         return Section("What was added", "Nothing: the model is the nominal one, fitted.")
-    rows = []
+    rows, proofs = [], []
     for named in found.named:
-        c = named.candidate
+        effect = describe_there(named.candidate, found.final.plant)
         for k, (name, (value, std, unit)) in enumerate(named.parameters.items()):
-            once = (f"+ {describe_effect(c)}", f"{100 * named.confidence:.0f} %", c.effect.law)
+            law = named.candidate.effect.law
+            once = (f"+ {effect}", f"{100 * named.confidence:.0f} %", law)
             rows.append((name, quantity(value, std, unit), *(once if k == 0 else ("",) * 3)))
-    proofs = [f"{describe_effect(n.candidate)}: {describe_gains(n)}." for n in found.named]
-    said = " ".join(f"{proof[:1].upper()}{proof[1:]}" for proof in proofs)
+        proofs.append(sentence(f"{effect}: {describe_gains(named)}"))
     return Section(
         "What was added",
-        f"{said} {files}".strip(),
+        f"{' '.join(proofs)} {files}".strip(),
         table=Table(("parameter", "value", "effect", "confidence", "law"), tuple(rows)),
     )
 
 
 def parameters_section(found: Discovery) -> Section:
     """Returns the section on parameters: nominal, fitted without effects, and of the final fit."""
-    plant = found.final.point.predictor.plant
-    first, last = collect_std(found.nominal), collect_std(found.final)
-    nominal, values = found.nominal.point.values, collect_final_values(found)
-    words = words_of(found)
-    rows, held = [], []
-    for p in plant.parameters:
-        if p.name not in last and p.name not in first:
-            held += [words[p.name]] if p.where not in ("effect", "start") else []
-            continue
-        told = (nominal.get(p.name, 0.0), values[p.name], 0.0 if p.where == "effect" else p.value)
-        stds = (s for s in (first.get(p.name), last.get(p.name)) if s is not None and isfinite(s))
-        like = max(*map(abs, told), *stds)
-        row = (
-            words[p.name],
-            "–" if p.where == "effect" else quantity(p.value, unit=p.unit, like=like),
-            _value(nominal.get(p.name), first.get(p.name), p.unit, like),
-            _value(values[p.name], last.get(p.name), p.unit, like),
+    free, words = {*found.nominal.told_std, *found.final.told_std}, words_of(found)
+    if found.horizon is None:
+        said = "A std holds if the model is right; that of a wrong model is too small."
+    else:
+        said = (
+            "Std by blocks of windows, whose errors need not be white; unknown where too few"
+            " windows tell of a value."
         )
-        rows.append(row if found.named else row[:3])
-    titles = ("parameter", "nominal", "fitted without effects", "fitted with what is named")
-    said = "A std holds if the model is right; that of a wrong model is too small."
-    if any("@" in p.name and p.name in last and p.where != "effect" for p in plant.parameters):
+    own = [p for p in found.final.plant.parameters if p.where != "effect"]
+    if any("@" in p.name and p.name in free for p in own):
         said += " Values of single parts are their relative deviations from the common value, and"
         said += " those of single points their displacements."
-    if held:
+    held = [words[p.name] for p in own if p.name not in free and p.where != "start"]
+    if held and found.horizon is None:
         said += f" It is also too small where the true value of {' or '.join(held)}, which was held"
         said += " fixed, is not the nominal one."
-    return Section(
-        "The parameters",
-        said,
-        table=Table(titles if found.named else titles[:3], tuple(rows)),
-    )
+    steps = std_sentence(found.final, words)
+    return Section("The parameters", f"{said} {steps}".rstrip(), table=value_table(found))
 
 
-def unseen_section(found: Discovery) -> Section:
-    """Returns the section on what this log would have shown, and what not."""
+def unseen_section(found: Discovery) -> list[Section]:
+    """Returns the section on what this log would have shown, and what not; none where unknown."""
     if not found.detectable:
-        return Section("What it could have seen", "Not computed for this log.")
-    return Section(
-        "What it could have seen",
+        return []
+    said = (
         "The smallest size of each effect that is found in 9 of 10 logs like this one, beside the"
         " largest that is plausible, the hardest to see first. What is missing and smaller stays"
-        f" hidden.\n\n{shown_sentences(found.detectable)}",
-        table=Table(
-            ("effect", "smallest seen", "largest plausible"), tuple(shown_rows(found.detectable))
-        ),
+        f" hidden.\n\n{shown_sentences(found.detectable)}"
     )
+    head = ("effect", "smallest seen", "largest plausible")
+    table = Table(head, tuple(shown_rows(found.detectable)))
+    return [Section("What it could have seen", said, table=table)]
 
 
-def _value(value: float | None, std: float | None, unit: str, like: float) -> str:
-    if value is None or std is None:
-        return "–"
-    return quantity(value, std, unit, like) + (", on its bound" if isnan(std) else "")
+def shifts_section(found: Discovery) -> list[Section]:
+    """Returns the section on records whose inputs are shifted in time; none where none is told."""
+    shifts = shown_shifts(found.shifts, found.records, found.options)
+    if not shifts:
+        return []
+    rows = tuple((s.record, describe_shift(s), 100 * s.fall) for s in shifts)
+    return [Section(
+        "Shifts in time",
+        f"{sentence(SHIFTS)} Inputs that seem to act earlier may also be the answer of a controller"
+        " to what the robot did.",
+        table=Table(("record", "its inputs act", "of its mean square [%]"), rows),
+    )]  # fmt: skip
+
+
+def shift_lines(found: Discovery) -> list[str]:
+    """Returns lines on records whose inputs are shifted in time; none where none is told."""
+    shifts = shown_shifts(found.shifts, found.records, found.options)
+    lines = [f"  {s.record}: {describe_shift(s)}, {100 * s.fall:z.0f} % of its mean square"
+             for s in shifts]  # fmt: skip
+    return [f"{SHIFTS}:", *lines] if lines else []

@@ -6,63 +6,67 @@ from collections.abc import Sequence
 from math import isfinite
 
 from identification.discovery.effect_results import Gap
-from identification.discovery.findings.finding import Finding
 from identification.discovery.result import Discovery
-from identification.prediction.result import RecordsDiscovery
 from identification.quantities import held
-from identification.report.discovery_errors import errors_of, times_noise
-from identification.report.discovery_tables import parameters_section
+from identification.report.discovery_sections import (
+    FAILED,
+    best_scores,
+    describe_score,
+    failed_lines,
+)
+from identification.report.discovery_tables import FITTED, record_rows, shift_lines, steps_taken
 from identification.report.discovery_verdict import discovery_verdict
-from identification.report.effect_words import describe_effect, describe_gains, describe_rejected
+from identification.report.effect_words import describe_gains, describe_rejected
 from identification.report.error_words import error_words
-from identification.report.failed_words import FAILED, failed_lines
 from identification.report.finding_words import describe_finding
-from identification.report.fitted_values import shown_values, unknown_shares
-from identification.report.named_words import diff_line
+from identification.report.fitted_values import (
+    shown_values,
+    text_table,
+    unknown_shares,
+    value_table,
+)
+from identification.report.named_words import SHOWN, diff_line
 from identification.report.parameter_words import words_of
-from identification.report.record_gaps import record_lines
-from identification.report.records_text import records_text, search_time
-from identification.report.records_values import text_table
 from identification.report.shown_words import shown_lines
+from identification.report.step_words import std_sentence
 
-SHOWN = 0.005  # an explanation with a smaller confidence gets no line
+BEST = 6  # candidates with the best scores that are listed
 
 
-def discovery_text(found: Discovery | RecordsDiscovery) -> str:
+def discovery_text(found: Discovery) -> str:
     """Returns the whole outcome, in paragraphs."""
-    if isinstance(found, RecordsDiscovery):
-        return records_text(found)
-    (title, lines), failed = describe_rejected(found), failed_lines(found)
+    rejected, tried = describe_rejected(found)
+    scores = [describe_score(found, score) for score in best_scores(found)[:BEST]]
     parts = [
         "\n".join(discovery_verdict(found)),
         "\n".join(_diff(found)),
         "\n".join(_gap(found)),
-        "\n".join(record_lines(found)),
+        "\n".join(_records(found)),
         "\n".join(_values(found)),
-        _list("where the nominal model fails", found.located),
-        _list("where the final model still fails", found.findings),
-        "\n".join([f"{title}:", *(f"  {line}" for line in lines)]) if lines else "",
-        "\n".join([f"{FAILED}:", *(f"  {line}" for line in failed)]) if failed else "",
+        "\n".join(shift_lines(found)),
+        _list("where the nominal model fails", [*map(describe_finding, found.located)]),
+        _list(rejected, tried),
+        _list(FAILED, failed_lines(found.failed)),
+        _list("what each effect would explain at its best place, before it is fitted", scores),
         "\n".join(shown_lines(found.detectable)),
-        search_time(found.seconds),
+        *steps_taken(found),
+        f"The search took {sum(found.seconds.values()):.1f} s.",
     ]
     return "\n\n".join(part for part in parts if part)
 
 
-def _list(title: str, findings: Sequence[Finding]) -> str:
-    lines = (f"  {describe_finding(finding)}" for finding in findings)
-    return "\n".join([f"{title}:", *lines]) if findings else ""
+def _list(title: str, lines: Sequence[str]) -> str:
+    return "\n".join([f"{title}:", *(f"  {line}" for line in lines)]) if lines else ""
 
 
 def _diff(found: Discovery) -> list[str]:
+    """Returns lines on what is added to the model: its law, what proves it, and what else it is."""
     lines, words = [], words_of(found)
     for named in found.named:
-        lines += [diff_line(named), f"    law: {named.candidate.effect.law}"]
+        lines += [diff_line(found, named), f"    law: {named.candidate.effect.law}"]
         lines.append(f"    {describe_gains(named)}")
-        for rival in named.rivals:
-            said = f"{describe_effect(rival.candidate)}, confidence {100 * rival.confidence:.0f} %"
-            lines.append(f"    rival: {said}")
-        if (other := named.retuned).confidence >= SHOWN:
+        other = named.retuned
+        if other is not None and other.confidence >= SHOWN:
             lines.append(
                 f"    no effect, but {words[other.parameter]} {other.distance:+z.2g} std from what"
                 f" was known: confidence {100 * other.confidence:.0f} %"
@@ -71,10 +75,12 @@ def _diff(found: Discovery) -> list[str]:
 
 
 def _gap(found: Discovery) -> list[str]:
-    before, after = error_words([errors_of(gap, found) for gap in (found.before, found.after)])
+    """Returns lines on the error on unseen data, without and with what is named."""
+    errors = [found.errors_of(gap) for gap in (found.before, found.after)]
+    before, after = error_words(errors)
 
     def line(what: str, size: str, gap: Gap) -> str:
-        ratio = times_noise(gap, found)
+        ratio = found.times_noise(gap)
         times = f", {held(ratio)} times the noise" if isfinite(ratio) else ""
         return f"  {what:<7}{size}{times}"
 
@@ -84,17 +90,31 @@ def _gap(found: Discovery) -> list[str]:
     return ["error on unseen data:", *told]
 
 
+def _records(found: Discovery) -> list[str]:
+    """Returns lines on the error of each record; none for a single record of a free run."""
+    if found.horizon is None and len(found.errors) < 2:
+        return []
+    over = "unseen samples of each record"
+    if found.horizon is not None:
+        over = f"error of prediction over {found.horizon:g} s"
+    lines = [f"{over}, {'without and with what is named' if found.named else 'nothing is named'}:"]
+    for error, (name, before, after, role) in zip(found.errors, record_rows(found), strict=True):
+        is_told = bool(found.named) and before != FITTED
+        worse = "; it is predicted worse" if is_told and error.after > error.before else ""
+        lines.append(f"  {name} ({role}): {before}{f' -> {after}' if is_told else ''}{worse}")
+    return lines
+
+
 def _values(found: Discovery) -> list[str]:
     """Returns lines on each parameter as the model had it and as fitted; few of single parts."""
-    found_table = parameters_section(found).table
-    if found_table is None or not found_table.rows:
+    table = value_table(found)
+    if not table.rows:
         return []
-    rows = [[str(cell) for cell in row] for row in found_table.rows]
+    rows = [[str(cell) for cell in row] for row in table.rows]
     words = words_of(found)
-    shares = {words[name]: share for name, share in unknown_shares(found.final).items()}
+    shares = {words.get(n, n): share for n, share in unknown_shares(found.final).items()}
     shown, rest = shown_values(rows, shares)
-    return [
-        "fitted values:",
-        *text_table(found_table.columns, shown),
-        *([f"  {rest}"] if rest else []),
-    ]
+    lines = ["fitted values:", *text_table(table.columns, shown)]
+    lines += [f"  {rest}"] if rest else []
+    steps = std_sentence(found.final, words)
+    return [*lines, *([steps] if steps else [])]

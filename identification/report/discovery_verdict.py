@@ -2,122 +2,199 @@
 
 from __future__ import annotations
 
-from math import isfinite
+from math import inf, isfinite
 
-from identification.discovery.effect_results import RejectedEffect
-from identification.discovery.final_values import list_at_bound
-from identification.discovery.fitted_model import is_proven
+from identification.discovery.findings.finding import FindingKind
 from identification.discovery.result import Discovery
-from identification.quantities import held
+from identification.quantities import held, quantity
 from identification.report.bound_words import bound_sentences
-from identification.report.discovery_errors import (
-    closed_share,
-    errors_of,
-    floor,
-    floor_rms,
-    off,
-    sensors,
-    times_noise,
-)
-from identification.report.discovery_limits import hiding
-from identification.report.effect_words import (
-    describe_chance,
-    describe_effect,
-)
-from identification.report.error_words import change_words
+from identification.report.effect_words import describe_chance, describe_effect, phrase
+from identification.report.error_words import change_words, error_words
 from identification.report.finding_words import describe_finding, sentence
 from identification.report.named_words import named_sentences
-from identification.report.nothing_words import nothing
+from identification.report.scale_words import describe_scale
+from identification.report.shown_words import SHOWN, hiding, smallest, split_detectable
 from identification.shown import verdict_of
+
+NO_ERROR = 1e-3  # of the inputs' rms: less is not told from none
 
 
 @verdict_of.register
 def discovery_verdict(found: Discovery) -> list[str]:
     """Returns sentences: the verdict first, then what supports it."""
-    own = list_at_bound(found.final, found.nominal.point.space.names)
-    bounds = bound_sentences(found.final.point.predictor.plant.parameters, own)
-    return [*_verdict(found), *bounds, *_unlike(found)]
-
-
-def _unlike(found: Discovery) -> list[str]:
-    """Returns a sentence where outputs have several units."""
-    if len(units := errors_of(found.before, found)) < 2:
-        return []
-    return [
-        f"The outputs have several units ({', '.join(unit or 'none' for unit in units)}), and a"
-        " free run counts an error of 1 in each of them alike, with one noise for all: give the"
-        " nominal model a horizon, over which each output counts in its own scale."
-    ]
+    bounds = bound_sentences(found.final.plant.parameters, found.at_bound)
+    return [*_verdict(found), *bounds, *describe_scale(found.outputs, found.scale)]
 
 
 def _verdict(found: Discovery) -> list[str]:
     if found.verdict == "nothing missing":
-        return [nothing(found)]
+        return [_nothing(found), *_findings(found)]
     if found.verdict == "unknown effect":
-        return [unknown(found)]
+        return [_unknown(found)]
     said = [named_sentences(found, named) for named in found.named]
     said.append(_proof(found))
     if found.unexplained:
-        said.append(unexplained(found))
+        said.append(_unexplained(found))
     elif found.hidden:
-        said.append(f"Nothing else is missing that this log shows.{hiding(found)}")
+        said.append(f"Nothing else is missing that this log shows.{hiding(found.hidden)}")
     return said
 
 
-def unknown(found: Discovery) -> str:
+def _findings(found: Discovery) -> list[str]:
+    """Returns a sentence on each thing that the final model leaves."""
+    return [sentence(describe_finding(finding)) for finding in found.findings]
+
+
+def _over(found: Discovery) -> str:
+    """Returns over which horizon errors are meant; "" along a free run."""
+    return f" over {found.horizon:g} s" if found.horizon is not None else ""
+
+
+def _off(found: Discovery) -> tuple[str, str, str]:
+    """Returns what the nominal model leaves on unseen data, the noise, and that of the sensors."""
+    errors = [found.errors_of(found.before), found.floor, found.sensors]
+    sizes = error_words(errors, "")
+    return error_words(errors)[0], sizes[1], sizes[2]
+
+
+def _nothing(found: Discovery) -> str:
+    """Returns the paragraph: nothing is missing, or no effect is named as no candidate helps."""
+    left, noise, alone = _off(found)
+    ratio = found.before.rms / found.noise_rms if found.noise_rms else 1.0
+    is_noise = found.unlogged is not None or found.input_error < NO_ERROR
+    if not is_noise and ratio**2 > 1 + found.options.min_gap_share:
+        return (
+            "No effect is named: no candidate lowers the error of prediction on unseen data beyond"
+            f" chance. It is {left}{_over(found)}, {held(ratio)} times the {alone} that the sensors"
+            f" make. {_either(found)}"
+        )
+    seen, unseen = split_detectable(found.detectable)
+    said = (
+        f"Nothing is missing{'' if found.detectable else ', as far as these data can tell'}: what"
+        f" the fitted model leaves unexplained is noise, {left}{_over(found)} on unseen data where"
+        f" the sensors{' and unlogged disturbances' if found.unlogged else ''} make {noise}."
+    )
+    said += _rest(found, alone)
+    if seen:
+        listed = "; ".join(f"{describe_effect(d.candidate)}, {smallest(d)}" for d in seen[:SHOWN])
+        said += f" The log would have shown, in 9 cases of 10, effects as small as: {listed}."
+    said += hiding(found.hidden)
+    if unseen:
+        names = dict.fromkeys(phrase(d.candidate.effect) for d in unseen)
+        said += f" No plausible size would show in it of these: {'; '.join(names)}."
+    return said
+
+
+def _either(found: Discovery) -> str:
+    """Says what else than an effect may make the error: the inputs, where any input moves."""
+    if not isfinite(found.input_error):
+        return "No input moves that could err: something is missing that no candidate explains."
+    return (
+        f"Either the inputs err by {100 * found.input_error:.2g} % of their rms, or something is"
+        " missing that no candidate explains."
+    )
+
+
+def _rest(found: Discovery, alone: str) -> str:
+    """Returns sentences on what makes the error that sensors do not, on which a verdict rests.
+
+    Args:
+        found: the discovery.
+        alone: what the sensors make, in words.
+    """
+    unlogged = found.unlogged
+    if unlogged is None:
+        if found.input_error < NO_ERROR:
+            return " The sensors alone would make it."
+        if not isfinite(found.input_error):
+            return ""
+        percent = f"{100 * found.input_error:.2g}"
+        return f" Inputs that err by {percent} % of their rms would make the rest."
+    if not found.floor_rms > found.noise_rms:
+        return ""
+    lasts = f"for {unlogged.time:.2g} s at a time"
+    if not unlogged.is_of_inputs:
+        return (
+            f" The sensors alone make {alone}; the rest is what unlogged forces on the joints do,"
+            f" {lasts}. If surely none act, something is missing."
+        )
+    return (
+        f" The sensors alone make {alone}; the rest is what inputs do that err by"
+        f" {quantity(unlogged.rms, unit=unlogged.unit)} rms beside what the log says, {lasts}. If"
+        " they are surely known better, something is missing."
+    )
+
+
+def _unknown(found: Discovery) -> str:
     """Returns the paragraph that says that something is missing which no known effect explains."""
     tried = len({s.candidate.effect.name for s in found.scores})
-    ratio = times_noise(found.before, found)
+    left, noise, _ = _off(found)
+    ratio = found.times_noise(found.before)
+    times = f", {held(ratio)} times the {noise} that the sensors make" if isfinite(ratio) else ""
+    needed = ""
+    if found.unlogged is None and 0 < found.input_error < inf:
+        percent = f"{100 * found.input_error:.2g}"
+        needed = f"; inputs would have to err by {percent} % of their rms to make that"
     return " ".join(
         [
             f"Something is missing that none of the {tried} known effects surely explains: the"
-            f" fitted model is {off(found.before, found)} on unseen data"
-            + (f", {held(ratio)} times the sensors' noise." if isfinite(ratio) else "."),
+            f" fitted model is {left} off{_over(found)} on unseen data{times}{needed}.",
             "It is not named here rather than named wrongly.",
-            *(sentence(describe_finding(f)) for f in (*found.findings, *found.located)),
+            *_findings(found),
+            *(sentence(describe_finding(f)) for f in found.located),
         ]
     )
 
 
-def unexplained(found: Discovery) -> str:
+def _unexplained(found: Discovery) -> str:
     """Returns the paragraph on what is left after the named effects."""
+    findings = _findings(found)
+    if findings and all(f.kind is FindingKind.WORSE_FIT for f in found.findings):
+        return " ".join(findings)  # which says how the search began, and not what is left
     more = "what is named" if len(found.named) == 1 else "all that is named"
-    ratio = times_noise(found.after, found)
-    times = f", {held(ratio)} times the noise" if 1 < ratio < float("inf") else ""
-    proven = [r for r in found.rejected if r.gain > 0 and is_proven(r.proof, found.options)]
+    ratio = found.times_noise(found.after)
+    times = f", {held(ratio)} times the noise" if 1 < ratio < inf else ""
+    (left,) = error_words([found.errors_of(found.after)])
     return " ".join(
         [
             f"Something is left beside {more} that no known effect surely explains: the model is"
-            f" still {off(found.after, found)} on unseen data{times}.",
-            *(sentence(describe_finding(f)) for f in found.findings),
-            *map(_nearest, proven[:1]),
+            f" still {left} off{_over(found)} on unseen data{times}.",
+            *findings,
+            *_nearest(found),
         ]
     )
 
 
-def _nearest(rejected: RejectedEffect) -> str:
+def _nearest(found: Discovery) -> list[str]:
     """Returns a sentence on what was refitted, is beyond chance, and is not named."""
-    fall = 100 * rejected.proof.fall
-    free_run = f"{'falls' if fall >= 0 else 'rises'} by {abs(fall):.2g} %"
-    return (
-        f"Nearest comes {describe_effect(rejected.candidate)}: it predicts each next unseen sample"
-        f" better ({describe_chance(rejected.proof)}), and with it the mean square of the free run"
-        f" {free_run}. It is too small to matter, or not the likeliest."
-    )
+    if (nearest := found.nearest) is None:
+        return []
+    fall = 100 * nearest.proof.fall
+    turn = f"{'falls' if fall >= 0 else 'rises'} by {abs(fall):.2g} %"
+    return [
+        f"Nearest comes {describe_effect(nearest.candidate)}: it predicts each next unseen sample"
+        f" better ({describe_chance(nearest.proof)}), and with it the mean square of the free run"
+        f" {turn}. It is too small to matter, or not the likeliest."
+    ]
 
 
 def _proof(found: Discovery) -> str:
-    errors = errors_of(found.before, found), errors_of(found.after, found)
-    change, (noise, own) = change_words(*errors, [floor(found), sensors(found)])
+    """Returns sentences on how far the error on unseen data falls, beside the noise."""
+    errors = found.errors_of(found.before), found.errors_of(found.after)
+    change, (noise, own) = change_words(*errors, [found.floor, found.sensors])
     whom = "it" if len(found.named) == 1 else "them"
     rest = f", of which sensors make {own} and unlogged errors of the inputs the rest"
-    made = rest if floor_rms(found) > found.noise_rms else ""
+    made = rest if found.floor_rms > found.noise_rms else ""
+    of = f" of prediction{_over(found)}" if found.horizon is not None else ""
+    square = (found.after.rms / found.before.rms) ** 2 - 1 if found.before.rms > 0 else 0.0
+    is_one = found.scale is not None or len(errors[0]) == 1  # else the square has no meaning
+    percent = f" (mean square {100 * square:+z.0f} %)" if is_one else ""
     said = (
-        f"On data that the fit has not seen, the error falls {change}"
-        f" with {whom} in the model; the noise is {noise}{made}."
+        f"On data that the fit has not seen, the error{of} falls {change} with {whom} in the"
+        f" model{percent}; the noise is {noise}{made}."
     )
-    if (share := closed_share(found)) is not None:
-        nearly = share > 0.995 and times_noise(found.after, found) > 1
-        percent = "more than 99" if nearly else f"{100 * share:.0f}"
-        said += f" That is {percent} % of the power that was above the noise."
+    if found.share is not None:
+        nearly = found.share > 0.995 and found.times_noise(found.after) > 1
+        closed = "more than 99" if nearly else f"{100 * found.share:z.0f}"
+        said += f" That is {closed} % of the power that was above the noise."
     return said

@@ -1,9 +1,8 @@
-"""Effects in words: what they are, where they act, how large they are, why one was rejected."""
+"""Effects in words: what they are, where they act, how large they are, and what speaks for them."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from math import isfinite
+from math import isfinite, isinf, isnan
 from typing import TYPE_CHECKING
 
 from identification.effects.neighbours import phrase_there
@@ -16,13 +15,26 @@ if TYPE_CHECKING:  # a search is slow to import, and a page may tell of a model 
         Proof,
         RejectedEffect,
     )
-    from identification.discovery.options import DiscoveryOptions
     from identification.discovery.result import Discovery
-    from identification.discovery.scoring.scores import Score
     from identification.effects.effect import Candidate, Effect
     from identification.model.predictor import Plant
 
 FEW = 0.01  # a chance above it is told as a share, and not as a power of ten
+NOT_TOLD = "(std not known, because too few data tell of it)"
+DOUBTS = {
+    "numbers": "its gain does not pay for its numbers",
+    "chance": "with as many effects tried, its gain may be luck",
+    "lengths": "windows of some length are predicted worse with it",
+    "record": "a record is predicted worse with it",
+    "little": "it takes away too little to matter over windows of some length",
+    "size": "its size is not known well enough to differ from zero",
+    "bound": "its size ends on the bound beyond which it is not believed, so that it stands for"
+    " something else",
+    "exchange": "where the other records are fitted instead, it predicts a record worse, or all of"
+    " them on average",
+    "drawn": "a curve of the data at the same joint does the same, and more",
+    "curve": "it was found beside a curve of the data, which leaves what its nodes cannot draw",
+}
 
 
 def describe_effect(candidate: Candidate) -> str:
@@ -45,13 +57,29 @@ def without_colon(said: str) -> str:
     return said.replace(": ", " – ", 1)
 
 
+def value_with_std(value: float, std: float, unit: str, like: float = 0.0) -> str:
+    """Returns a value with its std in words, also where the std cannot be known.
+
+    Args:
+        value: in `unit`.
+        std: in `unit`; NaN where too few data tell of it, inf where none feel it.
+        unit: SI unit.
+        like: see `quantity`.
+    """
+    if isinf(std):
+        return f"{quantity(value, unit=unit, like=like)}, not felt"
+    said = quantity(value, std, unit, like)
+    return f"{said} {NOT_TOLD}" if isnan(std) else said
+
+
 def describe_sizes(found: NamedEffect | RejectedEffect) -> str:
     """Returns sizes and shapes of a fitted effect with std, but no shape that no data tell."""
     effect = found.candidate.effect
     untold = {s.name for s in effect.shapes}
     about = {s.name: s.about for s in effect.sizes} | {s.name: s.about for s in effect.shapes}
     return ", ".join(
-        f"{name} = {quantity(value, std, unit)}" + (f" ({about[name]})" if about.get(name) else "")
+        (f"{name} not felt" if isinf(std) else f"{name} = {value_with_std(value, std, unit)}")
+        + (f" ({about[name]})" if about.get(name) else "")
         for name, (value, std, unit) in found.parameters.items()
         if name not in untold or isfinite(std)
     )
@@ -60,54 +88,56 @@ def describe_sizes(found: NamedEffect | RejectedEffect) -> str:
 def describe_rejected(found: Discovery) -> tuple[str, list[str]]:
     """Returns the effects that were refitted and not accepted: a title and a line each.
 
-    Where an effect is named and no other one was refitted beside it, it is the candidate with the
-    best score that is left.
+    Each effect is told at each place once, as it did best. Where an effect is named and no other
+    one was refitted beside it, the candidate with the best score that is left is told instead.
     """
     beside = " beside what is named" if found.named else ""
-    if found.rejected:
-        each = [
-            f"{describe_effect(r.candidate)}: {describe_sizes(r)}; {_describe_proof(r)}"
-            for r in found.rejected
-        ]
-        return f"tried{beside}, and not believed", each
-    if found.named and found.remaining:
-        return f"next{beside}, and not refitted", [_describe_next(found.remaining, found.options)]
-    return "", []
-
-
-def _describe_next(scores: Sequence[Score], options: DiscoveryOptions) -> str:
-    from identification.discovery.scoring.significance import correct_p_value
-
-    best = max(scores, key=lambda s: s.gain)
-    luck = correct_p_value(best, len(scores))
-    why = f"chance {luck:.2g} that one of {len(scores)} does as well by luck"
-    if luck < options.significance:
+    each: dict[tuple[str, str], RejectedEffect] = {}
+    for rejected in found.rejected:
+        each.setdefault(rejected.candidate.key, rejected)
+    if each:
+        told = [_rejected(r, found.final.plant) for r in each.values()]
+        return f"tried{beside}, and not believed", told
+    if found.next_best is None:
+        return "", []
+    best, luck = found.next_best
+    why = f"chance {luck:.2g} that one of {len(found.remaining)} does as well by luck"
+    if luck < found.options.significance:
         why = "beyond chance, but at a size of the wrong sign, or larger than physics admits"
-    return f"{describe_effect(best.candidate)}: gain {best.gain:z.3g}, {why}"
+    line = f"{describe_effect(best.candidate)}: gain {best.explains:z.3g}, {why}"
+    return f"next{beside}, and not refitted", [line]
+
+
+def _rejected(rejected: RejectedEffect, plant: Plant) -> str:
+    """Returns a rejected effect with its sizes, what it would do, and what is against it."""
+    proof, outside = rejected.proof, rejected.outside
+    turn = "falls" if proof.fall >= 0 else "rises"
+    doubt = f"; {DOUBTS[rejected.doubt]}" if rejected.doubt else ""
+    instead = f"; instead of it, {describe_outside(outside)}" if outside is not None else ""
+    return (
+        f"{describe_there(rejected.candidate, plant)}: {describe_sizes(rejected)};"
+        f" {_fitted(rejected)}; on unseen ones {describe_chance(proof)}, and the mean square {turn}"
+        f" by {100 * abs(proof.fall):.3g} %{doubt}{instead}"
+    )
+
+
+def _fitted(found: NamedEffect | RejectedEffect) -> str:
+    """Returns what speaks for an effect: its gain on fitted samples, or over all windows."""
+    if isfinite(found.bic_gain):
+        return f"gain {found.bic_gain:z.4g} on fitted samples"
+    return f"evidence {found.evidence:z.4g} of all windows"
 
 
 def describe_chance(proof: Proof) -> str:
-    """Returns in words how far unseen samples are from chance."""
+    """Returns in words how far unseen samples are from chance, and by which test."""
     chance = f"{proof.chance:.2g}" if proof.chance > FEW else probability(proof.chance)
-    return f"t = {proof.t:z.1f}, chance {chance}"
+    return f"t = {proof.t:z.1f}, chance {chance} by {proof.test}"
 
 
 def describe_gains(named: NamedEffect) -> str:
     """Returns in words what a named effect gains on fitted and on unseen samples."""
-    gains = f"gain {named.gain:z.4g} on fitted samples, {named.proof.gain:z.4g} on unseen"
-    return f"{gains} ({describe_chance(named.proof)})"
-
-
-def _describe_proof(rejected: RejectedEffect) -> str:
-    """Returns in words what a rejected effect would do on fitted and on unseen samples."""
-    proof, outside = rejected.proof, rejected.outside
-    instead = f"; instead of it, {describe_outside(outside)}" if outside is not None else ""
-    turn = "falls" if proof.fall >= 0 else "rises"
-    return (
-        f"gain {rejected.gain:z.4g} on fitted samples; on unseen ones {describe_chance(proof)}, and"
-        f" the mean square {turn} by {100 * abs(proof.fall):.3g} %"
-        f"{instead}"
-    )
+    unseen = f", {named.proof.gain:z.4g} on unseen" if isfinite(named.proof.gain) else ""
+    return f"{_fitted(named)}{unseen} ({describe_chance(named.proof)})"
 
 
 def describe_outside(outside: Outside) -> str:

@@ -7,7 +7,7 @@ from dataclasses import asdict
 from math import isfinite
 from typing import Any
 
-from identification.discovery.effect_results import Outside, RejectedEffect
+from identification.discovery.effect_results import Proof, RejectedEffect
 from identification.discovery.findings.evidence import DoubtfulEffect, OversizedEffect
 from identification.discovery.findings.finding import Finding
 
@@ -35,20 +35,22 @@ def finite(value: Any) -> Any:
 
 def rejected_to_json(rejected: RejectedEffect) -> dict[str, Any]:
     """Returns an effect that was refitted and not believed, as plain values."""
-    proof = rejected.proof
     return {
-        "name": rejected.candidate.effect.name, "where": rejected.candidate.where,
-        "parameters": parameters_to_json(rejected.parameters), "gain": rejected.gain,
-        "proof": {
-            "gain": proof.gain, "t": proof.t, "chance": proof.chance, "fall": proof.fall,
-        },
-        "outside": outside_to_json(rejected.outside),
+        "name": rejected.name, "where": rejected.where, "confidence": rejected.confidence,
+        "parameters": parameters_to_json(rejected.parameters), "bic_gain": rejected.bic_gain,
+        "evidence": rejected.evidence, "doubt": rejected.doubt,
+        "proof": proof_to_json(rejected.proof),
+        "outside": None if rejected.outside is None else asdict(rejected.outside),
     }  # fmt: skip
 
 
-def outside_to_json(outside: Outside | None) -> dict[str, Any] | None:
-    """Returns a curve that no catalogue lists, as plain values."""
-    return None if outside is None else asdict(outside)
+def proof_to_json(proof: Proof) -> dict[str, Any]:
+    """Returns what an effect does for unseen samples, as plain values."""
+    return {
+        "test": proof.test, "t": proof.t, "chance": proof.chance, "gain": proof.gain,
+        "share": proof.share, "fall": proof.fall, "falls": list(proof.falls),
+        "records": list(proof.records),
+    }  # fmt: skip
 
 
 def _oversized_to_json(evidence: OversizedEffect) -> dict[str, Any]:

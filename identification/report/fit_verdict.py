@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from identification.logs.by_unit import relative
 from identification.model.finer import FINER
-from identification.quantities import error, held, quantity
+from identification.quantities import held, quantity
 from identification.report.bound_words import bound_sentences
 from identification.report.error_words import error_words, times_words
 from identification.report.untold_words import identifiable_sentences, weak_sentences
@@ -75,17 +76,26 @@ def window_sentences(found: WindowEstimate, floor: float, unit: str) -> list[str
     if unknown := [n for n, u in zip(found.values, found.found.undetermined, strict=True) if u]:
         said.append(f"The windows cannot tell {' and '.join(unknown)}; fix one, or widen them.")
     said += weak_sentences(found)
-    share, own = held(found.rms / floor) if floor > 0 else "", error(floor, unit)
-    ratio = f", {share} times the noise floor of {own}" if share else ""
-    left = error(found.rms, unit)
-    count = len(found.residual)
-    each = (
-        f"1 window of {found.length:g} s leaves"
-        if count == 1
-        else (f"{count} windows of {found.length:g} s leave")
-    )
-    said.append(f"{each} {left} rms{ratio}.")
-    return said
+    left = left_by_windows(len(found.residual), found.length, {unit: found.rms}, {unit: floor})
+    return [*said, left]
+
+
+def left_by_windows(
+    count: int, length: float, rms: Mapping[str, float], floor: Mapping[str, float]
+) -> str:
+    """Returns a sentence on the error that windows leave, beside the noise where it is known.
+
+    Args:
+        count: of the windows.
+        length: of each [s].
+        rms: error by the outputs' units, each in it.
+        floor: noise likewise.
+    """
+    (left,), (own,) = error_words([rms]), error_words([floor], "")
+    ratio = f", {times_words(rms, floor)} times the noise floor of {own}"
+    of = f"of {length:g} s"
+    each = f"1 window {of} leaves" if count == 1 else f"{count} windows {of} leave"
+    return f"{each} {left}{ratio if any(floor.values()) else ''}."
 
 
 def coloured_outputs(fit: Fit) -> int:

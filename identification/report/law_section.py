@@ -9,12 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from identification.discovery.recovered_force import RecoveredForce
-from identification.discovery.recovery import recover_force
 from identification.discovery.result import Discovery
-from identification.effects.effect import Candidate
 from identification.errors import DivergenceError
-from identification.prediction.recovery import recover_over_horizon
-from identification.prediction.result import RecordsDiscovery
 from identification.quantities import quantity
 from identification.report.effect_words import describe_effect
 from identification.report.law_figure import law_figure
@@ -23,7 +19,6 @@ from identification.report.page import Section
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-Recovered = tuple[Candidate, RecoveredForce | None]
 LAWS = "The physics that was found"
 HOW = (
     "The points are the force that the data ask for: in the place of the law the fit got a curve"
@@ -42,18 +37,21 @@ NONE = (
 )
 
 
-def law_sections(found: Discovery | RecordsDiscovery) -> list[Section]:
+def law_sections(found: Discovery) -> list[Section]:
     """Returns the section on the recovered forces; none where nothing is named.
 
     Args:
         found: the discovery.
     """
-    each = _of_records(found) if isinstance(found, RecordsDiscovery) else _of_free_run(found)
+    each = [
+        (n.candidate, _if_simulated(partial(found.recover, n.candidate, n.rivals)))
+        for n in found.named
+    ]
     if not each:
         return []
     figures: list[tuple[str, Figure]] = []
     drawn = any(of is not None for _, of in each)
-    said = [HOW + OVER_HORIZON * isinstance(found, RecordsDiscovery)] if drawn else []
+    said = [HOW + OVER_HORIZON * (found.horizon is not None)] if drawn else []
     for candidate, of in each:
         effect = describe_effect(candidate)
         if of is None:
@@ -67,24 +65,6 @@ def law_sections(found: Discovery | RecordsDiscovery) -> list[Section]:
             f" {most} at most, which need not be the value of one of its parameters."
         )
     return [Section(LAWS, "\n\n".join(said), figures=tuple(figures))]
-
-
-def _of_free_run(found: Discovery) -> list[Recovered]:
-    """Returns the recovered forces of the last fit of a free run, with the models of rivals."""
-    return [
-        (n.candidate, _if_simulated(partial(recover_force, found.final, n.candidate, n.rivals)))
-        for n in found.named
-    ]
-
-
-def _of_records(found: RecordsDiscovery) -> list[Recovered]:
-    """Returns the recovered forces of the windows of the fitted records."""
-    out = []
-    for named in found.named:
-        candidate = named.effect.candidate
-        recover = partial(recover_over_horizon, found.final, candidate, named.rivals)
-        out.append((candidate, _if_simulated(recover)))
-    return out
 
 
 def _if_simulated(recover: Callable[[], RecoveredForce | None]) -> RecoveredForce | None:

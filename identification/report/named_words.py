@@ -4,50 +4,93 @@ from __future__ import annotations
 
 from identification.discovery.effect_results import NamedEffect
 from identification.discovery.result import Discovery
-from identification.report.effect_words import describe_effect, describe_outside, describe_sizes
+from identification.report.curve_nodes import curve_nodes, nodes_sentence
+from identification.report.effect_words import (
+    describe_outside,
+    describe_sizes,
+    describe_there,
+    phrase,
+)
+from identification.report.error_words import listed
 from identification.report.parameter_words import words_of
 
 RETUNED = 0.05  # the explanation without an effect gets a sentence above this confidence
+SHOWN = 0.005  # an explanation with a smaller confidence is not told
+NEAR = 0.1  # of the confidence of the first one: a less likely member of a set is not told
 
 
 def named_sentences(found: Discovery, named: NamedEffect) -> str:
     """Returns all that is said of a named effect."""
-    return f"{_named(found, named)}{_retuned(found, named)}{_outside(named)}{_agreement(named)}"
+    nodes = ""
+    if named.candidate.effect.is_curve:
+        nodes = f" {nodes_sentence(curve_nodes(named.candidate, found.final.plant))}"
+    return (
+        f"{_named(found, named)}{nodes}{_retuned(found, named)}{_outside(named)}"
+        f"{_agreement(found, named)}"
+    )
 
 
-def diff_line(named: NamedEffect) -> str:
+def diff_line(found: Discovery, named: NamedEffect) -> str:
     """Returns a named effect as a line of a diff of the model."""
-    return f"+ {describe_effect(named.candidate)}: {describe_sizes(named)}"
+    return f"+ {describe_there(named.candidate, found.final.plant)}: {describe_sizes(named)}"
 
 
 def _named(found: Discovery, named: NamedEffect) -> str:
     """Returns a sentence on a named effect, or on the set to which it belongs if it is `one_of`."""
+    plant, own = found.final.plant, named.confidence
     first = "Missing from the model" if named is found.named[0] else "Missing too"
-    if named.one_of and named.rivals:
-        rivals = [r for r in named.rivals if r.confidence >= 0.1 * named.confidence] or [
-            named.rivals[0]
-        ]
-        total = named.confidence + sum(r.confidence for r in rivals)
-        each = "; ".join(
-            [f"{describe_effect(named.candidate)} ({100 * named.confidence:.0f} %)"]
-            + [f"{describe_effect(r.candidate)} ({100 * r.confidence:.0f} %)" for r in rivals]
-        )
+    if named.candidate.effect.is_curve:
+        first += ", in no catalogue and drawn from the data"
+    mine = f"{describe_there(named.candidate, plant)}{_twin(named)}"
+    is_set = named.one_of and bool(named.rivals)
+    least = NEAR * own if is_set else SHOWN
+    rivals = [r for r in named.rivals if r.confidence >= least] or [*named.rivals[:is_set]]
+    others = [
+        f"{describe_there(r.candidate, plant)} ({100 * r.confidence:.0f} %)" for r in rivals
+    ]  # fmt: skip
+    if is_set:
+        total = own + sum(r.confidence for r in rivals)
         return (
-            f"{first} is one of these, which this log does not surely tell apart: {each};"
-            f" together {_percent(total)}. The first is put into the model:"
-            f" {describe_sizes(named)}." + (f" {named.advice}" if named.advice else "")
+            f"{first} is one of these, which the data do not surely tell apart:"
+            f" {'; '.join([f'{mine} ({100 * own:.0f} %)', *others])}; together {_percent(total)}."
+            f" The first is put into the model: {describe_sizes(named)}."
+            + (f" {named.advice}" if named.advice else "")
         )
+    less = f" Less likely: {'; '.join(others)}." if others else ""
     return (
-        f"{first}: {describe_effect(named.candidate)}, {describe_sizes(named)}"
-        f"; confidence {100 * named.confidence:.0f} % among the known effects"
-        + ("." if named.rivals else ", none of which was near enough to be refitted in its place.")
+        f"{first}: {mine}, {describe_sizes(named)}; confidence {100 * own:.0f} %"
+        f"{_compared(found, named)}.{less}"
+    )
+
+
+def _compared(found: Discovery, named: NamedEffect) -> str:
+    """Returns in words what a confidence rests on."""
+    among = "" if named.candidate.effect.is_curve else " among the known effects"
+    if named.compared:
+        rivals = "1 rival that was" if named.compared == 1 else f"{named.compared} rivals that were"
+        return f"{among} beside {rivals} refitted in its place"
+    why = "because no rival was near enough to be refitted in its place"
+    limits = found.options.max_confidence, found.options.left_confidence
+    if named.confidence < limits[found.unexplained]:
+        return f"{among}, none of which was near enough to be refitted in its place"
+    when = "said while something is left" if found.unexplained else "ever said"
+    return f"{among}, the highest that is {when}, {why}"
+
+
+def _twin(named: NamedEffect) -> str:
+    """Returns the other name of the same force in words; "" where there is none."""
+    if named.same_as is None:
+        return ""
+    return (
+        f' (or "{phrase(named.same_as)}": below the Coulomb friction it is the same force, and no'
+        " record tells which of the two it is)"
     )
 
 
 def _retuned(found: Discovery, named: NamedEffect) -> str:
     """Returns a sentence where a parameter far from what was known would explain the same."""
     other = named.retuned
-    if other.confidence < RETUNED:
+    if other is None or other.confidence < RETUNED:
         return ""
     what = words_of(found)[other.parameter]
     return (
@@ -64,12 +107,26 @@ def _outside(named: NamedEffect) -> str:
     return f" Or it is {describe_outside(named.outside)}."
 
 
-def _agreement(named: NamedEffect) -> str:
-    """Returns sentences on which of several records the effect holds."""
-    proof = named.proof
-    said = f" It holds on {', '.join(proof.agrees)}." if len(proof.agrees) > 1 else ""
-    if proof.disagrees:
-        said += f" It raises the error on {', '.join(proof.disagrees)}, beyond chance."
+def _agreement(found: Discovery, named: NamedEffect) -> str:
+    """Returns sentences on the unseen records that it helps, without those that repeat others."""
+    names = [e.name for e in found.errors if e.role == "confirm"]
+    names = names or [e.name for e in found.errors if len(found.errors) > 1]
+    distinct = [name for name in names if name not in found.repeats]
+    helped = [name for name in distinct if name in named.proof.agrees]
+    said = ""
+    if distinct:
+        what = "curve" if named.candidate.effect.is_curve else "named effect"
+        which = f" ({listed(helped)})" if 0 < len(helped) < len(distinct) else ""
+        said = f" The {what} lowers the error on {len(helped)} of {len(distinct)} unseen records"
+        said += f"{which}."
+    elif names:
+        said = " All unseen records repeat what was fitted, so that they hardly confirm it."
+    if found.repeats and distinct:
+        one = len(found.repeats) == 1
+        said += f" {', '.join(found.repeats)} {'repeats' if one else 'repeat'} the motion of others"
+        said += " and does not count." if one else " and do not count."
+    if named.proof.disagrees:
+        said += f" It raises the error on {', '.join(named.proof.disagrees)}, beyond chance."
     return said
 
 

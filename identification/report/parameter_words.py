@@ -56,5 +56,5 @@ def parameter_words(
 
 def words_of(found: Discovery) -> dict[str, str]:
     """Returns the words of all parameters of a discovery by name."""
-    parameters = found.final.point.predictor.plant.parameters
-    return parameter_words(parameters, [named.candidate.effect for named in found.named])
+    effects = [named.candidate.effect for named in found.named]
+    return parameter_words(found.final.plant.parameters, effects)

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from identification.estimation.identifiability import in_words
-from identification.logs.by_unit import relative
+from identification.logs.by_unit import output_units, relative
 from identification.prediction.records_fit import RecordsFit
 from identification.report.bound_words import bound_sentences
-from identification.report.error_words import error_words, times_words
+from identification.report.fit_verdict import left_by_windows
 from identification.report.scale_words import describe_scale
 from identification.report.step_words import std_sentence, step_sentences
 from identification.report.untold_words import WEAK, cure, scale_of_forces, too_weak
@@ -30,18 +30,17 @@ def records_fit_verdict(found: RecordsFit) -> list[str]:
     said += _blind(found) + _weak(found) + _unknown_std(found)
     windows = sum(len(part.cut.starts) for part in fit.problem.parts)
     floor, rms = found.noise_by_unit, found.rms_by_unit
-    (left,), (own,) = error_words([rms]), error_words([floor], "")
-    is_known = any(floor.values())
-    ratio = f", {times_words(rms, floor)} times the noise floor of {own}" if is_known else ""
-    of = f"of {found.horizon:g} s"
-    each = f"1 window {of} leaves" if windows == 1 else f"{windows} windows {of} leave"
-    said.append(f"{each} {left}{ratio}.")
-    if is_known and relative(rms, floor) > MUCH:
+    said.append(left_by_windows(windows, found.horizon, rms, floor))
+    if any(floor.values()) and relative(rms, floor) > MUCH:
         said.append(
             "That is far more than the sensors make: the model lacks something, or a column is not"
             " what the model takes it for; discover looks for what is missing."
         )
-    return [*said, *describe_scale(found.model), *step_sentences(found.model)]
+    return [
+        *said,
+        *describe_scale(output_units(found.records[0].log), found.model.scale),
+        *step_sentences(found.model),
+    ]
 
 
 def _blind(found: RecordsFit) -> list[str]:

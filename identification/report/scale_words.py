@@ -1,24 +1,34 @@
-"""The common scale of errors of outputs of several units, in a sentence."""
+"""What an error of each output counts, where outputs have several units, in a sentence."""
 
 from __future__ import annotations
 
-from identification.prediction.model import WindowModel
+from collections.abc import Mapping
+
+import numpy as np
+
 from identification.quantities import quantity
 
 
-def describe_scale(model: WindowModel) -> list[str]:
+def describe_scale(outputs: Mapping[str, str], scale: np.ndarray | None) -> list[str]:
     """Returns a sentence on what a mean square over unlike outputs is; none for outputs alike.
 
     Args:
-        model: fitted; its scale is the rms error of each output under the nominal model.
+        outputs: the unit of each output by name.
+        scale: what counts as one of each output, shape (ny,), in its unit: its rms error under the
+            nominal model; None where 1 counts alike in each unit.
     """
-    log = model.fit.problem.parts[0].predictor.log
-    units = [log.units.get(name, "") for name in log.output_names]
-    if len(set(units)) == 1:
+    units = [*dict.fromkeys(outputs.values())]
+    if len(units) == 1:
         return []
+    if scale is None:
+        return [
+            f"The outputs have several units ({', '.join(unit or 'none' for unit in units)}), and a"
+            " free run counts an error of 1 in each of them alike, with one noise for all: give the"
+            " nominal model a horizon, over which each output counts in its own scale."
+        ]
     each = ", ".join(
         f"{quantity(float(s), unit=unit)} of {name}"
-        for name, s, unit in zip(log.output_names, model.scale, units, strict=True)
+        for (name, unit), s in zip(outputs.items(), scale, strict=True)
     )
     return [
         "A mean square over outputs of several units counts the error of each output in multiples"

@@ -1,7 +1,7 @@
-"""Effects that a log would have shown: one line for each at its place, the hardest to see first.
+"""The limits of what a log shows: the smallest effects it shows, and those that noise hides.
 
-The hardest come first because the others would have been seen: who reads that nothing is missing
-asks what may be missing all the same.
+Each effect has one line at its place, the hardest to see first, because the others would have been
+seen: who reads that nothing is missing asks what may be missing all the same.
 """
 
 from __future__ import annotations
@@ -10,12 +10,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from math import inf, isfinite
 
-from identification.discovery.effect_results import Detectable
+from identification.discovery.effect_results import Detectable, Hidden
 from identification.effects.effect import Candidate
 from identification.quantities import quantity
-from identification.report.discovery_limits import is_plausible, largest
 from identification.report.effect_words import describe_effect
 
+SHOWN = 4  # of the effects that a log would have shown, or that its noise hides, so many are listed
+SHARE = 0.1  # of the inputs' error, by power: an effect that would be less of it has no share told
 LISTED = 8  # effects that have a line; the others are counted
 FEW = 4  # that are told in a paragraph, above the table of all
 NEVER = "what this log would not have shown, at no plausible size"
@@ -132,3 +133,46 @@ def _more(seen: Sequence[Shown]) -> list[str]:
         f"and {who} from {100 * share:.2g} % of the largest plausible size on, or less; report and"
         " JSON list all"
     ]
+
+
+def hiding(hidden: Sequence[Hidden]) -> str:
+    """Returns a sentence on how large effects may be that fitted noise hides; "" without any."""
+    if not hidden:
+        return ""
+    listed = "; ".join(map(_describe, hidden[:SHOWN]))
+    return (
+        " The fitted noise may still hide effects up to these sizes (what the log seems to show of"
+        f" each, by luck or not, and 1.96 std more): {listed}."
+    )
+
+
+def _describe(h: Hidden) -> str:
+    sizes = ", ".join(f"{n} {quantity(most, unit=unit)}" for n, (_, most, unit) in h.sizes.items())
+    taken = f" (it would be {100 * h.taken:.0f} % of what passes for errors of the inputs)"
+    return f"{describe_effect(h.candidate)}, {sizes}{taken if h.taken >= SHARE else ''}"
+
+
+def split_detectable(
+    detectable: Sequence[Detectable],
+) -> tuple[list[Detectable], list[Detectable]]:
+    """Returns effects that a plausible size would show, the easiest to find first; and others."""
+    seen = [d for d in detectable if is_plausible(d)]
+    return (
+        sorted(seen, key=lambda d: d.smallest / largest(d)),
+        [d for d in detectable if not is_plausible(d)],
+    )
+
+
+def is_plausible(d: Detectable) -> bool:
+    """Returns whether a plausible size would have shown."""
+    return d.smallest < float("inf") and d.smallest <= largest(d)
+
+
+def smallest(d: Detectable) -> str:
+    """Returns the smallest size in words."""
+    return f"{d.size} {quantity(d.smallest, unit=d.unit)}"
+
+
+def largest(d: Detectable) -> float:
+    """Returns the largest plausible magnitude of a size [unit]; inf where none is known."""
+    return next((s.largest for s in d.candidate.effect.sizes if s.name == d.size), float("inf"))

@@ -6,17 +6,16 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from identification.discovery.fitted import TOLD_SHIFT, Fitted
 from identification.model.finer import FINER
-from identification.prediction.model import WindowModel
-from identification.prediction.step_shift import TOLD_SHIFT
 from identification.quantities import held, quantity
-from identification.windows.coarse import OUTPUT_ERROR
+from identification.windows.coarse import OUTPUT_ERROR, steps_of
 
 SHOWN = 3  # values that are told, those that move most first
 
 
 def step_sentences(
-    model: WindowModel,
+    model: Fitted,
     words: Mapping[str, str] | None = None,
     steps: tuple[float, float] | None = None,
 ) -> list[str]:
@@ -27,14 +26,14 @@ def step_sentences(
         words: what to call the values by name; their names when None.
         steps: of the simulations and of the user's model [s]; those of `model` when None.
     """
-    taken, own = steps or model.steps
+    taken, own = steps or steps_of(model.plant)
     changed = _changed(model, words or {})
     if taken <= own and not changed:
         return []
     model_step, finer = quantity(own, unit="s"), own / FINER
     said = f"Simulations took steps of {model_step}, as the model says."
     if taken > own:
-        is_last_own = model.steps[0] <= own
+        is_last_own = steps_of(model.plant)[0] <= own
         said = (
             f"{'The search' if is_last_own else 'Simulations'} took steps of"
             f" {quantity(taken, unit='s')} where the model has {model_step}: this changes what is"
@@ -42,7 +41,7 @@ def step_sentences(
         )
         if is_last_own:
             said += " The last fit took the steps of the model."
-    if not model.finer.is_known:
+    if model.finer is None or not model.finer.is_known:
         return [said]
     said += (
         f" The last fit was checked with a quarter of the model's step, {quantity(finer, unit='s')}"
@@ -56,7 +55,7 @@ def step_sentences(
 
 
 def std_sentence(
-    model: WindowModel,
+    model: Fitted,
     words: Mapping[str, str] | None = None,
 ) -> str:
     """Returns a sentence where the error of the steps, which the std leave out, is larger; else "".
@@ -67,9 +66,7 @@ def std_sentence(
         model: as of `step_sentences`.
         words: as of `step_sentences`.
     """
-    names, words = model.fit.problem.names, words or {}
-    std = np.array([model.told_std[n] for n in names])
-    far = [*model.finer.far(names, std)]
+    far, words = [*_far(model)], words or {}
     if not far:
         return ""
     told = ", ".join(words.get(n, n) for n in far[:SHOWN])
@@ -80,11 +77,12 @@ def std_sentence(
     )
 
 
-def _changed(model: WindowModel, words: Mapping[str, str]) -> list[str]:
+def _changed(model: Fitted, words: Mapping[str, str]) -> list[str]:
     """Returns clauses on what finer steps would do beyond what the std tell."""
-    finer, std, said = model.finer, model.told_std, []
-    names = model.fit.problem.names
-    if far := finer.far(names, np.array([std[n] for n in names])):
+    finer, said = model.finer, []
+    if finer is None:
+        return []
+    if far := _far(model):
         most = [*far][:SHOWN]
         told = ", ".join(f"{words.get(n, n)} by {held(far[n])} std" for n in most)
         more = f" and {len(far) - SHOWN} more" if len(far) > SHOWN else ""
@@ -95,3 +93,11 @@ def _changed(model: WindowModel, words: Mapping[str, str]) -> list[str]:
             " is of the steps, and nothing that is missing"
         )
     return said
+
+
+def _far(model: Fitted) -> dict[str, float]:
+    """Returns the values that finer steps would move far enough to be told, in std by name."""
+    if model.finer is None:
+        return {}
+    names, std = [*model.told_std], np.array([*model.told_std.values()])
+    return model.finer.far(names, std)

@@ -11,7 +11,6 @@ from identification.prediction.model import predict_fitted
 from identification.prediction.record_errors import record_errors
 from identification.prediction.records import Record
 from identification.prediction.records_fit import RecordsFit
-from identification.prediction.result import RecordsDiscovery
 from identification.prediction.unseen import predict
 from identification.robot.fitting import RobotFit
 from identification.robot.record_error import (
@@ -27,9 +26,7 @@ from identification.robot.robot import Robot
 WITHOUT = "without what is named", "with it"
 
 
-def confirm(
-    robot: Robot, found: RobotFit | Discovery | RecordsDiscovery
-) -> tuple[Confirmation, ...]:
+def confirm(robot: Robot, found: RobotFit | Discovery) -> tuple[Confirmation, ...]:
     """Compare two models on all that a robot was measured at and to which nothing was fitted.
 
     These are the records that confirm, or, where there are none, the unseen part of each log.
@@ -52,19 +49,17 @@ def confirm(
         DivergenceError: one of the models cannot be simulated.
     """
     refuse_kind(robot, Robot, "confirm takes a robot (read_robot)")
-    refuse_kind(
-        found, (RobotFit, Discovery, RecordsDiscovery), "confirm takes what fit or discover found"
-    )
+    refuse_kind(found, (RobotFit, Discovery), "confirm takes what fit or discover found")
     if isinstance(found, RobotFit):
-        if isinstance(found.found, RecordsFit):
+        if found.found.horizon is not None:
             return _over_windows(robot, found, found.found)
         return _over_free_run(robot, {}, found.values)
-    if isinstance(found, RecordsDiscovery):
+    if found.horizon is not None:
         return _of_discovery(robot, found)
     after = collect_final_values(found)
     if not found.named:
         return _over_free_run(robot, {}, after)
-    return _over_free_run(robot, found.nominal.point.values, after, WITHOUT)
+    return _over_free_run(robot, found.nominal.values, after, WITHOUT)
 
 
 def _over_free_run(
@@ -98,7 +93,7 @@ def _over_windows(robot: Robot, fit: RobotFit, found: RecordsFit) -> tuple[Confi
     )
 
 
-def _of_discovery(robot: Robot, found: RecordsDiscovery) -> tuple[Confirmation, ...]:
+def _of_discovery(robot: Robot, found: Discovery) -> tuple[Confirmation, ...]:
     """Returns what a discovery over a horizon has found on the robot's records."""
     errors = {e.name: e for e in found.errors if e.role == "confirm"}
     for log in robot.records:

@@ -13,8 +13,7 @@ from identification.effects.effect import Effect
 from identification.errors import InputError, refuse_kind
 from identification.logs.log import Log
 from identification.prediction.discovery import discover_records
-from identification.prediction.result import RecordsDiscovery
-from identification.report import discovery_verdict, records_verdict  # noqa: F401  how both are shown
+from identification.report import discovery_verdict  # noqa: F401  how the result is shown
 from identification.robot.checks import refuse_horizon, refuse_unlike
 from identification.robot.diverged import told_of_factors
 from identification.robot.robot import Robot
@@ -26,7 +25,7 @@ def discover(
     *,
     progress: Callable[[str], None] | None = None,
     options: DiscoveryOptions | None = None,
-) -> Discovery | RecordsDiscovery: ...
+) -> Discovery: ...
 @overload
 def discover(
     model: NominalModel,
@@ -34,21 +33,21 @@ def discover(
     effects: Sequence[Effect],
     progress: Callable[[str], None] | None = None,
     options: DiscoveryOptions | None = None,
-) -> Discovery | RecordsDiscovery: ...
+) -> Discovery: ...
 def discover(
     model: Robot | NominalModel,
     log: Log | None = None,
     effects: Sequence[Effect] | None = None,
     progress: Callable[[str], None] | None = None,
     options: DiscoveryOptions | None = None,
-) -> Discovery | RecordsDiscovery:
+) -> Discovery:
     """Name what a model lacks to explain a log, and prove it on the part that was not fitted.
 
     A model with a horizon is judged by predictions over it, on the records that confirm or on the
     second half of each log (`identification.prediction`); one without by the innovations of a
     Kalman filter along its free run (`identification.discovery`).
 
-    Both results are read in one way. `found` itself shows the first sentence of its verdict;
+    The result is of one kind. `found` itself shows the first sentence of its verdict;
     `discovery_text(found)` tells all of it. Read `found.verdict` first ("named", "unlisted effect",
     "unknown effect" or "nothing missing"), then `found.unexplained`: whether something is left.
     `found.named` has what is missing, `found.rejected` what was tried and not proven, and

@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from identification.estimation.fit import Fit
-from identification.report.fit_json import fit_to_json
-from identification.report.records_fit_json import records_fit_to_json
+from identification.report.fit_json import fit_to_json, records_fit_to_json
 from identification.robot.fitting import RobotFit
 from identification.robot.free_inertias import impossible_sentence
 from identification.robot.no_better import no_better
@@ -26,7 +24,7 @@ def robot_fit_to_json(result: RobotFit, confirmed: Sequence[Confirmation] = ()) 
         confirmed: the result of `confirm`.
     """
     found = result.found
-    if isinstance(found, Fit):
+    if found.horizon is None:
         record = {**fit_to_json(found), "horizon": None, "worse": None}
     else:
         record = records_fit_to_json(found)

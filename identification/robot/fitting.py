@@ -47,17 +47,17 @@ class RobotFit:
     @property
     def values(self) -> dict[str, float]:
         """The fitted values by name, in their units; a record's own ones are `name [record]`."""
-        return self.found.estimate.values if isinstance(self.found, Fit) else self.found.values
+        return self.found.values
 
     @property
     def shared(self) -> dict[str, float]:
         """The fitted values that hold for all records."""
-        return self.values if isinstance(self.found, Fit) else self.found.shared
+        return self.found.shared
 
     @property
     def own_values(self) -> dict[str, dict[str, float]]:
         """The values that each record has for itself, by record and by name, in their units."""
-        return {} if isinstance(self.found, Fit) else self.found.model.own_values
+        return self.found.own_values
 
     @property
     def std(self) -> dict[str, float]:
@@ -67,8 +67,7 @@ class RobotFit:
     @property
     def start(self) -> dict[str, float]:
         """The values with which the fit began, by name, in their units."""
-        at = self.found.estimate.start if isinstance(self.found, Fit) else self.found.start
-        return dict(zip(self.values, map(float, at), strict=True))
+        return dict(zip(self.values, map(float, self.found.start), strict=True))
 
     @property
     def at_bound(self) -> dict[str, bool]:
@@ -78,14 +77,12 @@ class RobotFit:
     @property
     def converged(self) -> bool:
         """Whether the search ended by itself."""
-        if isinstance(self.found, Fit):
-            return self.found.estimate.status == "converged"
-        return self.found.model.fit.converged
+        return self.found.converged
 
     @property
     def stopped(self) -> bool:
         """Whether the user stopped the search of a free run; its best values are kept."""
-        return isinstance(self.found, Fit) and self.found.estimate.status == "stopped"
+        return self.found.stopped
 
     @property
     def is_worse(self) -> bool:
@@ -93,7 +90,7 @@ class RobotFit:
 
         Such values are not to be used. Only a fit over a horizon is compared in this way.
         """
-        return isinstance(self.found, RecordsFit) and self.found.worse is not None
+        return self.found.worse is not None
 
     @property
     def unseen(self) -> tuple[Confirmation, ...]:
@@ -102,7 +99,7 @@ class RobotFit:
         One comparison for each record over the horizon; none for a free run, whose `found` has the
         error on the part that was not fitted.
         """
-        if isinstance(self.found, Fit):
+        if self.found.horizon is None:
             return ()
         return tuple(
             of_record(e, self.found.unit, (AS_WRITTEN, FITTED))

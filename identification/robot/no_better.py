@@ -11,7 +11,6 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from identification.prediction.records_fit import RecordsFit
 from identification.robot.fitting import RobotFit
 from identification.robot.record_error import Confirmation
 from identification.robot.worse_unit import worse_unit
@@ -28,7 +27,7 @@ def no_better(result: RobotFit, confirmed: Sequence[Confirmation]) -> list[str]:
     """
     if result.is_worse or result.stopped or not confirmed:
         return []
-    if isinstance(result.found, RecordsFit):
+    if result.found.horizon is not None:
         before, after = result.found.unseen_rms
     else:
         before, after = (_over_all([getattr(c, k) for c in confirmed]) for k in ("before", "after"))

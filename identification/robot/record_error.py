@@ -7,11 +7,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from identification.discovery.effect_results import RecordError
 from identification.effects.jointed import JointPlant
 from identification.logs.by_unit import rms_by_unit
 from identification.logs.log import Log
 from identification.model.predictor import Plant, Predictor
-from identification.prediction.record_errors import RecordError
 from identification.quantities import alike
 from identification.report.error_words import error_words, kind, listed
 from identification.robot.robot import Robot

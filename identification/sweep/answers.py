@@ -7,9 +7,13 @@ of `size_of[j]`, written as effect.size@place.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from identification.sweep.method import Column, Record
+
+if TYPE_CHECKING:
+    from identification.discovery.effect_results import NamedEffect
+    from identification.discovery.result import Discovery
 
 ANSWER = {
     "verdict": Column(str, "the outcome in a word"),
@@ -50,20 +54,18 @@ JUDGED = {
 }
 
 
-def answer(found: Any) -> dict[str, Any]:
-    """Returns the columns of `ANSWER` for a discovery of either kind."""
-    named = [(getattr(n, "effect", n), n) for n in found.named]
+def answer(found: Discovery) -> dict[str, Any]:
+    """Returns the columns of `ANSWER` for a discovery."""
+    named = found.named
     sizes = {
-        size_name(effect.candidate.effect.name, name, effect.candidate.where): float(p[0])
-        for effect, _ in named for name, p in effect.parameters.items()
+        size_name(n.name, size, n.where): float(p[0])
+        for n in named for size, p in n.parameters.items()
     }  # fmt: skip
     return {
         "verdict": found.verdict, "unexplained": bool(found.unexplained),
-        "named": [effect.candidate.effect.name for effect, _ in named],
-        "where": [effect.candidate.where for effect, _ in named],
-        "confidence": [float(effect.confidence) for effect, _ in named],
-        "one_of": [bool(whole.one_of) for _, whole in named],
-        "rivals": ["|".join(_set(effect, whole)) for effect, whole in named],
+        "named": [n.name for n in named], "where": [n.where for n in named],
+        "confidence": [float(n.confidence) for n in named],
+        "one_of": [bool(n.one_of) for n in named], "rivals": ["|".join(_set(n)) for n in named],
         "size_of": [*sizes], "sizes": [*sizes.values()],
         "findings": [finding.kind.value for finding in found.findings],
         "scores": [f"{s.candidate.effect.name}, {s.candidate.where}" for s in found.scores[:5]],
@@ -72,7 +74,7 @@ def answer(found: Any) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def proof(found: Any) -> dict[str, Any]:
+def proof(found: Discovery) -> dict[str, Any]:
     """Returns the columns of `PROOF` for a discovery on a free run."""
     noise = found.noise_rms**2 + found.disturbance_rms**2
     above = found.before.rms**2 - min(noise, found.after.rms**2)
@@ -80,8 +82,8 @@ def proof(found: Any) -> dict[str, Any]:
     return {
         "t": [float(n.proof.t) for n in found.named],
         "share": [float(n.proof.share) for n in found.named],
-        "gain": [float(n.gain) for n in found.named],
-        "gains": [float(s.gain) for s in found.scores[:5]],
+        "gain": [float(n.bic_gain) for n in found.named],
+        "gains": [float(s.explains) for s in found.scores[:5]],
         "disturbance": float(found.disturbance_rms), "gap_closed": closed,
     }  # fmt: skip
 
@@ -140,9 +142,7 @@ def _of(effect: str, where: str, sizes: Mapping[str, float]) -> dict[str, float]
     }  # fmt: skip
 
 
-def _set(effect: Any, whole: Any) -> list[str]:
+def _set(named: NamedEffect) -> list[str]:
     """Returns the other names of a set that the data cannot tell apart."""
-    if not whole.one_of:
-        return []
-    names = [getattr(r, "candidate", r).effect.name for r in whole.rivals]
-    return [name for name in names if name != effect.candidate.effect.name]
+    names = [rival.name for rival in named.rivals] if named.one_of else []
+    return [name for name in names if name != named.name]

@@ -33,6 +33,11 @@ def own_step(plant: Plant) -> float:
     return float(model.opt.timestep)
 
 
+def steps_of(plant: Plant) -> tuple[float, float]:
+    """Returns the time steps of the simulations of a plant and of the user's model [s]."""
+    return float(plant.model.opt.timestep), own_step(plant)
+
+
 def with_longest_steps(
     parts: Sequence[Shooting], q: Sequence[np.ndarray], d: Sequence[np.ndarray]
 ) -> list[Shooting]:

@@ -13,7 +13,7 @@ from tempfile import TemporaryDirectory
 from threading import Event
 
 from identification.discovery.result import Discovery
-from identification.logs.joined import records_of, rows_of
+from identification.logs.joined import rows_of
 from identification.logs.log import Log, halves
 from identification.report.page import Section
 from inca_mj.rendering.film import Progress, film
@@ -96,7 +96,7 @@ def film_discovery(found: Discovery, folder: Path, progress: Progress | None = N
         GraphicsError: no OpenGL context can be made here.
         DivergenceError: a twin cannot be simulated.
     """
-    log = records_of(found.log)[0][1]
+    log = found.records[0].log
     seconds = filmed_seconds(log)
     before = _scene(nominal_twin(found), log, seconds)
     after = _scene(named_twin(found), log, seconds) if found.named else None

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Set
 from dataclasses import replace
 
 from identification.discovery.final_values import collect_final_values
+from identification.discovery.free_run import FreeRun
 from identification.discovery.result import Discovery
 from identification.errors import InputError
 from identification.kalman.refit import Refit
@@ -24,7 +25,7 @@ def named_twin(found: Discovery) -> Twin:
         InputError: the discovery was not made with a twin of this robot.
     """
     names = {named.candidate.effect.name for named in found.named}
-    return _twin(found.final, names, collect_final_values(found))
+    return _twin(run_of(found).final, names, collect_final_values(found))
 
 
 def nominal_twin(found: Discovery) -> Twin:
@@ -33,7 +34,18 @@ def nominal_twin(found: Discovery) -> Twin:
     Raises:
         InputError: the discovery was not made with a twin of this robot.
     """
-    return _twin(found.nominal, frozenset(), found.nominal.point.values)
+    return _twin(run_of(found).nominal, frozenset(), found.nominal.values)
+
+
+def run_of(found: Discovery) -> FreeRun:
+    """Returns the free runs of a discovery.
+
+    Raises:
+        InputError: it was made over a horizon, and not with a twin of this robot.
+    """
+    if found.run is None:
+        raise InputError("the discovery was made over a horizon; inca_mj.discover needs none")
+    return found.run
 
 
 def _twin(fit: Refit, names: Set[str], values: Mapping[str, float]) -> Twin:

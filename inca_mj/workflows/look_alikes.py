@@ -22,6 +22,7 @@ from identification.kalman.point import Point, evaluate_point
 from identification.logs.log import Log
 from identification.model.predictor import Predictor
 from inca_mj.workflows.bench import standard_inputs
+from inca_mj.workflows.discovery_model import run_of
 
 TELLS = 5.0  # distance in std of the noise at which a record tells two look-alikes apart
 
@@ -43,7 +44,7 @@ class Contrast:
 
 def tell_apart(found: Discovery, named: NamedEffect) -> Contrast | None:
     """Returns the input that tells a named effect best from its first rival; None if none can."""
-    fit, rival = found.final, named.rivals[0].candidate
+    fit, rival = run_of(found).final, named.rivals[0].candidate
     own = _distance(fit.point, fit.point.log, named.candidate, rival, fit.level.sigma)
     tried = {}
     for name, currents in standard_inputs(len(fit.point.log)):

@@ -1,7 +1,7 @@
 """Discoveries that nobody made: a second of a real robot, what is said of it written by hand."""
 
 from dataclasses import replace
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 
@@ -15,11 +15,14 @@ from identification.discovery.effect_results import (
     RejectedEffect,
     Retuned,
     Rival,
+    Unlogged,
 )
 from identification.discovery.findings.evidence import WorstInterval, WorstOutput
 from identification.discovery.findings.finding import Finding, FindingKind
+from identification.discovery.free_run import FreeRun
 from identification.discovery.missing_forces import MissingForce
 from identification.discovery.options import DiscoveryOptions
+from identification.discovery.recovery import recover_force
 from identification.discovery.result import Discovery
 from identification.discovery.scoring.scores import Score
 from identification.effects.effect import Candidate
@@ -91,14 +94,14 @@ def _fit(items: tuple[tuple[str, float], ...]) -> Refit:
     return Refit(point=point, level=_level(), std=std, mean=q, prior=prior, steps=3)
 
 
-class ByHand(Discovery):
+class ByHand(FreeRun):
     """What a discovery computes when it is asked for is written by hand too."""
 
-    located = (SLOW,)
+    def located(self, forces):
+        return (SLOW,)
 
-    @property
     def missing_forces(self):
-        return () if self.verdict == "nothing missing" else (_pushed(),)
+        return (_pushed(),)
 
 
 @cache
@@ -117,12 +120,15 @@ def found(verdict="named", *, one_of=False, unexplained=False, several=False) ->
         score_of(c, s, g)
         for c, s, g in ((STRIBECK, 0.004, 900.0), (MISMATCH, 0.2, 70.0), (LATE, 3e-4, -1.0))
     )
-    return ByHand(
-        log=log(), options=DiscoveryOptions(), verdict=verdict, named=named,
-        rejected=(REJECTED,) if is_named else (), unexplained=unexplained,
-        noise_rms=NOISE, disturbance_rms=0.0, before=_gap(before), after=_gap(after),
-        nominal=nominal, final=final, predicted_before=before, predicted_after=after,
-        scores=scores, remaining=scores[1:],
+    run = ByHand(log(), nominal, final, log().outputs - before, log().outputs - after)
+    return Discovery(
+        records=run.records, options=DiscoveryOptions(), verdict=verdict, named=named,
+        rejected=(REJECTED,) if is_named else (), unexplained=unexplained, share=0.98,
+        unit="rad", noise_rms=NOISE, disturbance_rms=0.0, input_error=0.0, at_bound=(),
+        unlogged=Unlogged(0.01, "A", 0.1, True), before=_gap(before), after=_gap(after),
+        errors=run.errors, nominal=nominal, final=final, run=run,
+        recover=partial(recover_force, final), scores=scores, remaining=scores[1:],
+        scored_by="gain",
         hidden=(Hidden(MISMATCH, {"delta": (0.002, 0.006, "")}, 0.3, 4.0),),
         detectable=(Detectable(STRIBECK, "f_s", 2e-4, "N m"), Detectable(LATE, "tau", np.inf, "s")),
         findings=(DRIVE_3,) * unexplained, seconds={"fit": 1.5, "score": 2.0},
@@ -146,7 +152,7 @@ def _pushed() -> MissingForce:
 def _mismatch() -> NamedEffect:
     return NamedEffect(
         candidate=MISMATCH, parameters={"delta": (0.2, 0.03, "")}, confidence=0.8, rivals=(),
-        one_of=False, gain=31.0, proof=_proof(), retuned=RETUNED,
+        compared=0, one_of=False, bic_gain=31.0, proof=_proof(), retuned=RETUNED,
     )  # fmt: skip
 
 
@@ -158,7 +164,7 @@ def _stribeck(one_of: bool) -> NamedEffect:
     rival = Rival(MISMATCH, 0.36 if one_of else 0.02, 0.97)
     return NamedEffect(
         candidate=STRIBECK, parameters=parameters, confidence=0.61 if one_of else 0.97,
-        rivals=(rival,), one_of=one_of, gain=900.0, proof=_proof(), retuned=RETUNED,
+        rivals=(rival,), compared=1, one_of=one_of, bic_gain=900.0, proof=_proof(), retuned=RETUNED,
     )  # fmt: skip
 
 

@@ -99,7 +99,7 @@ def test_where_nothing_is_missing_it_says_so_and_what_it_would_have_seen():
     assert not answer.located
     assert {d.candidate.effect.name for d in answer.detectable} == {e.name for e in EFFECTS}
     assert all(0 < d.smallest < np.inf for d in answer.detectable)
-    np.testing.assert_array_equal(answer.predicted_before, answer.predicted_after)
+    np.testing.assert_array_equal(answer.run.before, answer.run.after)
 
 
 def test_what_fitted_samples_want_and_unseen_ones_do_not_prove_is_neither_named_nor_nothing():

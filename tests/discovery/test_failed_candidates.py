@@ -28,8 +28,8 @@ from identification.discovery.verdict import conclude
 from identification.effects.effect import Candidate
 from identification.errors import DivergenceError, InputError
 from identification.report.discovery_json import discovery_to_json
+from identification.report.discovery_sections import FAILED
 from identification.report.discovery_text import discovery_text
-from identification.report.failed_words import FAILED
 
 TRUTH = {"offset.f": -0.8, "rubbing.c": 1.0}
 KEY = ("rubbing", "joint")

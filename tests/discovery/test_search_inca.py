@@ -67,7 +67,7 @@ def test_the_order_of_drives_changes_nothing(jumped, answer_to_jump):
     (one,), (other,) = answer_to_jump.named, answer.named
     assert (other.candidate.effect.name, other.candidate.where) == ("encoder_jump", "drive 4")
     assert other.parameters["c"][:2] == pytest.approx(one.parameters["c"][:2], rel=1e-3)
-    assert other.gain == pytest.approx(one.gain, rel=1e-3)
+    assert other.bic_gain == pytest.approx(one.bic_gain, rel=1e-3)
     assert other.confidence == pytest.approx(one.confidence, abs=1e-3)
 
 

@@ -108,6 +108,6 @@ def test_what_was_refitted_beside_a_name_and_not_believed_is_kept(states, monkey
     answer = conclude(stepped(states[1])[-1])
     rejected = {r.candidate.effect.name: r for r in answer.rejected}
     assert "rubbing" in rejected
-    assert rejected["rubbing"].gain > 0
+    assert rejected["rubbing"].bic_gain > 0
     named = {n.candidate.effect.name for n in answer.named}
     assert "offset" in (named if answer.verdict == "named" else rejected)

@@ -84,12 +84,11 @@ def test_readme_reads_a_result_of_both_kinds(monkeypatch, capsys):
     kinds = set()
     for source in reading(README):
         names = run(source, monkeypatch)
-        both = (identification.Discovery, identification.RecordsDiscovery)
-        kinds |= {kind.__name__ for kind in both if isinstance(names["found"], kind)}
+        kinds.add(names["found"].horizon is None)
         said = capsys.readouterr().out
         for named in names["found"].named:
             assert f"{named.name} {named.where}" in said
-    assert kinds == {"Discovery", "RecordsDiscovery"}
+    assert kinds == {True, False}
 
 
 @pytest.mark.parametrize("source", [*reading(YOUR_ROBOT), *reading(README)])
@@ -122,7 +121,6 @@ def test_what_is_named_has_its_name_its_place_and_its_rivals(found):
 def test_the_elbow_has_a_name():
     _, result = elbow()
     assert [n.name for n in result.named] == ["coulomb_friction"]
-    assert result.named[0].effect.confidence == result.named[0].confidence
 
 
 def test_a_result_shows_its_verdict_and_not_its_numbers(found):

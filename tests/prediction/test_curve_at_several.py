@@ -30,10 +30,10 @@ from identification.prediction.state import RecordsTask, first_state
 from identification.prediction.unseen import compare
 from identification.prediction.verdict import conclude
 from identification.report.curve_nodes import curve_nodes
+from identification.report.discovery_json import discovery_to_json
+from identification.report.discovery_report import write_discovery_report
+from identification.report.discovery_text import discovery_text
 from identification.report.effect_words import describe_there
-from identification.report.records_json import records_to_json
-from identification.report.records_report import write_records_report
-from identification.report.records_text import records_text
 
 JOINTS, HORIZON, NOISE = ("shoulder", "elbow"), 0.2, 3e-4
 BOTH = "joint shoulder and joint elbow"
@@ -106,7 +106,7 @@ def test_nodes_at_several_joints_are_those_at_each_of_them(name):
 
 
 def test_the_json_has_the_nodes_by_joint():
-    told = json.loads(json.dumps(records_to_json(found())))
+    told = json.loads(json.dumps(discovery_to_json(found())))
     for curve in (*told["effects"], *told["rejected"]):
         assert (curve["name"], curve["where"], curve["depends_on"]) == ("unlisted", BOTH, "speed")
         assert list(curve["joints"]) == [f"joint {joint}" for joint in JOINTS]
@@ -117,10 +117,10 @@ def test_the_json_has_the_nodes_by_joint():
 
 
 def test_sentences_and_page_tell_the_nodes_of_each_joint(tmp_path):
-    said = records_text(found())
+    said = discovery_text(found())
     assert "c_1 to c_8 of joint shoulder stand at" in said
     assert "; c_1 to c_8 of joint elbow stand at" in said
-    page = text_of(write_records_report(found(), tmp_path).read_text())
+    page = text_of(write_discovery_report(found(), tmp_path).read_text())
     assert "c_1 to c_8 of joint elbow stand at" in page
 
 

@@ -23,14 +23,14 @@ def found(values, names, samples=260):
 def test_a_law_that_is_listed_wins_over_curves():
     answer = found({"hardening.k_3@hinge": 0.06}, ("hardening", "curve_position"))
     assert answer.verdict == "named"
-    assert [n.effect.candidate.effect.name for n in answer.named] == ["hardening"]
+    assert [n.candidate.effect.name for n in answer.named] == ["hardening"]
 
 
 def test_a_law_that_is_not_listed_is_drawn_as_a_curve_of_what_it_depends_on():
     answer = found({"hardening.k_3@hinge": 0.06}, CURVES[1:], samples=500)
     assert answer.verdict == "unlisted effect"
     (named,) = answer.named
-    assert named.effect.candidate.effect.name == "curve_position"
+    assert named.candidate.effect.name == "curve_position"
     assert answer.share > 0.7
 
 

@@ -19,9 +19,9 @@ from identification.prediction import exchange, extension, selection, state
 from identification.prediction.records import as_records
 from identification.prediction.state import RecordsTask, first_state, next_state
 from identification.prediction.verdict import conclude
-from identification.report.records_json import records_to_json
-from identification.report.records_report import write_records_report
-from identification.report.records_text import records_text
+from identification.report.discovery_json import discovery_to_json
+from identification.report.discovery_report import write_discovery_report
+from identification.report.discovery_text import discovery_text
 
 SIZE, NAME, WHERE = "quadratic_friction.c@hinge", "quadratic_friction", "joint hinge"
 KEY, TRUE = (NAME, WHERE), 0.01
@@ -101,8 +101,8 @@ def test_a_candidate_whose_refit_fails_is_told_and_not_named(module, function, h
     assert NAME not in {n.name for n in answer.named}
     assert [f.key for f in answer.failed] == [KEY]
     assert str(answer.failed[0]) in said
-    assert answer.failed[0].outcome in records_text(answer)
-    assert records_to_json(answer)["failed"][0]["name"] == NAME
+    assert answer.failed[0].outcome in discovery_text(answer)
+    assert discovery_to_json(answer)["failed"][0]["name"] == NAME
 
 
 @pytest.mark.parametrize(
@@ -147,4 +147,4 @@ def test_a_round_that_fails_as_a_whole_ends_the_search_with_what_was_found(
     (one,) = answer.failed
     assert (one.where, one.reason) == ("", "a matrix is singular")
     assert str(one) in said
-    assert one.outcome in text_of(write_records_report(answer, tmp_path).read_text())
+    assert one.outcome in text_of(write_discovery_report(answer, tmp_path).read_text())

@@ -4,20 +4,22 @@ import json
 from dataclasses import replace
 from functools import cache
 
+import numpy as np
 import pytest
 from page_text import text_of
 from pendulum_robot import TOML, make_folder, written
 from records_cases import nominal_model, pendulum, record, records
 
 from identification.__main__ import main
+from identification.discovery.effect_results import RejectedEffect
 from identification.discovery.findings.records_evidence import ShiftedRecord
 from identification.effects.joint_plant import candidates
 from identification.errors import InputError
 from identification.prediction.discovery import discover_records
+from identification.report.discovery_json import discovery_to_json
+from identification.report.discovery_report import write_discovery_report
+from identification.report.discovery_text import discovery_text
 from identification.report.finding_words import describe_finding
-from identification.report.records_json import records_to_json
-from identification.report.records_report import write_records_report
-from identification.report.records_text import records_text
 
 SAMPLES = 300  # of each record
 MU = "transmitted_load_friction.mu@hinge"
@@ -43,15 +45,15 @@ def test_friction_under_the_transmitted_load_is_named_with_its_size():
     answer = found()
     assert answer.verdict == "named"
     (named,) = answer.named
-    assert named.effect.candidate.effect.name == "transmitted_load_friction"
-    value, std, _ = named.effect.parameters["mu"]
+    assert named.candidate.effect.name == "transmitted_load_friction"
+    value, std, _ = named.parameters["mu"]
     assert abs(value - 0.15) < 4 * std
     assert std < 0.02
-    assert len(named.agrees) == 2
-    assert named.disagrees == ()
+    assert len(named.proof.agrees) == 2
+    assert named.proof.disagrees == ()
     assert answer.share > 0.9
     assert all(describe_finding(f) for f in answer.findings)
-    said = records_text(answer)
+    said = discovery_text(answer)
     assert "grows with the transmitted load" in said
     assert "The named effect lowers the error on 2 of 2 unseen records." in said
     assert answer.repeats == ()
@@ -70,18 +72,18 @@ def test_a_record_that_repeats_another_is_no_further_witness():
     effects = [e for e in candidates(pendulum(), ("J", "d")) if e.name == FEW[0]]
     answer = discover_records(nominal_model(), [first, second], [third, again], effects)
     assert answer.repeats == ("again",)
-    assert records_to_json(answer)["repeats"] == ["again"]
-    said = records_text(answer)
+    assert discovery_to_json(answer)["repeats"] == ["again"]
+    said = discovery_text(answer)
     assert "on 1 of 1 unseen records. again repeats the motion of others and does not" in said
     (named,) = answer.named
     assert named.compared == 0
     assert "the highest that is ever said, because no rival was near enough" in said
     (other,) = (e for e in candidates(pendulum(), ("J", "d")) if e.name == "offset")
     twin = replace(answer, named=(replace(named, same_as=other),))
-    assert '(or "force – constant": below the Coulomb friction it is' in records_text(twin)
-    assert records_to_json(twin)["effects"][0]["same_as"] == "offset"
+    assert '(or "force – constant": below the Coulomb friction it is' in discovery_text(twin)
+    assert discovery_to_json(twin)["effects"][0]["same_as"] == "offset"
     beside = replace(answer, named=(replace(named, compared=2),))
-    assert "beside 2 rivals that were refitted in its place" in records_text(beside)
+    assert "beside 2 rivals that were refitted in its place" in discovery_text(beside)
 
 
 def test_records_too_short_to_confirm_are_refused():
@@ -95,17 +97,17 @@ def test_records_too_short_to_confirm_are_refused():
 @pytest.mark.usefixtures("undrawn")
 def test_shifts_of_records_stand_in_the_report(tmp_path):
     answer = found()
-    plain = write_records_report(answer, tmp_path, ["Geoms of a and b touch."]).read_text()
+    plain = write_discovery_report(answer, tmp_path, ["Geoms of a and b touch."]).read_text()
     assert "Shifts in time" not in plain
     assert "Geoms of a and b touch." in text_of(plain)
     late = ShiftedRecord(record="record 3", shift=0.02, std=0.002, fall=0.3, chance=1e-5)
-    page = text_of(write_records_report(replace(answer, shifts=(late,)), tmp_path).read_text())
+    page = text_of(write_discovery_report(replace(answer, shifts=(late,)), tmp_path).read_text())
     assert "Shifts in time" in page
     assert "20.0 ± 2.0 ms later" in page
     early = replace(late, record="record 4", shift=-315e-6, std=20e-6)
     both = replace(answer, shifts=(late, early))
-    page = text_of(write_records_report(both, tmp_path).read_text())
-    for told in (page, records_text(both)):
+    page = text_of(write_discovery_report(both, tmp_path).read_text())
+    for told in (page, discovery_text(both)):
         assert "20.0 ± 2.0 ms later" in told
         assert "315 ± 20 µs earlier" in told
         assert "-315" not in told
@@ -120,10 +122,16 @@ def test_a_small_shift_that_may_be_chance_stands_in_the_json_alone(tmp_path):
     sure, large = replace(small, std=5e-6, chance=1e-6), replace(small, shift=0.02, std=0.008)
     for shift, is_told in ((small, False), (sure, True), (large, True)):
         answer = replace(answer, shifts=(shift,))
-        page = text_of(write_records_report(answer, tmp_path).read_text())
+        page = text_of(write_discovery_report(answer, tmp_path).read_text())
         assert ("Shifts in time" in page) is is_told
-        assert ("later or earlier" in records_text(answer)) is is_told
-        assert records_to_json(answer)["shifts"][0]["shift"] == shift.shift
+        assert ("later or earlier" in discovery_text(answer)) is is_told
+        assert discovery_to_json(answer)["shifts"][0]["shift"] == shift.shift
+
+
+def tried(named):
+    return RejectedEffect(
+        named.candidate, named.parameters, np.nan, named.proof, evidence=named.evidence
+    )
 
 
 def test_each_candidate_is_listed_once_and_in_words(tmp_path):
@@ -131,17 +139,17 @@ def test_each_candidate_is_listed_once_and_in_words(tmp_path):
     again = replace(
         answer,
         scores=tuple(s for s in answer.scores for _ in range(3)),
-        rejected=tuple(e for n in answer.named for e in (n.effect, n.effect)),
+        rejected=tuple(tried(n) for n in answer.named for _ in range(2)),
     )
-    said = records_text(again)
+    said = discovery_text(again)
     listed = said[said.index("what each effect would explain") :].split("\n\n")[0].splitlines()[1:]
     assert len(listed) == len({s.candidate.effect.name for s in answer.scores})
     assert all(" – " in line for line in listed)
     assert not any(name in line for name in FEW for line in listed if name != "offset")
-    tried = said[said.index("not proven on unseen data:") :].split("\n\n")[0].splitlines()[1:]
-    assert len(tried) == len({n.effect.candidate.key for n in answer.named})
-    page = write_records_report(again, tmp_path).read_text()
-    assert page.count("the unseen mean square error") == len(tried)
+    each = said[said.index(", and not believed:") :].split("\n\n")[0].splitlines()[1:]
+    assert len(each) == len({n.candidate.key for n in answer.named})
+    page = write_discovery_report(again, tmp_path).read_text()
+    assert page.count("on unseen ones t = ") == len(each)
 
 
 @pytest.mark.usefixtures("undrawn")
@@ -157,12 +165,12 @@ def test_steps_that_are_longer_than_the_models_are_told(tmp_path):
         problem = replace(answer.nominal.fit.problem, parts=parts)
         model = replace(answer.nominal, fit=replace(answer.nominal.fit, problem=problem))
         same = replace(answer, nominal=model)
-        assert records_to_json(same)["timestep"] == {
+        assert discovery_to_json(same)["timestep"] == {
             "simulated": pytest.approx(steps * own_step), "model": own_step
         }  # fmt: skip
         is_told = "The search took steps of 10 ms where the model has 5 ms"
-        assert (is_told in records_text(same)) == (steps > 1)
-        page = text_of(write_records_report(same, tmp_path).read_text())
+        assert (is_told in discovery_text(same)) == (steps > 1)
+        page = text_of(write_discovery_report(same, tmp_path).read_text())
         assert (is_told in page) == (steps > 1)
 
 
@@ -170,15 +178,15 @@ def test_records_without_an_effect_get_no_name():
     answer = found(mu=0.0)
     assert answer.named == ()
     assert answer.verdict == "nothing missing"
-    assert "Nothing is missing" in records_text(answer)
+    assert "Nothing is missing" in discovery_text(answer)
     large = replace(answer, before=replace(answer.before, rms=9 * answer.noise_rms))
-    said = records_text(replace(large, input_error=0.021))
+    said = discovery_text(replace(large, input_error=0.021))
     assert said.startswith("No effect is named: ")
     assert "9 times the" in said
     assert "Either the inputs err by 2.1 % of their rms, or something is missing" in said
-    assert records_text(replace(large, input_error=0.0)).startswith("Nothing is missing")
-    assert "error of prediction over 0.2 s, nothing is named:" in records_text(answer)
-    assert "->" not in records_text(answer).partition("nothing is named:")[2].split("\n\n")[0]
+    assert discovery_text(replace(large, input_error=0.0)).startswith("Nothing is missing")
+    assert "error of prediction over 0.2 s, nothing is named:" in discovery_text(answer)
+    assert "->" not in discovery_text(answer).partition("nothing is named:")[2].split("\n\n")[0]
 
 
 def test_a_law_that_is_not_in_the_list_is_not_called_by_another_name():
@@ -198,9 +206,9 @@ def clipped_and_not(names):
 
 def test_what_made_a_fit_worse_than_its_start_is_named_and_told():
     answer = clipped_and_not(("saturation", "offset"))
-    assert [n.effect.candidate.effect.name for n in answer.named] == ["saturation"]
-    assert answer.named[0].effect.parameters["u_max"][0] == pytest.approx(0.4, rel=0.02)
-    said = records_text(answer)
+    assert [n.candidate.effect.name for n in answer.named] == ["saturation"]
+    assert answer.named[0].parameters["u_max"][0] == pytest.approx(0.4, rel=0.02)
+    said = discovery_text(answer)
     assert "the fitted values predicted unseen data worse than those of the model" in said
 
 
@@ -209,11 +217,11 @@ def test_a_fit_that_is_worse_than_its_start_is_no_start_and_is_told():
     assert answer.verdict == "unknown effect"
     assert answer.named == ()
     assert answer.nominal.fit.values["J"] == pytest.approx(2e-3, rel=1e-9)
-    said = records_text(answer)
+    said = discovery_text(answer)
     assert "the fitted values predicted unseen data worse" in said
     assert "as begun, without effects" in said
     begun = [r for r in said[said.index("fitted values:") :].splitlines() if r.startswith("  J ")]
-    assert "±" not in begun[0].split("  ")[2]  # nobody fitted it
+    assert "±" not in begun[0]  # nobody fitted it
 
 
 def test_a_horizon_is_needed(refusal):

@@ -16,8 +16,8 @@ from identification.prediction.joint_states import model_for, widened
 from identification.prediction.nominal_fit import fit_nominal
 from identification.prediction.records import as_records
 from identification.prediction.scores import window_scores
-from identification.report.records_json import records_to_json
-from identification.report.records_text import records_text
+from identification.report.discovery_json import discovery_to_json
+from identification.report.discovery_text import discovery_text
 
 FREE = ("J", "d", COULOMB.name)
 OTHERS = ("stribeck_friction",)
@@ -57,7 +57,7 @@ def found(name):
 def test_what_is_missing_is_named_first_with_its_size(name):
     answer = found(name)
     assert answer.verdict == "named"
-    first = answer.named[0].effect
+    first = answer.named[0]
     assert first.candidate.effect.name == name.partition(".")[0]
     value, std, _ = next(iter(first.parameters.values()))
     assert value == pytest.approx(CASES[name][1], rel=0.15)
@@ -71,13 +71,13 @@ def test_what_is_missing_is_named_first_with_its_size(name):
 def test_a_record_of_the_nominal_robot_stays_silent():
     """Friction gives by less than steps resolve: it holds."""
     answer = found("")
-    assert not {n.effect.candidate.effect.name for n in answer.named} & {*NAMES}
+    assert not {n.candidate.effect.name for n in answer.named} & {*NAMES}
 
 
 def test_an_answer_with_states_can_be_told_and_written():
     answer = found(PRESLIDING)
-    assert "friction – gives before it slips" in records_text(answer)
-    assert "presliding" in str(records_to_json(answer))
+    assert "friction – gives before it slips" in discovery_text(answer)
+    assert "presliding" in str(discovery_to_json(answer))
 
 
 @pytest.mark.parametrize("name", CASES)

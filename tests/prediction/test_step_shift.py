@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from identification import Log, fit
+from identification.discovery import fitted
 from identification.model.finer import FINER
-from identification.prediction import step_shift as step_shifts
 from identification.prediction.step_shift import StepShift, step_shift
 from identification.report.records_fit_verdict import records_fit_verdict
 from identification.report.step_words import std_sentence, step_sentences
@@ -131,8 +131,8 @@ def test_what_is_told_is_what_is_beyond_the_limits(elbow, monkeypatch):
     std = np.array([*model.told_std.values()])
     other = with_finer(model, 2.3 * std, 0.8)
     assert len(step_sentences(other)) == 1
-    monkeypatch.setattr(step_shifts, "TOLD_SHIFT", 3.0)
-    monkeypatch.setattr(step_shifts, "TOLD_ERROR", 0.5)
+    monkeypatch.setattr(fitted, "TOLD_SHIFT", 3.0)
+    monkeypatch.setattr(fitted, "TOLD_ERROR", 0.5)
     assert step_sentences(other) == []
 
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from records_cases import FREE, HORIZON, nominal_model, pendulum, records
 
+from identification.discovery.effect_results import Rival
 from identification.discovery.scoring.sensitivities import list_common
 from identification.effects.joint_plant import candidates
 from identification.prediction.extension import with_effect
@@ -14,7 +15,6 @@ from identification.prediction.first_fit import begin
 from identification.prediction.nominal_fit import fit_nominal
 from identification.prediction.records import as_records
 from identification.prediction.recovery import recover_over_horizon
-from identification.prediction.result import RefittedEffect
 from identification.prediction.scores import window_scores
 
 TRUE = {
@@ -71,10 +71,7 @@ def test_points_leave_a_wrong_law_for_the_true_one():
 
 def test_a_rival_is_drawn_with_the_sizes_of_its_own_fit():
     model, candidate = fitted("hardening", "hardening")
-    of = RefittedEffect(
-        candidate=candidate, parameters={"k_3": (0.6, 0.01, "N m/rad^3")}, prediction=None,
-        criterion=0.0, confidence=0.0, doubt=None,
-    )  # fmt: skip
+    of = Rival(candidate, 0.1, values={"hardening.k_3@hinge": 0.6})
     found = recover_over_horizon(model, candidate, [of])
     ((rival, line),) = found.rivals
     assert rival is candidate

@@ -21,7 +21,13 @@ from inca_mj.twin.twin import build_twin
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "json.md").read_text(encoding="utf-8")
-BY_NAME = ("parameters", "profiles", "options")  # their keys are names, explained elsewhere
+BY_NAME = (
+    "parameters",
+    "profiles",
+    "options",
+    "nominal",
+    "final",
+)  # their keys are names, explained elsewhere
 
 
 NESTED = {FindingKind.OVERSIZED_EFFECT: ("value", "std", "unit", "limit")}

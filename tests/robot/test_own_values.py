@@ -10,7 +10,7 @@ from records_cases import STEP
 from robot_cases import refused
 
 from identification import confirm, discover, fit, read_robot, write_robot
-from identification.report.records_json import records_to_json
+from identification.report.discovery_json import discovery_to_json
 from identification.robot.file import read_robot_file
 from identification.robot.fit_json import robot_fit_to_json
 
@@ -116,8 +116,8 @@ def test_a_discovery_has_own_parameters_and_values_of_logs_too(folder):
     robot = read_robot(folder / "own.toml", fitted, confirm=[other])
     found = discover(robot)
     (named,) = found.named
-    assert named.effect.parameters["mu"][0] == pytest.approx(0.15, rel=0.05)
-    assert records_to_json(found)["final"][f"{OFFSET} [log_1]"]["value"] == pytest.approx(
+    assert named.parameters["mu"][0] == pytest.approx(0.15, rel=0.05)
+    assert discovery_to_json(found)["final"][f"{OFFSET} [log_1]"]["value"] == pytest.approx(
         -0.03, rel=0.05
     )
     (there,) = confirm(robot, found)

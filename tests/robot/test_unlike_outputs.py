@@ -73,10 +73,11 @@ def test_an_error_of_one_unit_is_not_hidden_by_the_other(folder):
 def test_a_discovery_tells_each_unit_and_what_would_be_better():
     units = {f"angle_{k}": "rad" if k < 5 else "m" for k in range(1, 9)}
     fake = found_by_hand()
-    log = replace(fake.log, units={**fake.log.units, **units})
+    whole = fake.run.log
+    run = replace(fake.run, log=replace(whole, units={**whole.units, **units}))
     by = {"before": {"rad": 2e-3, "m": 5e-5}, "after": {"rad": 1e-3, "m": 2e-5}}
     answer = replace(
-        fake, log=log, noise_by_unit={"rad": 9e-4, "m": 2e-5},
+        fake, records=run.records, run=run, unit="", noise_by_unit={"rad": 9e-4, "m": 2e-5},
         disturbance_by_unit={"rad": 0.0, "m": 0.0},
         **{k: replace(getattr(fake, k), rms_by_unit=v) for k, v in by.items()},
     )  # fmt: skip
@@ -88,7 +89,7 @@ def test_a_discovery_tells_each_unit_and_what_would_be_better():
     )
     assert "The outputs have several units (rad, m), and a free run counts" in text
     assert "several units" not in discovery_text(fake)
-    for section in (gap_section(answer), where_section(answer)):
+    for section in (gap_section(answer), *where_section(answer)):
         assert all("svg" in svg(figure) for _, figure in section.figures)
     gap = discovery_to_json(answer)["gap"]
     assert gap["after"]["rms_by_unit"] == by["after"]

@@ -13,7 +13,6 @@ from records_cases import MJCF, pendulum, record
 
 from identification import discover, fit, read_robot, write_log
 from identification.__main__ import main
-from identification.discovery.final_values import collect_std, list_at_bound
 from identification.effects.moving_bodies import Felt
 from identification.model.coordinates import coordinates
 from identification.model.parameter import Parameter, ParameterSet
@@ -129,9 +128,8 @@ def test_a_search_tells_bounds_as_a_fit_does(tmp_path):
 def test_a_search_along_a_free_run_tells_them_too(tmp_path):
     path = folder(tmp_path, ON_BASE, f"{FREE}{ONLY}", samples=420)
     found = discover(read_robot(path, tmp_path / "1.csv"))
-    own = found.nominal.point.space.names
-    assert list_at_bound(found.final, own) == [INERTIA]
-    assert np.isnan(collect_std(found.final)[INERTIA])
+    assert found.at_bound == (INERTIA,)
+    assert np.isnan(found.final.told_std[INERTIA])
     said = discovery_text(found)
     assert CAUSE in said
     (row,) = (line for line in said.splitlines() if line.strip().startswith(INERTIA))

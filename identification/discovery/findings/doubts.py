@@ -29,7 +29,7 @@ def find_doubtful_effect(
     wanted = [
         r for r in rejected
         if is_relevant(r.proof, options)
-        and (r.gain > 0 < r.proof.gain or is_far_likelier(r.candidate, r.gain, samples))
+        and (r.bic_gain > 0 < r.proof.gain or is_far_likelier(r.candidate, r.bic_gain, samples))
     ]  # fmt: skip
     return tuple(Finding(FindingKind.DOUBTFUL_EFFECT, DoubtfulEffect(r)) for r in wanted[:1])
 

@@ -74,6 +74,11 @@ class Score:
     identifiable: float
     level: NoiseLevel
 
+    @property
+    def explains(self) -> float:
+        """The measure by which candidates are told: the gain."""
+        return self.gain
+
 
 def score(
     fit: Refit, sensitivities: Sequence[Sensitivity], options: DiscoveryOptions

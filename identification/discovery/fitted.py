@@ -1,0 +1,97 @@
+"""What a fitted model tells of itself, whichever search has fitted it.
+
+`identification.kalman.refit.Refit` is a model that was fitted along a free run, and
+`identification.prediction.model.WindowModel` one that was fitted to windows of records.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from identification.model.predictor import Plant
+
+TOLD_SHIFT = 1.0  # std of a value: a smaller one is within what the std tells
+# Of the error of the fitted windows: below it a fifth of the mean square comes from the steps, and
+# is nothing that is missing.
+TOLD_ERROR = 0.9
+
+
+@dataclass(frozen=True)
+class StepShift:
+    """The change of a fit with a quarter of the model's step, to first order.
+
+    Attributes:
+        values: change of each value, shape (p,), in their units; zero where the windows do not feel
+            a value, NaN where they cannot be simulated with finer steps.
+        error: rms error of the fitted windows then, over what it is now; NaN likewise.
+    """
+
+    values: np.ndarray
+    error: float
+
+    @property
+    def is_known(self) -> bool:
+        """Whether the windows could be simulated with finer steps."""
+        return bool(np.isfinite(self.error) or np.isfinite(self.values).any())
+
+    def far(self, names: Sequence[str], std: np.ndarray) -> dict[str, float]:
+        """Returns the values that finer steps would move far enough to be told, the farthest first.
+
+        Args:
+            names: of the values, p of them.
+            std: shape (p,), in their units; NaN where it is not known.
+
+        Returns:
+            By name, how far [std].
+        """
+        with np.errstate(divide="ignore", invalid="ignore"):
+            moved = np.abs(self.values) / std
+        far = [int(k) for k in np.argsort(-moved) if moved[k] > TOLD_SHIFT]
+        return {names[k]: float(moved[k]) for k in far}
+
+    def is_lower(self) -> bool:
+        """Returns whether finer steps would lower the error by so much that it is told."""
+        return self.error < TOLD_ERROR
+
+
+class Fitted(Protocol):
+    """A fitted model, as a report reads it."""
+
+    @property
+    def plant(self) -> Plant:
+        """The plant with its own values."""
+
+    @property
+    def values(self) -> Mapping[str, float]:
+        """Values of all parameters that are not the plant's own, by name, in their units."""
+
+    @property
+    def own_values(self) -> Mapping[str, Mapping[str, float]]:
+        """Values that each record has for itself, by record and by name; empty without such."""
+
+    @property
+    def told_values(self) -> Mapping[str, float]:
+        """`values`, and those of single records as `name [record]`."""
+
+    @property
+    def told_std(self) -> Mapping[str, float]:
+        """Std of the free values by name, in their units.
+
+        NaN where it is not known or a bound holds the value, inf where no data feel it.
+        """
+
+    @property
+    def at_bound(self) -> tuple[str, ...]:
+        """Names of the free values that lie on a bound of the search."""
+
+    @property
+    def unlearned(self) -> Mapping[str, float]:
+        """Std of each free value over the std that was known before; 0 where none was."""
+
+    @property
+    def finer(self) -> StepShift | None:
+        """The change of the fit with a quarter of the model's step; None where nobody asks."""
