@@ -4,8 +4,9 @@ import json
 
 import pytest
 
-from identification import InputError
+from identification import InputError, write_log
 from inca_mj.cli import main
+from inca_mj.twin.logs import read_inca_log
 
 LOG = "examples/log.csv"
 
@@ -22,9 +23,11 @@ def full(monkeypatch):
 
 @pytest.mark.parametrize("arguments", [(), ("--json",)], ids=["text", "json"])
 def test_the_result_is_said_where_the_disk_is_full(full, tmp_path, capsys, arguments):
-    assert main(["compare", LOG, *arguments]) == 0
+    log = tmp_path / "log.csv"
+    write_log(read_inca_log(LOG).between(0.0, 1.0), log)
+    assert main(["compare", str(log), *arguments]) == 0
     expected = capsys.readouterr().out
-    assert main(["compare", LOG, "--out", str(tmp_path / "out"), *arguments]) == 2
+    assert main(["compare", str(log), "--out", str(tmp_path / "out"), *arguments]) == 2
     said, error = capsys.readouterr()
     assert said == expected
     assert json.loads(said)["rms"] if arguments else "mean fit" in said

@@ -47,13 +47,19 @@ def refused(capsys: pytest.CaptureFixture[str], *arguments: object) -> str:
     return capsys.readouterr().err
 
 
-def test_a_folder_of_results_is_whole(log: Path, tmp_path: Path) -> None:
+def test_a_folder_of_results_is_whole_and_a_profile_brackets_the_estimate(
+    log: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     out = tmp_path / "results"
-    arguments = ("--profile", "b_v", "--seed", "7", "--out", out)
-    assert main(["identify", str(log), *FREE, *map(str, arguments)]) == 0
+    arguments = ("--profile", "b_c", "--seed", "7", "--out", out)
+    result = say(capsys, log, *FREE, *arguments)
+    low, high = result["profiles"]["b_c"]["interval"]
+    found = result["parameters"]["b_c"]
+    assert low < found["value"] < high
+    assert len(result["profiles"]["b_c"]["rise"]) == len(result["profiles"]["b_c"]["values"]) == 9
     names = {p.name for p in out.iterdir()}
     assert {"report.html", "result.json", "model.xml", "least-std-by-parameter.png",
-            "profile-of-b-v.png", "measured-and-simulated-motor-angles.png"} <= names  # fmt: skip
+            "profile-of-b-c.png", "measured-and-simulated-motor-angles.png"} <= names  # fmt: skip
     for picture in out.glob("*.png"):
         assert picture.read_bytes().startswith(b"\x89PNG")
     record = json.loads((out / "result.json").read_text())
@@ -62,17 +68,8 @@ def test_a_folder_of_results_is_whole(log: Path, tmp_path: Path) -> None:
     assert record["configuration"]["free"] == ["b_v", "b_c"]
     assert record["configuration"]["horizons"] == [0.05, 0.2, 0.5, 1.0]
     page = (out / "report.html").read_text()
-    for heading in ("Step 1", "Profile of b_v", "What the experiment can say", "The model"):
+    for heading in ("Step 1", "Profile of b_c", "What the experiment can say", "The model"):
         assert heading in page
-
-
-def test_a_profile_brackets_the_estimate(log: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    result = say(capsys, log, *FREE, "--profile", "b_c")
-    low, high = result["profiles"]["b_c"]["interval"]
-    found = result["parameters"]["b_c"]
-    assert low < found["value"] < high
-    assert len(result["profiles"]["b_c"]["rise"]) == len(result["profiles"]["b_c"]["values"]) == 9
-    assert "profile one of b_v, b_c" in refused(capsys, log, *FREE, "--profile", "J")
 
 
 def test_starts_end_with_the_first_that_is_enough(
@@ -135,6 +132,7 @@ def test_options_that_say_nothing_are_refused_and_what_they_leave_out_is_said(
 ) -> None:
     assert "--free names no parameter" in refused(capsys, log, "--free")
     assert "profile one of R, R_s" in refused(capsys, log, "--profile", "k_p")
+    assert "profile one of b_v, b_c" in refused(capsys, log, *FREE, "--profile", "J")
     verdict = say(capsys, log, *FREE)["verdict"]
     assert any("start pose is held" in sentence for sentence in verdict)
 

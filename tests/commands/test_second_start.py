@@ -4,32 +4,30 @@ import json
 import subprocess
 import sys
 
-import pytest
-
 from inca_mj.cli import main
 from inca_mj.files import example_path
 
 WATCHED = """
 import json, sys
 from inca_mj.cli import main
-assert main(sys.argv[1:]) == 0
+for words in json.loads(sys.argv[1]):
+    assert main([*words, "--quiet"]) == 0
 sys.stderr.write(json.dumps(sorted(sys.modules)))
 """
 SLOW = ("matplotlib", "scipy.stats", "scipy.optimize", "scipy.interpolate", "jinja2")
 SEARCH = "identification.discovery.search"
 
 
-@pytest.mark.parametrize(
-    "command",
-    [
-        ("simulate", "--duration", "0.05"),
-        ("compare", str(example_path())),
-        ("sensitivity", "--duration", "0.05", "--free", "b_v"),
-    ],
+COMMANDS = (
+    ("simulate", "--duration", "0.05"),
+    ("compare", str(example_path())),
+    ("sensitivity", "--duration", "0.05", "--free", "b_v"),
 )
-def test_a_command_that_draws_nothing_imports_neither_figures_nor_the_search(tmp_path, command):
+
+
+def test_commands_that_draw_nothing_import_neither_figures_nor_the_search(tmp_path):
     done = subprocess.run(
-        [sys.executable, "-c", WATCHED, *command, "--quiet"],
+        [sys.executable, "-c", WATCHED, json.dumps(COMMANDS)],
         capture_output=True,
         text=True,
         cwd=tmp_path,
@@ -40,7 +38,7 @@ def test_a_command_that_draws_nothing_imports_neither_figures_nor_the_search(tmp
     assert not {*SLOW, SEARCH} & {*modules}
 
 
-def test_a_run_is_kept_always_and_drawn_where_a_folder_is_given(tmp_path, monkeypatch, capsys):
+def test_a_run_is_kept_always(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     assert main(["simulate", "--duration", "0.05"]) == 0
     said = capsys.readouterr().out
@@ -48,11 +46,6 @@ def test_a_run_is_kept_always_and_drawn_where_a_folder_is_given(tmp_path, monkey
     kept = {p.name for p in (tmp_path / "out" / "simulate").glob("[!.]*")}
     assert kept == usual
     assert "--out DIR adds figures and a report" in said
-    assert main(["simulate", "--duration", "0.05", "--out", "drawn"]) == 0
-    drawn = {p.name for p in (tmp_path / "drawn").iterdir()}
-    assert usual < drawn
-    assert "report.html" in drawn
-    assert [name for name in drawn if name.endswith(".png")]
 
 
 def test_the_usual_folder_of_a_run_is_refused_where_it_holds_other_files(

@@ -34,7 +34,7 @@ def test_a_model_that_lacks_something_is_still_the_robot(plant):
     refuse_miswired(read_inca_log(LOG), plant)
 
 
-@pytest.mark.parametrize(("i", "j"), [*((k, k + 1) for k in range(7)), (0, 7), (2, 5)])
+@pytest.mark.parametrize(("i", "j"), [(0, 1), (6, 7), (0, 7), (2, 5)])
 def test_swapped_encoders(plant, i, j):
     def swap(y):
         y[:, [i, j]] = y[:, [j, i]]
@@ -44,7 +44,7 @@ def test_swapped_encoders(plant, i, j):
     assert f"exchange angle_{i + 1} and angle_{j + 1} under [columns]" in str(refused.value)
 
 
-@pytest.mark.parametrize("drive", range(8))
+@pytest.mark.parametrize("drive", [0, 4, 7])
 def test_a_reversed_encoder(plant, drive):
     def reverse(y):
         y[:, drive] *= -1
@@ -61,7 +61,7 @@ def test_an_encoder_that_freezes(plant):
         refuse_miswired(changed(freeze), plant)
 
 
-@pytest.mark.parametrize("drive", [0, 3, 6])
+@pytest.mark.parametrize("drive", [0])
 def test_an_encoder_that_another_sign_hardly_mends_is_not_refused(plant, drive):
     """Of a log whose anchor was 0.1 m off, one angle had a correlation of -0.5 with the model's."""
     n, rng = 200, np.random.default_rng(drive)
@@ -107,7 +107,7 @@ def test_several_encoders_at_once(plant):
         refuse_miswired(changed(rotate), plant)
 
 
-@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("seed", range(2))
 def test_encoders_that_are_exchanged_and_turned(plant, seed):
     """Two mistakes in one log: some encoders are exchanged, and one to three are turned."""
     rng = np.random.default_rng(seed)
@@ -128,7 +128,7 @@ def test_encoders_that_are_exchanged_and_turned(plant, seed):
     assert {*turned.split(", ")} == {f"angle_{at[k] + 1}" for k in back}
 
 
-@pytest.mark.parametrize("drive", [0, 5])
+@pytest.mark.parametrize("drive", [5])
 def test_one_angle_in_degrees(plant, drive):
     def degrees(y):
         y[:, drive] *= 180 / np.pi
@@ -137,7 +137,7 @@ def test_one_angle_in_degrees(plant, drive):
         refuse_miswired(changed(degrees), plant)
 
 
-@pytest.mark.parametrize("rest", [1.0, 1.99, 2.0, 2.5, 12.0])
+@pytest.mark.parametrize("rest", [1.99, 2.0, 12.0])
 def test_a_log_that_rests_first_is_not_judged_by_its_noise(plant, rest):
     still = np.repeat(make_input("prbs", 0.1)[:1] * 0, round(rest / 0.01), axis=0)
     log = run_to_log(simulate(plant, np.vstack([still, make_input("prbs", 3.0)])))
@@ -207,7 +207,7 @@ def currents(log, change):
     return replace(log, inputs=u)
 
 
-@pytest.mark.parametrize("drive", [0, 3, 5])
+@pytest.mark.parametrize("drive", [0, 5])
 def test_a_current_of_the_wrong_sign(plant, drive):
     def reverse(u):
         u[:, drive] *= -1
@@ -219,7 +219,7 @@ def test_a_current_of_the_wrong_sign(plant, drive):
     refuse_miswired(wrong, plant, ["wiring", "units"])  # it moves as if all were in another unit
 
 
-@pytest.mark.parametrize(("i", "j"), [(0, 2), (1, 3), (4, 5), (0, 5), (6, 1)])
+@pytest.mark.parametrize(("i", "j"), [(0, 2), (6, 1)])
 def test_swapped_currents(plant, i, j):
     def swap(u):
         u[:, [i, j]] = u[:, [j, i]]
