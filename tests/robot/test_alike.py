@@ -50,8 +50,8 @@ def folder(tmp_path_factory):
     here = tmp_path_factory.mktemp("axes")
     (here / "axes.xml").write_text(MODEL)
     (here / "robot.toml").write_text(TOML + SPREAD)
-    u = np.hstack([steps(600, seed=k, hold=25) for k in range(3)])
-    still = Log(time=0.01 * np.arange(600), inputs=u, outputs=np.zeros_like(u),
+    u = np.hstack([steps(400, seed=k, hold=25) for k in range(3)])
+    still = Log(time=0.01 * np.arange(400), inputs=u, outputs=np.zeros_like(u),
                 input_names=tuple(f"u_{a}" for a in AXES), output_names=AXES)  # fmt: skip
     for name, off in (("differ", OFF), ("alike", dict.fromkeys(AXES, 0.0))):
         dampings = {a: 1.2 * d * (1 + off[a]) for a, d in DAMPINGS.items()}

@@ -62,32 +62,29 @@ def spring(**values):
     return SPRING.format(**{**TRUE, **values})
 
 
-@pytest.mark.parametrize("horizon", ["", "horizon = 1.0"])
-def test_a_double_pendulum_without_actuators_tells_its_dampings(tmp_path, horizon):
+def test_a_double_pendulum_without_actuators_tells_its_dampings(tmp_path):
     log = swing(DOUBLE.format(a=0.05, b=0.03), (0.6, -0.4), 500)
     assert log.inputs.shape == (500, 0)
     paths = robot(tmp_path, DOUBLE.format(a=0.1, b=0.02), log,
-                  ["joint/a.damping", "joint/b.damping"], horizon)  # fmt: skip
+                  ["joint/a.damping", "joint/b.damping"], "horizon = 1.0")  # fmt: skip
     found = fit(read_robot(*paths))
     assert found.converged
     assert found.values["joint/a.damping"] == pytest.approx(0.05, rel=0.02)
     assert found.values["joint/b.damping"] == pytest.approx(0.03, rel=0.02)
 
 
-@pytest.mark.parametrize("horizon", ["", "horizon = 1.0"])
-def test_what_only_an_input_would_show_is_told_and_the_rest_is_fitted(tmp_path, horizon):
+def test_what_only_an_input_would_show_is_told_and_the_rest_is_fitted(tmp_path):
     motor = MOTOR.format(gear=3)
     log = swing(spring(motor=motor), 0.2, 400)
     gear = "actuator/push.gear[0]"
-    paths = robot(tmp_path, spring(motor=motor, damping=1.5), log, ["joint/x.damping", gear],
-                  horizon)  # fmt: skip
+    paths = robot(tmp_path, spring(motor=motor, damping=1.5), log, ["joint/x.damping", gear])
     read = read_robot(*paths)
     assert (
         f"No input moves in 'log', and a free swing does not tell {gear}: it keeps its value."
         in (read.remarks)
     )
     assert fit(read).values == {"joint/x.damping": pytest.approx(0.6, rel=0.02)}
-    (tmp_path / "robot.toml").write_text(f'model = "robot.xml"\nfree = ["{gear}"]\n{horizon}')
+    (tmp_path / "robot.toml").write_text(f'model = "robot.xml"\nfree = ["{gear}"]\n')
     with pytest.raises(InputError, match=r"does not tell actuator/push.gear\[0\]; free what it"):
         read_robot(*paths)
 
@@ -137,11 +134,14 @@ def test_a_driven_log_is_not_called_a_free_swing(tmp_path):
     ("motor", "horizon"),
     [("", "horizon = 0.4"), pytest.param(MOTOR.format(gear=2), "", marks=pytest.mark.long)],
 )
+@pytest.mark.usefixtures("undrawn")
 def test_a_search_names_the_hidden_coulomb_friction(tmp_path, motor, horizon, capsys):
     log = swing(spring(motor=motor, friction=0.15), 0.25, 500)
     paths = robot(tmp_path, spring(motor=motor), log, ["joint/x.damping"], horizon)
     of_inputs = {"delay", "lag", "saturation", "gain_drift", "time_shift"}
     assert not of_inputs & {e.name for e in read_robot(*paths).candidates}
+    few = '[effects]\nonly = ["coulomb_friction", "quadratic_friction", "hardening"]\n'
+    paths = robot(tmp_path, spring(motor=motor), log, ["joint/x.damping"], f"{horizon}\n{few}")
     out = tmp_path / "found"
     assert main(["discover", *map(str, paths), "--out", str(out), "--json"]) == 0
     effects = json.loads(capsys.readouterr().out)["effects"]

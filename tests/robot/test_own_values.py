@@ -104,13 +104,14 @@ def test_what_was_known_stays_known_where_the_fitted_robot_is_fitted_again(folde
     assert (third.mean, third.std.tolist()) == (again.mean, again.std.tolist())
 
 
+@pytest.mark.long
 def test_a_discovery_has_own_parameters_and_values_of_logs_too(folder):
     own, masses, mu = (0.05, -0.03, 0.02), (0.5, 0.9, 0.7), "transmitted_load_friction.mu@hinge"
     logs = [
         replace(measured(k, {OFFSET: f, MASS: m, mu: 0.15}), values={MASS: m})
         for k, (f, m) in enumerate(zip(own, masses, strict=True), start=1)
     ]
-    only = '[effects]\nonly = ["transmitted_load_friction", "quadratic_friction"]\n'
+    only = '[effects]\nonly = ["transmitted_load_friction"]\n'
     (folder / "own.toml").write_text(OWN + only)
     *fitted, other = written(folder, *logs)
     robot = read_robot(folder / "own.toml", fitted, confirm=[other])

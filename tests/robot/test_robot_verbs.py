@@ -4,9 +4,9 @@ import json
 
 import numpy as np
 import pytest
-from robot_cases import TOML, run
+from robot_cases import TOML, run, simulated
 
-from identification import InputError, confirm, discover, fit, read_log, read_robot
+from identification import InputError, confirm, discover, fit, read_log, read_robot, write_log
 from identification.robot.fit_json import robot_fit_to_json
 
 NAMES = ("force",), ("x",)
@@ -20,7 +20,9 @@ def without_time(record):
 def test_fit_and_confirm_say_what_the_command_says(folder, capsys, horizon):
     path = folder / f"verbs{len(horizon)}.toml"
     path.write_text(horizon + TOML)
-    logs = folder / "plain.csv", folder / "other.csv"
+    logs = folder / "short.csv", folder / "short too.csv"
+    for log, seed in zip(logs, (1, 5), strict=True):
+        write_log(simulated({"damping": 3.6, "mass": 1.8}, 400, seed), log)
     said = run(capsys, "fit", path, logs[0], "--confirm", logs[1])
     robot = read_robot(path, logs[0], confirm=[logs[1]])
     found = fit(robot)
@@ -32,10 +34,12 @@ def test_fit_and_confirm_say_what_the_command_says(folder, capsys, horizon):
 
 
 @pytest.mark.parametrize("horizon", ["", "horizon = 0.5\n"])
-def test_without_records_the_part_that_was_not_fitted_confirms(folder, horizon):
+def test_without_records_the_part_that_was_not_fitted_confirms(folder, tmp_path, horizon):
     path = folder / f"unseen{len(horizon)}.toml"
     path.write_text(horizon + TOML)
-    robot = read_robot(path, folder / "plain.csv")
+    log = simulated({"damping": 3.6, "mass": 1.8}, 600)
+    write_log(log, tmp_path / "plain.csv")
+    robot = read_robot(path, tmp_path / "plain.csv")
     found = fit(robot)
     (there,) = confirm(robot, found)
     assert there.log == "plain [validation]"

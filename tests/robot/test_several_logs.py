@@ -38,11 +38,11 @@ def test_the_command_fits_several_logs_and_confirms_them_on_another(folder, caps
 
 
 def test_more_logs_make_estimates_finer(folder):
-    logs = written(folder, *(measured(k, samples=480) for k in range(1, 4)))
+    logs = written(folder, *(measured(k, samples=480) for k in (1, 2)))
     one, several = (fit(read_robot(folder / "robot.toml", paths)) for paths in (logs[0], logs))
     assert several.std["d"] < one.std["d"]
     assert_true(several, "d", 0.02)
-    assert [c.log for c in several.unseen] == [f"log_{k} [validation]" for k in range(3)]
+    assert [c.log for c in several.unseen] == [f"log_{k} [validation]" for k in range(2)]
     assert several.converged
     assert not any(several.at_bound.values())
     assert several.start == {"J": pytest.approx(1.5e-3), "d": pytest.approx(0.03)}

@@ -12,7 +12,6 @@ import pytest
 from records_cases import MJCF, pendulum, record
 
 from identification import discover, fit, read_robot, write_log
-from identification.__main__ import main
 from identification.effects.moving_bodies import Felt
 from identification.model.coordinates import coordinates
 from identification.model.parameter import Parameter, ParameterSet
@@ -135,15 +134,6 @@ def test_a_search_along_a_free_run_tells_them_too(tmp_path):
     (row,) = (line for line in said.splitlines() if line.strip().startswith(INERTIA))
     assert "±" not in row
     assert "on its bound" in row
-
-
-def test_the_command_keeps_what_ended_on_a_bound(tmp_path, capsys):
-    path = folder(tmp_path, ON_BASE, f"horizon = 0.2\n{FREE}")
-    log, out = tmp_path / "1.csv", tmp_path / "out"
-    asked = ["fit", str(path), str(log), "--quiet", "--out", str(out)]
-    assert main(asked) in (0, 1)
-    assert CAUSE in capsys.readouterr().out
-    assert (out / "robot.toml").exists()
 
 
 def test_bounds_of_a_user_are_told_without_a_cause():
