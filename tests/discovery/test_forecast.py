@@ -97,7 +97,7 @@ def test_what_the_library_keeps_has_an_end(monkeypatch):
 @pytest.mark.parametrize("make", [slider_task, pytest.param(arm_task, marks=pytest.mark.long)])
 def test_a_search_holds_the_arrays_of_its_forecast(make):
     """The most that arrays take at once, once all code is loaded."""
-    given = make(1000)
+    given = make(500)
     needs, copies = forecast(given), float(given.nominal_model.plant.model.nbuffer)
     fixed = module.BASE_BYTES + module.MODEL_COPIES * copies
     data = (needs.memory - fixed) / (1 + module.KEPT_SHARE)

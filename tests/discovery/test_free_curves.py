@@ -144,7 +144,10 @@ def creeping(x, v):
 
 @pytest.mark.parametrize(
     ("force", "neighbour", "along"),
-    [(hardening, "spring", "position"), (creeping, "rubbing", "rate")],
+    [
+        (hardening, "spring", "position"),
+        pytest.param(creeping, "rubbing", "rate", marks=pytest.mark.long),
+    ],
 )
 def test_the_nearest_neighbour_of_an_unlisted_law_is_not_named_with_certainty(
     force, neighbour, along

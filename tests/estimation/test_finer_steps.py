@@ -27,11 +27,11 @@ value = 0.08
 
 @pytest.fixture(scope="module")
 def log(tmp_path_factory):
-    """Ten seconds of a pendulum with dry friction that turns back often, by much finer steps."""
+    """Five seconds of a pendulum with dry friction that turns back often, by much finer steps."""
     model = mujoco.MjModel.from_xml_string(PENDULUM.format(step=2e-4))
     model.dof_damping[0] = 0.05
     data, rng, rows = mujoco.MjData(model), np.random.default_rng(1), []
-    for k, u in enumerate(0.9 * rng.uniform(-1, 1, 34).repeat(30)[:1000]):
+    for k, u in enumerate(0.9 * rng.uniform(-1, 1, 17).repeat(30)[:500]):
         rows.append([k / 100, u, data.qpos[0] + rng.normal(0, 5e-4)])
         data.ctrl[:] = u
         for _ in range(50):

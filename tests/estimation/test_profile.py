@@ -21,7 +21,7 @@ def test_a_profile_of_a_nearly_linear_problem_gives_the_interval_of_the_std():
     fit = assess(found)
     std = dict(zip(found.space.names, fit.std, strict=True))
     for name in found.space.names:
-        known = profile(fit, name, points=7)
+        known = profile(fit, name, points=5)
         value = found.values[name]
         wald = (value - 1.96 * std[name], value + 1.96 * std[name])
         np.testing.assert_allclose(known.interval, wald, atol=0.35 * std[name])
@@ -58,9 +58,8 @@ def test_a_coloured_residual_widens_the_profile_as_it_widens_the_std():
     std = dict(zip(fit.found.names, fit.std, strict=True))
     white = fit.rms * fit.found.std * [*fit.estimate.values.values()]  # as if it were white
     assert (fit.std > 2 * white).all()
-    for name in fit.found.names:
-        low, high = profile(fit, name, points=7).interval
-        assert high - low == pytest.approx(2 * 1.96 * std[name], rel=0.15)
+    low, high = profile(fit, "damping", points=5).interval
+    assert high - low == pytest.approx(2 * 1.96 * std["damping"], rel=0.15)
 
 
 def test_an_end_that_no_simulation_reaches_is_not_an_end():

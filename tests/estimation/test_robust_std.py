@@ -37,7 +37,7 @@ def test_least_squares_pull_by_the_residual_itself():
     assert share == 1.0
 
 
-@pytest.mark.parametrize("loss", ["huber", "cauchy"])
+@pytest.mark.parametrize("loss", ["cauchy"])
 def test_claimed_and_seen_spread_agree_where_one_sample_in_twenty_is_wrong(loss):
     seeds, options = 30, Options(loss=loss, horizons=(1.0,), tolerance=1e-5)
     found, claimed = np.empty((seeds, 2)), np.empty((seeds, 2))

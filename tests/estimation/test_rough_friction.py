@@ -53,7 +53,7 @@ def test_the_example_log_does_not_know_what_its_first_fit_claimed():
     assert "The simulation is rough at these values" in said
 
 
-@pytest.mark.parametrize("beta", [50.0, 500.0])
+@pytest.mark.parametrize("beta", [500.0])
 def test_only_the_product_is_known_however_steep_the_friction(beta):
     robot = build_twin(parameter_set("trial", {"beta": beta}), visual=False)
     log = run_to_log(simulate(robot, make_input("prbs", 0.6, seed=0)), "steep")

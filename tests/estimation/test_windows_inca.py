@@ -29,6 +29,7 @@ def measured():
     return replace(log, outputs=log.outputs + noise, extras={}, units={})
 
 
+@pytest.mark.long  # test_identify_command has windows that find the truth of two parameters
 def test_windows_find_the_truth_of_the_cable_robot(measured):
     robot = build_twin(parameter_set("trial"), timestep=STEP)
     found = estimate_windows(robot, measured, (*SMALL, *POSE), 0.2, SMALL)

@@ -26,6 +26,7 @@ def test_a_law_that_is_listed_wins_over_curves():
     assert [n.candidate.effect.name for n in answer.named] == ["hardening"]
 
 
+@pytest.mark.long
 def test_a_law_that_is_not_listed_is_drawn_as_a_curve_of_what_it_depends_on():
     answer = found({"hardening.k_3@hinge": 0.06}, CURVES[1:], samples=500)
     assert answer.verdict == "unlisted effect"

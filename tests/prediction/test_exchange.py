@@ -23,6 +23,7 @@ from identification.prediction.unseen import compare
 NAME, MU = "transmitted_load_friction", "transmitted_load_friction.mu@hinge"
 LOAD = {MU: 0.15}
 OPTIONS = DiscoveryOptions()
+SAMPLES = 300  # of each record
 
 
 def law():
@@ -32,7 +33,7 @@ def law():
 @cache
 def pair(second):
     """Two fitted records, of which the second may lack the law, and two that confirm; models."""
-    logs = records(4, LOAD)
+    logs = records(4, LOAD, samples=500 if second == "lacks it" else SAMPLES)
     if second == "lacks it":
         logs[1] = record(2, plant=pendulum())
     every = as_records(logs[:2], logs[2:])
@@ -49,7 +50,7 @@ def other_side(second):
 
 
 def test_the_model_with_roles_exchanged_is_that_of_a_fit_to_the_other_records():
-    logs = records(4)
+    logs = records(4, samples=SAMPLES)
     model = fit_nominal(nominal_model(), as_records(logs[:2], logs[2:]))
     reverse = fit_nominal(nominal_model(), as_records(logs[2:], logs[:2]))
     found = exchanged(model, as_records(logs[:2], logs[2:]), HORIZON)
@@ -72,6 +73,7 @@ def test_a_law_that_one_fitted_record_lacks_is_proven_and_then_contradicted():
     assert is_contradicted(*other_side("lacks it"), OPTIONS)
 
 
+@pytest.mark.long
 def test_what_is_contradicted_is_told_and_not_named():
     every, *_ = pair("lacks it")
     fit, confirm = ([r.log for r in every if r.role == role] for role in ("fit", "confirm"))

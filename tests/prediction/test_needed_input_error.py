@@ -14,7 +14,7 @@ from identification.prediction.records import as_records
 
 def disturbed(seed, share):
     """A record whose input errs by a constant over each window, which the log does not have."""
-    log, rng = record(seed), np.random.default_rng(100 + seed)
+    log, rng = record(seed, samples=300), np.random.default_rng(100 + seed)
     length = round(HORIZON / STEP)
     size = share * np.sqrt(np.mean(log.inputs**2))
     error = np.repeat(size * rng.standard_normal(len(log) // length + 1), length)[: len(log), None]
@@ -22,7 +22,7 @@ def disturbed(seed, share):
     return replace(log, outputs=y[0] + NOISE * rng.standard_normal(y[0].shape))
 
 
-@pytest.mark.parametrize("share", [0.0, 0.02, 0.1])
+@pytest.mark.parametrize("share", [0.0, 0.1])
 def test_an_error_of_the_inputs_is_found_as_large_as_it_is(share):
     logs = [disturbed(k, share) for k in range(1, 4)]
     found = fit_nominal(nominal_model(), as_records(logs[:2], logs[2:]))

@@ -197,8 +197,8 @@ def test_a_law_that_is_not_in_the_list_is_not_called_by_another_name():
 def clipped_and_not(names):
     """Two records whose torque is clipped and two whose torque is small; the model begins right."""
     hidden = {"saturation.c@drive": 1.0, "saturation.u_max": 0.4}
-    logs = [record(1, values=hidden, plant=pendulum()), record(2, values=hidden, plant=pendulum())]
-    logs += [record(k, plant=pendulum(), largest=0.35) for k in (3, 4)]
+    logs = [record(k, SAMPLES, hidden, plant=pendulum()) for k in (1, 2)]
+    logs += [record(k, SAMPLES, plant=pendulum(), largest=0.35) for k in (3, 4)]
     effects = [e for e in candidates(pendulum(), ("J", "d")) if e.name in names]
     base = replace(nominal_model(), plant=pendulum())
     return discover_records(base, logs[:2], logs[2:], effects)
@@ -246,10 +246,11 @@ def test_the_robots_file_is_never_replaced_by_results(folder, capsys):
 def folder(tmp_path):
     make_folder(tmp_path)
     (tmp_path / "robot.toml").write_text(TOML + ONLY)
-    written(tmp_path, *records(4, {MU: 0.15}))
+    written(tmp_path, *records(4, {MU: 0.15}, samples=SAMPLES))
     return tmp_path
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_the_command_takes_several_logs_and_several_confirm_flags(folder, capsys):
     logs = [str(folder / f"log_{k}.csv") for k in range(4)]
     arguments = ["discover", str(folder / "robot.toml"), *logs[:2], "--confirm", logs[2]]

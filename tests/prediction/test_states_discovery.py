@@ -41,7 +41,8 @@ def found(name):
     truth = CASES[name][0] if name else Truth(slip=3e-3, f_c=F_C)
     logs = [measured(truth, k, samples=SAMPLES.get(name, 120)) for k in range(4)]
     model = nominal()
-    effects = [e for e in candidates(model.plant, FREE) if e.name in (*OTHERS, *NAMES)]
+    names = (*OTHERS, *(("presliding",) if name == PRESLIDING else NAMES))  # the long ones have all
+    effects = [e for e in candidates(model.plant, FREE) if e.name in names]
     options = DiscoveryOptions(max_effects=1)
     return discover_records(model, logs[:2], logs[2:], effects, options=options)
 

@@ -21,6 +21,7 @@ from identification.prediction.scores import window_scores
 from identification.prediction.state import RecordsTask
 from identification.prediction.unknowns import Prior, Unknowns
 
+SAMPLES = 300  # of each record
 SHIFTS = (0.02, -0.015, 0.01)  # of three records' inputs [s]
 
 
@@ -45,7 +46,7 @@ def test_every_entry_is_felt_by_all_records_or_by_one(p, m, count):
 
 
 def shifted(shift, seed):
-    log = record(seed, plant=pendulum(), values={"time_shift.tau@drive": shift})
+    log = record(seed, samples=SAMPLES, plant=pendulum(), values={"time_shift.tau@drive": shift})
     return replace(log, name=f"record {seed}")
 
 
@@ -94,7 +95,7 @@ def with_offset(base):
 def test_offsets_of_their_own_leave_what_is_shared_as_it_is():
     offset = "offset.f_0@hinge"
     logs = [
-        replace(record(k, values={offset: f}, plant=pendulum()), name=f"record {k}")
+        replace(record(k, SAMPLES, {offset: f}, plant=pendulum()), name=f"record {k}")
         for k, f in enumerate((0.05, -0.05, 0.02), 1)
     ]
     base = nominal_model()
@@ -107,7 +108,7 @@ def test_offsets_of_their_own_leave_what_is_shared_as_it_is():
 
 
 def test_one_record_with_a_parameter_of_its_own_is_a_record_with_a_shared_one():
-    offset, base, logs = "offset.f_0@hinge", nominal_model(), records(2)
+    offset, base, logs = "offset.f_0@hinge", nominal_model(), records(2, samples=SAMPLES)
     more = replace(base, names=(*base.names, offset), std=with_offset(base))
     roles = as_records(logs[:1], logs[1:])
     shared, own = (fit_nominal(replace(more, own=o), roles) for o in ((), (offset,)))

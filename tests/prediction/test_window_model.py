@@ -19,6 +19,7 @@ from identification.prediction.scores import find_imitated, window_scores
 from identification.prediction.screening import has_what_it_needs
 from identification.prediction.unseen import compare, predict
 
+SAMPLES = 300  # of each record
 LOAD = {"transmitted_load_friction.mu@hinge": 0.15}
 
 
@@ -29,19 +30,19 @@ def fitted(logs, confirm):
 
 @cache
 def clean():
-    logs = records(3, noise=1e-9)
+    logs = records(3, noise=1e-9, samples=SAMPLES)
     return fitted(logs[:2], logs[2:])
 
 
 @cache
 def noisy():
-    logs = records(4)
+    logs = records(4, samples=SAMPLES)
     return fitted(logs[:2], logs[2:])
 
 
 @cache
 def rubbed():
-    logs = records(4, LOAD)
+    logs = records(4, LOAD, samples=SAMPLES)
     return fitted(logs[:2], logs[2:])
 
 
@@ -70,7 +71,7 @@ def test_progress_says_the_length_of_windows_and_their_error_in_its_unit():
 
 
 def test_slopes_that_are_kept_lead_to_the_same_fit_with_fewer_linearisations(monkeypatch):
-    logs = records(4, LOAD)
+    logs = records(4, LOAD, samples=SAMPLES)
     each = rubbed()
     # Slopes are kept, however few parameters there are.
     monkeypatch.setattr(point, "KEEP_SLOPES_FROM", 0)
@@ -82,7 +83,7 @@ def test_slopes_that_are_kept_lead_to_the_same_fit_with_fewer_linearisations(mon
 
 
 def test_the_order_of_records_changes_nothing():
-    logs = records(4)
+    logs = records(4, samples=SAMPLES)
     a, b = noisy(), fitted(logs[1::-1], logs[:1:-1])
     for name in FREE:
         assert a.values[name] == pytest.approx(b.values[name], rel=1e-9)
@@ -90,7 +91,7 @@ def test_the_order_of_records_changes_nothing():
 
 
 def test_the_same_records_twice_halve_the_variance():
-    logs = records(4)
+    logs = records(4, samples=SAMPLES)
     # one record twice is refused; what differs by less than rounding of the fit is not
     again = [
         replace(log, name=f"{log.name} again", outputs=log.outputs + 1e-12) for log in logs[:2]
@@ -138,7 +139,7 @@ def test_the_hidden_law_explains_most():
 
 @pytest.mark.parametrize("name", ["transmitted_load_friction", "quadratic_friction", "offset"])
 def test_a_child_never_explains_less_than_its_parent(name):
-    parent, logs = rubbed(), records(4, LOAD)
+    parent, logs = rubbed(), records(4, LOAD, samples=SAMPLES)
     (score, *_) = scored(parent, name)
     child = with_effect(
         parent,
