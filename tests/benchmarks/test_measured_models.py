@@ -17,7 +17,7 @@ from identification import read_robot, window_error
 
 @pytest.fixture(scope="module")
 def plant(tmp_path_factory):
-    robot = oscillator((oscillator_log(0), oscillator_log(1)))
+    robot = oscillator((oscillator_log(0, 300), oscillator_log(1, 300)))
     path, paths = write_files(robot, tmp_path_factory.mktemp("robot"))
     return robot, read_robot(path, paths["fit"], paths["confirm"]).plant
 
@@ -27,7 +27,7 @@ TRUE = {"m": 5.4e-6, "d": 2.3e-4, "g": 1.0, "offset.f_0@slide": 0.0}
 
 def test_a_null_of_an_exact_model_is_the_log_and_else_its_errors_are_only_mixed(plant):
     robot, own = plant
-    linear = oscillator_log(3, k_3=0.0, noise=1e-4)
+    linear = oscillator_log(3, 300, k_3=0.0, noise=1e-4)
     null = null_log(own, linear, robot.horizon, TRUE, seed=1)
     mixed = null.outputs - linear.outputs[: len(null)]
     assert np.std(mixed) < 0.005 * np.std(linear.outputs)  # noise, and the model's coarser steps

@@ -29,7 +29,7 @@ def between(run, start, end):
 
 
 @pytest.mark.filterwarnings("ignore:unclosed file:ResourceWarning")  # imageio-ffmpeg's reader
-@pytest.mark.parametrize(("fps", "speed", "frames"), [(30, 1.0, 10), (20, 0.5, 13)])
+@pytest.mark.parametrize(("fps", "speed", "frames"), [(20, 0.5, 13)])
 def test_a_film_has_its_frames_its_size_and_its_rate(tmp_path, short_run, fps, speed, frames):
     seen = []
     path = film(
@@ -61,7 +61,7 @@ def test_pictures_change_where_the_platform_moves(tmp_path, pulled_run):
     assert still.max() == 0
 
 
-@pytest.mark.parametrize(("camera", "plots"), [("front", True), ("side", False), ("handle", True)])
+@pytest.mark.parametrize(("camera", "plots"), [("front", True), ("side", False)])
 def test_every_camera_gives_a_picture_of_the_size(tmp_path, short_run, camera, plots):
     [path] = stills(short_run, tmp_path, [0.5], camera=camera, size=SMALL, plots=plots)
     assert pixels(path).shape == (*SMALL[::-1], 3)

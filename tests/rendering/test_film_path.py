@@ -70,7 +70,7 @@ def test_a_trace_is_of_the_last_seconds(short_run):
 
 
 @pytest.mark.usefixtures("opengl")
-@pytest.mark.parametrize("camera", ["front", "side", "handle"])
+@pytest.mark.parametrize("camera", ["side", "handle"])
 def test_a_point_is_drawn_where_mujoco_draws_a_ball(short_run, camera):
     qpos, white = short_run.qpos[60], np.ones((8, 4))
     point = qpos[:3] + [0.02, 0.03, 0.06]
@@ -130,7 +130,7 @@ def test_a_path_is_in_the_picture_and_its_colour_too(tmp_path, short_run):
 @pytest.mark.usefixtures("opengl")
 @pytest.mark.parametrize(
     ("size", "camera", "plots"),
-    [((160, 480), "handle", False), ((160, 480), "side", True), ((160, 120), "handle", False)],
+    [((160, 480), "side", True), ((160, 120), "handle", False)],
 )
 def test_a_path_and_its_legend_fit_narrow_frames(tmp_path, short_run, size, camera, plots):
     run, how = asked(short_run, np.zeros(3)), {"camera": camera, "plots": plots}
@@ -139,12 +139,11 @@ def test_a_path_and_its_legend_fit_narrow_frames(tmp_path, short_run, size, came
 
 
 @pytest.mark.usefixtures("opengl")
-@pytest.mark.parametrize("how", [{"camera": "handle"}, {"size": (220, 320)}])
-def test_two_pictures_are_the_single_ones_side_by_side(tmp_path, short_run, how):
+def test_two_pictures_are_the_single_ones_side_by_side(tmp_path, short_run):
     """To the pixel, where both have the tensions of the scale that they share."""
     one, two = asked(short_run, np.array([0.001, 0, 0])), short_run
-    single = {"size": SIZE, "plots": False, **how}
-    size = single["size"]
+    size = (220, 320)
+    single = {"size": size, "plots": False}
     both = {**single, "size": (2 * size[0], size[1])}
     (pair,) = stills(one, tmp_path, [0.5], beside=two, titles=("one", "two"), **both)
     pair = pixels(pair)
@@ -168,10 +167,18 @@ def test_two_robots_share_one_scale_of_tensions(tmp_path, short_run, pulled_run)
 @pytest.mark.filterwarnings("ignore:unclosed file:ResourceWarning")  # imageio-ffmpeg's reader
 def test_two_runs_are_filmed_over_the_time_that_both_have(tmp_path, short_run):
     short = make_scene(short_run).until(0.2)
-    path = film(short_run, tmp_path / "pair.mp4", beside=short, size=PAIR, fps=10, camera="handle")
+    path = film(
+        short_run,
+        tmp_path / "pair.mp4",
+        beside=short,
+        size=PAIR,
+        fps=5,
+        camera="handle",
+        plots=False,
+    )
     reader = imageio_ffmpeg.read_frames(path)
     assert next(reader)["size"] == PAIR
-    assert sum(1 for _ in reader) == 3
+    assert sum(1 for _ in reader) == 2
     with pytest.raises(InputError, match=r"no picture at 0\.5 s"):
         stills(short_run, tmp_path, [0.5], beside=short, size=PAIR)
 
