@@ -14,12 +14,19 @@ from inca_mj.twin.logs import ANGLES, CURRENTS, OPTIONAL, read_inca_log
 from inca_mj.twin.run import load_run, simulate
 from inca_mj.twin.twin import build_twin
 
-LOG = Path(__file__).parents[2] / "examples" / "log.csv"
+LOG = Path(__file__).resolve().parents[2] / "examples" / "log.csv"
 PRACTICE = Path(__file__).parents[3] / "shared" / "data" / "practice_prbs"
 
 
 def run(*arguments: object) -> int:
     return main([str(a) for a in arguments])
+
+
+@pytest.fixture
+def kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Where a run is kept that is not drawn."""
+    monkeypatch.chdir(tmp_path)
+    return tmp_path / "out" / "simulate"
 
 
 def last_json(capsys: pytest.CaptureFixture[str]) -> dict:
@@ -39,13 +46,12 @@ def test_compare_says_the_contract(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_a_simulated_log_is_explained_to_the_last_bit(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    kept: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    out = tmp_path / "run"
     values = ("--param", "m=0.2", "x=0.01", "yaw=0.05")
-    assert run("simulate", "--input", "multisine", "--duration", 1, *values, "--out", out) == 0
+    assert run("simulate", "--input", "multisine", "--duration", 1, *values) == 0
     capsys.readouterr()
-    assert run("compare", out / "log.csv", *values, "--json") == 0
+    assert run("compare", kept / "log.csv", *values, "--json") == 0
     result = last_json(capsys)
     assert result["rms"] == [0.0] * 8
     assert result["fit_percent"] == [100.0] * 8
@@ -69,11 +75,11 @@ def test_simulate_keeps_states_tensions_figures_model_and_report(tmp_path: Path)
 
 
 def test_simulate_samples_as_often_as_is_asked(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    kept: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    asked = ("simulate", "--duration", 0.2, "--out", tmp_path / "out")
+    asked = ("simulate", "--duration", 0.2)
     assert run(*asked, "--rate", 250) == 0
-    log = read_inca_log(tmp_path / "out" / "log.csv")
+    log = read_inca_log(kept / "log.csv")
     assert log.sampling_time == pytest.approx(0.004)
     assert len(log) == 51
     usual = simulate(build_twin(), np.repeat([[2.0] + 7 * [0.0]], 21, axis=0))
@@ -84,16 +90,17 @@ def test_simulate_samples_as_often_as_is_asked(
         assert "is not between 10 and 2000 Hz" in capsys.readouterr().err
 
 
-def test_simulate_takes_the_currents_of_a_log(tmp_path: Path) -> None:
+def test_simulate_takes_the_currents_of_a_log(kept: Path, tmp_path: Path) -> None:
     log = read_inca_log(LOG).between(0.0, 2.0)
     write_log(log, tmp_path / "first.csv")
-    assert run("simulate", "--input", tmp_path / "first.csv", "--out", tmp_path / "out") == 0
-    written = read_inca_log(tmp_path / "out" / "log.csv")
+    assert run("simulate", "--input", tmp_path / "first.csv") == 0
+    written = read_inca_log(kept / "log.csv")
     np.testing.assert_array_equal(written.inputs, log.inputs)
 
 
 def test_compare_keeps_a_report_that_needs_no_network(tmp_path: Path) -> None:
-    assert run("compare", LOG, "--out", tmp_path) == 0
+    write_log(read_inca_log(LOG).between(0.0, 2.0), tmp_path.with_suffix(".csv"))
+    assert run("compare", tmp_path.with_suffix(".csv"), "--out", tmp_path) == 0
     page = (tmp_path / "report.html").read_text()
     assert "mean fit" in page
     assert 'src="http' not in page
@@ -122,9 +129,9 @@ def test_compare_reads_the_practice_logs(name: str, capsys: pytest.CaptureFixtur
     assert min(last_json(capsys)["fit_percent"]) > 50
 
 
-def test_a_log_with_a_pose_begins_there(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_log_with_a_pose_begins_there(kept: Path, capsys: pytest.CaptureFixture[str]) -> None:
     moved = ("--param", "x=0.1", "z=1.3", "yaw=0.1")
-    assert run("simulate", "--input", "prbs", "--duration", 1, *moved, "--out", tmp_path) == 0
+    assert run("simulate", "--input", "prbs", "--duration", 1, *moved) == 0
     capsys.readouterr()
-    assert run("compare", tmp_path / "log.csv", "--json") == 0
+    assert run("compare", kept / "log.csv", "--json") == 0
     assert max(last_json(capsys)["rms"]) < 1e-9

@@ -16,7 +16,7 @@ LOG = Path(__file__).parents[2] / "examples" / "log.csv"
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "INCA_MJ_THREADS")
 LINES = (
     pytest.param("identification fit robot.toml log.csv", marks=pytest.mark.long),
-    "identification fit horizon.toml log.csv",
+    pytest.param("identification fit horizon.toml log.csv", marks=pytest.mark.long),
     pytest.param("identification discover robot.toml long.csv", marks=pytest.mark.long),
     pytest.param("identification discover few.toml long.csv", marks=pytest.mark.long),
     pytest.param("identification linearize robot.toml", marks=pytest.mark.long),

@@ -52,23 +52,25 @@ def test_cite_prints_text_bibtex_or_json(capsys):
     assert [work["key"] for work in record["works"]] == ["inca_mj", "inca_thesis"]
 
 
-def test_a_figure_takes_the_set_that_it_needs(tmp_path):
+def test_a_figure_takes_the_set_that_it_needs(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
     assert run("simulate", "--figure", "3.3", "--out", tmp_path / "a") == 0
     data = load_run(tmp_path / "a" / "run.npz")
     np.testing.assert_array_equal(data.currents, make_input("prbs", 5.0))
     assert (tmp_path / "a" / "motor-currents.png").stat().st_size > 10_000
     record = json.loads((tmp_path / "a" / "result.json").read_text())["configuration"]
     assert (record["input"], record["duration"], record["robot"]["set"]) == ("prbs", 5.0, "trial")
-    assert run("simulate", "--figure", "2.16", "--out", tmp_path / "b") == 0
-    step = load_run(tmp_path / "b" / "run.npz")
+    assert run("simulate", "--figure", "2.16") == 0  # is kept, and not drawn
+    step = load_run(tmp_path / "out" / "simulate" / "run.npz")
     assert step.twin.parameters.values() == parameter_set("simulation").values()
     assert (step.currents == [2.0] + 7 * [0.0]).all()
 
 
-def test_a_force_is_in_the_run_and_in_its_file(tmp_path):
+def test_a_force_is_in_the_run_and_in_its_file(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
     asked = ("--force", 0, 0, -0.5, "--force-at", 0.01, 0, 0)
-    assert run("simulate", "--input", "zero", "--duration", 0.2, *asked, "--out", tmp_path) == 0
-    kept = load_run(tmp_path / "run.npz")
+    assert run("simulate", "--input", "zero", "--duration", 0.2, *asked) == 0
+    kept = load_run(tmp_path / "out" / "simulate" / "run.npz")
     right = with_force(build_twin(), (0, 0, -0.5), (0.01, 0, 0))
     np.testing.assert_array_equal(kept.qpos, simulate(right, kept.currents).qpos)
     assert kept.position[-1, 2] < kept.position[0, 2]
@@ -83,15 +85,17 @@ def saved(tmp_path_factory):
     return folder, robot
 
 
-def test_a_saved_twin_is_simulated_and_compared(saved, tmp_path, capsys):
+def test_a_saved_twin_is_simulated_and_compared(saved, tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
     folder, robot = saved
     asked = ("simulate", "--model", folder, "--input", "prbs", "--duration", 0.5)
-    assert run(*asked, "--out", tmp_path) == 0
-    kept = load_run(tmp_path / "run.npz")
+    assert run(*asked) == 0
+    out = tmp_path / "out" / "simulate"
+    kept = load_run(out / "run.npz")
     np.testing.assert_array_equal(kept.qpos, simulate(robot, make_input("prbs", 0.5)).qpos)
     assert [e.name for e in kept.twin.effects] == [PULL.name]
     capsys.readouterr()
-    assert run("compare", tmp_path / "log.csv", "--model", folder, "--json") == 0
+    assert run("compare", out / "log.csv", "--model", folder, "--json") == 0
     assert json.loads(capsys.readouterr().out)["rms"] == [0.0] * 8
 
 
