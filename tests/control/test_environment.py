@@ -86,7 +86,7 @@ def test_a_seed_decides_everything(task):
     assert np.abs(positions(5) - positions(6)).max() > 1e-4
 
 
-@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("seed", range(2))
 def test_it_starts_at_rest_whatever_the_pose(seed):
     env = load_environment("reach", random=seed)  # no hand pulls
     begin = env.reset().observation

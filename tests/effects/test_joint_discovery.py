@@ -5,6 +5,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
+import pytest
 from joint_cases import DAMPING, MASS, SLIDER, run, slider_log, steps
 
 from identification import Parameter
@@ -37,11 +38,11 @@ def hidden(samples=400, **values):
     return slider_log(u, y + NOISE * np.random.default_rng(4).standard_normal(y.shape))
 
 
-def found(log):
+def found(log, names=()):
+    """What a search among some effects finds, among all where none is named."""
     robot = plant(log)
-    return discover(
-        NominalModel(robot, FREE, np.array([0.3, 0.3, 0.5])), log, candidates(robot, FREE)
-    )
+    effects = [e for e in candidates(robot, FREE) if not names or e.name in names]
+    return discover(NominalModel(robot, FREE, np.array([0.3, 0.3, 0.5])), log, effects)
 
 
 def test_a_hidden_effect_is_named_with_its_size_where_inca_cannot_be_imported():
@@ -49,7 +50,8 @@ def test_a_hidden_effect_is_named_with_its_size_where_inca_cannot_be_imported():
 import sys
 sys.modules["inca_mj"] = None
 from test_joint_discovery import found, hidden
-answer = found(hidden(**{"asymmetric_viscous_friction.d_a@slide": 1.2}))
+few = "asymmetric_viscous_friction", "stribeck_friction", "stiffness"
+answer = found(hidden(**{"asymmetric_viscous_friction.d_a@slide": 1.2}), few)
 (named,) = answer.named
 value, std, unit = named.parameters["d_a"]
 print(answer.verdict, named.candidate.effect.name, named.candidate.where, value, std, unit)
@@ -65,6 +67,7 @@ sys.exit(wrong)
     )  # fmt: skip
 
 
+@pytest.mark.long
 def test_an_effect_of_the_input_is_named():
     answer = found(hidden(**{"delay.tau@force": 0.012}))
     assert answer.verdict == "named"

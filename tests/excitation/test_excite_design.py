@@ -108,7 +108,7 @@ def test_excite_writes_what_simulate_replays(tmp_path: Path, capsys) -> None:
 
 
 def test_sensitivity_names_what_trades_off(tmp_path: Path, capsys) -> None:
-    arguments = ["sensitivity", "--duration", "0.5", "--free", "R_s", "k_s", "J"]
+    arguments = ["sensitivity", "--duration", "0.3", "--free", "R_s", "k_s", "J"]
     assert main([*arguments, "--json", "--out", str(tmp_path)]) == 0
     result = json.loads(capsys.readouterr().out)
     assert result["parameters"]["R_s"]["std"] is None

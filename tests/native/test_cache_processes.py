@@ -5,6 +5,8 @@ import re
 import pytest
 from cache_cases import output, start
 
+pytestmark = pytest.mark.long  # test_cache has the laws of an entry with a callback that is small
+
 
 @pytest.fixture(scope="module")
 def home(tmp_path_factory):
@@ -32,7 +34,6 @@ def test_loaded_laws_give_the_same_trajectories(compiled, home):
     assert output(loaded) == compiled[0]
 
 
-@pytest.mark.long
 def test_laws_without_the_cache_give_the_same_trajectories(compiled, tmp_path):
     alone = start(XDG_CACHE_HOME=str(tmp_path), INCA_MJ_CACHE="off")
     assert output(alone) == compiled[0]

@@ -22,7 +22,7 @@ def drawn(seed, n):
 
 
 @given(SEEDS, st.integers(1, 8))
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=100, deadline=None)
 def test_friction_solves_the_complementarity_problem(seed, n):
     M, g, low, high = drawn(seed, n)
     f = held(M, g, low, high)

@@ -22,7 +22,7 @@ from identification.shown import Shown, verdict_of
 
 ROOT = Path(__file__).parents[2]
 ELBOW = ROOT / "examples" / "elbow"
-FEW = ("coulomb_friction", "stribeck_friction", "quadratic_friction", "offset")
+FEW = ("coulomb_friction", "quadratic_friction")
 README, YOUR_ROBOT = ROOT / "README.md", ROOT / "docs" / "robot" / "index.md"
 
 

@@ -38,13 +38,12 @@ def serial(tmp_path_factory):
 
 
 @quiet
-@pytest.mark.parametrize("kind", ["shuffled", "1 process", "2 processes", "dask", "submitit"])
+@pytest.mark.parametrize("kind", ["shuffled", "2 processes", "dask", "submitit"])
 def test_records_are_the_same_to_the_bit(serial, tmp_path, kind, monkeypatch):
     monkeypatch.setenv("OMP_NUM_THREADS", "2")
     path, expected = serial
     backend = {
         "shuffled": Shuffled(),
-        "1 process": Processes(1),
         "2 processes": Processes(2),
         "dask": Dask(None, 2),
         "submitit": Submitit("local", 2, tmp_path / "jobs", {"tasks_per_job": "4"}),
@@ -79,6 +78,7 @@ def test_a_process_that_dies_ends_the_sweep_and_costs_no_record(tmp_path, refusa
     assert run(path, tmp_path / "out", Processes(1), resume=True) == run(path, tmp_path / "whole")
 
 
+@pytest.mark.long
 @quiet
 def test_a_dask_worker_that_a_task_kills_is_replaced(tmp_path):
     path = write(tmp_path, f"[study.grid]\nmarker = ['{tmp_path / 'died'}']\n", 4)

@@ -195,7 +195,7 @@ def predicted(twin, log, values):
     return Predictor(twin, log, tuple(values)).predict(np.array([[*values.values()]]))[0]
 
 
-@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize("seed", [1])
 def test_the_twin_at_the_true_values_explains_every_record_to_its_noise(twin, seed):
     for log, truth in records(seed, setting=replace(BUILT, duration=3.0)):
         model = predicted(twin, log, dict(truth.parameters))
@@ -234,7 +234,7 @@ def test_bad_records_are_refused(bad):
 
 def test_what_other_parameters_do_as_well_is_no_effect():
     """A hysteresis that is friction and stiffness to first order gives its place to another one."""
-    setting = replace(BUILT, duration=2.0)
+    setting = replace(BUILT, duration=1.0)
     robot, u = true_robot(6, setting), make_currents(6, setting)
     names, σ = setting.absorbed, noise_rms(setting.counts, setting.noise)
     absorbed = HiddenAbsorbed(robot, INCA, u, 0.01, names, AS_BUILT, σ)
