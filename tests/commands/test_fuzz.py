@@ -58,8 +58,8 @@ def test_a_reader_that_computes_for_ever_is_found(monkeypatch):
 @pytest.mark.parametrize("kind", [traceback, cryptic, crash, hang])
 def test_a_bad_reader_is_found(monkeypatch, kind):
     monkeypatch.setitem(TARGETS, "bad", bad(kind))
-    monkeypatch.setattr(campaign, "PATIENCE", 0.5)
-    monkeypatch.setattr(campaign, "WAITING", 2)
+    monkeypatch.setattr(campaign, "PATIENCE", 0.3)
+    monkeypatch.setattr(campaign, "WAITING", 0.5)
     found = run("bad", 0, range(4))
     assert found.counts.total() == 4
     assert found.counts[kind.__name__] >= 3  # a change may change nothing
