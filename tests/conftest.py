@@ -77,9 +77,10 @@ def refusal() -> Callable[..., str]:
 
 @pytest.fixture
 def undrawn(monkeypatch) -> None:
-    """Pages of records have their words and no figures, which take a second each."""
+    """Pages have their words and no figures, which take a second each."""
     from identification.report import discovery_report, page
 
     monkeypatch.setattr(page, "drawing", lambda *_: "")
+    monkeypatch.setattr(page, "save_figures", lambda *_: [])
     monkeypatch.setattr(discovery_report, "save_figures", lambda *_: [])
     monkeypatch.setattr(discovery_report, "law_sections", lambda *_: [])

@@ -160,6 +160,7 @@ def test_innovations_tell_the_noise_of_sensors_and_currents(
     assert "choose one" in refused(capsys, log, "--innovations", "--windows", "0.25")
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_an_output_that_never_moves_has_no_fit_and_no_nan(
     log: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -66,9 +66,8 @@ def test_along_a_log_at_its_own_rate(capsys):
     assert np.abs(models[1]["rate"]).max() > 1e-3
 
 
-def test_a_grid_is_kept_with_its_errors(capsys, tmp_path, monkeypatch):
-    monkeypatch.setattr("identification.report.page.drawing", lambda *_: "")
-    monkeypatch.setattr("identification.report.page.save_figures", lambda *_: [])
+@pytest.mark.usefixtures("undrawn")
+def test_a_grid_is_kept_with_its_errors(capsys, tmp_path):
     out = tmp_path / "out"
     record = printed(capsys, inca, *GRID, "--out", str(out))["grid"]
     assert record["axes"] == {"x": [-0.2, 0.2], "z": [1.3, 1.5]}

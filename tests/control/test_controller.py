@@ -101,10 +101,10 @@ def test_currents_stay_within_the_amplifiers():
     [
         ("load_dependent_friction", {"load_dependent_friction.mu": 0.1}),
         ("spring_hysteresis", {"spring_hysteresis.eta": 0.15}),
-        ("drum_radius_mismatch", {"drum_radius_mismatch.delta@3": 0.02}),
         *(
             pytest.param(*case, marks=pytest.mark.long)
             for case in (
+                ("drum_radius_mismatch", {"drum_radius_mismatch.delta@3": 0.02}),
                 ("torque_constant_mismatch", {"torque_constant_mismatch.delta@3": -0.2}),
                 ("pulley_radius", {"pulley_radius.r_p": 0.02}),
             )

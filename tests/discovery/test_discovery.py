@@ -42,17 +42,7 @@ def evidence_of(answer, kind):
     return [f.evidence for f in answer.findings if f.kind is kind]
 
 
-def test_a_hidden_spring_is_named():
-    answer = found(**{"spring.k": 5.0})
-    (named,) = answer.named
-    value, std, unit = named.parameters["k"]
-    assert (answer.verdict, named.candidate.effect.name, unit) == ("named", "spring", "N/m")
-    assert value == pytest.approx(5, abs=4 * std)
-    assert named.proof.t > 2
-    assert named.proof.share > 0.8
-
-
-@pytest.mark.parametrize(("name", "size"), [*OFFSET.items(), ("rubbing.c", 1.0)])
+@pytest.mark.parametrize(("name", "size"), [*OFFSET.items(), ("rubbing.c", 1.0), ("spring.k", 5.0)])
 def test_what_is_hidden_is_named_with_its_size(name, size):
     answer = found_offset() if name in OFFSET else found(**{name: size})
     assert answer.verdict == "named"

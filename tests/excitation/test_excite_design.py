@@ -28,7 +28,7 @@ def robot() -> Twin:
 
 def test_the_design_keeps_its_limits_and_repeats(robot: Twin) -> None:
     limits = Limits(0.2, 1.2, 2.0, 0.1, 0.3)
-    one, two = (excite(robot, 0.3, free=NAMES, limits=limits, budget=3, seed=4) for _ in range(2))
+    one, two = (excite(robot, 0.3, free=NAMES, limits=limits, budget=2, seed=4) for _ in range(2))
     assert np.array_equal(one.best.run.currents, two.best.run.currents)
     assert one.best.found.e_value == two.best.found.e_value
     again = simulate(robot, one.best.run.currents)
@@ -93,6 +93,7 @@ def test_bad_designs_are_refused(robot: Twin) -> None:
         excite(robot, 0.3, free=("J",), limits=Limits(reach=1e-9), budget=1)
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_excite_writes_what_simulate_replays(tmp_path: Path, capsys) -> None:
     arguments = ["excite", "--duration", "0.3", "--budget", "1", "--free", "J", "b_v",
                  "--step", str(STEP), "--out", str(tmp_path), "--json"]  # fmt: skip

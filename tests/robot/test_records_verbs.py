@@ -27,7 +27,7 @@ def path(tmp_path):
 
 @pytest.mark.parametrize("mu", [0.15, 0.0])
 def test_text_json_and_confirmation_take_what_records_say(path, mu):
-    first, second, third = records(3, {MU: mu} if mu else None)
+    first, second, third = records(3, {MU: mu} if mu else None, samples=300)
     robot = read_robot(path, [first, second], confirm=[third])
     found = discover(robot)
     assert found.horizon is not None

@@ -95,7 +95,7 @@ def refused(robot, log):
     return str(caught.value)
 
 
-@pytest.mark.parametrize("values", [{}, {"mass": 0.6}, {"mass": 6.0}, {"damping": 12.0}])
+@pytest.mark.parametrize("values", [{}, {"mass": 0.6}, {"damping": 12.0}])
 def test_a_log_as_the_model_reads_it_passes_even_where_its_values_are_threefold_off(cart, values):
     own, log = cart
     y = run(slider(), log, **values) if values else log.outputs
@@ -153,11 +153,10 @@ def test_inputs_that_are_turned_or_exchanged_are_told(hanging, two_joints):
     assert "turn the sign of up" in refused(own, replace(log, inputs=log.inputs * [-1, 1]))
 
 
-@pytest.mark.parametrize("horizon", ["", "horizon = 0.3"])
-def test_a_pendulum_that_feedback_balances_is_not_refused(tmp_path, horizon):
+def test_a_pendulum_that_feedback_balances_is_not_refused(tmp_path):
     log = crane(0.3, np.array([40.0, 250.0, 30.0, 50.0]))
     assert np.abs(log.outputs[:, 1]).max() < 0.5
-    refuse_miswired(*robot(tmp_path, CRANE.format(z=0.3), log, "joint/x.damping", horizon))
+    refuse_miswired(*robot(tmp_path, CRANE.format(z=0.3), log, "joint/x.damping"))
 
 
 @pytest.mark.parametrize("command", ["fit", "discover"])

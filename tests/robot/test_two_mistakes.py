@@ -64,15 +64,14 @@ def test_a_motor_whose_sign_is_turned_is_told_beside_degrees(tmp_path):
         refuse_miswired(own, read)
 
 
-@pytest.mark.parametrize("lacking", [no_gravity, payload])
-def test_what_a_model_lacks_is_no_unit_and_no_sign(tmp_path, lacking):
+@pytest.mark.parametrize(("lacking", "horizon"), [(no_gravity, ""), (payload, HORIZON)])
+def test_what_a_model_lacks_is_no_unit_and_no_sign(tmp_path, lacking, horizon):
     """Forces decide: where a payload or gravity explains them, no two mistakes are looked for."""
     truth = mujoco.MjModel.from_xml_string(ARM)
     lacking(truth)
     log = tracked(truth, MOTION[ARM], seed=3)
     write_log(log, tmp_path / "log.csv")
-    for horizon in ("", HORIZON):
-        refuse_miswired(*robot(tmp_path, ARM, log, horizon))
+    refuse_miswired(*robot(tmp_path, ARM, log, horizon))
 
 
 def exchanged(log, of, signs, turned):

@@ -126,6 +126,7 @@ def test_friction_and_load_come_back_from_a_simulated_record():
     assert fit.values[F_0] == pytest.approx(1.5, rel=0.03)
 
 
+@pytest.mark.long
 @pytest.mark.skipif(
     not (DATA / "5kg" / "ODrive2" / "Up05.csv").exists(),
     reason="TTK4900_DATA names no folder with lifting; see github.com/eliasoa/TTK4900_CDPR",

@@ -93,6 +93,7 @@ def test_known_values_are_recovered_from_the_noisy_angle_of_the_model():
     assert fit.rms == pytest.approx(5e-4, rel=0.1)
 
 
+@pytest.mark.long
 @pytest.mark.skipif(
     not RAW.exists(), reason="XL330_DATA names no folder of records; see github.com/Rhoban/bam"
 )
