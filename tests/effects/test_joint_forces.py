@@ -159,7 +159,7 @@ def test_every_force_is_held_against_its_equation():
 
 
 def test_on_an_arm_the_forces_are_those_of_qfrc_applied():
-    plant, u = arm(), steps(60, 2)
+    plant, u = arm(), steps(40, 2)
     values = {}
     for effect in (e for e in plant.effects if e.name in FORCES):
         for where, factor in (("all joints", 3.0), ("joint elbow", 5.0)):
