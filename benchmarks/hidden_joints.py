@@ -32,7 +32,9 @@ PAGE = HERE.parent / "docs" / "benchmarks.md"
 BEGIN, END = "<!-- hidden joints: begin -->\n", "<!-- hidden joints: end -->\n"
 
 
-def study(robot: str, effect: str, seed: int, way: str, duration: float) -> dict[str, Any]:
+def study(
+    robot: str, effect: str, seed: int, way: str, duration: float, without: tuple[str, ...] = ()
+) -> dict[str, Any]:
     """One world from its making to its answer; an error is a row too."""
     key = {"key": f"{robot}/{effect}/{seed}/{way}"}
     try:
@@ -43,7 +45,7 @@ def study(robot: str, effect: str, seed: int, way: str, duration: float) -> dict
     begin, wall = time.process_time(), time.perf_counter()
     try:
         with tempfile.TemporaryDirectory() as folder:
-            row |= answer(*write_world(world, Path(folder)), way)
+            row |= answer(*write_world(world, Path(folder)), way, without)
     except Exception as error:
         row |= {"error": f"{type(error).__name__}: {error}",
                 "trace": traceback.format_exc(limit=-4)}  # fmt: skip
@@ -51,28 +53,31 @@ def study(robot: str, effect: str, seed: int, way: str, duration: float) -> dict
             "seconds": time.perf_counter() - wall}  # fmt: skip
 
 
-def answer(toml: Path, a: Path, b: Path, way: str) -> dict[str, Any]:
+def answer(toml: Path, a: Path, b: Path, way: str, without: tuple[str, ...] = ()) -> dict[str, Any]:
     """What is named, and the errors on record b of what was fitted and of what was found."""
 
-    from identification import discover, fit, read_robot
+    from identification import DiscoveryOptions, discover, fit, read_robot
     from identification.prediction.discovery import discover_records
     from identification.robot.record_error import compare_values
 
     robot = read_robot(toml, a, confirm=[b])
+    options = DiscoveryOptions(without=without)
     begin = time.process_time()
     fitted = fit(robot).values
     between = time.process_time()
     if way == "records":
-        found = discover_records(robot.nominal_model, [robot.log], robot.records, robot.candidates)
+        found = discover_records(
+            robot.nominal_model, [robot.log], robot.records, robot.candidates, options=options
+        )
     else:
-        found = discover(robot)
+        found = discover(robot, options=options)
     end = time.process_time()
     own = found.final.own_values.get(robot.records[0].name, {})
     after = {**found.final.values, **own}  # with what the other record has for itself
     error = compare_values(robot, robot.records[0], fitted, after)
     written = compare_values(robot, robot.records[0], {}, {})
     return {
-        "verdict": found.verdict,
+        "verdict": found.verdict, "moves": list(found.moves),
         "named": [
             {"name": n.candidate.effect.name, "where": n.candidate.where,
              "confidence": n.confidence, "one_of": n.one_of,

@@ -35,6 +35,7 @@ class SearchState:
         rejected: what the last round refitted and did not accept, the best first.
         seconds: wall time by kind of work [s].
         failed: what was tried and could not be evaluated.
+        made: names of the moves that changed the effects, in their order.
     """
 
     task: Any
@@ -47,6 +48,7 @@ class SearchState:
     rejected: tuple[Any, ...]
     seconds: Mapping[str, float]
     failed: tuple[Failed, ...] = ()
+    made: tuple[str, ...] = ()
 
     @property
     def is_finished(self) -> bool:
@@ -107,6 +109,8 @@ def next_state(state: State, every: Sequence[Move[State]], progress: Progress) -
     with collected(progress, state.failed) as failed:
         new = attempt(f"the move {move}", partial(move.make, state, progress)) or state
     new = replace(new, failed=tuple(failed))
+    if [*map(id, new.accepted)] != [*map(id, state.accepted)]:
+        new = replace(new, made=(*new.made, move.name))
     grown = len(new.accepted) > len(state.accepted)
     return replace(new, moves=asked_anew(new, every) if grown else tuple(rest))
 

@@ -113,6 +113,8 @@ class Discovery(Shown):
             of one that confirms before them; likewise.
         seconds: wall time by stage [s].
         failed: what was tried and could not be evaluated.
+        moves: names of the moves that changed the effects, in their order
+            (`identification.discovery.passes`).
         run: the free runs of both fits; None over a horizon.
         recover: returns the force of a named effect, beside those of its rivals, as the data ask
             for it; None where it has none. It raises DivergenceError.
@@ -152,6 +154,7 @@ class Discovery(Shown):
     repeats: tuple[str, ...] = ()
     seconds: Mapping[str, float]
     failed: tuple[Failed, ...] = ()
+    moves: tuple[str, ...] = ()
     run: FreeRun | None = None
     recover: Recover
 

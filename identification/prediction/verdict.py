@@ -104,7 +104,8 @@ def conclude(state: WindowSearch) -> Discovery:
         # Values with which a search began, because its fit was worse, lie inside their bounds.
         at_bound=tuple(n for n in model.at_bound if n in nominal.fit.problem.names),
         scores=state.nominal_scores, remaining=state.scores if named else state.nominal_scores,
-        findings=findings, shifts=shifts, repeats=_repeats(task.records), seconds=state.seconds,
+        findings=findings, shifts=shifts, repeats=_repeats(task.records),
+        seconds=state.seconds, moves=state.made,
         failed=state.failed, recover=partial(recover_over_horizon, model),
     )  # fmt: skip
 

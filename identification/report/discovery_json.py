@@ -73,6 +73,7 @@ def discovery_to_json(found: Discovery) -> dict[str, Any]:
             for m in found.missing_forces
         ],
         "options": asdict(found.options),
+        "moves": list(found.moves),
         "stages": [{"stage": name, "seconds": t} for name, t in found.seconds.items()],
         "seconds": float(sum(found.seconds.values())),
     }  # fmt: skip

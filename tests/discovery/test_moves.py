@@ -60,6 +60,7 @@ def test_after_each_effect_all_moves_are_asked_again_and_the_last_ones_once():
     assert end.accepted == ("a", "b", "c")
     first, second = "add_effect", "add_pair"
     assert asked == [first, first, first, second, first, second, "drop_effects"]
+    assert end.made == (first, first, second)
 
 
 @pytest.mark.parametrize("most", [1, 2, 3])

@@ -248,7 +248,7 @@ def test_the_last_fit_is_that_of_a_search_with_the_steps_of_the_model():
     rough, confirm = rough_model(own, 1e-6, 4)
     exact, _ = rough_model(own, 1e-6, 1)
     last = at_own_steps(rough, 0.2, confirm)
-    assert last.steps == (own.model.opt.timestep,) * 2
+    assert last.plant.steps == 1
     assert at_own_steps(last, 0.2, confirm) is last
     std = np.array([*exact.std.values()])
     far, left = (

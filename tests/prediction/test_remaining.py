@@ -16,7 +16,7 @@ DOUBTFUL = SimpleNamespace(
     candidate=SimpleNamespace(
         effect=SimpleNamespace(name="spring", phrase="spring", sizes=()), where="joint"
     ),
-    prediction=SimpleNamespace(is_everywhere=True, fall=0.07, t=OPTIONS.min_proof_t + 0.4),
+    proof=SimpleNamespace(is_everywhere=True, fall=0.07, t=OPTIONS.min_proof_t + 0.4),
     doubt="chance",
 )
 SHIFT = ShiftedRecord(record="a", shift=7e-4, std=1e-4, fall=0.06, chance=1e-4)
