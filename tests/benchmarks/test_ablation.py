@@ -12,7 +12,8 @@ def row(effect, names, curve=""):
     truth = {"effect": effect, "names": [effect], "parameters": {}, "joint": "j1", "size": 1.0,
              "curve": curve}  # fmt: skip
     verdict = "named" if names else "nothing missing"
-    return {"truth": truth, "verdict": verdict, "named": named, "moves": ["add_effect"] * len(names),
+    moves = ["add_effect"] * len(names)
+    return {"truth": truth, "verdict": verdict, "named": named, "moves": moves,
             "processor_seconds": 2.0}  # fmt: skip
 
 
