@@ -15,7 +15,8 @@ from identification.logs.log import Log
 from identification.prediction.records import as_records
 from identification.prediction.records_fit import NO_HORIZON
 from identification.prediction.starts import without_starts
-from identification.prediction.state import RecordsTask, first_state, next_state
+from identification.prediction.state import first_state, next_state
+from identification.prediction.task import RecordsTask
 from identification.prediction.verdict import conclude
 
 

@@ -26,7 +26,8 @@ from identification.discovery.findings.records_evidence import (
 from identification.effects.neighbours import phrase_there
 from identification.model.predictor import Plant
 from identification.prediction.clocks import told_shifts
-from identification.prediction.state import WindowSearch, rise
+from identification.prediction.state import rise
+from identification.prediction.task import WindowSearch
 from identification.prediction.unseen import Unseen
 
 # Of an output's error to its noise, which its own differences tell to a tenth or two.

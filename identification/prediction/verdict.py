@@ -39,7 +39,8 @@ from identification.prediction.records import Record
 from identification.prediction.recovery import recover_over_horizon
 from identification.prediction.remaining import find_remaining
 from identification.prediction.selection import Contender, evidences
-from identification.prediction.state import WindowSearch, rise
+from identification.prediction.state import rise
+from identification.prediction.task import WindowSearch
 from identification.prediction.twins import find_twin
 from identification.prediction.unseen import Prediction, Unseen
 

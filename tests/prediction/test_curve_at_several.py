@@ -18,15 +18,16 @@ from identification.effects.effect import Candidate
 from identification.effects.joint_plant import candidates, joint_plant
 from identification.model.parameter import Parameter
 from identification.model.predictor import Predictor
-from identification.prediction.drawn_laws import without_drawn_laws
 from identification.prediction.extension import with_effect
 from identification.prediction.first_fit import begin
-from identification.prediction.one_curve import _joints_of_several
+from identification.prediction.moves.curve_for_laws import _joints_of_several
+from identification.prediction.moves.drop_drawn_laws import drop_drawn_laws
 from identification.prediction.records import as_records
 from identification.prediction.scores import window_scores
 from identification.prediction.selection import Contender
 from identification.prediction.several_places import at_several
-from identification.prediction.state import RecordsTask, first_state
+from identification.prediction.state import first_state
+from identification.prediction.task import RecordsTask
 from identification.prediction.unseen import compare
 from identification.prediction.verdict import conclude
 from identification.report.curve_nodes import curve_nodes
@@ -141,10 +142,9 @@ def test_a_curve_over_several_joints_does_what_a_law_at_one_of_them_did():
     state = state_with_a_curve()
     law = claimed("quadratic_friction", "joint elbow")
     law = replace(law, prediction=replace(law.prediction, fall=0.5))
-    base, said = state.task.nominal_model, []
-    _, kept, lost = without_drawn_laws(
-        state.model, [law, *state.accepted], base, state.task.confirm, said.append
-    )  # fmt: skip
+    said = []
+    both = replace(state, accepted=(law, *state.accepted))
+    _, kept, lost = drop_drawn_laws(both, said.append)
     assert [*kept] == [*state.accepted]
     assert [a.doubt for a in lost] == ["drawn"]
     assert said == ["quadratic_friction, joint elbow: a curve does the same, and more"]

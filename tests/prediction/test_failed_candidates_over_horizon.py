@@ -4,6 +4,7 @@ The pendulum lacks friction under its load. This effect fails as soon as its siz
 one stage of the search runs; the other candidates are tried all the same.
 """
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -16,8 +17,10 @@ from identification.discovery.options import DiscoveryOptions
 from identification.effects.joint_plant import candidates
 from identification.errors import InputError
 from identification.prediction import exchange, extension, selection, state
+from identification.prediction.moves import add_effect, drop_effects, drop_places
 from identification.prediction.records import as_records
-from identification.prediction.state import RecordsTask, first_state, next_state
+from identification.prediction.state import first_state, next_state
+from identification.prediction.task import RecordsTask
 from identification.prediction.verdict import conclude
 from identification.report.discovery_json import discovery_to_json
 from identification.report.discovery_report import write_discovery_report
@@ -85,16 +88,17 @@ def test_a_candidate_whose_columns_fail_is_told_and_the_others_are_scored(how, m
         (selection, "with_effect", "is refused"), (selection, "with_effect", "cannot be solved"),
         (extension, "predict_fitted", "diverges"), (extension, "predict_fitted", "gives NaN"),
         (selection, "at_all_lengths", "diverges"), (selection, "at_all_lengths", "gives NaN"),
-        (state, "with_fitting_steps", "divides by zero"),
+        (add_effect, "with_fitting_steps", "divides by zero"),
     ],
 )  # fmt: skip
 def test_a_candidate_whose_refit_fails_is_told_and_not_named(module, function, how, monkeypatch):
     bad, said = failing(monkeypatch, how), []
     if function == "with_fitting_steps":  # the steps are short enough here: it asks all the same
-        whole = state.with_fitting_steps
+        whole = add_effect.with_fitting_steps
         monkeypatch.setattr(
-            state, function, lambda m, *rest: m.plant.settings((SIZE,), ONE) and whole(m, *rest)
-        )
+            add_effect, function,
+            lambda m, *rest: m.plant.settings((SIZE,), ONE) and whole(m, *rest),
+        )  # fmt: skip
     bad.within(monkeypatch, module, function)
     answer = conclude(ended(begun(), said.append))
     assert bad.reached
@@ -109,8 +113,8 @@ def test_a_candidate_whose_refit_fails_is_told_and_not_named(module, function, h
     ("module", "function", "how"),
     [
         (selection, "at_their_best", "diverges"), (selection, "at_their_best", "gives NaN"),
-        (state, "exchanged", "cannot be solved"), (exchange, "solve", "diverges"),
-        (state, "prune", "is refused"), (state, "without_idle_places", "diverges"),
+        (add_effect, "exchanged", "cannot be solved"), (exchange, "solve", "diverges"),
+        (drop_effects, "as_good_without", "is refused"), (drop_places, "_fewer", "diverges"),
     ],
 )  # fmt: skip
 def test_an_effect_that_fails_only_in_a_comparison_keeps_what_its_own_fit_found(
@@ -134,14 +138,18 @@ def test_a_failure_while_a_search_ends_leaves_what_was_found(monkeypatch):
 
 
 @pytest.mark.usefixtures("undrawn")
-@pytest.mark.parametrize("step", ["refit_contenders", "find_rivals", "prune"])
+@pytest.mark.parametrize("step", ["refit_contenders", "find_rivals", "drop_effects"])
 def test_a_round_that_fails_as_a_whole_ends_the_search_with_what_was_found(
     step, monkeypatch, tmp_path
 ):
     def fails(*_):
         raise InputError("a matrix is singular; take another")
 
-    monkeypatch.setattr(state, step, fails)
+    if step == "drop_effects":
+        moves = tuple(replace(m, make=fails) if m.name == step else m for m in state.MOVES)
+        monkeypatch.setattr(state, "MOVES", moves)
+    else:
+        monkeypatch.setattr(add_effect, step, fails)
     said = []
     answer = conclude(ended(begun(), said.append))
     (one,) = answer.failed

@@ -18,7 +18,7 @@ from identification.prediction.first_fit import begin
 from identification.prediction.nominal_fit import fit_nominal
 from identification.prediction.records import as_records
 from identification.prediction.scores import window_scores
-from identification.prediction.state import RecordsTask
+from identification.prediction.task import RecordsTask
 from identification.prediction.unknowns import Prior, Unknowns
 
 SAMPLES = 300  # of each record

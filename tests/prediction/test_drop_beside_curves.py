@@ -6,8 +6,7 @@ from types import SimpleNamespace
 import pytest
 
 from identification.effects.effect import Candidate, Effect, Size
-from identification.prediction import beside_curves
-from identification.prediction.beside_curves import without_laws_beside_curves
+from identification.prediction.moves import drop_beside_curves
 
 SIZES = (Size("c", "N", 1.0, 0.1, about=""),)
 
@@ -36,10 +35,12 @@ def kept(monkeypatch):
             refits.append([c.effect.name for c in candidates])
             return None if cannot else SimpleNamespace(candidates=candidates)
 
-        monkeypatch.setattr(beside_curves, "refitted", refit)
+        monkeypatch.setattr(drop_beside_curves, "refitted", refit)
         every = accepted(*names)
         model = SimpleNamespace(candidates=[a.candidate for a in every])
-        new, stay, lost = without_laws_beside_curves(model, every, None, (), told.append)
+        task = SimpleNamespace(nominal_model=None, confirm=())
+        state = SimpleNamespace(model=model, accepted=tuple(every), task=task)
+        new, stay, lost = drop_beside_curves.drop_beside_curves(state, told.append)
         assert (new is model) == (not lost)
         assert all(a.doubt == "curve" for a in lost)
         assert [replace(a, doubt=None) for a in lost] == [a for a in every if a not in stay]

@@ -8,34 +8,20 @@ that made it needless, are names.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 
-from identification.discovery.nominal_model import NominalModel
 from identification.estimation.options import Progress
 from identification.prediction.extension import refitted
-from identification.prediction.model import WindowModel
-from identification.prediction.records import Record
 from identification.prediction.selection import Contender
+from identification.prediction.task import Change, WindowSearch
 
 
-def without_laws_beside_curves(
-    model: WindowModel, accepted: Sequence[Contender], nominal_model: NominalModel,
-    confirm: Sequence[Record], progress: Progress,
-) -> tuple[WindowModel, tuple[Contender, ...], tuple[Contender, ...]]:  # fmt: skip
-    """Returns the model without laws that were accepted after a curve which is still there.
+def drop_beside_curves(state: WindowSearch, progress: Progress) -> Change:
+    """Returns the state's model without laws that were accepted after a curve that is still there.
 
-    Args:
-        model: with all of the accepted effects.
-        accepted: in their order.
-        nominal_model: the other free parameters, and the horizon.
-        confirm: records that no fit may see.
-        progress: is told which laws are left out.
-
-    Returns:
-        The model, the effects that it keeps, and those that it lost, which are in doubt. All are
-        kept where the model without them cannot be simulated.
+    All are kept where the model without them cannot be simulated.
     """
+    model, accepted, task = state.model, state.accepted, state.task
     kept: list[Contender] = []
     lost: list[Contender] = []
     for old in accepted:
@@ -44,9 +30,9 @@ def without_laws_beside_curves(
         (lost if is_law and is_beside else kept).append(old)
     keys = {old.candidate.key for old in lost}
     rest = [c for c in model.candidates if c.key not in keys]
-    without = refitted(model, rest, nominal_model, confirm) if lost else None
+    without = refitted(model, rest, task.nominal_model, task.confirm) if lost else None
     if without is None:
-        return model, tuple(accepted), ()
+        return model, accepted, ()
     for old in lost:
         progress(f"{old.candidate.effect.name}, {old.candidate.where}: found beside a curve only")
     return without, tuple(kept), tuple(replace(old, doubt="curve") for old in lost)

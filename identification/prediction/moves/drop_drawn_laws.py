@@ -11,39 +11,24 @@ is told and not named. A law whose cause is another one than the curve's explain
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from identification.discovery.nominal_model import NominalModel
 from identification.estimation.options import Progress
 from identification.prediction.extension import refitted
 from identification.prediction.model import WindowModel
-from identification.prediction.records import Record
 from identification.prediction.rivals import OWN_SHARE
 from identification.prediction.selection import Contender
 from identification.prediction.several_places import places_of
+from identification.prediction.task import Change, WindowSearch
 
 ON_JOINTS = {"force", "friction"}  # hooks of what a curve, which is a force, may do as well
 
 
-def without_drawn_laws(
-    model: WindowModel, accepted: Sequence[Contender], nominal_model: NominalModel,
-    confirm: Sequence[Record], progress: Progress,
-) -> tuple[WindowModel, tuple[Contender, ...], tuple[Contender, ...]]:  # fmt: skip
-    """Returns the model without laws that a later curve at their joint makes needless.
-
-    Args:
-        model: with all of the accepted effects.
-        accepted: in their order.
-        nominal_model: the other free parameters, and the horizon.
-        confirm: records that no fit may see.
-        progress: is told which laws are left out.
-
-    Returns:
-        The model, the effects that it keeps, and those that it lost, which are in doubt.
-    """
+def drop_drawn_laws(state: WindowSearch, progress: Progress) -> Change:
+    """Returns the state's model without laws that a later curve at their joint makes needless."""
+    model, accepted, task = state.model, state.accepted, state.task
     kept, lost = [*accepted], []
     for k, law in enumerate(accepted):
         curves = [c.candidate for c in accepted[k + 1 :] if c.candidate.effect.is_curve]
@@ -52,7 +37,7 @@ def without_drawn_laws(
         if effect.is_curve or not mine <= drawn or not {*effect.hooks} <= ON_JOINTS:
             continue
         rest = [c for c in model.candidates if c.key != law.candidate.key]
-        without = refitted(model, rest, nominal_model, confirm)
+        without = refitted(model, rest, task.nominal_model, task.confirm)
         if without is None:
             continue
         beside = _mean_square(without) - _mean_square(model)

@@ -7,40 +7,26 @@ unseen records are predicted as well.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 
-from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate
 from identification.estimation.options import Progress
 from identification.prediction.model import WindowModel
-from identification.prediction.records import Record
-from identification.prediction.rivals import as_good_without
-from identification.prediction.selection import Contender
+from identification.prediction.moves.drop_effects import as_good_without
 from identification.prediction.several_places import at_places, is_felt, places_of
+from identification.prediction.task import Change, WindowSearch
 
 
-def without_idle_places(
-    model: WindowModel, accepted: Sequence[Contender], nominal_model: NominalModel,
-    confirm: Sequence[Record], options: DiscoveryOptions, progress: Progress,
-) -> tuple[WindowModel, tuple[Contender, ...], tuple[Contender, ...]]:  # fmt: skip
-    """Returns the model, its effects without places that are no longer needed, and none in doubt.
-
-    Args:
-        model: with all of the accepted effects.
-        accepted: in their order.
-        nominal_model: the other free parameters, and the horizon.
-        confirm: records that no fit may see.
-        options: what a size must be to count, and what is beyond chance.
-        progress: is told which places are left out.
-    """
+def drop_places(state: WindowSearch, progress: Progress) -> Change:
+    """Returns the state's model and its effects without places that are no longer needed."""
+    model, options = state.model, state.task.options
     out = []
-    for old in accepted:
+    for old in state.accepted:
         fewer, smaller = _fewer(model, old.candidate, options), None
         if fewer is not None:
             some = [fewer if c.key == old.candidate.key else c for c in model.candidates]
-            smaller = as_good_without(model, some, nominal_model, confirm, options)
+            smaller = as_good_without(model, some, state.task)
         if fewer is None or smaller is None:
             out.append(old)
             continue

@@ -16,7 +16,7 @@ from identification.model.parameter import Parameter
 from identification.model.predictor import Predictor
 from identification.prediction.extension import with_effect
 from identification.prediction.first_fit import begin
-from identification.prediction.idle_places import without_idle_places
+from identification.prediction.moves.drop_places import drop_places
 from identification.prediction.nominal_fit import fit_nominal
 from identification.prediction.records import as_records
 from identification.prediction.scores import window_scores
@@ -66,7 +66,10 @@ def named(shoulder, elbow):
 def pruned(shoulder, elbow):
     base, confirm, model, claim = named(shoulder, elbow)
     said = []
-    found = without_idle_places(model, [claim], base, confirm, DiscoveryOptions(), said.append)
+    task = SimpleNamespace(
+        nominal_model=base, confirm=confirm, horizon=base.horizon, options=DiscoveryOptions()
+    )
+    found = drop_places(SimpleNamespace(model=model, accepted=[claim], task=task), said.append)
     return model, *found, said
 
 
@@ -98,6 +101,6 @@ def test_places_that_stay_have_the_parameters_that_they_had():
 def test_an_effect_at_one_place_is_not_asked():
     c = SimpleNamespace(where="joint elbow", effect=SimpleNamespace(own=False))
     claim = SimpleNamespace(candidate=c)
-    assert without_idle_places("model", [claim], None, (), DiscoveryOptions(), print) == (
-        "model", (claim,), (),
-    )  # fmt: skip
+    task = SimpleNamespace(options=DiscoveryOptions())
+    state = SimpleNamespace(model="model", accepted=[claim], task=task)
+    assert drop_places(state, print) == ("model", (claim,), ())

@@ -14,51 +14,31 @@ from dataclasses import replace
 from functools import partial
 
 from identification.discovery.attempts import attempt
-from identification.discovery.nominal_model import NominalModel
-from identification.discovery.options import DiscoveryOptions
-from identification.effects.effect import Effect
 from identification.estimation.options import Progress
 from identification.prediction.contenders import count_numbers
-from identification.prediction.drawn_laws import ON_JOINTS
 from identification.prediction.evidence import all_gains, count_windows, evidence
 from identification.prediction.extension import refitted
-from identification.prediction.model import WindowModel
-from identification.prediction.records import Record
+from identification.prediction.moves.drop_drawn_laws import ON_JOINTS
 from identification.prediction.screening import score_all
 from identification.prediction.selection import Contender, refit_contenders
 from identification.prediction.several_places import places_of
+from identification.prediction.task import Change, WindowSearch
 
 
-def with_one_curve(
-    model: WindowModel, accepted: Sequence[Contender], nominal_model: NominalModel,
-    effects: Sequence[Effect], confirm: Sequence[Record], options: DiscoveryOptions,
-    progress: Progress,
-) -> tuple[WindowModel, tuple[Contender, ...], tuple[Contender, ...]]:  # fmt: skip
-    """Returns the model with a curve in place of several laws at a joint, if it has more evidence.
-
-    Args:
-        model: with all of the accepted effects.
-        accepted: in their order.
-        nominal_model: the other free parameters, and the horizon.
-        effects: the candidates, curves among them.
-        confirm: records that no fit may see.
-        options: all judgement constants.
-        progress: is told what is tried.
-
-    Returns:
-        The model, the effects that it has, and those that it lost, which are in doubt.
-    """
-    curves, lost = [e for e in effects if e.is_curve], []
+def curve_for_laws(state: WindowSearch, progress: Progress) -> Change:
+    """Returns the state's model with a curve in place of several laws, if it has more evidence."""
+    task, model, accepted = state.task, state.model, [*state.accepted]
+    options, confirm = task.options, task.confirm
+    curves, lost = [e for e in task.effects if e.is_curve], list[Contender]()
     for where in _joints_of_several(accepted):
         laws = [a for a in accepted if a.candidate.where == where and _is_law(a)]
         out = {a.candidate.key for a in laws}
         rest = [c for c in model.candidates if c.key not in out]
-        bare = refitted(model, rest, nominal_model, confirm)
+        bare = refitted(model, rest, task.nominal_model, confirm)
         if bare is None:
             continue
         scores = [s for s in score_all(bare, curves, options) if s.candidate.where == where]
-        horizon = float(nominal_model.horizon or 0.0)
-        refit = partial(refit_contenders, bare, scores, horizon, confirm, options, progress)
+        refit = partial(refit_contenders, bare, scores, task.horizon, confirm, options, progress)
         refitted_curves = attempt(None, refit)
         if refitted_curves is None:
             continue

@@ -9,14 +9,11 @@ from numba import njit
 
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate, Effect, Size
-from identification.prediction import drawn_laws, one_curve
-from identification.prediction.drawn_laws import without_drawn_laws
-from identification.prediction.one_curve import with_one_curve
+from identification.prediction.moves import curve_for_laws, drop_drawn_laws
 from identification.prediction.proof import has_size
 
 LAW = njit(lambda s, p: 0.0)
 SIZES = (Size("c", "N", 1.0, 0.1, about=""),)
-BASE = SimpleNamespace(horizon=0.2)
 
 
 def model(square, *candidates):
@@ -45,6 +42,13 @@ def accepted(name, where="joint", hook="force", after=1.0, fall=0.9):
     return Accepted(Candidate(effect, where, {}), model(after), prediction)
 
 
+def state(whole, every, effects=()):
+    task = SimpleNamespace(
+        nominal_model=None, confirm=(), horizon=0.2, effects=effects, options=DiscoveryOptions()
+    )
+    return SimpleNamespace(model=whole, accepted=tuple(every), task=task)
+
+
 def names(each):
     return [a.candidate.effect.name for a in each]
 
@@ -56,9 +60,9 @@ def after_curve(monkeypatch, every, without):
     def refit(whole, rest, base, confirm):
         return None if without is None else model(without, *rest)
 
-    monkeypatch.setattr(drawn_laws, "refitted", refit)
+    monkeypatch.setattr(drop_drawn_laws, "refitted", refit)
     whole = model(0.1, *(a.candidate for a in every))
-    new, kept, lost = without_drawn_laws(whole, every, BASE, (), told.append)
+    new, kept, lost = drop_drawn_laws.drop_drawn_laws(state(whole, every), told.append)
     assert len(told) == len(lost)
     assert all(a.doubt == "drawn" for a in lost)
     assert names(c for c in kept) == [c.effect.name for c in new.candidates]
@@ -82,7 +86,10 @@ def test_a_law_stays_that_explains_beside_the_curve_what_it_did_alone(
 @pytest.mark.parametrize(
     "every",
     [
-        [accepted("curve_speed"), accepted("square")],  # that is what `beside_curves` says no to
+        [
+            accepted("curve_speed"),
+            accepted("square"),
+        ],  # as `drop_beside_curves` judges
         [accepted("square"), accepted("curve_speed", where="other joint")],
         [accepted("delay", hook="input"), accepted("curve_speed")],
         [accepted("square"), accepted("cogging")],
@@ -111,16 +118,16 @@ def in_their_place(monkeypatch, every, theirs, curve, doubt=None):
         found = model(0.1, *bare.candidates, new.candidate)
         return bare, (replace(new, model=found, criterion=curve, doubt=doubt),)
 
-    monkeypatch.setattr(one_curve, "refitted", lambda whole, rest, *_: model(5.0, *rest))
-    monkeypatch.setattr(one_curve, "score_all", score)
-    monkeypatch.setattr(one_curve, "refit_contenders", refit)
-    monkeypatch.setattr(one_curve, "count_windows", lambda m: 100)
-    monkeypatch.setattr(one_curve, "all_gains", lambda parent, m: np.zeros(3))
-    monkeypatch.setattr(one_curve, "evidence", lambda *_: np.array([[theirs]]))
+    monkeypatch.setattr(curve_for_laws, "refitted", lambda whole, rest, *_: model(5.0, *rest))
+    monkeypatch.setattr(curve_for_laws, "score_all", score)
+    monkeypatch.setattr(curve_for_laws, "refit_contenders", refit)
+    monkeypatch.setattr(curve_for_laws, "count_windows", lambda m: 100)
+    monkeypatch.setattr(curve_for_laws, "all_gains", lambda parent, m: np.zeros(3))
+    monkeypatch.setattr(curve_for_laws, "evidence", lambda *_: np.array([[theirs]]))
     whole = model(0.2, *(a.candidate for a in every))
     effects = [accepted("curve_position").candidate.effect]
-    options = DiscoveryOptions()
-    new, kept, lost = with_one_curve(whole, every, BASE, effects, (), options, lambda line: None)
+    begun = state(whole, every, effects)
+    new, kept, lost = curve_for_laws.curve_for_laws(begun, lambda line: None)
     assert names_of(new.candidates) == names(kept)
     assert all(a.doubt == "drawn" for a in lost)
     return names(kept), names(lost), asked

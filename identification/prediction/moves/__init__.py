@@ -1,0 +1,1 @@
+"""The moves of a search over a horizon, each with its reason."""

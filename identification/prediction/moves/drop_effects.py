@@ -1,0 +1,57 @@
+"""Effects that later ones have made needless.
+
+An effect is needless where unseen records are predicted as well without it, by chance or but for
+too little to matter. The last one was just proven.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from identification.discovery.passes import uses
+from identification.effects.effect import Candidate
+from identification.estimation.options import Progress
+from identification.prediction.crossing import at_their_best
+from identification.prediction.extension import refitted
+from identification.prediction.model import WindowModel
+from identification.prediction.proof import Doubt, find_doubt
+from identification.prediction.task import Change, RecordsTask, WindowSearch
+from identification.prediction.unseen import compare
+
+NEEDLESS: tuple[Doubt, ...] = ("chance", "little")  # others make up for it
+
+
+def drop_effects(state: WindowSearch, progress: Progress) -> Change:
+    """Returns the state's model without needless effects, and those that stay."""
+    model, kept = state.model, [*state.accepted]
+    for old in state.accepted[:-1]:
+        rest = [c for c in model.candidates if c.key != old.candidate.key]
+        without = as_good_without(model, rest, state.task)
+        if without is not None:
+            progress(f"{old.candidate.effect.name}, {old.candidate.where}: no longer needed")
+            model = without
+            kept = [k for k in kept if k is not old]
+    return model, tuple(kept), ()
+
+
+def as_good_without(
+    model: WindowModel, candidates: Sequence[Candidate], task: RecordsTask
+) -> WindowModel | None:
+    """Returns the refit of fewer effects or places; None where it predicts unseen records worse.
+
+    Args:
+        model: with all of them.
+        candidates: those that it keeps.
+        task: what is asked.
+
+    Returns:
+        None also where it cannot be simulated.
+    """
+    without = refitted(model, candidates, task.nominal_model, task.confirm)
+    if without is None:
+        return None
+    best = model
+    if uses(task.options, "states_of_others"):
+        without, (best,) = at_their_best(without, [model], task.horizon, task.confirm)
+    doubt = find_doubt(compare(without.unseen, best.unseen), 1, task.options)
+    return without if doubt in NEEDLESS else None

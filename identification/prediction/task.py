@@ -1,0 +1,90 @@
+"""What a search over a horizon is asked, and what it knows after a step."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+from identification.discovery.moves import SearchState, Watch
+from identification.discovery.nominal_model import NominalModel
+from identification.discovery.options import DiscoveryOptions
+from identification.effects.effect import Effect
+from identification.estimation.options import Progress
+from identification.prediction.model import WindowModel
+from identification.prediction.records import Record
+from identification.prediction.selection import Contender
+from identification.prediction.unseen import Unseen
+
+
+@dataclass(frozen=True, kw_only=True)
+class RecordsTask:
+    """The task of a discovery.
+
+    Attributes:
+        nominal_model: the model with every candidate effect compiled in, and its free parameters.
+        horizon: over which records are predicted [s].
+        records: to fit and to confirm.
+        effects: the candidates.
+        options: all judgement constants.
+    """
+
+    nominal_model: NominalModel
+    horizon: float
+    records: tuple[Record, ...]
+    effects: tuple[Effect, ...]
+    options: DiscoveryOptions
+
+    @property
+    def confirm(self) -> list[Record]:
+        """Records that no fit may see."""
+        return [r for r in self.records if r.role == "confirm"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class WindowSearch(SearchState):
+    """A search by predictions over a horizon; its effects are `Contender`s.
+
+    Attributes:
+        begun: errors of the values with which the fit began, on the records that confirm; over the
+            horizon alone where that refutes them.
+        worse_fit: errors of the fitted values on the records that confirm, where they are worse
+            than those of the values with which the fit began: the search then begins with the
+            latter. None where they are not.
+        exchanged: the model with the roles of the records exchanged; None where it was not needed.
+    """
+
+    begun: Unseen
+    worse_fit: Unseen | None = None
+    exchanged: WindowModel | None = None
+
+    @property
+    def room(self) -> int:
+        """How many effects more may be named."""
+        options = self.task.options
+        return int(min(options.max_effects, options.max_horizon_effects)) - len(self.accepted)
+
+
+# The model of a move that finishes a search, its effects, and those that it lost, which are in
+# doubt.
+Change = tuple[WindowModel, tuple[Contender, ...], tuple[Contender, ...]]
+
+
+def finishing(
+    change: Callable[[WindowSearch, Progress], Change],
+) -> Callable[[WindowSearch, Progress], WindowSearch]:
+    """Returns the move that makes a change; what it loses comes before what was lost earlier.
+
+    Args:
+        change: returns the change of a state, and tells what it does.
+    """
+
+    def make(state: WindowSearch, progress: Progress) -> WindowSearch:
+        watch = Watch(state.seconds)
+        model, accepted, lost = change(state, progress)
+        watch.stop("refits")
+        return replace(
+            state, model=model, accepted=accepted, rejected=(*lost, *state.rejected),
+            seconds=watch.seconds,
+        )  # fmt: skip
+
+    return make
