@@ -28,7 +28,7 @@ class Discover(OnRobot):
     """
 
     options: Annotated[Path | None, tyro.conf.arg(metavar="PATH")] = None
-    """TOML file with judgement constants, such as min_proof_t = 3.0 (docs/discovery.md)."""
+    """TOML file of options: min_proof_t = 3.0, without = ["add_pair"], ... (docs/discovery.md)."""
 
     def run(self) -> int:
         """Discover, confirm, say, keep."""

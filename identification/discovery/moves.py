@@ -16,7 +16,6 @@ from functools import partial
 from typing import Any, Generic, TypeVar
 
 from identification.discovery.attempts import Failed, attempt, collected
-from identification.discovery.passes import uses
 from identification.estimation.options import Progress
 
 
@@ -69,7 +68,8 @@ class Move(Generic[State]):
     """A way to a better model.
 
     Attributes:
-        name: by which options leave it out, of `identification.discovery.passes`.
+        name: by which options leave it out, of `identification.discovery.passes`. The move that
+            adds an effect is the search itself, and no option leaves it out.
         make: returns the state after it; the state itself where it finds nothing better.
         grows: whether it adds effects.
     """
@@ -89,7 +89,7 @@ def asked_anew(state: State, every: Sequence[Move[State]]) -> tuple[Move[State],
         state: with its model and its options.
         every: all moves of this kind of evidence, in their order.
     """
-    used = [m for m in every if uses(state.task.options, m.name)]
+    used = [m for m in every if m.name not in state.task.options.without]
     return tuple(m for m in used if not m.grows or state.room > 0)
 
 

@@ -7,10 +7,10 @@ other constant stands in the module that reads it, with its reason.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from pathlib import Path
 
-from identification.discovery.passes import refuse_unknown
+from identification.discovery.passes import PASSES, refuse_unknown
 from identification.effects.effect import FARTHEST
 from identification.errors import InputError, unknown_name
 from identification.files import read_toml
@@ -196,6 +196,7 @@ class DiscoveryOptions(KalmanOptions):
     def __post_init__(self) -> None:
         super().__post_init__()
         refuse_unknown(self.without)
+        object.__setattr__(self, "without", tuple(dict.fromkeys(self.without)))
 
 
 def read_options(path: str | Path) -> DiscoveryOptions:
@@ -212,10 +213,11 @@ def read_options(path: str | Path) -> DiscoveryOptions:
     values = read_toml(path)
     known = {f.name for f in fields(DiscoveryOptions)}
     for name in values:
+        if name in PASSES:
+            raise InputError(f'{path}: {name} is no option; write without = ["{name}"]')
         if name not in known:
             raise unknown_name(f"option in {path}:", name, known)
     try:
-        found = DiscoveryOptions(**values)
-        return replace(found, without=tuple(found.without))
+        return DiscoveryOptions(**values)
     except InputError as error:
         raise InputError(f"{path}: {error}") from None

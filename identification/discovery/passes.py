@@ -7,36 +7,58 @@ what it changes.
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from types import MappingProxyType
 from typing import Protocol
 
 from identification.errors import InputError, unknown_name
 
-# By the name that leaves it out. Passes of a free run come first, those of a horizon follow.
-PASSES = MappingProxyType({
-    "add_effect": "adds the effect that explains most, where unseen data prove it",
-    "add_pair": "adds two effects of which none is proven alone, because each hides the other",
-    "add_deviants": "makes effects of parts that deviate by more than parts do",
-    "drop_effects": "drops an effect that later ones have made needless",
-    "exchange_effects": "puts a rival in the place of an effect, where the model with it is better",
-    "other_kinds": "exchanges the kind of an accepted effect once another effect is beside it",
-    "kinds_of_rivals": "fits each rival in its likeliest kind, so that none loses by its kind",
-    "other_shapes": "fits the next likely and the usual shape of the best effect",
-    "finer_shapes": "scores likely effects at more values of their shapes, as a refit asks",
-    "jumps_at_outliers": "scores jumps of a sensor where the outputs jump",
-    "begin_anew": "refits from the nominal values where a parameter ended at a limit",
-    "hidden_effects": "refits effects beyond no level where the noise model may hide them",
-    "exchange_roles": "asks whether an effect holds where fitted and unseen records change places",
-    "simpler_laws": "fits laws with fewer numbers that act as the best one does",
-    "several_places": "scores an effect with a size of its own at each of several places",
-    "imitated_effects": "leaves out a candidate that the free parameters of the model imitate",
-    "states_of_others": "lets windows begin where another model begins them with less error",
-    "values_of_start": "begins at the given values where fitted ones predict unseen records worse",
-    "drop_places": "drops places at which an effect that has several does nothing after all",
-    "curve_for_laws": "puts one curve of the data in the place of several laws at a joint",
-    "drop_beside_curves": "drops laws that were found only beside a curve of the data",
-    "drop_drawn_laws": "drops a law whose work a later curve of the data does",
+RUN, HORIZON, BOTH = "free run", "horizon", "both"  # which search makes a pass
+# By the name that leaves it out: which search makes it, and what it does.
+PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
+    "add_pair": (
+        RUN, "adds two effects of which none is proven alone, because each hides the other",
+    ),
+    "add_deviants": (RUN, "makes effects of parts that deviate by more than parts do"),
+    "drop_effects": (BOTH, "drops an effect that later ones have made needless"),
+    "exchange_effects": (
+        RUN, "puts a rival in the place of an effect, where the model with it is better",
+    ),
+    "other_kinds": (
+        RUN, "exchanges the kind of an accepted effect once another effect is beside it",
+    ),
+    "kinds_of_rivals": (
+        RUN, "fits each rival in its likeliest kind, so that none loses by its kind",
+    ),
+    "other_shapes": (RUN, "fits the next likely and the usual shape of the best effect"),
+    "finer_shapes": (RUN, "scores likely effects at more values of their shapes, as a refit asks"),
+    "jumps_at_outliers": (RUN, "scores jumps of a sensor where the outputs jump"),
+    "begin_anew": (RUN, "refits from the nominal values where a parameter ended at a limit"),
+    "hidden_effects": (RUN, "refits effects beyond no level where the noise model may hide them"),
+    "exchange_roles": (
+        HORIZON, "asks whether an effect holds where fitted and unseen records change places",
+    ),
+    "simpler_laws": (HORIZON, "fits laws with fewer numbers that act as the best one does"),
+    "several_places": (
+        HORIZON, "scores an effect with a size of its own at each of several places",
+    ),
+    "imitated_effects": (
+        HORIZON, "leaves out a candidate that the free parameters of the model imitate",
+    ),
+    "states_of_others": (
+        HORIZON, "lets windows begin where another model begins them with less error",
+    ),
+    "values_of_start": (
+        HORIZON, "begins at the given values where fitted ones predict unseen records worse",
+    ),
+    "drop_places": (
+        HORIZON, "drops places at which an effect that has several does nothing after all",
+    ),
+    "curve_for_laws": (
+        HORIZON, "puts one curve of the data in the place of several laws at a joint",
+    ),
+    "drop_beside_curves": (HORIZON, "drops laws that were found only beside a curve of the data"),
+    "drop_drawn_laws": (HORIZON, "drops a law whose work a later curve of the data does"),
 })  # fmt: skip
 
 
@@ -69,8 +91,10 @@ def refuse_unknown(names: object) -> None:
     Raises:
         InputError: it is no list, or one of the names is unknown.
     """
-    if not isinstance(names, tuple | list):
-        raise InputError(f"option without is {names!r}; give a list of names of passes")
-    for name in map(str, names):
+    if not isinstance(names, tuple | list) or not all(isinstance(name, str) for name in names):
+        raise InputError(
+            f'option without is {names!r}; give a list of names of passes, such as ["begin_anew"]'
+        )
+    for name in names:
         if name not in PASSES:
             raise unknown_name("pass of a search to leave out:", name, PASSES)

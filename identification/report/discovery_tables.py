@@ -49,9 +49,11 @@ def records_section(found: Discovery) -> list[Section]:
 
 
 def steps_taken(found: Discovery) -> list[str]:
-    """Returns sentences on the steps that simulations took, and what finer ones would change."""
+    """Returns sentences on the steps of simulations, on finer ones, and on passes left out."""
     steps = steps_of(found.nominal.plant)
-    return step_sentences(found.final, words_of(found), steps)
+    without = ", ".join(found.options.without)
+    left_out = [f"The options left out these passes of the search: {without}."] if without else []
+    return [*step_sentences(found.final, words_of(found), steps), *left_out]
 
 
 def diff_section(found: Discovery, files: str = "") -> Section:

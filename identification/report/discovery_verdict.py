@@ -188,7 +188,8 @@ def _proof(found: Discovery) -> str:
     of = f" of prediction{_over(found)}" if found.horizon is not None else ""
     square = (found.after.rms / found.before.rms) ** 2 - 1 if found.before.rms > 0 else 0.0
     is_one = found.scale is not None or len(errors[0]) == 1  # else the square has no meaning
-    percent = f" (mean square {100 * square:+z.0f} %)" if is_one else ""
+    nearly_all = "less by more than 99" if square < -0.995 else f"{100 * square:+z.0f}"
+    percent = f" (mean square {nearly_all} %)" if is_one else ""
     said = (
         f"On data that the fit has not seen, the error{of} falls {change} with {whom} in the"
         f" model{percent}; the noise is {noise}{made}."

@@ -124,7 +124,7 @@ def _rejected(rejected: RejectedEffect, plant: Plant) -> str:
 def _fitted(found: NamedEffect | RejectedEffect) -> str:
     """Returns what speaks for an effect: its gain on fitted samples, or over all windows."""
     if isfinite(found.bic_gain):
-        return f"gain {found.bic_gain:z.4g} on fitted samples"
+        return f"BIC gain {found.bic_gain:z.4g} on fitted samples"
     return f"evidence {found.evidence:z.4g} of all windows"
 
 
@@ -136,7 +136,8 @@ def describe_chance(proof: Proof) -> str:
 
 def describe_gains(named: NamedEffect) -> str:
     """Returns in words what a named effect gains on fitted and on unseen samples."""
-    unseen = f", {named.proof.gain:z.4g} on unseen" if isfinite(named.proof.gain) else ""
+    higher = f", log likelihood {named.proof.gain:+z.4g} on unseen ones"
+    unseen = higher if isfinite(named.proof.gain) else ""
     return f"{_fitted(named)}{unseen} ({describe_chance(named.proof)})"
 
 

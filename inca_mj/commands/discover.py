@@ -57,7 +57,7 @@ class Discover:
     settled: bool = False
     """The robot stood at rest by itself, with what the twin lacks, when the log began."""
     options: Annotated[Path | None, tyro.conf.arg(metavar="PATH")] = None
-    """TOML file with judgement constants, such as min_proof_t = 3.0 (docs/discovery.md)."""
+    """TOML file of options: min_proof_t = 3.0, without = ["add_pair"], ... (docs/discovery.md)."""
     trust: Trust = ()
     """Checks of the log that you overrule: sensors, units, wiring."""
     robot: Annotated[Values, tyro.conf.OmitArgPrefixes] = values_field

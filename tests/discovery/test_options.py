@@ -71,6 +71,8 @@ def test_a_file_sets_what_it_names_and_leaves_the_rest(tmp_path):
         ("min_proof_t = ", "is not TOML"),
         ('without = ["add_pear"]', "did you mean 'add_pair'"),
         ('without = "add_pair"', "give a list of names of passes"),
+        ("without = [1]", "give a list of names of passes"),
+        ("begin_anew = false", r'begin_anew is no option; write without = \["begin_anew"\]'),
     ],
 )
 def test_a_wrong_file_is_refused_in_one_sentence(tmp_path, refusal, text, says):
@@ -89,3 +91,9 @@ def test_the_limits_of_an_option_hold_and_its_default_lies_within(field):
     for value in (least - 1, most + 1 if most < inf else inf, nan):
         with pytest.raises(InputError, match=field.name):
             DiscoveryOptions(**{field.name: value})
+
+
+def test_passes_that_are_left_out_are_kept_once_in_a_value_that_does_not_change():
+    options = DiscoveryOptions(without=["add_pair", "begin_anew", "add_pair"])
+    assert options == DiscoveryOptions(without=("add_pair", "begin_anew"))
+    assert hash(options) == hash(DiscoveryOptions(without=("add_pair", "begin_anew")))
