@@ -21,14 +21,7 @@ _TAIL = 80  # bytes of a folder's name in that of its draft; a name may have 255
 
 
 def make_hidden(path: Path) -> Path:
-    """Makes a hidden folder for a draft, and removes those that are left of programs.
-
-    Args:
-        path: of the folder of the results, which exists.
-
-    Raises:
-        OSError: no folder can be made there.
-    """
+    """Makes a hidden folder for a draft, and removes those that are left of programs."""
     path = path.resolve()
     for draft in _drafts(path, path.parent):
         number = draft.name.removeprefix(_DRAFT).partition("-")[0]
@@ -88,15 +81,7 @@ def _is_running(process: int) -> bool:
 
 
 def make_folders(path: Path, made: list[Path]) -> None:
-    """Makes a folder and those above it.
-
-    Args:
-        path: of the folder.
-        made: gets the folders that were not there before, also where it fails in between.
-
-    Raises:
-        OSError: one cannot be made, or is no folder.
-    """
+    """Makes a folder and those above it."""
     missing = [each for each in (path, *path.parents) if not each.exists()]
     for each in reversed(missing):
         with suppress(FileExistsError):

@@ -22,11 +22,7 @@ import mujoco
 
 @cache
 def library() -> ctypes.CDLL:
-    """Returns MuJoCo's library, which `import mujoco` has loaded.
-
-    Raises:
-        ImportError: it is not where the package has it.
-    """
+    """Returns MuJoCo's library, which `import mujoco` has loaded."""
     folder = Path(mujoco.__file__).parent
     found = sorted(p for p in folder.iterdir() if "mujoco" in p.name and _is_library(p))
     if not found:
@@ -90,9 +86,6 @@ def derive(model: mujoco.MjModel) -> None:
 
     A body without mass would be warned of on stderr and in a file MUJOCO_LOG.TXT; whoever reads the
     values refuses it in a sentence.
-
-    Args:
-        model: whose numbers were changed.
     """
     with quiet():
         mujoco.mj_setConst(model, mujoco.MjData(model))

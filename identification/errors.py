@@ -35,14 +35,7 @@ class GraphicsError(InputError):
 
 @contextmanager
 def told_of(where: str) -> Iterator[None]:
-    """Adds to an `InputError` of the block the place where a user wrote the bad input.
-
-    Args:
-        where: the key and the file, such as "free in robot.toml".
-
-    Raises:
-        InputError: of the same kind as inside, with the place before its message.
-    """
+    """Adds to an `InputError` of the block the place where a user wrote the bad input."""
     try:
         yield
     except InputError as error:
@@ -64,42 +57,19 @@ def repeated(names: Sequence[str]) -> list[str]:
 
 
 def refuse_negative(name: str, value: int) -> None:
-    """Refuse a whole number below zero.
-
-    Raises:
-        InputError: it is.
-    """
+    """Refuse a whole number below zero."""
     if value < 0:
         raise InputError(f"{name} {value} is negative; give 0 or more")
 
 
 def refuse_number(name: str, value: float, is_good: bool, good: str) -> None:
-    """Refuse a number outside its range.
-
-    Args:
-        name: of the number.
-        value: of it.
-        is_good: whether it lies in its range.
-        good: what is allowed, in words.
-
-    Raises:
-        InputError: it lies outside.
-    """
+    """Refuse a number outside its range."""
     if not is_good:
         raise InputError(f"{name} = {value:g} is not allowed; give {good}")
 
 
 def refuse_kind(value: object, kinds: type | tuple[type, ...], what: str) -> None:
-    """Refuse an argument of another type than a function takes.
-
-    Args:
-        value: the argument.
-        kinds: its types.
-        what: what is taken, and how it is had, such as "discover takes a Log (read_log)".
-
-    Raises:
-        InputError: it is of another type.
-    """
+    """Refuse an argument of another type than a function takes."""
     if not isinstance(value, kinds):
         shown = repr(value)
         shown = shown if len(shown) <= _LONGEST else f"{shown[: _LONGEST - 3]}..."

@@ -30,15 +30,7 @@ IMPOSSIBLE = frozenset(
 
 
 def exchange(one: Path, other: Path) -> None:
-    """Exchange the names of two folders in one step.
-
-    Args:
-        one: exists.
-        other: exists, in the same file system.
-
-    Raises:
-        OSError: it cannot be done here, and nothing has changed.
-    """
+    """Exchange the names of two folders of one file system in one step, or change nothing."""
     sys.audit("os.rename", str(one), str(other), -1, -1)  # as for the renames of Python itself
     names = os.fsencode(one), os.fsencode(other)
     library = ctypes.CDLL(None, use_errno=True) if os.name == "posix" else None
@@ -54,11 +46,7 @@ def exchange(one: Path, other: Path) -> None:
 
 
 def make_alike(folder: Path, model: Path) -> None:
-    """Give a folder the owner and the permissions of another one.
-
-    Raises:
-        OSError: this user cannot.
-    """
+    """Give a folder the owner and the permissions of another one."""
     state, now = model.stat(), folder.stat()
     if (state.st_uid, state.st_gid) != (now.st_uid, now.st_gid):
         os.chown(folder, state.st_uid, state.st_gid)

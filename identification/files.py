@@ -69,9 +69,6 @@ def opened(path: Path, largest: int = MAX_BYTES, what: str = LOG) -> Iterator[Bi
         path: of the file.
         largest: sane size [bytes].
         what: kind of file that is wanted, for messages.
-
-    Raises:
-        InputError: there is no such file, it is something else, too large, or cannot be read.
     """
     check_file(path, largest, what)
     try:
@@ -84,16 +81,7 @@ def opened(path: Path, largest: int = MAX_BYTES, what: str = LOG) -> Iterator[Bi
 
 
 def read_bytes(path: Path, largest: int = MAX_BYTES, what: str = LOG) -> bytes:
-    """Returns the bytes of a regular file of a sane size.
-
-    Args:
-        path: of the file.
-        largest: as of `opened`.
-        what: as of `opened`.
-
-    Raises:
-        InputError: as of `opened`.
-    """
+    """Returns the bytes of a regular file of a sane size."""
     with opened(path, largest, what) as stream:
         content = stream.read(largest + 1)
     if len(content) > largest:  # it grew, or its system does not tell its size
@@ -108,9 +96,6 @@ def read_text(path: Path, largest: int = BY_PROGRAM, what: str = "text file") ->
         path: of the file.
         largest: sane size [bytes].
         what: kind of file that is wanted, for messages.
-
-    Raises:
-        InputError: there is no such file, it is something else, too large, or no text.
     """
     try:
         return read_bytes(path, largest, what).decode("utf-8-sig")
@@ -119,16 +104,7 @@ def read_text(path: Path, largest: int = BY_PROGRAM, what: str = "text file") ->
 
 
 def read_json(path: Path, what: str, cure: str) -> Any:
-    """Returns the content of a JSON file that a program wrote.
-
-    Args:
-        path: of the file.
-        what: kind of file that is wanted, for messages.
-        cure: what a user does about a damaged one, for messages.
-
-    Raises:
-        InputError: there is no such file, it is too large, or it is not JSON.
-    """
+    """Returns the content of a JSON file that a program wrote."""
     text = read_text(path, what=what)
     try:
         return json.loads(text)
@@ -137,16 +113,7 @@ def read_json(path: Path, what: str, cure: str) -> Any:
 
 
 def read_archive(path: Path, what: str) -> dict[str, np.ndarray]:
-    """Returns the arrays of an .npz by name.
-
-    Args:
-        path: of the file.
-        what: kind of file that is wanted, for messages.
-
-    Raises:
-        InputError: there is no such file, it is too large, also once it is unpacked, or it is not
-            an archive of arrays of numbers and text.
-    """
+    """Returns the arrays of an .npz by name."""
     import numpy as np
 
     raw = io.BytesIO(read_bytes(path, what=what))
@@ -166,16 +133,7 @@ def read_archive(path: Path, what: str) -> dict[str, np.ndarray]:
 
 
 def digest(path: Path, largest: int = 8 * MAX_BYTES, what: str = "file") -> str:
-    """Returns the SHA-256 of a regular file, which is read a part at a time.
-
-    Args:
-        path: of the file.
-        largest: as of `opened`.
-        what: as of `opened`.
-
-    Raises:
-        InputError: as of `opened`.
-    """
+    """Returns the SHA-256 of a regular file, which is read a part at a time."""
     with opened(path, largest, what) as stream:
         return file_digest(stream, "sha256").hexdigest()  # type: ignore[arg-type]
 
@@ -187,9 +145,6 @@ def check_file(path: Path, largest: int = MAX_BYTES, what: str = LOG) -> None:
         path: of the file.
         largest: sane size [bytes].
         what: kind of file that is wanted, for messages.
-
-    Raises:
-        InputError: there is no such file, it is something else, or too large.
     """
     try:
         state = path.stat()
@@ -238,16 +193,7 @@ def _refuse_long(value: Any) -> None:
 
 
 def read_toml(path: Path, what: str = "TOML file") -> dict[str, Any]:
-    """Returns the content of a TOML file that was written by hand.
-
-    Args:
-        path: of the file.
-        what: kind of file that is wanted, for messages.
-
-    Raises:
-        InputError: there is no such file, it is too large for one that was written by hand, or it
-            is not TOML.
-    """
+    """Returns the content of a TOML file that was written by hand."""
     try:
         content = tomllib.loads(read_bytes(path, BY_HAND, what).decode("utf-8-sig"))
         _refuse_long(content)

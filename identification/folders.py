@@ -44,11 +44,7 @@ def list_foreign(folder: Path) -> list[str]:
 
 
 def refuse_foreign(folder: Path) -> None:
-    """Refuse a folder with files of others, which results could replace.
-
-    Raises:
-        InputError: there is such a file, or the folder cannot be read.
-    """
+    """Refuse a folder with files of others, which results could replace."""
     try:
         if not folder.is_dir():
             return
@@ -88,11 +84,7 @@ class Draft:
     taken: tuple[str, ...] = ()
 
     def save(self) -> None:
-        """Save what the draft holds so far; more may be added to it and saved again.
-
-        Raises:
-            InputError: it cannot be written, and the place is as it was.
-        """
+        """Save what the draft holds so far; more may be added to it and saved again."""
         try:
             self.place.mkdir(parents=True, exist_ok=True)  # somebody may have removed it meanwhile
             with alone(self.place.resolve().parent):
@@ -116,15 +108,7 @@ class Draft:
 
 @contextmanager
 def draft_of(path: str | os.PathLike[str]) -> Iterator[Draft]:
-    """Yields a draft of the results of a folder, made when missing; it is saved when asked.
-
-    Args:
-        path: of the folder.
-
-    Raises:
-        InputError: the folder cannot be made or written to, or holds files of others. Where these
-            came while the block ran, its files lie in a folder beside it, which the message names.
-    """
+    """Yields a draft of the results of a folder, made when missing; it is saved when asked."""
     path = Path(path)
     refuse_foreign(path)
     made: list[Path] = []
@@ -157,25 +141,14 @@ def draft_of(path: str | os.PathLike[str]) -> Iterator[Draft]:
 
 @contextmanager
 def whole_folder(path: str | os.PathLike[str]) -> Iterator[Path]:
-    """Yields a temporary folder whose files are saved in `path` when the block ends well.
-
-    Args:
-        path: of a folder, which is made when missing.
-
-    Raises:
-        InputError: as of `draft_of` and `Draft.save`.
-    """
+    """Yields a temporary folder whose files are saved in `path` when the block ends well."""
     with draft_of(path) as draft:
         yield draft.folder
         draft.save()
 
 
 def try_folder(path: Path) -> None:
-    """Refuse a folder in which no results can be saved, by writing a file for it and removing it.
-
-    Raises:
-        InputError: the folder cannot be made, read or written, or holds files of others.
-    """
+    """Refuse a folder in which no results can be saved: a file is written for it and removed."""
     with draft_of(path) as draft:
         try:
             file = draft.folder / "result.json"

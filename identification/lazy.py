@@ -10,12 +10,7 @@ from typing import Any
 def lazy(
     package: str, public: Mapping[str, str]
 ) -> tuple[Callable[[str], Any], Callable[[], list[str]]]:
-    """Returns a package's `__getattr__` and `__dir__`.
-
-    Args:
-        package: its name.
-        public: public name to the module below the package that has it.
-    """
+    """Returns a package's `__getattr__` and `__dir__`."""
 
     def get(name: str) -> Any:
         if name not in public:

@@ -40,15 +40,7 @@ class Content:
 
 
 def list_content(folder: Path, records: Iterable[Mapping[str, str]] = ()) -> Content:
-    """Returns what lies in a folder.
-
-    Args:
-        folder: exists.
-        records: hashes by name of more files that the program made, beside those of its record.
-
-    Raises:
-        OSError: the folder cannot be read.
-    """
+    """Returns what lies in a folder."""
     known = [read_made(folder), *records]
     made, others, folders = set(), set(), set()
     for entry in folder.iterdir():
@@ -74,11 +66,7 @@ def read_made(folder: Path) -> dict[str, str]:
 
 
 def write_made(folder: Path) -> None:
-    """Write the record of a folder in which the program has made all files.
-
-    Raises:
-        InputError: it cannot be written.
-    """
+    """Write the record of a folder in which the program has made all files."""
     made = {file.name: digest(file) for file in sorted(folder.iterdir()) if file.name != MADE}
     write_text(folder / MADE, json.dumps({"files": made}, indent=1) + "\n")
 

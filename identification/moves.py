@@ -23,15 +23,7 @@ _LAST = "result.json"
 
 
 def move_all(draft: Path, folder: Path) -> None:
-    """Move the files of a draft into the folder in which it lies; those made before go.
-
-    Args:
-        draft: holds files and their record, and nothing else.
-        folder: holds the draft.
-
-    Raises:
-        OSError: a file cannot be moved; the folder is then as it was.
-    """
+    """Move the files of a draft into the folder in which it lies; those made before go."""
     number = draft.name.removeprefix(".").partition("-")[2]
     moving = draft.rename(folder / f"{MOVING}{number}")
     done: list[tuple[Path, Path]] = []
@@ -48,11 +40,7 @@ def move_all(draft: Path, folder: Path) -> None:
 
 
 def finish_moves(folder: Path) -> None:
-    """Finish the moves of programs that were killed while they moved files into a folder.
-
-    Raises:
-        OSError: a file cannot be moved.
-    """
+    """Finish the moves of programs that were killed while they moved files into a folder."""
     for moving in [each for each in folder.iterdir() if each.name.startswith(MOVING)]:
         if (moving / MADE).is_file():  # it is moved last: without it all is done
             for source, target in _steps(moving, folder):

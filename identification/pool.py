@@ -40,21 +40,13 @@ def threads() -> int:
 
 
 def end_if_given_up() -> None:
-    """Ends the part that this thread runs, where nobody waits for it any more.
-
-    Raises:
-        GivenUp: nobody does.
-    """
+    """Ends the part that this thread runs, where nobody waits for it any more."""
     if hasattr(_here, "given_up") and _here.given_up.is_set():
         raise GivenUp
 
 
 def run_parts(function: Callable[[Part], Result], parts: Iterable[Part]) -> list[Result]:
     """Runs a function on each part of some work, on all threads at once.
-
-    Args:
-        function: what is done; it spends its time without the lock of the interpreter.
-        parts: what each call gets.
 
     Returns:
         What each call returned, in the order of the parts.
@@ -63,12 +55,7 @@ def run_parts(function: Callable[[Part], Result], parts: Iterable[Part]) -> list
 
 
 def each_part(function: Callable[[Part], Result], parts: Iterable[Part]) -> Iterator[Result]:
-    """Yields what `run_parts` returns, each as soon as it and those before it are done.
-
-    Args:
-        function: what is done.
-        parts: what each call gets.
-    """
+    """Yields what `run_parts` returns, each as soon as it and those before it are done."""
     each, count, given_up = list(parts), threads(), threading.Event()
     if len(each) < 2 or count < 2:
         yield from map(function, each)
@@ -92,10 +79,6 @@ def split(count: int, most: int) -> list[slice]:
     """Splits a count of things into ranges of nearly the same length.
 
     How many threads there are does not matter to it, so that neither do the last digits of results.
-
-    Args:
-        count: of things.
-        most: things of a range at most.
     """
     parts = max(1, -(-count // most))
     return [slice(*pair) for pair in pairwise(count * k // parts for k in range(parts + 1))]

@@ -22,11 +22,7 @@ _WATCH: ContextVar[Watch | None] = ContextVar("watch", default=None)
 
 @contextmanager
 def watched(watch: Watch) -> Iterator[None]:
-    """Show the stages of what is computed in the block.
-
-    Args:
-        watch: opens a stage of a name with a number of steps; what it yields counts one.
-    """
+    """Show the stages of what is computed in the block."""
     token = _WATCH.set(watch)
     try:
         yield
@@ -36,12 +32,7 @@ def watched(watch: Watch) -> Iterator[None]:
 
 @contextmanager
 def stage(what: str, steps: int = USUAL) -> Iterator[Advance]:
-    """Begins a stage of a computation; call what it yields after each step.
-
-    Args:
-        what: is counted, such as "refits".
-        steps: how many there are, or usually are.
-    """
+    """Begins a stage of a computation; call what it yields after each step."""
     watch = _WATCH.get()
     if watch is None:
         yield lambda: None
@@ -51,13 +42,7 @@ def stage(what: str, steps: int = USUAL) -> Iterator[Advance]:
 
 
 def counted(items: Iterable[Item], what: str, steps: int = USUAL) -> Iterator[Item]:
-    """Yields the items of a stage, each counted when the next one is asked for.
-
-    Args:
-        items: what is computed with.
-        what: they are.
-        steps: how many there are, or usually are.
-    """
+    """Yields the items of a stage, each counted when the next one is asked for."""
     with stage(what, steps) as advance:
         for item in items:
             yield item

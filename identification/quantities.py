@@ -31,11 +31,7 @@ def finite_or_none(value: float | None) -> float | None:
 
 
 def fall_words(fall: float) -> str:
-    """Returns the relative change of a mean square in words: "falls by 12 %", "rises by 3 %".
-
-    Args:
-        fall: 1 minus the new value over the old one.
-    """
+    """Returns the relative change of a mean square in words: "falls by 12 %", "rises by 3 %"."""
     percent = f"{100 * abs(fall):.0f} %"
     if percent == "0 %":
         return "stays the same"
@@ -133,13 +129,7 @@ def plain_unit(unit: str) -> str:
 
 
 def per(over: str, under: str, power: int = 1) -> str:
-    """Returns the unit of a quotient, with brackets only where needed: m/N, rad/(N m), 1/(N m)^2.
-
-    Args:
-        over: unit of the numerator; "1" where it has none.
-        under: unit of the denominator.
-        power: of the denominator.
-    """
+    """Returns the unit of a quotient, with brackets where needed: m/N, rad/(N m), 1/(N m)^2."""
     below = under if under.isalnum() else f"({under})"
     return f"{over}/{below}" + (f"^{power}" if power != 1 else "")
 

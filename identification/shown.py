@@ -19,11 +19,7 @@ SENTENCE = r"(?<=\.) (?=[A-Z])"  # between two of them
 
 @singledispatch
 def verdict_of(result: object) -> Sequence[str]:
-    """Returns the sentences of a result's verdict, the first one first; its kind where none is.
-
-    Args:
-        result: of a discovery.
-    """
+    """Returns the sentences of a result's verdict, the first one first; its kind where none is."""
     return [f"<{type(result).__name__}>"]
 
 

@@ -14,11 +14,7 @@ from identification.errors import InputError
 
 @contextmanager
 def whole_file(path: str | os.PathLike[str]) -> Iterator[Path]:
-    """Yields a temporary path beside `path` that becomes `path` when the block ends well.
-
-    Raises:
-        InputError: the folder does not exist or cannot be written to.
-    """
+    """Yields a temporary path beside `path` that becomes `path` when the block ends well."""
     path = Path(path)
     if not path.parent.is_dir():
         raise InputError(f"no such folder: {path.parent}; make it before {path.name} is written")
@@ -38,14 +34,7 @@ def whole_file(path: str | os.PathLike[str]) -> Iterator[Path]:
 
 
 def to_disk(path: Path) -> None:
-    """Bring a file, or the names in a folder, to the disk, so that a loss of power loses nothing.
-
-    Args:
-        path: of the file or folder.
-
-    Raises:
-        OSError: the disk is full or broken.
-    """
+    """Bring a file, or the names in a folder, to the disk: a loss of power then loses nothing."""
     if os.name != "posix":  # other systems bring nothing to the disk that is open to be read
         return
     number = os.open(path, os.O_RDONLY)

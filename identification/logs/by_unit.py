@@ -48,12 +48,7 @@ def of_outputs(values: Mapping[str, float], log: Log) -> np.ndarray:
 
 
 def relative(errors: Mapping[str, float], of: Mapping[str, float]) -> float:
-    """Returns errors by unit relative to others, in one number; infinite where these are zero.
-
-    Args:
-        errors: by unit.
-        of: by the same units.
-    """
+    """Returns errors by unit relative to others, in one number; infinite where these are zero."""
     if not all(of[unit] > 0 for unit in errors):
         return float("inf")
     return float(np.sqrt(np.mean([(e / of[unit]) ** 2 for unit, e in errors.items()])))

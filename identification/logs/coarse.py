@@ -38,17 +38,8 @@ def evened_stamps(
 ) -> tuple[Table, str]:
     """Returns a table with even stamps where digits were all that they lost, and a sentence.
 
-    Args:
-        table: columns in SI; NaN where nothing stands, and finite stamps.
-        outputs: which of them are outputs.
-        sidecar: its sampling time wins where it fits the stamps.
-        trusted: whether the user says that rows with one stamp are meant.
-
     Returns:
         The table as it is and "" where its stamps are even already, or uneven for another reason.
-
-    Raises:
-        InputError: the stamps are too coarse to say when the rows were sampled.
     """
     stamps, declared = _stamps(table), sidecar.sampling_time
     if stamps is None:
@@ -66,17 +57,7 @@ def evened_stamps(
 def refuse_contradicted(
     table: Table, outputs: Sequence[str], sidecar: Sidecar, trusted: bool = False
 ) -> None:
-    """Refuse a declared sampling time where the stamps prove another one.
-
-    Args:
-        table: columns in SI; NaN where nothing stands, and finite stamps.
-        outputs: which of them are outputs.
-        sidecar: it gives the sampling time.
-        trusted: whether the user says that rows with one stamp are meant.
-
-    Raises:
-        InputError: the log is even with another step.
-    """
+    """Refuse a declared sampling time where the stamps prove another one."""
     if sidecar.sampling_time is not None:
         stamps = _stamps(table)
         proven = _proven_step(table, stamps, outputs, trusted) if stamps else None

@@ -20,16 +20,7 @@ HUGE = 1e15  # of any SI unit: no angle, way, force, voltage or current of a rob
 def conversions(
     table: Table, sidecar: Sidecar, units: Mapping[str, str]
 ) -> tuple[dict[str, str], dict[str, float]]:
-    """Returns the SI unit of each column, where known, and the factor from its numbers to SI.
-
-    Args:
-        table: as it stands in the file, with the names that its columns should have.
-        sidecar: what the TOML says.
-        units: SI unit by column or group.
-
-    Raises:
-        InputError: a unit is unknown, or measures another quantity.
-    """
+    """Returns the SI unit of each column, where known, and the factor from its numbers to SI."""
     si: dict[str, str] = {}
     factors: dict[str, float] = {}
     for name in table.names:
@@ -48,16 +39,7 @@ def conversions(
 
 
 def converted(table: Table, sidecar: Sidecar, factors: Mapping[str, float]) -> Table:
-    """Returns the table in SI units.
-
-    Args:
-        table: as it stands in the file.
-        sidecar: what the TOML says.
-        factors: by column, from the file's numbers to SI.
-
-    Raises:
-        InputError: a factor of the TOML makes numbers that no robot has.
-    """
+    """Returns the table in SI units."""
     # What overflows without a factor is refused with its row.
     with np.errstate(over="ignore", invalid="ignore"):
         data = table.data * [factors[name] for name in table.names]

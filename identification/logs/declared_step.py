@@ -77,13 +77,7 @@ def missing_rows(time: FloatArray, width: FloatArray, step: float) -> list[Missi
 
 
 def missing_sentence(table: Table, places: Sequence[Missing], sidecar: Sidecar) -> str:
-    """Returns words that tell where rows are missing, and how many.
-
-    Args:
-        table: of the log, with stamps in s.
-        places: where rows are missing, at least one.
-        sidecar: it gives the sampling time.
-    """
+    """Returns words that tell where rows are missing, and how many."""
     row, time = places[0].row, table["time"]
     rest = len(places) - 1
     more = f", and in {rest} more place{'s' * (rest > 1)}" if rest else ""
@@ -105,9 +99,6 @@ def refuse_wrong_step(table: Table, proven: float | None, sidecar: Sidecar, exac
         proven: the sampling time that its coarse stamps prove [s]; None where they prove none.
         sidecar: it gives the sampling time.
         exact: relative difference that is no contradiction, such as that of two clocks.
-
-    Raises:
-        InputError: the declared sampling time is another one.
     """
     declared, step = sidecar.sampling_time, proven or _even_step(table)
     if not declared or not step or np.isnan(table.data).any(axis=1).mean() >= 0.5:

@@ -88,15 +88,7 @@ def dimension(unit: str) -> Dimension | None:
 
 
 def refuse_not_si(unit: str, what: str) -> None:
-    """Refuse a unit in which a number is not that of SI, such as g or mm.
-
-    Args:
-        unit: a label, which may have symbols that are not known.
-        what: whose unit it is.
-
-    Raises:
-        InputError: it is one.
-    """
+    """Refuse a unit in which a number is not that of SI, such as g or mm."""
     known = dimension(unit)
     if known is not None and not known.is_si:
         raise InputError(
@@ -106,16 +98,7 @@ def refuse_not_si(unit: str, what: str) -> None:
 
 
 def refuse_other_unit(unit: str, expected: str, what: str) -> None:
-    """Refuse a unit that is not the one in which a number is read.
-
-    Args:
-        unit: that is said.
-        expected: the SI unit of the number.
-        what: whose unit it is.
-
-    Raises:
-        InputError: it is another.
-    """
+    """Refuse a unit that is not the one in which a number is read."""
     if unit == expected:
         return
     said, right = dimension(unit), dimension(expected)

@@ -43,11 +43,7 @@ class Stamps:
         return min(float(self.quanta.max()), float(np.diff(self.time).max()))
 
     def is_exact(self, within: float = EXACT) -> bool:
-        """Returns whether one sampling time fits, and is known well enough.
-
-        Args:
-            within: relative, to which it must be known.
-        """
+        """Returns whether one sampling time fits, and is known well enough."""
         return self.steps is not None and self.steps[1] - self.steps[0] <= within * self.steps[1]
 
 

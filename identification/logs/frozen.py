@@ -40,9 +40,6 @@ def still_sentence(log: Log) -> str | None:
     """Tells of outputs that stand still in all of a log; None where there is none.
 
     It is no refusal: a joint may be braked, or its friction may hold it against its drive.
-
-    Args:
-        log: what was measured.
     """
     told = []
     for name, y in zip(log.output_names, log.outputs.T, strict=True):
@@ -78,9 +75,6 @@ def refuse_frozen(
             these varies as before.
         overrule: how a user may overrule this, for the message.
         is_rate: whether the output is a rate, which may jump: it is judged at the end only.
-
-    Raises:
-        InputError: the output froze.
     """
     y = log.outputs[:, output]
     if not is_rate:

@@ -65,9 +65,6 @@ def find_gaps(log: str, c: Channel, y: FloatArray, h: float) -> Iterator[Gap]:
         c: a channel that comes with every sample.
         y: the channel on the grid, shape (n,).
         h: step of the grid [s].
-
-    Raises:
-        InputError: a gap is so long that the log says nothing of its bridge.
     """
     intervals = np.rint(np.diff(c.time) / h).astype(int)
     wide = np.flatnonzero(intervals > 1)
@@ -94,9 +91,6 @@ def find_pauses(log: str, c: Channel, n: int, h: float) -> Iterator[Gap]:
         c: the input.
         n: samples of the grid.
         h: its step [s].
-
-    Raises:
-        InputError: it stays away for too large a part of the log.
     """
     for k in np.flatnonzero(np.diff(c.time) > HELD * h).tolist():
         _refuse_longest(log, c, n, h)

@@ -27,17 +27,7 @@ CHANCE = 1e-9  # that outputs of the robot would repeat in all these rows, and o
 def refuse_interleaved(
     table: Table, inputs: Sequence[str], outputs: Sequence[str], overrule: str
 ) -> None:
-    """Refuse rows of a second publisher, at other stamps than those of the robot.
-
-    Args:
-        table: columns in SI; NaN where nothing stands, and finite stamps.
-        inputs: which of them are inputs.
-        outputs: which of them are outputs.
-        overrule: how a user may overrule this, for the message.
-
-    Raises:
-        InputError: rows on a clock of their own give other inputs than the rows around them.
-    """
+    """Refuse rows of a second publisher, at other stamps than those of the robot."""
     if not inputs or not outputs:
         return
     u, y = (np.column_stack([table[n] for n in names]) for names in (inputs, outputs))

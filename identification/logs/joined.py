@@ -46,11 +46,7 @@ class JoinedLog(Log):
         return _joined(parts, numbers, self.name, float(self.time[first]))
 
     def part(self, name: str) -> Log:
-        """Returns the samples of a named split, of all records that have it; see `Log.part`.
-
-        Raises:
-            InputError: no record has it.
-        """
+        """Returns the samples of a named split, of all records that have it; see `Log.part`."""
         has = [(number, record) for number, record in zip(self.numbers, self.records, strict=True)
                if name in (record.splits or halves(record))]  # fmt: skip
         if not has:
@@ -62,16 +58,7 @@ class JoinedLog(Log):
 
 
 def join_logs(logs: Sequence[Log], name: str = "") -> Log:
-    """Returns several records as one log; a single one stays as it is.
-
-    Args:
-        logs: of the same inputs and outputs, with the same sampling time and hold.
-        name: of the whole; the names of the records when empty.
-
-    Raises:
-        InputError: there is no log, two differ in columns, sampling time, or hold, one of them has
-            values of its own, or two of them share samples.
-    """
+    """Returns several records as one log; a single one stays as it is."""
     if not logs:
         raise InputError("there is no log to join; give one or more")
     if len(logs) == 1:
@@ -121,11 +108,7 @@ def records_of(log: Log) -> tuple[tuple[int, Log], ...]:
 
 
 def _refuse_unlike(first: Log, log: Log) -> None:
-    """Refuse a record that cannot follow the first one.
-
-    Raises:
-        InputError: it has another sampling time, or one of both has values of its own.
-    """
+    """Refuse a record that cannot follow the first one."""
     if not np.isclose(first.sampling_time, log.sampling_time, rtol=1e-6):
         raise InputError(
             f"log {first.name!r} has a sample every {first.sampling_time:g} s, {log.name!r} every"

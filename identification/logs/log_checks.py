@@ -21,9 +21,6 @@ def check_array(log: str, what: str, array: FloatArray, shape: tuple[int, ...]) 
         what: name of the array.
         array: the numbers, in any shape.
         shape: the shape that it should have.
-
-    Raises:
-        InputError: the array has another shape, or a number in it is not finite.
     """
     if array.shape != shape:
         raise InputError(
@@ -45,9 +42,6 @@ def check_splits(log: str, time: FloatArray, splits: Mapping[str, tuple[float, f
         log: name of the log.
         time: its time stamps, shape (n,) [s].
         splits: its named parts [start, end) [s].
-
-    Raises:
-        InputError: a part holds too few samples, or estimation and validation overlap.
     """
     span = f"[{time[0]:g}, {time[-1]:g}] s"
     for name, (start, end) in splits.items():

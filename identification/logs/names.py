@@ -25,11 +25,7 @@ def lookup(table: Mapping[str, Value], name: str) -> Value | None:
 
 
 def check_keys(what: str, keys: Iterable[str], columns: Iterable[str]) -> None:
-    """Refuse a key that is neither a column nor a group, because it would have no effect.
-
-    Raises:
-        InputError: a key is unknown.
-    """
+    """Refuse a key that is neither a column nor a group, because it would have no effect."""
     known = {n for column in columns for n in (column, group(column))}
     for key in keys:
         if key not in known:
@@ -51,12 +47,7 @@ def quoted(text: str, longest: int = 40) -> str:
 
 
 def check_column_names(names: Iterable[str]) -> None:
-    """Refuse names that a CSV header could not hold, and names that occur twice.
-
-    Raises:
-        InputError: a name is empty, is `time`, occurs twice, or contains a comma, a quote or a line
-            break.
-    """
+    """Refuse names that a CSV header could not hold, and names that occur twice."""
     every = list(names)
     for name in every:
         plain = name.isprintable() and name == name.strip() and not set(name) & set(',"')

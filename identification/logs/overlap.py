@@ -19,12 +19,7 @@ MOVING = 10  # of them, at least, that differ from one another: robots at rest a
 
 
 def refuse_different(logs: Sequence[Log]) -> None:
-    """Refuse logs that are not different records of one robot.
-
-    Raises:
-        InputError: two of them differ in their columns or in how their inputs are held, or hold the
-            same samples.
-    """
+    """Refuse logs that are not different records of one robot."""
     first = logs[0]
     for k, log in enumerate(logs):
         if any(_is_same(log, other) for other in logs[:k]):
@@ -50,12 +45,7 @@ def refuse_different(logs: Sequence[Log]) -> None:
 
 
 def share_samples(a: Log, b: Log) -> bool:
-    """Returns whether some samples in a row stand in both logs, to the bit.
-
-    Args:
-        a: a log.
-        b: another one, with the same columns.
-    """
+    """Returns whether some samples in a row stand in both logs, to the bit."""
     rows = [np.hstack([log.inputs, log.outputs]) for log in (a, b)]
     if min(map(len, rows)) < ROW:
         return False

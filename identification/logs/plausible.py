@@ -23,14 +23,7 @@ TURN = 0.1  # of a turn: a jump of a wrapped angle differs from a whole turn by 
 
 
 def check_possible(table: Table) -> None:
-    """Refuse a number that no robot has, in whatever unit it is.
-
-    Args:
-        table: columns in SI, NaN where nothing stands; of time its own checks judge.
-
-    Raises:
-        InputError: there is one.
-    """
+    """Refuse a number that no robot has, in whatever unit it is."""
     for name in (n for n in table.names if n != "time"):
         row = int(np.argmax(np.nan_to_num(np.abs(table[name]))))
         if abs(table[name][row]) > HUGE:
@@ -59,9 +52,6 @@ def check_plausible(
         rates: largest plausible speed by column or group [SI/s].
         sidecar: the TOML file that may give the unit.
         overrule: how a user may overrule this, for the message.
-
-    Raises:
-        InputError: a column exceeds its limit.
     """
     for name in table.names:
         size, rate = lookup(limits, name), lookup(rates, name)

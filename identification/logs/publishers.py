@@ -42,20 +42,7 @@ def refuse_second_publisher(
     overrule: str,
     trusted: bool = False,
 ) -> None:
-    """Refuse rows that are not of the robot whose other rows the log has.
-
-    Args:
-        table: columns in SI; NaN where nothing stands, and finite stamps.
-        inputs: which of them are inputs.
-        outputs: which of them are outputs.
-        units: SI unit by column, where known.
-        overrule: how a user may overrule this, for the message.
-        trusted: whether the user overrules this: then a few rows may contradict each other.
-
-    Raises:
-        InputError: two rows with one stamp contradict each other, or rows are zero in all columns
-            between rows that are far from it.
-    """
+    """Refuse rows that are not of the robot whose other rows the log has."""
     positions = [name for name in outputs if units.get(name) not in RATES]
     for name in positions:
         _refuse_twice(table, name, units.get(name, ""), overrule, trusted)
@@ -74,15 +61,6 @@ def refuse_two_inputs(
 
     A step that is written as its two values at one time is right: its first value is the one that
     held before.
-
-    Args:
-        table: columns in SI; NaN where nothing stands, and finite stamps.
-        inputs: which of them are inputs.
-        overrule: how a user may overrule this, for the message.
-        trusted: whether the user overrules this: then up to half of the stamps may have two values.
-
-    Raises:
-        InputError: rows with one stamp give an input several values, and too many for mere chance.
     """
     for name in inputs:
         rows, u, t = _seen(table, name)

@@ -42,10 +42,6 @@ def parse_csv(
         wanted: says which of the columns of a file to read; their empty cells are NaN, and the
             others are left out. All columns, and no empty cells, when None.
         stamps: columns whose numbers count less the first one, where a float cannot hold them.
-
-    Raises:
-        InputError: it is empty, not text, not separated by commas, has rows of different lengths,
-            or has a cell that is not a number.
     """
     text = _decoded(raw, path).replace("\r\n", "\n").replace("\r", "\n")
     lines = text.split("\n")

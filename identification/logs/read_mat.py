@@ -29,9 +29,6 @@ def parse_mat(
     """Reads the table in a `.mat` file of version 7 or older.
 
     An optional column is a vector of the same name; it cannot be called `u` or `y`.
-
-    Raises:
-        InputError: the file cannot be read, lacks `u` or `y`, or their shapes do not fit.
     """
     content = _loaded(raw, path)
     wanted = {"u": inputs, "y": outputs}

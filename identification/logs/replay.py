@@ -23,12 +23,7 @@ BLOCKS = 4
 
 
 def replayed_share(fitted: Sequence[Log], log: Log) -> float:
-    """Returns R of a log, no unit; 0 where nothing varies or no fitted piece is long enough.
-
-    Args:
-        fitted: logs of the same columns and sampling time.
-        log: what is to confirm.
-    """
+    """Returns R of a log, no unit; 0 where nothing varies or no fitted piece is long enough."""
     z = np.hstack([log.inputs, log.outputs])
     scale = z.std(axis=0)
     kept = scale > 0

@@ -60,9 +60,6 @@ def even_out(
         inputs: which of them are inputs.
         hold: of the inputs, "zoh" or "foh".
         step: of the grid [s]; the median interval when None.
-
-    Raises:
-        InputError: stamps go back, a channel has too few samples, or a gap is too long.
     """
     back = np.flatnonzero(np.diff(time) < 0)
     if back.size:

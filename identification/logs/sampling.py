@@ -87,9 +87,6 @@ def check_time(
         time: stamps (n,) [s], finite.
         place: says in words where a row stands, for messages.
         declared: the sampling time the user gave [s]; None to find it from the stamps.
-
-    Raises:
-        InputError: too few rows, time does not increase, or it is not evenly spaced.
     """
     if len(time) < MIN_ROWS:
         raise InputError(

@@ -27,9 +27,6 @@ def shared(time: FloatArray) -> np.ndarray:
 def without_repeated(table: Table) -> tuple[Table, str]:
     """Returns a table without rows that were written twice, and a sentence that tells them.
 
-    Args:
-        table: columns, one of them "time".
-
     Returns:
         The table as it is and "" where no row shares its stamp with the row before it, or where one
         that does has another cell: then rows may have been sampled in one tick of a clock.

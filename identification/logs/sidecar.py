@@ -63,14 +63,6 @@ def read_sidecar(
     """Read the TOML beside a log; the defaults when there is none.
 
     A table [log] in it says the same as the keys themselves.
-
-    Args:
-        path: of the TOML.
-        given: keys that hold where the file does not say otherwise.
-        given_in: the file that gives them, for messages.
-
-    Raises:
-        InputError: it is not TOML, a key is unknown, or a value is of the wrong kind.
     """
     values = _values(given or {}, f"[log] of {given_in or path}")
     elsewhere = dict.fromkeys(given or {}, given_in or path)
@@ -86,12 +78,7 @@ def read_sidecar(
 
 
 def _values(content: Mapping[str, Any], where: str) -> dict[str, Any]:
-    """Returns the values of the keys of a file, checked; a list of columns is a header.
-
-    Args:
-        content: the keys.
-        where: they stand, for messages.
-    """
+    """Returns the values of the keys of a file, checked; a list of columns is a header."""
     values = {}
     for key, value in content.items():
         if key in _TABLES and not (key == "columns" and isinstance(value, list)):

@@ -30,11 +30,7 @@ _PARTS = {"nanosec": "sec", "nanosecond": "second", "nsec": "sec"}
 
 
 def exact_stamps(cells: Sequence[str]) -> FloatArray:
-    """Returns printed stamps less the first one, shape (n,), as exactly as a float holds these.
-
-    Args:
-        cells: numbers as they are printed.
-    """
+    """Returns printed stamps less the first one, shape (n,), as exactly as a float holds these."""
     stamps = [Decimal(cell.strip()) for cell in cells]
     return np.array([float(stamp - stamps[0]) for stamp in stamps])
 
@@ -42,15 +38,8 @@ def exact_stamps(cells: Sequence[str]) -> FloatArray:
 def stamps_apart(names: Sequence[str], sidecar: Sidecar) -> tuple[str, str] | None:
     """Returns the columns of seconds and of nanoseconds that make the time of a log.
 
-    Args:
-        names: of the columns, as they should be called.
-        sidecar: what the TOML says.
-
     Returns:
         None where there is a column of time, or no such two columns.
-
-    Raises:
-        InputError: several columns may be the time.
     """
     if TIME in names or sidecar.sampling_time:
         return None
@@ -73,12 +62,7 @@ def stamps_apart(names: Sequence[str], sidecar: Sidecar) -> tuple[str, str] | No
 
 
 def with_time(table: Table, sidecar: Sidecar) -> tuple[Table, str]:
-    """Returns a table with a column of time [s] made of two, and a sentence that tells it.
-
-    Raises:
-        InputError: several columns may be the time, a stamp is no whole number, or the TOML gives a
-            unit or a factor to a time that has none.
-    """
+    """Returns a table with a column of time [s] made of two, and a sentence that tells it."""
     pair = stamps_apart(table.names, sidecar)
     if pair is None:
         return table, ""
@@ -106,12 +90,7 @@ def with_time(table: Table, sidecar: Sidecar) -> tuple[Table, str]:
 
 
 def wanted_columns(asked: set[str], sidecar: Sidecar) -> Callable[[Sequence[str]], set[str]]:
-    """Returns a function that says which columns of a file are to be read, of all its columns.
-
-    Args:
-        asked: names that they should have.
-        sidecar: what the TOML says.
-    """
+    """Returns a function that says which columns of a file are to be read, of all its columns."""
     to = sidecar.columns
 
     def wanted(names: Sequence[str]) -> set[str]:

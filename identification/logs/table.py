@@ -39,11 +39,7 @@ class Table:
 
 
 def renamed(table: Table, sidecar: Sidecar) -> Table:
-    """Returns the table without the columns of `sidecar.ignore`, those of `columns` renamed.
-
-    Raises:
-        InputError: the file lacks a column that is named there, or two columns get one name.
-    """
+    """Returns the table without the columns of `sidecar.ignore`, those of `columns` renamed."""
     for what, wanted in (("columns", tuple(sidecar.columns)), ("ignore", sidecar.ignore)):
         for name in wanted:
             if name not in table.all_names:
@@ -85,10 +81,6 @@ def check_columns(
         optional: columns that it may have.
         sidecar: the TOML beside the file.
         named_in: another file whose [columns] say what is needed; the sidecar when None.
-
-    Raises:
-        MissingColumnsError: a column is missing.
-        InputError: a column is missing or unknown; the likely correct name is suggested.
     """
     good = [*needed, *optional]
     unknown = [n for n in table.names if n not in good]
@@ -135,20 +127,12 @@ def _columns(names: Sequence[str]) -> str:
 
 
 def check_finite(table: Table) -> None:
-    """Refuse a cell that is not a finite number.
-
-    Raises:
-        InputError: a cell is NaN or infinite; its row and column are named.
-    """
+    """Refuse a cell that is not a finite number."""
     _refuse_cells(table, ~np.isfinite(table.data))
 
 
 def check_stamps(table: Table) -> None:
-    """Refuse a stamp of time that is no finite number, and a cell that is infinite.
-
-    Raises:
-        InputError: there is one; its row and column are named.
-    """
+    """Refuse a stamp of time that is no finite number, and a cell that is infinite."""
     bad = np.isinf(table.data)
     bad[:, table.names.index("time")] |= ~np.isfinite(table["time"])
     _refuse_cells(table, bad)

@@ -44,22 +44,14 @@ SI_UNITS = tuple(word for word, (si, _) in UNITS.items() if word == si)
 
 
 def to_si(word: str) -> tuple[str, float]:
-    """Returns the SI unit of a unit word, and the factor that converts to it.
-
-    Raises:
-        InputError: the word is not in the table.
-    """
+    """Returns the SI unit of a unit word, and the factor that converts to it."""
     if word not in UNITS:
         raise InputError(f"unknown unit {quoted(word)}; known: {', '.join(UNITS)}")
     return UNITS[word]
 
 
 def check_si(word: str) -> None:
-    """Refuse a unit that is not SI.
-
-    Raises:
-        InputError: the word is not an SI unit of the table.
-    """
+    """Refuse a unit that is not SI."""
     if word not in SI_UNITS:
         raise InputError(
             f"a log holds SI units, not {quoted(word)}; convert to one of {', '.join(SI_UNITS)}"

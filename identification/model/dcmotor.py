@@ -50,17 +50,7 @@ _TERMS = (
 
 
 def refuse_unread(model: mujoco.MjModel, name: str, slot: Slot, path: str) -> None:
-    """Refuse a parameter of a `dcmotor` that belongs to a term which the model does not have.
-
-    Args:
-        model: as its file was compiled.
-        name: of the parameter.
-        slot: where the parameter goes.
-        path: the same as it was written.
-
-    Raises:
-        InputError: the motor has no such term, so that the parameter has no effect.
-    """
+    """Refuse a parameter of a `dcmotor` that belongs to a term which the model does not have."""
     entry = (slot.field, slot.column if slot.column is not None else -1)
     term = next((t for t in _TERMS if entry in t.symbols), None)
     if term is None:

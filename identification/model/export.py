@@ -38,9 +38,6 @@ def to_xml(spec: mujoco.MjSpec) -> str:
     """Returns the MJCF of a spec with exact numbers: its text compiles to the model of the spec.
 
     The spec's comment stands at its head, so that a file that is saved again keeps it.
-
-    Raises:
-        ValueError: the spec does not compile.
     """
     spec.compile()
     keep = ElementTree.XMLParser(target=ElementTree.TreeBuilder(insert_comments=True))

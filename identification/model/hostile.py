@@ -44,10 +44,6 @@ def refuse_hostile(raw: str | bytes, where: str, folder: Path | None = None) -> 
 
     Returns:
         What it asks for.
-
-    Raises:
-        InputError: it is no XML, has too many elements, or a value that is no number; or a file
-            that it names is none that can be read.
     """
     amount = _amount(raw, where, folder, 0)
     if amount.elements > MOST:
@@ -99,11 +95,7 @@ def _included(root: ElementTree.Element, folder: Path) -> tuple[Path, ...]:
 
 
 def _sizes(root: ElementTree.Element, folder: Path) -> Iterator[int]:
-    """Yields the sizes [bytes] of the files that a text names beside the ones it includes.
-
-    Raises:
-        InputError: one is no regular file, or too large.
-    """
+    """Yields the sizes [bytes] of the files that a text names beside the ones it includes."""
     folders = {folder / element.get(name, "") for element in root.iter("compiler")
                for name in _FOLDERS} | {folder}  # fmt: skip
     for element in root.iter():
@@ -116,16 +108,7 @@ def _sizes(root: ElementTree.Element, folder: Path) -> Iterator[int]:
 
 
 def refuse_numbers(model: mujoco.MjModel, where: str) -> None:
-    """Refuses a compiled model that cannot be simulated for its flags, its size or its numbers.
-
-    Args:
-        model: the compiled model.
-        where: the model in messages, such as "the model slider.xml".
-
-    Raises:
-        InputError: it is too large, or has a flag that simulations of many values at once cannot
-            follow; its timestep [s] is none, or a number of its dynamics is infinite or huge.
-    """
+    """Refuses a compiled model that cannot be simulated for its flags, its size or its numbers."""
     for flag, word in _UNSUPPORTED.items():
         if model.opt.enableflags & int(getattr(mujoco.mjtEnableBit, flag, 0)):
             raise InputError(

@@ -70,9 +70,6 @@ def refuse_size(size: int, where: str, amount: Amount | None = None) -> None:
         size: of the compiled model [bytes].
         where: the model in messages, such as "the model slider.xml".
         amount: what its text asks for, where that is known.
-
-    Raises:
-        InputError: it is too large.
     """
     if size > LARGEST:
         raise InputError(
@@ -82,16 +79,7 @@ def refuse_size(size: int, where: str, amount: Amount | None = None) -> None:
 
 
 def refuse_endless(source: str | Path, where: str, amount: Amount) -> None:
-    """Refuses a model that is not compiled within a bound of time and memory.
-
-    Args:
-        source: path of the model, or its text.
-        where: the model in messages, such as "the model slider.xml".
-        amount: what its text asks for.
-
-    Raises:
-        InputError: the bound of time or of memory was reached, or it is too large.
-    """
+    """Refuses a model that is not compiled within a bound of time and memory."""
     cure, is_file = _cure(amount), isinstance(source, Path)
     words = [str(source)] if is_file else []
     try:

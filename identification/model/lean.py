@@ -36,12 +36,7 @@ IMPLICIT = int(mujoco.mjtIntegrator.mjINT_IMPLICITFAST)
 
 
 def lean(model: mujoco.MjModel, numbers: Sequence[tuple[Slot, Any]] = ()) -> mujoco.MjModel:
-    """Returns the model without what cannot act on its states; itself where that is left out.
-
-    Args:
-        model: the model.
-        numbers: entries that differ in its simulations, and their values.
-    """
+    """Returns the model without what cannot act on its states; itself where that is left out."""
     flags = SENSORS
     if model.opt.disableflags & CONSTRAINTS != CONSTRAINTS and not is_constrained(model, numbers):
         flags |= CONSTRAINTS
@@ -53,12 +48,7 @@ def lean(model: mujoco.MjModel, numbers: Sequence[tuple[Slot, Any]] = ()) -> muj
 
 
 def is_constrained(model: mujoco.MjModel, numbers: Sequence[tuple[Slot, Any]] = ()) -> bool:
-    """Returns whether a limit, dry friction, an equality or a contact may act on a model.
-
-    Args:
-        model: the model.
-        numbers: entries that differ in its simulations, and their values.
-    """
+    """Returns whether a limit, dry friction, an equality or a contact may act on a model."""
     if model.neq or model.npair or model.nflex:
         return True
     if any(slot.field in (*ACTIVE, *COLLIDING) for slot, _ in numbers):
@@ -70,20 +60,12 @@ def is_constrained(model: mujoco.MjModel, numbers: Sequence[tuple[Slot, Any]] = 
 
 
 def one_evaluation(model: mujoco.MjModel) -> int:
-    """Returns an integrator with damping implicitly, and one evaluation of the dynamics a step.
-
-    Args:
-        model: the model.
-    """
+    """Returns an integrator with damping implicitly, and one evaluation of the dynamics a step."""
     return EULER if is_damped_by_joints_alone(model) else IMPLICIT
 
 
 def is_damped_by_joints_alone(model: mujoco.MjModel) -> bool:
-    """Returns whether joints' damping is the only force whose dependence on rates MuJoCo derives.
-
-    Args:
-        model: the model.
-    """
+    """Returns whether MuJoCo derives by rates no force but that of joints' damping."""
     linear = (model.actuator_gaintype == FIXED) & np.isin(model.actuator_biastype, BIASES)
     others = [getattr(model, field) for field in DAMPING if hasattr(model, field)]
     others += [model.actuator_biasprm[:, 2], model.opt.density, model.opt.viscosity]

@@ -17,23 +17,12 @@ Entries = Sequence[tuple[Slot, float]]
 
 
 def with_numbers(model: mujoco.MjModel, numbers: Numbers, row: int) -> mujoco.MjModel:
-    """Returns a copy of a model with the numbers of one value set.
-
-    Args:
-        model: the model.
-        numbers: slots and their values, one for each value set.
-        row: which value set.
-    """
+    """Returns a copy of a model with the numbers of one value set."""
     return with_entries(model, [(slot, float(values[row])) for slot, values in numbers])
 
 
 def with_entries(model: mujoco.MjModel, entries: Entries) -> mujoco.MjModel:
-    """Returns a copy of a model with other numbers, and with what MuJoCo derives from them.
-
-    Args:
-        model: the model.
-        entries: slots, each with its value.
-    """
+    """Returns a copy of a model with other numbers, and with what MuJoCo derives from them."""
     out = copy.copy(model)
     for slot, value in entries:
         getattr(out, slot.field)[slot.index()] = value
@@ -44,11 +33,6 @@ def with_entries(model: mujoco.MjModel, entries: Entries) -> mujoco.MjModel:
 
 def list_differences(numbers: Numbers, like: int, rows: Sequence[int]) -> Iterator[Entries]:
     """Yields the entries in which value sets differ from one of them.
-
-    Args:
-        numbers: slots and their values, one for each value set.
-        like: the value set that they are compared with.
-        rows: the value sets.
 
     Yields:
         Of each value set the entries that differ; a slot of several rows gives one entry each.

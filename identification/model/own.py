@@ -21,16 +21,7 @@ def own_name(name: str, number: int) -> str:
 
 
 def with_own(parameters: ParameterSet, names: Sequence[str], records: int) -> ParameterSet:
-    """Returns a robot's parameters with own values of each record, where these are missing yet.
-
-    Args:
-        parameters: the set.
-        names: those of which each record has its own value.
-        records: how many records there are.
-
-    Raises:
-        InputError: a name is unknown.
-    """
+    """Returns a robot's parameters with own values of each record, where these are missing yet."""
     known = {p.name for p in parameters}
     new = [_own(parameters[name], k) for k in range(2, records + 1) for name in names]
     return replace(
@@ -52,12 +43,7 @@ def _own(parameter: Parameter, number: int) -> Parameter:
 
 
 def of_record(names: Sequence[str], number: int) -> dict[str, int]:
-    """Returns what a record sees: names of parameters as its plant knows them, and their columns.
-
-    Args:
-        names: of all records' parameters, one a column.
-        number: of the record.
-    """
+    """Returns the parameters that a record sees, as its plant knows them, and their columns."""
     seen: dict[str, int] = {}
     mine: dict[str, int] = {}
     for column, name in enumerate(names):

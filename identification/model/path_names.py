@@ -51,14 +51,7 @@ def attributes(model: mujoco.MjModel, kind: str) -> tuple[str, ...]:
 
 
 def unknown_object(model: mujoco.MjModel, kind: str, name: str, attribute: str) -> InputError:
-    """Returns the error for a path to an object that a model does not have.
-
-    Args:
-        model: as it was compiled.
-        kind: of the object.
-        name: of it, as the path has it.
-        attribute: of the path.
-    """
+    """Returns the error for a path to an object that a model does not have."""
     named = sorted(filter(None, names_of(model, kind)))
     meant = _meant(_with_that_name(model, name, attribute, besides=kind))
     if named:
@@ -72,14 +65,7 @@ def unknown_object(model: mujoco.MjModel, kind: str, name: str, attribute: str) 
 
 
 def unknown_attribute(model: mujoco.MjModel, kind: str, row: int, attribute: str) -> InputError:
-    """Returns the error for a path to an attribute that a kind of object does not have.
-
-    Args:
-        model: as it was compiled.
-        kind: of the object.
-        row: index of the object.
-        attribute: of the path.
-    """
+    """Returns the error for a path to an attribute that a kind of object does not have."""
     meant = _meant(_around(model, kind, row, attribute))
     a = "an" if kind[0] in "aeiou" else "a"
     error = unknown_name(f"attribute of {a} {kind}", attribute, attributes(model, kind))

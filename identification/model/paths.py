@@ -47,12 +47,7 @@ class Slot:
 
 
 def resolve(model: mujoco.MjModel, path: str) -> Slot:
-    """Find the entries of mjModel that a path names.
-
-    Raises:
-        InputError: the path is malformed, or names a kind, object, attribute or column that
-            the model does not have.
-    """
+    """Find the entries of mjModel that a path names."""
     match = _PATH.fullmatch(path)
     if match is None:
         raise InputError(

@@ -178,11 +178,7 @@ def own_start(model: mujoco.MjModel) -> State:
 
 
 def start_place(where: str, model: mujoco.MjModel) -> tuple[str, int] | None:
-    """Returns field and index of a path such as `qpos[2]`; None for a path into the model.
-
-    Raises:
-        InputError: the state has no such entry.
-    """
+    """Returns field and index of a path such as `qpos[2]`; None for a path into the model."""
     match = _START.fullmatch(where)
     if match is None:
         return None

@@ -193,12 +193,7 @@ def sensor_word(model: mujoco.MjModel, i: int) -> str:
 
 
 def output_columns(model: mujoco.MjModel, names: Sequence[str]) -> list[tuple[str, int]]:
-    """Returns the place of each output in the state: its field (qpos or qvel) and index.
-
-    Raises:
-        InputError: a name is not a sensor of the model, or its sensor is not a joint position or
-            rate.
-    """
+    """Returns the place of each output in the state: its field (qpos or qvel) and index."""
     fields = {
         int(mujoco.mjtSensor.mjSENS_JOINTPOS): ("qpos", model.jnt_qposadr),
         int(mujoco.mjtSensor.mjSENS_JOINTVEL): ("qvel", model.jnt_dofadr),

@@ -54,11 +54,7 @@ class State:
 
 
 def substeps(sampling_time: float, timestep: float) -> int:
-    """Returns how many simulation steps a sample has.
-
-    Raises:
-        InputError: the sampling time is not a whole number of steps.
-    """
+    """Returns how many simulation steps a sample has."""
     n = round(sampling_time / timestep)
     if n < 1 or abs(n * timestep - sampling_time) > 1e-6 * sampling_time:
         raise InputError(
@@ -130,10 +126,6 @@ def rollout(
 
     Returns:
         For each recorded field an array (n, N, size); sample 0 is the start.
-
-    Raises:
-        InputError: shapes or hold do not fit, or MuJoCo refuses the model's numbers.
-        DivergenceError: a simulation left the finite numbers.
     """
     inputs = np.asarray(inputs, float)
     nu = logged_inputs(model)
@@ -187,10 +179,6 @@ class Simulations:
 
         Returns:
             For each recorded field an array (k, N, size); sample 0 is the start.
-
-        Raises:
-            InputError: MuJoCo refuses the model's numbers.
-            DivergenceError: a simulation left the finite numbers.
         """
         end_if_given_up()
         batch, model = self.batch, self.model
@@ -242,9 +230,6 @@ def simulations(
         n: how many.
         numbers: model entries that differ between simulations: slot and its values, shape (n,).
         nthread: native threads; all processors when None.
-
-    Raises:
-        InputError: MuJoCo refuses the model's numbers.
     """
     model = lean(model, numbers)
     batch = Batch(model, n, nthread or min(threads(), n))

@@ -119,9 +119,6 @@ def refuse_without_effect(J: np.ndarray, names: tuple[str, ...], log: Log) -> No
         J: sensitivities, shape (samples, ny, p).
         names: the parameters.
         log: what was measured.
-
-    Raises:
-        InputError: a column is zero except for round-off.
     """
     dead = [n for n, idle in zip(names, without_effect(J, log.outputs), strict=True) if idle]
     first, *others = log.output_names

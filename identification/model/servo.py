@@ -24,16 +24,7 @@ _WANTS = {"position": 1, "velocity": 2}  # what a servo follows, and where its b
 
 
 def parts(model: mujoco.MjModel, path: str) -> tuple[tuple[str, float], ...]:
-    """Returns the paths to single numbers of a model that a path writes, each with its factor.
-
-    Args:
-        model: as it was compiled.
-        path: into the model; one that is no gain of a servo stands for itself.
-
-    Raises:
-        InputError: it is the gain of an actuator that is no servo, or the model has no such
-            actuator.
-    """
+    """Returns the paths to single numbers of a model that a path writes, each with its factor."""
     match = _GAIN.fullmatch(path)
     if match is None:
         return ((path, 1.0),)
@@ -55,11 +46,7 @@ def parts(model: mujoco.MjModel, path: str) -> tuple[tuple[str, float], ...]:
 
 
 def value_of(model: mujoco.MjModel, path: str) -> float:
-    """Returns the number that a model has at a path, also where it is the gain of a servo.
-
-    Raises:
-        InputError: the path names nothing in the model.
-    """
+    """Returns the number that a model has at a path, also where it is the gain of a servo."""
     first, factor = parts(model, path)[0]
     return factor * read(model, resolve(model, first)) or 0.0  # and never -0
 
@@ -75,15 +62,7 @@ def servo_kind(model: mujoco.MjModel, row: int) -> str | None:
 
 
 def refuse_half(model: mujoco.MjModel, paths: Sequence[tuple[str, str]]) -> None:
-    """Refuse parameters that move one of two numbers of a servo which are one gain.
-
-    Args:
-        model: as its file was compiled.
-        paths: of single numbers in the model, each behind the name of its parameter.
-
-    Raises:
-        InputError: there is such a parameter.
-    """
+    """Refuse parameters that move one of two numbers of a servo which are one gain."""
     moved: dict[tuple[str, int], str] = {}
     for name, path in paths:
         if path.startswith("actuator/") and path.endswith(("prm[0]", "prm[1]", "prm[2]")):

@@ -26,11 +26,7 @@ Place = tuple[int, int]
 
 
 def spread_place(path: str, model: mujoco.MjModel) -> Place | None:
-    """Returns body and axis of a path such as `body/link.spread[0]`; None for any other path.
-
-    Raises:
-        InputError: the model has no such body.
-    """
+    """Returns body and axis of a path such as `body/link.spread[0]`; None for any other path."""
     match = _SPREAD.fullmatch(path)
     if match is None:
         if path.startswith("body/") and ".spread" in path:
@@ -73,11 +69,7 @@ def with_spreads(
 
 
 def refuse_both(paths: Sequence[str], model: mujoco.MjModel) -> None:
-    """Refuse parameters that move a body's spreads and its inertias at once.
-
-    Raises:
-        InputError: there are such parameters.
-    """
+    """Refuse parameters that move a body's spreads and its inertias at once."""
     for path in paths:
         place = spread_place(path, model)
         if place is None:

@@ -22,11 +22,7 @@ FAR = 1e3  # of the largest number of the log, or of one unit
 
 
 def refuse_absurd_start(robot: Robot) -> None:
-    """Refuse a start of a free run that is beyond all that the log measured.
-
-    Raises:
-        InputError: [start] of the robot's file gives one.
-    """
+    """Refuse a start of a free run that is beyond all that the log measured."""
     file, model, log = robot.file, robot.plant.model, robot.log
     if file.horizon is not None or not file.start:
         return

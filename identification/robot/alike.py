@@ -70,15 +70,7 @@ class Alike:
         return (self.name, *self.deviations)
 
     def parameters(self, model: mujoco.MjModel, unit: str) -> dict[str, tuple[Parameter, float]]:
-        """Returns the parameters by name, each with the std of its prior.
-
-        Args:
-            model: the robot.
-            unit: of the values.
-
-        Raises:
-            InputError: a path names nothing, or a value is not above zero.
-        """
+        """Returns the parameters by name, each with the std of its prior."""
         with told_of(self.where or f"spread.{self.name}"):
             nominal = [self._nominal(path, model) for path in self.of]
         ties = tuple((path, x / nominal[0]) for path, x in zip(self.of, nominal, strict=True))[1:]
@@ -113,16 +105,7 @@ class Alike:
 
 
 def read_alike(content: Mapping[str, Any], path: Path, free: Sequence[str]) -> tuple[Alike, ...]:
-    """Returns the tables under `spread` of a robot's TOML, or of a file of such tables.
-
-    Args:
-        content: of the TOML.
-        path: of it.
-        free: names of the free parameters, which are free by themselves.
-
-    Raises:
-        InputError: a table is not what it should be, or a value is in two of them or free itself.
-    """
+    """Returns the tables under `spread` of a robot's TOML, or of a file of such tables."""
     out = [_alike(name, table, path) for name, table in content.get("spread", {}).items()]
     for each in out:
         taken = [n for n in (*each.names, *each.of) if n in free]

@@ -21,12 +21,7 @@ LARGE = 10.0  # a factor from here on is asked; a smaller one makes no step too 
 
 
 def blamed(robot: Robot, is_good: Callable[[Robot], bool]) -> str | None:
-    """Returns what makes the simulation of a log fail, and the cure; None where neither does.
-
-    Args:
-        robot: of which a simulation of its log failed.
-        is_good: whether that of another robot does not.
-    """
+    """Returns what makes the simulation of a log fail, and the cure; None where neither does."""
     for other, said in (*_without_factors(robot), *_without_start(robot)):
         if is_good(other):
             return said

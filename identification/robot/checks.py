@@ -22,11 +22,7 @@ MOST_STEPS = 100.0  # of the model in a sample; with more, time is most often in
 
 
 def refuse_same_stem(file: RobotFile, log: Path) -> None:
-    """Refuse a robot's file that would also be read as the TOML of the log.
-
-    Raises:
-        InputError: it has the same name as the log.
-    """
+    """Refuse a robot's file that would also be read as the TOML of the log."""
     if log.name and os.path.realpath(log.with_suffix(".toml")) == os.path.realpath(file.path):
         raise InputError(
             f"{file.path} bears the name of {log} and would be read as what its log's own TOML says"
@@ -35,11 +31,7 @@ def refuse_same_stem(file: RobotFile, log: Path) -> None:
 
 
 def refuse_unnamed(model: mujoco.MjModel, file: RobotFile) -> None:
-    """Refuse actuators without a name, and position sensors without a name that may be outputs.
-
-    Raises:
-        InputError: there is one without a name.
-    """
+    """Refuse actuators without a name, and position sensors without a name that may be outputs."""
     kind = int(mujoco.mjtSensor.mjSENS_JOINTPOS)
     sensors = [(model.sensor(i).name, int(model.sensor_type[i])) for i in range(model.nsensor)]
     things = [("actuator", i, model.actuator(i).name) for i in range(model.nu)]
@@ -54,15 +46,7 @@ def refuse_unnamed(model: mujoco.MjModel, file: RobotFile) -> None:
 
 
 def outputs_of(model: mujoco.MjModel, file: RobotFile) -> tuple[str, ...]:
-    """Returns the sensors that a log has: those that the file names, or all joint positions.
-
-    Args:
-        model: of the robot.
-        file: the robot's.
-
-    Raises:
-        InputError: the model has no sensor of a joint's position, and the file names no outputs.
-    """
+    """Returns the sensors that a log has: those that the file names, or all joint positions."""
     sensors = {model.sensor(i).name: sensor_word(model, i) for i in range(model.nsensor)}
     outputs = file.outputs or tuple(n for n, kind in sensors.items() if kind == "a jointpos")
     if outputs:
@@ -92,9 +76,6 @@ def refuse_unlike(file: RobotFile, log: Log) -> None:
 
     Such a search has one noise for all outputs, so that those with the smaller numbers count for
     nothing, and what they lack is called by another name.
-
-    Raises:
-        InputError: the outputs have several units.
     """
     units = {log.units.get(name, "") or "none" for name in log.output_names}
     if len(units) > 1:
@@ -107,11 +88,7 @@ def refuse_unlike(file: RobotFile, log: Log) -> None:
 
 
 def refuse_milliseconds(model: mujoco.MjModel, file: RobotFile, log: Log, path: Path) -> None:
-    """Refuse a log with so many model steps per sample that its time cannot be in seconds.
-
-    Raises:
-        InputError: a sample lasts more than `MOST_STEPS` steps.
-    """
+    """Refuse a log with so many model steps per sample that its time cannot be in seconds."""
     h, step = log.sampling_time, float(model.opt.timestep)
     if h <= MOST_STEPS * step or "time" in file.trust:
         return
@@ -139,9 +116,6 @@ def with_judged_gaps(file: RobotFile, log: Log) -> Log:
     """Returns a log whose gaps cost what touches them; without gaps where they are trusted.
 
     A free run is refused, because it cannot begin anew behind a gap as a window does.
-
-    Raises:
-        InputError: there is a gap that cannot be bridged, and no horizon.
     """
     if not log.gaps:
         return log
@@ -163,11 +137,7 @@ def with_judged_gaps(file: RobotFile, log: Log) -> Log:
 
 
 def refuse_every(file: RobotFile, log: Log) -> None:
-    """Refuse to thin a log whose parts would become too short.
-
-    Raises:
-        InputError: they would.
-    """
+    """Refuse to thin a log whose parts would become too short."""
     if file.every == 1:
         return
     if not _left(log, file.every):
@@ -188,16 +158,7 @@ def _left(log: Log, every: int) -> bool:
 
 
 def refuse_horizon(file: RobotFile, log: Log, is_whole: bool = False) -> None:
-    """Refuse a horizon that does not fit into both parts of a log, or into all of it.
-
-    Args:
-        file: the robot's, with the horizon.
-        log: what is predicted.
-        is_whole: whether the log is used from end to end, because others confirm.
-
-    Raises:
-        InputError: it is shorter than a window, or a part of it is.
-    """
+    """Refuse a horizon that does not fit into both parts of a log, or into all of it."""
     parts = [log] if is_whole else [log.part("estimation"), log.part("validation")]
     most = min(map(len, parts))
     _refuse(file, log, most, _samples(file, log) <= most)

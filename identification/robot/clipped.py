@@ -17,12 +17,7 @@ LEAST = 0.01  # of an input's rms: less is cut off by the noise of a measured in
 
 
 def clipped_sentence(model: mujoco.MjModel, log: Log) -> str | None:
-    """Returns one sentence on the input of which most is cut off; None where no input is cut off.
-
-    Args:
-        model: with an actuator of the name of each input.
-        log: what was measured.
-    """
+    """Returns one sentence on the input of which most is cut off; None where none is."""
     worst, share = "", LEAST
     for name, u in zip(log.input_names, log.inputs.T, strict=True):
         actuator = model.actuator(name)

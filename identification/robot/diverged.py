@@ -18,11 +18,7 @@ from identification.robot.robot import Robot
 
 @contextmanager
 def told_of_factors(robot: Robot) -> Iterator[None]:
-    """Raises a divergence inside anew, with the factors of the robot's logs, or where the step is.
-
-    Raises:
-        DivergenceError: one was raised inside.
-    """
+    """Adds to a divergence of the block the factors of the robot's logs, or where the step is."""
     try:
         yield
     except DivergenceError as error:

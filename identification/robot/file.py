@@ -122,11 +122,7 @@ class RobotFile:
 
 
 def read_robot_file(path: str | Path) -> RobotFile:
-    """Read a robot's TOML.
-
-    Raises:
-        InputError: it cannot be read, is not TOML, or has an unknown key or a wrong value.
-    """
+    """Read a robot's TOML."""
     path = Path(path)
     content = read_toml(path, "robot file, such as robot.toml")
     check_table(content, KEYS, str(path))

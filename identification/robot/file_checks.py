@@ -15,16 +15,7 @@ TINY, HUGE = 1e-50, 1e50  # of any unit: their squares, and what is divided by t
 
 
 def check_table(table: Mapping[str, Any], kinds: Kinds, where: str) -> None:
-    """Refuse a table with an unknown key or a value of a wrong kind.
-
-    Args:
-        table: of the TOML.
-        kinds: of its keys.
-        where: it stands, for messages.
-
-    Raises:
-        InputError: there is one.
-    """
+    """Refuse a table with an unknown key or a value of a wrong kind."""
     for key, value in table.items():
         if key not in kinds:
             raise unknown_name(f"key in {where}:", key, kinds)
@@ -43,15 +34,7 @@ def check_table(table: Mapping[str, Any], kinds: Kinds, where: str) -> None:
 
 
 def read_own(content: Mapping[str, Any], path: Path) -> tuple[str, ...]:
-    """Returns the names of the free parameters of which each log has a value of its own.
-
-    Args:
-        content: of the TOML.
-        path: of it.
-
-    Raises:
-        InputError: one is not free, or there is no horizon.
-    """
+    """Returns the names of the free parameters of which each log has a value of its own."""
     own = texts(content.get("own", []), "own", path)
     for name in own:
         if name not in content["free"]:
@@ -65,15 +48,7 @@ def read_own(content: Mapping[str, Any], path: Path) -> tuple[str, ...]:
 
 
 def read_own_values(content: Mapping[str, Any], path: Path) -> dict[str, dict[str, float]]:
-    """Returns, by log, the values at which the search of its own values begins.
-
-    Args:
-        content: of the TOML.
-        path: of it.
-
-    Raises:
-        InputError: a name is not under `own`, or a value is no number.
-    """
+    """Returns, by log, the values at which the search of its own values begins."""
     found = content.get("own_values", {})
     for log, values in found.items():
         where = f"own_values.{log} in {path}"
@@ -86,32 +61,14 @@ def read_own_values(content: Mapping[str, Any], path: Path) -> dict[str, dict[st
 
 
 def texts(values: list[Any], key: str, path: Path) -> tuple[str, ...]:
-    """Returns names as a tuple; refuses one that is no text or stands there twice.
-
-    Args:
-        values: of the key.
-        key: it.
-        path: of the TOML.
-
-    Raises:
-        InputError: one is no text, or stands there twice.
-    """
+    """Returns names as a tuple; refuses one that is no text or stands there twice."""
     if not all(isinstance(v, str) for v in values) or len(set(values)) < len(values):
         raise InputError(f"{key} in {path} must be names in quotes, each once")
     return tuple(values)
 
 
 def numbers(values: list[Any], key: str, path: Path) -> tuple[float, ...]:
-    """Returns numbers as a tuple; refuses one that is not above zero.
-
-    Args:
-        values: of the key.
-        key: it.
-        path: of the TOML.
-
-    Raises:
-        InputError: one is not.
-    """
+    """Returns numbers as a tuple; refuses one that is not above zero."""
     for v in values:
         if isinstance(v, bool) or not isinstance(v, int | float) or not 0 < v < inf:
             raise InputError(f"{key} in {path} must be numbers above zero")

@@ -17,12 +17,7 @@ FARTHEST = 100.0  # a value that changes by this factor is not believed
 
 
 def robot_fit_to_json(result: RobotFit, confirmed: Sequence[Confirmation] = ()) -> dict[str, Any]:
-    """Returns the numbers and the verdict of a fit; unknown and infinite numbers are null.
-
-    Args:
-        result: the result of `fit`.
-        confirmed: the result of `confirm`.
-    """
+    """Returns the numbers and the verdict of a fit; unknown and infinite numbers are null."""
     found = result.found
     if found.horizon is None:
         record = {**fit_to_json(found), "horizon": None, "worse": None}

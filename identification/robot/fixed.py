@@ -12,16 +12,7 @@ from identification.robot.file import RobotFile
 
 
 def with_fixed(file: RobotFile, plant: JointPlant, effects: Sequence[Effect]) -> JointPlant:
-    """Returns the plant with the values of effects' parameters that are not free.
-
-    Args:
-        file: the robot's.
-        plant: with the effects.
-        effects: those that are compiled in.
-
-    Raises:
-        InputError: a name is no number of an effect, or a value is outside its range.
-    """
+    """Returns the plant with the values of effects' parameters that are not free."""
     with told_of(f"fixed in {file.path}"):
         for name in file.fixed:
             if name in plant.parameters.values():

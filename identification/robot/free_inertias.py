@@ -21,11 +21,7 @@ ROUNDING = 1e-9  # relative: a flat body lies on the limit
 
 
 def inertias_sentence(file: RobotFile) -> str:
-    """Says of bodies that several of their inertias are free; empty where there is none.
-
-    Args:
-        file: the robot's.
-    """
+    """Says of bodies that several of their inertias are free; empty where there is none."""
     several = {body: names for body, names in _by_body(file).items() if len(names) > 1}
     if not several:
         return ""
@@ -38,11 +34,7 @@ def inertias_sentence(file: RobotFile) -> str:
 
 
 def carried_sentence(robot: Robot) -> str:
-    """Returns a sentence on inertias that go along with a free one; empty where there are none.
-
-    Args:
-        robot: the robot, compiled.
-    """
+    """Returns a sentence on inertias that go along with a free one; empty where there are none."""
     said = []
     for p in robot.plant.parameters:
         body, inertia, _ = p.where.partition(".inertia[")
@@ -56,12 +48,7 @@ def carried_sentence(robot: Robot) -> str:
 
 
 def impossible_sentence(robot: Robot, values: Mapping[str, float]) -> str:
-    """Says of bodies that no body has their fitted inertias; empty where there is none.
-
-    Args:
-        robot: that was fitted.
-        values: fitted values by name, in their units.
-    """
+    """Says of bodies that no body has their fitted inertias; empty where there is none."""
     known = robot.plant.parameters.values()
     model = robot.plant.with_values({n: v for n, v in values.items() if n in known}).model
     bad = []

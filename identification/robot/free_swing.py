@@ -30,12 +30,6 @@ def without_untold(robot: Robot) -> Robot:
 
     A robot with an input that moves in one of the logs that are fitted is returned as it is. So is
     one with a parameter that no input would show either: it is refused where it is fitted.
-
-    Args:
-        robot: a robot that was compiled for its logs.
-
-    Raises:
-        InputError: the free swing tells none of the free parameters.
     """
     logs = (robot.log, *robot.others)
     if any(log.inputs.any() for log in logs):

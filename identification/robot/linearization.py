@@ -83,11 +83,7 @@ def _held(model: mujoco.MjModel, inputs: Mapping[str, float]) -> np.ndarray:
 
 
 def _bare(file: RobotFile) -> ModelPlant:
-    """Returns the model of a file with the values of its parameters, without effects.
-
-    Raises:
-        InputError: it gives a value to an effect.
-    """
+    """Returns the model of a file with the values of its parameters, without effects."""
     model = robot_spec(file)[0].compile()
     given = []
     for name in (n for n in file.by_itself if "value" in file.records.get(n, {})):

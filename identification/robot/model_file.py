@@ -29,14 +29,7 @@ _LARGEST = 2**26  # [bytes]
 
 
 def robot_spec(file: RobotFile) -> tuple[mujoco.MjSpec, tuple[str, ...]]:
-    """Returns the model of a robot, and what was added to it, in sentences.
-
-    Args:
-        file: the robot's.
-
-    Raises:
-        InputError: it cannot be read or compiled, or a link that moves has no inertial.
-    """
+    """Returns the model of a robot, and what was added to it, in sentences."""
     raw = read_bytes(file.model, _LARGEST, MODEL)
     if file.model.suffix.lower() != ".urdf" and b"<robot" not in raw[:HEAD]:
         return read_model(file.model), ()
@@ -52,15 +45,8 @@ def robot_spec(file: RobotFile) -> tuple[mujoco.MjSpec, tuple[str, ...]]:
 def with_step(spec: mujoco.MjSpec, logs: Sequence[Log]) -> tuple[str, ...]:
     """Give a model the largest step up to its own that divides the sampling of logs; say so.
 
-    Args:
-        spec: the model; its timestep is changed.
-        logs: what is to be simulated.
-
     Returns:
         A sentence, or nothing where its own step divides them.
-
-    Raises:
-        InputError: no step divides the sampling of all logs.
     """
     own, h = float(spec.option.timestep), logs[0].sampling_time
     if _divides(own, logs):

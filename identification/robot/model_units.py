@@ -26,10 +26,6 @@ def unit_of(model: mujoco.MjModel, path: str) -> str:
     """Returns the unit of a number of a model, "" where none is known.
 
     Known are those of a body's mass, a joint's number, an entry of the start and a servo's gain.
-
-    Args:
-        model: as it was compiled.
-        path: into the model, such as "joint/elbow.damping".
     """
     place = start_place(path, model)
     thing, _, attribute = path.partition("[")[0].rpartition(".")
@@ -84,9 +80,6 @@ def refuse_unit(said: Mapping[str, Any], own: str, whose: str) -> None:
         said: the table of a parameter.
         own: the unit of the model's numbers; "" where none is known.
         whose: unit it is, for messages.
-
-    Raises:
-        InputError: it is another unit, or none of SI.
     """
     unit = said.get("unit", own)
     if own:

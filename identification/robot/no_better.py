@@ -19,12 +19,7 @@ LEAST = 0.01  # rise of the mean square that is told; the noise of a right fit m
 
 
 def no_better(result: RobotFit, confirmed: Sequence[Confirmation]) -> list[str]:
-    """Returns a sentence where the fitted values predict worse, and this is not proven; else none.
-
-    Args:
-        result: the result of `fit`.
-        confirmed: what was compared on each record that no fit has seen.
-    """
+    """Returns a sentence where the fitted values predict worse and this is not proven, or none."""
     if result.is_worse or result.stopped or not confirmed:
         return []
     if result.found.horizon is not None:

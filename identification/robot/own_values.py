@@ -24,18 +24,7 @@ from identification.robot.parameters import free_parameter
 def value_parameters(
     file: RobotFile, model: mujoco.MjModel, effects: Sequence[Effect], logs: Sequence[Log]
 ) -> list[Parameter]:
-    """Returns the parameters of the model that some log gives a value, beside those of effects.
-
-    Args:
-        file: the robot's.
-        model: its model.
-        effects: those that are compiled in.
-        logs: all logs of the robot.
-
-    Raises:
-        InputError: a name is neither a path into the model nor a number of an effect, or is an
-            entry of the start, or is free.
-    """
+    """Returns the parameters of the model that some log gives a value, beside those of effects."""
     numbers = {p.name for e in effects for p in effect_parameters(e)}
     free = {str(file.records.get(n, {}).get("path", n)): n for n in file.free}
     found: dict[str, Parameter] = {}
@@ -60,15 +49,7 @@ def value_parameters(
 
 
 def refuse_impossible(plant: JointPlant, logs: Sequence[Log]) -> None:
-    """Refuses values of logs outside their bounds, and moving bodies without mass.
-
-    Args:
-        plant: with the values of the robot's file.
-        logs: all logs of the robot.
-
-    Raises:
-        InputError: there is one.
-    """
+    """Refuses values of logs outside their bounds, and moving bodies without mass."""
     _refuse_massless(plant.model)
     for log in logs:
         with told_of(f"values of log {log.name!r}"):

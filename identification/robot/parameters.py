@@ -77,12 +77,7 @@ def effect_sizes(effects: Sequence[Effect]) -> dict[str, tuple[Parameter, float]
 def free_parameter(
     file: RobotFile, name: str, model: mujoco.MjModel, effects: Sequence[Effect], log: Log
 ) -> Free:
-    """Returns a free parameter of a robot's file.
-
-    Raises:
-        InputError: it is neither a path nor the size of an effect, its value is missing, its unit
-            is not that of its numbers, or its prior lies outside its bounds.
-    """
+    """Returns a free parameter of a robot's file."""
     for alike in file.spread:
         if name in alike.names:
             return _alike(file, alike, name, model)

@@ -103,9 +103,6 @@ def doubtful(robot: Robot) -> list[str]:
 
     They say that a free run of the robot's log begins elsewhere than the log does, in short, that
     the model clips inputs, and that its geoms touch.
-
-    Args:
-        robot: the result of `read_robot`.
     """
     said = None
     if robot.file.horizon is None:

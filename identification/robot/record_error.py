@@ -60,13 +60,7 @@ class Confirmation:
 
 
 def of_record(error: RecordError, unit: str, models: tuple[str, str]) -> Confirmation:
-    """Returns the errors that a fit or a discovery over a horizon has found on a record.
-
-    Args:
-        error: of the record.
-        unit: of its errors over all outputs.
-        models: what the two models are, in words.
-    """
+    """Returns the errors that a fit or a discovery over a horizon has found on a record."""
     e = error
     return Confirmation(e.name, e.before, e.after, unit, models, e.before_by_unit, e.after_by_unit)
 
@@ -78,19 +72,7 @@ def compare_values(
     after: Mapping[str, float],
     models: tuple[str, str] = (AS_WRITTEN, FITTED),
 ) -> Confirmation:
-    """Compare two sets of values on a record, over the robot's horizon or in a free run.
-
-    Args:
-        robot: the robot, with its plant and its horizon.
-        log: the record; free parameters of the start get its first measured values.
-        before: values of the first model that are not the plant's own.
-        after: values of the second model that are not the plant's own.
-        models: what the two models are, in words.
-
-    Raises:
-        InputError: the windows do not fit the record.
-        DivergenceError: one of the models cannot be simulated.
-    """
+    """Compare two sets of values on a record, over the robot's horizon or in a free run."""
     return _compared(log, [_errors(robot, log, values) for values in (before, after)], models)
 
 
@@ -100,17 +82,7 @@ def compare_unseen(
     after: Mapping[str, float],
     models: tuple[str, str] = (AS_WRITTEN, FITTED),
 ) -> Confirmation:
-    """Compare two sets of values on the unseen part of the robot's own log, in a free run of all.
-
-    Args:
-        robot: the robot, without a horizon.
-        before: values of the first model that are not the plant's own.
-        after: values of the second model that are not the plant's own.
-        models: what the two models are, in words.
-
-    Raises:
-        DivergenceError: one of the models cannot be simulated.
-    """
+    """Compare two sets of values on the unseen part of the robot's log, in a free run of all."""
     log = robot.log
     part = log.part("validation")
     rows, own = np.isin(log.time, part.time), robot.values_of(log)

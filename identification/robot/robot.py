@@ -122,12 +122,7 @@ class Robot:
 
 
 def read_robot_log(file: RobotFile, path: str | Path) -> Log:
-    """Read a log with the columns of a robot.
-
-    Raises:
-        InputError: for the reasons of `read_log`; or a name in the robot's file is no actuator or
-            sensor, the log has too few samples for the file, or its time cannot be in seconds.
-    """
+    """Read a log with the columns of a robot."""
     refuse_same_stem(file, Path(path))
     model = robot_spec(file)[0].compile()
     refuse_unnamed(model, file)
@@ -177,12 +172,7 @@ def read_robot_log(file: RobotFile, path: str | Path) -> Log:
 def robot_of(
     file: RobotFile, log: Log, others: Sequence[Log] = (), records: Sequence[Log] = ()
 ) -> Robot:
-    """Compile a robot for a log, for others that are fitted together with it, and for records.
-
-    Raises:
-        InputError: a name, a path, a joint or an effect is unknown, a value is missing, or no
-            sensor measures a free or ball joint.
-    """
+    """Compile a robot for a log, for others that are fitted together with it, and for records."""
     spec, said = robot_spec(file)
     said += with_step(spec, [log, *others, *records])
     model = spec.copy().compile()

@@ -47,12 +47,7 @@ class Begin:
 
 
 def measured_begin(model: mujoco.MjModel, log: Log) -> dict[Place, Begin]:
-    """Returns the measured entries of the initial state, by field and index: positions and rates.
-
-    Args:
-        model: with the log's sensors.
-        log: at least 3 samples.
-    """
+    """Returns the measured positions and rates of the initial state, by field and index."""
     noise, found = noise_floor(log.outputs), {}
     places = enumerate(output_columns(model, log.output_names))
     for k, (field, i) in sorted(places, key=lambda item: item[1][0]):  # positions, then rates
@@ -66,11 +61,7 @@ def measured_begin(model: mujoco.MjModel, log: Log) -> dict[Place, Begin]:
 
 
 def refuse_start(file: RobotFile, model: mujoco.MjModel) -> None:
-    """Refuse a path under [start] that names nothing in the state.
-
-    Raises:
-        InputError: there is one.
-    """
+    """Refuse a path under [start] that names nothing in the state."""
     with told_of(f"start in {file.path}"):
         for path in file.start:
             if start_place(path, model) is None:
@@ -93,9 +84,6 @@ def start_of(file: RobotFile, model: mujoco.MjModel, log: Log) -> State:
             the model's own stands.
         model: with the log's sensors.
         log: what was measured.
-
-    Raises:
-        InputError: a path under [start] names nothing in the state.
     """
     own = own_start(model)
     start = {f: np.array(getattr(own, f)) for f in ("qpos", "qvel", "act")}
@@ -109,13 +97,7 @@ def start_of(file: RobotFile, model: mujoco.MjModel, log: Log) -> State:
 
 
 def moved_begin(file: RobotFile, model: mujoco.MjModel, log: Log) -> dict[Place, Begin]:
-    """Returns what a log shows to begin elsewhere than the model, unless the robot's file gives it.
-
-    Args:
-        file: the robot's.
-        model: with the log's sensors.
-        log: what was measured.
-    """
+    """Returns what a log shows to begin elsewhere than the model, where the file gives nothing."""
     if "start" in file.trust:
         return {}
     own = own_start(model)

@@ -16,13 +16,7 @@ LISTED = 3  # joints that a sentence lists
 
 
 def start_sentence(file: RobotFile, model: mujoco.MjModel, log: Log) -> str | None:
-    """Returns one sentence on where a log begins elsewhere than the model; None where it does not.
-
-    Args:
-        file: the robot's.
-        model: with the log's sensors.
-        log: what was measured.
-    """
+    """Returns one sentence on where a log begins elsewhere than the model, or None."""
     free = {start_place(str(file.records.get(n, {}).get("path", n)), model) for n in file.free}
     moved = [(p, b) for p, b in moved_begin(file, model, log).items() if p not in free]
     if not moved:
@@ -54,13 +48,7 @@ def given_apart(file: RobotFile, model: mujoco.MjModel, log: Log) -> dict[str, s
 
 
 def apart_sentence(file: RobotFile, model: mujoco.MjModel, log: Log) -> str | None:
-    """Returns one sentence on what [start] gives elsewhere than a log begins; None where nothing.
-
-    Args:
-        file: the robot's.
-        model: with the log's sensors.
-        log: what was measured.
-    """
+    """Returns one sentence on what [start] gives elsewhere than a log begins, or None."""
     apart = given_apart(file, model, log)
     if not apart:
         return None
@@ -75,13 +63,7 @@ def apart_sentence(file: RobotFile, model: mujoco.MjModel, log: Log) -> str | No
 
 
 def made_up_sentence(file: RobotFile, model: mujoco.MjModel, log: Log) -> str | None:
-    """Returns in short what `apart_sentence` means for values, to stand beside them, or None.
-
-    Args:
-        file: the robot's.
-        model: with the log's sensors.
-        log: what was measured.
-    """
+    """Returns in short what `apart_sentence` means for values, to stand beside them, or None."""
     apart = given_apart(file, model, log)
     if not apart:
         return None
@@ -92,13 +74,7 @@ def made_up_sentence(file: RobotFile, model: mujoco.MjModel, log: Log) -> str | 
 
 
 def unused_sentence(file: RobotFile, model: mujoco.MjModel, log: Log) -> str | None:
-    """Returns one sentence on what of [start] is not used over a horizon; None where all is.
-
-    Args:
-        file: the robot's, with a horizon.
-        model: with the log's sensors.
-        log: what was measured.
-    """
+    """Returns one sentence on what of [start] is not used over a horizon; None where all is."""
     begins = measured_begin(model, log)
     unused = [p for p in file.start if start_place(p, model) in begins]
     if not unused:

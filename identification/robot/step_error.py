@@ -53,11 +53,7 @@ class StepError:
 
 
 def refuse_coarse_steps(robot: Robot) -> None:
-    """Refuse a model whose integration errs by more than the noise of the log.
-
-    Raises:
-        InputError: the error is larger than the noise, or a factor or a start makes it so.
-    """
+    """Refuse a model whose integration errs by more than the noise of the log."""
     if "steps" in robot.file.trust:
         return
     worst = _worst(robot)
@@ -96,11 +92,7 @@ def _is_simulated(robot: Robot) -> bool:
 
 
 def step_error(robot: Robot) -> StepError:
-    """Returns the error of the output with the largest ratio of error to noise.
-
-    Raises:
-        DivergenceError: a simulation left the finite numbers.
-    """
+    """Returns the error of the output with the largest ratio of error to noise."""
     log, h = robot.log, robot.log.sampling_time
     samples = max(2, 1 + int(min(SECONDS, log.duration) / h))
     coarse, fine = (

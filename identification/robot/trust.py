@@ -22,16 +22,7 @@ TRUST = {  # what a user may know better than a check
 
 
 def trusted(words: Sequence[Any], where: str, judged: Mapping[str, str] = TRUST) -> tuple[str, ...]:
-    """Returns the judgements that a user overrules.
-
-    Args:
-        words: of those that are judged.
-        where: they stand, for messages, such as "under trust in robot.toml".
-        judged: what is judged, by word.
-
-    Raises:
-        InputError: a word is unknown.
-    """
+    """Returns the judgements that a user overrules."""
     for word in words:
         if str(word) not in judged:
             raise unknown_name(f"word {where}:", str(word), judged)

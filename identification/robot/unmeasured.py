@@ -34,18 +34,7 @@ _SITE = int(mujoco.mjtObj.mjOBJ_SITE)
 
 
 def refuse_unmeasured(file: RobotFile, model: mujoco.MjModel, log: Log) -> None:
-    """Refuse a model with a joint that moves what a log measures, and that only falls or drifts.
-
-    Args:
-        file: the robot's.
-        model: with the log's sensors.
-        log: what was measured.
-
-    Raises:
-        InputError: there is a free or ball joint that nothing measures and nothing welds to the
-            world, or a slide that nothing measures and nothing holds against gravity, and the file
-            does not trust its joints.
-    """
+    """Refuse a model with a joint that moves what a log measures, and that only falls or drifts."""
     if "joints" in file.trust:
         return
     felt = felt_trees(model, log)
@@ -60,12 +49,7 @@ def refuse_unmeasured(file: RobotFile, model: mujoco.MjModel, log: Log) -> None:
 
 
 def _falling_slides(model: mujoco.MjModel, log: Log) -> set[int]:
-    """Returns the numbers of the slides that fall as the model begins.
-
-    Args:
-        model: with the log's sensors.
-        log: what was measured; a slide that it measures is none of them.
-    """
+    """Returns the numbers of the slides that fall as the model begins."""
     measured = {int(i if field == "qvel" else model.jnt_dofadr[model.jnt_qposadr == i][0])
                 for field, i in output_columns(model, log.output_names)}  # fmt: skip
     free = ~model.jnt_limited.astype(bool) & (np.ravel(model.jnt_stiffness) == 0)
@@ -113,10 +97,6 @@ def felt_trees(model: mujoco.MjModel, log: Log) -> set[int]:
     """Returns the kinematic trees that move what a log measures, by MuJoCo's numbers.
 
     These are the trees of the measured joints, and those that equalities or tendons tie to them.
-
-    Args:
-        model: with the log's sensors.
-        log: what was measured.
     """
     felt = set()
     for field, i in output_columns(model, log.output_names):

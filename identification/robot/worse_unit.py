@@ -14,11 +14,7 @@ LEAST = 0.1  # rise of the mean square of one unit that is told
 
 
 def worse_unit(confirmed: Sequence[Confirmation]) -> list[str]:
-    """Returns one sentence that names the outputs that are predicted worse, where others are not.
-
-    Args:
-        confirmed: what was compared on each record that no fit has seen.
-    """
+    """Returns one sentence that names outputs that are predicted worse while others are not."""
     rises = _rises(confirmed)
     worse = {unit: rise for unit, rise in rises.items() if rise > LEAST}
     others = {unit: rise for unit, rise in rises.items() if unit not in worse}
