@@ -10,7 +10,7 @@ from as_built_calibrations import calibration_lines
 from as_built_rows import Row, commits_of, median_time, rate_of, records_of
 
 from identification.sweep.discovery_rates import in_set, right, size_errors
-from inca_mj.worlds import ALL_EFFECTS, UNLISTED
+from inca_mj.studies.worlds import ALL_EFFECTS, UNLISTED
 
 USUAL = 20.0  # length of a world's log where nothing is said [s]
 ABSORBED = {"spring_hysteresis"}  # to first order, friction and stiffness do the same
@@ -102,10 +102,10 @@ def _worlds(rows: Sequence[Row]) -> list[str]:
         " then. Worlds up to 8216, and from 9000 to 9408, count the common radius, spring constant"
         " and slope of the friction as known. A hysteresis of the drum springs in worlds up to"
         " 8509, and from 9000 to 9616, is friction and stiffness to first order (r₁ < r/10,"
-        " `inca_mj/worlds/ratio.py`): nobody can tell it from them, and worlds have another effect"
-        " in its place since then. A scale of 5 % of one encoder leaves a third of the noise in 10"
-        " s (worlds 5 and 6), because other parameters of its drive do the same: nobody can tell"
-        " it, and no world has it.", "",
+        " `inca_mj/studies/worlds/ratio.py`): nobody can tell it from them, and worlds have"
+        " another effect in its place since then. A scale of 5 % of one encoder leaves a third of"
+        " the noise in 10 s (worlds 5 and 6), because other parameters of its drive do the"
+        " same: nobody can tell it, and no world has it.", "",
     ]  # fmt: skip
     one = {"the right name first": right, "right or in the set": in_set,
            "a wrong name": lambda r: bool(r["answer"]["named"]) and not in_set(r)}  # fmt: skip

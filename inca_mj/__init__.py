@@ -81,11 +81,11 @@ _PUBLIC = {
     "excite": "workflows.excitation",
     "Design": "workflows.excitation",
     "Limits": "workflows.limits",
-    "trials": "workflows.trials",
-    "TrialResult": "workflows.trials",
-    "monte_carlo": "workflows.trials",
-    "repeat_thesis": "workflows.thesis_results",
-    "ThesisResults": "workflows.thesis_results",
+    "trials": "thesis.trials",
+    "TrialResult": "thesis.trials",
+    "monte_carlo": "thesis.trials",
+    "repeat_thesis": "thesis.results",
+    "ThesisResults": "thesis.results",
     "crosscheck": "verification.check",
     "CrossCheck": "verification.result",
     # what its cables can hold, and where
@@ -150,6 +150,11 @@ if TYPE_CHECKING:  # the same list, for type checkers and editors
     from inca_mj.statics.tensions import distribute as distribute
     from inca_mj.statics.workspace import DriveLimits as DriveLimits
     from inca_mj.statics.workspace import workspace as workspace
+    from inca_mj.thesis.results import ThesisResults as ThesisResults
+    from inca_mj.thesis.results import repeat_thesis as repeat_thesis
+    from inca_mj.thesis.trials import TrialResult as TrialResult
+    from inca_mj.thesis.trials import monte_carlo as monte_carlo
+    from inca_mj.thesis.trials import trials as trials
     from inca_mj.twin.logs import read_inca_log as read_inca_log
     from inca_mj.twin.logs import run_to_log as run_to_log
     from inca_mj.twin.plain import build_plain as build_plain
@@ -188,12 +193,7 @@ if TYPE_CHECKING:  # the same list, for type checkers and editors
     from inca_mj.workflows.spread import spread_of as spread_of
     from inca_mj.workflows.statics import StaticAnalysis as StaticAnalysis
     from inca_mj.workflows.statics import analyse_statics as analyse_statics
-    from inca_mj.workflows.thesis_results import ThesisResults as ThesisResults
-    from inca_mj.workflows.thesis_results import repeat_thesis as repeat_thesis
     from inca_mj.workflows.tracking import Tracking as Tracking
     from inca_mj.workflows.tracking import track as track
-    from inca_mj.workflows.trials import TrialResult as TrialResult
-    from inca_mj.workflows.trials import monte_carlo as monte_carlo
-    from inca_mj.workflows.trials import trials as trials
 else:
     __getattr__, __dir__ = lazy(__name__, _PUBLIC)

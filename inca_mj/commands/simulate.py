@@ -96,7 +96,7 @@ class Simulate:
             InputError: there is no such figure, or options are given that would make another.
         """
         from identification.errors import InputError
-        from inca_mj.workflows.thesis_figures import figure_settings
+        from inca_mj.thesis.results import figure_settings
 
         output = replace(self.output, out=self.output.out or USUAL_PLACE)
         if self.figure is None:

@@ -25,6 +25,6 @@ class Sweep(SweepCommand):
 
     def methods(self) -> Mapping[str, str]:
         """Returns the methods that a sweep may name: those on any robot, and those on INCA."""
-        from inca_mj.sweeps import METHODS
+        from inca_mj.studies import METHODS
 
         return METHODS

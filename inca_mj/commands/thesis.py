@@ -13,7 +13,7 @@ from identification.commands.common import Output, conclude, table
 from inca_mj.commands.common import do_not_draw
 
 if TYPE_CHECKING:
-    from inca_mj.workflows.thesis_results import ThesisResults
+    from inca_mj.thesis.results import ThesisResults
 
 
 @dataclass(frozen=True)
@@ -37,8 +37,8 @@ class Thesis:
         """Compute, write, say."""
         do_not_draw()
         from identification.estimation.estimation import Options
-        from inca_mj.report.thesis import thesis_json
-        from inca_mj.workflows.thesis_results import repeat_thesis
+        from inca_mj.thesis.report import thesis_json
+        from inca_mj.thesis.results import repeat_thesis
 
         options = Options(horizons=(1.0,)) if self.single else None
         found = repeat_thesis(seed=self.seed, options=options, progress=self.output.tell)
@@ -46,7 +46,7 @@ class Thesis:
         return 0
 
     def _text(self, found: ThesisResults) -> str:
-        from inca_mj.report.thesis import thesis_verdict
+        from inca_mj.thesis.report import thesis_verdict
 
         rows = [
             (f"trial {r.trial.number}", f"3.{r.trial.number + 2}", f"3.{r.trial.number + 3}",
@@ -63,7 +63,7 @@ class Thesis:
 def draw(found: ThesisResults, out: Path) -> None:
     """Write the report and its figures as PNG."""
     from identification.report.page import save_figures, write_report
-    from inca_mj.report.thesis import thesis_sections, thesis_verdict
+    from inca_mj.thesis.report import thesis_sections, thesis_verdict
 
     sections = thesis_sections(found)
     save_figures(sections, out)

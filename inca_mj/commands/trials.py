@@ -11,7 +11,7 @@ from identification.commands.common import Output, conclude, output_field, table
 from inca_mj.commands.common import do_not_draw
 
 if TYPE_CHECKING:
-    from inca_mj.workflows.trials import TrialResult
+    from inca_mj.thesis.trials import TrialResult
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class Trials:
         do_not_draw()
         from identification.errors import refuse_negative
         from identification.estimation.estimation import Options
-        from inca_mj.workflows.trials import monte_carlo, trials
+        from inca_mj.thesis.trials import monte_carlo, trials
 
         refuse_negative("--monte-carlo", self.monte_carlo)  # before trials that take minutes
         options = Options(horizons=(1.0,)) if self.single else None

@@ -6,6 +6,10 @@ from pathlib import Path
 
 from identification.kept_code import kept_code
 
-FOLDERS = ("reference", "robot", "worlds")  # of the package, from which the equations import
+FOLDERS = (
+    "reference",
+    "robot",
+    "studies/worlds",
+)  # of the package, from which the equations import
 
 compiled = kept_code(*(Path(__file__).parents[1] / name for name in FOLDERS))

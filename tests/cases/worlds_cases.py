@@ -7,7 +7,7 @@ import numpy as np
 from inca_mj.reference import layout as base
 from inca_mj.robot.geometry import INCA
 from inca_mj.robot.parameters import parameter_set
-from inca_mj.worlds import (
+from inca_mj.studies.worlds import (
     CHANGES,
     HIDDEN_EFFECTS,
     SHAPES,
@@ -17,9 +17,9 @@ from inca_mj.worlds import (
     make_currents,
     make_plant,
 )
-from inca_mj.worlds import layout as at
-from inca_mj.worlds import simulate_world as simulate
-from inca_mj.worlds.equations import world_rate
+from inca_mj.studies.worlds import layout as at
+from inca_mj.studies.worlds import simulate_world as simulate
+from inca_mj.studies.worlds.equations import world_rate
 
 TRIAL = parameter_set("trial")
 FINE = 5e-4  # a sampling time of one step [s]

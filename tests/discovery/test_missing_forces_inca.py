@@ -8,9 +8,9 @@ from identification.discovery.nominal_model import NominalModel, fit_with_effect
 from identification.discovery.options import DiscoveryOptions
 from identification.report.finding_words import describe_finding
 from inca_mj.effects.motor import DELAY
+from inca_mj.studies.worlds import HiddenSetting, effect, world
 from inca_mj.twin.twin import build_twin
 from inca_mj.workflows.spread import KNOWN
-from inca_mj.worlds import HiddenSetting, effect, world
 
 
 def test_both_places_have_forces_in_their_units_and_sentences():

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from inca_mj.effects.catalogue import CATALOGUE
+from inca_mj.studies.worlds import HiddenSetting, effect, world
 from inca_mj.workflows.discovery import discover
 from inca_mj.workflows.spread import spread_of
-from inca_mj.worlds import HiddenSetting, effect, world
 
 FEW = ("load_dependent_friction", "stribeck_friction", "air_drag", "external_force", "com_offset")
 FIVE = tuple(e for e in CATALOGUE if e.name in FEW)

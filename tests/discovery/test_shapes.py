@@ -12,9 +12,9 @@ from identification.discovery.selection import shapes
 from identification.discovery.selection.shapes import improve_shape
 from identification.effects.effect import Candidate, Effect, Shape, Size
 from inca_mj.effects.motor import CURRENT_SATURATION
+from inca_mj.studies.worlds import HiddenSetting, effect, world
 from inca_mj.workflows.discovery import discover
 from inca_mj.workflows.spread import spread_of
-from inca_mj.worlds import HiddenSetting, effect, world
 
 BARE = OPTIONS.bare_bic
 KINDS = Effect(

@@ -6,8 +6,8 @@ import numpy as np
 
 from identification.estimation.estimation import estimate
 from inca_mj.robot.parameters import parameter_set
+from inca_mj.thesis.trials import SMALL, trial_data
 from inca_mj.twin.twin import build_twin
-from inca_mj.workflows.thesis import SMALL, trial_data
 
 
 def test_the_six_parameters_of_trial_3_are_recovered_from_one_second():

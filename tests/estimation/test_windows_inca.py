@@ -10,11 +10,11 @@ from identification.windows.window_estimate import estimate_windows
 from identification.windows.windows import apart, moved
 from inca_mj.robot.inputs import make_input
 from inca_mj.robot.parameters import parameter_set
+from inca_mj.thesis.trials import SMALL
 from inca_mj.twin.logs import POSE, run_to_log
 from inca_mj.twin.run import simulate
 from inca_mj.twin.twin import build_twin
 from inca_mj.workflows.disturbed import identify_windows
-from inca_mj.workflows.thesis import SMALL
 
 NOISE = 2e-4  # [rad]
 STEP = 2e-3  # [s] of the log and of the model

@@ -22,7 +22,7 @@ from identification.linear.export import load_system
 from identification.report.media import image_source, video_source
 from identification.sweep.axis import axis
 from identification.sweep.parquet import read_tasks
-from inca_mj.sweeps.practice import truth_of
+from inca_mj.studies.practice import truth_of
 from inca_mj.twin.run import load_run
 from inca_mj.twin.saved import load_twin, save_twin
 from inca_mj.twin.twin import build_twin

@@ -9,7 +9,7 @@ import joint_worlds
 import pytest
 
 import inca_mj.reference
-import inca_mj.worlds
+import inca_mj.studies.worlds
 from inca_mj.reference.compiled import FOLDERS
 
 RUN = """
@@ -51,8 +51,8 @@ def test_machine_code_is_kept_until_a_file_of_a_function_inside_it_changes(tmp_p
 
 
 @pytest.mark.parametrize(("package", "watched"), [
-    (inca_mj.reference, {f"inca_mj.{name}" for name in FOLDERS}),
-    (inca_mj.worlds, {f"inca_mj.{name}" for name in FOLDERS}),
+    (inca_mj.reference, {f"inca_mj.{name.replace('/', '.')}" for name in FOLDERS}),
+    (inca_mj.studies.worlds, {f"inca_mj.{name.replace('/', '.')}" for name in FOLDERS}),
     (joint_worlds, {"joint_worlds"}),
 ])  # fmt: skip
 def test_compiled_equations_import_from_watched_folders_only(package, watched):

@@ -9,13 +9,12 @@ from page_text import text_of
 
 from identification.estimation.estimation import Options
 from identification.report.page import write_report
-from inca_mj.report.thesis import numbered, thesis_json, thesis_sections, thesis_verdict
 from inca_mj.robot.parameters import parameter_set
+from inca_mj.thesis.prints import FITS, TABLES
+from inca_mj.thesis.report import numbered, thesis_json, thesis_sections, thesis_verdict
+from inca_mj.thesis.results import FIGURES, repeat_thesis
+from inca_mj.thesis.trials import TRIALS
 from inca_mj.workflows.procedure import STEP_1, STEP_2
-from inca_mj.workflows.thesis import TRIALS
-from inca_mj.workflows.thesis_figures import FIGURES
-from inca_mj.workflows.thesis_prints import FITS, TABLES
-from inca_mj.workflows.thesis_results import repeat_thesis
 
 TEXT = Path(__file__).parents[3] / "shared" / "000_2b9c4e89379102f7.txt"
 EVERY = [
@@ -30,8 +29,8 @@ STAND_IN = 0.6  # [s], for 10 s
 def found():
     """Short data and searches that are cut short: the report is the same, its estimates worse."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("inca_mj.workflows.thesis.DURATION", 0.3)
-        patch.setattr("inca_mj.workflows.thesis_results.STAND_IN", STAND_IN)
+        patch.setattr("inca_mj.thesis.trials.DURATION", 0.3)
+        patch.setattr("inca_mj.thesis.results.STAND_IN", STAND_IN)
         return repeat_thesis(options=Options(horizons=(1.0,), max_evaluations=2))
 
 

@@ -9,13 +9,13 @@ from identification.errors import InputError
 from identification.sweep.method import Seed, load_method
 from identification.sweep.work import checked
 from inca_mj.robot.parameters import parameter_set
-from inca_mj.sweeps import METHODS
-from inca_mj.sweeps.excitation import excitation_findings
-from inca_mj.sweeps.null_score import null_findings
-from inca_mj.sweeps.practice import truth_of
-from inca_mj.sweeps.world_score import score_findings
-from inca_mj.sweeps.worlds import WorldSettings, make_world
-from inca_mj.worlds import (
+from inca_mj.studies import METHODS
+from inca_mj.studies.excitation import excitation_findings
+from inca_mj.studies.null_score import null_findings
+from inca_mj.studies.practice import truth_of
+from inca_mj.studies.world_score import score_findings
+from inca_mj.studies.world_settings import WorldSettings, make_world
+from inca_mj.studies.worlds import (
     CHANGES,
     FAULTS,
     HIDDEN_EFFECTS,
@@ -63,7 +63,7 @@ def test_an_effect_that_is_asked_for_is_hidden_with_its_ratio():
 
 
 def test_of_six_mixed_worlds_one_hides_nothing_and_one_an_unlisted_effect(monkeypatch):
-    from inca_mj.sweeps.worlds import _drawn
+    from inca_mj.studies.world_settings import _drawn
 
     settings = WorldSettings(kind="mixed", first=100, effects=2)
     drawn = [_drawn(settings, 100 + k) for k in range(60)]
@@ -81,7 +81,7 @@ def test_of_six_mixed_worlds_one_hides_nothing_and_one_an_unlisted_effect(monkey
 
 @pytest.mark.parametrize(("kind", "known"), [("rule", CHANGES), ("sensor", FAULTS)])
 def test_a_kind_of_its_own_hides_one_of_its_effects(kind, known):
-    from inca_mj.sweeps.worlds import _drawn
+    from inca_mj.studies.world_settings import _drawn
 
     drawn = [_drawn(WorldSettings(kind=kind), k) for k in range(150)]
     assert {told for told, *_ in drawn} == {kind}
@@ -114,7 +114,7 @@ def test_settings_of_worlds_are_checked(settings, words):
 
 @pytest.mark.parametrize("kind", ["listed", "mixed", "unknown", "rule", "sensor"])
 def test_an_effect_of_its_own_kind_may_be_asked_for(kind):
-    from inca_mj.sweeps.worlds import HIDES, _drawn
+    from inca_mj.studies.world_settings import HIDES, _drawn
 
     for effect in HIDES.get(kind, HIDDEN_EFFECTS):
         number = 1  # of six mixed worlds, this one hides what is listed

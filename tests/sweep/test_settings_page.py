@@ -16,7 +16,7 @@ from identification.sweep.statistics import wilson
 from identification.sweep.store import Store
 from identification.sweep.summary import summarise
 from identification.sweep.words import Heads, about_of
-from inca_mj.sweeps import METHODS
+from inca_mj.studies import METHODS
 
 PAGE = (Path(__file__).parents[2] / "docs" / "sweeps.md").read_text(encoding="utf-8")
 HEAD = "| setting | unit | default | required | what it is |\n|---|---|---|---|---|"

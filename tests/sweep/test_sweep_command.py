@@ -14,7 +14,7 @@ from sweep_cases import METHOD, read, run, write
 from identification.__main__ import main as identification
 from identification.sweep.config import read_sweep
 from inca_mj.cli import main as inca
-from inca_mj.sweeps import METHODS
+from inca_mj.studies import METHODS
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "json.md").read_text(encoding="utf-8")

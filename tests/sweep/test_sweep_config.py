@@ -7,7 +7,7 @@ import pytest
 from sweep_cases import GRID, METHOD, write
 
 from identification.sweep.config import read_sweep
-from inca_mj.sweeps import METHODS
+from inca_mj.studies import METHODS
 
 TWO = f"seed = 3\n[[study]]\nname='one'\nmethod='{METHOD}:TOSS'\ncount=4\n{{}}\n" + (
     f"[[study]]\nname='two'\nmethod='{METHOD}:TOSS'\ncount=3\n[study.grid]\nsize=[1, 2]\n"

@@ -9,12 +9,12 @@ import pytest
 from worlds_cases import ALL, TRIAL, plant, prbs, rate
 from worlds_cases import simulate as simulate_world
 
-import inca_mj.worlds
+import inca_mj.studies.worlds
 from identification.errors import InputError
 from inca_mj.reference import derivative, pack, simulate_reference
 from inca_mj.reference import layout as base
 from inca_mj.robot.geometry import INCA
-from inca_mj.worlds import (
+from inca_mj.studies.worlds import (
     HiddenAnchorOffset,
     HiddenCableHardening,
     HiddenComOffset,
@@ -24,18 +24,18 @@ from inca_mj.worlds import (
     draw_effect,
     effect,
 )
-from inca_mj.worlds import layout as at
+from inca_mj.studies.worlds import layout as at
 
 CLOSE = 1e-7  # the oracle is adaptive, at 1e-11 [rad]
 SHARED = {
     *("inca_mj.robot.geometry", "inca_mj.robot.parameters", "inca_mj.robot.inputs"),
-    *("inca_mj.robot.spread", "inca_mj.reference", "inca_mj.worlds"),
+    *("inca_mj.robot.spread", "inca_mj.reference", "inca_mj.studies.worlds"),
 }
 
 
 def test_the_worlds_share_no_physics_with_the_twin():
     names = set()
-    for file in Path(inca_mj.worlds.__file__).parent.glob("*.py"):
+    for file in Path(inca_mj.studies.worlds.__file__).parent.glob("*.py"):
         for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
             if isinstance(node, ast.Import):
                 names |= {alias.name for alias in node.names}

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from worlds_cases import FINE, plant, prbs, rate, simulate
 
 from inca_mj.reference import layout as base
-from inca_mj.worlds import (
+from inca_mj.studies.worlds import (
     HiddenAirDrag,
     HiddenAnchorOffset,
     HiddenCableCreep,
@@ -23,9 +23,9 @@ from inca_mj.worlds import (
     HiddenSpringHardening,
     HiddenSpringHysteresis,
 )
-from inca_mj.worlds import layout as at
-from inca_mj.worlds.equations import drag, elastic, sagging, shake
-from inca_mj.worlds.pulley import path
+from inca_mj.studies.worlds import layout as at
+from inca_mj.studies.worlds.equations import drag, elastic, sagging, shake
+from inca_mj.studies.worlds.pulley import path
 
 points = st.tuples(
     st.floats(0.3, 2.0), st.floats(-2.0, 2.0), st.floats(-2.0, 2.0)

@@ -7,7 +7,7 @@ from worlds_cases import plant, prbs
 
 from identification.errors import InputError
 from inca_mj.reference import layout as base
-from inca_mj.worlds import (
+from inca_mj.studies.worlds import (
     FAULTS,
     HiddenEncoderEccentricity,
     HiddenEncoderJump,
@@ -21,7 +21,7 @@ from inca_mj.worlds import (
     simulate_world,
     world,
 )
-from inca_mj.worlds.sensor import Motion, lagged, simulate_angles
+from inca_mj.studies.worlds.sensor import Motion, lagged, simulate_angles
 
 TIME = 0.01 * np.arange(101)
 W = 2 * np.pi * 1.5  # of a sine [rad/s]

@@ -13,8 +13,7 @@ from inca_mj.reference import layout as base
 from inca_mj.robot.geometry import INCA
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.robot.spread import displacements, with_spread
-from inca_mj.twin.twin import build_twin
-from inca_mj.worlds import (
+from inca_mj.studies.worlds import (
     AS_BUILT,
     EVERY,
     EXACT,
@@ -33,10 +32,11 @@ from inca_mj.worlds import (
     simulate_world,
     world,
 )
-from inca_mj.worlds.measure import encode, noise_rms
-from inca_mj.worlds.ratio import HiddenAbsorbed
-from inca_mj.worlds.robot import true_robot
-from inca_mj.worlds.tolerances import as_built, usual_std
+from inca_mj.studies.worlds.measure import encode, noise_rms
+from inca_mj.studies.worlds.ratio import HiddenAbsorbed
+from inca_mj.studies.worlds.robot import true_robot
+from inca_mj.studies.worlds.tolerances import as_built, usual_std
+from inca_mj.twin.twin import build_twin
 
 SHORT = HiddenSetting(duration=1.0)
 BUILT = replace(SHORT, tolerances=AS_BUILT)

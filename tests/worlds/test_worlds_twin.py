@@ -8,8 +8,8 @@ import pytest
 
 from identification.model.predictor import Predictor
 from inca_mj.effects.catalogue import CATALOGUE
+from inca_mj.studies.worlds import ALL_EFFECTS, SHAPES, UNLISTED, HiddenSetting, draw_effect, world
 from inca_mj.twin.twin import build_twin
-from inca_mj.worlds import ALL_EFFECTS, SHAPES, UNLISTED, HiddenSetting, draw_effect, world
 
 SEED = 11
 SETTING = HiddenSetting(duration=2.0, noise=0.0, counts=0)

@@ -9,7 +9,7 @@ import pytest
 from identification.errors import InputError
 from inca_mj.robot.geometry import INCA
 from inca_mj.robot.parameters import parameter_set
-from inca_mj.worlds import (
+from inca_mj.studies.worlds import (
     ALL_EFFECTS,
     EVERY,
     SHAPES,
@@ -28,8 +28,8 @@ from inca_mj.worlds import (
     records,
     world,
 )
-from inca_mj.worlds.measure import coloured, encode, noise_rms
-from inca_mj.worlds.ratio import HiddenAbsorbed
+from inca_mj.studies.worlds.measure import coloured, encode, noise_rms
+from inca_mj.studies.worlds.ratio import HiddenAbsorbed
 
 SHORT = HiddenSetting(duration=1.0)
 

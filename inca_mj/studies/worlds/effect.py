@@ -1,0 +1,124 @@
+"""The common base of effects: a frozen record that knows where in the equations it acts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields, replace
+from math import hypot, inf, isfinite
+from typing import ClassVar, Self
+
+import numpy as np
+
+from identification.errors import InputError
+from inca_mj.robot.geometry import DRIVES
+from inca_mj.studies.worlds import layout as at
+
+
+class HiddenNumbers:
+    """The numbers of a plant while its effects write theirs.
+
+    Attributes:
+        A: exit points in O, shape (8, 3) [m].
+        B: connectors from the centre of mass, in the platform frame, shape (8, 3) [m].
+        centre: centre of mass in the platform frame, shape (3,) [m].
+        force: external force on the platform's origin, in O, shape (3,) [N].
+        carried: the part of `force` that the pretension balances, shape (3,) [N].
+        weight_carried: whether the pretension balances the weight of the cables.
+        D: a row per drive, columns of `layout`.
+        P: of the platform, entries of `layout`.
+    """
+
+    def __init__(self, A: np.ndarray, B: np.ndarray) -> None:
+        self.A, self.B = A.copy(), B.copy()
+        self.centre, self.force, self.carried = np.zeros((3, 3))
+        self.weight_carried = False
+        self.D, self.P = np.zeros((DRIVES, at.DRIVE_COLUMNS)), np.zeros(at.PLATFORM_ENTRIES)
+        self.D[:, at.CURRENT_LIMIT] = np.inf
+        self.D[:, at.PULLEY_SIDE] = np.where(A[:, 2] > A[:, 2].mean(), 1.0, -1.0)
+
+
+@dataclass(frozen=True, kw_only=True)
+class HiddenEffect:
+    """A physical effect that the reference lacks.
+
+    A robot may have it with sizes z of |z| xⁿ ≤ `largest`, at x = `reach` and the law's exponent n.
+
+    Raises:
+        InputError: a number is not finite, or a positive one is not positive.
+    """
+
+    name: ClassVar[str]
+    acts_on: ClassVar[str]
+    sizes: ClassVar[tuple[str, ...]]  # the fields that are zero where the effect is off
+    largest: ClassVar[float] = inf
+    reach: ClassVar[float] = 1.0
+    positive: ClassVar[tuple[str, ...]] = ()
+    is_smooth: ClassVar[bool] = True  # whether a small size of it acts as a large one does
+    is_part: ClassVar[bool] = False  # whether it is a part that deviates, as every part may
+
+    def __post_init__(self) -> None:
+        for field, value in self.values().items():
+            if isinstance(value, float) and not (
+                isfinite(value) or (field in self.sizes and value > 0)
+            ):
+                raise InputError(f"{self.name}: {field} = {value} is not a finite number")
+            if field in self.positive and not value > 0:
+                raise InputError(f"{self.name}: {field} = {value:g} must be positive")
+
+    @property
+    def where(self) -> str:
+        """The part of the robot it acts on."""
+        return self.acts_on
+
+    def values(self) -> dict[str, float]:
+        """Returns all numbers of the law by name, without the place."""
+        return {f.name: getattr(self, f.name) for f in fields(self) if f.name != "drive"}
+
+    @property
+    def most(self) -> float:
+        """The factor by which its sizes can grow so that a robot may still have it."""
+        size = hypot(*(getattr(self, name) for name in self.sizes))
+        return self.largest / (size * self.reach ** getattr(self, "exponent", 0.0))
+
+    def scaled(self, factor: float) -> Self:
+        """Returns the same effect with its sizes times `factor`; its shape stays."""
+        return replace(self, **{name: factor * getattr(self, name) for name in self.sizes})
+
+    def put(self, numbers: HiddenNumbers) -> None:
+        """Write the effect's numbers where the equations read them."""
+        raise NotImplementedError
+
+
+@dataclass(frozen=True, kw_only=True)
+class HiddenDriveEffect(HiddenEffect):
+    """An effect on every drive (`drive` None) or on one of them (1 to 8)."""
+
+    acts_on: ClassVar[str] = "all drives"
+    drive: int | None = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.drive is not None and self.drive not in range(1, DRIVES + 1):
+            raise InputError(f"{self.name}: no drive {self.drive}; give 1 to {DRIVES}, or none")
+
+    @property
+    def where(self) -> str:
+        """All drives (cables), or the one drive."""
+        return self.acts_on if self.drive is None else f"drive {self.drive}"
+
+    def column(self, numbers: HiddenNumbers, column: int) -> np.ndarray:
+        """Returns a view of one column of D, the rows of this effect's drives only."""
+        rows = slice(None) if self.drive is None else slice(self.drive - 1, self.drive)
+        return numbers.D[rows, column]
+
+
+@dataclass(frozen=True, kw_only=True)
+class HiddenOneDriveEffect(HiddenDriveEffect):
+    """An effect that tells one drive from the others."""
+
+    is_part: ClassVar[bool] = True
+    drive: int | None = 1
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.drive is None:
+            raise InputError(f"{self.name}: name its drive, 1 to {DRIVES}")

@@ -1,0 +1,93 @@
+"""The making and the measuring of a world, and the currents that drive it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf
+
+import numpy as np
+
+from identification.errors import refuse_number, unknown_name
+from inca_mj.robot.inputs import multisine, prbs
+from inca_mj.studies.worlds.tolerances import EXACT, Tolerances
+
+VARIED = ("lambda", "b", "J", "b_v", "b_c", "K_t")  # what a user would estimate
+EVERY = ("R", "R_s", "k_s", *VARIED, "beta", "m", "I_x", "I_y", "I_z")
+
+_INPUTS = {"prbs": prbs, "multisine": multisine}
+
+
+@dataclass(frozen=True, kw_only=True)
+class HiddenSetting:
+    """The making and the measuring of a world.
+
+    Attributes:
+        input: "prbs" or "multisine".
+        low: smallest current [A].
+        high: largest current [A].
+        duration: of the log [s]; its samples are those of [0, duration).
+        sampling_time: [s].
+        varied: parameters that differ from the `trial` set, uniformly within ± `spread`.
+        spread: relative.
+        offset: largest error of the start position, by axis [m].
+        tilt: largest error of the start angles, by axis [rad].
+        counts: of an encoder a turn; 0 for one without steps.
+        noise: white, before the encoder rounds [rad].
+        error_rms: of the unlogged coloured error of the currents [A].
+        error_time: its time constant [s]; 0 for white.
+        tolerances: how much its drives, points and platform differ from the common values; they do
+            not by default, and `AS_BUILT` is a usual robot.
+
+    Raises:
+        InputError: the input is unknown, or a number is out of its range.
+    """
+
+    input: str = "prbs"
+    low: float = 0.5
+    high: float = 1.0
+    duration: float = 20.0
+    sampling_time: float = 0.01
+    varied: tuple[str, ...] = VARIED
+    spread: float = 0.1
+    offset: float = 0.01
+    tilt: float = 0.0
+    counts: int = 4000
+    noise: float = 5e-4
+    error_rms: float = 0.0
+    error_time: float = 0.05
+    tolerances: Tolerances = EXACT
+
+    def __post_init__(self) -> None:
+        if self.input not in _INPUTS:
+            raise unknown_name("input", self.input, _INPUTS)
+        for name in ("spread", "offset", "tilt", "counts", "noise", "error_rms", "error_time"):
+            value = getattr(self, name)
+            refuse_number(name, value, 0 <= value < inf, "0 or more")
+        T_s, least = self.sampling_time, 2 * self.sampling_time
+        refuse_number("sampling_time", T_s, 0 < T_s < inf, "a time above 0 [s]")
+        is_long = least <= self.duration < inf
+        refuse_number("duration", self.duration, is_long, f"two samples, {least:g} s, or more")
+        refuse_number("low", self.low, self.low <= self.high < inf, f"up to high = {self.high:g} A")
+
+    @property
+    def absorbed(self) -> tuple[str, ...]:
+        """Parameters whose common value a model may tune as it likes, when sizes are chosen.
+
+        Of a robot whose drives differ nobody knows the common radius, spring or slope at rest
+        either: a hysteresis of the drum springs is mostly a friction and a stiffness.
+        """
+        own = () if self.tolerances == EXACT else ("R", "k_s", "beta")
+        return (*self.varied, *(name for name in own if name not in self.varied))
+
+    @property
+    def samples(self) -> int:
+        """Number of samples."""
+        return round(self.duration / self.sampling_time)
+
+
+def make_currents(seed: int, setting: HiddenSetting) -> np.ndarray:
+    """Returns the commanded currents of a world, shape (n, 8) [A]."""
+    n, T_s, low, high = setting.samples, setting.sampling_time, setting.low, setting.high
+    if setting.input == "prbs":
+        return prbs(n, T_s, seed=seed, low=low, high=high)
+    return multisine(n, T_s, seed=seed, mean=(low + high) / 2, amplitude=(high - low) / 2)

@@ -1,0 +1,197 @@
+"""A world: a robot nobody knows exactly, with effects nobody named, and logs of it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from identification.errors import InputError
+from identification.logs.log import Log
+from identification.model.parameter import ParameterSet
+from inca_mj.robot.geometry import DRIVES, INCA, Geometry
+from inca_mj.studies.worlds.effect import HiddenEffect
+from inca_mj.studies.worlds.measure import coloured, encode, noise_rms
+from inca_mj.studies.worlds.plant import make_plant
+from inca_mj.studies.worlds.ratio import HiddenAbsorbed, UnreachedError, sized
+from inca_mj.studies.worlds.robot import elsewhere, true_robot
+from inca_mj.studies.worlds.sensor import simulate_angles
+from inca_mj.studies.worlds.setting import HiddenSetting, make_currents
+from inca_mj.studies.worlds.truth import HiddenTruth, HiddenWorld
+
+INPUTS = ("prbs", "multisine", "prbs")  # of the records of one robot
+FURTHER = 0.02  # later records begin up to this much farther off than the first [m]
+
+
+def world(
+    seed: int,
+    effects: Sequence[HiddenEffect] = (),
+    *,
+    ratio: float | Sequence[float] | None = None,
+    setting: HiddenSetting | None = None,
+    geometry: Geometry = INCA,
+) -> HiddenWorld:
+    """Returns a log of a robot with these effects, and the truth about it.
+
+    One seed gives one robot, input and noise, whatever the effects are.
+
+    Args:
+        seed: 0 or more.
+        effects: frozen records, sizes in physical units.
+        ratio: of each effect, or one for all: sizes are changed so that the rms of what the varied
+            parameters, the start pose and parts within the tolerances cannot absorb is `ratio`
+            times that of the measurement noise, each effect alone; the sizes given are where the
+            search starts.
+        setting: of the experiment.
+        geometry: nominal exit points and connectors.
+
+    Raises:
+        InputError: a number is bad, an effect is there twice in one place, or a ratio cannot be
+            reached.
+        DivergenceError: the effects are so large that the robot breaks.
+    """
+    setting = setting or HiddenSetting()
+    (only,) = records(
+        seed, effects, n=1, ratio=ratio, setting=setting, inputs=(setting.input,), geometry=geometry
+    )
+    return only
+
+
+def records(
+    seed: int,
+    effects: Sequence[HiddenEffect] = (),
+    *,
+    n: int = 3,
+    ratio: float | Sequence[float] | None = None,
+    setting: HiddenSetting | None = None,
+    inputs: Sequence[str] = INPUTS,
+    further: float = FURTHER,
+    geometry: Geometry = INCA,
+    others: Sequence[HiddenEffect] = (),
+) -> tuple[HiddenWorld, ...]:
+    """Returns logs of one robot with these effects, each with its own input, start and noise.
+
+    The first is that of `world` with the first input, to the last bit.
+
+    Args:
+        seed: 0 or more.
+        effects: frozen records, sizes in physical units.
+        n: how many logs.
+        ratio: as of `world`; sizes are found on the first log.
+        setting: of the experiment; its input does not count.
+        inputs: "prbs" or "multisine" of each log, taken in turn where there are fewer.
+        further: a later start position may be off by this much more than the first, by axis [m].
+        geometry: nominal exit points and connectors.
+        others: effects that take, in this order, the place of those whose ratio no size that a
+            robot may have reaches.
+
+    Raises:
+        InputError: a number is bad, an effect is there twice in one place, or a ratio cannot be
+            reached.
+        DivergenceError: the effects are so large that the robot breaks.
+    """
+    setting = setting or HiddenSetting()
+    places = [(e.name, e.where) for e in (*effects, *others)]
+    if len(set(places)) < len(places):
+        raise InputError("an effect is named twice in one place; give it once, with its size")
+    if seed < 0:
+        raise InputError(f"seed {seed} is negative; give 0 or more")
+    if n < 1 or not inputs or not further >= 0:
+        raise InputError("give one record or more, an input or more, and no negative distance")
+    settings = [replace(setting, input=inputs[j % len(inputs)]) for j in range(n)]
+    robot = true_robot(seed, setting)
+    u = make_currents(seed, settings[0])
+    chosen, ratios = tuple(effects), _ratios(ratio, len(effects))
+    if ratios:
+        noise = noise_rms(setting.counts, setting.noise)
+        absorbed = HiddenAbsorbed(
+            robot, geometry, u, setting.sampling_time, setting.absorbed, setting.tolerances, noise
+        )
+        goals = [r * noise for r in ratios]
+        chosen = _sized(effects, others, absorbed, goals)
+    made = [_record(seed, (), robot, geometry, chosen, ratios, settings[0], u)]
+    for j in range(1, n):
+        rng = np.random.default_rng([seed, 5, j])
+        moved = elsewhere(robot, setting.offset + further, setting.tilt, rng)
+        u = make_currents(int(rng.integers(2**31)), settings[j])
+        made.append(_record(seed, (j,), moved, geometry, chosen, ratios, settings[j], u))
+    return tuple(made)
+
+
+def _sized(
+    effects: Sequence[HiddenEffect],
+    others: Sequence[HiddenEffect],
+    absorbed: HiddenAbsorbed,
+    goals: Sequence[float],
+) -> tuple[HiddenEffect, ...]:
+    """Returns as many effects as there are goals, with the sizes that leave these [rad]."""
+    chosen: list[HiddenEffect] = []
+    refused: UnreachedError | None = None
+    for e in (*effects, *others):
+        if len(chosen) == len(goals):
+            break
+        try:
+            chosen.append(sized(e, absorbed, goals[len(chosen)]))
+        except UnreachedError as error:
+            refused = refused or error
+    if refused is not None and len(chosen) < len(goals):
+        raise refused
+    return tuple(chosen)
+
+
+def _record(
+    seed: int,
+    number: tuple[int, ...],
+    robot: ParameterSet,
+    geometry: Geometry,
+    effects: tuple[HiddenEffect, ...],
+    ratios: tuple[float, ...],
+    setting: HiddenSetting,
+    u: np.ndarray,
+) -> HiddenWorld:
+    """Returns a log of a robot under the currents u; `number` is empty for the first."""
+    error = coloured(
+        u.shape, setting.sampling_time, setting.error_rms, setting.error_time,
+        np.random.default_rng([seed, 2, *number]),
+    )  # fmt: skip
+    plant = make_plant(robot, geometry, effects)
+    angles, read = simulate_angles(plant, effects, u + error, setting.sampling_time)
+    noise = np.random.default_rng([seed, 3, *number])
+    y = encode(read, setting.counts, setting.noise, noise)
+    truth = HiddenTruth(
+        seed=seed,
+        effects=effects,
+        ratios=ratios,
+        parameters=robot.values(),
+        noise_rms=noise_rms(setting.counts, setting.noise),
+        error_rms=setting.error_rms,
+        angles=angles,
+        error=error,
+    )
+    name = "world" if not number else f"world, record {number[0] + 1}"
+    return HiddenWorld(_log(u, y, setting, name), truth)
+
+
+def _ratios(ratio: float | Sequence[float] | None, n: int) -> tuple[float, ...]:
+    if ratio is None:
+        return ()
+    ratios = tuple(ratio) if isinstance(ratio, Sequence) else (float(ratio),) * n
+    if len(ratios) != n or not all(r > 0 for r in ratios):
+        raise InputError(f"give {n} positive ratios, one for each effect, got {ratio}")
+    return ratios
+
+
+def _log(u: np.ndarray, y: np.ndarray, setting: HiddenSetting, name: str) -> Log:
+    names = [tuple(f"{kind}_{k}" for k in range(1, DRIVES + 1)) for kind in ("current", "angle")]
+    units = {**dict.fromkeys(names[0], "A"), **dict.fromkeys(names[1], "rad")}
+    time = setting.sampling_time * np.arange(len(u), dtype=np.float64)
+    return Log(
+        time=time,
+        inputs=u,
+        outputs=y,
+        input_names=names[0],
+        output_names=names[1],
+        units=units,
+        name=name,
+    )
