@@ -83,7 +83,7 @@ _PUBLIC = {
     "Profile": "estimation.profiles",
     "estimate_windows": "windows.window_estimate",
     "WindowEstimate": "windows.window_estimate",
-    "joined": "windows.joined",
+    "joined": "windows.window_error",
     "estimate_innovations": "kalman.estimate",
     "InnovationsFit": "kalman.estimate",
     # how good a model is
@@ -212,7 +212,7 @@ if TYPE_CHECKING:  # the same list, for type checkers and editors
     from identification.robot.record_error import Confirmation as Confirmation
     from identification.robot.robot import Robot as Robot
     from identification.robot.write import write_robot as write_robot
-    from identification.windows.joined import joined as joined
+    from identification.windows.window_error import joined as joined
     from identification.windows.window_error import window_error as window_error
     from identification.windows.window_estimate import WindowEstimate as WindowEstimate
     from identification.windows.window_estimate import estimate_windows as estimate_windows

@@ -10,14 +10,15 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from scipy.optimize import least_squares
 
 from identification.errors import DivergenceError, InputError
+from identification.estimation.levenberg_marquardt import SLOPE_ERROR
 from identification.estimation.options import Options, Progress, Status, prior_weight
-from identification.estimation.slopes import Slopes
 from identification.logs.noise import relative_weight, whitener_of
 from identification.model.coordinates import Coordinates
 from identification.model.predictor import Predictor
@@ -28,6 +29,25 @@ from identification.model.sensitivity import (
     without_effect,
 )
 from identification.progress import USUAL, stage
+
+
+@dataclass(frozen=True)
+class Slopes:
+    """Slopes J (n, p) of the weighed residual r (n,) at a point q (p,)."""
+
+    q: np.ndarray
+    r: np.ndarray
+    J: np.ndarray
+
+    def moved(self, q: np.ndarray, r: np.ndarray) -> Slopes | None:
+        """Returns the slopes at another point, not simulated; None if they differ by too much."""
+        step, change = q - self.q, r - self.r
+        off = change - self.J @ step
+        if not np.linalg.norm(off) <= SLOPE_ERROR * np.linalg.norm(change):
+            return None
+        along = np.sum(self.J**2, axis=0) * step  # lengths are those of the outputs' changes
+        return Slopes(q, r, self.J + np.outer(off, along / (along @ step)))
+
 
 ROUGH_TOLERANCE = 1e-2  # relative gain at which a search ends that another one follows
 PULL_WEIGHTS = (1.0, 0.1)  # towards the last result, on a short horizon and on the whole log

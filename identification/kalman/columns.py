@@ -13,7 +13,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from identification.estimation.slopes import SLOPE_ERROR
+from identification.estimation.levenberg_marquardt import SLOPE_ERROR
 from identification.kalman.linear import Linearisation
 from identification.kalman.sensitivity_equations import can_solve, solve_sensitivities
 from identification.model.coordinates import Coordinates

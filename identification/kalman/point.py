@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from identification.estimation.slopes import SLOPE_ERROR
+from identification.estimation.levenberg_marquardt import SLOPE_ERROR
 from identification.kalman.columns import MAX_SIMULATED_COLUMNS, compute_columns
 from identification.kalman.linear import (
     Linearisation,

@@ -19,10 +19,10 @@ from scipy.linalg import solve_triangular
 from scipy.optimize import lsq_linear
 
 from identification.errors import DivergenceError, InputError
-from identification.estimation.levenberg_marquardt import KEPT_GAIN, Cost
-from identification.kalman.noise_fit import NoiseLevel
+from identification.estimation.levenberg_marquardt import KEPT_GAIN, Cost, Criterion
+from identification.kalman.noise_fit import NoiseLevel, fit_noise
 from identification.kalman.noise_model import Whitener
-from identification.kalman.point import Point
+from identification.kalman.point import Point, evaluate_point, is_costly, shift_point
 from identification.kalman.run import Run
 from identification.kalman.whitened import keep, whiten
 
@@ -31,10 +31,15 @@ BEND_STEP = 0.1  # h: the share of the step at which the second derivative is ta
 # Condition of the columns up to which their products are taken in place of themselves: the products
 # lose 1e-16 MAX_CONDITION² of a step, far less than the columns, which are differences, are off.
 MAX_CONDITION = 1e5
+# Relative change of the parameters after which columns and linearisation may still hold.
+SHORT_CHANGE = 0.02
+# Relative change of the parameters after which columns of small ones still hold: columns that are a
+# tenth off cost a Gauss-Newton step a hundredth of its gain, which is quadratic about the optimum.
+SIMILAR_CHANGE = 0.1
 
 
 @dataclass(frozen=True, kw_only=True)
-class Problem:
+class Problem(Criterion[np.ndarray]):
     """The criterion about a point: rows of the innovations and of the priors, in units of σ.
 
     Attributes:
@@ -46,6 +51,7 @@ class Problem:
         rows: F, shape (N ny + p, p).
         target: -r, shape (N ny + p,).
         curvature: FᵀF, shape (p, p).
+        largest: largest error of the inputs that is believed after a step, in the inputs' unit.
         runs: simulations after steps that were tried, by the bytes of their q.
     """
 
@@ -57,6 +63,7 @@ class Problem:
     rows: np.ndarray
     target: np.ndarray
     curvature: np.ndarray
+    largest: float = np.inf
     runs: dict[bytes, Run] = field(default_factory=dict, repr=False)
 
     @property
@@ -151,6 +158,20 @@ class Problem:
         there = self.residual(self.point.q + move)
         return np.inf if there is None else float(there @ there)
 
+    def moved(self, move: np.ndarray, taken: np.ndarray) -> Problem:
+        """Returns the criterion about the point after a step, with the noise of that point."""
+        point = self.point
+        change = np.abs(move[point.space.logarithmic]).max(initial=0.0)
+        is_short = change < SHORT_CHANGE and is_costly(point)
+        q = point.q + move
+        run = self.run_at(q)
+        new = shift_point(point, q, run) if is_short else None
+        if new is None:
+            near = point if change < SIMILAR_CHANGE else None
+            new = evaluate_point(point.predictor, point.space, q, near, point.small, run)
+        level = estimate_noise(new, self.prior, self.level, largest=self.largest)
+        return linearise_criterion(new, level, self.mean, self.prior, self.largest)
+
     @property
     def covariance(self) -> np.ndarray:
         """The covariance of q by the curvature of the criterion, shape (p, p)."""
@@ -162,7 +183,11 @@ class Problem:
 
 
 def linearise_criterion(
-    point: Point, level: NoiseLevel, mean: np.ndarray, prior: np.ndarray
+    point: Point,
+    level: NoiseLevel,
+    mean: np.ndarray,
+    prior: np.ndarray,
+    largest: float = np.inf,
 ) -> Problem:
     """Returns the criterion, linearised about a point.
 
@@ -171,6 +196,7 @@ def linearise_criterion(
         level: the noise.
         mean: q̄ of the priors, shape (p,).
         prior: 1/std of each prior, zero where there is none, shape (p,).
+        largest: see `Problem`.
     """
     white = whiten(point.linear, point.J, level.noise, point.log.sampling_time)
     keep(white)
@@ -180,4 +206,25 @@ def linearise_criterion(
     return Problem(
         point=point, level=level, mean=mean, prior=prior, filter=white.filter, rows=rows,
         target=target, curvature=white.H / level.sigma**2 + np.diag(prior**2),
+        largest=largest,
     )  # fmt: skip
+
+
+def estimate_noise(
+    point: Point,
+    prior: np.ndarray,
+    near: NoiseLevel | None,
+    fine: bool = False,
+    largest: float = np.inf,
+) -> NoiseLevel:
+    """Returns the most likely noise of a point's residual.
+
+    Args:
+        point: the plant with its residual.
+        prior: 1/std of each prior, zero where there is none, shape (p,).
+        near: the noise of a point nearby, where one is known.
+        fine: whether the noise is refined by a search.
+        largest: largest error of the inputs that is believed before, in the inputs' unit.
+    """
+    linear, e, J, Ts = point.linear, point.e, point.J, point.log.sampling_time
+    return fit_noise(linear, e, J, prior, Ts, near, fine, largest=largest)

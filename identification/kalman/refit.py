@@ -12,7 +12,6 @@ from __future__ import annotations
 
 from collections.abc import Generator
 from dataclasses import dataclass
-from functools import partial
 from itertools import islice
 
 import numpy as np
@@ -20,18 +19,13 @@ import numpy as np
 from identification.estimation.levenberg_marquardt import Damping, levenberg_marquardt
 from identification.estimation.options import Progress
 from identification.kalman.innovations import innovation_tests
-from identification.kalman.noise_fit import NoiseLevel, fit_noise
+from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.options import KalmanOptions
-from identification.kalman.point import Point, evaluate_point, is_costly, shift_point
-from identification.kalman.problem import Problem, linearise_criterion
+from identification.kalman.point import Point, evaluate_point
+from identification.kalman.problem import Problem, estimate_noise, linearise_criterion
 from identification.model.predictor import Plant
 from identification.progress import counted
 
-# Relative change of the parameters after which columns and linearisation may still hold.
-SHORT_CHANGE = 0.02
-# Relative change of the parameters after which columns of small ones still hold: columns that are a
-# tenth off cost a Gauss-Newton step a hundredth of its gain, which is quadratic about the optimum.
-SIMILAR_CHANGE = 0.1
 # Expected fall of the criterion for each parameter, in units of the noise, below which a search
 # ends: the parameters are then, as a root mean square, within a tenth of their std of the optimum.
 END_FALL = 0.01
@@ -194,10 +188,9 @@ def descend(
             level = estimate_noise(point, prior, level, fine)
             yield point, level
         last, largest = point, np.inf if fine else believed
-        problem = linearise_criterion(point, level, mean, prior)
+        problem = linearise_criterion(point, level, mean, prior, largest)
         best, most, nearest, idle = (point, level), problem.log_posterior, _rms(point), 0
-        move = partial(_move, largest=largest)
-        trials = levenberg_marquardt(problem, move, DAMPING)
+        trials = levenberg_marquardt(problem, DAMPING)
         while steps and idle < PATIENCE and not (fine and _is_refuted(problem, options)):
             if problem.expected_fall(problem.step(0.0)) < ended:
                 break
@@ -207,8 +200,8 @@ def descend(
             trial = next((t for t in islice(trials, tries) if t.taken), None)
             if trial is None and point.is_borrowed:
                 point = evaluate_point(point.predictor, point.space, point.q, None, point.small)
-                problem = linearise_criterion(point, level, mean, prior)
-                trials = levenberg_marquardt(problem, move, DAMPING)
+                problem = linearise_criterion(point, level, mean, prior, largest)
+                trials = levenberg_marquardt(problem, DAMPING)
                 continue
             if trial is None:
                 break
@@ -227,22 +220,6 @@ def descend(
     if point is not last:
         yield point, level
     return steps > 0
-
-
-def _move(problem: Problem, step: np.ndarray, taken: np.ndarray, largest: float) -> Problem:
-    """Returns the criterion about the point after a step, with the noise of that point."""
-    point = problem.point
-    change = np.abs(step[point.space.logarithmic]).max(initial=0.0)
-    is_short = change < SHORT_CHANGE and is_costly(point)
-    q = point.q + step
-    run = problem.run_at(q)
-    there = shift_point(point, q, run) if is_short else None
-    if there is None:
-        near = point if change < SIMILAR_CHANGE else None
-        there = evaluate_point(point.predictor, point.space, q, near, point.small, run)
-    point = there
-    level = estimate_noise(point, problem.prior, problem.level, largest=largest)
-    return linearise_criterion(point, level, problem.mean, problem.prior)
 
 
 def _posterior(point: Point, level: NoiseLevel, mean: np.ndarray, prior: np.ndarray) -> float:
@@ -281,23 +258,3 @@ def conclude(
     """Returns the estimate at the point where a search ended after `taken` steps."""
     std = linearise_criterion(point, level, mean, prior).std()
     return Refit(point=point, level=level, std=std, mean=mean, prior=prior, steps=taken)
-
-
-def estimate_noise(
-    point: Point,
-    prior: np.ndarray,
-    near: NoiseLevel | None,
-    fine: bool = False,
-    largest: float = np.inf,
-) -> NoiseLevel:
-    """Returns the most likely noise of a point's residual.
-
-    Args:
-        point: the plant with its residual.
-        prior: 1/std of each prior, zero where there is none, shape (p,).
-        near: the noise of a point nearby, where one is known.
-        fine: whether the noise is refined by a search.
-        largest: largest error of the inputs that is believed before, in the inputs' unit.
-    """
-    linear, e, J, Ts = point.linear, point.e, point.J, point.log.sampling_time
-    return fit_noise(linear, e, J, prior, Ts, near, fine, largest=largest)

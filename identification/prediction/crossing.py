@@ -20,7 +20,7 @@ from identification.prediction.fit import WindowFit
 from identification.prediction.model import WindowModel, predict_fitted
 from identification.prediction.records import Record
 from identification.prediction.unseen import LENGTHS, Unseen
-from identification.windows.crossing import Starts, best_starts, sought_from_others
+from identification.windows.settling import Starts, best_starts, sought_from_others
 
 
 def crossed(fit: WindowFit, others: Sequence[WindowFit]) -> WindowFit:

@@ -22,11 +22,11 @@ from identification.estimation.levenberg_marquardt import Damping, levenberg_mar
 from identification.estimation.options import Progress
 from identification.logs.by_unit import rms_by_unit
 from identification.model.rollout import State
-from identification.prediction.point import AtPoint, linearised, projected
+from identification.prediction.point import AtPoint, linearised
 from identification.prediction.problem import Problem
 from identification.progress import counted
 from identification.quantities import alike
-from identification.windows.tangents import Tangent
+from identification.windows.shooting import Tangent
 
 # Of the squared norms of the columns of X and S.
 DAMPING = Damping(first=1e-3, raised=5.0, lowered=10.0, least=1e-9, floor=1e-9)
@@ -99,15 +99,20 @@ class WindowFit:
         return np.where(felt, std, np.inf)
 
     @property
+    def information(self) -> np.ndarray:
+        """Σ_w S_wᵀ(I - P_w) S_w: H without the priors, shape (p, p)."""
+        each = (t.projected[0] for t in self.tangents)
+        return np.asarray(sum(np.einsum("wmp,wmq->pq", S, S) for S in each))
+
+    @property
     def curvature(self) -> np.ndarray:
         """H, shape (p, p), in one over the squares of the coordinates."""
-        H = np.diag(self.problem.prior.weight**2)
-        return H + sum(np.einsum("wmp,wmq->pq", S, S) for S, _ in map(projected, self.tangents))
+        return np.diag(self.problem.prior.weight**2) + self.information
 
     @property
     def covariance(self) -> np.ndarray:
         """Covariance of q, shape (p, p)."""
-        scores = np.concatenate([np.einsum("wmp,wm->wp", *projected(t)) for t in self.tangents])
+        scores = np.concatenate([np.einsum("wmp,wm->wp", *t.projected) for t in self.tangents])
         blocks = min(STD_BLOCKS, max(2, len(scores)))
         g = np.array([part.sum(axis=0) for part in np.array_split(scores, blocks)])
         W2 = np.diag(self.problem.prior.weight**2)
@@ -142,7 +147,7 @@ def solve(
     there = known if np.array_equal(begun, q) else None  # on a bound: it begins beside the start
     at = linearised(problem, begun, tuple(moves), tolerance, there)
     converged, steps = False, 1
-    trials = levenberg_marquardt(at, AtPoint.moved, DAMPING)
+    trials = levenberg_marquardt(at, DAMPING)
     for _ in counted(count(), "steps of a fit"):
         if converged or steps >= most:
             break
@@ -158,7 +163,7 @@ def solve(
             if not at.is_fresh and (converged or not trial.taken):  # old slopes prove nothing
                 converged = False
                 at, steps = at.refreshed(), steps + 1
-                trials = levenberg_marquardt(at, AtPoint.moved, DAMPING, trial.μ)
+                trials = levenberg_marquardt(at, DAMPING, trial.μ)
         except InputError:  # a neighbour of the new point cannot be simulated: the last one stands
             break
         if trial.taken and progress is not None:

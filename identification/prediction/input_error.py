@@ -15,9 +15,7 @@ from dataclasses import replace
 import numpy as np
 
 from identification.prediction.fit import WindowFit
-from identification.prediction.point import projected
-from identification.windows.shooting import Shooting
-from identification.windows.tangents import Tangent
+from identification.windows.shooting import Shooting, Tangent
 
 INPUT_STEP = 1e-3  # of an input's rms, by which it is moved
 
@@ -38,7 +36,7 @@ def needed_input_error(fit: WindowFit, floor: float) -> float:
     for k, (part, d, t) in enumerate(zip(fit.problem.parts, fit.moves, fit.tangents, strict=True)):
         q = fit.q[fit.problem.unknowns.columns(k)]
         readings = part.cut.outputs.size - t.freedom
-        left += float(np.sum(projected(t)[1] ** 2)) - floor * readings
+        left += float(np.sum(t.projected[1] ** 2)) - floor * readings
         felt += float(np.sum(_sensitivity(part, q, d, t, size, moving) ** 2))
     return float(np.sqrt(max(0.0, left) / felt)) if felt > 0 else np.inf
 

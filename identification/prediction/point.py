@@ -21,11 +21,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from identification.errors import InputError
-from identification.estimation.levenberg_marquardt import KEPT_GAIN, Cost
+from identification.estimation.levenberg_marquardt import KEPT_GAIN, Cost, Criterion
 from identification.model.coordinates import Coordinates
 from identification.prediction.problem import Problem, best_of
 from identification.windows.settling import settle
-from identification.windows.tangents import Tangent, along_states
+from identification.windows.shooting import Tangent, along_states
 
 KEEP_SLOPES_FROM = 12  # parameters: with fewer, new slopes cost less than the steps they save
 # Of the cost after a step to that before it: beyond it no states bring the step back.
@@ -53,7 +53,7 @@ class Step:
 
 
 @dataclass(frozen=True)
-class AtPoint:
+class AtPoint(Criterion[Step]):
     """The criterion linearised at parameters and states, for `levenberg_marquardt`.
 
     Attributes:
@@ -103,9 +103,6 @@ class AtPoint:
     def cost_after(self, step: Step) -> float:
         """Returns V after a step."""
         return step.cost
-
-    def bend(self, step: Step, after: Cost, μ: Cost) -> None:
-        """Does nothing: the steps are never bent."""
 
     def moved(self, step: Step, taken: np.ndarray) -> AtPoint:
         """Returns the criterion after a step, with the slopes before it where they serve."""
@@ -157,20 +154,13 @@ def linearised(
     return AtPoint(problem, q, moves, problem.tangents(q, moves, known), tolerance)
 
 
-def projected(t: Tangent) -> tuple[np.ndarray, np.ndarray]:
-    """Returns S and r without what the states of each window make up for: (W, m, p) and (W, m)."""
-    U = t.U * (t.s > 0)[:, None]
-    S = t.S - U @ (np.swapaxes(U, 1, 2) @ t.S)
-    return S, t.r - np.einsum("wmk,wk->wm", U, np.einsum("wmk,wm->wk", U, t.r))
-
-
 def step_of(
     problem: Problem, q: np.ndarray, tangents: Sequence[Tangent], damping: float
 ) -> tuple[np.ndarray, Moves]:
     """Returns the damped step of the parameters, within bounds, and of the windows' states."""
     H, g = np.diag(problem.prior.weight**2), problem.prior.weight * problem.against(q)
-    for t in tangents:
-        against, left, share = _states(t, damping)
+    each = [t.eliminated(damping) for t in tangents]
+    for t, (against, left, share) in zip(tangents, each, strict=True):
         H = H + np.einsum("wmp,wmq->pq", t.S, t.S)
         H = H - np.einsum("wkp,wk,wkq->pq", against, share, against)
         g = g + np.einsum("wmp,wm->p", t.S, t.r) - np.einsum("wkp,wk,wk->p", against, share, left)
@@ -178,11 +168,10 @@ def step_of(
     size = np.where(size > 0, size, 1.0)
     scaled = H / np.outer(size, size) + damping * np.eye(len(g))
     dq = _within(scaled, g / size, problem.prior.space, q, size)
-    moves = []
-    for t in tangents:
-        against, left, _ = _states(t, damping)
-        along = t.s / (t.s**2 + damping) * (left - against @ dq)
-        moves.append(np.einsum("wkx,wk->wx", t.Vt, along) / t.size)
+    moves = (
+        t.states_step(dq, damping, against, left)
+        for t, (against, left, _) in zip(tangents, each, strict=True)
+    )
     return dq, tuple(moves)
 
 
@@ -201,9 +190,3 @@ def _within(
         x[beyond] = np.clip(x, low, high)[beyond]
         free &= ~beyond
     return np.asarray(x / size)
-
-
-def _states(t: Tangent, damping: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    against = np.swapaxes(t.U, 1, 2) @ t.S  # Uᵀ S, (W, nx, p)
-    left = np.einsum("wmk,wm->wk", t.U, t.r)
-    return against, left, t.s**2 / (t.s**2 + damping)

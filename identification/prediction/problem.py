@@ -25,11 +25,9 @@ from identification.windows.coarse import (
     with_longest_slope_steps,
     with_longest_steps,
 )
-from identification.windows.held import at_values
-from identification.windows.held_records import HeldRecords, hold
+from identification.windows.held import HeldRecords, at_values, held_records
 from identification.windows.settling import settle
-from identification.windows.shooting import Shooting, tangent
-from identification.windows.tangents import Tangent
+from identification.windows.shooting import Shooting, Tangent, tangent
 from identification.windows.windows import first_states, spread, windows
 
 # Steps of a simulation of all windows. More windows only make estimates finer than what is missing
@@ -73,7 +71,7 @@ class Problem:
     def held(self, q: np.ndarray) -> HeldRecords:
         """Returns the windows of all records with the parameters q (p,) held."""
         parts = enumerate(self.parts)
-        return hold([at_values(part, q[self.unknowns.columns(k)]) for k, part in parts])
+        return held_records([at_values(part, q[self.unknowns.columns(k)]) for k, part in parts])
 
     def cost_of(self, q: np.ndarray, residuals: Sequence[np.ndarray]) -> float:
         """Returns V at q, of the residuals there, one array (W, m) a record.

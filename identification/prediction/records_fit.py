@@ -26,7 +26,6 @@ from identification.prediction.extension import at_own_steps
 from identification.prediction.fit import WindowFit
 from identification.prediction.model import WindowModel
 from identification.prediction.nominal_fit import begin, fit_nominal
-from identification.prediction.point import projected
 from identification.prediction.problem import no_moves
 from identification.prediction.proof import find_doubt
 from identification.prediction.record_errors import (
@@ -178,7 +177,7 @@ class RecordsFit:
         """Directions of q that the windows tell less of than was known before, shape (k, p)."""
         weight = self.model.fit.problem.prior.weight
         σ = 1 / np.where(weight > 0, weight, 1.0)
-        H = sum(np.einsum("wmp,wmq->pq", S, S) for S, _ in map(projected, self.model.fit.tangents))
+        H = self.model.fit.information
         λ, v = np.linalg.eigh(σ[:, None] * H * σ)
         rows = (σ[:, None] * v[:, λ < 1]).T
         return np.asarray(rows / np.linalg.norm(rows, axis=1, keepdims=True))

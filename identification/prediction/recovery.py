@@ -34,8 +34,7 @@ from identification.prediction.fit import STD_BLOCKS
 from identification.prediction.model import WindowModel
 from identification.prediction.problem import MIN_WINDOWS
 from identification.prediction.window_forces import HeldWindows, stretches_of, with_values
-from identification.windows.shooting import Shooting
-from identification.windows.tangents import Tangent
+from identification.windows.shooting import Shooting, Tangent
 
 
 def recover_over_horizon(

@@ -25,7 +25,6 @@ from identification.model.coordinates import coordinates
 from identification.model.parameter import ParameterSet
 from identification.prediction.fit import STD_BLOCKS, WindowFit
 from identification.prediction.joint_states import rows_for
-from identification.prediction.point import projected
 from identification.progress import counted
 
 # Of an effect's part in the outputs: with less left by the free parameters it is one of them by
@@ -122,7 +121,7 @@ class _Base:
 
     def __init__(self, fit: WindowFit) -> None:
         self.fit = fit
-        each = [projected(t) for t in fit.tangents]
+        each = [t.projected for t in fit.tangents]
         p = len(fit.q)
         F = np.vstack(
             [S.reshape(S.shape[0] * S.shape[1], p) for S, _ in each]

@@ -20,7 +20,6 @@ from identification.discovery.attempts import attempt
 from identification.discovery.fitted import StepShift
 from identification.model.finer import finer
 from identification.prediction.fit import WindowFit
-from identification.prediction.point import projected
 
 
 def step_shift(found: WindowFit) -> StepShift:
@@ -40,8 +39,8 @@ def step_shift(found: WindowFit) -> StepShift:
         return unknown
     g, before, after = np.zeros(len(q)), 0.0, 0.0
     for t, r in zip(found.tangents, errors, strict=True):
-        S, own = projected(t)
-        finely = projected(replace(t, r=r))[1]
+        S, own = t.projected
+        finely = replace(t, r=r).projected[1]
         g = g + np.einsum("wmp,wm->p", S, finely - own)
         before, after = before + float(np.sum(own**2)), after + float(np.sum(finely**2))
     move = np.linalg.pinv(found.curvature, rcond=1e-14, hermitian=True) @ g

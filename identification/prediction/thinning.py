@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from identification.prediction.problem import MIN_WINDOWS, Problem
-from identification.windows.tangents import Tangent
+from identification.windows.shooting import Tangent
 
 THIN = 3  # n: one window of so many
 

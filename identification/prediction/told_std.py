@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from identification.prediction.fit import STD_BLOCKS, WindowFit, projected
+from identification.prediction.fit import STD_BLOCKS, WindowFit
 
 MIN_FREEDOM = 3.0  # degrees of freedom: the std is right within a factor 4 in 19 cases of 20
 
@@ -39,7 +39,7 @@ def degrees_of_freedom(found: WindowFit) -> np.ndarray:
     Args:
         found: a fit.
     """
-    columns = (projected(t)[0] for t in found.tangents)
+    columns = (t.projected[0] for t in found.tangents)
     windows = np.concatenate([np.swapaxes(S, 1, 2) @ S for S in columns])  # H_w, (W, p, p)
     blocks = np.array_split(windows, min(STD_BLOCKS, len(windows)))
     each = np.array([b.sum(axis=0) for b in blocks])

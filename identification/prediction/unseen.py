@@ -22,9 +22,8 @@ from identification.prediction.blocks import block_gains
 from identification.prediction.own_values import Own, of_halves, own_values
 from identification.prediction.problem import MOST_STEPS, most_windows
 from identification.prediction.records import Record
-from identification.windows.crossing import Starts, best_starts, sought_from_others
-from identification.windows.held_records import hold
-from identification.windows.settling import settle
+from identification.windows.held import held_records
+from identification.windows.settling import Starts, best_starts, settle, sought_from_others
 from identification.windows.shooting import Shooting
 from identification.windows.windows import Windows, first_states, spread, windows
 
@@ -258,7 +257,7 @@ def _settled(
             begun.append(moves[half])
             starts.append((elsewhere[half], is_better[half]))
             places.append((k, half))
-    held = hold(parts)
+    held = held_records(parts)
     if others:
         settled = sought_from_others(held, begun, starts)
     else:

@@ -18,7 +18,7 @@ import numpy as np
 
 from identification.effects.jointed import JointPlant
 from identification.errors import DivergenceError
-from identification.estimation.slopes import SLOPE_ERROR
+from identification.estimation.levenberg_marquardt import SLOPE_ERROR
 from identification.model.predictor import Plant
 from identification.model.rollout import substeps
 from identification.windows.shooting import Shooting, tangent

@@ -1,38 +1,21 @@
-"""The initial states of windows that are best at given parameters, by Levenberg-Marquardt.
+"""Windows of records at the initial states that are best at given parameters.
 
-The windows are independent, and each has its own damping: where a joint sticks, the outputs hardly
-feel its rate.
+    d_w <- the better of d_w and what a search from d'_w finds      where another model's V'_w < V_w
+
+Where a joint sticks in a window its criterion has several minima, and the state at which another
+model begins it may lead to the better one.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
-from identification.errors import DivergenceError
-from identification.estimation.levenberg_marquardt import (
-    KEPT_GAIN,
-    Damping,
-    levenberg_marquardt,
-)
-from identification.windows.each_window import EachWindow
-from identification.windows.held import HeldWindows
-from identification.windows.held_records import HeldRecords
-from identification.windows.tangents import Tangent
-
-# Relative to the squared norms of the columns of X. It begins at one part in ten thousand: a
-# direction that the outputs feel by a tenth of the others loses one per cent a step, and a window
-# in which a joint sticks, which takes no step before its damping is about one, is soon there.
-DAMPING = Damping(first=1e-4, raised=10.0, lowered=10.0, least=1e-4, floor=1e-4)
-MAX_STATE_DAMPING = 1e2  # beyond it a window's state no longer moves
-MAX_STATE_STEPS = 20  # of the search of a window's state
-# Of the mean of the sums of squares: a window that changes by less is finished.
-FINISHED_CHANGE = 1e-3
-# Of a window's sum of squares to their median: above it the window is sought again.
-WORSE_RATIO = 4.0
-RESTART_SHARES = (0.0, 0.5)  # of its changes, where such a window begins again
+from identification.windows.held import HeldRecords, HeldWindows
+from identification.windows.shooting import Tangent
+from identification.windows.states import search, search_again, states_at
 
 
 @dataclass(frozen=True)
@@ -74,41 +57,92 @@ def settle(
     """
     out: dict[int, Settled] = {}
     for records, windows in held.groups:
-        d = np.concatenate([moves[k] for k in records])
+        d = _of(records, moves)
         slopes = None if near is None else _joined([near[k] for k in records], d)
-        first = (
-            windows.residual(d) if known is None else np.concatenate([known[k] for k in records])
-        )
-        hoped = None if expected is None else np.concatenate([expected[k] for k in records])
-        d, r = _searched(_begun(windows, d, first, slopes), hoped)
+        first = windows.residual(d) if known is None else _of(records, known)
+        enough = None if expected is None else _of(records, expected)
+        d, r = search(states_at(windows, d, first, slopes), enough)
         if is_thorough:
-            d, r = _sought_again(windows, d, r)
-        for i, k in enumerate(records):
-            own = windows.record == i
-            out[k] = Settled(d[own], r[own])
+            d, r = search_again(windows, d, r)
+        out |= _by_record(records, windows, d, r)
     return tuple(out[k] for k in range(len(held.parts)))
 
 
-def search(held: HeldWindows, d: np.ndarray, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Returns the best states of windows and the residuals there, sought from d (W, nx) with r.
+@dataclass(frozen=True)
+class Starts:
+    """The starts of a record's windows under a model.
 
-    Raises:
-        DivergenceError: the simulation of a window diverged beside where the search begins.
+    Attributes:
+        d: changes of the initial states, shape (W, nx).
+        squares: of the errors of each window, shape (W,).
     """
-    return _searched(_begun(held, d, r, None))
+
+    d: np.ndarray
+    squares: np.ndarray
 
 
-def _begun(
-    held: HeldWindows, d: np.ndarray, r: np.ndarray, near: Tangent | None
-) -> EachWindow:  # fmt: skip
-    if not np.isfinite(r).all():
-        raise DivergenceError(
-            "the simulation of a window diverged; use a smaller step, or values nearer to the"
-            " nominal ones"
-        )
-    if near is None:
-        return EachWindow(held, d, held.slopes(d, r), np.ones(len(d), bool))
-    return EachWindow(held, d, replace(near, r=r), np.zeros(len(d), bool))
+def best_starts(own: Starts, others: Sequence[Starts]) -> tuple[np.ndarray, np.ndarray]:
+    """Returns each window's start by the model with the least error, and whether it is another one.
+
+    Args:
+        own: of a model.
+        others: of others, which may have more states or fewer: the first ones are the same.
+
+    Returns:
+        Changes of the initial states, shape (W, nx), and a mask, shape (W,).
+    """
+    best = np.argmin([own.squares, *(o.squares for o in others)], axis=0)
+    d = np.array(own.d)
+    for k, other in enumerate(others):
+        n, rows = min(d.shape[1], other.d.shape[1]), best == k + 1
+        d[rows, :n] = other.d[rows, :n]
+    return d, best > 0
+
+
+def sought_from_others(
+    held: HeldRecords, moves: Sequence[np.ndarray],
+    starts: Sequence[tuple[np.ndarray, np.ndarray]], known: Sequence[np.ndarray] | None = None,
+) -> tuple[Settled, ...]:  # fmt: skip
+    """Returns windows at given states, some sought again from other states: the better of both.
+
+    Args:
+        held: the windows.
+        moves: their states, one array (W, nx) a record.
+        starts: of each record, other states and the mask of the windows that are sought from there.
+        known: residuals at the given states, one array (W, m) a record; they are computed when
+            None.
+
+    Returns:
+        The windows of each record; NaN in the residual of one that diverges at given states.
+    """
+    out: dict[int, Settled] = {}
+    for records, windows in held.groups:
+        d = _of(records, moves)
+        r = windows.residual(d) if known is None else _of(records, known)
+        begun, is_sought = (_of(records, each) for each in zip(*starts, strict=True))
+        at = np.flatnonzero(is_sought)
+        first = windows.rows(at).residual(begun[at]) if at.size else r[at]
+        finite = np.isfinite(first).all(axis=1)
+        at, first = at[finite], first[finite]
+        if at.size:
+            other, left = search(states_at(windows.rows(at), begun[at], first))
+            better = ~(np.sum(left**2, axis=1) >= np.sum(r[at] ** 2, axis=1))
+            d[at[better]], r[at[better]] = other[better], left[better]
+        out |= _by_record(records, windows, d, r)
+    return tuple(out[k] for k in range(len(held.parts)))
+
+
+def _of(records: Sequence[int], each: Sequence[np.ndarray]) -> np.ndarray:
+    """Returns the rows of some records, one after the other."""
+    return np.concatenate([each[k] for k in records])
+
+
+def _by_record(
+    records: Sequence[int], windows: HeldWindows, d: np.ndarray, r: np.ndarray
+) -> dict[int, Settled]:
+    """Returns the windows of each record of a group."""
+    return {k: Settled(d[windows.record == i], r[windows.record == i])
+            for i, k in enumerate(records)}  # fmt: skip
 
 
 def _joined(each: Sequence[Tangent], d: np.ndarray) -> Tangent | None:
@@ -118,57 +152,3 @@ def _joined(each: Sequence[Tangent], d: np.ndarray) -> Tangent | None:
     names = ("r", "U", "s", "Vt", "size")
     parts = {n: np.concatenate([getattr(t, n) for t in each]) for n in names}
     return Tangent(**parts, S=np.zeros((*parts["r"].shape, 0)))
-
-
-def _searched(
-    at: EachWindow, expected: np.ndarray | None = None
-) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
-    """Returns the best states and the residuals there; a finished window is no longer simulated.
-
-    Args:
-        at: the windows where the search begins.
-        expected: sums of squares, shape (W,), that are small enough.
-    """
-    d, r = np.array(at.d), np.array(at.tangent.r)
-    part, going, μ = at, np.arange(len(d)), None
-    if expected is not None:
-        going = np.flatnonzero(at.cost - expected > FINISHED_CHANGE * float(np.mean(at.cost)))
-        part = at.rows(going)
-    for _ in range(MAX_STATE_STEPS if going.size else 0):
-        enough = FINISHED_CHANGE * float(np.mean(np.sum(r**2, axis=1)))
-        fresh = part.is_fresh
-        trial = next(levenberg_marquardt(part, EachWindow.moved, DAMPING, μ))
-        part = trial.criterion
-        d[going], r[going] = part.d, part.tangent.r
-        gain = trial.before - np.where(trial.taken, trial.after, trial.before)
-        promised = trial.before - trial.step.promised
-        is_old = ~fresh & (promised > enough) & (gain < KEPT_GAIN * promised)
-        small = (np.abs(trial.after - trial.before) <= enough) | (promised <= enough)
-        μ = np.where(is_old, trial.μ, trial.next)
-        keep = is_old | ~(small | (μ > MAX_STATE_DAMPING))
-        if not keep.any():
-            break
-        part, going, μ = part.rows(keep), going[keep], μ[keep]
-        part = part.refreshed(is_old[keep])
-    return d, r
-
-
-def _sought_again(held: HeldWindows, d: np.ndarray, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Returns states and residuals after windows that ended far worse are sought from elsewhere.
-
-    Where a joint sticks in a window, its criterion has several minima.
-    """
-    squares = np.sum(r**2, axis=1)
-    far = np.flatnonzero(squares > WORSE_RATIO * np.median(squares))
-    if not far.size:
-        return d, r
-    begun = np.concatenate([share * d[far] for share in RESTART_SHARES])
-    part = held.rows(np.tile(far, len(RESTART_SHARES)))
-    first = part.residual(begun)
-    if not np.isfinite(first).all():  # elsewhere it diverges: the states found stand
-        return d, r
-    at = EachWindow(part, begun, part.slopes(begun, first), np.ones(len(begun), bool))
-    for other, left in zip(*(np.split(x, len(RESTART_SHARES)) for x in _searched(at)), strict=True):
-        better = np.sum(left**2, axis=1) < np.sum(r[far] ** 2, axis=1)
-        d[far[better]], r[far[better]] = other[better], left[better]
-    return d, r

@@ -2,7 +2,8 @@
 
     V(q) = Σ_w min over d_w of ‖r_w(q, d_w)‖²,   cov(q) = s² (SᵀS)⁺
 
-r, d and the projected S are those of `identification.windows.shooting`.
+r, d and the projected S are those of `identification.windows.shooting`. The parameters q and the
+initial states of all windows share one step and one damping.
 """
 
 from __future__ import annotations
@@ -14,7 +15,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from identification.blas import one_blas_thread
+from identification.errors import InputError
 from identification.estimation.identifiability import Identifiability
+from identification.estimation.levenberg_marquardt import (
+    Cost,
+    Criterion,
+    Damping,
+    levenberg_marquardt,
+)
 from identification.estimation.options import Progress
 from identification.estimation.resolution import resolve_columns, round_off
 from identification.estimation.search import ROUGH_TOLERANCE
@@ -24,14 +32,13 @@ from identification.model.coordinates import coordinates
 from identification.model.predictor import Plant, Predictor
 from identification.model.rollout import State
 from identification.model.sensitivity import FORWARD_STEP, refuse_without_effect
-from identification.windows.shooting import Shooting, tangent
-from identification.windows.window_search import (
-    WindowsAtPoint,
-    search_windows,
-    windows_at,
-)
+from identification.progress import stage
+from identification.windows.shooting import Shooting, Tangent, tangent
 from identification.windows.windows import apart, first_states, windows
 
+# Relative to the squared norms of the columns of X and S.
+DAMPING = Damping(first=1e-2, raised=5.0, lowered=10.0, least=1e-12, floor=1e-12)
+MAX_SEARCH_DAMPING = 1e8  # beyond it no step is long enough to matter, and the search has ended
 BELIEF_ROUNDS = 3  # the states' belief follows the values that were found with the last one
 STD_STEPS = (FORWARD_STEP, 100 * FORWARD_STEP)  # of the differences that the std rest on
 
@@ -117,11 +124,11 @@ def estimate_windows(
         shooting = Shooting(predictor, space, cut, believed, C)
         d = apart(plant.model, believed.states, begun)
         enough = tolerance if k == BELIEF_ROUNDS else max(ROUGH_TOLERANCE, tolerance)
-        at = windows_at(shooting, q, d)
+        at = _windows_at(shooting, q, d)
         if k == 1:  # later, a friction that the data do not want may well have gone to nothing
             refuse_without_effect(*_felt(at))
-        end = search_windows(at, enough, max_evaluations, progress)
-        at, tangents = end.at, tangents + end.tangents
+        at, converged, taken = _search(at, enough, max_evaluations, progress)
+        tangents += taken
         q, begun = at.q, shooting.states(at.d)
     found = _resolved(at)
     # A belief counts as one reading for each state that it bears on.
@@ -139,10 +146,98 @@ def estimate_windows(
         residual=shooting.error(at.tangent.r),
         states=begun,
         length=length,
-        converged=end.converged,
+        converged=converged,
         tangents=tangents,
         seconds=time.perf_counter() - began,
     )
+
+
+@dataclass(frozen=True)
+class WindowsAtPoint(Criterion[tuple[np.ndarray, np.ndarray]]):
+    """The criterion of the parameters and the initial states, linearised at a point.
+
+    Attributes:
+        shooting: the windows.
+        q: the parameters, shape (p,).
+        d: changes of the initial states, shape (W, nx).
+        tangent: the linearisation of the windows at q and d.
+    """
+
+    shooting: Shooting
+    q: np.ndarray
+    d: np.ndarray
+    tangent: Tangent
+
+    @property
+    def cost(self) -> float:
+        """The sum of squares of all windows."""
+        return float(np.sum(self.tangent.r**2))
+
+    def step(self, μ: Cost) -> tuple[np.ndarray, np.ndarray]:
+        """Returns the step Δq (p,), which `after` clips to the bounds, and Δd (W, nx)."""
+        return self.tangent.step(float(μ))
+
+    def after(self, step: tuple[np.ndarray, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+        """Returns q, clipped to its bounds, and d after a step."""
+        space = self.shooting.space
+        return np.clip(self.q + step[0], space.lower, space.upper), self.d + step[1]
+
+    def cost_after(self, step: tuple[np.ndarray, np.ndarray]) -> float:
+        """Returns the sum of squares after a step; infinite where it cannot be simulated."""
+        try:
+            return float(np.sum(self.shooting.residual(*self.after(step)) ** 2))
+        except InputError:  # the simulation diverged, or the robot has no such start
+            return np.inf
+
+    def moved(self, step: tuple[np.ndarray, np.ndarray], taken: np.ndarray) -> WindowsAtPoint:
+        """Returns the criterion after a step."""
+        return _windows_at(self.shooting, *self.after(step))
+
+
+def _windows_at(shooting: Shooting, q: np.ndarray, d: np.ndarray) -> WindowsAtPoint:
+    """Returns all windows, linearised at q (p,) and d (W, nx)."""
+    return WindowsAtPoint(shooting, q, d, tangent(shooting, q, d))
+
+
+def _search(
+    at: WindowsAtPoint, tolerance: float, most: int, progress: Progress | None
+) -> tuple[WindowsAtPoint, bool, int]:
+    """Fits q and the initial states of all windows.
+
+    Args:
+        at: the criterion where the search begins.
+        tolerance: relative change of cost and of q at which the search stops.
+        most: largest number of linearisations after the first.
+        progress: receives one line per linearisation.
+
+    Returns:
+        The criterion at the last point, whether the search ended by itself rather than out of
+        linearisations or of damping, and the number of linearisations.
+    """
+    tangents = 1
+    trials = levenberg_marquardt(at, DAMPING)
+    with stage("steps of a fit") as advance:
+        _tell(at, tangents, progress)
+        while True:
+            trial = next(trials)
+            if not trial.taken:
+                is_stuck = bool(trial.μ > MAX_SEARCH_DAMPING)
+                if is_stuck or np.abs(trial.step[0]).max() < tolerance:
+                    return at, not is_stuck, tangents
+                continue
+            before, at, tangents = at, trial.criterion, tangents + 1
+            advance()
+            gain = trial.before - trial.after
+            small = np.abs(at.q - before.q).max() < tolerance or gain < tolerance * trial.before
+            if small or tangents > most:
+                return at, bool(small), tangents
+            _tell(at, tangents, progress)
+
+
+def _tell(at: WindowsAtPoint, tangents: int, progress: Progress | None) -> None:
+    if progress is not None:
+        rms = float(np.sqrt(np.mean(at.shooting.error(at.tangent.r) ** 2)))
+        progress(f"windows: rms {rms:.4g} after {tangents} linearisations")
 
 
 def _resolved(at: WindowsAtPoint) -> Identifiability:
@@ -151,7 +246,9 @@ def _resolved(at: WindowsAtPoint) -> Identifiability:
 
     def at_two_steps(step: float) -> tuple[np.ndarray, np.ndarray]:
         once = at.tangent if step == STD_STEPS[0] else tangent(shooting, q, d, step)
-        return once.projected, tangent(shooting, q, d, 2 * step).projected
+        twice = tangent(shooting, q, d, 2 * step)
+        S, S_twice = (t.projected[0].reshape(-1, len(q)) for t in (once, twice))
+        return S, S_twice
 
     y = shooting.joined(np.zeros_like(shooting.cut.outputs), d) - at.tangent.r
     return resolve_columns(shooting.space.names, at_two_steps, round_off(y), STD_STEPS).found
@@ -161,7 +258,7 @@ def _felt(at: WindowsAtPoint) -> tuple[np.ndarray, tuple[str, ...], Log]:
     """Returns sensitivities of outputs to q, states projected out, for `refuse_without_effect`."""
     shooting, tangent = at.shooting, at.tangent
     outputs, p = shooting.cut.outputs, tangent.S.shape[2]
-    J = tangent.projected.reshape(*tangent.r.shape, p)[:, : outputs[0].size]
+    J = tangent.projected[0].reshape(*tangent.r.shape, p)[:, : outputs[0].size]
     J = np.einsum(
         "ij,njp->nip", np.linalg.inv(shooting.whitener), J.reshape(-1, outputs.shape[2], p)
     )

@@ -14,7 +14,8 @@ from identification.discovery.recovery import recover_force
 from identification.effects.effect import Candidate
 from identification.effects.joint_plant import joint_plant
 from identification.kalman.point import evaluate_point
-from identification.kalman.refit import conclude, estimate_noise, refit
+from identification.kalman.problem import estimate_noise
+from identification.kalman.refit import conclude, refit
 from identification.model.coordinates import coordinates
 from identification.model.predictor import Predictor
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from identification import InputError, Log
-from identification.windows.joined import joined
+from identification.windows.window_error import joined
 from identification.windows.windows import windows
 
 

@@ -59,7 +59,7 @@ class Rosenbrock:
 
 def run(start, damping, n, bends=False):
     begun = Rosenbrock(np.array(start, float), bends)
-    return list(islice(levenberg_marquardt(begun, Rosenbrock.moved, damping), n))
+    return list(islice(levenberg_marquardt(begun, damping), n))
 
 
 @pytest.mark.parametrize("damping", [PLAIN, CAREFUL])
@@ -102,7 +102,7 @@ def test_a_bent_step_is_taken_only_where_it_leads_lower_and_saves_steps():
 
     assert needed(True) < needed(False)
     begun = Rosenbrock(np.array([[-1.2, 1.0]]), True)
-    (trial,) = islice(levenberg_marquardt(begun, Rosenbrock.moved, CAREFUL), 1)
+    (trial,) = islice(levenberg_marquardt(begun, CAREFUL), 1)
     straight = begun.step(trial.μ)
     bent = begun.bend(straight, None, trial.μ)
     better = min((straight, bent), key=lambda s: begun.cost_after(s)[0])
@@ -120,6 +120,6 @@ def test_where_nothing_can_be_simulated_it_does_not_go():
             return Walled(np.where(taken[:, None], self.q + step, self.q))
 
     begun = Walled(np.array([[-1.2, 1.0]]))
-    trials = list(islice(levenberg_marquardt(begun, Walled.moved, CAREFUL), 80))
+    trials = list(islice(levenberg_marquardt(begun, CAREFUL), 80))
     assert all(t.criterion.q[0, 0] <= 0.5 for t in trials)
     assert trials[-1].criterion.q[0, 0] > 0.4

@@ -11,7 +11,7 @@ from records_cases import AXIS, MJCF, PARAMETERS, STEP, record
 
 from identification.effects.joint_plant import joint_plant
 from identification.errors import DivergenceError
-from identification.estimation.slopes import SLOPE_ERROR
+from identification.estimation.levenberg_marquardt import SLOPE_ERROR
 from identification.model.coordinates import NOTHING, coordinates
 from identification.model.predictor import Predictor
 from identification.model.rollout import substeps

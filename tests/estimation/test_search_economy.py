@@ -9,7 +9,7 @@ import pytest
 
 from identification import Log
 from identification.estimation.estimation import Options, estimate
-from identification.estimation.slopes import Slopes
+from identification.estimation.search import Slopes
 from identification.model.coordinates import coordinates
 from identification.model.predictor import Predictor
 from identification.model.sensitivity import forward_sensitivity, sensitivity
@@ -71,7 +71,7 @@ def test_no_sensitivities_are_taken_where_a_horizon_ends(robot, noisy):
 
 def test_kept_slopes_save_simulations_and_move_nothing(robot, noisy, monkeypatch):
     kept = estimate(robot, noisy, NAMES, START)
-    monkeypatch.setattr("identification.estimation.slopes.SLOPE_ERROR", 0.0)
+    monkeypatch.setattr("identification.estimation.search.SLOPE_ERROR", 0.0)
     fresh = estimate(robot, noisy, NAMES, START)
     assert kept.jacobians < 0.7 * fresh.jacobians
     np.testing.assert_allclose(kept.q, fresh.q, rtol=0, atol=1e-6)

@@ -5,8 +5,7 @@ import pytest
 from estimation_plants import record, slider
 
 from identification import Log
-from identification.windows.held import held_windows
-from identification.windows.held_records import hold
+from identification.windows.held import held_records, held_windows
 from identification.windows.settling import settle
 from identification.windows.shooting import tangent
 from identification.windows.window_error import _fixed, window_error
@@ -63,10 +62,10 @@ def test_the_start_of_a_window_is_the_best_there_is():
 
 def test_a_window_ends_where_it_ends_alone():
     shooting, d = fixed(slider(damping=4.0), noisy(), 0.4, None)
-    (together,) = settle(hold([shooting]), [d])
+    (together,) = settle(held_records([shooting]), [d])
     for k in (0, len(d) // 2, len(d) - 1):
         keep = np.array([k])
-        (alone,) = settle(hold([shooting.rows(keep)]), [d[keep]])
+        (alone,) = settle(held_records([shooting.rows(keep)]), [d[keep]])
         assert squares(together)[k] == pytest.approx(squares(alone)[0], rel=0.02)
 
 
@@ -74,8 +73,8 @@ def test_records_settled_together_end_where_each_ends_alone():
     plant = slider(damping=4.0)
     each = [fixed(plant, noisy(seed), 0.4, None) for seed in (0, 1)]
     parts, begun = zip(*each, strict=True)
-    for one, part, d in zip(settle(hold(parts), begun), parts, begun, strict=True):
-        (alone,) = settle(hold([part]), [d])
+    for one, part, d in zip(settle(held_records(parts), begun), parts, begun, strict=True):
+        (alone,) = settle(held_records([part]), [d])
         np.testing.assert_allclose(squares(one), squares(alone), rtol=0.02)
 
 
@@ -83,8 +82,8 @@ def test_slopes_of_another_model_lead_to_the_same_states():
     """A chord: slopes of a model nearby only say where to look."""
     shooting, d = fixed(slider(damping=4.0), noisy(), 0.4, None)
     near, _ = fixed(slider(damping=1.0, mass=2.0), noisy(), 0.4, None)
-    (right,) = settle(hold([shooting]), [d])
-    (found,) = settle(hold([shooting]), [d], [tangent(near, np.zeros(0), d)])
+    (right,) = settle(held_records([shooting]), [d])
+    (found,) = settle(held_records([shooting]), [d], [tangent(near, np.zeros(0), d)])
     assert squares(found).sum() == pytest.approx(squares(right).sum(), rel=0.02)
 
 

@@ -10,7 +10,7 @@ from estimation_plants import SLIDER, STEP, measured, record, slider, steps
 from identification import InputError, ParameterSet
 from identification.estimation.estimation import estimate
 from identification.model.plant import ModelPlant
-from identification.windows.tangents import Tangent
+from identification.windows.shooting import Tangent
 from identification.windows.window_estimate import estimate_windows
 from identification.windows.windows import windows
 

@@ -13,8 +13,8 @@ from identification.discovery.nominal_model import _inside, fit_with_effects
 from identification.effects.effect import Candidate
 from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.noise_model import Noise
-from identification.kalman.problem import linearise_criterion
-from identification.kalman.refit import descend, estimate_noise
+from identification.kalman.problem import estimate_noise, linearise_criterion
+from identification.kalman.refit import descend
 
 ALLOWED = OPTIONS.allowed_input_error
 TRUE = {"mass": 2.4, "damping": 2.6, "x0": 0.02, "v0": -0.03}

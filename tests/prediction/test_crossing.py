@@ -14,7 +14,7 @@ from identification.prediction import problem
 from identification.prediction.crossing import at_their_best, crossed
 from identification.prediction.nominal_fit import fit_nominal
 from identification.prediction.records import as_records
-from identification.windows.crossing import Starts, best_starts, sought_from_others
+from identification.windows.settling import Starts, best_starts, sought_from_others
 
 FAR = 3.0  # a speed, in units of what is believed of it, at which a window is left
 

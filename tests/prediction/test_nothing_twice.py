@@ -13,8 +13,8 @@ from identification.prediction.fit import solve
 from identification.prediction.nominal_fit import fit_nominal
 from identification.prediction.records import as_records
 from identification.prediction.scores import find_imitated, window_scores
-from identification.windows.crossing import sought_from_others
 from identification.windows.held import HeldWindows
+from identification.windows.settling import sought_from_others
 
 AWAY = 0.2  # of what is believed of a state
 

@@ -13,7 +13,8 @@ from identification.discovery.attempts import attempt
 from identification.discovery.findings.evidence import InputHold
 from identification.discovery.findings.finding import Finding, FindingKind
 from identification.kalman.point import evaluate_point
-from identification.kalman.refit import Refit, estimate_noise
+from identification.kalman.problem import estimate_noise
+from identification.kalman.refit import Refit
 
 HOLDS = ("foh", "zoh")  # straight lines, steps
 # Of the inputs' error: the other hold is reported where it leaves less than this.
