@@ -89,7 +89,7 @@ def main() -> None:
                                                  ("step", 0))}  # fmt: skip
     if len(sys.argv) > 1:
         from identification.report.style import save_png
-        from inca_mj.report.poses_figures import poses_figure
+        from inca_mj.report.poses import poses_figure
 
         save_png(poses_figure(log_poses(logs["prbs", 0])), sys.argv[1], dpi=110)
     result = {

@@ -31,7 +31,7 @@ from inca_mj.linear.accuracy import (
     run_error,
 )
 from inca_mj.linear.linearization import linearize, linearize_grid
-from inca_mj.report.linear_figures import shape_figure, spacing_figure
+from inca_mj.report.linear import shape_figure, spacing_figure
 from inca_mj.twin.logs import POSE
 from inca_mj.twin.twin import Twin, build_twin
 

@@ -113,7 +113,7 @@ def draw(found: Calibration, out: Path) -> None:
     from identification.report.page import Section, Table, write_report
     from identification.report.style import save_png
     from inca_mj.report import calibration as told
-    from inca_mj.report.calibration_figures import drives_figure, points_figure
+    from inca_mj.report.figures import drives_figure, points_figure
 
     figures = {f"{point}_points": points_figure(found, point) for point in found.spread.points}
     if found.spread.drives:

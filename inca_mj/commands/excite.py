@@ -54,7 +54,7 @@ class Excite:
         do_not_draw()
         from math import radians
 
-        from inca_mj.report.sections_information import design_json, design_verdict
+        from inca_mj.report.information import design_json, design_verdict
         from inca_mj.twin.twin import build_twin
         from inca_mj.workflows.bench import SAMPLING
         from inca_mj.workflows.comparison import timestep_for
@@ -117,8 +117,8 @@ def keep(result: Design, out: Path) -> None:
 def draw(result: Design, out: Path) -> None:
     """Write figures and the report into a folder."""
     from identification.report.page import save_figures, write_report
+    from inca_mj.report.information import design_section, design_verdict
     from inca_mj.report.sections import run_section
-    from inca_mj.report.sections_information import design_section, design_verdict
 
     sections = [design_section(result), run_section(result.best.run)]
     save_figures(sections, out)

@@ -69,7 +69,7 @@ class Identify:
         """Identify, say, keep."""
         do_not_draw()
         from identification.estimation.profiles import profile
-        from inca_mj.report.identification_json import identification_json, profile_sentence
+        from inca_mj.report.identification import identification_json, profile_sentence
 
         result = self._identify()
         profiles = [profile(result.fit_of(name), name) for name in self.profile]
@@ -171,7 +171,7 @@ def summary(result: Identification, fit: Fit) -> str:
     from identification.estimation.metrics import mean_fit
     from identification.quantities import matched
     from identification.report.fit_verdict import fit_verdict
-    from inca_mj.report.identification_json import identification_verdict, rows
+    from inca_mj.report.identification import identification_verdict, rows
 
     cells = [
         (name, *matched(value, std), unit,
@@ -200,10 +200,13 @@ def compared(result: Identification, robot: Robot) -> Comparison:
 def draw(result: Identification, profiles: Sequence[Profile], shown: Comparison, out: Path) -> None:
     """Write figures and the one-file report into a folder."""
     from identification.report.page import save_figures, write_report
-    from inca_mj.report.identification_json import identification_verdict
+    from inca_mj.report.identification import (
+        fit_section,
+        identification_verdict,
+        profile_section,
+    )
+    from inca_mj.report.information import information_section
     from inca_mj.report.sections import compare_section, model_section
-    from inca_mj.report.sections_fit import fit_section, profile_section
-    from inca_mj.report.sections_information import information_section
 
     about = (
         f"What {result.log.name} says of the parameters at their estimate, for white noise of the"

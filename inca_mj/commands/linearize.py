@@ -47,7 +47,7 @@ class Linearize:
         """Linearise, say, keep."""
         self._refuse_unclear()
         do_not_draw()
-        from inca_mj.report.linear_sections import (
+        from inca_mj.report.linear import (
             HANDLE_HEAD,
             grid_sentences,
             grid_to_json,
@@ -152,7 +152,7 @@ def draw(
 ) -> None:
     """Write figures and the one-file report into a folder."""
     from identification.report.page import save_figures, write_report
-    from inca_mj.report.linear_sections import model_sections
+    from inca_mj.report.linear import model_sections
 
     sections = model_sections(models, labels, rate)
     save_figures(sections, out)

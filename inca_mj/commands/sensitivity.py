@@ -41,7 +41,7 @@ class Sensitivity:
     def run(self) -> int:
         """Analyse, say, keep."""
         do_not_draw()
-        from inca_mj.report.sections_information import information_json, information_verdict
+        from inca_mj.report.information import information_json, information_verdict
         from inca_mj.twin.logs import read_inca_log
         from inca_mj.workflows.sensitivity import planned_experiment, robot_information
 
@@ -77,7 +77,7 @@ def summary(found: Information) -> str:
 def draw(found: Information, about: str, out: Path) -> None:
     """Write the figure and the one-file report into a folder."""
     from identification.report.page import save_figures, write_report
-    from inca_mj.report.sections_information import information_section, information_verdict
+    from inca_mj.report.information import information_section, information_verdict
 
     sections = [information_section(found, about)]
     save_figures(sections, out)

@@ -63,8 +63,7 @@ class Statics:
             do_not_draw()
         import numpy as np
 
-        from inca_mj.report.statics_json import statics_json
-        from inca_mj.report.statics_sections import statics_verdict
+        from inca_mj.report.statics import statics_json, statics_verdict
         from inca_mj.statics.workspace import DriveLimits
         from inca_mj.twin.logs import read_inca_log
         from inca_mj.workflows.statics import analyse_statics
@@ -107,7 +106,7 @@ def summary(found: StaticAnalysis) -> str:
 def draw(command: Statics, found: StaticAnalysis, picture: bool, out: Path) -> None:
     """Write the figures, the picture of the workspace, and the report into a folder."""
     from identification.report.page import save_figures, write_report
-    from inca_mj.report.statics_sections import statics_sections, statics_verdict
+    from inca_mj.report.statics import statics_sections, statics_verdict
 
     sections = statics_sections(found)
     save_figures(sections, out)

@@ -152,8 +152,7 @@ def keep(result: Tracking, out: Path) -> None:
 def draw(result: Tracking, out: Path) -> None:
     """Write figures and the report into a folder."""
     from identification.report.page import save_figures, write_report
-    from inca_mj.report.sections import model_section, run_section
-    from inca_mj.report.tracking import tracking_section
+    from inca_mj.report.sections import model_section, run_section, tracking_section
 
     run = result.run
     sections = [tracking_section(result), run_section(run), model_section(run.twin)]

@@ -1,4 +1,4 @@
-"""Sections of reports: one for a comparison, a run, a cross-check, and a model."""
+"""Sections of reports: a comparison, a run, a robot on a path, a cross-check, and a model."""
 
 from __future__ import annotations
 
@@ -7,14 +7,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from identification.estimation.metrics import mean_fit
+from identification.report.compare_figure import compare_figure
 from identification.report.page import Section, Table
 from identification.report.parameter_words import parameter_words
+from inca_mj.report.figures import crosscheck_figure, simulation_figures, tracking_figure
 
 if TYPE_CHECKING:
     from inca_mj.twin.run import Run
     from inca_mj.twin.twin import Twin
     from inca_mj.verification import CrossCheck
     from inca_mj.workflows.comparison import Comparison
+    from inca_mj.workflows.tracking import Tracking
 
 
 def compare_verdict(result: Comparison) -> list[str]:
@@ -38,8 +41,6 @@ def compare_verdict(result: Comparison) -> list[str]:
 
 def compare_section(result: Comparison) -> Section:
     """Returns the section on measured and simulated angles, as MATLAB's `compare` shows them."""
-    from identification.report.compare_figure import compare_figure
-
     log = result.log
     figure = compare_figure(
         log.time, log.outputs, result.run.motor_angle, result.fit_percent, log.output_names, "rad"
@@ -63,8 +64,6 @@ def compare_section(result: Comparison) -> Section:
 
 def run_section(run: Run) -> Section:
     """Returns the section on the currents, and the four pictures of the thesis' Figure 2.16."""
-    from inca_mj.report.figures import simulation_figures
-
     return Section(
         "What the robot does",
         f"{len(run.time)} samples; the least tension is {run.tension.min():.2f} N, the largest"
@@ -73,10 +72,28 @@ def run_section(run: Run) -> Section:
     )
 
 
+def tracking_section(result: Tracking) -> Section:
+    """Returns what a report says of a robot that followed a path."""
+    rows = (
+        ("from the asked point, root mean square", 1e3 * result.rms),
+        ("from the asked point, largest", 1e3 * result.largest),
+        (
+            "from the asked point, root mean square by the controller's estimate",
+            1e3 * result.seen_rms,
+        ),
+        ("off the path (cross-track), root mean square", 1e3 * result.cross_track_rms),
+    )
+    return Section(
+        "Asked and done",
+        f"Distance of the platform from where it should be, from {result.counted:g} s on, when the"
+        " path is at its full rate. The controller sees the motor angles and has a model.",
+        figures=(("Path and error", tracking_figure({"this run": result})),),
+        table=Table(("distance", "[mm]"), rows),
+    )
+
+
 def crosscheck_section(result: CrossCheck) -> Section:
     """Returns the section on two models of one robot that share no code."""
-    from inca_mj.report.figures import crosscheck_figure
-
     keys = ("max_angle_error", "max_position_error", "max_tension_error")
     return Section(
         "Two independent models of one robot",

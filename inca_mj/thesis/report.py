@@ -14,7 +14,7 @@ from identification.estimation.metrics import loss
 from identification.report.compare_figure import compare_figure
 from identification.report.page import Section, Table
 from inca_mj.report.figures import currents_figure, over_time, simulation_figures
-from inca_mj.report.identification_json import identification_json
+from inca_mj.report.identification import identification_json
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.thesis.prints import FITS, LOST, TABLES
 from inca_mj.thesis.results import ThesisResults

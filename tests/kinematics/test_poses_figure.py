@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from inca_mj.report.poses_figures import poses_figure
+from inca_mj.report.poses import poses_figure
 
 
 @pytest.mark.parametrize("has_pose", [False, True])

@@ -91,7 +91,7 @@ def information_json(found: Information) -> dict[str, Any]:
 
 def information_section(found: Information, about: str) -> Section:
     """Returns the least std of each parameter, if the others are unknown and if they are known."""
-    from inca_mj.report.figures_information import std_figure
+    from inca_mj.report.figures import std_figure
 
     order = [found.names.index(name) for name in found.ranking]
     std, alone = found.std, found.conditional
@@ -180,7 +180,7 @@ def _row(tried: Tried) -> tuple[object, ...]:
 
 def design_section(result: Design) -> Section:
     """Returns the designed input compared with the thesis' PRBS, and a table of standard inputs."""
-    from inca_mj.report.figures_information import std_figure
+    from inca_mj.report.figures import std_figure
 
     names = result.best.found.names[: result.best.found.asked]
     stds = {"thesis' PRBS": result.prbs.found.std, "designed": result.best.found.std}

@@ -1,4 +1,4 @@
-"""An identification as plain values, for JSON and for the terminal."""
+"""An identification as sentences, as plain values for JSON, and as sections of a report."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 from identification.estimation.fit import Fit
 from identification.estimation.profiles import Profile
 from identification.kalman.estimate import InnovationsFit
-from identification.quantities import error, finite_or_none
+from identification.quantities import error, finite_or_none, matched
 from identification.report.fit_json import fit_to_json
 from identification.report.fit_verdict import (
     HOLDS,
@@ -20,6 +20,7 @@ from identification.report.fit_verdict import (
     search_sentences,
     window_sentences,
 )
+from identification.report.page import Section, Table
 from identification.report.untold_words import identifiable_sentences
 from identification.windows.window_estimate import WindowEstimate
 from inca_mj.twin.logs import POSE
@@ -188,3 +189,38 @@ def _profile(known: Profile) -> dict[str, Any]:
         "values": known.values.tolist(),
         "rise": [finite_or_none(r) for r in known.rise],
     }
+
+
+def fit_section(result: Identification, fit: Fit, title: str) -> Section:
+    """Returns the section on parameters with uncertainty, and the fit's verdict."""
+    said = identification_verdict(result) if fit is result.fit else fit_verdict(fit)
+    return Section(
+        title,
+        "\n\n".join(said),
+        table=Table(
+            ("parameter", "value", "std", "unit", "start", "note"),
+            tuple(
+                (
+                    name,
+                    *matched(value, std),
+                    unit,
+                    first,
+                    "at bound" if bound else "",
+                )
+                for name, value, std, unit, first, bound in rows(result, fit)
+            ),
+        ),
+    )
+
+
+def profile_section(fit: Fit, known: Profile) -> Section:
+    """Returns the profile of one parameter: how well the others can compensate a change of it."""
+    from identification.report.profile_figure import profile_figure
+
+    unit = fit.estimate.predictor.plant.parameters[known.name].unit
+    return Section(
+        f"Profile of {known.name}",
+        f"{profile_sentence(known)}.\n\nThe others are fitted anew at each value. Between the"
+        " crossings with the line lies the 95 % interval, however curved the profile is.",
+        figures=((f"Profile of {known.name}", profile_figure(known, unit)),),
+    )
