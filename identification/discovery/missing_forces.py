@@ -18,8 +18,8 @@ import numpy as np
 from identification.blas import one_blas_thread
 from identification.kalman.linear import LinearPlant, linearise
 from identification.kalman.noise_fit import START_CORRELATION_TIME, compute_unit_ratio, fit_noise
+from identification.kalman.noise_model import smooth
 from identification.kalman.refit import Refit
-from identification.kalman.smoother import smooth
 
 AXES = ("x", "y", "z")
 FREE, SLIDE = int(mujoco.mjtJoint.mjJNT_FREE), int(mujoco.mjtJoint.mjJNT_SLIDE)

@@ -1,12 +1,14 @@
 """The plant linearised along a predicted trajectory: how small errors of state and input grow.
 
+    ẋ = f(x, u, θ),    F = ∂f/∂x,  G = ∂f/∂u           differences of accelerations, at the points
     δẋ = F(t) δx + G(t) δu,    δx_{k+1} = A_k δx_k + B_k δu_k,    δy_k = C δx_k
-
-    A = exp(F Δt),    Γ = ∫ exp(F τ) E dτ over Δt            (`identification.kalman.exponential`)
+    A = exp(F Δt),    Γ = ∫ exp(F τ) E dτ over Δt             (`identification.kalman.response`)
 
 E are the columns of the identity of velocities and activations: nothing else is forced. x is
 MuJoCo's state in tangent space: position (nv), velocity (nv), activation (na). F and G are means
-over an interval, of which a sample has a few.
+over an interval, of which a sample has a few. The points of a trajectory are many and its means are
+coarse, so forward differences are enough for all but velocities, which take secants
+(`identification.linear.derivatives`).
 """
 
 from __future__ import annotations
@@ -19,14 +21,13 @@ import mujoco
 import numpy as np
 
 from identification.blas import one_blas_thread
-from identification.kalman.derivatives import (
-    force_derivatives,
-    input_derivatives,
-    state_derivatives,
-)
-from identification.kalman.exponential import transitions
+from identification.engine import quiet
+from identification.kalman.response import transitions
 from identification.kalman.trajectory import COARSE_POINTS, Trajectory, follow_records
+from identification.linear.derivatives import FORWARD, differences, position_rows
+from identification.linear.points import Change, Points
 from identification.model.predictor import Predictor, output_columns
+from identification.native.forward import Intervals
 
 
 @dataclass(frozen=True, eq=False)
@@ -186,6 +187,67 @@ def _derivatives(
     if forces:
         G = along.average(force_derivatives(along, list(forces)))
     return F, G
+
+
+def state_derivatives(along: Trajectory) -> tuple[np.ndarray, np.ndarray]:
+    """Returns F and G along a trajectory, as means over its intervals.
+
+    Args:
+        along: the trajectory.
+
+    Returns:
+        F, shape (L, nx, nx), nx = 2 nv + na, and G, shape (L, nx, nu).
+
+    Raises:
+        DivergenceError: the accelerations are not finite.
+    """
+    nv = along.model.nv
+    of_state, of_inputs = differences(along, Points(along), FORWARD, along.weighted, along.moved)
+    rows = along.average(position_rows(along.model, along.qvel))
+    return (
+        np.concatenate([rows, of_state], axis=1),
+        np.concatenate([np.zeros((len(rows), nv, of_inputs.shape[2])), of_inputs], axis=1),
+    )
+
+
+def input_derivatives(along: Trajectory) -> tuple[np.ndarray, np.ndarray]:
+    """Returns the change of all rates per unit of each input, upwards and downwards, at the points.
+
+    The two differ where an input is at its limit.
+
+    Args:
+        along: the trajectory.
+
+    Returns:
+        Each of shape (M, nf, nu), nf = nv + na.
+
+    Raises:
+        DivergenceError: the accelerations are not finite.
+    """
+    h, alone = FORWARD.step, Intervals(np.arange(len(along.time)), np.ones(len(along.time)))
+    nu = along.inputs.shape[1]
+    shifted = (Change({"ctrl": along.inputs + by}) for by in (*h * np.eye(nu), *-h * np.eye(nu)))
+    each = [change / h for change in Points(along).each(shifted, alone)]
+    if not each:
+        nothing = np.zeros((len(along.time), along.model.nv + along.model.na, 0))
+        return nothing, nothing
+    return np.stack(each[:nu], axis=-1), -np.stack(each[nu:], axis=-1)
+
+
+@quiet()
+def force_derivatives(along: Trajectory, dofs: list[int]) -> np.ndarray:
+    """Returns the effect of generalised forces on the rate of the state, shape (M, nx, n)."""
+    model = along.model
+    nv = model.nv
+    data, unit = mujoco.MjData(model), np.eye(nv)[dofs]
+    pushed = np.empty_like(unit)
+    G = np.zeros((len(along.time), 2 * nv + model.na, len(dofs)))
+    for k, (qpos, qvel) in enumerate(zip(along.qpos, along.qvel, strict=True)):
+        data.qpos, data.qvel = qpos, qvel
+        mujoco.mj_forward(model, data)
+        mujoco.mj_solveM(model, data, pushed, unit)
+        G[k, nv : 2 * nv] = pushed.T
+    return G
 
 
 def _outputs(predictor: Predictor, along: Trajectory) -> np.ndarray:

@@ -18,9 +18,8 @@ import numpy as np
 
 from identification.blas import one_blas_thread
 from identification.kalman.linear import LinearPlant
-from identification.kalman.noise_model import Noise, Whitener, augment
+from identification.kalman.noise_model import Noise, Whitened, Whitener, augment, keep, whiten
 from identification.kalman.recursion import propagate
-from identification.kalman.whitened import Whitened, keep, whiten
 from identification.pool import run_parts, split
 
 START_CORRELATION_TIME = 0.03  # [s] of the inputs' error, at which the search for the noise begins

@@ -1,24 +1,34 @@
-"""The noise model of sensors and unlogged input errors, and its whitening filter.
+"""The noise model of sensors and unlogged input errors, its whitening filter and its smoother.
 
     δx_{k+1} = A_k δx_k + B_k w_k          w: unlogged error of each input
     w_{k+1}  = a w_k + √(1-a²) ρ ν_k        of std ρ σ, correlation time τ, a = exp(-T_s/τ)
     e_k      = C δx_k + σ v_k               v, ν: white, of unit variance
 
-The Kalman filter of this model turns residuals into innovations, which are white where the model is
-right (Kailath 1968). With the same filter applied to residuals and sensitivities, generalised least
-squares and likelihoods are as simple as with white noise. σ scales everything and is estimated
-last.
+The Kalman filter W of this model turns residuals into innovations, which are white where the model
+is right (Kailath 1968). With the same filter applied to residuals and sensitivities, F = W Φ and
+H = FᵀF, generalised least squares and likelihoods are as simple as with white noise. σ scales
+everything and is estimated last. The most likely w, given a whole log, is that of the smoother:
+
+    u = Wᵀ W e,    e - u = C ẑ,    r_k = (A_k - A_k K_k C)ᵀ r_{k+1} + Cᵀ S_k⁻¹ ε_k
+    ŵ_{k+1} = a ŵ_k + q_k r_{k+1},    ŵ_0 = ρ² r_0      of r the part that belongs to w
+
+z = (x, w) (Durbin and Koopman 2012, section 4.6). Nothing but vectors is propagated: the
+covariances of the filter and of the smoother are not needed.
 """
 
 from __future__ import annotations
 
+from collections import deque
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 
 from identification.kalman.linear import LinearPlant
 from identification.kalman.recursion import filter_gains, filter_innovations, transpose_filter
+
+KEPT_POINTS = 2  # where a search is, and where it came from
+_kept: deque[Whitened] = deque(maxlen=KEPT_POINTS)
 
 
 @dataclass(frozen=True)
@@ -74,6 +84,94 @@ class Whitener:
         return transpose_filter(self.A, self.C, self.K, self.L, E)[0]
 
 
+def build_whitener(plant: LinearPlant, noise: Noise, sampling_time: float) -> Whitener:
+    """Returns the whitening filter of a noise.
+
+    The state of the plant at the first sample is taken as known, because its errors are parameters.
+    """
+    if noise.ratio == 0:
+        return Whitener(np.empty((0, 0, 0)), plant.C, np.empty(0), np.empty(0), 0.0)
+    A, C, P, share = augment(plant, noise, sampling_time)
+    return Whitener(A, C, *filter_gains(A, C, P, share))
+
+
+@dataclass(frozen=True, eq=False)
+class Whitened:
+    """Whitened sensitivities.
+
+    Attributes:
+        plant: the linearised plant of the filter.
+        J: the sensitivities, shape (N, ny, p).
+        noise: ρ and τ.
+        filter: the whitening filter.
+        F: the whitened sensitivities, shape (N ny, p).
+    """
+
+    plant: LinearPlant
+    J: np.ndarray
+    noise: Noise
+    filter: Whitener
+    F: np.ndarray
+
+    @cached_property
+    def H(self) -> np.ndarray:
+        """FᵀF, shape (p, p)."""
+        return self.F.T @ self.F
+
+
+def whiten(plant: LinearPlant, J: np.ndarray, noise: Noise, sampling_time: float) -> Whitened:
+    """Whiten sensitivities, or take them from those that were kept.
+
+    Args:
+        plant: the linearised plant.
+        J: sensitivities, shape (N, ny, p).
+        noise: ρ and τ.
+        sampling_time: [s].
+    """
+    for known in (*_kept,):
+        if known.plant is plant and known.J is J and known.noise == noise:
+            return known
+    filter_ = build_whitener(plant, noise, sampling_time)
+    samples, outputs, p = J.shape
+    F = filter_(J).reshape(samples * outputs, p)
+    return Whitened(plant, J, noise, filter_, F)
+
+
+def keep(whitened: Whitened) -> None:
+    """Keep whitened sensitivities in place of the oldest ones that are kept."""
+    if not any(known is whitened for known in _kept):
+        _kept.append(whitened)
+
+
+def smooth(
+    plant: LinearPlant, noise: Noise, e: np.ndarray, sampling_time: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Returns the most likely errors of the inputs, and their part of the residual.
+
+    Args:
+        plant: the linearised plant.
+        noise: ρ and τ.
+        e: residual, shape (N, ny).
+        sampling_time: [s].
+
+    Returns:
+        w, shape (N, nu), in the inputs' unit, and its part of the residual, shape (N, ny).
+    """
+    n, nu = len(e), plant.B.shape[2]
+    if noise.ratio == 0:
+        return np.zeros((n, nu)), np.zeros_like(e)
+    A, C, P, share = augment(plant, noise, sampling_time)
+    K, L, _ = filter_gains(A, C, P, share)
+    E = filter_innovations(A, C, K, L, e[..., None])[..., 0]
+    u, r = transpose_filter(A, C, K, L, E)
+    fresh = noise.ratio**2 * np.concatenate([[1.0], share])[:, None] * r[:, -nu:]
+    w = np.empty((n, nu))
+    w[0] = now = fresh[0]
+    for k, a in enumerate(A[:, -1, -1]):
+        w[k + 1] = now = a * now + fresh[k + 1]
+    return w, e - u
+
+
 def augment(
     plant: LinearPlant, noise: Noise, sampling_time: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
@@ -108,14 +206,3 @@ def _transitions(plant: LinearPlant, a: float) -> tuple[np.ndarray, np.ndarray]:
     A[begins] = 0
     A.flags.writeable = False
     return A, begins
-
-
-def build_whitener(plant: LinearPlant, noise: Noise, sampling_time: float) -> Whitener:
-    """Returns the whitening filter of a noise.
-
-    The state of the plant at the first sample is taken as known, because its errors are parameters.
-    """
-    if noise.ratio == 0:
-        return Whitener(np.empty((0, 0, 0)), plant.C, np.empty(0), np.empty(0), 0.0)
-    A, C, P, share = augment(plant, noise, sampling_time)
-    return Whitener(A, C, *filter_gains(A, C, P, share))

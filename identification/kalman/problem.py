@@ -21,10 +21,9 @@ from scipy.optimize import lsq_linear
 from identification.errors import DivergenceError, InputError
 from identification.estimation.levenberg_marquardt import KEPT_GAIN, Cost, Criterion
 from identification.kalman.noise_fit import NoiseLevel, fit_noise
-from identification.kalman.noise_model import Whitener
+from identification.kalman.noise_model import Whitener, keep, whiten
 from identification.kalman.point import Point, evaluate_point, is_costly, shift_point
-from identification.kalman.run import Run
-from identification.kalman.whitened import keep, whiten
+from identification.kalman.trajectory import Run
 
 MAX_LOG_STEP = 0.5  # a parameter changes by at most 65 % at a time
 BEND_STEP = 0.1  # h: the share of the step at which the second derivative is taken

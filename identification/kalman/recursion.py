@@ -14,9 +14,10 @@ Columns are filtered on all threads at once.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from ctypes import POINTER, c_double
+from collections.abc import Callable, Iterable
+from ctypes import POINTER, c_double, c_int64
 from functools import cache
+from threading import Lock
 from typing import Any
 
 import numpy as np
@@ -30,8 +31,12 @@ from identification.pool import run_parts, split
 # with fewer columns take longer for each of them.
 COLUMNS_PER_CALL = 192
 
-_DOUBLES: Any = types.CPointer(types.float64)
-_SIZE: Any = types.int64
+# Addresses of arrays of doubles and of integers, to numba and to ctypes.
+ADDRESSES: dict[str, tuple[Any, Any]] = {
+    "f": (types.CPointer(types.float64), POINTER(c_double)),
+    "i": (types.CPointer(types.int64), POINTER(c_int64)),
+}
+_LOCK = Lock()
 
 
 def filter_gains(
@@ -51,7 +56,7 @@ def filter_gains(
     n, nz, ny = len(A), len(P), len(C)
     K, L = np.empty((n + 1, nz, ny)), np.empty((n + 1, ny, ny))
     given = (np.ascontiguousarray(a, float) for a in (A, C, P, share))
-    _call(_compiled(_gains, 6), (n, nz, ny), (*given, K, L))
+    call(_gains, (n, nz, ny), (*given, K, L))
     return K, L, -2 * float(np.log(np.diagonal(L, axis1=1, axis2=2)).sum())
 
 
@@ -73,10 +78,9 @@ def filter_innovations(
     n, ny, p = e.shape
     out = np.empty((n, ny, p))
     given = [np.ascontiguousarray(a, float) for a in (A, C, K, L, e)]
-    run = _compiled(_innovations, 6)
 
     def part(some: slice) -> None:
-        _call(run, (n, A.shape[1], ny, p, some.start, some.stop), (*given, out))
+        call(_innovations, (n, A.shape[1], ny, p, some.start, some.stop), (*given, out))
 
     run_parts(part, split(p, COLUMNS_PER_CALL))
     return out
@@ -102,7 +106,7 @@ def transpose_filter(
     n, ny = E.shape
     out, r = np.empty((n, ny)), np.empty((n, A.shape[1]))
     given = (np.ascontiguousarray(a, float) for a in (A, C, K, L, E))
-    _call(_compiled(_transposed, 7), (n, A.shape[1], ny), (*given, out, r))
+    call(_transposed, (n, A.shape[1], ny), (*given, out, r))
     return out, r
 
 
@@ -121,7 +125,7 @@ def propagate(A: np.ndarray, C: np.ndarray, P: np.ndarray, share: np.ndarray) ->
     n, nz, ny = len(A), len(P), len(C)
     out = np.empty((n, ny))
     given = (np.ascontiguousarray(a, float) for a in (A, C, P, share))
-    _call(_compiled(_propagate, 5), (n, nz, ny), (*given, out))
+    call(_propagate, (n, nz, ny), (*given, out))
     return out
 
 
@@ -237,12 +241,16 @@ def _transposed(n, nz, ny, A_, C_, K_, L_, E_, out_, r_):  # type: ignore[no-unt
                 r[k, j] += C[i, j] * out[k, i]
 
 
+def call(
+    function: Callable[..., Any], sizes: tuple[int, ...], arrays: Iterable[np.ndarray]
+) -> None:
+    """Runs a function of sizes and of the addresses of arrays, which is compiled once."""
+    given = [(a, *ADDRESSES[a.dtype.kind]) for a in arrays]
+    with _LOCK:  # one of several threads compiles
+        run = _compiled(function, len(sizes), tuple(kind for _, kind, _ in given))
+    run(*sizes, *(a.ctypes.data_as(pointer) for a, _, pointer in given))
+
+
 @cache
-def _compiled(function: Callable[..., Any], arrays: int) -> Any:
-    """Returns a recursion as a ctypes function of sizes and of the addresses of arrays."""
-    sizes = function.__code__.co_argcount - arrays
-    return compile_once(function, types.void(*[_SIZE] * sizes, *[_DOUBLES] * arrays))
-
-
-def _call(function: Any, sizes: tuple[int, ...], arrays: tuple[np.ndarray, ...]) -> None:
-    function(*sizes, *(a.ctypes.data_as(POINTER(c_double)) for a in arrays))
+def _compiled(function: Callable[..., Any], sizes: int, kinds: tuple[Any, ...]) -> Any:
+    return compile_once(function, types.void(*[types.int64] * sizes, *kinds))

@@ -11,13 +11,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cached_property, partial
 
 import mujoco
 import numpy as np
 
 from identification.model.numbers import with_numbers
 from identification.model.predictor import Predictor
+from identification.model.protocol import with_states
 from identification.model.rollout import hold, rollout, substeps, without_sensors
 from identification.native.forward import Intervals
 from identification.pool import run_parts
@@ -96,6 +97,46 @@ class Trajectory:
         every = slice(None, None, -(-len(self.time) // most))
         few = {f: getattr(self, f)[every] for f in POINTS}
         return replace(self, begins=self.begins[:0], **few)
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """A simulation of all records of a log, made when something of it is first asked for.
+
+    Attributes:
+        predictor: plant and log, with p parameters.
+        values: shape (p,), in the parameters' units.
+
+    Raises:
+        DivergenceError: the simulation left the finite numbers; as for all that is asked.
+        InputError: the robot cannot rest at its start.
+    """
+
+    predictor: Predictor
+    values: np.ndarray
+
+    @cached_property
+    def along(self) -> tuple[Trajectory, ...]:
+        """The trajectory of each record."""
+        (each,) = follow_records(self.predictor, self.values, COARSE_POINTS)
+        return tuple(each)
+
+    @cached_property
+    def outputs(self) -> np.ndarray:
+        """The outputs of all records, shape (N, ny).
+
+        A plant whose sensors see states that no model file has is simulated once more for them: a
+        trajectory lacks these.
+        """
+        if with_states(self.predictor.plant) is not None:
+            return self.predictor.predict(self.values)[0]
+        each = zip(self.predictor.records(), self.along, strict=True)
+        return np.concatenate([
+            record.outputs(
+                self.values[None, columns], {field: x[None] for field, x in along.states.items()}
+            )[0]
+            for (record, columns), along in each
+        ])  # fmt: skip
 
 
 def follow_records(

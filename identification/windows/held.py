@@ -33,6 +33,8 @@ from identification.windows.shooting import (
 )
 from identification.windows.windows import moved
 
+NO_VALUES = np.zeros((1, 0))  # the value set of a predictor whose values are all fixed
+
 
 @dataclass(frozen=True)
 class HeldRecords:
@@ -76,58 +78,6 @@ def held_records(parts: Sequence[Shooting]) -> HeldRecords:
         rest = [k for k in rest if k not in alike]
         groups.append((alike, _together([each[k] for k in alike])))
     return HeldRecords(tuple(parts), tuple(groups))
-
-
-def _is_alike(one: HeldWindows, other: HeldWindows) -> bool:
-    """Returns whether the windows of two records can be simulated in one batch."""
-    return (
-        one.predictors[0].plant is other.predictors[0].plant
-        and [slot for slot, _ in one.numbers] == [slot for slot, _ in other.numbers]
-        and one.outputs.shape[1:] == other.outputs.shape[1:]
-        and one.inputs.shape[1:] == other.inputs.shape[1:]
-        and (one.every, one.hold_kind, one.has_rough_slopes)
-        == (other.every, other.hold_kind, other.has_rough_slopes)
-        and one.predictors[0].log.sampling_time == other.predictors[0].log.sampling_time
-        and one.predictors[0].log.output_names == other.predictors[0].log.output_names
-        and np.array_equal(one.whitener, other.whitener)
-    )
-
-
-def _together(each: Sequence[HeldWindows]) -> HeldWindows:
-    """Returns the windows of several records that are alike, one record after the other."""
-    columns = zip(*([column for _, column in h.numbers] for h in each), strict=True)
-    slots = [slot for slot, _ in each[0].numbers]
-    first = State(
-        *(np.concatenate([getattr(h.first, f.name) for h in each]) for f in fields(State))
-    )
-
-    def rows(name: str) -> np.ndarray:
-        return np.concatenate([getattr(h, name) for h in each])
-
-    return replace(
-        each[0], predictors=tuple(h.predictors[0] for h in each), first=first,
-        record=np.repeat(np.arange(len(each)), [len(h.record) for h in each]),
-        numbers=tuple((s, np.concatenate(c)) for s, c in zip(slots, columns, strict=True)),
-        times=rows("times"), inputs=rows("inputs"), outputs=rows("outputs"), weight=rows("weight"),
-    )  # fmt: skip
-
-
-NO_VALUES = np.zeros((1, 0))  # the value set of a predictor whose values are all fixed
-
-
-@dataclass(frozen=True)
-class Prepared:
-    """Simulations of all windows, several of each.
-
-    Attributes:
-        simulations: of the first move of all windows, then of the next move.
-        controls: of each window at each step, shape (W, steps, nu).
-        every: steps of a sample.
-    """
-
-    simulations: Simulations
-    controls: np.ndarray
-    every: int
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -274,14 +224,6 @@ class HeldWindows:
         return y.reshape(k, W, *y.shape[1:])
 
 
-def at_values(part: Shooting, q: np.ndarray) -> Shooting:
-    """Returns the windows of a record with all parameters held at q (p,), in coordinates."""
-    names = part.predictor.names
-    values = dict(zip(names, part.space.decode(q).tolist(), strict=True))
-    predictor = replace(part.predictor, names=(), fixed={**part.predictor.fixed, **values})
-    return replace(part, predictor=predictor, space=NOTHING)
-
-
 def held_windows(part: Shooting) -> HeldWindows:
     """Returns the windows of a record that has no free parameter."""
     predictor, W = part.predictor, len(part.cut.starts)
@@ -293,4 +235,61 @@ def held_windows(part: Shooting) -> HeldWindows:
         record=np.zeros(W, int), times=part.times, inputs=inputs, outputs=part.cut.outputs,
         numbers=tuple((slot, np.repeat(column, W)) for slot, column in numbers),
         first=part.first.states, weight=np.tile(part.first.weight, (W, 1)), whitener=part.whitener,
+    )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """Simulations of all windows, several of each.
+
+    Attributes:
+        simulations: of the first move of all windows, then of the next move.
+        controls: of each window at each step, shape (W, steps, nu).
+        every: steps of a sample.
+    """
+
+    simulations: Simulations
+    controls: np.ndarray
+    every: int
+
+
+def at_values(part: Shooting, q: np.ndarray) -> Shooting:
+    """Returns the windows of a record with all parameters held at q (p,), in coordinates."""
+    names = part.predictor.names
+    values = dict(zip(names, part.space.decode(q).tolist(), strict=True))
+    predictor = replace(part.predictor, names=(), fixed={**part.predictor.fixed, **values})
+    return replace(part, predictor=predictor, space=NOTHING)
+
+
+def _is_alike(one: HeldWindows, other: HeldWindows) -> bool:
+    """Returns whether the windows of two records can be simulated in one batch."""
+    return (
+        one.predictors[0].plant is other.predictors[0].plant
+        and [slot for slot, _ in one.numbers] == [slot for slot, _ in other.numbers]
+        and one.outputs.shape[1:] == other.outputs.shape[1:]
+        and one.inputs.shape[1:] == other.inputs.shape[1:]
+        and (one.every, one.hold_kind, one.has_rough_slopes)
+        == (other.every, other.hold_kind, other.has_rough_slopes)
+        and one.predictors[0].log.sampling_time == other.predictors[0].log.sampling_time
+        and one.predictors[0].log.output_names == other.predictors[0].log.output_names
+        and np.array_equal(one.whitener, other.whitener)
+    )
+
+
+def _together(each: Sequence[HeldWindows]) -> HeldWindows:
+    """Returns the windows of several records that are alike, one record after the other."""
+    columns = zip(*([column for _, column in h.numbers] for h in each), strict=True)
+    slots = [slot for slot, _ in each[0].numbers]
+    first = State(
+        *(np.concatenate([getattr(h.first, f.name) for h in each]) for f in fields(State))
+    )
+
+    def rows(name: str) -> np.ndarray:
+        return np.concatenate([getattr(h, name) for h in each])
+
+    return replace(
+        each[0], predictors=tuple(h.predictors[0] for h in each), first=first,
+        record=np.repeat(np.arange(len(each)), [len(h.record) for h in each]),
+        numbers=tuple((s, np.concatenate(c)) for s, c in zip(slots, columns, strict=True)),
+        times=rows("times"), inputs=rows("inputs"), outputs=rows("outputs"), weight=rows("weight"),
     )  # fmt: skip

@@ -33,94 +33,6 @@ from identification.model.sensitivity import FORWARD_STEP
 from identification.windows.windows import FirstStates, Windows, moved
 
 MIN_FELT_SHARE = 1e-6  # of the strongest direction of a state; weaker ones are not felt
-
-
-@dataclass(frozen=True, kw_only=True)
-class Tangent:
-    """All windows, linearised at a point; X = U s Vᵀ, its columns scaled to the norm 1.
-
-    Attributes:
-        r: residual at the point, shape (W, m), m = L ny + nx.
-        S: -∂r/∂q, shape (W, m, p).
-        U: shape (W, m, nx).
-        s: singular values, 0 for directions that are not felt, shape (W, nx).
-        Vt: shape (W, nx, nx).
-        size: norms of the columns of X before the scaling, shape (W, nx).
-    """
-
-    r: np.ndarray
-    S: np.ndarray
-    U: np.ndarray
-    s: np.ndarray
-    Vt: np.ndarray
-    size: np.ndarray
-
-    def rows(self, keep: np.ndarray) -> Tangent:
-        """Returns some of the windows, by mask or by index."""
-        return Tangent(**{f.name: getattr(self, f.name)[keep] for f in fields(self)})
-
-    def with_rows(self, at: np.ndarray, other: Tangent) -> Tangent:
-        """Returns the tangent with other values of the windows `at`, a mask or indices."""
-        changed = {}
-        for f in fields(self):
-            changed[f.name] = np.array(getattr(self, f.name))
-            changed[f.name][at] = getattr(other, f.name)
-        return Tangent(**changed)
-
-    @property
-    def freedom(self) -> int:
-        """Number of directions of the initial states that are felt, over all windows."""
-        return int((self.s > 0).sum())
-
-    @property
-    def projected(self) -> tuple[np.ndarray, np.ndarray]:
-        """S and r without what the initial states make up for, shapes (W, m, p) and (W, m)."""
-        U = self.U * (self.s > 0)[:, None]
-        S = self.S - U @ (np.swapaxes(U, 1, 2) @ self.S)
-        return S, self.r - np.einsum("wmk,wk->wm", U, np.einsum("wmk,wm->wk", U, self.r))
-
-    def eliminated(self, damping: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Returns UᵀS (W, nx, p), Uᵀr (W, nx) and s²/(s² + μ) (W, nx), which eliminate states."""
-        against = np.swapaxes(self.U, 1, 2) @ self.S
-        left = np.einsum("wmk,wm->wk", self.U, self.r)
-        return against, left, self.s**2 / (self.s**2 + damping)
-
-    def states_step(
-        self, dq: np.ndarray, damping: float, against: np.ndarray, left: np.ndarray
-    ) -> np.ndarray:
-        """Returns Δd (W, nx) beside a step Δq (p,), with UᵀS and Uᵀr of `eliminated`."""
-        along = self.s / (self.s**2 + damping) * (left - against @ dq)
-        return np.einsum("wkx,wk->wx", self.Vt, along) / self.size
-
-    def step(self, damping: float) -> tuple[np.ndarray, np.ndarray]:
-        """Returns the damped step: Δq (p,) and Δd (W, nx)."""
-        against, left, share = self.eliminated(damping)
-        H = np.einsum("wmp,wmq->pq", self.S, self.S)
-        g = np.einsum("wmp,wm->p", self.S, self.r)
-        H_q = H - np.einsum("wkp,wk,wkq->pq", against, share, against)
-        g_q = g - np.einsum("wkp,wk,wk->p", against, share, left)
-        size = np.sqrt(np.diag(H))
-        size = np.where(size > 0, size, 1.0)  # one that a search drove to nothing stays there
-        scaled = H_q / np.outer(size, size) + damping * np.eye(len(g))
-        dq = np.linalg.lstsq(scaled, g_q / size, rcond=None)[0] / size
-        return dq, self.states_step(dq, damping, against, left)
-
-
-def decomposed(r: np.ndarray, X: np.ndarray, S: np.ndarray) -> Tangent:
-    """Returns the tangent of a residual r (W, m) with slopes X (W, m, nx) and S (W, m, p)."""
-    size = np.linalg.norm(X, axis=1)
-    size = np.where(size > 0, size, 1.0)
-    U, s, Vt = np.linalg.svd(X / size[:, None], full_matrices=False)
-    s = np.where(s > MIN_FELT_SHARE * s[:, :1], s, 0.0)
-    return Tangent(r=r, S=S, U=U, s=s, Vt=Vt, size=size)
-
-
-def along_states(t: Tangent, moves: np.ndarray) -> np.ndarray:
-    """Returns X Δd of each window, shape (W, m)."""
-    along = t.s * np.einsum("wkx,wx->wk", t.Vt, moves * t.size)
-    return np.einsum("wmk,wk->wm", t.U, along)
-
-
 RK4 = int(mujoco.mjtIntegrator.mjINT_RK4)
 
 
@@ -236,6 +148,121 @@ class Shooting:
         return each, every, "zoh"
 
 
+def tangent(
+    shooting: Shooting, q: np.ndarray, d: np.ndarray, step: float = FORWARD_STEP,
+    known: np.ndarray | None = None,
+) -> Tangent:  # fmt: skip
+    """Linearise all windows at q (p,) and d (W, nx), by forward differences in one batch.
+
+    Args:
+        shooting: the windows.
+        q: shape (p,).
+        d: shape (W, nx).
+        step: of the differences.
+        known: r there, shape (W, m); it is computed when None.
+
+    Raises:
+        DivergenceError: a window left the finite numbers.
+    """
+    p, nx = len(q), d.shape[1]
+    h = step
+    is_rough = shooting.has_rough_slopes
+    points = np.concatenate([np.tile(q, (1 + nx, 1)), q + h * np.eye(p)])
+    moves = [d, *(d + h * e for e in np.eye(nx)), *[d] * p]
+    y = shooting.outputs(points, moves, is_rough)
+    r = np.stack([shooting.joined(*pair) for pair in zip(y, moves, strict=True)], axis=-1)
+    if known is None:
+        known = shooting.residual(q, d) if is_rough else r[..., 0]
+    slopes = (r[..., :1] - r[..., 1:]) / h  # (W, m, nx + p)
+    return decomposed(known, slopes[..., :nx], slopes[..., nx:])
+
+
+@dataclass(frozen=True, kw_only=True)
+class Tangent:
+    """All windows, linearised at a point; X = U s Vᵀ, its columns scaled to the norm 1.
+
+    Attributes:
+        r: residual at the point, shape (W, m), m = L ny + nx.
+        S: -∂r/∂q, shape (W, m, p).
+        U: shape (W, m, nx).
+        s: singular values, 0 for directions that are not felt, shape (W, nx).
+        Vt: shape (W, nx, nx).
+        size: norms of the columns of X before the scaling, shape (W, nx).
+    """
+
+    r: np.ndarray
+    S: np.ndarray
+    U: np.ndarray
+    s: np.ndarray
+    Vt: np.ndarray
+    size: np.ndarray
+
+    def rows(self, keep: np.ndarray) -> Tangent:
+        """Returns some of the windows, by mask or by index."""
+        return Tangent(**{f.name: getattr(self, f.name)[keep] for f in fields(self)})
+
+    def with_rows(self, at: np.ndarray, other: Tangent) -> Tangent:
+        """Returns the tangent with other values of the windows `at`, a mask or indices."""
+        changed = {}
+        for f in fields(self):
+            changed[f.name] = np.array(getattr(self, f.name))
+            changed[f.name][at] = getattr(other, f.name)
+        return Tangent(**changed)
+
+    @property
+    def freedom(self) -> int:
+        """Number of directions of the initial states that are felt, over all windows."""
+        return int((self.s > 0).sum())
+
+    @property
+    def projected(self) -> tuple[np.ndarray, np.ndarray]:
+        """S and r without what the initial states make up for, shapes (W, m, p) and (W, m)."""
+        U = self.U * (self.s > 0)[:, None]
+        S = self.S - U @ (np.swapaxes(U, 1, 2) @ self.S)
+        return S, self.r - np.einsum("wmk,wk->wm", U, np.einsum("wmk,wm->wk", U, self.r))
+
+    def eliminated(self, damping: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Returns UᵀS (W, nx, p), Uᵀr (W, nx) and s²/(s² + μ) (W, nx), which eliminate states."""
+        against = np.swapaxes(self.U, 1, 2) @ self.S
+        left = np.einsum("wmk,wm->wk", self.U, self.r)
+        return against, left, self.s**2 / (self.s**2 + damping)
+
+    def states_step(
+        self, dq: np.ndarray, damping: float, against: np.ndarray, left: np.ndarray
+    ) -> np.ndarray:
+        """Returns Δd (W, nx) beside a step Δq (p,), with UᵀS and Uᵀr of `eliminated`."""
+        along = self.s / (self.s**2 + damping) * (left - against @ dq)
+        return np.einsum("wkx,wk->wx", self.Vt, along) / self.size
+
+    def step(self, damping: float) -> tuple[np.ndarray, np.ndarray]:
+        """Returns the damped step: Δq (p,) and Δd (W, nx)."""
+        against, left, share = self.eliminated(damping)
+        H = np.einsum("wmp,wmq->pq", self.S, self.S)
+        g = np.einsum("wmp,wm->p", self.S, self.r)
+        H_q = H - np.einsum("wkp,wk,wkq->pq", against, share, against)
+        g_q = g - np.einsum("wkp,wk,wk->p", against, share, left)
+        size = np.sqrt(np.diag(H))
+        size = np.where(size > 0, size, 1.0)  # one that a search drove to nothing stays there
+        scaled = H_q / np.outer(size, size) + damping * np.eye(len(g))
+        dq = np.linalg.lstsq(scaled, g_q / size, rcond=None)[0] / size
+        return dq, self.states_step(dq, damping, against, left)
+
+
+def decomposed(r: np.ndarray, X: np.ndarray, S: np.ndarray) -> Tangent:
+    """Returns the tangent of a residual r (W, m) with slopes X (W, m, nx) and S (W, m, p)."""
+    size = np.linalg.norm(X, axis=1)
+    size = np.where(size > 0, size, 1.0)
+    U, s, Vt = np.linalg.svd(X / size[:, None], full_matrices=False)
+    s = np.where(s > MIN_FELT_SHARE * s[:, :1], s, 0.0)
+    return Tangent(r=r, S=S, U=U, s=s, Vt=Vt, size=size)
+
+
+def along_states(t: Tangent, moves: np.ndarray) -> np.ndarray:
+    """Returns X Δd of each window, shape (W, m)."""
+    along = t.s * np.einsum("wkx,wx->wk", t.Vt, moves * t.size)
+    return np.einsum("wmk,wk->wm", t.U, along)
+
+
 def rough(plant: Plant) -> mujoco.MjModel:
     """Returns the model for slopes: smooth where the plant has one, with one evaluation a step."""
     model: mujoco.MjModel = getattr(plant, "smooth", plant.model)
@@ -269,32 +296,3 @@ def slower(
         return inputs, every
     steps = inputs[:, :-1].reshape(len(inputs), (inputs.shape[1] - 1) // n, n, inputs.shape[2])
     return np.concatenate([steps.mean(axis=2), inputs[:, -1:]], axis=1), every // n
-
-
-def tangent(
-    shooting: Shooting, q: np.ndarray, d: np.ndarray, step: float = FORWARD_STEP,
-    known: np.ndarray | None = None,
-) -> Tangent:  # fmt: skip
-    """Linearise all windows at q (p,) and d (W, nx), by forward differences in one batch.
-
-    Args:
-        shooting: the windows.
-        q: shape (p,).
-        d: shape (W, nx).
-        step: of the differences.
-        known: r there, shape (W, m); it is computed when None.
-
-    Raises:
-        DivergenceError: a window left the finite numbers.
-    """
-    p, nx = len(q), d.shape[1]
-    h = step
-    is_rough = shooting.has_rough_slopes
-    points = np.concatenate([np.tile(q, (1 + nx, 1)), q + h * np.eye(p)])
-    moves = [d, *(d + h * e for e in np.eye(nx)), *[d] * p]
-    y = shooting.outputs(points, moves, is_rough)
-    r = np.stack([shooting.joined(*pair) for pair in zip(y, moves, strict=True)], axis=-1)
-    if known is None:
-        known = shooting.residual(q, d) if is_rough else r[..., 0]
-    slopes = (r[..., :1] - r[..., 1:]) / h  # (W, m, nx + p)
-    return decomposed(known, slopes[..., :nx], slopes[..., nx:])

@@ -38,6 +38,55 @@ WORSE_RATIO = 4.0
 RESTART_SHARES = (0.0, 0.5)  # of its changes, where such a window begins again
 
 
+def search(at: States, expected: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
+    """Returns the best states and the residuals there; a finished window is no longer simulated.
+
+    Args:
+        at: the windows where the search begins.
+        expected: sums of squares, shape (W,), that are small enough.
+    """
+    d, r = np.array(at.d), np.array(at.tangent.r)
+    part, going, μ = at, np.arange(len(d)), None
+    if expected is not None:
+        going = np.flatnonzero(at.cost - expected > FINISHED_CHANGE * float(np.mean(at.cost)))
+        part = at.rows(going)
+    for _ in range(MAX_STATE_STEPS if going.size else 0):
+        enough = FINISHED_CHANGE * float(np.mean(np.sum(r**2, axis=1)))
+        fresh = part.is_fresh
+        trial = next(levenberg_marquardt(part, DAMPING, μ))
+        part = trial.criterion
+        d[going], r[going] = part.d, part.tangent.r
+        gain = trial.before - np.where(trial.taken, trial.after, trial.before)
+        promised = trial.before - trial.step.promised
+        is_old = ~fresh & (promised > enough) & (gain < KEPT_GAIN * promised)
+        small = (np.abs(trial.after - trial.before) <= enough) | (promised <= enough)
+        μ = np.where(is_old, trial.μ, trial.next)
+        keep = is_old | ~(small | (μ > MAX_STATE_DAMPING))
+        if not keep.any():
+            break
+        part, going, μ = part.rows(keep), going[keep], μ[keep]
+        part = part.refreshed(is_old[keep])
+    return d, r
+
+
+def search_again(held: HeldWindows, d: np.ndarray, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Returns states and residuals after windows that ended far worse are sought from elsewhere."""
+    squares = np.sum(r**2, axis=1)
+    far = np.flatnonzero(squares > WORSE_RATIO * np.median(squares))
+    if not far.size:
+        return d, r
+    begun = np.concatenate([share * d[far] for share in RESTART_SHARES])
+    part = held.rows(np.tile(far, len(RESTART_SHARES)))
+    first = part.residual(begun)
+    if not np.isfinite(first).all():  # elsewhere it diverges: the states found stand
+        return d, r
+    found = search(states_at(part, begun, first))
+    for other, left in zip(*(np.split(x, len(RESTART_SHARES)) for x in found), strict=True):
+        better = np.sum(left**2, axis=1) < np.sum(r[far] ** 2, axis=1)
+        d[far[better]], r[far[better]] = other[better], left[better]
+    return d, r
+
+
 @dataclass(frozen=True)
 class StatesStep:
     """The end of a trial step.
@@ -123,52 +172,3 @@ def states_at(
     if near is None:
         return States(held, d, held.slopes(d, r), np.ones(len(d), bool))
     return States(held, d, replace(near, r=r), np.zeros(len(d), bool))
-
-
-def search(at: States, expected: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
-    """Returns the best states and the residuals there; a finished window is no longer simulated.
-
-    Args:
-        at: the windows where the search begins.
-        expected: sums of squares, shape (W,), that are small enough.
-    """
-    d, r = np.array(at.d), np.array(at.tangent.r)
-    part, going, μ = at, np.arange(len(d)), None
-    if expected is not None:
-        going = np.flatnonzero(at.cost - expected > FINISHED_CHANGE * float(np.mean(at.cost)))
-        part = at.rows(going)
-    for _ in range(MAX_STATE_STEPS if going.size else 0):
-        enough = FINISHED_CHANGE * float(np.mean(np.sum(r**2, axis=1)))
-        fresh = part.is_fresh
-        trial = next(levenberg_marquardt(part, DAMPING, μ))
-        part = trial.criterion
-        d[going], r[going] = part.d, part.tangent.r
-        gain = trial.before - np.where(trial.taken, trial.after, trial.before)
-        promised = trial.before - trial.step.promised
-        is_old = ~fresh & (promised > enough) & (gain < KEPT_GAIN * promised)
-        small = (np.abs(trial.after - trial.before) <= enough) | (promised <= enough)
-        μ = np.where(is_old, trial.μ, trial.next)
-        keep = is_old | ~(small | (μ > MAX_STATE_DAMPING))
-        if not keep.any():
-            break
-        part, going, μ = part.rows(keep), going[keep], μ[keep]
-        part = part.refreshed(is_old[keep])
-    return d, r
-
-
-def search_again(held: HeldWindows, d: np.ndarray, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Returns states and residuals after windows that ended far worse are sought from elsewhere."""
-    squares = np.sum(r**2, axis=1)
-    far = np.flatnonzero(squares > WORSE_RATIO * np.median(squares))
-    if not far.size:
-        return d, r
-    begun = np.concatenate([share * d[far] for share in RESTART_SHARES])
-    part = held.rows(np.tile(far, len(RESTART_SHARES)))
-    first = part.residual(begun)
-    if not np.isfinite(first).all():  # elsewhere it diverges: the states found stand
-        return d, r
-    found = search(states_at(part, begun, first))
-    for other, left in zip(*(np.split(x, len(RESTART_SHARES)) for x in found), strict=True):
-        better = np.sum(left**2, axis=1) < np.sum(r[far] ** 2, axis=1)
-        d[far[better]], r[far[better]] = other[better], left[better]
-    return d, r

@@ -4,7 +4,7 @@
     point            = nominal place + e,           e ~ N(0, s²)         s of exits, of connectors
 
 The deviations of one kind are a group: a fit may find that they scatter less than s
-(`identification.kalman.hierarchy`), so that a robot whose drives are alike is not paid for.
+(`identification.kalman.refit`), so that a robot whose drives are alike is not paid for.
 """
 
 from __future__ import annotations

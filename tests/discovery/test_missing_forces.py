@@ -17,8 +17,7 @@ from discovery_cases import (
 
 from identification.discovery.missing_forces import estimate_missing_forces
 from identification.discovery.nominal_model import NominalModel, fit_with_effects
-from identification.kalman.noise_model import Noise
-from identification.kalman.smoother import smooth
+from identification.kalman.noise_model import Noise, smooth
 
 
 @pytest.mark.parametrize("seed", range(4))

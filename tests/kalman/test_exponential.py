@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.linalg import expm
 
-from identification.kalman.exponential import transitions
+from identification.kalman.response import transitions
 
 SIZES = st.integers(1, 6)
 SCALES = st.sampled_from([1e-9, 1e-3, 1.0, 30.0, 1e3])

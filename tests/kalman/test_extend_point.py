@@ -74,7 +74,7 @@ def test_only_the_rest_is_linearised_and_nothing_is_simulated_twice(monkeypatch)
     point = at(whole.part("estimation"))
     seen = []
     derivatives = "identification.kalman.linear.state_derivatives"
-    from identification.kalman.derivatives import state_derivatives
+    from identification.kalman.linear import state_derivatives
 
     def counted(along):
         seen.append(len(along.time))

@@ -10,7 +10,7 @@ from estimation_plants import SLIDER
 
 from identification import Log, ParameterSet, Predictor
 from identification.kalman import linear, sensitivity_equations
-from identification.kalman.derivatives import input_derivatives, state_derivatives
+from identification.kalman.linear import input_derivatives, state_derivatives
 from identification.kalman.sensitivity_equations import solve_sensitivities
 from identification.kalman.trajectory import COARSE_POINTS, follow
 from identification.linear.points import Change, Points

@@ -8,8 +8,8 @@ from discovery_cases import OPTIONS, nominal_model, record, slider, wander
 from test_extend_point import log, plant
 
 from identification.discovery.nominal_model import fit_with_effects
-from identification.kalman import run as run_file
-from identification.kalman.run import Run
+from identification.kalman import trajectory as run_file
+from identification.kalman.trajectory import Run
 from identification.logs.joined import join_logs
 from identification.model.predictor import Predictor
 

@@ -15,10 +15,8 @@ from identification.discovery.scoring.sensitivities import (
     list_common,
 )
 from identification.effects.effect import Candidate
-from identification.kalman.columns import do_equations_hold
-from identification.kalman.derivatives import state_derivatives
-from identification.kalman.linear import linearise_records
-from identification.kalman.point import evaluate_point, shift_point
+from identification.kalman.linear import linearise_records, state_derivatives
+from identification.kalman.point import do_equations_hold, evaluate_point, shift_point
 from identification.kalman.sensitivity_equations import can_solve, solve_sensitivities
 from identification.kalman.trajectory import COARSE_POINTS, FINE_POINTS, follow
 from identification.linear.derivatives import shift_position

@@ -8,9 +8,8 @@ from discovery_cases import STEP, linear_plant, point_of
 
 from identification.kalman import problem as module
 from identification.kalman.noise_fit import NoiseLevel, evaluate_noise, fit_noise
-from identification.kalman.noise_model import Noise, build_whitener
+from identification.kalman.noise_model import Noise, build_whitener, whiten
 from identification.kalman.problem import linearise_criterion
-from identification.kalman.whitened import whiten
 
 
 def case(seed=1):

@@ -15,9 +15,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from identification.kalman.noise_model import Noise
+from identification.kalman.noise_model import Noise, whiten
 from identification.kalman.refit import Refit
-from identification.kalman.whitened import whiten
 
 # Of the largest eigenvalue of ΦᵀΦ: less is no direction that the outputs feel.
 MIN_EIGENVALUE_SHARE = 1e-14

@@ -15,9 +15,8 @@ import numpy as np
 
 from identification.discovery.attempts import attempt, refuse_infinite
 from identification.effects.effect import Candidate, Effect
-from identification.kalman.columns import EQUATION_STEP_SHARE, do_equations_hold
 from identification.kalman.linear import Linearisation, linearise_records
-from identification.kalman.point import Point
+from identification.kalman.point import EQUATION_STEP_SHARE, Point, do_equations_hold
 from identification.kalman.sensitivity_equations import ALWAYS, Courses, solve_sensitivities
 from identification.kalman.trajectory import FINE_POINTS
 from identification.model.predictor import Predictor
