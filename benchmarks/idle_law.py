@@ -16,7 +16,7 @@ from identification.native.cache import compile_once
 from identification.native.memory import load_double, store_double
 from identification.native.trampolines import SIGNATURES
 from inca_mj.robot import law
-from inca_mj.twin.fields import FIELDS, D, M, double, drive, integer, word
+from inca_mj.twin.drives import FIELDS, D, M, double, drive, integer, word
 
 KINDS = ("passive", "act_dyn", "act_bias")
 

@@ -9,7 +9,7 @@ from inca_mj.robot import law
 
 
 def install(model: mujoco.MjModel) -> None:
-    """Install Python callbacks that do for this model what `inca_mj.twin.callbacks` does."""
+    """Install Python callbacks that do for this model what `inca_mj.twin.native` does."""
     drives, cables = model.actuator_user, model.tendon_user
     R, R_s, k_s, b_c, beta, T_0 = (
         drives[:, c] for c in (law.R, law.R_S, law.K_S, law.B_C, law.BETA, law.T_0)

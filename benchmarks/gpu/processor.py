@@ -14,7 +14,7 @@ from mujoco.batch import Batch
 from gpu.worlds import FREE, Worlds, columns, motors
 from identification.engine import quiet, untimed
 from identification.model import rollout
-from inca_mj.robot.step import TIMESTEP
+from inca_mj.robot.parameters import TIMESTEP
 from inca_mj.twin import native
 
 ENOUGH = 0.5  # a measurement is repeated until it took so long [s]

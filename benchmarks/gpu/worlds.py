@@ -18,7 +18,7 @@ from identification.model.predictor import Numbers
 from identification.model.sensitivity import FORWARD_STEP, STEP
 from inca_mj.effects.layout import Layout
 from inca_mj.robot.inputs import prbs
-from inca_mj.robot.step import TIMESTEP
+from inca_mj.robot.parameters import TIMESTEP
 from inca_mj.twin.mjcf import build
 from inca_mj.twin.twin import Twin, build_twin
 

@@ -53,7 +53,7 @@ Trust = Annotated[
     tuple[tuple[Literal["sensors", "units", "wiring"], ...], ...],
     tyro.conf.UseAppendAction,
     tyro.conf.arg(metavar="WORD"),
-]  # checks of a log that the user overrules, words of `inca_mj.twin.judged.JUDGED`
+]  # checks of a log that the user overrules, words of `inca_mj.twin.logs.JUDGED`
 
 
 @dataclass(frozen=True)
@@ -69,7 +69,7 @@ class Robot(Values):
         Raises:
             InputError: a value or the step is malformed or out of bounds, or a file is no geometry.
         """
-        from inca_mj.robot.step import refuse_step
+        from inca_mj.robot.parameters import refuse_step
 
         self.parameters()
         self.place()
@@ -90,7 +90,7 @@ class SavedRobot(Robot):
             InputError: it is not so.
         """
         from identification.errors import InputError
-        from inca_mj.robot.step import refuse_step
+        from inca_mj.robot.parameters import refuse_step
 
         if self.model is None:
             return super().check()

@@ -59,7 +59,7 @@ def compare_with(robot: SavedRobot, log: Log, trust: Sequence[str]) -> Compariso
     Args:
         robot: the options.
         log: what was measured.
-        trust: checks of the log that are overruled, words of `inca_mj.twin.judged.JUDGED`.
+        trust: checks of the log that are overruled, words of `inca_mj.twin.logs.JUDGED`.
 
     Raises:
         InputError: the options describe no robot, the robot has no pretension, or the log is not

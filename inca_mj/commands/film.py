@@ -152,8 +152,7 @@ class Film:
         """Returns the scene of a saved run, or of a log beside the twin with the given values."""
         from inca_mj.commands.compare import compare_with
         from inca_mj.rendering.scene import make_scene
-        from inca_mj.twin.judged import UNJUDGED
-        from inca_mj.twin.logs import read_inca_log
+        from inca_mj.twin.logs import UNJUDGED, read_inca_log
 
         if source.suffix == ".npz":
             return make_scene(source, self.seconds)

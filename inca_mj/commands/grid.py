@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from identification.errors import InputError, unknown_name
-from inca_mj.robot.pose import POSE
+from inca_mj.robot.parameters import POSE
 
 MOST = 200  # points of one axis
 

@@ -188,7 +188,7 @@ def summary(result: Identification, fit: Fit) -> str:
 
 def compared(result: Identification, robot: Robot) -> Comparison:
     """Returns the log beside a run of the identified model."""
-    from inca_mj.twin.judged import UNJUDGED
+    from inca_mj.twin.logs import UNJUDGED
     from inca_mj.workflows.comparison import compare
 
     plant = result.fit.estimate.predictor.plant

@@ -15,7 +15,7 @@ from inca_mj.commands.common import Values, do_not_draw, values_field
 if TYPE_CHECKING:
     import numpy as np
 
-    from inca_mj.kinematics.inverse_geometry import Cables
+    from inca_mj.kinematics.cables import Cables
     from inca_mj.robot.geometry import Geometry
     from inca_mj.workflows.poses import LogPoses
 
@@ -80,8 +80,7 @@ class Kinematics:
 
     def _at(self, pose: np.ndarray) -> None:
         from identification.errors import InputError
-        from inca_mj.kinematics.inverse_geometry import inverse
-        from inca_mj.kinematics.pulleys import Pulleys
+        from inca_mj.kinematics.cables import Pulleys, inverse
         from inca_mj.report.poses import cables_json, cables_rows, cables_verdict
         from inca_mj.robot.spread import displaced
 

@@ -77,7 +77,7 @@ class Linearize:
         from identification.files import check_file
         from identification.linear.system import sampling_time_of
         from inca_mj.commands.grid import grid_axes
-        from inca_mj.robot.pose import pose_values
+        from inca_mj.robot.parameters import pose_values
 
         if self.grid == ():
             raise InputError(

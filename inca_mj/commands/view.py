@@ -63,8 +63,7 @@ class View:
             InputError: the file is neither a run nor a log.
         """
         from inca_mj.commands.compare import compare_with
-        from inca_mj.twin.judged import UNJUDGED
-        from inca_mj.twin.logs import read_inca_log
+        from inca_mj.twin.logs import UNJUDGED, read_inca_log
         from inca_mj.twin.run import load_run
 
         if source.suffix == ".npz":

@@ -18,8 +18,7 @@ from dm_control.rl import control
 
 from identification.errors import InputError, unknown_name
 from inca_mj.control.controller import CONTROL_TIMESTEP
-from inca_mj.control.physics import physics_of
-from inca_mj.control.tasks import TASKS
+from inca_mj.control.tasks import TASKS, physics_of
 from inca_mj.effects.values import present
 from inca_mj.twin.twin import Twin, build_twin
 

@@ -15,13 +15,13 @@ _PUBLIC = {
     "pose_rate_matrix": "rotations",
     "quaternion": "rotations",
     "rotation": "rotations",
-    "Pulleys": "pulleys",
-    "Cables": "inverse_geometry",
-    "inverse": "inverse_geometry",
-    "CableRates": "cable_rates",
-    "rates": "cable_rates",
-    "CableAccelerations": "cable_accelerations",
-    "accelerations": "cable_accelerations",
+    "Pulleys": "cables",
+    "Cables": "cables",
+    "inverse": "cables",
+    "CableRates": "jacobians",
+    "rates": "jacobians",
+    "CableAccelerations": "jacobians",
+    "accelerations": "jacobians",
     "condition": "jacobians",
     "jacobian": "jacobians",
     "jacobian_rate": "jacobians",
@@ -33,20 +33,20 @@ _PUBLIC = {
 __all__ = list(_PUBLIC)
 
 if TYPE_CHECKING:  # the same list, for type checkers and editors
-    from inca_mj.kinematics.cable_accelerations import CableAccelerations as CableAccelerations
-    from inca_mj.kinematics.cable_accelerations import accelerations as accelerations
-    from inca_mj.kinematics.cable_rates import CableRates as CableRates
-    from inca_mj.kinematics.cable_rates import rates as rates
+    from inca_mj.kinematics.cables import Cables as Cables
+    from inca_mj.kinematics.cables import Pulleys as Pulleys
+    from inca_mj.kinematics.cables import inverse as inverse
     from inca_mj.kinematics.forward import ForwardPose as ForwardPose
     from inca_mj.kinematics.forward import pose_from_lengths as pose_from_lengths
-    from inca_mj.kinematics.inverse_geometry import Cables as Cables
-    from inca_mj.kinematics.inverse_geometry import inverse as inverse
+    from inca_mj.kinematics.jacobians import CableAccelerations as CableAccelerations
+    from inca_mj.kinematics.jacobians import CableRates as CableRates
+    from inca_mj.kinematics.jacobians import accelerations as accelerations
     from inca_mj.kinematics.jacobians import condition as condition
     from inca_mj.kinematics.jacobians import jacobian as jacobian
     from inca_mj.kinematics.jacobians import jacobian_rate as jacobian_rate
     from inca_mj.kinematics.jacobians import length_jacobian as length_jacobian
     from inca_mj.kinematics.jacobians import rank as rank
-    from inca_mj.kinematics.pulleys import Pulleys as Pulleys
+    from inca_mj.kinematics.jacobians import rates as rates
     from inca_mj.kinematics.rotations import body_rate_matrix as body_rate_matrix
     from inca_mj.kinematics.rotations import euler as euler
     from inca_mj.kinematics.rotations import euler_of as euler_of

@@ -3,33 +3,52 @@
 Each sample is a measurement of its own (`inca_mj.kinematics.balance`). Its drums are balanced with
 the rates and accelerations that the angles themselves show: ω and ω̇ are derivatives of a
 polynomial of degree 2 over five samples or 50 ms (Savitzky and Golay 1964), and the current is the
-mean of the two that act just before and just after the sample. What all this leaves open has std
-that the log itself shows (`inca_mj.kinematics.components`).
+mean of the two that act just before and just after the sample. d₀ follows the path: first with the
+mean strain of both ends, then by the integral of (2.30) with the tensions that were found. At the
+last samples, where the rates are extrapolated, the balance of the drums is not used.
 
-d₀ follows the path: first with the mean strain of both ends, then by the integral of (2.30) with
-the tensions that were found. At the last samples, where the rates are extrapolated, the balance of
-the drums is not used.
+What this leaves open has std that the log itself shows, its variance components:
+
+    σ_d² = max((R σ_φ)², σ_L²)      a length: the encoder, or what geometry and parameters get wrong
+    σ_T                             the balance of a drum: friction, accelerations between samples
+    σ_F, σ_M = σ_F k²/ρ             the balance of the platform: its acceleration is neglected
+    σ² ← σ² Σ r²/Σ redundancy       over its group, until all three stay        (Förstner 1979)
+
+k is the radius of gyration of the platform and ρ the mean distance of its connectors: it shakes as
+much by turning as by moving. r are the residuals, each in units of its std. σ_L counts where it is
+three times the std of the encoders or more. Below that it cannot be told from errors of the drums,
+which change the lengths by T/λ, and is taken as zero. σ_T is at least what the noise of the
+encoders makes of ω̇. The estimate takes the errors of the statements as independent. Those of
+neighbouring samples and of drums and platform are not quite; docs/kinematics.md has how well the
+std are met.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import astuple, dataclass, replace
 from functools import partial
 
 import numpy as np
 from scipy.signal import savgol_coeffs, savgol_filter
 
 from identification.errors import InputError
-from inca_mj.kinematics.balance import LENGTHS, Balance, NoLoad, Weights, balance
-from inca_mj.kinematics.components import FIRST, Components, components, weights_of
-from inca_mj.kinematics.elastic import ElasticRobot, Measured, drum_tension, no_load_along
+from inca_mj.kinematics.balance import DRUMS, LENGTHS, PLATFORM, Balance, NoLoad, Weights, balance
+from inca_mj.kinematics.cables import cables_at
+from inca_mj.kinematics.elastic import (
+    ElasticRobot,
+    Measured,
+    drum_tension,
+    no_load_along,
+    no_load_at_rest,
+)
 from inca_mj.kinematics.forward import find
-from inca_mj.kinematics.inverse_geometry import cables_at
-from inca_mj.kinematics.resting import no_load_of
 from inca_mj.kinematics.rotations import rotation
 
+LEAST = 1e-3  # smallest std of a tension or a force [N]
+TOLD = 3.0  # times the std of the encoders: a smaller one of the lengths is not told from it
+ROUNDS = 50
+STILL = 0.01  # relative change of a std that counts as none
 Array = np.ndarray
-
 WINDOW = 0.05  # over which rates are taken, but at least five samples [s]
 FEWEST = 5  # samples
 UNUSED = 100.0  # std of a tension where the drum's balance is not used [N]
@@ -37,6 +56,24 @@ ENOUGH = 250  # samples by which the std are estimated
 PATHS = 2  # times that d₀ is integrated along the path of the tensions
 STRIDE = 5  # samples; the poses between begin at the same one
 FAR = 0.05  # lengths that no pose meets better than that belong to no pose [m]
+
+
+@dataclass(frozen=True)
+class Components:
+    """Std of what the statements leave open.
+
+    Attributes:
+        length: σ_L, of lengths by geometry and parameters [m].
+        tension: σ_T, of the drums' balance [N].
+        force: σ_F, of the platform's balance [N].
+    """
+
+    length: float
+    tension: float
+    force: float
+
+
+FIRST = Components(length=1e-3, tension=1.0, force=0.3)  # where the search for them begins
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -110,7 +147,7 @@ def poses_along(robot: ElasticRobot, measured: Measured, encoder: Array, ends: i
     """
     used = np.arange(len(measured.angles)) < len(measured.angles) - ends
     σ = FIRST
-    first: NoLoad = partial(no_load_of, measured.angles)
+    first: NoLoad = partial(no_load_at_rest, measured.angles)
     weights = weights_of(σ, robot, encoder)
     found = balance(robot, measured, weights, first, _rigid(robot, measured, weights.length))
     some = np.flatnonzero(used)[:: max(1, used.sum() // ENOUGH)]
@@ -142,7 +179,7 @@ def _fixed(d_0: Array, robot: ElasticRobot, T: Array) -> tuple[Array, Array]:
 def _rigid(robot: ElasticRobot, measured: Measured, σ: Array) -> tuple[Array, Array, Array]:
     """Returns poses from the lengths alone, one for every few samples, and tensions by drums."""
     T = np.maximum(drum_tension(robot, measured), 0)
-    d_0, _ = no_load_of(measured.angles, robot, T)
+    d_0, _ = no_load_at_rest(measured.angles, robot, T)
     lengths = d_0 * (1 + T / robot.lambda_)
     position, R = robot.pose[:3], rotation(*robot.pose[3:])
     positions, rotations = np.empty((len(T), 3)), np.empty((len(T), 3, 3))
@@ -167,3 +204,75 @@ def _refuse_unreached(missed: Array, samples: Array) -> None:
             f" {k + 1} by {abs(missed[n, k]):.3g} m; check the geometry, the start pose and the"
             " sign of the angles (positive winds in)"
         )
+
+
+def weights_of(σ: Components, robot: ElasticRobot, encoder: Array) -> Weights:
+    """Returns the std of all statements; `encoder` is that of each angle, shape (8,) [rad]."""
+    ρ = np.linalg.norm(robot.geometry.B, axis=1).mean()
+    return Weights(
+        length=np.maximum(robot.R * encoder, σ.length),
+        tension=np.full(len(robot.R), σ.tension),
+        force=σ.force,
+        moment=σ.force * robot.gyration / ρ,
+    )
+
+
+def components(
+    robot: ElasticRobot,
+    measured: Measured,
+    encoder: Array,
+    σ: Components,
+    no_load: NoLoad,
+    begin: tuple[Array, Array, Array],
+) -> Components:
+    """Returns the std that the residuals show.
+
+    Args:
+        robot: its numbers.
+        measured: angles and currents of some samples, N.
+        encoder: std of each angle, shape (8,) [rad].
+        σ: where to begin.
+        no_load: d₀ and ∂d₀/∂T for a robot and tensions.
+        begin: positions (N, 3) [m], rotations (N, 3, 3) and tensions (N, 8) [N] to begin at.
+
+    Raises:
+        InputError: no pose agrees with a sample.
+    """
+    floor = (robot.R * encoder).mean()
+    found = _estimated(robot, measured, encoder, replace(σ, length=max(σ.length, floor)), no_load,
+                       begin)  # fmt: skip
+    if found.length < TOLD * floor:
+        found = _estimated(robot, measured, encoder, replace(found, length=0.0), no_load, begin)
+    return found
+
+
+def _estimated(
+    robot: ElasticRobot,
+    measured: Measured,
+    encoder: Array,
+    σ: Components,
+    no_load: NoLoad,
+    begin: tuple[Array, Array, Array],
+) -> Components:
+    """Returns the std that the search finds; a std of the lengths that is zero stays zero."""
+    least = max(LEAST, float(np.mean(robot.J / robot.R * encoder)) * measured.rate_noise)
+    for _ in range(ROUNDS):
+        weights = weights_of(σ, robot, encoder)
+        now = balance(robot, measured, weights, no_load, begin)
+        begin = now.position, now.R, now.tension
+        square, left = now.residual**2, now.redundancy
+        d, T, F = (
+            float(np.sqrt(square[:, group].sum() / left[:, group].sum()))
+            for group in (LENGTHS, DRUMS, PLATFORM)
+        )
+        rms = float(np.sqrt(np.mean(weights.length**2)))
+        new = Components(
+            length=d * rms if σ.length else 0.0,
+            tension=max(least, T * σ.tension),
+            force=max(LEAST, F * σ.force),
+        )
+        change = np.abs(np.subtract(astuple(new), astuple(σ))) > STILL * np.array(astuple(σ))
+        σ = new
+        if not change.any():
+            break
+    return σ

@@ -23,8 +23,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from identification.errors import InputError
+from inca_mj.kinematics.cables import cables_at
 from inca_mj.kinematics.elastic import ElasticRobot, Measured, drum_tension
-from inca_mj.kinematics.inverse_geometry import cables_at
 from inca_mj.kinematics.jacobians import jacobian, jacobian_rate
 from inca_mj.kinematics.rotations import euler_of, pose_rate_matrix, turn
 

@@ -137,12 +137,12 @@ def drum_tension(robot: ElasticRobot, measured: Measured) -> Array:
     ) / R
 
 
-def no_load_at_rest(robot: ElasticRobot, angles: Array, T: Array) -> tuple[Array, Array]:
+def no_load_at_rest(angles: Array, robot: ElasticRobot, T: Array) -> tuple[Array, Array]:
     """Returns d₀ of a measurement and its derivative by T (thesis 2.30, mean strain of both ends).
 
     Args:
+        angles: φ, shape (N, 8) [rad]; the first, so that they can be bound.
         robot: its numbers.
-        angles: φ, shape (N, 8) [rad].
         T: tensions, shape (N, 8) [N].
 
     Returns:

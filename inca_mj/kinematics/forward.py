@@ -17,9 +17,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from identification.errors import InputError
-from inca_mj.kinematics.inverse_geometry import Cables, cables_at
+from inca_mj.kinematics.cables import Cables, Pulleys, cables_at
 from inca_mj.kinematics.jacobians import condition, jacobian, rank
-from inca_mj.kinematics.pulleys import Pulleys
 from inca_mj.kinematics.rotations import euler_of, pose_rate_matrix, rotation, turn
 from inca_mj.robot.geometry import DRIVES, Geometry
 

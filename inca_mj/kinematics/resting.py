@@ -11,8 +11,8 @@ from functools import partial
 import numpy as np
 
 from identification.errors import InputError
+from inca_mj.kinematics.along import FIRST, ROUNDS, STILL, TOLD
 from inca_mj.kinematics.balance import LENGTHS, Balance, NoLoad, Weights, balance
-from inca_mj.kinematics.components import FIRST, ROUNDS, STILL, TOLD
 from inca_mj.kinematics.elastic import ElasticRobot, Measured, drum_tension, no_load_at_rest
 from inca_mj.kinematics.forward import REACH, find
 from inca_mj.kinematics.rotations import rotation
@@ -79,7 +79,7 @@ def rest_pose(
             f" {-balanced[0, weakest]:.3g} N; give angles and currents that keep all cables taut"
         )
     T = np.maximum(balanced, 0)
-    d_0, _ = no_load_at_rest(robot, φ, T)
+    d_0, _ = no_load_at_rest(φ, robot, T)
     lengths = d_0[0] * (1 + T[0] / robot.lambda_)
     if lengths.min() <= 0:
         k = int(lengths.argmin())
@@ -88,7 +88,7 @@ def rest_pose(
             " the sign of the motor angles (positive winds in) and their unit [rad]"
         )
     position, R, _ = find(lengths, robot.geometry, (robot.pose[:3], rotation(*robot.pose[3:])), σ)
-    no_load = partial(no_load_of, φ)
+    no_load = partial(no_load_at_rest, φ)
     found, weights = _weighted(robot, measured, encoder, no_load, (position[None], R[None], T))
     missed = found.residual[0, :DRIVES] * weights.length
     if not found.taut.all():
@@ -128,8 +128,3 @@ def _weighted(
         weights = rest_weights(robot, encoder)
         found = balance(robot, measured, weights, no_load, begin)
     return found, weights
-
-
-def no_load_of(angles: Array, robot: ElasticRobot, T: Array) -> tuple[Array, Array]:
-    """Returns `no_load_at_rest` with the angles first, so that they can be bound."""
-    return no_load_at_rest(robot, angles, T)

@@ -11,8 +11,8 @@ from __future__ import annotations
 import numpy as np
 
 from identification.errors import InputError
+from inca_mj.kinematics.cables import cables_at
 from inca_mj.kinematics.forward import FAR, find
-from inca_mj.kinematics.inverse_geometry import cables, cables_at
 from inca_mj.kinematics.jacobians import jacobian
 from inca_mj.kinematics.rotations import euler_of, rotation, turn
 from inca_mj.robot.geometry import DRIVES, Geometry
@@ -41,7 +41,7 @@ def poses_with_stiff_cables(
         InputError: no pose has nearly such cable lengths.
     """
     position, turned = np.array(start[:3], float), rotation(*start[3:])
-    lengths = cables(position, turned, geometry)[0] - R * np.asarray(angles)
+    lengths = cables_at(position, turned, geometry).lengths - R * np.asarray(angles)
     begin, samples = (position, turned), range(0, len(lengths), STRIDE)
     in_turn = []
     for k in samples:
@@ -63,7 +63,7 @@ def _searched(
     """Returns the position and rotation of sample k, by the search that may halve its steps."""
     position, turned, last = find(lengths[k], geometry, begin, np.ones(DRIVES), tolerance=FINE)
     if last >= FINE:  # the search took all its steps, as it would at each sample that follows
-        _refuse_lost(cables(position, turned, geometry)[0] - lengths[k], k)
+        _refuse_lost(cables_at(position, turned, geometry).lengths - lengths[k], k)
     return position, turned
 
 

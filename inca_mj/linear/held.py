@@ -22,7 +22,7 @@ from identification.errors import InputError
 from identification.linear.operating_points import OperatingPoints
 from identification.linear.points import Points
 from inca_mj.robot.geometry import DRIVES
-from inca_mj.robot.pose import pose_values
+from inca_mj.robot.parameters import pose_values
 from inca_mj.robot.spread import at_drives
 from inca_mj.twin.statics import start_from
 from inca_mj.twin.twin import Twin, start_state

@@ -1,13 +1,16 @@
 """A film of a run: the simulated robot in full colour, the measured one as an outline over it.
 
 Two runs are filmed side by side, at the same times. If both have a measured robot, the close view
-enlarges how far it is from the simulated one (`inca_mj.rendering.difference`).
+enlarges how far it is from the simulated one (`inca_mj.rendering.ghost`). Frames become an mp4 file
+by the ffmpeg that imageio-ffmpeg brings along.
 """
 
 from __future__ import annotations
 
+import logging
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import closing, contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -16,16 +19,17 @@ from identification.errors import InputError
 from identification.progress import counted
 from identification.writing import whole_file
 from inca_mj.rendering.checks import refuse_speed
-from inca_mj.rendering.encoder import encoder
+from inca_mj.rendering.overlay import MAGNIFY
 from inca_mj.rendering.scene import Scene, Source, make_scene
 from inca_mj.rendering.stage import Begun, Look, stage
-from inca_mj.rendering.trace import MAGNIFY
 
 Progress = Callable[[int, int], None]  # frames done, frames in all
-
 # Views of a frame take unlike times: with two frames waiting, the quicker view has work as well.
 AHEAD = 2
 MOST_FRAMES = 108_000  # an hour of film at 30 frames a second
+FAILED = (
+    "ffmpeg cannot write the film; make room for it, or set IMAGEIO_FFMPEG_EXE to a working ffmpeg"
+)
 
 
 def film(
@@ -154,17 +158,6 @@ def stills(
     return paths
 
 
-def _in_turn(begin: Callable[[float], Begun], times: Iterable[float]) -> Iterator[np.ndarray]:
-    """Yields the frames of some times in turn; the next ones are drawn while one is written."""
-    waiting: deque[Begun] = deque()
-    for time in times:
-        waiting.append(begin(time))
-        if len(waiting) > AHEAD:
-            yield waiting.popleft()()
-    while waiting:
-        yield waiting.popleft()()
-
-
 def common_time(scenes: Sequence[Scene]) -> tuple[float, float]:
     """Begin and end of the time that all scenes have [s].
 
@@ -183,3 +176,66 @@ def common_time(scenes: Sequence[Scene]) -> tuple[float, float]:
 
 def _scenes(source: Source, beside: Source | None, seconds: float | None) -> list[Scene]:
     return [make_scene(one, seconds) for one in (source, beside) if one is not None]
+
+
+def _in_turn(begin: Callable[[float], Begun], times: Iterable[float]) -> Iterator[np.ndarray]:
+    """Yields the frames of some times in turn; the next ones are drawn while one is written."""
+    waiting: deque[Begun] = deque()
+    for time in times:
+        waiting.append(begin(time))
+        if len(waiting) > AHEAD:
+            yield waiting.popleft()()
+    while waiting:
+        yield waiting.popleft()()
+
+
+@contextmanager
+def encoder(
+    path: Path, size: tuple[int, int], fps: float
+) -> Iterator[Callable[[np.ndarray | None], None]]:
+    """Yields a function that takes frames (height, width, 3); the file is complete after the block.
+
+    Args:
+        path: of the mp4 file.
+        size: width and height, even numbers [px].
+        fps: frames per second.
+
+    Raises:
+        InputError: ffmpeg is missing or fails.
+    """
+    import imageio_ffmpeg
+
+    # It warns of a film without frames, which an interrupt leaves; its errors are raised too.
+    logging.getLogger("imageio_ffmpeg").setLevel(logging.CRITICAL)
+    writer = imageio_ffmpeg.write_frames(
+        str(path), size, fps=fps, codec="libx264", quality=None, macro_block_size=2,
+        ffmpeg_log_level="quiet",  # it would write beside what this program says
+        output_params=["-crf", "26", "-preset", "veryfast", "-movflags", "+faststart"],
+    )  # fmt: skip
+
+    def send(frame: np.ndarray | None) -> None:
+        try:
+            writer.send(frame)
+        except (OSError, RuntimeError) as error:  # it died, its disk is full, or there is none
+            raise InputError(FAILED) from error
+
+    with closing(writer):
+        send(None)  # starts the program
+        yield send
+    # What fails behind the last frame, such as a disk that is full then, ffmpeg tells nobody.
+    if not _is_whole(path):
+        raise InputError(FAILED)
+
+
+def _is_whole(path: Path) -> bool:
+    """Returns whether a film has its index, and each of its parts to its end."""
+    with path.open("rb") as file:
+        size, at, kinds = path.stat().st_size, 0, set()
+        while at + 8 <= size:
+            file.seek(at)
+            length, kind = int.from_bytes(file.read(4), "big"), file.read(4)
+            if length < 8:  # of a part that was never ended
+                return False
+            kinds.add(kind)
+            at += length
+    return at == size and b"moov" in kinds

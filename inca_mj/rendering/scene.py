@@ -10,8 +10,7 @@ import numpy as np
 from identification.errors import InputError
 from identification.logs.log import Log
 from inca_mj.rendering.checks import refuse_seconds
-from inca_mj.twin.judged import UNJUDGED
-from inca_mj.twin.logs import pose_of, read_inca_log
+from inca_mj.twin.logs import UNJUDGED, pose_of, read_inca_log
 from inca_mj.twin.run import Run, load_run, rows_of
 from inca_mj.workflows.comparison import Comparison, compare
 

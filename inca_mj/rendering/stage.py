@@ -11,13 +11,17 @@ import numpy as np
 
 from identification.errors import InputError
 from inca_mj.rendering.checks import refuse_magnify, refuse_titles
-from inca_mj.rendering.colours import TensionScale, tension_scale
-from inca_mj.rendering.difference import Difference, common_factor
-from inca_mj.rendering.ghost import ghost_difference, ghost_errors, ghost_positions
-from inca_mj.rendering.panel import Panel
-from inca_mj.rendering.picture import BACKGROUND, Box, Layout, Lettering, layout, paste
+from inca_mj.rendering.ghost import (
+    Difference,
+    common_factor,
+    ghost_difference,
+    ghost_errors,
+    ghost_positions,
+)
+from inca_mj.rendering.legend import TensionScale, tension_scale
+from inca_mj.rendering.overlay import Trace, trace_of
+from inca_mj.rendering.picture import BACKGROUND, Box, Layout, Lettering, Panel, layout, paste
 from inca_mj.rendering.scene import Scene
-from inca_mj.rendering.trace import Trace, trace_of
 from inca_mj.rendering.view import View, view
 from inca_mj.twin.run import Run
 

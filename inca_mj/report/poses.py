@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from identification.report.page import Section, Table
 from identification.report.style import GREY, INK, SERIES, STYLE
 from identification.writing import write_text
-from inca_mj.kinematics.inverse_geometry import Cables
+from inca_mj.kinematics.cables import Cables
 from inca_mj.kinematics.jacobians import condition, jacobian, rank
 from inca_mj.robot.geometry import Geometry
 from inca_mj.twin.logs import POSE

@@ -1,6 +1,6 @@
-"""The points where the cables leave the frame and where they meet the platform.
+"""The points where the cables leave the frame and where they meet the platform, and its handle.
 
-The thesis lost its coordinates. These are ASSUMED: a flat SPIDAR-G cross, two cables on each
+The thesis lost the coordinates. These are ASSUMED: a flat SPIDAR-G cross, two cables on each
 of four connectors, chosen because its unpowered equilibrium is stable, it has wrench closure,
 and a 4 N pretension rests it at z = 1.43 m. A file of the user's own replaces them.
 """
@@ -22,6 +22,10 @@ from identification.writing import write_text
 
 DRIVES = 8
 FARTHEST = 100.0  # a frame of more is one in another unit [m]
+# The body of the handle, as it is drawn and as cables can touch it; assumed like the points.
+GRIP = ((0.0, 0.0, -0.02), (0.0, 0.0, -0.11))  # ends of the grip's axis in P [m]
+GRIP_RADIUS = 0.015  # [m]
+ARM_RADIUS = 0.005  # of the arms from the centre to the connectors [m]
 
 
 @dataclass(frozen=True)
@@ -120,20 +124,6 @@ def geometry_of(record: Mapping[str, Any]) -> Geometry:
     return Geometry(**{**record, **rows})
 
 
-def write_geometry(geometry: Geometry, path: str | Path) -> Path:
-    """Write a geometry as TOML, exact to the last bit; `read_geometry` reads it.
-
-    Raises:
-        InputError: the file cannot be written.
-    """
-    said = {"assumed": geometry.assumed, "source": geometry.source}
-    lines = [f"{name} = {json.dumps(value)}" for name, value in said.items()]
-    for name, about in (("exits", "exit points A in O"), ("connectors", "connectors B in P")):
-        rows = [f"  [{', '.join(repr(float(x)) for x in row)}]," for row in getattr(geometry, name)]
-        lines += ["", f"# {about} [m]", f"{name} = [", *rows, "]"]
-    return write_text(Path(path), "\n".join(lines) + "\n")
-
-
 def read_geometry(path: str | Path) -> Geometry:
     """Read a geometry from TOML: `exits`, `connectors` (8 rows of 3) [m], `assumed`, `source`.
 
@@ -160,3 +150,17 @@ def read_geometry(path: str | Path) -> Geometry:
         assumed=table.get("assumed", False) is not False,
         source=str(table.get("source", path.name)),
     )
+
+
+def write_geometry(geometry: Geometry, path: str | Path) -> Path:
+    """Write a geometry as TOML, exact to the last bit; `read_geometry` reads it.
+
+    Raises:
+        InputError: the file cannot be written.
+    """
+    said = {"assumed": geometry.assumed, "source": geometry.source}
+    lines = [f"{name} = {json.dumps(value)}" for name, value in said.items()]
+    for name, about in (("exits", "exit points A in O"), ("connectors", "connectors B in P")):
+        rows = [f"  [{', '.join(repr(float(x)) for x in row)}]," for row in getattr(geometry, name)]
+        lines += ["", f"# {about} [m]", f"{name} = [", *rows, "]"]
+    return write_text(Path(path), "\n".join(lines) + "\n")

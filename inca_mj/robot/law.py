@@ -10,7 +10,7 @@
 Positive φ and positive i wind the cable in. Misprints of the thesis, and what stands here:
 2.40 has the load torque's sign reversed under "positive winds"; 2.41 has R_s/R where the static
 balance R T(0) = R_s F_s demands R/R_s. K_t i, b_v and J are MuJoCo's own (gear, joint damping,
-armature); the rest is added by `inca_mj.twin.callbacks`.
+armature); the rest is added by `inca_mj.twin.native`.
 
 All numbers live in mjModel arrays, so that `Batch.expand` gives every simulation its own:
 a cable's in its tendon's row of `tendon_user`, a drive's in its current actuator's row of

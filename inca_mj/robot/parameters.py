@@ -9,15 +9,17 @@ row of its current actuator, a cable in the `tendon_user` row of its tendon.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from math import pi
+from math import isfinite, pi
 
-from identification.errors import unknown_name
+from identification.errors import InputError, unknown_name
 from identification.model.parameter import Parameter, ParameterSet
 
 GRAVITY = 9.81  # [m/s^2]
 PRETENSION = 4.0  # t_0, the tension that the start pretension stays nearest to [N]
+TIMESTEP = 1e-3  # [s]; RK4 at 1 ms follows the reference to a few microradians
+POSE = ("x", "y", "z", "roll", "pitch", "yaw")
 
 _DRIVE = "actuator/current_*."
 _CABLE = "tendon/cable_*."
@@ -88,9 +90,7 @@ _SIMULATION = ParameterSet(
                   about="start yaw: angle of the platform about z", source="section 2.4"),
     ),
 )  # fmt: skip
-
 _TRIAL = {"lambda": 25000.0, "b": 8.0, "J": 8e-5, "b_v": 2e-4, "K_t": 0.08}
-
 SETS = ("simulation", "trial")
 UNKNOWN = ("lambda", "b", "J", "b_v", "b_c", "beta")  # "arbitrary" or re-estimated in the thesis
 
@@ -118,3 +118,36 @@ def _trial() -> ParameterSet:
         for p in _SIMULATION
     )  # fmt: skip
     return ParameterSet("trial", tuple(records))
+
+
+def pose_values(pose: Sequence[float]) -> Mapping[str, float]:
+    """Returns a pose by the names of the robot's parameters.
+
+    Args:
+        pose: x, y, z [m], roll, pitch, yaw [rad].
+
+    Raises:
+        InputError: it is not six finite numbers.
+    """
+    try:
+        numbers = [float(number) for number in pose]
+    except (TypeError, ValueError):
+        numbers = []
+    if len(numbers) != len(POSE) or not all(map(isfinite, numbers)):
+        raise InputError(
+            f"a pose is six finite numbers, x y z [m] roll pitch yaw [rad]; got {pose!r}"
+        )
+    return dict(zip(POSE, numbers, strict=True))
+
+
+def refuse_step(step: float) -> None:
+    """Refuse a largest step with which no simulation makes sense.
+
+    Args:
+        step: [s].
+
+    Raises:
+        InputError: it is not between 1e-6 and 0.1 s.
+    """
+    if not 1e-6 <= step <= 0.1:
+        raise InputError(f"a step of {step:g} s is not between 1e-6 and 0.1 s; try {TIMESTEP:g}")

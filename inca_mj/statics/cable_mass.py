@@ -21,8 +21,7 @@ import numpy as np
 
 from inca_mj.robot.parameters import GRAVITY
 from inca_mj.statics.catenary import ernst_modulus, pulled, sag
-from inca_mj.statics.drums import pull
-from inca_mj.statics.robot import Robot, lines
+from inca_mj.statics.robot import Robot, lines, pull
 from inca_mj.statics.stiffness import stiffness
 
 NOISE = 5e-4  # std of the noise on a motor angle [rad]

@@ -1,6 +1,6 @@
 """The rest of the platform under constant currents, by default with the power off.
 
-    W(x) T(x) + f = 0,   f = weight and load;   T_i from the drum in balance (see `drums`)
+    W(x) T(x) + f = 0,   f = weight and load;   T_i from the drum in balance (see `robot.pull`)
 
 It is solved for the pose by Newton steps with the stiffness of the free drums, halved until the
 wrench that is left becomes smaller. With the power off and no load the solution is the start pose,
@@ -22,8 +22,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from identification.errors import InputError
-from inca_mj.statics.drums import Pull, pull
-from inca_mj.statics.robot import Robot, lines, turn
+from inca_mj.statics.robot import Pull, Robot, lines, pull, turn
 from inca_mj.statics.stiffness import stiffness
 
 STEPS, HALVINGS = 100, 30

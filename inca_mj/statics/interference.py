@@ -16,8 +16,7 @@ from itertools import combinations
 
 import numpy as np
 
-from inca_mj.robot.geometry import DRIVES, Geometry
-from inca_mj.robot.handle import ARM_RADIUS, GRIP, GRIP_RADIUS
+from inca_mj.robot.geometry import ARM_RADIUS, DRIVES, GRIP, GRIP_RADIUS, Geometry
 from inca_mj.statics.robot import lines_of_many, turn
 
 SHARED = 1e-6  # anchors that are nearer than this are one point [m]
@@ -95,7 +94,7 @@ def interference(poses: np.ndarray, geometry: Geometry) -> Interference:
 
     Args:
         poses: x, y, z [m], roll, pitch, yaw [rad], shape (N, 6).
-        geometry: anchors of the cables; the platform is that of `inca_mj.robot.handle`.
+        geometry: anchors of the cables; the platform is that of `inca_mj.robot.geometry`.
     """
     poses = np.atleast_2d(np.asarray(poses, float))
     at = lines_of_many(poses, geometry)

@@ -7,7 +7,7 @@ J = [s_iᵀ, (r_i × s_i)ᵀ], A_i = [1, −[r_i]×] the displacement of a conne
         + Σ T_i A_iᵀ (P_i/d_i) A_i + Σ T_i [0, 0; 0, [s_i]× [r_i]×]        cables that turn
 
     k_i = λ/d₀                          drums locked
-    k_i = 1/(d₀/λ + R/κ)                drums free, against their springs (see `drums`)
+    k_i = 1/(d₀/λ + R/κ)                drums free, against their springs (see `robot.pull`)
 
 K is symmetric at an equilibrium without external torque (Behzadipour, Khajepour 2006, Stiffness of
 cable-based parallel manipulators). Forces and torques cannot be compared, so K as a whole has no

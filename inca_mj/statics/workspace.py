@@ -6,9 +6,9 @@
 
 The tension limits follow from the motors' currents and the drum springs, which pull more where a
 cable is long: low and high are the tensions at the smallest and the largest current with the drums
-in balance (`drums`), and low is at least a tension that keeps a cable taut.
+in balance (`robot.pull`), and low is at least a tension that keeps a cable taut.
 
-The margin is positive inside and negative outside (`closure.gap_margin`, `feasible.wrench_margin`).
+The margin is positive inside and negative outside (`closure.gap_margin`, `closure.wrench_margin`).
 Points lie in the box of the exit points; a platform that is small beside the frame cannot be held
 outside of it.
 
@@ -29,10 +29,8 @@ from typing import Literal
 import numpy as np
 
 from identification.errors import InputError, unknown_name
-from inca_mj.statics.closure import gap_margin, split
-from inca_mj.statics.drums import pull
-from inca_mj.statics.feasible import Wrenches, wrench_margin
-from inca_mj.statics.robot import Robot, lines_of_many
+from inca_mj.statics.closure import gap_margin, split, wrench_margin
+from inca_mj.statics.robot import Robot, lines_of_many, pull
 
 Kind = Literal["closure", "feasible", "static"]
 KINDS: tuple[Kind, ...] = ("closure", "feasible", "static")
@@ -107,9 +105,8 @@ def margin(kind: Kind, robot: Robot, poses: np.ndarray, limits: DriveLimits) -> 
     if kind == "closure":
         return gap_margin(N, full)
     low, high = tension_limits(robot, at.d, limits)
-    static = kind == "static"
-    wanted = Wrenches(robot.weight, *((0.0, 0.0) if static else (limits.force, limits.torque)))
-    return wrench_margin(plus, N, full, low, high, wanted)
+    more = (limits.force, limits.torque) if kind == "feasible" else ()
+    return wrench_margin(plus, N, full, low, high, robot.weight, *more)
 
 
 @dataclass(frozen=True, kw_only=True)

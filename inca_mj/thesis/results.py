@@ -22,8 +22,7 @@ from identification.estimation.fit import Fit
 from inca_mj.robot.inputs import make_input
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.thesis.trials import TrialResult, trial_data, trials
-from inca_mj.twin.judged import UNJUDGED
-from inca_mj.twin.logs import run_to_log
+from inca_mj.twin.logs import UNJUDGED, run_to_log
 from inca_mj.twin.run import Run, simulate
 from inca_mj.twin.twin import Twin, build_twin
 from inca_mj.workflows.comparison import Comparison, compare_twin

@@ -17,7 +17,7 @@ class WiringBounds:
 
     Every field has its unit, reason and source in its metadata (`dataclasses.fields`). γ is the
     share of the motion that the twin does not explain (`inca_mj.twin.other_currents`), κ the one
-    that belongs to no pose of the platform (`inca_mj.twin.cable_lengths`), ε_k the γ of angle k.
+    that belongs to no pose of the platform (`inca_mj.twin.agreement`), ε_k the γ of angle k.
     """
 
     # What a right log may be.

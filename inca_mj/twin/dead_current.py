@@ -1,7 +1,7 @@
 """A logged current that stands still though the motor had another one.
 
 The twin is simulated with the logged currents of all drives but one, whose motor follows the
-measured angle by feedback (`inca_mj.twin.followed_log`). If the current of that drive alone is
+measured angle by feedback (`inca_mj.twin.agreement`). If the current of that drive alone is
 wrong, the other seven angles are as those of a right log now:
 
     γ_others <= γ/10,    ε_j <= 0.2 for every other angle j
@@ -25,9 +25,8 @@ import numpy as np
 from identification import Log
 from identification.logs.cures import how_to_turn
 from identification.logs.names import listed
+from inca_mj.twin.agreement import SETTLED, follow, shares_of, some
 from inca_mj.twin.bounds import BOUNDS
-from inca_mj.twin.cable_lengths import some
-from inca_mj.twin.followed_log import SETTLED, follow, shares_of
 from inca_mj.twin.odd_angle import is_turned, mended_angle, odd_angle, odd_words
 from inca_mj.twin.other_currents import apart, is_right, likely_units
 from inca_mj.twin.twin import Twin

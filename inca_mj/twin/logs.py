@@ -10,10 +10,19 @@ import numpy as np
 from identification import InputError, Log, read_log
 from identification.logs.cures import unit_lines
 from identification.logs.noise import noise_floor
+from identification.robot.trust import TRUST
 from inca_mj.robot.geometry import DRIVES
-from inca_mj.robot.pose import POSE as POSE
-from inca_mj.twin.judged import overruled_by
+from inca_mj.robot.parameters import POSE as POSE
 from inca_mj.twin.run import Run
+
+JUDGED = {word: TRUST[word] for word in ("sensors", "units", "wiring")}  # a user may overrule
+UNJUDGED = (*JUDGED,)  # for who draws a log as it is
+
+
+def overruled_by(*words: str) -> str:
+    """Returns how the user overrules judgements, for the end of their message."""
+    known = " and that ".join(JUDGED[word] for word in words)
+    return f"; if you know that {known}, write --trust {' '.join(words)}"
 
 
 def _each(name: str) -> tuple[str, ...]:
@@ -46,7 +55,7 @@ def read_inca_log(path: str | Path, trust: Sequence[str] | None = None) -> Log:
 
     Args:
         path: of the log.
-        trust: checks of the log that you overrule, words of `inca_mj.twin.judged.JUDGED`: with
+        trust: checks of the log that you overrule, words of `inca_mj.twin.logs.JUDGED`: with
             "units" in it, numbers may be as large as they are. None where a caller asks nobody.
 
     Raises:

@@ -2,7 +2,7 @@
 
 Bodies `platform` (free) and `drum_1..8` (hinge `motor_i`), tendons `cable_1..8` from the exit
 points to the platform, actuators `current_1..8`, sensors, a keyframe `start`; with the law the
-default reset is that start too (see `inca_mj.twin.callbacks`). MuJoCo computes the
+default reset is that start too (see `inca_mj.twin.native`). MuJoCo computes the
 rigid bodies, K_t i (gear), b_v (joint damping), J (armature) and the cable lengths. The tension,
 the no-load length, the drum spring and the Coulomb friction are computed by `inca_mj.robot.law`;
 the builder puts its numbers into `actuator_user` and `tendon_user`.
@@ -23,11 +23,16 @@ from inca_mj.effects.values import about_centre, drive_values
 from inca_mj.kinematics.rotations import quaternion
 from inca_mj.robot import law
 from inca_mj.robot.geometry import DRIVES, Geometry
-from inca_mj.robot.parameters import GRAVITY
+from inca_mj.robot.parameters import GRAVITY, TIMESTEP
 from inca_mj.robot.spread import EACH_DRIVE, at_drives, displaced
-from inca_mj.robot.step import TIMESTEP
-from inca_mj.twin.appearance import dress_drum, dress_platform, dress_world
-from inca_mj.twin.file_notes import NEEDS_LAW, law_notes, short_law_note
+from inca_mj.twin.appearance import (
+    NEEDS_LAW,
+    dress_drum,
+    dress_platform,
+    dress_world,
+    law_notes,
+    short_law_note,
+)
 from inca_mj.twin.statics import activations, start
 
 ROTOR = 2e-15  # inertia MuJoCo demands of the drum's body beside the armature [kg m^2]

@@ -3,7 +3,7 @@
     κ_f <= κ/10,    f < 0, or beyond 1.6 or 1/1.6
 
 Multiplied by the right factor f, an angle belongs with the other seven to poses of the platform
-(`inca_mj.twin.cable_lengths`). Currents have no say, so that this holds also where one of them is
+(`inca_mj.twin.agreement`). Currents have no say, so that this holds also where one of them is
 wrong. It is a proposal and no verdict.
 """
 
@@ -18,8 +18,8 @@ from identification.logs.cures import how_to_turn, toml_key, unit_lines
 from identification.logs.units import UNITS
 from identification.robot.same_units import NEAR
 from inca_mj.robot.geometry import DRIVES
+from inca_mj.twin.agreement import unreached_share
 from inca_mj.twin.bounds import BOUNDS
-from inca_mj.twin.cable_lengths import unreached_share
 from inca_mj.twin.twin import Twin
 
 FACTORS = np.geomspace(1 / 60, 60, 25)  # that are tried first: √2 apart, to degrees and back

@@ -9,7 +9,7 @@ built (worlds 31000 to 31057, 4 s of PRBS or multisine) γ was 0.040 at most, an
 left less than 0.63 of it. Of 210 right logs of worlds 32000 to 32289, none was refused.
 
 Readings are proposed in two ways. Where the angles are right, feedback tells the places and signs
-of all currents at once (`inca_mj.twin.followed_log`). Where an angle is wrong too, as in a drive
+of all currents at once (`inca_mj.twin.agreement`). Where an angle is wrong too, as in a drive
 whose angle and current are turned or exchanged together, each current alone and each pair is read
 in another way, all in one rollout; under each, the cosines between measured and simulated angles
 tell the places and signs of all angles.
@@ -27,10 +27,8 @@ from identification import Log
 from identification.logs.readings import Reading
 from identification.logs.units import UNITS
 from inca_mj.robot.geometry import DRIVES
-from inca_mj.twin.angles_under import angles_under
-from inca_mj.twin.assignment import assigned
+from inca_mj.twin.agreement import angles_under, assigned, follow, places_of
 from inca_mj.twin.bounds import BOUNDS
-from inca_mj.twin.followed_log import follow, places_of
 from inca_mj.twin.other_wiring import alike
 from inca_mj.twin.rewired import Places, rewired
 from inca_mj.twin.twin import Twin

@@ -12,7 +12,7 @@ from identification import Log
 from identification.logs.cures import how_to_rename, how_to_turn
 from identification.logs.names import listed
 from identification.logs.readings import Reading, misread, output_readings, turned
-from inca_mj.twin.assignment import assigned
+from inca_mj.twin.agreement import assigned
 from inca_mj.twin.bounds import BOUNDS
 
 

@@ -30,11 +30,16 @@ from identification.model.export import write_xml
 from identification.model.parameter import ParameterSet
 from inca_mj.kinematics.rotations import quaternion
 from inca_mj.robot.geometry import DRIVES, INCA, Geometry
-from inca_mj.robot.parameters import GRAVITY, parameter_set
+from inca_mj.robot.parameters import GRAVITY, TIMESTEP, parameter_set
 from inca_mj.robot.spread import EACH_DRIVE, at_drives, displaced
-from inca_mj.robot.step import TIMESTEP
-from inca_mj.twin.appearance import MOTOR, dress_platform, dress_world
-from inca_mj.twin.file_notes import PLAIN, plain_notes, short_plain_note
+from inca_mj.twin.appearance import (
+    MOTOR,
+    PLAIN,
+    dress_platform,
+    dress_world,
+    plain_notes,
+    short_plain_note,
+)
 from inca_mj.twin.mjcf import check_inertia, weigh
 from inca_mj.twin.statics import Start, start
 

@@ -14,7 +14,7 @@ import numpy as np
 from identification.native.decorators import inlined, internal
 from identification.native.memory import load_constant, load_double, store_double
 from inca_mj.effects.hooks import Platform
-from inca_mj.twin.fields import D, M, double, integer, word
+from inca_mj.twin.drives import D, M, double, integer, word
 
 # The cable k of a drive.
 #   body: on which its connector is; length [m] of its path, rate [m/s] of that

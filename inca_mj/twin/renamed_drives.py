@@ -2,7 +2,7 @@
 
 Each current still moves its own angle, so that signs and cosines tell nothing. What tells is where
 the cables are: only in the right order do eight angles belong to poses of the platform
-(`inca_mj.twin.cable_lengths`). The frame is symmetric, and eight orders are alike in that; a free
+(`inca_mj.twin.agreement`). The frame is symmetric, and eight orders are alike in that; a free
 run of the twin under each decides between them, as far as the start and the load are not symmetric
 too. A log is refused only if both say the same. 90 right logs of robots as built (worlds 33000 to
 33089) are not; of 14 in reverse or cycled order (worlds 33007 to 33087) all are.
@@ -19,9 +19,8 @@ import numpy as np
 from identification import Log
 from identification.logs.readings import Reading
 from inca_mj.robot.geometry import DRIVES
-from inca_mj.twin.angles_under import angles_under
+from inca_mj.twin.agreement import angles_under, likely_orders, some, unreached_share
 from inca_mj.twin.bounds import BOUNDS
-from inca_mj.twin.cable_lengths import likely_orders, some, unreached_share
 from inca_mj.twin.other_currents import apart, is_right
 from inca_mj.twin.rewired import Places, rewired
 from inca_mj.twin.twin import Twin

@@ -1,13 +1,13 @@
 """One angle or one current that is far too small or too large beside the others.
 
 An angle is judged by the cables alone: multiplied by the right factor f, it belongs with the other
-seven to poses of the platform (`inca_mj.twin.cable_lengths`), and its motion has the twin's shape
+seven to poses of the platform (`inca_mj.twin.agreement`), and its motion has the twin's shape
 and is in the twin's proportion to theirs. Where it hardly moves, nothing is said.
 
     κ_f <= κ/10,    f beyond 1.6 or 1/1.6,    ε_k <= 0.2,    f s_k / median s within 1.6
 
 A current is judged by a free run in which it is multiplied by the factor that feedback tells
-(`inca_mj.twin.followed_log`): it must leave a tenth of γ, and every angle as near to the twin as
+(`inca_mj.twin.agreement`): it must leave a tenth of γ, and every angle as near to the twin as
 that of a right log. A motor of the next winding has a torque constant that is off by a quarter,
 which is well within 1.6; a motor that has half its torque constant looks the same as a current that
 is logged twice, and a user who has one overrules the check.
@@ -19,10 +19,8 @@ import numpy as np
 
 from identification import Log
 from inca_mj.robot.geometry import DRIVES
-from inca_mj.twin.angles_under import angles_under
+from inca_mj.twin.agreement import angles_under, follow, shares_of, some
 from inca_mj.twin.bounds import BOUNDS
-from inca_mj.twin.cable_lengths import some
-from inca_mj.twin.followed_log import follow, shares_of
 from inca_mj.twin.odd_angle import as_factor, odd_angle, scaled_words
 from inca_mj.twin.other_currents import apart, is_right
 from inca_mj.twin.other_wiring import alike

@@ -19,7 +19,7 @@ from identification.errors import InputError
 from identification.model.parameter import ParameterSet
 from inca_mj.effects.layout import Layout
 from inca_mj.effects.values import about_centre
-from inca_mj.kinematics.inverse_geometry import cables
+from inca_mj.kinematics.cables import cables_at
 from inca_mj.kinematics.jacobians import length_jacobian
 from inca_mj.kinematics.rotations import rotation
 from inca_mj.robot.geometry import Geometry
@@ -112,7 +112,7 @@ def start_from(
     moved = about_centre(placed, layout.effects, values)
     change = change_at_rest(values, pose, moved, layout)
     T = pretension(pose, moved if layout.settled else placed, values["m"], change)
-    d, _ = cables(pose[:3], rotation(*pose[3:]), moved)
+    d = cables_at(pose[:3], rotation(*pose[3:]), moved).lengths
     strain, balance = T / λ, T
     d_0 = λ * d / (λ + T)
     if change is not None:

@@ -26,8 +26,7 @@ from inca_mj.effects.values import with_effects
 from inca_mj.kinematics.rotations import quaternion
 from inca_mj.robot import law
 from inca_mj.robot.geometry import INCA, Geometry
-from inca_mj.robot.parameters import parameter_set
-from inca_mj.robot.step import TIMESTEP
+from inca_mj.robot.parameters import TIMESTEP, parameter_set
 from inca_mj.twin import native
 from inca_mj.twin.mjcf import build, check_inertia
 from inca_mj.twin.numbers import model_numbers

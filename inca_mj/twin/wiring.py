@@ -24,11 +24,10 @@ from identification.logs.frozen import refuse_frozen
 from identification.logs.names import listed
 from identification.logs.readings import Reading
 from identification.robot.trust import trusted
-from inca_mj.twin.angles_under import angles_under
+from inca_mj.twin.agreement import angles_under, some, unreached_share
 from inca_mj.twin.bounds import BOUNDS
-from inca_mj.twin.cable_lengths import some, unreached_share
 from inca_mj.twin.dead_current import dead_current
-from inca_mj.twin.judged import JUDGED, overruled_by
+from inca_mj.twin.logs import JUDGED, overruled_by
 from inca_mj.twin.other_currents import apart, other_currents
 from inca_mj.twin.other_unit import other_unit
 from inca_mj.twin.other_wiring import other_wiring

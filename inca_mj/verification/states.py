@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from identification.model.rollout import State
-from inca_mj.kinematics.inverse_geometry import cables
+from inca_mj.kinematics.cables import cables_at
 from inca_mj.kinematics.rotations import quaternion, rotation
 from inca_mj.reference import layout as at
 from inca_mj.robot.geometry import DRIVES, Geometry
@@ -46,6 +46,6 @@ def random_states(n: int, geometry: Geometry, rng: np.random.Generator) -> np.nd
     x[:, at.RATES] = rng.normal(0, 5, (n, 3))
     x[:, at.ANGLES] = rng.normal(0, 50, (n, DRIVES))
     x[:, at.SPEEDS] = rng.normal(0, 20, (n, DRIVES))
-    d = [cables(row[at.POSITION], rotation(*row[at.EULER]), geometry)[0] for row in x]
+    d = [cables_at(row[at.POSITION], rotation(*row[at.EULER]), geometry).lengths for row in x]
     x[:, at.NO_LOAD] = d / (1 + rng.uniform(-STRETCH, STRETCH, (n, DRIVES)))
     return x

@@ -119,7 +119,7 @@ def calibrate(
         spread: how much drives and points usually differ; `models/inca6d_spread.toml` when None.
         progress: is told one line per step.
         timestep: largest step of the integrator [s].
-        trust: checks of the log that you overrule, words of `inca_mj.twin.judged.JUDGED`.
+        trust: checks of the log that you overrule, words of `inca_mj.twin.logs.JUDGED`.
 
     Raises:
         InputError: there is no log, two logs are no records of one robot, or share samples, a log

@@ -13,10 +13,8 @@ from identification import Log, fit_percent, rms
 from identification.model.parameter import ParameterSet
 from identification.quantities import finite_or_none
 from inca_mj.robot.geometry import INCA, Geometry
-from inca_mj.robot.parameters import parameter_set
-from inca_mj.robot.step import TIMESTEP, refuse_step
-from inca_mj.twin.judged import UNJUDGED
-from inca_mj.twin.logs import POSE, pose_of
+from inca_mj.robot.parameters import TIMESTEP, parameter_set, refuse_step
+from inca_mj.twin.logs import POSE, UNJUDGED, pose_of
 from inca_mj.twin.run import Run, simulate
 from inca_mj.twin.twin import Twin, build_twin, rebuild
 from inca_mj.twin.wiring import refuse_miswired
@@ -63,7 +61,7 @@ def compare(
         parameters: the twin's values; the thesis' Table 3.2 when None.
         geometry: anchors of the cables.
         timestep: largest step of the integrator [s].
-        trust: checks of the log that you overrule, words of `inca_mj.twin.judged.JUDGED`.
+        trust: checks of the log that you overrule, words of `inca_mj.twin.logs.JUDGED`.
 
     Raises:
         InputError: the start has no pretension, or the log is not wired as the robot is.
@@ -84,7 +82,7 @@ def compare_twin(
         log: what was measured.
         robot: the twin, such as `load_twin` reads one.
         timestep: largest step of the integrator [s].
-        trust: checks of the log that you overrule, words of `inca_mj.twin.judged.JUDGED`.
+        trust: checks of the log that you overrule, words of `inca_mj.twin.logs.JUDGED`.
 
     Raises:
         InputError: `timestep` is not between 1e-6 and 0.1 s, or the log is not wired as the robot.

@@ -79,7 +79,7 @@ def discover(
             starts at rest with the effects that the twin lacks; False if it was held where the
             nominal model rests.
         options: the judgement constants; the defaults of `DiscoveryOptions` when None.
-        trust: checks of the log that you overrule, words of `inca_mj.twin.judged.JUDGED`.
+        trust: checks of the log that you overrule, words of `inca_mj.twin.logs.JUDGED`.
 
     Raises:
         InputError: a log is too short, is not wired as the robot is, two logs are no records of

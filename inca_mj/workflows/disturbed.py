@@ -12,8 +12,7 @@ from identification.kalman.estimate import estimate_innovations
 from identification.model.parameter import ParameterSet
 from identification.windows.window_estimate import estimate_windows
 from inca_mj.robot.geometry import INCA, Geometry
-from inca_mj.robot.parameters import UNKNOWN
-from inca_mj.robot.step import TIMESTEP
+from inca_mj.robot.parameters import TIMESTEP, UNKNOWN
 from inca_mj.twin.logs import POSE
 from inca_mj.twin.twin import build_twin
 from inca_mj.twin.wiring import refuse_miswired
@@ -52,7 +51,7 @@ def identify_windows(
             mass.
         progress: is told one line per accepted step.
         timestep: largest step of the integrator [s].
-        trust: checks of the log that you overrule, words of `inca_mj.twin.judged.JUDGED`.
+        trust: checks of the log that you overrule, words of `inca_mj.twin.logs.JUDGED`.
 
     Raises:
         InputError: the windows do not fit the log, or for the reasons of `identify`.
@@ -99,7 +98,7 @@ def identify_innovations(
         free: parameters to estimate; all of them and the pose when empty.
         progress: is told one line per accepted step.
         timestep: largest step of the integrator [s].
-        trust: checks of the log that you overrule, words of `inca_mj.twin.judged.JUDGED`.
+        trust: checks of the log that you overrule, words of `inca_mj.twin.logs.JUDGED`.
 
     Raises:
         InputError: for the reasons of `identify`.

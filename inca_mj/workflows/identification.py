@@ -22,8 +22,7 @@ from identification.kalman.estimate import InnovationsFit
 from identification.model.parameter import ParameterSet
 from identification.windows.window_estimate import WindowEstimate
 from inca_mj.robot.geometry import INCA, Geometry
-from inca_mj.robot.parameters import UNKNOWN
-from inca_mj.robot.step import TIMESTEP
+from inca_mj.robot.parameters import TIMESTEP, UNKNOWN
 from inca_mj.twin.logs import POSE
 from inca_mj.twin.twin import build_twin
 from inca_mj.twin.wiring import refuse_miswired
@@ -103,7 +102,7 @@ def identify(
         options: how to search.
         progress: is told one line per accepted step.
         timestep: largest step of the integrator [s].
-        trust: checks of the log that you overrule, words of `inca_mj.twin.judged.JUDGED`.
+        trust: checks of the log that you overrule, words of `inca_mj.twin.logs.JUDGED`.
         starts: how many starts each search may try, until one ends near the noise floor.
         seed: of the starts after the first.
 

@@ -8,7 +8,7 @@ from identification.logs.log import Log
 from identification.model.parameter import ParameterSet
 from inca_mj.linear.linearization import LinearModel, linearize_along
 from inca_mj.robot.geometry import Geometry
-from inca_mj.robot.step import TIMESTEP
+from inca_mj.robot.parameters import TIMESTEP
 from inca_mj.twin.twin import build_twin
 from inca_mj.workflows.comparison import start_of, timestep_for
 

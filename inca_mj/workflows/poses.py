@@ -23,7 +23,7 @@ from identification.model.parameter import ParameterSet
 from inca_mj.kinematics.along import measure, no_load_path, poses_along
 from inca_mj.kinematics.balance import Balance, NoLoad, Weights, statements
 from inca_mj.kinematics.elastic import ElasticRobot, Measured, elastic_robot, no_load_at_rest
-from inca_mj.kinematics.resting import ENCODER, at_rest, no_load_of, rest_pose
+from inca_mj.kinematics.resting import ENCODER, at_rest, rest_pose
 from inca_mj.robot.geometry import DRIVES, INCA, Geometry
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.robot.spread import with_spread
@@ -124,11 +124,11 @@ def pose_at_rest(
     measured = at_rest(angles, np.zeros(DRIVES) if currents is None else currents)
     robot = _robot(values, geometry)
     found, weights = rest_pose(robot, measured, encoder)
-    no_load = partial(no_load_of, measured.angles)
+    no_load = partial(no_load_at_rest, measured.angles)
     spread = _by_parameters(values, geometry, known, measured, weights, no_load, found)
     noise = _noise(found)
     both = np.sqrt(noise**2 + spread**2)[0]
-    d_0, _ = no_load_at_rest(robot, measured.angles, found.tension)
+    d_0, _ = no_load_at_rest(measured.angles, robot, found.tension)
     return RestingPose(
         pose=found.pose[0],
         std=both[:6],

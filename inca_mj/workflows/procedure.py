@@ -19,7 +19,7 @@ from identification.estimation.estimation import Options, estimate
 from identification.estimation.fit import Fit, assess
 from identification.model.parameter import ParameterSet
 from inca_mj.robot.geometry import INCA, Geometry
-from inca_mj.robot.step import TIMESTEP
+from inca_mj.robot.parameters import TIMESTEP
 from inca_mj.twin.twin import build_twin
 from inca_mj.twin.wiring import refuse_miswired
 from inca_mj.workflows.comparison import timestep_for
@@ -54,7 +54,7 @@ def identify_as_thesis(
         options: how to search; `Options(horizons=(1.0,))` is the thesis' single free-run fit.
         progress: is told one line per accepted step.
         timestep: largest step of the integrator [s].
-        trust: checks of the log that you overrule, words of `inca_mj.twin.judged.JUDGED`.
+        trust: checks of the log that you overrule, words of `inca_mj.twin.logs.JUDGED`.
 
     Raises:
         InputError: the log is not wired as the robot is, or a start has no pretension.

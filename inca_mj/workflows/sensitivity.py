@@ -11,8 +11,7 @@ from identification.estimation.experiment import information
 from identification.model.parameter import ParameterSet
 from inca_mj.robot.geometry import INCA, Geometry
 from inca_mj.robot.inputs import make_input
-from inca_mj.robot.parameters import UNKNOWN
-from inca_mj.robot.step import TIMESTEP
+from inca_mj.robot.parameters import TIMESTEP, UNKNOWN
 from inca_mj.twin.logs import ANGLES, POSE
 from inca_mj.twin.twin import build_twin
 from inca_mj.workflows.comparison import timestep_for

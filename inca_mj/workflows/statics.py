@@ -16,10 +16,9 @@ from inca_mj.robot.geometry import INCA, Geometry
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.statics.cable_mass import RHO, LineError, line_errors
 from inca_mj.statics.closure import Closure, closure, require_closure
-from inca_mj.statics.drums import pull
 from inca_mj.statics.equilibrium import NONE, Equilibrium, equilibrium
 from inca_mj.statics.interference import Interference, interference
-from inca_mj.statics.robot import Lines, Robot, lines, static_robot
+from inca_mj.statics.robot import Lines, Robot, lines, pull, static_robot
 from inca_mj.statics.stiffness import (
     Axes,
     Modes,

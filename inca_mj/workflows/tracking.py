@@ -13,9 +13,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from identification.errors import InputError
-from inca_mj.control.controller import CONTROL_TIMESTEP, Controller, Gains
+from inca_mj.control.controller import CONTROL_TIMESTEP, Controller, Gains, run_loop
 from inca_mj.control.inverse import Tensions
-from inca_mj.control.loop import run_loop
 from inca_mj.control.paths import Circle, Path
 from inca_mj.twin.run import Run, simulate
 from inca_mj.twin.twin import Twin, build_twin

@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from inca_mj.twin import angles_under, other_currents, wiring
+from inca_mj.twin import agreement, other_currents, wiring
 from inca_mj.twin.twin import Twin
 
 
@@ -25,7 +25,7 @@ def each_run_once() -> Iterator[None]:
     A free run knows the currents, their times and their hold, and nothing of the log's angles but
     their names, so that logs whose angles alone are wrong are all judged by the same runs.
     """
-    simulated, known = angles_under.angles_under, {}
+    simulated, known = agreement.angles_under, {}
 
     def angles(plant, log, currents):
         key = (

@@ -13,8 +13,7 @@ from identification.errors import InputError
 from inca_mj.cli import main
 from inca_mj.robot.geometry import write_geometry
 from inca_mj.robot.parameters import GRAVITY, parameter_set
-from inca_mj.statics.drums import pull
-from inca_mj.statics.robot import lines
+from inca_mj.statics.robot import lines, pull
 from inca_mj.statics.workspace import DriveLimits
 from inca_mj.twin.logs import run_to_log
 from inca_mj.twin.run import simulate

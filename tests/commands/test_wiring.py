@@ -8,8 +8,7 @@ import pytest
 
 from identification import InputError, Log
 from inca_mj.robot.inputs import make_input
-from inca_mj.twin.judged import JUDGED
-from inca_mj.twin.logs import read_inca_log, run_to_log
+from inca_mj.twin.logs import JUDGED, read_inca_log, run_to_log
 from inca_mj.twin.run import simulate
 from inca_mj.twin.twin import build_twin
 from inca_mj.twin.wiring import refuse_miswired

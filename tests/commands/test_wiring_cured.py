@@ -10,8 +10,7 @@ from advice import advised
 
 from identification import InputError, write_log
 from inca_mj.cli import main
-from inca_mj.twin.judged import JUDGED
-from inca_mj.twin.logs import read_inca_log
+from inca_mj.twin.logs import JUDGED, read_inca_log
 from inca_mj.twin.twin import build_twin
 from inca_mj.twin.wiring import refuse_miswired
 from inca_mj.workflows.comparison import compare, compare_twin

@@ -11,8 +11,8 @@ import pytest
 from advice import advised
 
 from identification import InputError, write_log
+from inca_mj.twin.agreement import some
 from inca_mj.twin.bounds import WiringBounds
-from inca_mj.twin.cable_lengths import some
 from inca_mj.twin.logs import read_inca_log
 from inca_mj.twin.odd_angle import odd_angle
 from inca_mj.twin.twin import build_twin

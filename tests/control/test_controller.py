@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from identification.errors import InputError
-from inca_mj.control.controller import Controller, Gains
+from inca_mj.control.controller import Controller, Gains, run_loop
 from inca_mj.control.inverse import HIGHEST_CURRENT, LOWEST_CURRENT
-from inca_mj.control.loop import run_loop
 from inca_mj.control.observer import Observer
 from inca_mj.control.paths import Circle, Line, Point
 from inca_mj.effects.catalogue import CATALOGUE

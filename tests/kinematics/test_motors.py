@@ -54,12 +54,12 @@ def test_the_no_load_length_along_a_log_is_that_of_the_twin(moving):
     along = no_load_along(robot, φ, moving.tension)
     # the trapezoidal rule at 100 Hz errs by (h²/12) d(ε φ̇)/dt R, some hundredths of a micrometre
     np.testing.assert_allclose(along, moving.act, atol=1e-6)
-    alone, slope = no_load_at_rest(robot, φ, moving.tension)
+    alone, slope = no_load_at_rest(φ, robot, moving.tension)
     ε = moving.tension / robot.lambda_
     bound = np.ptp(ε, axis=0) * np.abs(np.diff(robot.R * φ, axis=0)).sum(axis=0)
     assert (np.abs(alone - moving.act) <= bound).all()
     h = 1e-3
-    ahead, _ = no_load_at_rest(robot, φ, moving.tension + h)
+    ahead, _ = no_load_at_rest(φ, robot, moving.tension + h)
     np.testing.assert_allclose((ahead - alone) / h, slope, atol=1e-9)
 
 

@@ -19,7 +19,7 @@ OURS = ("read_text", "read_bytes")
 WRITES = frozenset("wxa")
 ALLOWED = {
     "identification/files.py: open": "the reader",
-    "inca_mj/rendering/encoder.py: open": "a film that the program wrote just now",
+    "inca_mj/rendering/film.py: open": "a film that the program wrote just now",
     "identification/files.py: fdopen": "the reader",
     "identification/exchange.py: open": "a folder, to lock it",
     "identification/writing.py: open": "a file or folder, to bring it to the disk",

@@ -11,8 +11,8 @@ from PIL import Image
 from scipy.spatial.transform import Rotation
 
 from identification.report.style import MEASURED
-from inca_mj.rendering.difference import ROOM, Difference, common_factor
 from inca_mj.rendering.film import stills
+from inca_mj.rendering.ghost import ROOM, Difference, common_factor
 from inca_mj.rendering.legend import ROBOT
 from inca_mj.rendering.scene import Scene
 

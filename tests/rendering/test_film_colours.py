@@ -1,6 +1,6 @@
 import numpy as np
 
-from inca_mj.rendering.colours import SLACK, tension_scale
+from inca_mj.rendering.legend import SLACK, tension_scale
 
 
 def test_colour_follows_tension_and_slack_is_grey():

@@ -7,9 +7,9 @@ from PIL import Image
 
 from identification.errors import InputError
 from identification.report.style import MEASURED
-from inca_mj.rendering.colours import tension_scale
 from inca_mj.rendering.film import film, stills
 from inca_mj.rendering.ghost import ghost_difference, ghost_errors, ghost_positions
+from inca_mj.rendering.legend import tension_scale
 from inca_mj.rendering.scene import Scene
 from inca_mj.rendering.view import view
 

@@ -11,11 +11,10 @@ from PIL import Image
 
 from identification.errors import InputError
 from inca_mj.cli import main
-from inca_mj.rendering.colours import ASKED, TRACE, tension_scale
 from inca_mj.rendering.film import film, stills
-from inca_mj.rendering.overlay import Eye, Line, overlay
+from inca_mj.rendering.legend import ASKED, TRACE, tension_scale
+from inca_mj.rendering.overlay import LAST, MAGNIFY, Eye, Line, overlay, trace_of
 from inca_mj.rendering.scene import make_scene
-from inca_mj.rendering.trace import LAST, MAGNIFY, trace_of
 from inca_mj.rendering.view import view
 from inca_mj.twin.run import save_run
 

@@ -8,8 +8,8 @@ from PIL import Image, ImageChops, ImageDraw, ImageFilter
 
 from identification.errors import GraphicsError
 from inca_mj.kinematics import stiff
+from inca_mj.kinematics.cables import cables_at
 from inca_mj.kinematics.forward import find
-from inca_mj.kinematics.inverse_geometry import cables
 from inca_mj.kinematics.rotations import euler_of, rotation
 from inca_mj.rendering import graphics
 from inca_mj.rendering.film import _in_turn
@@ -28,7 +28,7 @@ def angles_along(samples, speed, rng):
         2 * np.pi * rng.uniform(size=6)
     )
     poses = START + 0.06 * (waves - waves[0])
-    at = [cables(p[:3], rotation(*p[3:]), INCA)[0] for p in poses]
+    at = [cables_at(p[:3], rotation(*p[3:]), INCA).lengths for p in poses]
     return (at[0] - np.array(at)) / 0.02, poses
 
 
@@ -39,7 +39,7 @@ def test_poses_of_all_samples_at_once_are_those_of_one_search_after_the_other(sa
     angles, poses = angles_along(samples, speed, np.random.default_rng(samples))
     found = stiff.poses_with_stiff_cables(angles, 0.02, START, INCA)
     at = START[:3], rotation(*START[3:])
-    lengths = cables(*at, INCA)[0] - 0.02 * angles
+    lengths = cables_at(*at, INCA).lengths - 0.02 * angles
     for k in range(samples):
         position, turned, last = find(lengths[k], INCA, at, np.ones(8), tolerance=stiff.FINE)
         at = position, turned

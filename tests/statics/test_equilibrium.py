@@ -10,9 +10,8 @@ from identification.errors import InputError
 from inca_mj import build_twin, parameter_set, simulate
 from inca_mj.robot.geometry import INCA
 from inca_mj.robot.parameters import GRAVITY
-from inca_mj.statics.drums import pull
 from inca_mj.statics.equilibrium import equilibrium
-from inca_mj.statics.robot import lines, static_robot
+from inca_mj.statics.robot import lines, pull, static_robot
 
 CURRENT = np.array([0.3, 0.0, 0.1, 0.0, 0.2, 0.0, 0.0, -0.05])
 

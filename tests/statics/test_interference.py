@@ -6,8 +6,7 @@ from hypothesis import strategies as st
 from scipy.optimize import lsq_linear
 from statics_cases import ROBOT, random_poses
 
-from inca_mj.robot.geometry import INCA
-from inca_mj.robot.handle import GRIP, GRIP_RADIUS
+from inca_mj.robot.geometry import GRIP, GRIP_RADIUS, INCA
 from inca_mj.statics.interference import interference, point_distance, segment_distance
 from inca_mj.statics.robot import lines
 

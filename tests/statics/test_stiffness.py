@@ -7,9 +7,8 @@ from scipy.linalg import block_diag
 from statics_cases import ROBOT, poses
 
 from inca_mj.robot.geometry import INCA
-from inca_mj.statics.drums import pull
 from inca_mj.statics.equilibrium import equilibrium, moved
-from inca_mj.statics.robot import lines
+from inca_mj.statics.robot import lines, pull
 from inca_mj.statics.stiffness import (
     axis_words,
     mass_matrix,

@@ -5,11 +5,10 @@ import pytest
 from statics_cases import ROBOT, possible, random_poses
 
 from identification.errors import InputError
+from inca_mj.rendering.workspace_picture import surface
 from inca_mj.robot.geometry import INCA
-from inca_mj.statics.closure import split
-from inca_mj.statics.feasible import Wrenches, wrench_margin
+from inca_mj.statics.closure import split, wrench_margin
 from inca_mj.statics.robot import lines
-from inca_mj.statics.surface import surface
 from inca_mj.statics.workspace import KINDS, DriveLimits, margin, tension_limits, workspace
 
 LIMITS = DriveLimits()
@@ -19,7 +18,7 @@ def test_one_wrench_is_feasible_exactly_where_a_linear_program_says_so():
     poses = random_poses(150)
     at = lines(poses, INCA)
     low, high = tension_limits(ROBOT, at.d, LIMITS)
-    found = wrench_margin(*split(at.W), low, high, Wrenches(ROBOT.weight))
+    found = wrench_margin(*split(at.W), low, high, ROBOT.weight)
     clear = np.flatnonzero(np.abs(found) > 1e-6)
     assert 10 < (found > 0).sum() < 130
     for k in clear:
@@ -33,9 +32,9 @@ def test_the_margin_of_a_set_is_the_least_over_its_wrenches():
     for pose in random_poses(4, across=0.5):
         at = lines(np.tile(pose, (1, 1)), INCA)
         parts = split(at.W)
-        whole = wrench_margin(*parts, 0.5, 12.0, Wrenches(ROBOT.weight, force=2.0))[0]
+        whole = wrench_margin(*parts, 0.5, 12.0, ROBOT.weight, force=2.0)[0]
         each = [
-            wrench_margin(*parts, 0.5, 12.0, Wrenches(ROBOT.weight + np.r_[2.0 * u, 0, 0, 0]))[0]
+            wrench_margin(*parts, 0.5, 12.0, ROBOT.weight + np.r_[2.0 * u, 0, 0, 0])[0]
             for u in directions[:600]
         ]
         assert whole <= min(each) + 1e-9
@@ -105,8 +104,6 @@ def test_refusals(arguments, sentence):
 def test_limits_that_cannot_be_are_refused(arguments, sentence):
     with pytest.raises(InputError, match=sentence):
         DriveLimits(**arguments)
-    with pytest.raises(InputError, match="is no size"):
-        Wrenches(ROBOT.weight, force=-1.0)
 
 
 def _ball(points):
