@@ -1,18 +1,20 @@
-"""Files are refused before they are read; `identification.writing` writes them."""
+"""The files of a program: refused before they are read, and written whole or not at all."""
 
 from __future__ import annotations
 
+import errno
 import io
 import json
 import os
 import stat
 import tomllib
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from difflib import get_close_matches
 from hashlib import file_digest
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO
+from uuid import uuid4
 from zipfile import ZipFile
 
 from identification.errors import InputError
@@ -28,6 +30,8 @@ _SAID = 120  # letters of another library's message
 _UNPACKED = 8  # times as large an archive of arrays may be as the largest file
 # Opening a pipe waits for a writer unless it is told not to; Windows has no such flag.
 _FLAGS = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
+LOG = "log file (.csv or .mat)"  # what a path should have been, in messages
+MODEL = "model file (MJCF or URDF)"
 
 
 def is_file(path: Path) -> bool:
@@ -44,10 +48,6 @@ def exists(path: Path) -> bool:
         return path.exists()
     except (OSError, ValueError):  # too long, or not to be looked at
         return False
-
-
-LOG = "log file (.csv or .mat)"  # what a path should have been, in messages
-MODEL = "model file (MJCF or URDF)"
 
 
 def readable(name: str) -> str:
@@ -112,6 +112,18 @@ def read_json(path: Path, what: str, cure: str) -> Any:
         raise InputError(f"{path} cannot be read as JSON ({_said(error)}); {cure}") from error
 
 
+def read_toml(path: Path, what: str = "TOML file") -> dict[str, Any]:
+    """Returns the content of a TOML file that was written by hand."""
+    try:
+        content = tomllib.loads(read_bytes(path, BY_HAND, what).decode("utf-8-sig"))
+        _refuse_long(content)
+        return content
+    except (ValueError, RecursionError) as error:  # digits without end are a ValueError too
+        if isinstance(error, InputError):
+            raise
+        raise InputError(f"{path} is not TOML ({_said(error)}); correct it there") from error
+
+
 def read_archive(path: Path, what: str) -> dict[str, np.ndarray]:
     """Returns the arrays of an .npz by name."""
     import numpy as np
@@ -160,6 +172,48 @@ def check_file(path: Path, largest: int = MAX_BYTES, what: str = LOG) -> None:
         raise InputError(_too_large(path, state.st_size, largest, what))
 
 
+@contextmanager
+def whole_file(path: str | os.PathLike[str]) -> Iterator[Path]:
+    """Yields a temporary path beside `path` that becomes `path` when the block ends well."""
+    path = Path(path)
+    if not path.parent.is_dir():
+        raise InputError(f"no such folder: {path.parent}; make it before {path.name} is written")
+    draft = path.with_name(f".{uuid4().hex}{path.suffix}")
+    try:
+        yield draft
+        to_disk(draft)
+        draft.replace(path)
+    except OSError as error:
+        reason = error.strerror or type(error).__name__
+        raise InputError(
+            f"cannot write {path}: {reason}; choose a folder with room and permission"
+        ) from error
+    finally:
+        with suppress(OSError):
+            draft.unlink(missing_ok=True)
+
+
+def to_disk(path: Path) -> None:
+    """Bring a file, or the names in a folder, to the disk: a loss of power then loses nothing."""
+    if os.name != "posix":  # other systems bring nothing to the disk that is open to be read
+        return
+    number = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(number)
+    except OSError as error:
+        if error.errno not in (errno.EINVAL, errno.EROFS, errno.EOPNOTSUPP):  # no such step here
+            raise
+    finally:
+        os.close(number)
+
+
+def write_text(path: str | os.PathLike[str], text: str) -> Path:
+    """Write UTF-8 text to a file, whole or not at all; returns its path."""
+    with whole_file(path) as draft:
+        draft.write_text(text, encoding="utf-8", errors="backslashreplace", newline="")
+    return Path(path)
+
+
 def _irregular(path: Path, what: str) -> str:
     return f"{path} is not a regular file; give the path of a {what}"
 
@@ -190,18 +244,6 @@ def _refuse_long(value: Any) -> None:
             _refuse_long(part)
     elif isinstance(value, int) and not -(2**63) <= value < 2**63:
         raise ValueError("a whole number has more than 64 bits")
-
-
-def read_toml(path: Path, what: str = "TOML file") -> dict[str, Any]:
-    """Returns the content of a TOML file that was written by hand."""
-    try:
-        content = tomllib.loads(read_bytes(path, BY_HAND, what).decode("utf-8-sig"))
-        _refuse_long(content)
-        return content
-    except (ValueError, RecursionError) as error:  # digits without end are a ValueError too
-        if isinstance(error, InputError):
-            raise
-        raise InputError(f"{path} is not TOML ({_said(error)}); correct it there") from error
 
 
 def _missing(path: Path) -> str:

@@ -2,11 +2,11 @@
 
 Results are put together in a hidden folder. Together with what others keep in the old folder, they
 take its place in a single step: whoever looks, and whatever is killed, finds the old results or the
-new ones. Where there is no such step the files are moved one by one (`identification.moves`).
+new ones. Where there is no such step the files are moved one by one (`identification.made`).
 
 The files that the program made before go, also those of which there is no new one. A file that it
-did not make, or that was changed since, belongs to somebody else (`identification.made`): a folder
-with such a file is refused.
+did not make, or that was changed since, belongs to somebody else: a folder with such a file is
+refused.
 """
 
 from __future__ import annotations
@@ -19,19 +19,21 @@ from dataclasses import dataclass
 from pathlib import Path
 from shutil import rmtree
 
-from identification.drafts import (
+from identification.errors import InputError
+from identification.exchange import (
+    IMPOSSIBLE,
+    alone,
+    exchange,
     free_beside,
+    make_alike,
     make_folders,
     make_hidden,
     make_hidden_beside,
     make_hidden_inside,
     remove_empty,
 )
-from identification.errors import InputError
-from identification.exchange import IMPOSSIBLE, alone, exchange, make_alike
-from identification.made import MADE, Content, list_content, write_made
-from identification.moves import finish_moves, move_all
-from identification.writing import to_disk
+from identification.files import to_disk
+from identification.made import MADE, Content, finish_moves, list_content, move_all, write_made
 
 _TRIED = 4096  # bytes that are written to try a folder, a page of most disks
 _SHOWN = 3  # names in a message

@@ -1,4 +1,4 @@
-"""The threads of this process: how many there may be, and one pool of them that lives as long.
+"""The threads of this process: one pool of them, and linear algebra in one thread.
 
 A part of some work gives the lock of the interpreter free where it runs machine code: a compiled
 recursion, a product of matrices, a simulation. Work that begins inside another part runs in its
@@ -12,13 +12,15 @@ import os
 import threading
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
-from functools import lru_cache
+from contextlib import contextmanager
+from functools import cache, lru_cache
 from itertools import pairwise
 from typing import TypeVar
 
+from threadpoolctl import ThreadpoolController
+
 Part = TypeVar("Part")
 Result = TypeVar("Result")
-
 _here = threading.local()  # given_up: where this thread runs a part, whether nobody waits for it
 
 
@@ -84,8 +86,25 @@ def split(count: int, most: int) -> list[slice]:
     return [slice(*pair) for pair in pairwise(count * k // parts for k in range(parts + 1))]
 
 
+@contextmanager
+def one_blas_thread() -> Iterator[None]:
+    """Let numpy and scipy multiply matrices in one thread; also a decorator."""
+    # OpenBLAS lets its threads wait in a busy loop for some 20 ms after each product, so that each
+    # simulation of a fit had a processor less (`benchmarks/speed.py`).
+    with _controller().limit(limits=1, user_api="blas"):
+        yield
+
+
 @lru_cache(maxsize=1)
 def _pool(count: int, process: int) -> ThreadPoolExecutor:
     """Returns the pool of a process; a process that was forked off begins its own."""
     del process
     return ThreadPoolExecutor(count, "inca_mj")
+
+
+@cache
+def _controller() -> ThreadpoolController:
+    """Returns the controller of the loaded libraries of linear algebra; it takes a millisecond."""
+    import scipy.linalg  # noqa: F401  slow; loads a library of its own, which is to be found
+
+    return ThreadpoolController()

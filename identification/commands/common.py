@@ -65,7 +65,7 @@ def say_json(result: Mapping[str, Any]) -> None:
 
 def write_result(path: Path, command: Any, result: Mapping[str, Any]) -> None:
     """Write result.json: the result, the resolved configuration and the versions that made it."""
-    from identification.writing import write_text
+    from identification.files import write_text
 
     packages = ("inca-mj", "mujoco", "numpy", "scipy", "numba")
     record = {

@@ -19,7 +19,6 @@ from functools import partial
 
 import numpy as np
 
-from identification.blas import one_blas_thread
 from identification.discovery.attempts import attempt
 from identification.discovery.effect_results import NamedEffect, Outside, Rival
 from identification.discovery.fitted_model import AcceptedEffect, FittedModel, collect_parameters
@@ -32,6 +31,7 @@ from identification.discovery.task import DiscoveryTask
 from identification.effects.curve_laws import NODES
 from identification.effects.effect import CURVE, Candidate
 from identification.kalman.noise_model import build_whitener
+from identification.pool import one_blas_thread
 
 
 def name_effects(

@@ -15,11 +15,11 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
-from identification.blas import one_blas_thread
 from identification.kalman.linear import LinearPlant, linearise
 from identification.kalman.noise_fit import START_CORRELATION_TIME, compute_unit_ratio, fit_noise
 from identification.kalman.noise_model import smooth
 from identification.kalman.refit import Refit
+from identification.pool import one_blas_thread
 
 AXES = ("x", "y", "z")
 FREE, SLIDE = int(mujoco.mjtJoint.mjJNT_FREE), int(mujoco.mjtJoint.mjJNT_SLIDE)

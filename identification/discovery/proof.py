@@ -20,12 +20,12 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from identification.blas import one_blas_thread
 from identification.chances import student_above
 from identification.discovery.effect_results import Proof
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.validation import Validation
 from identification.logs.joined import records_of
+from identification.pool import one_blas_thread
 
 MIN_PROOF_SAMPLES = 5  # of a block of unseen samples
 MAX_FLIPPED_BLOCKS = 32  # 2^16 sums of each half; of more blocks neighbours are added

@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from identification.blas import one_blas_thread
 from identification.discovery.effect_results import Rival
 from identification.discovery.record_forces import force_of_records
 from identification.discovery.recovered_force import (
@@ -23,6 +22,7 @@ from identification.effects.effect import Candidate
 from identification.kalman.noise_model import build_whitener
 from identification.kalman.problem import linearise_criterion
 from identification.kalman.refit import Refit
+from identification.pool import one_blas_thread
 
 
 def recover_force(

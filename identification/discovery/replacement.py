@@ -11,11 +11,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from identification.blas import one_blas_thread
 from identification.effects.effect import Candidate
 from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.problem import linearise_criterion
 from identification.kalman.refit import Refit
+from identification.pool import one_blas_thread
 
 
 @dataclass(frozen=True)

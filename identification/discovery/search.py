@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from identification.blas import one_blas_thread
 from identification.discovery.forecast import forecast, refuse_large
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
@@ -17,6 +16,7 @@ from identification.errors import InputError
 from identification.estimation.options import Progress
 from identification.logs.joined import records_of, rows_of
 from identification.logs.log import Log
+from identification.pool import one_blas_thread
 
 
 @one_blas_thread()

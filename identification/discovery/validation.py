@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from identification.blas import one_blas_thread
 from identification.discovery.disturbance import propagate_input_error
 from identification.discovery.effect_results import Gap
 from identification.estimation.metrics import fit_percent
@@ -16,6 +15,7 @@ from identification.kalman.refit import Refit
 from identification.logs.by_unit import rms_by_unit
 from identification.logs.joined import rows_of
 from identification.logs.log import Log
+from identification.pool import one_blas_thread
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

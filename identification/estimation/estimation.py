@@ -25,7 +25,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from identification.blas import one_blas_thread
 from identification.errors import InputError, refuse_kind
 from identification.estimation.options import HORIZONS as HORIZONS
 from identification.estimation.options import Options as Options
@@ -37,6 +36,7 @@ from identification.logs.log import Log
 from identification.logs.noise import noise_floor
 from identification.model.coordinates import Coordinates, coordinates
 from identification.model.predictor import Plant, Predictor
+from identification.pool import one_blas_thread
 
 
 @dataclass(frozen=True, kw_only=True)

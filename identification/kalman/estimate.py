@@ -16,7 +16,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from identification.blas import one_blas_thread
 from identification.errors import InputError
 from identification.estimation.estimation import Estimate
 from identification.estimation.fit import Fit, assess, combinations_of
@@ -33,6 +32,7 @@ from identification.logs.log import Log
 from identification.model.coordinates import coordinates
 from identification.model.predictor import Plant, Predictor
 from identification.model.sensitivity import refuse_without_effect, without_effect
+from identification.pool import one_blas_thread
 
 MIN_SAMPLES = 50  # with fewer, the noise of the sensors cannot be told from that of the inputs
 RIDGE_WEIGHT = 0.1  # 1/std of q: holds directions that have no effect on the outputs

@@ -20,7 +20,6 @@ from functools import cached_property
 import mujoco
 import numpy as np
 
-from identification.blas import one_blas_thread
 from identification.engine import quiet
 from identification.kalman.response import transitions
 from identification.kalman.trajectory import COARSE_POINTS, Trajectory, follow_records
@@ -28,6 +27,7 @@ from identification.linear.derivatives import FORWARD, differences, position_row
 from identification.linear.points import Change, Points
 from identification.model.predictor import Predictor, output_columns
 from identification.native.forward import Intervals
+from identification.pool import one_blas_thread
 
 
 @dataclass(frozen=True, eq=False)

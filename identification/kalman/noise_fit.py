@@ -16,11 +16,10 @@ from threading import Lock
 
 import numpy as np
 
-from identification.blas import one_blas_thread
 from identification.kalman.linear import LinearPlant
 from identification.kalman.noise_model import Noise, Whitened, Whitener, augment, keep, whiten
 from identification.kalman.recursion import propagate
-from identification.pool import run_parts, split
+from identification.pool import one_blas_thread, run_parts, split
 
 START_CORRELATION_TIME = 0.03  # [s] of the inputs' error, at which the search for the noise begins
 # [s] at most: a noise that lasts without limit would explain a constant force.

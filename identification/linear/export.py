@@ -16,9 +16,8 @@ from typing import Any
 import numpy as np
 
 from identification.errors import InputError
-from identification.files import read_archive
+from identification.files import read_archive, whole_file
 from identification.linear.system import LinearSystem
-from identification.writing import whole_file
 
 NAMES = ("states", "inputs", "outputs")
 _SHAPES = {

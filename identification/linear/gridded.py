@@ -17,7 +17,6 @@ from typing import Any, Literal
 
 import numpy as np
 
-from identification.blas import one_blas_thread
 from identification.errors import InputError, unknown_name
 from identification.linear.export import (
     ARRAYS,
@@ -28,6 +27,7 @@ from identification.linear.export import (
     write_arrays,
 )
 from identification.linear.system import LinearSystem, held_for, sampling_time_of
+from identification.pool import one_blas_thread
 
 FEWEST = {"linear": 2, "cubic": 4}  # points of an axis
 DEGREE = {"linear": 1, "cubic": 3}

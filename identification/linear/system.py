@@ -17,8 +17,8 @@ from typing import Any
 
 import numpy as np
 
-from identification.blas import one_blas_thread
 from identification.errors import InputError
+from identification.pool import one_blas_thread
 
 FASTEST = 1e6  # [Hz]
 

@@ -8,9 +8,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from identification.errors import InputError
+from identification.files import write_text
 from identification.logs.log import Log
 from identification.logs.names import group
-from identification.writing import write_text
 
 
 def write_log(log: Log, path: str | os.PathLike[str], digits: int | None = None) -> None:

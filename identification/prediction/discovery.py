@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from identification.blas import one_blas_thread
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.result import Discovery
@@ -12,6 +11,7 @@ from identification.effects.effect import Effect
 from identification.errors import InputError
 from identification.estimation.options import Progress
 from identification.logs.log import Log
+from identification.pool import one_blas_thread
 from identification.prediction.records import as_records
 from identification.prediction.records_fit import NO_HORIZON
 from identification.prediction.starts import without_starts

@@ -15,13 +15,13 @@ from functools import cached_property, partial
 
 import numpy as np
 
-from identification.blas import one_blas_thread
 from identification.discovery.attempts import attempt
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
 from identification.errors import InputError
 from identification.estimation.options import Progress
 from identification.logs.log import Log
+from identification.pool import one_blas_thread
 from identification.prediction.extension import at_own_steps
 from identification.prediction.fit import WindowFit
 from identification.prediction.model import WindowModel

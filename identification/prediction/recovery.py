@@ -16,7 +16,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from identification.blas import one_blas_thread
 from identification.discovery.effect_results import Rival
 from identification.discovery.force_along import forces_along
 from identification.discovery.free_nodes import MAX_FORCE_POINTS
@@ -30,6 +29,7 @@ from identification.discovery.recovered_force import (
     show_readings,
 )
 from identification.effects.effect import Candidate
+from identification.pool import one_blas_thread
 from identification.prediction.fit import STD_BLOCKS
 from identification.prediction.model import WindowModel
 from identification.prediction.problem import MIN_WINDOWS

@@ -11,12 +11,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from identification.errors import InputError
-from identification.files import read_text
+from identification.files import read_text, write_text
 from identification.report.cells import columns_of, text_of
 from identification.report.media import drawing, image_source, video_source
 from identification.report.origin import origin
 from identification.report.whole_quantities import whole_quantities
-from identification.writing import write_text
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

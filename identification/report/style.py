@@ -8,7 +8,7 @@ from typing import IO, Any
 
 from matplotlib.figure import Figure
 
-from identification.writing import whole_file
+from identification.files import whole_file
 
 SIMULATED = "#D55E00"  # vermilion
 MEASURED = "#0072B2"  # blue

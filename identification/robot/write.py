@@ -10,9 +10,9 @@ from pathlib import Path
 
 from identification.discovery.final_values import keep_of_robot
 from identification.effects.kinds import SLIDE
+from identification.files import write_text
 from identification.robot.parameters import KNOWN, Free, effect_sizes
 from identification.robot.robot import Robot
-from identification.writing import write_text
 
 
 def write_robot(

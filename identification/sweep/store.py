@@ -22,12 +22,11 @@ from typing import Any, Self
 from uuid import uuid4
 
 from identification.errors import InputError
-from identification.files import read_json
+from identification.files import read_json, write_text
 from identification.sweep.extras import needed
 from identification.sweep.parquet import read_tables, read_tasks, write_whole
 from identification.sweep.rows import schema
 from identification.sweep.task import Sweep
-from identification.writing import write_text
 
 RECORDS = "records"
 KEY = ".sweep.json"

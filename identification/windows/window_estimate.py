@@ -14,7 +14,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from identification.blas import one_blas_thread
 from identification.errors import InputError
 from identification.estimation.identifiability import Identifiability
 from identification.estimation.levenberg_marquardt import (
@@ -32,6 +31,7 @@ from identification.model.coordinates import coordinates
 from identification.model.predictor import Plant, Predictor
 from identification.model.rollout import State
 from identification.model.sensitivity import FORWARD_STEP, refuse_without_effect
+from identification.pool import one_blas_thread
 from identification.progress import stage
 from identification.windows.shooting import Shooting, Tangent, tangent
 from identification.windows.windows import apart, first_states, windows

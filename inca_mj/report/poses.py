@@ -9,9 +9,9 @@ import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 
+from identification.files import write_text
 from identification.report.page import Section, Table
 from identification.report.style import GREY, INK, SERIES, STYLE
-from identification.writing import write_text
 from inca_mj.kinematics.cables import Cables
 from inca_mj.kinematics.jacobians import condition, jacobian, rank
 from inca_mj.robot.geometry import Geometry

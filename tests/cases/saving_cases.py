@@ -21,8 +21,8 @@ from pathlib import Path
 from identification.commands import common
 from identification.commands.common import Output, conclude
 from identification.errors import InputError
+from identification.files import write_text
 from identification.folders import draft_of, list_foreign, refuse_foreign
-from identification.writing import write_text
 
 CALLS = ("os.rename", "os.mkdir", "os.link", "os.remove", "os.rmdir", "os.chmod", "os.utime")
 WRITES = os.O_WRONLY | os.O_RDWR | os.O_CREAT

@@ -5,8 +5,8 @@ import pytest
 from estimation_plants import record, slider
 from threadpoolctl import threadpool_info, threadpool_limits
 
-from identification.blas import one_blas_thread
 from identification.estimation.estimation import estimate
+from identification.pool import one_blas_thread
 
 
 def threads():

@@ -21,7 +21,6 @@ from functools import lru_cache, partial
 
 import numpy as np
 
-from identification.blas import one_blas_thread
 from identification.discovery.attempts import attempt
 from identification.discovery.findings.evidence import StructuredInputError
 from identification.discovery.findings.finding import Finding, FindingKind
@@ -30,6 +29,7 @@ from identification.discovery.proof import flip_chance
 from identification.discovery.validation import Validation
 from identification.kalman.noise_model import Whitener
 from identification.kalman.point import evaluate_sensitivities
+from identification.pool import one_blas_thread
 
 ERROR_KNOTS = 12  # of the curves over input, output and rate that an error of the inputs may follow
 

@@ -13,7 +13,6 @@ from functools import partial
 
 import numpy as np
 
-from identification.blas import one_blas_thread
 from identification.chances import mean_above_other
 from identification.discovery.attempts import attempt
 from identification.discovery.findings.evidence import RobotChange
@@ -21,6 +20,7 @@ from identification.discovery.findings.finding import Finding, FindingKind
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.validation import Validation
 from identification.kalman.point import evaluate_sensitivities
+from identification.pool import one_blas_thread
 
 
 def find_robot_change(validation: Validation, options: DiscoveryOptions) -> tuple[Finding, ...]:

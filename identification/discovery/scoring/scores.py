@@ -29,7 +29,6 @@ from functools import lru_cache
 
 import numpy as np
 
-from identification.blas import one_blas_thread
 from identification.chances import chi2_above
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.scoring.blocks import (
@@ -42,7 +41,7 @@ from identification.discovery.scoring.sensitivities import Sensitivity
 from identification.effects.effect import Candidate
 from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.refit import Refit
-from identification.pool import run_parts, split
+from identification.pool import one_blas_thread, run_parts, split
 
 MIN_SCORE_SAMPLES = 10  # of a block of fitted samples
 MAX_COLUMNS, MAX_COLUMN_BYTES = 96, 2**24  # that are projected at once
