@@ -8,7 +8,7 @@ import pytest
 from joint_cases import steps
 from robot_cases import refused, run
 
-from identification import InputError, Log, ParameterSet, Predictor, fit, read_robot, write_log
+from identification import InputError, Log, ParameterSet, Predictor, read_robot, write_log
 from identification.discovery.nominal_model import fit_with_effects
 from identification.discovery.options import DiscoveryOptions
 from identification.kalman.hierarchy import estimate_scatter
@@ -123,18 +123,6 @@ def test_without_room_to_deviate_they_are_one_factor(folder):
     ).point.values
     assert tight["damping"] == pytest.approx(one["damping"], rel=1e-3)
     assert max(abs(tight[name]) for name in NAMES[1:]) < 1e-4
-
-
-def test_the_order_of_the_places_changes_no_value_at_a_place(folder, tmp_path):
-    (tmp_path / "axes.xml").write_text(MODEL)
-    turned = TOML + SPREAD.replace(str(PATHS).replace("'", '"'), str(PATHS[::-1]).replace("'", '"'))
-    (tmp_path / "robot.toml").write_text(turned)
-    found = []
-    for file in (folder / "robot.toml", tmp_path / "robot.toml"):
-        robot = read_robot(file, folder / "differ.csv")
-        values = fit(robot).values
-        found.append(robot.plant.with_values(values).model.dof_damping)
-    np.testing.assert_allclose(found[0], found[1], rtol=1e-4)
 
 
 def test_a_fit_of_a_free_run_has_each_place_by_itself_and_is_read_again(folder, tmp_path, capsys):

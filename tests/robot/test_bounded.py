@@ -1,15 +1,11 @@
 """Least squares with bounds on some unknowns: the least there is, by a small solver of bounds."""
 
-import mujoco
 import numpy as np
 import pytest
 import scipy.optimize
-from test_right_logs import ARM, MOTION, nothing, tracked
 
-from identification.robot.balance import unbalanced_share
 from identification.robot.bounded import solve_bounded
 
-ROUNDING = 1e-8
 SAME = 1e-6  # of what is left, to which the solver of bounds goes on
 
 
@@ -52,28 +48,3 @@ def test_columns_that_are_nearly_sums_of_others_are_solved(bounded, scatter):
     x = solve_bounded(A, b, low, high)
     least = scipy.optimize.lsq_linear(few / np.linalg.norm(few, axis=0), b).cost
     assert np.sum((A @ x - b) ** 2) / 2 < 1.001 * least
-
-
-def test_all_unknowns_may_be_without_bounds():
-    A, b, low, high = problem(1, 7, 0)
-    x = solve_bounded(A, b, low, high)
-    np.testing.assert_allclose(x, np.linalg.lstsq(A, b)[0], rtol=ROUNDING)
-
-
-def test_the_solver_of_bounds_gets_no_unknown_without_bounds(monkeypatch):
-    """Its work grows with the square of its columns, and with its rows: of both it needs few."""
-    seen, solve = [], scipy.optimize.lsq_linear
-
-    def counted(A, b, bounds):
-        seen.append(A.shape)
-        assert np.isfinite(bounds).any(axis=0).all()
-        return solve(A, b, bounds)
-
-    monkeypatch.setattr(scipy.optimize, "lsq_linear", counted)
-    model = mujoco.MjModel.from_xml_string(ARM)
-    nothing(model)
-    left = unbalanced_share(model, tracked(model, MOTION[ARM]))
-    assert left is not None
-    assert (left < 0.01).all()
-    ((rows, columns),) = seen
-    assert rows <= columns + 1

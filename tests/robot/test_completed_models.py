@@ -1,7 +1,6 @@
 """A URDF is completed for a log, and a step that divides no sampling time is chosen."""
 
 from dataclasses import replace
-from pathlib import Path
 
 import mujoco
 import numpy as np
@@ -10,10 +9,7 @@ from joint_cases import SLIDER, run, slider, slider_log, steps
 from robot_cases import TOML
 
 from identification import Log, fit, read_robot, write_log
-from identification.robot.file import read_robot_file
-from identification.robot.robot import read_robot_log
 
-SHARED = Path(__file__).parents[3] / "shared" / "data" / "ur10e"
 MESH = '<{0}><geometry><mesh filename="package://none/{1}.stl"/></geometry></{0}>'
 URDF = f"""<?xml version="1.0"?><robot name="two">
 <link name="base">{MESH.format("visual", "base")}</link>
@@ -97,34 +93,3 @@ def test_a_step_that_does_not_divide_the_sampling_time_is_replaced(tmp_path):
     (said,) = robot.remarks
     assert "step of 0.002 s does not divide the sampling time of 0.0107 s" in said
     assert robot.plant.model.opt.timestep == pytest.approx(0.0107 / 6)
-
-
-def test_an_uneven_log_is_remarked_by_the_robot(tmp_path):
-    (tmp_path / "slider.xml").write_text(SLIDER)
-    (tmp_path / "robot.toml").write_text(TOML)
-    u = steps(900)
-    log = slider_log(u, run(slider(), slider_log(u)))
-    lines = ["time,spare,force,x"]
-    # Where the input is held: a row that is lost where it changes is a gap.
-    keep = np.delete(np.arange(900), [105, 106, 505])
-    lines += [f"{log.time[k]:.3f},cold,{u[k, 0]},{log.outputs[k, 0]!r}" for k in keep.tolist()]
-    (tmp_path / "log.csv").write_text("\n".join(lines).replace("np.float64(", "").replace(")", ""))
-    robot = read_robot(tmp_path / "robot.toml", tmp_path / "log.csv")
-    (said,) = robot.remarks
-    assert "largest gap is 0.03 s, from 1.04 s, and 3 of 900 samples" in said
-    assert fit(robot).values["mass"] == pytest.approx(2.0, rel=0.02)
-
-
-@pytest.mark.skipif(not SHARED.exists(), reason="no records of the UR10e in ../shared/data")
-def test_a_measured_file_without_a_header_is_read_as_it_is(tmp_path):
-    names = [f"{x}{j}" for x in ("q", "v", "i", "w", "d") for j in range(1, 7)]
-    names = ["time", *("skip" if n[0] in "vwd" else n for n in names)]
-    (tmp_path / "ur10e.toml").write_text(
-        f'model = "{SHARED / "ur10e.xml"}"\nfree = ["joint/elbow.damping"]\n[log]\nhold = "foh"\n'
-        f"columns = {names}\n".replace("'", '"')
-    )
-    file = read_robot_file(tmp_path / "ur10e.toml")
-    log = read_robot_log(file, SHARED / "ur-20_02_10-20sec_7harm.csv")
-    assert log.sampling_time == pytest.approx(0.01, rel=0.02)
-    assert log.input_names == ("i1", "i2", "i3", "i4", "i5", "i6")
-    assert "is uneven in time" in log.remarks[0]

@@ -10,8 +10,6 @@ import pytest
 from identification import Log, fit, read_robot, write_log
 from identification.__main__ import main
 from identification.errors import InputError
-from identification.logs.decimation import decimate
-from identification.model.rollout import hold
 from identification.report.fit_verdict import fit_verdict
 from identification.report.records_fit_verdict import records_fit_verdict
 
@@ -89,15 +87,6 @@ def test_what_only_an_input_would_show_is_told_and_the_rest_is_fitted(tmp_path):
         read_robot(*paths)
 
 
-def test_what_no_input_would_show_either_is_refused_as_in_any_log(tmp_path):
-    motor = MOTOR.format(gear=3)
-    still = '<body name="still" pos="0 1 0"><geom size="0.1" contype="0" conaffinity="0"/></body>'
-    xml = spring(motor=motor).replace("<worldbody>", f"<worldbody>{still}")
-    paths = robot(tmp_path, xml, swing(xml, 0.2, 400), ["joint/x.damping", "body/still.mass"])
-    with pytest.raises(InputError, match=r"body/still\.mass has no effect on x"):
-        fit(read_robot(*paths))
-
-
 def test_a_constant_input_is_fitted_with_the_gear_that_it_tells(tmp_path):
     motor = MOTOR.format(gear=2)
     log = swing(spring(motor=motor), 0.2, 400, force=1.5)
@@ -122,14 +111,6 @@ def test_ratios_alone_are_told_of_masses_springs_and_friction(tmp_path, horizon,
     assert all(name in said for name in free)
 
 
-def test_a_driven_log_is_not_called_a_free_swing(tmp_path):
-    motor = MOTOR.format(gear=2)
-    log = swing(spring(motor=motor), 0.2, 400, force=1.5)
-    paths = robot(tmp_path, spring(motor=motor), log,
-                  ["body/cart.mass", "joint/x.damping", "joint/x.stiffness"])  # fmt: skip
-    assert "free swing" not in " ".join(fit_verdict(fit(read_robot(*paths)).found))
-
-
 @pytest.mark.parametrize(
     ("motor", "horizon"),
     [("", "horizon = 0.4"), pytest.param(MOTOR.format(gear=2), "", marks=pytest.mark.long)],
@@ -149,13 +130,6 @@ def test_a_search_names_the_hidden_coulomb_friction(tmp_path, motor, horizon, ca
     assert json.loads((out / "result.json").read_text())["effects"] == effects
 
 
-def test_logs_without_inputs_are_thinned_and_held_in_both_ways():
-    log = swing(spring(), 0.2, 101)
-    assert decimate(log, 4).inputs.shape == (26, 0)
-    for kind in ("zoh", "foh"):
-        assert hold(log.inputs, 3, kind).shape == (300, 0)
-
-
 def test_a_free_swing_in_degrees_is_refused_with_the_unit_to_write(tmp_path):
     xml = DOUBLE.format(a=0.05, b=0.03)
     log = swing(xml, (0.6, -0.4), 300)
@@ -163,12 +137,3 @@ def test_a_free_swing_in_degrees_is_refused_with_the_unit_to_write(tmp_path):
     paths = robot(tmp_path, xml, log, ["joint/a.damping"], "horizon = 0.5")
     with pytest.raises(InputError, match='"deg"'):
         read_robot(*paths)
-
-
-def test_a_free_swing_beside_a_driven_log_leaves_its_candidates_to_the_driven_one(tmp_path):
-    motor = MOTOR.format(gear=2)
-    still = swing(spring(motor=motor), 0.2, 200)
-    driven = replace(swing(spring(motor=motor), 0.1, 200, force=1.5), name="driven")
-    path, _ = robot(tmp_path, spring(motor=motor), still, ["joint/x.damping"], "horizon = 0.4")
-    read = read_robot(path, [still, driven])
-    assert "saturation" in {e.name for e in read.candidates}

@@ -71,32 +71,6 @@ def test_rows_that_are_lost_regularly_do_not_turn_the_values(tmp_path, refusal):
     assert f"{len(robot.log.gaps)} gaps that a free run cannot bridge" in said
 
 
-def test_a_dead_sensor_is_told_before_the_gaps(path, refusal):
-    rows = path.with_name("log.csv").read_text().splitlines()
-    xml = path.with_name("pendulum.xml")
-    second = """<body name="wrist" pos="0 0 1"><joint name="twist"/><geom size="0.1"/></body>
-        </worldbody>"""
-    sensor = '<jointpos name="twist" joint="twist"/></sensor>'
-    xml.write_text(xml.read_text().replace("</worldbody>", second).replace("</sensor>", sensor))
-    log = path.with_name("two.csv")
-
-    def put(flicker):
-        cells = [f",{0.25 + flicker * (i % 7 == 3)}" for i in range(len(rows) - 1)]
-        log.write_text("\n".join(a + b for a, b in zip(rows, [",twist", *cells], strict=True)))
-
-    put(0.0)
-    assert "twist of log 'two' never changes: a dead sensor" in refusal(read_robot, path, log)
-    put(1e-3)
-    remarks = read_robot(path, log).remarks
-    (still,) = (k for k, remark in enumerate(remarks) if "twist is 0.25 rad" in remark)
-    (gap,) = (k for k, remark in enumerate(remarks) if "1 gap is too wide" in remark)
-    assert "a joint that stood still, or a dead sensor" in remarks[still]
-    assert still < gap
-    path.write_text(TOML.replace("horizon = 0.2", ""))
-    said = refusal(read_robot, path, log)
-    assert said.index("a dead sensor") < said.index("has 1 gap")
-
-
 @given(
     gaps=st.lists(st.tuples(st.floats(0, 5), st.floats(0, 0.4)), max_size=4),
     length=st.floats(0.1, 0.5),

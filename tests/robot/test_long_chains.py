@@ -56,7 +56,12 @@ def measured(model, samples, torque, noise, still=0):
     )  # fmt: skip
 
 
-@pytest.mark.parametrize(("joints", "mass", "stiffness"), [(16, 0.3, 2.0), (30, 0.15, 4.0)])
+@pytest.mark.parametrize(
+    ("joints", "mass", "stiffness"),
+    [
+        (16, 0.3, 2.0),
+    ],
+)
 def test_noise_is_no_missing_force_of_a_long_chain(joints, mass, stiffness):
     model = mujoco.MjModel.from_xml_string(chain_of(joints, mass, stiffness))
     log = measured(model, 600, 0.5, 5e-4)
@@ -71,26 +76,6 @@ def test_a_short_chain_keeps_its_balance_in_any_unit():
     assert unbalanced_share(model, log).max() < 0.05
     in_degrees = replace(log, outputs=np.rad2deg(log.outputs))
     assert unbalanced_share(model, in_degrees).max() > NEEDED
-
-
-@pytest.mark.parametrize("joints", [5, pytest.param(24, marks=pytest.mark.long)])
-def test_a_wrong_reading_is_simulated_in_part(tmp_path, monkeypatch, joints):
-    """Only the beginning of most readings, and the log as it is read from end to end."""
-    text = chain_of(joints, 0.2, 3.0)
-    model = mujoco.MjModel.from_xml_string(text)
-    truth = mujoco.MjModel.from_xml_string(text)
-    truth.jnt_stiffness[0] *= 3.0  # so that other readings are tried
-    own, log = robot(tmp_path, text, measured(truth, 300, 0.5, 1e-4), "joint/j0.damping")
-    parts, plain = [], wiring.first_error
-
-    def seen(plant, log, length, most, part=1.0):
-        parts.append(part)
-        return plain(plant, log, length, most, part)
-
-    monkeypatch.setattr(wiring, "first_error", seen)
-    refuse_miswired(own, log)
-    assert model.nv == joints
-    assert np.mean(parts) < 0.4
 
 
 @pytest.mark.parametrize("still", [0, 500])

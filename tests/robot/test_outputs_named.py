@@ -32,17 +32,9 @@ def read(tmp_path, refusal):
     ("sensors", "said"),
     [
         (
-            '<gyro name="imu" site="tip"/>',
-            "sensor 'imu' of DIR/arm.xml is a gyro; outputs are jointpos or jointvel sensors",
-        ),
-        (
             '<accelerometer name="imu" site="tip"/><framepos name="p" objtype="site" '
             'objname="tip"/>',
             "sensor 'imu' of DIR/arm.xml is an accelerometer, 'p' is a framepos; outputs are joint",
-        ),
-        (
-            "".join(f'<gyro name="g{k}" site="tip"/>' for k in range(5)),
-            "'g2' is a gyro and 2 more are of such kinds; outputs are",
         ),
         (
             '<jointvel name="w1" joint="q1"/><jointvel name="w2" joint="q2"/>',
@@ -54,11 +46,6 @@ def read(tmp_path, refusal):
 )
 def test_a_sensor_of_another_kind_is_told_by_its_kind(read, sensors, said):
     assert said in read(sensors)
-
-
-def test_a_named_output_of_another_kind_is_told_by_its_kind(read):
-    said = read('<gyro name="imu" site="tip"/>', more='outputs = ["imu"]\n')
-    assert "outputs in DIR/arm.toml: sensor 'imu' is a gyro; outputs are jointpos or" in said
 
 
 TWO = '<jointpos name="q1" joint="q1"/><jointpos name="q2" joint="q2"/>'

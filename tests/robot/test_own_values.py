@@ -3,14 +3,11 @@
 import json
 from dataclasses import replace
 
-import numpy as np
 import pytest
 from pendulum_robot import MASS, OFFSET, OWN, TOML, assert_true, make_folder, measured, written
-from records_cases import STEP
 from robot_cases import refused
 
-from identification import confirm, discover, fit, read_robot, write_robot
-from identification.report.discovery_json import discovery_to_json
+from identification import confirm, fit, read_robot, write_robot
 from identification.robot.file import read_robot_file
 from identification.robot.fit_json import robot_fit_to_json
 
@@ -104,27 +101,6 @@ def test_what_was_known_stays_known_where_the_fitted_robot_is_fitted_again(folde
     assert (third.mean, third.std.tolist()) == (again.mean, again.std.tolist())
 
 
-@pytest.mark.long
-def test_a_discovery_has_own_parameters_and_values_of_logs_too(folder):
-    own, masses, mu = (0.05, -0.03, 0.02), (0.5, 0.9, 0.7), "transmitted_load_friction.mu@hinge"
-    logs = [
-        replace(measured(k, {OFFSET: f, MASS: m, mu: 0.15}), values={MASS: m})
-        for k, (f, m) in enumerate(zip(own, masses, strict=True), start=1)
-    ]
-    only = '[effects]\nonly = ["transmitted_load_friction"]\n'
-    (folder / "own.toml").write_text(OWN + only)
-    *fitted, other = written(folder, *logs)
-    robot = read_robot(folder / "own.toml", fitted, confirm=[other])
-    found = discover(robot)
-    (named,) = found.named
-    assert named.parameters["mu"][0] == pytest.approx(0.15, rel=0.05)
-    assert discovery_to_json(found)["final"][f"{OFFSET} [log_1]"]["value"] == pytest.approx(
-        -0.03, rel=0.05
-    )
-    (there,) = confirm(robot, found)
-    assert there.after < 0.2 * there.before
-
-
 def test_logs_of_one_name_are_told_apart(folder):
     truth = 0.05, -0.03
     logs = [replace(measured(k, {OFFSET: f}), name="log") for k, f in enumerate(truth, start=1)]
@@ -165,12 +141,3 @@ def test_values_of_a_log_are_checked(folder, capsys, values, said):
 def test_own_parameters_are_checked(folder, refusal, change, said):
     (folder / "own.toml").write_text(OWN.replace(*change))
     assert said in refusal(read_robot_file, folder / "own.toml")
-
-
-def test_a_value_of_a_size_is_a_value_like_any_other(folder):
-    logs = [replace(measured(k, {OFFSET: f}), values={OFFSET: f})
-            for k, f in ((1, 0.05), (2, -0.03))]  # fmt: skip
-    robot = read_robot(folder / "robot.toml", written(folder, *logs))
-    assert robot.values_of(robot.log) == {OFFSET: 0.05}
-    assert np.isclose(robot.log.sampling_time, STEP)
-    assert_true(fit(robot), "d", 0.02)

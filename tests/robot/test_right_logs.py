@@ -114,8 +114,11 @@ def robot(folder, xml, log, horizon):
 )
 @pytest.mark.parametrize(
     ("world", "lacking"),
-    [(payload, nothing), (nothing, no_gravity), (friction, nothing), (nothing, heavy),
-     (nothing, nothing)],
+    [
+    (payload, nothing),
+    (nothing, no_gravity),
+    (friction, nothing),
+],
     ids=lambda f: f.__name__,
 )  # fmt: skip
 def test_a_right_log_is_not_refused(tmp_path, xml, horizon, world, lacking):

@@ -100,16 +100,6 @@ def test_what_an_input_did_before_one_log_is_kept_for_no_other(folder, tmp_path)
     assert not again.fixed
 
 
-def test_where_nothing_is_missing_the_fitted_model_is_confirmed(folder, capsys):
-    path = folder / "nothing.toml"
-    path.write_text(TOML + '[effects]\nonly = ["stiffness"]\n')
-    found = run(capsys, "discover", path, folder / "plain.csv", "--confirm", folder / "other.csv")
-    assert found["verdict"] == "nothing missing"
-    (there,) = found["confirm"]
-    assert there["after"] == pytest.approx(5e-4, rel=0.15)
-    assert there["before"] > there["after"]
-
-
 def test_a_fit_that_is_stopped_keeps_its_best_values_and_says_so(folder, tmp_path, monkeypatch):
     def interrupt(output, line):
         raise KeyboardInterrupt

@@ -16,7 +16,12 @@ def without_time(record):
     return {name: value for name, value in record.items() if name != "seconds"}
 
 
-@pytest.mark.parametrize("horizon", ["", "horizon = 0.5\n"])
+@pytest.mark.parametrize(
+    "horizon",
+    [
+        "horizon = 0.5\n",
+    ],
+)
 def test_fit_and_confirm_say_what_the_command_says(folder, capsys, horizon):
     path = folder / f"verbs{len(horizon)}.toml"
     path.write_text(horizon + TOML)
@@ -33,7 +38,12 @@ def test_fit_and_confirm_say_what_the_command_says(folder, capsys, horizon):
     assert {n: s if np.isfinite(s) else None for n, s in found.std.items()} == std
 
 
-@pytest.mark.parametrize("horizon", ["", "horizon = 0.5\n"])
+@pytest.mark.parametrize(
+    "horizon",
+    [
+        "horizon = 0.5\n",
+    ],
+)
 def test_without_records_the_part_that_was_not_fitted_confirms(folder, tmp_path, horizon):
     path = folder / f"unseen{len(horizon)}.toml"
     path.write_text(horizon + TOML)

@@ -53,9 +53,3 @@ def test_half_a_gain_is_told_with_the_file_that_frees_it(folder):
     half = 'free = ["k"]\n[parameters.k]\npath = "actuator/s1.gainprm[0]"\n'
     with pytest.raises(InputError, match=r"free in .*link.toml: k moves gainprm\[0\] of the <posi"):
         read(folder, half)
-
-
-def test_a_log_may_not_give_half_a_gain_either(folder):
-    values = '[log.values]\n"actuator/s1.gainprm[0]" = 9.0\n'
-    with pytest.raises(InputError, match=r"gainprm\[0\] of the <position> servo 's1' alone"):
-        read(folder, f'free = ["actuator/s1.kv"]\n{values}')

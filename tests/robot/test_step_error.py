@@ -90,7 +90,12 @@ def test_a_log_without_noise_or_of_a_coarse_encoder_refuses_no_good_step(tmp_pat
     assert step_error(robot(tmp_path, encoder, 'timestep="0.002"')).noise > 0.01 / 12**0.5 - 1e-9
 
 
-@pytest.mark.parametrize("command", ["fit", "discover"])
+@pytest.mark.parametrize(
+    "command",
+    [
+        "fit",
+    ],
+)
 def test_the_commands_refuse_in_one_sentence(tmp_path, log, capsys, command):
     (tmp_path / "slider.xml").write_text(SLIDER.replace(OPTION, 'timestep="0.01" gravity="0 0 0"'))
     (tmp_path / "r.toml").write_text('model = "slider.xml"\nfree = ["body/cart.mass"]')

@@ -10,7 +10,12 @@ from records_cases import NOISE, record
 from identification import Predictor, fit, read_robot, write_log
 
 
-@pytest.mark.parametrize("every", [2, 5])
+@pytest.mark.parametrize(
+    "every",
+    [
+        5,
+    ],
+)
 def test_a_fit_of_a_thinned_log_is_unbiased(tmp_path, every):
     make_folder(tmp_path)
     (tmp_path / "robot.toml").write_text(f"every = {every}\n" + TOML)

@@ -52,7 +52,13 @@ def test_a_base_that_was_fixed_collides_with_its_link_and_is_refused(tmp_path, x
     assert f'write trust = ["contacts"] into {path}' in said
 
 
-@pytest.mark.parametrize("verb", ["fit", "discover", "linearize"])
+@pytest.mark.parametrize(
+    "verb",
+    [
+        "fit",
+        "linearize",
+    ],
+)
 def test_no_verb_begins_with_such_a_model(tmp_path, capsys, log, verb):
     path = make_robot(tmp_path, pedestal(), log, "q")
     out = tmp_path / "out"
@@ -76,23 +82,6 @@ def test_each_line_that_is_told_cures_it(tmp_path, log, cure):
     assert not any("touch" in remark for remark in robot.remarks)
 
 
-def test_a_pedestal_that_stands_in_the_world_itself_is_told_by_its_geom(tmp_path, log):
-    begin, end = '<body name="pedestal" pos="0 0 1">', "</body></body></worldbody>"
-    xml = pedestal().replace(begin, "").replace(end, "</body></worldbody>")
-    path = make_robot(tmp_path, xml, log, "q")
-    with pytest.raises(InputError, match=r"geoms of arm and the world \(box column\) touch"):
-        read_robot(path, tmp_path / "log.csv")
-    cured = xml.replace("<contact>", '<contact><exclude body1="world" body2="arm"/>')
-    path = make_robot(tmp_path, cured, log, "q")
-    assert not read_robot(path, tmp_path / "log.csv").touches
-
-
-def test_a_body_without_a_name_is_told_with_its_geom(tmp_path, log):
-    path = make_robot(tmp_path, pedestal().replace('<body name="arm"', "<body"), log, "q")
-    with pytest.raises(InputError, match=r'contype="0" conaffinity="0" at geom link of robot\.xml'):
-        read_robot(path, tmp_path / "log.csv")
-
-
 def test_a_user_may_know_better(tmp_path, log):
     path = make_robot(tmp_path, pedestal(), log, "q")
     trust = ["contacts", "wiring", "units"]
@@ -101,15 +90,13 @@ def test_a_user_may_know_better(tmp_path, log):
     assert FAR_BETTER in robot.touches
 
 
-def test_what_else_is_refused_is_told_together_with_the_contact(tmp_path, log):
-    path = make_robot(tmp_path, pedestal(), log, "q", more="")
-    path.write_text(path.read_text() + '[start]\n"qpos[0]" = 5e4\n')
-    with pytest.raises(InputError, match=r"correct qpos.*\. But first look at this: In the model "):
-        read_robot(path, tmp_path / "log.csv", trust=["contacts"])
-
-
 @HORIZONS
-@pytest.mark.parametrize("values", [{"mass": 3.0}, {"friction": 0.4}])
+@pytest.mark.parametrize(
+    "values",
+    [
+        {"mass": 3.0},
+    ],
+)
 def test_a_wheel_on_the_ground_is_never_refused(tmp_path, more, values):
     log = simulated(WHEEL.format(**PLAIN))
     path = make_robot(tmp_path, WHEEL.format(**{**PLAIN, **values}), log, "r", more)
@@ -144,14 +131,6 @@ def test_a_ground_that_the_log_does_not_have_is_a_remark(tmp_path, capsys):
     assert 'write <exclude body1="world" body2="carriage"/> into <contact> of robot.xml' in said
     assert said in record["remarks"]
     assert said in shown.err
-
-
-def test_who_frees_a_number_of_a_contact_means_it(tmp_path, log):
-    path = make_robot(tmp_path, pedestal(), log, "q")
-    text = path.read_text().replace("free = [", 'free = ["geom/link.friction[0]", ')
-    path.write_text(text)
-    trust = ["wiring", "units"]
-    assert "far better" in read_robot(path, tmp_path / "log.csv", trust=trust).touches
 
 
 def test_a_pair_that_the_file_gives_is_cured_where_it_stands(tmp_path):

@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 import pytest
 from advice import advised
-from test_right_logs import ARM, MOTION, PENDULUM, heavy, no_gravity, payload, robot, tracked
+from test_right_logs import ARM, MOTION, PENDULUM, payload, robot, tracked
 
 from identification import InputError, write_log
 from identification.logs.units import UNITS
@@ -45,26 +45,17 @@ def test_both_are_told_and_what_is_told_mends_the_log(tmp_path, xml, signs, word
     refuse_miswired(own, mended)
 
 
-def test_both_are_told_of_a_model_that_is_not_quite_the_robot(tmp_path):
-    own, read = robot(tmp_path, ARM, mistaken(ARM, "deg", [1, -1], heavy), HORIZON)
-    with pytest.raises(InputError, match=r"turn the sign of q2") as refused:
-        refuse_miswired(own, read)
-    assert 'q1 = "deg" and q2 = "deg" (a line each)' in str(refused.value)
-
-
 def test_who_knows_better_overrules_both(tmp_path):
     own, read = robot(tmp_path, ARM, mistaken(ARM, "rev", [-1, 1]), "")
     refuse_miswired(replace(own, file=replace(own.file, trust=("units", "wiring"))), read)
 
 
-def test_a_motor_whose_sign_is_turned_is_told_beside_degrees(tmp_path):
-    log = mistaken(ARM, "deg", [1, 1])
-    own, read = robot(tmp_path, ARM, replace(log, inputs=log.inputs * [1, -1]), "")
-    with pytest.raises(InputError, match=r"turn the sign of u2: write u2 = -1 under \[factors\]"):
-        refuse_miswired(own, read)
-
-
-@pytest.mark.parametrize(("lacking", "horizon"), [(no_gravity, ""), (payload, HORIZON)])
+@pytest.mark.parametrize(
+    ("lacking", "horizon"),
+    [
+        (payload, HORIZON),
+    ],
+)
 def test_what_a_model_lacks_is_no_unit_and_no_sign(tmp_path, lacking, horizon):
     """Forces decide: where a payload or gravity explains them, no two mistakes are looked for."""
     truth = mujoco.MjModel.from_xml_string(ARM)
@@ -83,10 +74,8 @@ def exchanged(log, of, signs, turned):
 @pytest.mark.parametrize(
     ("of", "turned", "signs", "horizon"),
     [
-        ("outputs", "outputs", [-1, 1], ""),
         ("outputs", "inputs", [1, -1], HORIZON),
         ("inputs", "outputs", [-1, 1], HORIZON),
-        ("inputs", "inputs", [1, -1], ""),
     ],
 )
 def test_an_exchange_beside_a_turned_sign_is_told_and_mended(tmp_path, of, turned, signs, horizon):
@@ -108,7 +97,9 @@ def test_an_exchange_beside_a_turned_sign_is_told_and_mended(tmp_path, of, turne
 
 @pytest.mark.parametrize(
     ("outputs", "inputs", "horizon"),
-    [((1, 1), (-1, -1), ""), ((-1, 1), (1, -1), HORIZON)],
+    [
+        ((-1, 1), (1, -1), HORIZON),
+    ],
 )
 def test_two_turned_signs_are_told_and_mended(tmp_path, outputs, inputs, horizon):
     right = tracked(mujoco.MjModel.from_xml_string(ARM), MOTION[ARM])
@@ -123,20 +114,3 @@ def test_two_turned_signs_are_told_and_mended(tmp_path, outputs, inputs, horizon
     np.testing.assert_array_equal(*turns)  # all turned together: seen from behind
     assert len({*turns[0]}) == 1
     refuse_miswired(own, mended)
-
-
-def test_joint_and_drive_of_an_arm_that_are_turned_together_are_told(tmp_path):
-    """The joint beside it feels the other sign of its acceleration."""
-    right = tracked(mujoco.MjModel.from_xml_string(ARM), MOTION[ARM])
-    wrong = replace(right, outputs=right.outputs * [1, -1], inputs=right.inputs * [1, -1])
-    own, read = robot(tmp_path, ARM, wrong, "")
-    with pytest.raises(InputError, match=r"turn the sign of q\d, u\d: write"):
-        refuse_miswired(own, read)
-
-
-def test_an_exchange_and_a_sign_are_overruled_by_one_word(tmp_path):
-    right = tracked(mujoco.MjModel.from_xml_string(ARM), MOTION[ARM])
-    own, read = robot(tmp_path, ARM, exchanged(right, "outputs", [1, -1], "outputs"), "")
-    refuse_miswired(replace(own, file=replace(own.file, trust=("wiring",))), read)
-    with pytest.raises(InputError, match="exchanged and with the other sign"):
-        refuse_miswired(replace(own, file=replace(own.file, trust=("units",))), read)

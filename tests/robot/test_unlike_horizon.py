@@ -5,13 +5,10 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from records_cases import record
 from robot_cases import run
 from unlike_cases import NOISE, TOML, write_robot_and_logs
 
-from identification.prediction.record_errors import error_unit, errors_by_unit, record_errors
-from identification.prediction.records import Record
-from identification.report.error_words import change_words
+from identification.prediction.record_errors import error_unit, errors_by_unit
 
 PAIR = r"[\d.]+ [mµ]*rad{0} \(angles\) and [\d.]+ [mµ]*m{0} \(slides\)"
 ERRORS, SIZES = PAIR.format(" rms"), PAIR.format("")
@@ -79,26 +76,3 @@ def test_an_error_of_one_unit_does_not_depend_on_that_of_another():
         told = errors_by_unit(squares, scale, unlike({"turn": "rad", "way": "m"}))
         rms = np.sqrt(np.mean(e**2, axis=(0, 1)))
         assert told == {"rad": pytest.approx(rms[0]), "m": pytest.approx(rms[1])}
-
-
-def test_a_record_of_one_unit_has_one_error():
-    log = record(samples=50)
-    errors = [np.full((3, 5, 1), size) for size in (2e-3, 1e-3)]
-    (told,) = record_errors(
-        [Record(log, "fit")], np.array([1e-3]), (SimpleNamespace(of_outputs=()),) * 2,
-        ([errors[0]], [errors[1]]),
-    )  # fmt: skip
-    assert (told.before, told.after) == pytest.approx((2e-3, 1e-3))
-    assert told.before_by_unit == {"rad": pytest.approx(told.before)}
-    assert told.after_by_unit == {"rad": pytest.approx(told.after)}
-
-
-def test_a_change_in_words():
-    said, beside = change_words({"rad": 3.7e-3}, {"rad": 1.1e-3}, [{"rad": 1e-3}])
-    assert (said, beside) == ("from 3.7 mrad to 1.1 mrad rms", ["1 mrad"])
-    said, beside = change_words({"rad": 2e-3, "m": 5e-5}, {"rad": 1e-3, "m": 2e-5})
-    assert said == (
-        "from 2 mrad rms (angles) and 50 µm rms (slides) to 1 mrad rms (angles) and 20 µm rms"
-        " (slides)"
-    )
-    assert beside == []

@@ -14,7 +14,6 @@ from identification.logs.by_unit import relative
 from identification.report.discovery_json import discovery_to_json
 from identification.report.discovery_sections import gap_section, where_section
 from identification.report.discovery_text import discovery_text
-from identification.report.error_words import error_words
 from identification.report.fit_verdict import fit_verdict
 from identification.report.vector import svg
 
@@ -100,15 +99,6 @@ def test_a_search_along_a_free_run_is_refused(folder):
     robot = read_robot(folder / "robot.toml", folder / "first.csv")
     with pytest.raises(InputError, match=r"several units \(m, rad\).*horizon = 0.2"):
         discover(robot)
-
-
-def test_errors_in_words():
-    one, two = {"rad": 1.234e-3}, {"rad": 1e-3, "V": 0.2, "": 3.0}
-    assert error_words([one]) == ["1.2 mrad rms"]
-    assert error_words([one], "") == ["1.2 mrad"]
-    assert error_words([two]) == [
-        "1 mrad rms (angles), 200 mV rms (outputs in V) and 3 rms (outputs without unit)"
-    ]
 
 
 def test_relative_errors_are_the_same_in_every_unit():

@@ -42,7 +42,13 @@ def read(folder, xml, log, more="horizon = 0.3\n", **options):
     return read_robot(make_robot(folder, xml, log, "hip", more), folder / "log.csv", **options)
 
 
-@pytest.mark.parametrize("verb", ["fit", "discover", "linearize"])
+@pytest.mark.parametrize(
+    "verb",
+    [
+        "fit",
+        "linearize",
+    ],
+)
 def test_no_verb_begins_with_a_base_that_falls(tmp_path, capsys, log, verb):
     path = make_robot(tmp_path, leg(FREE), log, "hip")
     said = refused(capsys, verb, path, tmp_path / "log.csv", "--out", tmp_path / "out")
@@ -56,22 +62,14 @@ def test_no_verb_begins_with_a_base_that_falls(tmp_path, capsys, log, verb):
     ("joint", "said"),
     [
         ('<joint name="root" type="free"/>', "has a free joint 'root' of body trunk"),
-        (BALL, "has a ball joint 'neck' of body trunk"),
         (BALL, "delete the ball joint in line 5 of robot.xml; write hinges whose angles the log"),
-        (RAIL, "has a slide joint 'rise' of body trunk"),
         (RAIL, "delete the slide joint in line 5 of robot.xml; add a jointpos sensor and its col"),
-        (RAIL, "and it falls from there"),
-        (BALL, "so that the simulation begins with it where the model has it, at rest, and it mo"),
     ],
 )
 def test_each_kind_is_told_with_its_cure(tmp_path, log, joint, said):
     with pytest.raises(InputError) as caught:
         read(tmp_path, leg(joint), log, more="")
     assert said in str(caught.value)
-
-
-def test_the_cure_is_one(tmp_path, log):
-    assert read(tmp_path, leg(), log).log.output_names == ("hip",)
 
 
 def test_a_user_may_know_better(tmp_path, log):

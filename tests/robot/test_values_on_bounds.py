@@ -15,7 +15,6 @@ from identification import discover, fit, read_robot, write_log
 from identification.effects.moving_bodies import Felt
 from identification.model.coordinates import coordinates
 from identification.model.parameter import Parameter, ParameterSet
-from identification.report.bound_words import bound_sentences
 from identification.report.discovery_text import discovery_text
 from identification.robot.fit_json import robot_fit_to_json
 from identification.robot.write import write_robot
@@ -63,14 +62,6 @@ def test_what_lies_on_a_bound_of_a_search_lies_in_the_range_of_the_values(scale)
             assert low <= reached <= high
             assert reached == pytest.approx(bound, rel=1e-12)
             assert space.on_bound(q).all()
-
-
-def test_an_infinite_bound_stays_infinite():
-    p = Parameter(name="a", value=1.0, unit="", where="", lower=0.0)
-    for linear in ((), ("a",)):
-        space = coordinates(ParameterSet("one", (p,)), ["a"], np.array([1.0]), linear=linear)
-        assert np.isposinf(space.upper).all()
-        assert space.lower == (0.0 if linear else -np.inf)
 
 
 def test_an_inertia_that_alone_is_felt_is_bound_by_none_that_nothing_feels(tmp_path):
@@ -122,25 +113,3 @@ def test_a_search_tells_bounds_as_a_fit_does(tmp_path):
     assert row.endswith("on its bound")
     assert "±" not in row
     assert found.final.at_bound == (INERTIA,)
-
-
-def test_a_search_along_a_free_run_tells_them_too(tmp_path):
-    path = folder(tmp_path, ON_BASE, f"{FREE}{ONLY}", samples=420)
-    found = discover(read_robot(path, tmp_path / "1.csv"))
-    assert found.at_bound == (INERTIA,)
-    assert np.isnan(found.final.told_std[INERTIA])
-    said = discovery_text(found)
-    assert CAUSE in said
-    (row,) = (line for line in said.splitlines() if line.strip().startswith(INERTIA))
-    assert "±" not in row
-    assert "on its bound" in row
-
-
-def test_bounds_of_a_user_are_told_without_a_cause():
-    own = Parameter(name="d", value=1.0, unit="", where="", lower=0.0, upper=2.0)
-    told = Parameter(name="I", value=1.0, unit="", where="", upper=2.0, bounded_by="walls: go")
-    assert bound_sentences((own, told), ["d", "I [a]"]) == [
-        "At a bound: d; widen it or fix the parameter.",
-        "At a bound: I [a]; walls: go.",
-    ]
-    assert bound_sentences((own,), []) == []

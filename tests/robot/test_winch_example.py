@@ -64,23 +64,6 @@ def test_the_law_of_the_strokes_is_told_from_two_masses_and_both_directions():
     assert np.linalg.matrix_rank(strokes.law(mass, w)[mass == 5]) == 3
 
 
-def test_the_table_of_the_balance_says_what_its_columns_are(capsys):
-    mass, w = np.array([[m, w] for m in (1, 5) for w in (-12, -6, -3, 3, 6, 12)], dtype=float).T
-    mean = strokes.law(mass, w) @ [0.7, 3.3, 0.8, 0.12, 0.005]
-    none = np.zeros(0)
-    strokes.balance([
-        strokes.Stroke(int(m), motor, v, i, 0.01, none, none, none)
-        for motor in (0, 2) for m, v, i in zip(mass, w, mean, strict=True)
-    ])  # fmt: skip
-    head, *rows = capsys.readouterr().out.splitlines()
-    for column in ("motor", "mass", "speed of the drum", "mean current ± its std", "m g r"):
-        assert column in head
-    assert rows[0] == "motor 0, 1 kg, -1.91 rev/s:   3.02 ± 0.01 A, -15.2 % of m g r"
-    (letters,) = (row for row in rows if row.startswith("fitted: "))
-    for letter in ("i_0", "r", "c", "μ", "d"):
-        assert f" {letter} " in letters
-
-
 def record(current, seconds=0.6, step=0.03):
     """A log of a held current [A]; its travel means nothing, but there has to be some."""
     n = round(seconds / step)
