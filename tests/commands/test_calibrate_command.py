@@ -49,10 +49,8 @@ def test_a_folder_of_results_is_whole(files, tmp_path, capsys):
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
-        ([], "inca calibrate LOG"),
         (["{}/a.csv", "--spread", "huge"], "usual"),
         (["{}/a.csv", "{}/a.csv"], "given twice"),
-        (["{}/nothing.csv"], "nothing.csv"),
         (["{}/a.csv", "--spread", "none"], "inca identify"),
     ],
 )

@@ -15,7 +15,6 @@ from inca_mj.twin.run import load_run, simulate
 from inca_mj.twin.twin import build_twin
 
 LOG = Path(__file__).resolve().parents[2] / "examples" / "log.csv"
-PRACTICE = Path(__file__).parents[3] / "shared" / "data" / "practice_prbs"
 
 
 def run(*arguments: object) -> int:
@@ -120,13 +119,6 @@ def test_crosscheck_disagrees_aloud(
     )
     assert run("crosscheck", "--duration", 0.3, "--states", 10, "--json") == 1
     assert last_json(capsys)["passed"] is False
-
-
-@pytest.mark.skipif(not PRACTICE.is_dir(), reason="no practice logs beside this checkout")
-@pytest.mark.parametrize("name", ["log_000.csv", "log_060.csv"])
-def test_compare_reads_the_practice_logs(name: str, capsys: pytest.CaptureFixture[str]) -> None:
-    assert run("compare", PRACTICE / name, "--json") == 0
-    assert min(last_json(capsys)["fit_percent"]) > 50
 
 
 def test_a_log_with_a_pose_begins_there(kept: Path, capsys: pytest.CaptureFixture[str]) -> None:

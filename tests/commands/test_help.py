@@ -14,7 +14,7 @@ from identification.commands.cli import Command as RobotCommand
 from identification.commands.examples import examples_of
 from identification.commands.meter import metered
 from identification.commands.refusals import SHELLS, _commands, parsed
-from identification.progress import USUAL, counted, stage, watched
+from identification.progress import stage
 from identification.robot.trust import TRUST
 from inca_mj.cli import EXAMPLES, Command
 from inca_mj.cli import main as inca
@@ -76,7 +76,10 @@ def test_bash_completes_a_command(capsys):
     assert done.stdout.strip() == "calibrate"
 
 
-@pytest.mark.parametrize("words", [["tcsh"], [], ["bash", "zsh"]])
+@pytest.mark.parametrize(
+    "words",
+    [["tcsh"], ["bash", "zsh"]],
+)
 def test_another_shell_is_refused(capsys, words):
     assert inca(["--completion", *words]) == 2
     assert "give one of bash, zsh, fish" in capsys.readouterr().err
@@ -89,30 +92,6 @@ def test_progress_is_told_unless_it_shall_be_quiet(capsys, quiet):
     out, error = capsys.readouterr()
     assert out
     assert (error == "") is quiet
-
-
-def test_a_stage_counts_and_grows():
-    seen = []
-
-    class Watch:
-        def __init__(self, what, steps):
-            seen.append((what, steps))
-
-        def __enter__(self):
-            return lambda: seen.append(1)
-
-        def __exit__(self, *error):
-            seen.append("end")
-
-    assert [*counted("ab", "letters", 2)] == ["a", "b"]  # nobody watches
-    with watched(Watch):
-        assert [*counted("ab", "letters", 2)] == ["a", "b"]
-        with stage("steps") as advance:
-            advance()
-    assert seen == [("letters", 2), 1, 1, "end", ("steps", USUAL), 1, "end"]
-    with stage("steps") as advance:
-        advance()
-    assert seen[-1] == "end"
 
 
 class Screen(StringIO):
@@ -132,7 +111,10 @@ def test_bars_are_drawn_on_a_terminal_only(monkeypatch):
         assert ("refits" in screen.getvalue()) is drawn
 
 
-@pytest.mark.parametrize("verb", ["fit", "discover", "linearize"])
+@pytest.mark.parametrize(
+    "verb",
+    ["fit"],
+)
 def test_the_help_of_trust_lists_every_word(verb, capsys):
     with pytest.raises(SystemExit):
         identification([verb, "--help"])

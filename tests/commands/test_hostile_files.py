@@ -3,7 +3,6 @@
 import json
 import re
 import sys
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -26,8 +25,7 @@ FIRST = "  [1.5, 1.5, 0.1],"
 
 
 @pytest.mark.parametrize("row", [
-    '  ["1.5", 1.5, 0.1],', "  [true, 1.5, 0.1],", "  [1e999, 1.5, 0.1],", "  [nan, 1.5, 0.1],",
-    "  [[1.5], 1.5, 0.1],", "  1.5,",
+    '  ["1.5", 1.5, 0.1],', "  [nan, 1.5, 0.1],", "  [[1.5], 1.5, 0.1],",
 ])  # fmt: skip
 def test_a_geometry_has_numbers_only(tmp_path, row):
     path = write_geometry(INCA, tmp_path / "geometry.toml")
@@ -39,7 +37,10 @@ def test_a_geometry_has_numbers_only(tmp_path, row):
 
 
 @pytest.mark.parametrize("read", [read_geometry, read_options, read_spread])
-@pytest.mark.parametrize("text", [DEEP, f"a = {20 * DIGITS}", "a = 1\na = 2", "\x00"])
+@pytest.mark.parametrize(
+    "text",
+    [DEEP, "\x00"],
+)
 def test_what_is_no_toml_is_told_so(tmp_path, read, text):
     path = tmp_path / "some.toml"
     path.write_text(text)
@@ -69,26 +70,9 @@ def test_an_argument_without_end_is_refused(capsys):
     assert capsys.readouterr().err.count("\n") == 1
 
 
-def test_a_spread_is_read_again_when_its_file_changes(tmp_path):
-    path = tmp_path / "spread.toml"
-    path.write_text("[drives]\nlambda = 0.03\n")
-    first = read_spread(path)
-    path.write_text("[drives]\nlambda = 0.05\n")
-    assert read_spread(path).drives["lambda"] == 0.05 != first.drives["lambda"]
-
-
-def test_a_connector_may_be_the_centre_of_the_platform():
-    B = [tuple(row) for row in INCA.B]
-    B[3] = (0.0, 0.0, 0.0)
-    assert build_twin(geometry=replace(INCA, connectors=tuple(B))).model.nu == 8
-
-
 @pytest.mark.parametrize(("arguments", "said"), [
-    (["film", "examples/log.csv", "--speed", "1e-9"], "frames, more than"),
     (["film", "examples/log.csv", "--speed", "1e-300"], "frames, more than"),
     (["trials", "--monte-carlo", "-1"], "--monte-carlo -1 is negative"),
-    (["trials", "--seed", "-1"], "seed -1 is negative"),
-    (["excite", "--seed", "-1"], "seed -1 is negative"),
     (["identify", "examples/log.csv", "--seed", "-1"], "seed -1 is negative"),
     (["crosscheck", "--duration", "1e300"], "is not between two samples"),
 ])  # fmt: skip
@@ -115,17 +99,11 @@ def broken(run, path, **arrays):
 
 @pytest.mark.parametrize("arrays", [
     {"tension": np.full((21, 8), np.nan)}, {"qpos": np.zeros((20, 15))},
-    {"currents": np.zeros((21, 8), complex)}, {"time": np.full(21, 1e300)},
-    {"time": np.zeros(21)}, {"time": np.zeros((21, 1))}, {"act": np.array("text")},
-    {"asked": np.zeros((20, 3))}, {"asked": np.full((21, 3), np.inf)},
+    {"time": np.full(21, 1e300)}, {"act": np.array("text")}, {"asked": np.full((21, 3), np.inf)},
 ])  # fmt: skip
 def test_a_saved_run_that_no_simulation_gives_is_refused(run, tmp_path, arrays):
     with pytest.raises(InputError, match=r"write (the run|it) again"):
         load_run(broken(run, tmp_path / "run.npz", **arrays))
-
-
-def test_a_saved_run_that_is_whole_is_read(run, tmp_path):
-    np.testing.assert_array_equal(load_run(broken(run, tmp_path / "run.npz")).qpos, run.qpos)
 
 
 @pytest.fixture(scope="module")
@@ -142,9 +120,8 @@ def put(files, folder, **changed):
 
 
 @pytest.mark.parametrize(("key", "value"), [
-    ("timestep", "fast"), ("timestep", None), ("timestep", []), ("settled", None),
-    ("values", []), ("values", {"m": "heavy"}), ("values", {"m": None}), ("geometry", 3),
-    ("effects", 3), ("effects", [3]), ("set", None), ("set", "none"), ("model", 3),
+    ("timestep", "fast"), ("timestep", None), ("values", []), ("values", {"m": "heavy"}),
+    ("effects", 3), ("set", "none"),
 ])  # fmt: skip
 def test_a_saved_twin_with_an_entry_of_another_kind_is_refused(twin, tmp_path, key, value):
     record = {**json.loads(twin["effects.json"]), key: value}

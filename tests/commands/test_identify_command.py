@@ -103,7 +103,10 @@ def test_windows_can_be_asked_for(log: Path, capsys: pytest.CaptureFixture[str])
     assert "give a length above 0" in refused(capsys, log, "--windows", "nan")
 
 
-@pytest.mark.parametrize("options", [[], ["--innovations"], ["--windows", "0.25"]])
+@pytest.mark.parametrize(
+    "options",
+    [[], ["--windows", "0.25"]],
+)
 def test_an_interrupt_keeps_the_best_values_and_is_told_by_the_exit_code(
     log: Path,
     monkeypatch: pytest.MonkeyPatch,

@@ -5,6 +5,11 @@ from importlib.metadata import version
 import pytest
 
 from identification.__main__ import main as identification
+from identification.commands.cli import Command
+from identification.commands.repeated import gathered
+from identification.errors import LISTED, NEAREST, unknown_name
+from identification.native.cache import VARIABLE, enabled
+from inca_mj.cli import Command as IncaCommand
 from inca_mj.cli import main as inca
 
 WRONG = [
@@ -65,18 +70,47 @@ def test_the_version_is_one_line(capsys, program, name):
     assert said.count("\n") == 1
 
 
-@pytest.mark.parametrize("command", ["compare", "identify", "discover", "calibrate", "film"])
-def test_help_calls_a_log_a_log(capsys, command):
-    with pytest.raises(SystemExit) as end:
-        inca([command, "--help"])
-    assert not end.value.code
-    said = capsys.readouterr().out
-    assert "LOG" in said.split("options", 1)[0]
+def test_all_good_names_are_listed_and_the_likely_one_is_first():
+    said = str(unknown_name("unit", "amp", ["volt", "ampere", "metre"]))
+    assert said == "unknown unit 'amp'; did you mean 'ampere'? known: ampere, metre, volt"
 
 
-def test_a_list_of_options_has_no_arguments_that_are_none(capsys):
-    """What is given without an option is no option to choose."""
-    assert inca(["discover", "a.csv", "--nope"]) == 2
-    said = capsys.readouterr().err
-    assert "--confirm" in said
-    assert "--log" not in said
+def test_of_very_many_names_the_nearest_are_listed():
+    names = [f"joint_{k}.damping" for k in range(LISTED)]
+    assert str(unknown_name("parameter", "nothing", names)).count("joint_") == LISTED
+    many = [*names, "mass"]
+    said = str(unknown_name("parameter", "joint_7.damp", many))
+    assert "did you mean 'joint_7.damping'? known: " in said
+    assert said.endswith(f" and {len(many) - NEAREST} more")
+    listed = said.partition("known: ")[2].partition(" and ")[0].split(", ")
+    assert len(listed) == NEAREST
+    assert listed == sorted(listed)
+    assert "joint_7.damping" in listed
+
+
+@pytest.mark.parametrize(
+    ("commands", "written", "read"),
+    [
+    (IncaCommand, "identify a.csv --free A --free B", "identify a.csv --free A B"),
+    (IncaCommand, "identify a.csv --free A B --json --free=C",
+         "identify a.csv --free A B C --json"),
+    (IncaCommand, "identify a.csv --param m=1 --seed 3 --param=b=2",
+         "identify a.csv --param m=1 b=2 --seed 3"),
+    (Command, "fit r.toml a.csv --confirm b.csv --json --confirm c.csv -- --free",
+         "fit r.toml a.csv --confirm b.csv c.csv --json -- --free"),
+    (Command, "fit --help", "fit --help"),
+],
+)  # fmt: skip
+def test_what_is_repeated_adds_up(commands, written, read):
+    assert gathered(commands, written.split()) == read.split()
+
+
+@pytest.mark.parametrize(
+    "word",
+    ["off", "NO "],
+)
+def test_words_that_switch_the_cache_off(monkeypatch, word):
+    monkeypatch.setenv(VARIABLE, word)
+    assert not enabled()
+    monkeypatch.setenv(VARIABLE, "")
+    assert enabled()

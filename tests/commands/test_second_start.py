@@ -3,6 +3,7 @@
 import json
 import subprocess
 import sys
+from pathlib import Path
 
 from inca_mj.cli import main
 from inca_mj.files import example_path
@@ -57,3 +58,50 @@ def test_the_usual_folder_of_a_run_is_refused_where_it_holds_other_files(
     assert main(["simulate", "--duration", "0.05"]) == 2
     assert "notes.txt" in capsys.readouterr().err
     assert [p.name for p in (tmp_path / "out" / "simulate").iterdir()] == ["notes.txt"]
+
+
+ROOT = Path(__file__).parents[2]
+LOG = str(ROOT / "examples" / "log.csv")
+HEAVY = ("mujoco", "matplotlib", "numba", "scipy")
+LINES = [
+    ["film", "no.csv"],
+    ["film", str(ROOT / "README.md")],
+    ["film", str(ROOT)],
+    ["film", LOG, "--speed", "0"],
+    ["film", LOG, "--seconds", "-1"],
+    ["film", LOG, "--magnify", "0"],
+    ["film", LOG, "--title", "a", "b"],
+    ["film", LOG, LOG, LOG],
+    ["film", LOG, "--param", "q=1"],
+    ["film", LOG, "--model", "no"],
+    ["film", LOG, "--model", "no", "--param", "m=0.2"],
+    ["linearize", "--pose", "1", "2"],
+    ["linearize", "--pose", "9", "9", "9", "0", "0", "0"],
+    ["linearize", "--log", "no.csv", "--time", "1"],
+    ["linearize", "--log", LOG],
+    ["linearize", "--grid", "x=1:2:1"],
+    ["linearize", "--grid", "q=1:2:3"],
+    ["linearize", "--rate", "-4"],
+    ["linearize", "--param", "q=1"],
+    ["linearize", "--step", "0"],
+    ["linearize", "--geometry", "no.toml"],
+]
+CODE = f"""
+import json, sys
+from inca_mj.cli import main
+out = []
+for line in json.loads(sys.argv[1]):
+    out.append([main(line), sorted(m for m in {HEAVY!r} if m in sys.modules)])
+print(json.dumps(out))
+"""
+
+
+def test_films_and_linear_models_refuse_before_heavy_imports(tmp_path):
+    done = subprocess.run(
+        [sys.executable, "-c", CODE, json.dumps(LINES)], cwd=tmp_path, capture_output=True,
+        text=True, check=True,
+    )  # fmt: skip
+    for line, (code, heavy) in zip(LINES, json.loads(done.stdout), strict=True):
+        assert (code, heavy) == (2, []), line
+    assert len(done.stderr.splitlines()) == len(LINES)  # a sentence each
+    assert not [*tmp_path.iterdir()]

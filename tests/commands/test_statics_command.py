@@ -7,9 +7,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from statics_cases import EDGES, RADIAL
+from statics_cases import RADIAL
 
-from identification.errors import InputError
 from inca_mj.cli import main
 from inca_mj.robot.geometry import write_geometry
 from inca_mj.robot.parameters import GRAVITY, parameter_set
@@ -97,12 +96,9 @@ def test_cables_are_watched_along_a_log():
     [
         (("--pose", 0, 0, 5, 0, 0, 0), "cannot be reached: z = 5 m lies outside the frame"),
         (("--pose", 1.2, 1.2, 0.3, 0, 0, 0), "rank 6 without closure"),
-        (("--force-on-handle", 0, 0, -30), "is slack|outside the frame|no tensions between"),
         (("--current", 0.0, 0.001, "--pose", 0.2, 0, 1.2, 0, 0, 0), "no tensions between"),
         (("--current", 2, 1), "give the smaller one first"),
-        (("--rho", 0), "give masses per length above zero"),
         (("--cells", 1, "--workspace", "static"), "1 cells along an edge"),
-        (("--workspace", "large"), "--workspace is 'large'; give one of"),
     ],
 )
 def test_what_cannot_be_is_refused_in_one_sentence(capsys, tmp_path, arguments, sentence):
@@ -115,14 +111,12 @@ def test_what_cannot_be_is_refused_in_one_sentence(capsys, tmp_path, arguments, 
     assert not out.exists()
 
 
-@pytest.mark.parametrize(("layout", "sentence"), [(EDGES, "rank 6"), (RADIAL, "rank 5")])
+@pytest.mark.parametrize(
+    ("layout", "sentence"),
+    [(RADIAL, "rank 5")],
+)
 def test_layouts_without_closure_are_refused(capsys, tmp_path, layout, sentence):
     path = write_geometry(layout, tmp_path / "layout.toml")
     assert run("statics", "--geometry", path) == 2
     said = capsys.readouterr().err
     assert sentence in said or "cannot exert" in said or "would have to push" in said
-
-
-def test_a_pose_that_is_none_is_refused():
-    with pytest.raises(InputError, match="six finite numbers"):
-        analyse_statics(pose=np.zeros(3))

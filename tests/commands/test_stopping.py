@@ -89,15 +89,3 @@ def wrap() -> None:
 def test_an_interrupt_that_a_library_made_another_error_of_is_one():
     with pytest.raises(KeyboardInterrupt), stoppable("robot"):
         wrap()
-
-
-def test_another_error_stays_what_it_is():
-    with pytest.raises(TypeError, match="argument"), stoppable("robot"):
-        raise TypeError("argument")
-
-
-@pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
-def test_an_interrupt_after_the_end_changes_nothing():
-    late = "import os, signal; from identification.commands.stopping import at_end; at_end();"
-    late += "os.kill(os.getpid(), signal.SIGINT)"
-    assert subprocess.run([sys.executable, "-c", late], check=True).returncode == 0

@@ -41,9 +41,7 @@ BAD, GOOD = "P fit nope.toml log.csv", "P fit robot.toml log.csv"
 
 
 @pytest.mark.parametrize(("line", "code"), [
-    (f"{BAD} 2>&-", 2), (f"{BAD} 2>/dev/full", 2), (f"{BAD} >&- 2>&-", 2), (f"{BAD} <&-", 2),
-    (f"{GOOD} 2>/dev/full", 0), (f"{GOOD} 2>&-", 0), ("P --help >&-", 0),
-    ("P --help 2>&- | true", 0),
+    (f"{BAD} 2>&-", 2), (f"{BAD} >&- 2>&-", 2), (f"{GOOD} 2>/dev/full", 0), ("P --help >&-", 0),
 ])  # fmt: skip
 def test_the_exit_code_is_that_of_the_work(folder, line, code):
     ended, _, said = shell(folder, line)
@@ -51,7 +49,10 @@ def test_the_exit_code_is_that_of_the_work(folder, line, code):
     assert b"Traceback" not in said
 
 
-@pytest.mark.parametrize("line", [f"{GOOD} --quiet", "P --help"])
+@pytest.mark.parametrize(
+    "line",
+    ["P --help"],
+)
 def test_a_full_standard_output_is_named(folder, line):
     code, _, said = shell(folder, f"{line} >/dev/full")
     assert code == 2

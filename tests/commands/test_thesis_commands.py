@@ -112,15 +112,11 @@ def test_a_finer_step_keeps_the_effects(saved):
 @pytest.mark.parametrize(("arguments", "said"), [
     (["simulate", "--figure", "2.17"], r"unknown figure '2\.17'; did you mean '2\.16'\?"),
     (["simulate", "--figure", "2.16", "--input", "prbs"], "made with --input step, not prbs"),
-    (["simulate", "--figure", "3.2", "--set", "simulation"], "made with --set trial"),
     (["simulate", "--force-at", "1", "0", "0"], "give the force with --force"),
     (["simulate", "--force", "1e9", "0", "0"], "outside its range"),
-    (["simulate", "--force", "nan", "0", "0"], "give finite numbers"),
     (["simulate", "--model", "no/such/folder"], r"no .*effects\.json; inca discover --out"),
     (["simulate", "--model", "x", "--param", "m=0.2"], "--model is a whole robot"),
-    (["compare", "examples/log.csv", "--model", "no/such"], r"no .*effects\.json"),
     (["identify", "examples/log.csv", "--procedure", "thesis", "--free", "m"], "leave out --free"),
-    (["thesis", "--seed", "-1"], "seed -1 is negative"),
 ])  # fmt: skip
 def test_what_cannot_be_is_refused(monkeypatch, capsys, tmp_path, arguments, said):
     monkeypatch.chdir(ROOT)

@@ -11,6 +11,12 @@ from advice import advised
 from identification import InputError, write_log
 from inca_mj.cli import main
 from inca_mj.twin.logs import JUDGED, read_inca_log
+from inca_mj.robot.inputs import make_input
+from inca_mj.twin.cable_lengths import some, unreached_share
+from inca_mj.twin.followed_log import follow, places_of
+from inca_mj.twin.judged import JUDGED
+from inca_mj.twin.logs import read_inca_log, run_to_log
+from inca_mj.twin.run import simulate
 from inca_mj.twin.twin import build_twin
 from inca_mj.twin.wiring import refuse_miswired
 from inca_mj.workflows.comparison import compare, compare_twin
@@ -49,12 +55,8 @@ def said_of(log, plant, trust=()):
     ("at", "back", "word"),
     [
         (range(8), (2,), "rad"),
-        (range(8), (), "deg"),
-        ((0, 1, 5, 3, 4, 2, 6, 7), (), "rad"),
         ((1, 2, 0, 3, 4, 5, 6, 7), (1, 6), "rad"),
-        *[(range(8), (k,), word) for k, word in ((7, "mrad"), (0, "rev"))],
         (range(8), (1, 4, 6), "deg"),
-        ((1, 2, 0, 3, 4, 5, 6, 7), (0, 5), "deg"),
     ],
 )
 def test_what_is_told_mends_the_log(plant, tmp_path, at, back, word):
@@ -78,19 +80,9 @@ def test_degrees_and_a_turned_sign_are_told_in_one_sentence_and_overruled_by_two
     refuse_miswired(wrong, plant, ["wiring", "units"])
 
 
-def test_one_angle_in_degrees_is_told_beside_the_turned_sign_of_another(plant):
-    factors = np.array([1, -1, 1, 1, 1, 1 / UNIT["deg"], 1, 1])
-    said = said_of(replace(LOG, outputs=LOG.outputs * factors), plant)
-    assert "angle_2 = -1 under [factors]" in said
-    assert 'write angle_6 = "deg" under [units]' in said
-
-
 @pytest.mark.parametrize(
     ("wrong", "word", "told"),
-    [
-        (mistaken(back=(2,)), "wiring", "turn the sign of angle_3"),
-        (mistaken(word="rev"), "units", "must be in radians"),
-    ],
+    [(mistaken(back=(2,)), "wiring", "turn the sign of angle_3")],
 )
 def test_compare_judges_a_log_as_the_searches_do(plant, tmp_path, capsys, wrong, word, told):
     path = str(written(wrong, tmp_path))
@@ -124,23 +116,6 @@ def test_compare_judges_currents_and_large_numbers_too(tmp_path, capsys):
         capsys.readouterr()
 
 
-def test_a_log_in_degrees_is_not_told_to_begin_elsewhere(tmp_path, capsys):
-    path = written(mistaken(word="deg"), tmp_path)
-    assert main(["film", str(path)]) == 2  # it draws a log as it is, however far it moves
-    said = capsys.readouterr().err
-    assert "rad, far more than an encoder makes, so that the file is likely not in radians" in said
-    assert "if its angles are in degrees, and else the unit that they are in" in said
-    assert "subtract" not in said
-    path.with_suffix(".toml").write_text(advised(said))
-    np.testing.assert_allclose(read_inca_log(path).outputs, LOG.outputs, rtol=1e-9, atol=1e-12)
-
-
-def test_a_log_that_begins_in_motion_is_told_to_begin_at_rest(tmp_path):
-    moving = LOG.between(1.0, 4.0)
-    with pytest.raises(InputError, match="cut it where the robot rests and subtract its angles"):
-        read_inca_log(written(moving, tmp_path))
-
-
 def test_compare_shows_a_right_log_the_same_whether_it_is_judged_or_not():
     np.testing.assert_array_equal(compare(LOG).rms, compare(LOG, trust=tuple(JUDGED)).rms)
 
@@ -148,3 +123,123 @@ def test_compare_shows_a_right_log_the_same_whether_it_is_judged_or_not():
 def test_compare_refuses_an_unknown_word():
     with pytest.raises(InputError, match=r"'wires'.*sensors, units, wiring"):
         compare(LOG, trust=["wires"])
+
+
+RIGHT, NONE = (0, 1, 2, 3, 4, 5, 6, 7), ()
+CYCLED = (0, 4, 2, 3, 6, 5, 1, 7)
+
+
+def places(at, back):
+    """A signed permutation: column k is that of drive at[k], with the other sign if k is back."""
+    return np.eye(8)[:, list(at)] * np.where(np.isin(np.arange(8), list(back)), -1, 1)
+
+
+@pytest.mark.parametrize(
+    ("angles", "currents", "unit", "told"),
+    [
+        ((RIGHT, (3,)), (RIGHT, (3,)), 1.0, "turn the sign of angle_4, current_4: write"),
+        ((RIGHT, NONE), ((2, 1, 0, 3, 4, 5, 6, 7), (2, 5)), 1.0, "turn the sign of the new"),
+        ((CYCLED, NONE), (CYCLED, NONE), 1.0, "drives 2, 5, 7 numbered in another order"),
+    ],
+)
+def test_what_is_told_of_several_columns_mends_the_log(
+    plant, tmp_path, angles, currents, unit, told
+):
+    y, u = LOG.outputs @ places(*angles) / unit, LOG.inputs @ places(*currents)
+    wrong = replace(LOG, outputs=y, inputs=u, units={})
+    with pytest.raises(InputError, match=told) as refused:
+        refuse_miswired(wrong, plant)
+    path = tmp_path / "log.csv"
+    write_log(wrong, path)
+    path.with_suffix(".toml").write_text(advised(str(refused.value)))
+    mended = read_inca_log(path)
+    np.testing.assert_allclose(mended.outputs, LOG.outputs, rtol=1e-9, atol=1e-12)
+    np.testing.assert_allclose(mended.inputs, LOG.inputs, rtol=1e-9, atol=1e-12)
+    refuse_miswired(mended, plant)
+
+
+def test_drives_in_reverse_order_are_told_up_to_the_symmetry_of_the_robot(plant, tmp_path):
+    wrong = replace(LOG, outputs=LOG.outputs[:, ::-1], inputs=LOG.inputs[:, ::-1])
+    with pytest.raises(InputError, match=r"numbered in another order.*robot is symm") as refused:
+        refuse_miswired(wrong, plant)
+    path = tmp_path / "log.csv"
+    write_log(wrong, path)
+    path.with_suffix(".toml").write_text(advised(str(refused.value)))
+    mended = read_inca_log(path)
+    shares = unreached_share(plant, np.stack([some(log.outputs) for log in (mended, LOG)]))
+    assert shares[0] < 3 * shares[1]
+    refuse_miswired(mended, plant)
+
+
+def test_a_current_that_was_not_logged(plant):
+    u = LOG.inputs.copy()
+    u[:, 3] = 0.0
+    wrong = replace(LOG, inputs=u)
+    with pytest.raises(InputError, match="current_4 stands still at 0 A") as refused:
+        refuse_miswired(wrong, plant)
+    assert "write --trust sensors" in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("of", "drive", "factor", "told"),
+    [
+        ("outputs", 3, 1 / (2 * np.pi), r'write angle_4 = "rev" under \[units\]'),
+        *(
+            pytest.param(*case, marks=pytest.mark.long)
+            for case in (
+                ("inputs", 4, 2.0, r"write current_5 = 0.(4\d|5\d?) under \[factors\]"),
+                ("outputs", 6, 0.5, r"write angle_7 = (1.9|2|2.1) under \[factors\]"),
+                ("outputs", 1, 2.0, r"write angle_2 = 0.(4[5-9]|5\d?) under \[factors\]"),
+                ("inputs", 4, 0.5, r"write current_5 = (1.[89]|2|2.[12]) under \[factors\]"),
+            )
+        ),
+    ],
+)
+def test_one_column_of_another_scale_is_told(plant, of, drive, factor, told):
+    scale = np.where(np.arange(8) == drive, factor, 1.0)
+    wrong = replace(LOG, **{of: getattr(LOG, of) * scale})
+    with pytest.raises(InputError, match=told) as refused:
+        refuse_miswired(wrong, plant)
+    assert "write --trust units" in str(refused.value)
+    refuse_miswired(wrong, plant, ["units"])
+
+
+def test_angles_belong_to_poses_of_one_platform_in_the_right_order_only(plant):
+    y = some(LOG.outputs)
+    right, backward = unreached_share(plant, np.stack([y, y[:, ::-1]]))
+    assert right < 1e-3
+    assert backward > 10 * right
+    still = unreached_share(plant, np.zeros((1, 3, 8)))
+    assert np.isinf(still).all()
+
+
+@pytest.mark.parametrize(
+    "level",
+    [0.75],
+)
+def test_a_current_that_was_kept_constant_is_right(plant, level):
+    u = make_input("prbs", 3.0, seed=1)
+    u[:, 2] = level
+    heavier = plant.with_values({"m": 0.25, "b_c": 0.008})
+    refuse_miswired(run_to_log(simulate(heavier, u)), plant)
+
+
+def test_a_unit_is_not_blamed_where_the_motion_has_another_shape(plant):
+    rng = np.random.default_rng(3)
+    walk = np.cumsum(rng.standard_normal(LOG.outputs.shape), axis=0)
+    wrong = replace(LOG, outputs=20 * (walk - walk[0]))
+    with pytest.raises(InputError, match="it is not clear what is wrong: check") as refused:
+        refuse_miswired(wrong, plant)
+    assert "write --trust wiring units" in str(refused.value)
+    refuse_miswired(wrong, plant, ["wiring", "units"])
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_currents_that_make_the_twin_follow_tell_every_place_and_sign(plant, seed):
+    rng = np.random.default_rng(seed)
+    wrong = places(rng.permutation(8), np.flatnonzero(rng.integers(0, 2, 8)))
+    followed = follow(plant, LOG)
+    assert followed is not None
+    mixed = replace(LOG, inputs=LOG.inputs @ wrong)
+    np.testing.assert_array_equal(places_of(mixed, followed[0]), wrong)
+    assert np.abs(followed[1] - LOG.outputs).max() < 0.2 * np.ptp(LOG.outputs)

@@ -1,7 +1,5 @@
 """Refits of a first effect begin anew where the model without it went to a limit."""
 
-from dataclasses import replace
-
 import pytest
 from discovery_cases import EFFECTS, OPTIONS, SENSOR, record, slider, task, wander
 
@@ -10,10 +8,10 @@ from identification.discovery.fitted_model import (
     list_parameters_at_limit,
     score_candidates,
 )
-from identification.discovery.scoring.sensitivities import Sensitivity, compute_sensitivities
+from identification.discovery.scoring.sensitivities import compute_sensitivities
 from identification.discovery.selection import anew
 from identification.discovery.selection.anew import begin_anew
-from identification.effects.effect import Candidate, Shape
+from identification.effects.effect import Candidate
 
 K = 5.0
 ROBOT = {"mass": 2.2, "damping": 2.7, "x0": 0.01, "v0": 0.02, "spring.k": K}
@@ -59,36 +57,3 @@ def test_nothing_changes_where_no_parameter_is_at_a_limit(asked, plain, monkeypa
     monkeypatch.setattr(anew, "try_fit", None)
     assert begin_anew(asked, [plain], ()) == [plain]
     assert begin_anew(asked, [], ()) == []
-
-
-def test_each_kind_begins_at_its_best_score_and_a_worse_fit_is_not_taken(asked, plain, monkeypatch):
-    own = replace(candidate("spring").effect, shapes=(
-        Shape("at", "s", (1.0, 2.0), 0.1, 9.0),
-        Shape("kind", "", (0.0, 1.0), 0.0, 1.0, free=False),
-    ))  # fmt: skip
-    (S,) = compute_sensitivities(plain.refit.point, [candidate("spring")])
-    weights = {(0.0, 1.0): 1.0, (0.0, 2.0): 0.4, (1.0, 1.0): 0.4, (1.0, 2.0): 1.0}
-    every = [Candidate(own, "joint", {"kind": kind, "at": at}) for kind, at in weights]
-    (_, half) = compute_sensitivities(plain.refit.point, [candidate("spring"), candidate("offset")])
-    mixed = [
-        Sensitivity(c, w * S.S + (1 - w) * 20 * half.S)
-        for c in every
-        for w in (weights[c.shape["kind"], c.shape["at"]],)
-    ]
-    scores = score_candidates(plain, mixed, OPTIONS)
-    old = stuck(asked, "spring.k", 0.1)
-    old = replace(old, candidates=(every[0],))
-    tried = []
-
-    def worse(task, candidates, start, **_):
-        tried.append((candidates[0].shape, start))
-        level = replace(old.refit.level, log_likelihood=old.refit.level.log_likelihood - 1)
-        return replace(old, candidates=candidates, refit=replace(old.refit, level=level))
-
-    monkeypatch.setattr(anew, "try_fit", worse)
-    assert begin_anew(asked, [old], scores) == [old]
-    assert sorted((s["kind"], s["at"]) for s, _ in tried) == [(0.0, 1.0), (1.0, 2.0)]
-    for shape, start in tried:
-        (s,) = (s for s in scores if s.candidate.shape == shape)
-        assert start["spring.k"] == s.size[0]
-        assert "mass" not in start

@@ -19,7 +19,6 @@ from discovery_cases import (
 )
 
 from identification import Log, Parameter, ParameterSet
-from identification.discovery import deviants
 from identification.discovery.deviants import accept_deviants, find_deviants
 from identification.discovery.fitted_model import fit_model
 from identification.discovery.nominal_model import NominalModel
@@ -100,43 +99,6 @@ def test_parts_as_parts_are_change_nothing():
     assert accept_deviants(task, model, 8, print) == (model, ())
 
 
-def test_a_part_that_is_not_needed_beyond_its_bound_is_taken_out(monkeypatch):
-    task, model = asked(**{"part.k": 6.0, "part.f": 0.02})
-    # With less trust in parts the force is beyond its bound too, but not by as much as matters.
-    tight = np.array([*KNOWN, 0.3, 1e-3])
-    task = replace(task, nominal_model=replace(task.nominal_model, std=tight))
-    found = find_deviants(task, model)
-    assert sorted(c.effect.name for c in found) == ["offset", "spring"]
-    tried = []
-    try_fit = deviants.try_fit
-
-    def told(task, candidates, *arguments, **named):
-        tried.append([c.effect.name for c in candidates])
-        return try_fit(task, candidates, *arguments, **named)
-
-    monkeypatch.setattr(deviants, "try_fit", told)
-    _, accepted = accept_deviants(task, model, 8, print)
-    assert names(accepted) == ["spring"]
-    assert [sorted(each) for each in tried[:1]] == [["offset", "spring"]]
-    assert all(len(each) < 2 for each in tried[1:])
-
-
-def test_the_parent_has_none_of_the_effects_whichever_is_kept(monkeypatch):
-    task, model = asked(**{"part.k": 6.0, "part.f": 0.4})
-    answers = iter([True, False])  # the nearest is kept, the farthest is not
-    monkeypatch.setattr(deviants, "is_confirmed", lambda *_: next(answers))
-    parent, accepted = accept_deviants(task, model, 8, print)
-    (only,) = accepted
-    assert parent.candidates == ()
-    assert only.model.candidates == (only.candidate,)
-
-
-def test_where_the_robot_cannot_be_simulated_all_stays_as_it_was(monkeypatch):
-    task, model = asked(**{"part.k": 6.0})
-    monkeypatch.setattr(deviants, "try_fit", lambda *_, **__: None)
-    assert accept_deviants(task, model, 8, print) == (model, ())
-
-
 @pytest.mark.parametrize(("share", "found"), [(1.05, ["spring"]), (0.95, [])])
 def test_a_part_that_may_as_well_be_within_its_bound_is_none(share, found):
     """Held there it must cost more than BIC asks, of what the data and not the prior say of it."""
@@ -148,27 +110,3 @@ def test_a_part_that_may_as_well_be_within_its_bound_is_none(share, found):
     std[at] = (of_data + PARTS["part.k"] ** -2) ** -0.5
     unsure = replace(model, refit=replace(model.refit, std=std))
     assert [c.effect.name for c in find_deviants(task, unsure)] == found
-
-
-def test_common_values_are_free_again_in_the_end(monkeypatch):
-    task, model = asked(**{"part.k": 6.0, "part.f": 0.02})
-    tight = np.array([*KNOWN, 0.3, 1e-3])  # so that the force is tried too, and not kept
-    task = replace(task, nominal_model=replace(task.nominal_model, std=tight))
-    held, try_fit = [], deviants.try_fit
-
-    def told(task, candidates, *arguments, **named):
-        held.append((len(candidates), "mass" in task.nominal_model.held))
-        return try_fit(task, candidates, *arguments, **named)
-
-    def hold(task, *_):
-        return replace(task, nominal_model=replace(task.nominal_model, held={"mass": (1.0, 3.0)}))
-
-    monkeypatch.setattr(deviants, "_with_common_held", hold)
-    monkeypatch.setattr(deviants, "try_fit", told)
-    parent, accepted = accept_deviants(task, model, 8, print)
-    assert names(accepted) == ["spring"]
-    assert parent.candidates == ()
-    ones = [is_held for count, is_held in held if count == 1]
-    assert ones[0]  # without the first
-    assert not ones[-1]  # and in the end
-    assert accepted[0].model.candidates == (accepted[0].candidate,)

@@ -18,12 +18,9 @@ from discovery_cases import (
 )
 
 from identification import InputError
-from identification.discovery.effect_results import RejectedEffect
-from identification.discovery.findings.evidence import StructuredInputError
-from identification.discovery.findings.finding import Finding, FindingKind
+from identification.discovery.findings.finding import FindingKind
 from identification.discovery.search import discover
-from identification.discovery.verdict import compute_explained_share, conclude
-from identification.effects.effect import Candidate
+from identification.discovery.verdict import conclude
 
 OFFSET = {"offset.f": -0.8}
 
@@ -62,12 +59,6 @@ def test_the_verdict_is_that_of_a_search_that_is_stepped():
     assert [n.confidence for n in answer.named] == [n.confidence for n in whole.named]
 
 
-def test_what_is_too_strong_for_a_linear_score_is_at_least_not_misnamed():
-    answer = found(**{"spring.k": 15.0})
-    assert answer.verdict in ("named", "unknown effect")
-    assert {n.candidate.effect.name for n in answer.named} <= {"spring"}
-
-
 def test_where_nothing_is_missing_it_says_so_and_what_it_would_have_seen():
     answer = found()
     assert answer.verdict == "nothing missing"
@@ -90,61 +81,12 @@ def test_what_fitted_samples_want_and_unseen_ones_do_not_prove_is_neither_named_
     assert doubt.rejected is offset
 
 
-@pytest.mark.parametrize("sizes", [{"spring.k": 5.0}, {}])
-def test_an_effect_that_hides_as_an_error_of_the_inputs_is_refitted_although_its_score_is_luck(
-    monkeypatch, sizes
-):
-    monkeypatch.setattr(
-        "identification.discovery.selection.forward_selection.select_significant",
-        lambda scores, options: [],
-    )
-    answer = found(**sizes)
-    assert {f"{n.candidate.effect.name}.k" for n in answer.named} == set(sizes)
-    assert answer.verdict == ("named" if sizes else "nothing missing")
-
-
 @pytest.mark.parametrize("vibration", [0.0, 0.1])
 def test_what_is_proven_and_too_small_to_matter_is_named_where_nothing_else_is_left(vibration):
     error = vibration * np.sin(2 * np.pi * 2.3 * STEP * np.arange(500)[:, None])
     nothing_matters = replace(OPTIONS, min_fall=1.0)
     answer = found(error, nothing_matters, **{"offset.f": -0.3})
     assert {n.candidate.effect.name for n in answer.named} == (set() if vibration else {"offset"})
-
-
-@pytest.mark.parametrize(
-    ("gain", "chance", "is_left"), [(50, 1e-5, True), (50, 0.2, False), (-5, 1e-5, False)]
-)
-def test_what_is_proven_and_too_small_to_be_named_beside_another_effect_is_something_left(
-    gain, chance, is_left
-):
-    end = searched(**OFFSET)[-1]
-    spring = Candidate(EFFECTS[0], "joint", {})
-    proof = replace(end.accepted[0].proof, chance=chance, fall=0.001)
-    refitted = RejectedEffect(spring, {"k": (0.1, 0.01, "N/m")}, float(gain), proof)
-    answer = conclude(replace(end, rejected=(refitted,)))
-    assert answer.verdict == "named"
-    assert answer.unexplained == is_left
-
-
-def test_a_gap_ends_at_the_sensors_where_input_errors_cannot_be_believed():
-    end = searched(**OFFSET)[-1]
-    nominal, model = end.nominal, end.model
-    level = model.refit.level
-    loud = replace(level, noise=level.noise.scaled(100.0))
-    more = replace(model.validation, disturbances=np.full(1, 10 * nominal.validation.rms))
-    calm = replace(model, validation=more)
-    wild = replace(calm, refit=replace(model.refit, level=loud))
-    evidence = StructuredInputError("output", "force", "N", 0.1, 0.2)
-    structured = (Finding(FindingKind.STRUCTURED_INPUT_ERROR, evidence),)
-
-    def share(of, findings=()):
-        return compute_explained_share(nominal, of, findings, OPTIONS)
-
-    assert share(calm) == pytest.approx(1.0)
-    assert share(calm, structured) == share(wild)
-    fall = 1 - (model.validation.rms / nominal.validation.rms) ** 2
-    assert share(wild) == pytest.approx(fall, abs=1e-3)
-    assert share(wild) < share(calm)
 
 
 def test_base_parameters_at_the_end_of_what_is_plausible_are_something_left():

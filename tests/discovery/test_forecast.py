@@ -9,14 +9,9 @@ from joint_cases import ARM, DAMPING, arm_log, joint_plant, run, slider, slider_
 
 from identification import InputError
 from identification.discovery import forecast as module
-from identification.discovery.forecast import Forecast, forecast, free_memory, refuse_large
+from identification.discovery.forecast import Forecast, forecast, refuse_large
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
-from identification.discovery.scoring.sensitivities import (
-    MAX_BATCH_COLUMNS,
-    list_common,
-    list_single,
-)
 from identification.discovery.search import discover
 from identification.discovery.state import first_state
 from identification.discovery.task import DiscoveryTask
@@ -62,39 +57,18 @@ def test_memory_grows_with_the_candidates_and_their_sizes():
     assert 0 < without_fixed(300, without) < without_fixed(300, few) < without_fixed(300, every)
 
 
-def test_a_candidate_beyond_a_batch_costs_its_sensitivity_alone():
-    every = slider().effects
-    fewer = every[:-1]
-    sizes = [
-        sum(len(c.sizes) for c in (*list_common(some), *list_single([*first(some)])))
-        for some in (fewer, every)
-    ]
-    assert sizes[1] > sizes[0] >= MAX_BATCH_COLUMNS  # on one output, of the half that is fitted
-    more = without_fixed(300) - without_fixed(300, fewer)
-    assert more == pytest.approx((1 + module.KEPT_SHARE) * 8 * 150 * (sizes[1] - sizes[0]))
-
-
-def first(effects):
-    return {c.effect.name: c for c in list_common(effects)}.values()
-
-
-@pytest.mark.parametrize("effects", [(), None])
+@pytest.mark.parametrize(
+    "effects",
+    [None],
+)
 def test_memory_is_linear_in_the_samples(effects):
     assert without_fixed(900, effects) == pytest.approx(3 * without_fixed(300, effects))
     one, other = (forecast(task(n, effects)).fixed for n in (300, 900))
     assert one == other > 0  # code, libraries and copies of the model
 
 
-def test_what_the_library_keeps_has_an_end(monkeypatch):
-    """Beyond it a longer log takes what its arrays take, and is cut by that."""
-    monkeypatch.setattr(module, "MAX_KEPT_BYTES", 1e5)
-    one, other = (forecast(task(n)) for n in (600, 900))
-    assert one.fixed == other.fixed == pytest.approx(module.BASE_BYTES + 1e5, rel=0.1)
-    each = (other.memory - one.memory) / 300
-    assert one.memory - one.fixed == pytest.approx(600 * each)
-
-
-@pytest.mark.parametrize("make", [slider_task, pytest.param(arm_task, marks=pytest.mark.long)])
+@pytest.mark.long
+@pytest.mark.parametrize("make", [slider_task, arm_task])
 def test_a_search_holds_the_arrays_of_its_forecast(make):
     """The most that arrays take at once, once all code is loaded."""
     given = make(500)
@@ -140,14 +114,3 @@ def test_a_search_is_refused_before_it_begins(monkeypatch):
     with pytest.raises(InputError, match="allow more by the option max_memory_share"):
         discover(given.nominal_model, given.log, given.effects, said.append)
     assert said == []
-
-
-@pytest.mark.parametrize(("seconds", "said"), [(30.0, "30 s"), (90.0, "1.5 min"), (9e3, "2.5 h")])
-def test_it_is_told_in_words(seconds, said):
-    needs = Forecast(500, 2.0**29, seconds)
-    assert f"500 samples need about 0.5 GB of memory and {said} of processor time" in str(needs)
-    assert needs.is_large is (seconds > 60)
-
-
-def test_there_is_free_memory():
-    assert 2.0**20 < free_memory() <= np.inf

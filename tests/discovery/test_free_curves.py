@@ -26,7 +26,6 @@ from identification.discovery.search import discover
 from identification.effects.curve_laws import NODES
 from identification.effects.effect import Candidate
 from identification.kalman.linear import LinearPlant
-from identification.kalman.problem import linearise_criterion
 from identification.model.predictor import Predictor
 from identification.report.discovery_json import discovery_to_json
 from identification.report.discovery_text import discovery_text
@@ -99,26 +98,6 @@ def test_no_curve_is_left_where_the_law_is_right(springy):
     }
     assert losses["curve_position"] < 0.02 * losses["curve_input"]
     assert losses["curve_input"] > 10
-
-
-def test_the_loss_is_that_of_two_fits_of_least_squares(springy):
-    model, spring = springy
-    fit = model.refit
-    S = list_curves(fit)[0].S
-    problem = linearise_criterion(fit.point, fit.level, fit.mean, fit.prior)
-    mine = fit.point.space.names.index("spring.k")
-    W = problem.filter(S).reshape(fit.point.e.size, -1) / fit.level.sigma
-    rows = np.delete(problem.rows, mine, axis=1)
-    rows = np.hstack([rows, np.vstack([W, np.zeros((len(fit.point.q), NODES))])])
-    target = problem.target + problem.rows[:, mine] * fit.point.q[mine]
-    without = target - rows @ np.linalg.pinv(rows) @ target
-    having = problem.target - problem.rows @ np.linalg.pinv(problem.rows) @ problem.target
-    none = np.delete(problem.rows, mine, axis=1)
-    neither = target - none @ np.linalg.pinv(none) @ target
-    drawn, law, nothing = (x @ x for x in (without, having, neither))
-    other = replace_effect(fit, spring, S, fit.level)
-    assert other.loss == pytest.approx(drawn - law, rel=1e-4)
-    assert other.share == pytest.approx((nothing - law) / (nothing - drawn), rel=1e-4)
 
 
 def found(force, seed=4):

@@ -4,14 +4,31 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from discovery_cases import OPTIONS, linear_plant, point_of, scored, sensitivity
-from scipy.stats import norm
+from discovery_cases import (
+    EFFECTS,
+    OPTIONS,
+    linear_plant,
+    nominal_model,
+    point_of,
+    record,
+    scored,
+    sensitivity,
+    slider,
+    wander,
+)
+from scipy.stats import f, ncf
 
+from identification import InputError, Parameter
+from identification.discovery.findings.doubts import find_oversized_effect
+from identification.discovery.scoring.detectability import DETECTION_NONCENTRALITY, list_detectable
 from identification.discovery.scoring.hidden import list_hidden
 from identification.discovery.scoring.scores import Score
+from identification.discovery.scoring.significance import find_oversized, select_significant
+from identification.discovery.search import discover
 from identification.effects.effect import Candidate, Effect, Size
 from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.noise_model import Noise
+from identification.report.finding_words import describe_finding
 
 PLACES = {"all": "", "drive 1": "@1"}
 LEVEL = NoiseLevel(Noise(2.0, 0.1), 0.5, 0.0)
@@ -24,19 +41,6 @@ def score_of(name, where="all", *, size=1.0, std=0.1, gain=3.0, sign=0, ratio=2.
         p_value=0.1, block_p_value=0.1, identifiable=1.0,
         level=replace(LEVEL, noise=Noise(ratio, 0.1)),
     )  # fmt: skip
-
-
-def test_the_interval_ends_where_a_normal_one_does():
-    (h,) = list_hidden([score_of("push", size=-1.0)], LEVEL, OPTIONS)
-    value, most, unit = h.sizes["a"]
-    assert (value, unit, h.gain) == (-1.0, "N", 3.0)
-    assert most == pytest.approx(1 + norm.isf(0.025) * 0.1)
-
-
-def test_an_effect_is_told_once_where_it_explains_most():
-    some = [score_of("push", "drive 1", gain=5.0), score_of("pull", gain=4.0), score_of("push")]
-    told = [(h.candidate.effect.name, h.candidate.where) for h in list_hidden(some, LEVEL, OPTIONS)]
-    assert told == [("push", "drive 1"), ("pull", "all")]
 
 
 def test_what_cannot_be_or_explains_nothing_is_not_told():
@@ -66,3 +70,139 @@ def test_the_true_size_is_inside_in_nineteen_logs_of_twenty():
         inside += [h.sizes[n][1] > size for h in list_hidden(some, level, OPTIONS) for n in h.sizes]
     # One side of the interval is asked: 97.5 % of 300, which chance moves by 3 % (3 std).
     assert np.mean(inside) == pytest.approx(0.975, abs=0.03)
+
+
+NONCENTRALITY, BLOCKS = DETECTION_NONCENTRALITY, OPTIONS.score_blocks
+PLACES_DETECTABILITY = {"all": "", "drive 1": "@1", "drive 2": "@2"}
+
+
+def score_of_detectability(where, std, places=PLACES_DETECTABILITY, largest=10.0):
+    of = Effect("push", "f", (Size("a", "N", largest, 1e-3),), places=places)
+    level = NoiseLevel(Noise(0.0, 0.1), 1.0, 0.0)
+    return Score(
+        candidate=Candidate(of, where, {}), size=np.zeros(1), std=np.array([std]), gain=0.0,
+        p_value=1.0, block_p_value=1.0, identifiable=1.0, level=level,
+    )  # fmt: skip
+
+
+def test_the_noncentrality_is_that_of_nine_in_ten_by_blocks_over_two_hundred_candidates():
+    demanded = f.isf(0.01 / 200, 1, BLOCKS - 1)
+    assert 0.87 < ncf.sf(demanded, 1, BLOCKS - 1, NONCENTRALITY) < 0.93
+
+
+def test_the_smallest_size_follows_the_std():
+    (d,) = list_detectable([score_of_detectability("all", 0.1)], OPTIONS)
+    assert d.smallest == pytest.approx(0.1 * np.sqrt(NONCENTRALITY))
+    assert (d.size, d.unit, d.candidate.where) == ("a", "N", "all")
+
+
+@pytest.mark.parametrize("std", [11.0, np.inf, 0.0])
+def test_what_would_have_to_be_beyond_physics_is_never_seen(std):
+    (d,) = list_detectable([score_of_detectability("all", std)], OPTIONS)
+    assert d.smallest == np.inf
+
+
+def test_everywhere_counts_before_single_places_and_the_worst_of_those():
+    some = [
+        score_of_detectability("drive 1", 0.1),
+        score_of_detectability("all", 0.2),
+        score_of_detectability("drive 2", 0.5),
+    ]
+    assert list_detectable(some, OPTIONS)[0].smallest == pytest.approx(0.2 * np.sqrt(NONCENTRALITY))
+    single = {k: v for k, v in PLACES_DETECTABILITY.items() if v}
+    some = [
+        score_of_detectability(where, std, single)
+        for where, std in (("drive 1", 0.1), ("drive 2", 0.5))
+    ]
+    assert list_detectable(some, OPTIONS)[0].candidate.where == "drive 2"
+
+
+def test_an_effect_of_that_size_is_found_in_nine_of_ten_logs():
+    rng = np.random.default_rng(1)
+    plant, level = linear_plant(rng, 80), NoiseLevel(Noise(0.0, 0.1), 1.0, 0.0)
+    J, S = rng.standard_normal((80, 2, 3)), rng.standard_normal((80, 2, 1))
+    (clean,) = scored(
+        point_of(plant, rng.standard_normal((80, 2)), J), level, np.zeros(3), [sensitivity(S)]
+    )
+    size = np.sqrt(NONCENTRALITY) * clean.std[0] / clean.level.sigma
+    found = 0
+    for _ in range(200):
+        e = rng.standard_normal((80, 2)) + size * S[..., 0]
+        (s,) = scored(point_of(plant, e, J), level, np.zeros(3), [sensitivity(S)])
+        found += s.p_value < 0.05 / 30
+    assert 0.85 < found / 200 <= 1
+
+
+def scored_significance(name, size, gain, p=1e-9, sign=0, largest=1.0):
+    effect = Effect(name, "f", (Size("f", "N", largest, 1e-3, sign),), places={"joint": ""})
+    level = NoiseLevel(Noise(0.0, 0.1), 1.0, 0.0)
+    return Score(
+        candidate=Candidate(effect, "joint", {}), size=np.array([size]), std=np.ones(1), gain=gain,
+        p_value=p, block_p_value=p, identifiable=1.0, level=level,
+    )  # fmt: skip
+
+
+MILD = scored_significance("mild", 0.5, 100.0)
+
+
+@pytest.mark.parametrize(
+    ("other", "hides"),
+    [
+        (scored_significance("stiff", 6.0, 200.0), True),  # five times the largest is 5
+        (scored_significance("stiff", 4.0, 200.0), False),  # it was refitted
+        (scored_significance("stiff", 6.0, 110.0), False),  # no better than what is named
+        (scored_significance("stiff", 6.0, 200.0, p=0.2), False),  # luck
+        (scored_significance("stiff", -6.0, 200.0, sign=1), False),  # physics forbids it
+    ],
+)
+def test_a_name_must_not_hide_what_explains_more_at_a_size_beyond_belief(other, hides):
+    scores = (other, MILD)
+    found = find_oversized(scores, ["mild"], OPTIONS)
+    assert found is (other if hides else None)
+    assert find_oversized(scores, [], OPTIONS) is None
+    assert find_oversized(scores, ["mild", "stiff"], OPTIONS) is None
+    if hides:
+        assert [s.candidate.effect.name for s in select_significant(scores, OPTIONS)] == ["mild"]
+        (finding,) = find_oversized_effect(scores, ["mild"], OPTIONS)
+        assert finding.evidence.limits == {"f": 5.0}
+        said = describe_finding(finding)
+        assert "f = 6 N where 5 N is thought to be the most" in said
+    else:
+        assert find_oversized_effect(scores, ["mild"], OPTIONS) == ()
+
+
+@pytest.mark.parametrize(("gain", "heard"), [(250.0, True), (150.0, False)])
+def test_an_effect_of_another_shape_that_was_refitted_does_not_hide(gain, heard):
+    beyond_belief, believed = (
+        scored_significance("stiff", 6.0, 200.0),
+        scored_significance("stiff", 4.0, gain),
+    )
+    found = find_oversized((beyond_belief, believed, MILD), ["mild"], OPTIONS)
+    assert found is (None if heard else beyond_belief)
+
+
+def test_one_that_explains_less_is_not_named_in_place_of_one_that_may_not_be_so_large():
+    spring, *others = EFFECTS
+    (k,) = spring.sizes
+    weak = replace(spring, sizes=(replace(k, largest=0.2),))  # of which 1 N/m is believed
+    log = record(slider(mass=2.2, damping=2.7, **{"spring.k": 5.0}), 500, seed=11,
+                 error=wander(500, 0.03, 0.1, seed=8))  # fmt: skip
+    answer = discover(nominal_model(), log, (weak, *others))
+    assert answer.verdict != "nothing missing"
+    assert "spring" not in {n.candidate.effect.name for n in answer.named}
+    assert not answer.named
+    free = discover(nominal_model(), log, EFFECTS)
+    assert [n.candidate.effect.name for n in free.named] == ["spring"]
+
+
+def test_a_free_parameter_that_no_output_feels_is_refused():
+    idle = Parameter(
+        name="width", value=1.0, unit="kg m^2", where="body/cart.inertia[1]", lower=0.0
+    )
+    plant = slider()
+    own = replace(plant.parameters, records=(*plant.parameters, idle))
+    robot = nominal_model()
+    robot = replace(robot, plant=replace(plant, parameters=own),
+                    names=(*robot.names, "width"), std=np.append(robot.std, 0.3))  # fmt: skip
+    with pytest.raises(InputError, match="width has no effect on position"):
+        discover(robot, record(slider(), 500), EFFECTS)

@@ -34,7 +34,6 @@ from identification.discovery.nominal_model import NominalModel
 from identification.discovery.search import discover
 from identification.discovery.selection.shapes import is_structured
 from identification.effects.effect import Effect, Size
-from identification.errors import DivergenceError
 from identification.kalman.innovations import innovation_tests
 from identification.kalman.noise_model import Noise, build_whitener
 from identification.model.plant import ModelPlant
@@ -180,15 +179,3 @@ def test_an_error_along_the_motion_is_told_as_that(law, regressor):
     assert finding.evidence.regressor == regressor
     assert not innovation_tests(model.innovations, STEP).is_correlated(OPTIONS)
     assert is_structured(model, OPTIONS)
-
-
-def test_a_robot_that_a_small_change_of_a_parameter_loses_is_not_asked(monkeypatch):
-    model = fit_model(carts_task(0.1, 2), (), {})  # its own: what is found once is kept
-
-    def lost(*_):
-        raise DivergenceError("lost")
-
-    monkeypatch.setattr(
-        "identification.discovery.findings.input_error.evaluate_sensitivities", lost
-    )
-    assert find_input_error(model.validation, OPTIONS) == ()

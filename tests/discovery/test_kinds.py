@@ -95,58 +95,6 @@ def test_a_kind_that_explains_less_is_not_refitted(asked, monkeypatch):
     assert abs(found.loss) < 0.5
 
 
-def test_the_best_limit_of_another_kind_is_refitted(asked, monkeypatch):
-    # The size of a limit is no parameter: it is there or it is not.
-    offset, model = of_kinds("offset"), fit_model(asked, (), {})
-    limit = replace(offset, sizes=tuple(replace(s, present=1.0) for s in offset.sizes))
-    hard, soft = (Candidate(limit, "joint", {"kind": kind}) for kind in (0.0, 1.0))
-    clipped = replace(model, candidates=(hard,))
-    accepted = AcceptedEffect(clipped, PROOF, 10.0, ())
-    S = compute_sensitivities(model.refit.point, (Candidate(offset, "joint", {}),))[0].S
-    known = [Sensitivity(hard, S), Sensitivity(soft, S)]
-    asked_for = []
-
-    def fit(task, candidates, start, near=None, steps=0, least=0.0, **_):
-        asked_for.append(candidates)
-        level = replace(model.refit.level, log_likelihood=model.refit.level.log_likelihood + 50)
-        better = replace(model.refit, level=level)
-        return replace(model, candidates=candidates, refit=better if candidates else model.refit)
-
-    monkeypatch.setattr(kinds, "try_fit", fit)
-    (kept,), better = improve_kinds(asked, [accepted], clipped, known)
-    assert asked_for == [(), (soft,)]
-    assert better.candidates == (soft,) == (kept.candidate,)
-    assert improve_kinds(asked, [accepted], clipped, known[:1]) == ((accepted,), clipped)
-
-
-def test_a_free_shape_is_chosen_anew_for_another_kind(asked, monkeypatch):
-    """The other kind explains more at another value of the shape than the fitted one."""
-    model, accepted = fitted(asked, "offset", {"offset.f": 0.1})
-    width = Shape("width", "s", (0.5, 3.0), 0.1, 10.0)
-    own = replace(of_kinds("offset"), shapes=(KIND, width))
-    model = replace(model, candidates=(Candidate(own, "joint", {"kind": 0.0, "width": 0.5}),))
-    of = {c.effect.name: c for c in (Candidate(e, "joint", {}) for e in EFFECTS)}
-    S = {n: compute_sensitivities(model.refit.point, (c,))[0].S for n, c in of.items()}
-    values = {**model.refit.point.values, "offset.width": 0.7}  # as it was fitted
-    monkeypatch.setattr(type(model.refit.point), "values", values)
-    shapes, tried = [], []
-
-    def compute(_, candidates):
-        shapes.extend(c.shape for c in candidates)
-        right = {3.0: "spring"}  # at another width this kind has a law that explains little
-        return [Sensitivity(c, S[right.get(c.shape["width"], "offset")]) for c in candidates]
-
-    monkeypatch.setattr(kinds, "compute_beside", compute)
-    monkeypatch.setattr(kinds, "try_fit", lambda *given, **_: tried.append(given[1:3]))
-    accepted = AcceptedEffect(model, PROOF, 10.0, ())
-    assert improve_kinds(asked, [accepted], model, ()) == ((accepted,), model)
-    assert [s["width"] for s in shapes] == [0.7, 0.5, 3.0]
-    assert {s["kind"] for s in shapes} == {1.0}
-    (((candidate,), start),) = tried  # one refit per kind
-    assert candidate.shape == {"kind": 1.0, "width": 3.0}
-    assert (start["offset.width"], start["offset.kind"]) == (3.0, 1.0)
-
-
 def with_gain(model, candidate, gain):
     """A model with an effect that is likelier by a gain of twice the log likelihood."""
     level = model.refit.level

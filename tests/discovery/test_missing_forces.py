@@ -15,9 +15,18 @@ from discovery_cases import (
     slider,
 )
 
+from identification.discovery.findings.location import locate_error
 from identification.discovery.missing_forces import estimate_missing_forces
 from identification.discovery.nominal_model import NominalModel, fit_with_effects
 from identification.kalman.noise_model import Noise, smooth
+from identification.discovery.options import DiscoveryOptions
+from identification.kalman.noise_model import Noise
+from identification.kalman.smoother import smooth
+from identification.report.finding_words import describe_finding
+from inca_mj.effects.motor import DELAY
+from inca_mj.twin.twin import build_twin
+from inca_mj.workflows.spread import KNOWN as KNOWN_INCA
+from inca_mj.worlds import HiddenSetting, effect, world
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -56,3 +65,23 @@ def test_a_force_that_the_model_lacks_is_seen_in_newtons():
     assert np.corrcoef(missing.force[inner, 0], push[inner, 0])[0, 1] > 0.95
     slope = missing.force[inner, 0] @ push[inner, 0] / (push[inner, 0] @ push[inner, 0])
     assert slope == pytest.approx(5.0, rel=0.1)
+
+
+def test_both_places_have_forces_in_their_units_and_sentences():
+    log, _ = world(4, [effect("cogging")], ratio=20.0, setting=HiddenSetting(duration=1.5))
+    plant = build_twin(timestep=2e-3, effects=(DELAY,))
+    nominal_model, options = (
+        NominalModel(plant, tuple(KNOWN_INCA), np.array([*KNOWN_INCA.values()])), DiscoveryOptions()
+    )  # fmt: skip
+    fit = fit_with_effects(nominal_model, log.part("estimation"), (), {}, options)
+    drives, platform = estimate_missing_forces(fit)
+    assert (drives.where, platform.where) == ("the actuated joints", "platform")
+    assert set(drives.units) == {"N m"}
+    assert platform.units == ("N",) * 3 + ("N m",) * 3
+    for missing in (drives, platform):
+        assert missing.gain > 100
+        assert 0.8 < missing.share <= 1
+    said = " ".join(map(describe_finding, locate_error(fit, (drives, platform))))
+    assert "rms on the actuated joints would explain" in said
+    assert "N and" in said
+    assert "N m rms on platform would explain" in said

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 from discovery_cases import EFFECTS, OPTIONS, disturbed, nominal_model
 
-from identification.discovery.fitted_model import fit_model, is_confirmed
+from identification.discovery.fitted_model import is_confirmed
 from identification.discovery.proof import prove
 from identification.discovery.search import discover
 from identification.discovery.selection.forward_selection import Selection, select_effect
@@ -40,23 +40,6 @@ def test_a_search_goes_on_from_what_is_not_proven_alone(monkeypatch, sizes):
     assert not pair or len(pair[-1].model.candidates) == 2
 
 
-def test_the_second_alone_is_named_where_the_first_stood_in_its_place(monkeypatch):
-    """A wrong effect is likely and not proven; beside it the right one shows, and needs it not."""
-
-    def astray(asked, model, scores, progress):
-        if model.candidates:
-            return select_effect(asked, model, scores, progress)
-        wrong = next(s.candidate for s in scores if s.candidate.effect.name == "offset")
-        return Selection(unproven=fit_model(asked, (wrong,), model.refit.point.values, model))
-
-    monkeypatch.setattr("identification.discovery.state.select_effect", astray)
-    answer = discover(nominal_model(), disturbed(**RUBBING), EFFECTS)
-    (named,) = answer.named
-    assert named.candidate.effect.name == "rubbing"
-    assert [r.candidate.effect.name for r in named.rivals] == ["offset"]
-    assert is_confirmed(named.proof, OPTIONS)
-
-
 @pytest.mark.parametrize(("fall", "hidden"), [(0.9, {"offset", "rubbing"}), (0.0, set())])
 def test_what_the_fitted_samples_want_and_the_free_run_confirms_begins_a_pair(
     monkeypatch, fall, hidden
@@ -75,3 +58,42 @@ def test_what_the_fitted_samples_want_and_the_free_run_confirms_begins_a_pair(
     answer = discover(nominal_model(), disturbed(**OFFSET, **RUBBING), EFFECTS)
     assert {n.candidate.effect.name for n in answer.named} == hidden
     assert hidden or answer.verdict == "unknown effect"
+
+
+SIZES = {"offset.f": -0.8, "rubbing.c": 1.0}
+SELECTION = "identification.discovery.selection.forward_selection"
+
+
+def names_where_the_second_moves_nothing(monkeypatch, times=10.0, structure=()):
+    """What is named where the second effect brings the free run no nearer.
+
+    Args:
+        monkeypatch: of the test.
+        times: what BIC asks, that the fitted samples must gain.
+        structure: what the model with the first effect leaves unexplained.
+    """
+
+    def still(without, with_it, options):
+        proof = prove(without, with_it, options)
+        is_first = len(without.refit.point.q) == len(nominal_model().names)
+        return proof if is_first else replace(proof, fall=-0.1, above=-0.1)
+
+    def left(model, options):
+        return structure if model.candidates else ()
+
+    monkeypatch.setattr(f"{SELECTION}.prove", still)
+    monkeypatch.setattr(f"{SELECTION}.find_structure", left)
+    monkeypatch.setattr("identification.discovery.fitted_model.NEEDED_BIC_RATIO", times)
+    answer = discover(nominal_model(), disturbed(**SIZES), EFFECTS)
+    return {n.candidate.effect.name for n in answer.named}
+
+
+@pytest.mark.parametrize(
+    ("times", "structure", "count"), [(1.0, (), 2), (1e3, (), 1), (1.0, ("structure",), 1)]
+)
+def test_it_must_be_wanted_far_more_than_bic_asks_and_be_all_that_is_left(
+    monkeypatch, times, structure, count
+):
+    names = names_where_the_second_moves_nothing(monkeypatch, times, structure)
+    assert len(names) == count
+    assert names <= {"offset", "rubbing"}

@@ -72,14 +72,6 @@ def test_the_unseen_samples_are_those_after_the_fitted_ones(sprung):
     assert seen.gap.rms == seen.rms
 
 
-def test_both_are_seen_through_the_filter_of_the_first(sprung):
-    _, without, with_it = sprung
-    first, second = without.validation, with_it.validation
-    E = first.filter(second.e) / without.refit.level.sigma
-    fewer = 0.5 * np.sum(first.innovations**2 - E**2, axis=1)[~first.seen]
-    assert prove(first, second, OPTIONS).gain == pytest.approx(fewer.sum())
-
-
 def test_with_the_truth_the_free_run_errs_by_sensors_and_inputs(sprung):
     _, _, with_it = sprung
     seen = with_it.validation
@@ -132,8 +124,3 @@ def test_normal_gains_without_mean_pass_as_often_as_allowed():
     assert allowed == pytest.approx(student.sf(2.0, 19))
     passed = np.mean([flip_chance(g) < allowed for g in rng.normal(size=(3000, 20))])
     assert abs(passed - allowed) < 4 * np.sqrt(allowed / 3000)
-
-
-def test_more_blocks_than_can_be_counted_are_joined_with_their_neighbours():
-    gains = np.random.default_rng(1).normal(0.3, 1, 40)
-    assert flip_chance(gains) == flip_chance(gains.reshape(-1, 2).sum(1))

@@ -115,9 +115,3 @@ def test_a_rival_is_drawn_with_all_values_of_its_own_fit():
     (_, first), (_, second) = of.rivals
     np.testing.assert_allclose(first.force, of.law.force, rtol=1e-9, atol=1e-12)
     assert np.abs(second.force - of.law.force).max() > 0.1  # more damping is a force too
-
-
-def test_what_has_no_force_is_not_drawn():
-    fit, candidate = fitted("hardening", {"hardening.k_3@slide": 8.0})
-    none = replace(fit.point, q=np.where(fit.point.space.logarithmic, fit.point.q, 0.0))
-    assert recover_force(replace(fit, point=none), candidate) is None

@@ -95,14 +95,6 @@ def test_an_effect_of_the_wrong_sign_gains_nothing():
     assert wrong.block_p_value == 1
 
 
-def test_the_best_comes_first():
-    plant, noise, e, J, S = case(7)
-    two = [sensitivity(S[..., 1:], name="other"), sensitivity(S[..., :1], name="true")]
-    found = scored(point_of(plant, e, J), NoiseLevel(noise, 1.0, 0.0), np.zeros(P), two)
-    assert [s.candidate.effect.name for s in found] == ["true", "other"]
-    assert found[0].gain >= found[1].gain
-
-
 @pytest.mark.parametrize("ratio", [0.0, 1.0])
 def test_chances_are_uniform_where_nothing_is_missing(ratio):
     """Effects enter as slow forces, as missing physics does, so that colour matters."""

@@ -53,10 +53,6 @@ def answer():
     return discover(nominal_model(), records(1)[0], EFFECTS)
 
 
-def test_the_spring_is_named(answer):
-    assert [key for key, _ in named(answer)] == [("spring", "joint")]
-
-
 def test_the_order_of_candidates_and_one_that_is_not_taken_change_nothing(answer):
     fewer = [effect for effect in EFFECTS[::-1] if effect.name != "rubbing"]
     same(named(answer), named(discover(nominal_model(), records(1)[0], fewer)), rel=1e-9)

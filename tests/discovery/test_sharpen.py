@@ -48,12 +48,6 @@ def test_what_only_the_blocks_refuse_is_scored_between_its_neighbours(
     assert sharpened(score(1e-30, 0.5)) == [1.5, 2.0, 2.5, 3.0, 3.5]
 
 
-def test_what_is_beyond_chance_already_is_as_well(sharpened):
-    assert sharpened(score(1e-30, 1e-30)) == [1.5, 2.0, 2.5, 3.0, 3.5]
-    both = sharpened(score(1e-30, 1e-30), score(1e-30, 0.5, gain=90.0, effect=OTHER))
-    assert both == 2 * [1.5, 2.0, 2.5, 3.0, 3.5]
-
-
 def test_what_is_chance_or_has_no_times_is_not(sharpened):
     assert sharpened(score(0.5, 0.5)) == []
     assert sharpened(score(1e-30, 0.5, gain=-1.0)) == []
@@ -77,8 +71,3 @@ def test_no_time_of_one_is_compared_with_a_better_time_of_another(monkeypatch):
     significant = forward_selection.select_significant(scores, DiscoveryOptions())
     first, second = forward_selection._select_contenders(significant, DiscoveryOptions())[:2]
     assert (first.candidate.effect.name, second.candidate.effect.name) == ("jump", "other")
-
-
-def test_a_far_worse_one_is_not(sharpened):
-    better = score(1e-90, 0.5, gain=1e3, effect=replace(JUMP, name="constant", shapes=()))
-    assert sharpened(better, score(1e-30, 0.5)) == []

@@ -3,15 +3,15 @@
 from dataclasses import replace
 from types import SimpleNamespace
 
-import numpy as np
 import pytest
 from discovery_cases import OPTIONS
+from fake_discovery import LATE, REJECTED
 from finding_cases import EVIDENCE_OF, FINDINGS
 
 from identification.discovery import verdict as verdicts
 from identification.discovery.findings.finding import Finding, FindingKind
+from identification.discovery.once import listed_once
 from identification.discovery.verdict import decide
-from identification.effects.effect import Candidate, Effect, Shape, Size
 
 NAMED = (SimpleNamespace(),)
 ENOUGH, LITTLE = OPTIONS.min_explained_share + 0.1, OPTIONS.min_explained_share
@@ -51,41 +51,28 @@ def test_evidence_of_another_kind_is_no_finding():
         Finding(FindingKind.SPECTRAL_LINE, EVIDENCE_OF[FindingKind.ROBOT_CHANGE])
 
 
-def test_a_size_beyond_belief_is_compared_with_a_name_as_it_was_found(monkeypatch):
-    """A jump's first score is a small one: it was scored at the times of a grid."""
-    size, when = (
-        Size("c", "", 1.0, 0.1, about=""),
-        Shape("t_s", "s", (1.0, 8.0), 0.1, 9.0, about=""),
-    )
-    jump = Effect("jump", "", (size,), (when,), places={"joint": ""}, phrase="")
-    huge = Effect("huge", "", (size,), places={"joint": ""}, phrase="")
+def late(tau, std=1e-4, where="all drives", letter="tau"):
+    """A delay that was refitted."""
+    there = replace(LATE, where=where, probe=tau / 1e-3)
+    return replace(REJECTED, candidate=there, parameters={letter: (tau, std, "s")})
 
-    def score(effect, gain, value, shape):
-        candidate, chance = (
-            Candidate(effect, "joint", shape),
-            {"p_value": 0.0, "block_p_value": 0.0},
-        )
-        return SimpleNamespace(candidate=candidate, gain=gain, size=np.array([value]), **chance)
 
-    scored = (score(huge, 60.0, 1e3, {}), score(jump, 10.0, 0.5, {"t_s": 1.0}))
-    state = SimpleNamespace(
-        task=SimpleNamespace(options=OPTIONS), nominal_scores=scored,
-        nominal=SimpleNamespace(refit=SimpleNamespace(point="nominal")),
-        accepted=[SimpleNamespace(candidate=scored[1].candidate)],
-        model=SimpleNamespace(with_fitted_shape=lambda c: replace(c, shape={"t_s": 3.4})),
-    )  # fmt: skip
-    asked = []
+def test_two_searches_with_one_end_are_one():
+    best, again, other = late(2.5e-4), late(2.51e-4), late(9e-4)
+    assert listed_once([best, again, other, again]) == (best, other)
+    assert listed_once([]) == ()
 
-    def rescored(own_gain):
-        def at(nominal, own, options):
-            asked.extend(own)
-            return tuple(score(c.effect, own_gain, 0.5, c.shape) for c in own)
 
-        monkeypatch.setattr(verdicts, "compute_sensitivities", lambda point, some: some)
-        monkeypatch.setattr(verdicts, "score_candidates", at)
-        return verdicts._find_oversized(state, ["jump"])
+@pytest.mark.parametrize(
+    "different",
+    [{"tau": 4e-4}, {"tau": 2.5e-4, "where": "drive 1"}, {"tau": 2.5e-4, "letter": "t"}],
+)
+def test_another_end_another_place_and_another_number_are_listed(different):
+    both = (late(2.5e-4), late(**different))
+    assert listed_once(both) == both
 
-    assert rescored(900.0) == ()
-    assert [c.shape for c in asked] == [{"t_s": 3.4}]
-    (finding,) = rescored(20.0)
-    assert finding.evidence.score is scored[0]
+
+@pytest.mark.parametrize("std", [float("nan"), float("inf")])
+def test_values_without_a_std_are_the_same_where_their_digits_are(std):
+    a, b, c = late(2.5e-4, std), late(2.50001e-4, std), late(2.52e-4, std)
+    assert listed_once([a, b, c]) == (a, c)

@@ -5,9 +5,12 @@ from dataclasses import replace
 import mujoco
 import numpy as np
 import pytest
-from test_right_logs import ARM, MOTION, nothing, robot, tracked
+from advice import advised
+from tracked_cases import ARM, MOTION, PENDULUM, nothing, payload, robot, tracked
+from tracked_cases import MOTION as MOTION_MISTAKES
 
-from identification import InputError, Log
+from identification import InputError, Log, write_log
+from identification.logs.units import UNITS
 from identification.robot.balance import unbalanced_share
 from identification.robot.robot import read_robot_log
 from identification.robot.tendon_forces import tendon_forces
@@ -75,9 +78,7 @@ def refused(own, log):
 
 @pytest.mark.parametrize(
     ("mass", "horizon"),
-    [
-        (5.0, "horizon = 0.3"),
-    ],
+    [(5.0, "horizon = 0.3")],
 )
 def test_winches_that_push_are_refused_whatever_hangs_from_them(tmp_path, mass, horizon):
     said = refused(*robot(tmp_path, winches(1, 2.5), hung(mass, gears=(1, 2.5)), horizon))
@@ -100,9 +101,7 @@ def test_where_ranges_allow_it_the_log_may_be_turned_and_that_mends_it(tmp_path)
 
 @pytest.mark.parametrize(
     ("mass", "speed"),
-    [
-        (12.0, 1.0),
-    ],
+    [(12.0, 1.0)],
 )
 def test_winches_that_pull_are_not_refused_whatever_hangs_from_them(tmp_path, mass, speed):
     refuse_miswired(*robot(tmp_path, winches(), hung(mass, speed), "horizon = 0.3"))
@@ -115,9 +114,7 @@ def test_one_winch_that_pushes_is_told_by_its_name(tmp_path):
 
 @pytest.mark.parametrize(
     ("xml", "world"),
-    [
-        (ARM, nothing),
-    ],
+    [(ARM, nothing)],
 )
 def test_all_motors_of_joints_turned_are_told(tmp_path, xml, world):
     truth = mujoco.MjModel.from_xml_string(xml)
@@ -139,9 +136,7 @@ def test_all_outputs_turned_are_told_and_not_taken_for_inputs_where_gravity_tell
 
 @pytest.mark.parametrize(
     "turned",
-    [
-        "outputs",
-    ],
+    ["outputs"],
 )
 def test_without_gravity_both_are_told_because_none_can_tell_them_apart(tmp_path, turned):
     log = tracked(mujoco.MjModel.from_xml_string(WEIGHTLESS), MOTION[WEIGHTLESS])
@@ -173,3 +168,99 @@ def test_forces_of_tendons_are_those_of_the_engine():
         damped = 3 * (resisting[0][k] + resisting[2][k]) + 0.5 * v[k]  # of tendons and of joints
         np.testing.assert_allclose(damped, -data.qfrc_damper, atol=1e-9)
         np.testing.assert_allclose(springs[0][k] + springs[1][k], -data.qfrc_spring, atol=1e-9)
+
+
+HORIZON = "horizon = 0.2"
+CASES = [
+    (PENDULUM, [-1], "mrad", HORIZON),
+    (ARM, [-1, 1], "deg", ""),
+    (ARM, [1, -1], "rev", HORIZON),
+]
+
+
+def mistaken(xml, word, signs, world=lambda model: None):
+    """A log of a robot that is written in another unit and with other signs."""
+    truth = mujoco.MjModel.from_xml_string(xml)
+    world(truth)
+    log = tracked(truth, MOTION_MISTAKES[xml])
+    return replace(log, outputs=log.outputs * signs / UNITS[word][1])
+
+
+@pytest.mark.parametrize(("xml", "signs", "word", "horizon"), CASES)
+def test_both_are_told_and_what_is_told_mends_the_log(tmp_path, xml, signs, word, horizon):
+    own, read = robot(tmp_path, xml, mistaken(xml, word, signs), horizon)
+    with pytest.raises(InputError) as refused:
+        refuse_miswired(own, read)
+    said = str(refused.value)
+    assert f"were it in {word} and with the other sign" in said
+    assert f'write trust = ["units", "wiring"] into {own.file.path}' in said
+    (tmp_path / "log.toml").write_text(advised(said))
+    mended = read_robot_log(own.file, tmp_path / "log.csv")
+    np.testing.assert_allclose(
+        mended.outputs, read.outputs * signs * UNITS[word][1], rtol=1e-12, atol=0
+    )
+    refuse_miswired(own, mended)
+
+
+def test_who_knows_better_overrules_both(tmp_path):
+    own, read = robot(tmp_path, ARM, mistaken(ARM, "rev", [-1, 1]), "")
+    refuse_miswired(replace(own, file=replace(own.file, trust=("units", "wiring"))), read)
+
+
+@pytest.mark.parametrize(
+    ("lacking", "horizon"),
+    [(payload, HORIZON)],
+)
+def test_what_a_model_lacks_is_no_unit_and_no_sign(tmp_path, lacking, horizon):
+    """Forces decide: where a payload or gravity explains them, no two mistakes are looked for."""
+    truth = mujoco.MjModel.from_xml_string(ARM)
+    lacking(truth)
+    log = tracked(truth, MOTION_MISTAKES[ARM], seed=3)
+    write_log(log, tmp_path / "log.csv")
+    refuse_miswired(*robot(tmp_path, ARM, log, horizon))
+
+
+def exchanged(log, of, signs, turned):
+    """A log with two columns exchanged, and after that with other signs of inputs or outputs."""
+    log = replace(log, **{of: getattr(log, of)[:, ::-1]})
+    return replace(log, **{turned: getattr(log, turned) * signs})
+
+
+@pytest.mark.parametrize(
+    ("of", "turned", "signs", "horizon"),
+    [("outputs", "inputs", [1, -1], HORIZON), ("inputs", "outputs", [-1, 1], HORIZON)],
+)
+def test_an_exchange_beside_a_turned_sign_is_told_and_mended(tmp_path, of, turned, signs, horizon):
+    right = tracked(mujoco.MjModel.from_xml_string(ARM), MOTION_MISTAKES[ARM])
+    own, read = robot(tmp_path, ARM, exchanged(right, of, signs, turned), horizon)
+    with pytest.raises(InputError, match="exchanged and with the other sign") as refused:
+        refuse_miswired(own, read)
+    said = str(refused.value)
+    assert f'write trust = ["wiring"] into {own.file.path}' in said
+    (tmp_path / "log.toml").write_text(advised(said))
+    mended = read_robot_log(own.file, tmp_path / "log.csv")
+    turns = [np.sign(np.sum(getattr(mended, of) * getattr(right, of), axis=0))
+             for of in ("inputs", "outputs")]  # fmt: skip
+    for of, turn in zip(("inputs", "outputs"), turns, strict=True):
+        np.testing.assert_allclose(getattr(mended, of), turn * getattr(right, of), rtol=1e-12)
+    np.testing.assert_array_equal(*turns)  # joint and drive turned together: seen from behind
+    refuse_miswired(own, mended)
+
+
+@pytest.mark.parametrize(
+    ("outputs", "inputs", "horizon"),
+    [((-1, 1), (1, -1), HORIZON)],
+)
+def test_two_turned_signs_are_told_and_mended(tmp_path, outputs, inputs, horizon):
+    right = tracked(mujoco.MjModel.from_xml_string(ARM), MOTION_MISTAKES[ARM])
+    wrong = replace(right, outputs=right.outputs * outputs, inputs=right.inputs * inputs)
+    own, read = robot(tmp_path, ARM, wrong, horizon)
+    with pytest.raises(InputError, match=r'turn the sign of .*trust = \["wiring"\]') as refused:
+        refuse_miswired(own, read)
+    (tmp_path / "log.toml").write_text(advised(str(refused.value)))
+    mended = read_robot_log(own.file, tmp_path / "log.csv")
+    turns = [np.sign(np.sum(getattr(mended, of) * getattr(right, of), axis=0))
+             for of in ("inputs", "outputs")]  # fmt: skip
+    np.testing.assert_array_equal(*turns)  # all turned together: seen from behind
+    assert len({*turns[0]}) == 1
+    refuse_miswired(own, mended)

@@ -7,8 +7,10 @@ import numpy as np
 import pytest
 from joint_cases import SLIDER, run, slider, slider_log, steps
 from robot_cases import TOML
+from touching_cases import simulated
 
-from identification import Log, fit, read_robot, write_log
+from identification import InputError, Log, fit, read_robot, write_log
+from identification.robot.model_units import unit_of
 
 MESH = '<{0}><geometry><mesh filename="package://none/{1}.stl"/></geometry></{0}>'
 URDF = f"""<?xml version="1.0"?><robot name="two">
@@ -93,3 +95,92 @@ def test_a_step_that_does_not_divide_the_sampling_time_is_replaced(tmp_path):
     (said,) = robot.remarks
     assert "step of 0.002 s does not divide the sampling time of 0.0107 s" in said
     assert robot.plant.model.opt.timestep == pytest.approx(0.0107 / 6)
+
+
+LINK = """<mujoco><option timestep="0.002" integrator="implicitfast"/>
+  <worldbody><body name="upper"><joint name="q1" axis="0 1 0" damping="0.1" armature="0.02"/>
+    <inertial pos="0 0 -0.1" mass="0.6" diaginertia="0.004 0.004 0.001"/>
+    <body name="lower" pos="0 0 -0.25"><joint name="q2" axis="0 1 0" damping="0.05"/>
+      <inertial pos="0 0 -0.1" mass="0.4" diaginertia="0.004 0.004 0.001"/></body></body>
+  </worldbody>
+  <actuator><position name="s1" joint="q1" kp="{0}" kv="{1}"/>
+    <position name="s2" joint="q2" kp="{2}" kv="{1}"/></actuator>
+  <sensor><jointpos name="q1" joint="q1"/><jointpos name="q2" joint="q2"/></sensor></mujoco>"""
+TRUTH = (9.0, 0.5, 6.0)
+FREE = {"actuator/s1.kp": 9.0, "actuator/s1.kv": 0.5, "actuator/s2.kp": 6.0}
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    path = tmp_path_factory.mktemp("servos")
+    write_log(simulated(LINK.format(*TRUTH), samples=400, noise=1e-4), path / "log.csv")
+    (path / "link.xml").write_text(LINK.format(14.0, 0.5, 14.0))
+    return path
+
+
+def read(folder, text):
+    path = folder / "link.toml"
+    path.write_text(f'trust = ["steps"]\nmodel = "link.xml"\n{text}')
+    return read_robot(path, folder / "log.csv")
+
+
+@pytest.mark.parametrize("horizon", ["", "horizon = 0.3\n"])
+def test_the_gains_are_found(folder, horizon):
+    names = ", ".join(f'"{name}"' for name in FREE)
+    found = fit(read(folder, f"{horizon}free = [{names}]\n"))
+    for name, value in FREE.items():
+        assert found.values[name] == pytest.approx(value, rel=0.01)  # noise of 0.1 mrad
+
+
+def test_the_gains_of_servos_of_one_make_are_alike(folder):
+    table = '[spread.kp]\nof = ["actuator/s1.kp", "actuator/s2.kp"]\nstd = 0.3\n'
+    robot = read(folder, f'horizon = 0.3\nfree = ["actuator/s1.kv"]\n{table}')
+    values = {"kp": 10.0, "kp@s1": -0.1, "kp@s2": -0.4}
+    model = robot.plant.with_values(values).model
+    assert model.actuator_gainprm[:, 0] == pytest.approx([9.0, 6.0])
+    assert model.actuator_biasprm[:, 1] == pytest.approx([-9.0, -6.0])
+
+
+def test_half_a_gain_is_told_with_the_file_that_frees_it(folder):
+    half = 'free = ["k"]\n[parameters.k]\npath = "actuator/s1.gainprm[0]"\n'
+    with pytest.raises(InputError, match=r"free in .*link.toml: k moves gainprm\[0\] of the <posi"):
+        read(folder, half)
+
+
+ROBOT = """<mujoco><worldbody><site name="wall" pos="0 0 2"/><body name="cart">
+<joint name="x" type="slide" axis="1 0 0"/><geom size="0.1" mass="1"/><site name="hook"/>
+<body name="arm"><joint name="q" axis="0 1 0"/><geom size="0.1" mass="1" pos="0 0 1"/></body>
+</body></worldbody>
+<tendon><spatial name="rope"><site site="wall"/><site site="hook"/></spatial>
+<fixed name="both"><joint joint="x" coef="1"/><joint joint="q" coef="2"/></fixed></tendon>
+<actuator><position name="push" joint="x" kp="9" kv="2"/><position name="turn" joint="q" kp="5"/>
+<velocity name="drive" joint="q" kv="3"/><position name="pull" tendon="rope" kp="4"/>
+<position name="mixed" tendon="both" kp="4"/><position name="pinion" joint="q" gear="20" kp="4"/>
+</actuator></mujoco>"""
+
+
+@pytest.mark.parametrize(
+    ("path", "unit"),
+    [("push.kp", "N/m"), ("push.kv", "N s/m"), ("turn.kp", "N m/rad"), ("turn.kv", "N m s/rad"),
+     ("drive.kv", "N m s/rad"), ("pull.kp", "N/m"), ("mixed.kp", ""), ("pinion.kp", ""),
+     ("*r*.kv", "N m s/rad"), ("p*.kp", "")],
+)  # fmt: skip
+def test_a_gain_has_the_unit_of_its_place(path, unit):
+    model = mujoco.MjModel.from_xml_string(ROBOT)
+    assert unit_of(model, f"actuator/{path}") == unit
+
+
+def test_a_free_gain_is_printed_with_its_unit_and_read_in_no_other(tmp_path):
+    from touching_cases import simulated
+
+    xml, toml = LINK.format(9.0, 0.5, 6.0), tmp_path / "link.toml"
+    write_log(simulated(xml, samples=60, noise=1e-4), tmp_path / "log.csv")
+    (tmp_path / "link.xml").write_text(xml)
+    start = 'trust = ["steps"]\nmodel = "link.xml"\nfree = ["{}"]\n'
+    toml.write_text(start.format("actuator/s1.kp"))
+    robot = read_robot(toml, tmp_path / "log.csv")
+    assert robot.plant.parameters["actuator/s1.kp"].unit == "N m/rad"
+    table = '[parameters.k]\npath = "actuator/s1.kp"\nunit = "N/m"\n'
+    toml.write_text(start.format("k") + table)
+    with pytest.raises(InputError, match="N m/rad"):
+        read_robot(toml, tmp_path / "log.csv")

@@ -6,10 +6,13 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from pendulum_robot import TOML, make_folder, measured
-from records_cases import record
+from joint_cases import SLIDER
+from pendulum_robot import TOML, make_folder, measured, plant
+from records_cases import NOISE, record
+from robot_cases import TOML as TOML_PUBLISHER
+from robot_cases import refused, simulated
 
-from identification import InputError, fit, read_robot, write_log
+from identification import InputError, Predictor, fit, read_robot, write_log
 from identification.logs.decimation import decimate
 from identification.report.windows_figure import windows_figure
 from identification.windows.windows import windows
@@ -92,3 +95,97 @@ def test_windows_are_those_of_a_whole_log_that_keep_clear_of_its_gaps(gaps, leng
     found = windows(log, length)
     np.testing.assert_array_equal(found.starts, every_one.starts[clear])
     np.testing.assert_array_equal(found.outputs, every_one.outputs[clear])
+
+
+@pytest.mark.parametrize(
+    "every",
+    [5],
+)
+def test_a_fit_of_a_thinned_log_is_unbiased(tmp_path, every):
+    make_folder(tmp_path)
+    (tmp_path / "robot.toml").write_text(f"every = {every}\n" + TOML)
+    rng, n = np.random.default_rng(5), 1600
+    t = 0.005 * np.arange(n)
+    u = 0.5 * np.sin(7 * t) + 0.3 * np.sin(31 * t + 1) + 0.05 * rng.standard_normal(n)
+    log = replace(
+        record(samples=n), time=t, inputs=u[:, None], outputs=np.zeros((n, 1)), hold="foh"
+    )
+    y = Predictor(plant(), log, ()).predict(np.empty((1, 0)))[0]
+    write_log(replace(log, outputs=y + NOISE * rng.standard_normal((n, 1))), tmp_path / "log.csv")
+    robot = read_robot(tmp_path / "robot.toml", tmp_path / "log.csv")
+    assert (robot.log.hold, len(robot.log)) == ("foh", (n - 1) // every + 1)
+    found = fit(robot)
+    for name, value in (("J", 2e-3), ("d", 0.02)):
+        assert found.values[name] == pytest.approx(value, rel=0.005)
+
+
+@pytest.fixture
+def path_publisher(tmp_path):
+    (tmp_path / "slider.xml").write_text(SLIDER)
+    (tmp_path / "robot.toml").write_text(TOML_PUBLISHER)
+    write_log(simulated({}, start=1.4), tmp_path / "log.csv")
+    return tmp_path / "log.csv"
+
+
+@pytest.mark.parametrize(("command", "later", "said"), [
+    ("fit", 0.0, "there are two rows with one stamp, 0.06 s, and they contradict each other"),
+    ("discover", 0.003, "is zero in all columns, as of a second publisher"),
+])  # fmt: skip
+def test_zeros_between_rows_are_refused(path_publisher, capsys, command, later, said):
+    robot = path_publisher.with_name("robot.toml")
+    header, *rows = path_publisher.read_text().splitlines()
+    mixed = [header]
+    for k, row in enumerate(rows):
+        mixed.append(row)
+        if k % 9 == 6:
+            stamp = row.split(",")[0]
+            mixed.append(f"{float(stamp) + later},0.0,0.0")
+    path_publisher.write_text("\n".join(mixed))
+    told = refused(capsys, command, robot, path_publisher)
+    assert told.startswith(f"identification: line 9 of {path_publisher}")
+    assert said in told
+    assert f'or write trust = ["rows"] into {robot}' in told
+    # No check but this one speaks against such a log.
+    assert len(read_robot(robot, path_publisher, trust=["rows"]).log) >= len(rows) - 1
+
+
+def twice(path_publisher, other):
+    """Write each row of a log twice, the second time with other cells."""
+    header, *rows = path_publisher.read_text().splitlines()
+    cells = [[float(cell) for cell in row.split(",")] for row in rows]
+    second = [",".join(map(repr, other(*each))) for each in cells]
+    both = [line for pair in zip(rows, second, strict=True) for line in pair]
+    path_publisher.write_text("\n".join([header, *both]))
+
+
+@pytest.mark.parametrize(
+    "trust",
+    [()],
+)
+def test_rows_that_are_written_twice_count_once(path_publisher, trust):
+    robot = path_publisher.with_name("robot.toml")
+    once = read_robot(robot, path_publisher)
+    twice(path_publisher, lambda *row: row)
+    both = read_robot(robot, path_publisher, trust=trust)
+    np.testing.assert_array_equal(both.log.outputs, once.log.outputs)
+    np.testing.assert_array_equal(both.log.inputs, once.log.inputs)
+    (said,) = both.log.remarks
+    assert said.startswith("1200 rows of log 'log' repeat the row before them")
+
+
+@pytest.mark.parametrize("trust", [(), ("rows",)])
+@pytest.mark.parametrize(("other", "said"), [
+    (lambda t, u, x: (t, -u, 2.8 - x), "they contradict each other"),
+    (lambda t, u, x: (t, 0.0, x), "nothing says which of them the robot had"),
+])  # fmt: skip
+def test_rows_that_all_contradict_another_one_are_refused_though_rows_are_trusted(
+    path_publisher, other, said, trust
+):
+    twice(path_publisher, other)
+    with pytest.raises(InputError, match="there are two rows with one stamp, ") as refusal:
+        read_robot(path_publisher.with_name("robot.toml"), path_publisher, trust=trust)
+    told = str(refusal.value)
+    assert said in told
+    assert "keep the rows of one publisher" in told
+    assert ("or write trust" in told) == (not trust)
+    assert ("no trust in rows tells which" in told) == bool(trust)

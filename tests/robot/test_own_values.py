@@ -3,13 +3,18 @@
 import json
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from pendulum_robot import MASS, OFFSET, OWN, TOML, assert_true, make_folder, measured, written
+from records_cases import MJCF, records
 from robot_cases import refused
+from state_cases import ELASTIC, Truth, elastic
+from state_cases import measured as measured_states
 
-from identification import confirm, fit, read_robot, write_robot
+from identification import confirm, fit, read_robot, window_error, write_log, write_robot
 from identification.robot.file import read_robot_file
 from identification.robot.fit_json import robot_fit_to_json
+from identification.robot.record_error import compare_values
 
 
 @pytest.fixture
@@ -141,3 +146,45 @@ def test_values_of_a_log_are_checked(folder, capsys, values, said):
 def test_own_parameters_are_checked(folder, refusal, change, said):
     (folder / "own.toml").write_text(OWN.replace(*change))
     assert said in refusal(read_robot_file, folder / "own.toml")
+
+
+def test_an_elastic_gear_is_written_read_and_fitted(tmp_path):
+    (tmp_path / "pendulum.xml").write_text(MJCF.replace('timestep="0.005"', 'timestep="0.0025"'))
+    (tmp_path / "robot.toml").write_text(TOML)
+    paths = [tmp_path / f"log_{k}.csv" for k in range(2)]
+    for k, path in enumerate(paths):
+        write_log(measured_states(Truth(c=0.05), k, samples=200), path)
+    robot = read_robot(tmp_path / "robot.toml", paths[0], confirm=[paths[1]])
+    found = {"J": 1.8e-3, "d": 0.03, **elastic(0.04)}
+    again = read_robot(
+        write_robot(robot, found, tmp_path / "new.toml", tmp_path), paths[0], confirm=[paths[1]]
+    )
+    assert [state.kind for state in again.plant.states] == ["motor"]
+    fitted = fit(again)
+    assert fitted.values[ELASTIC] == pytest.approx(0.05, rel=0.05)
+    assert fitted.values["J"] == pytest.approx(2e-3, rel=0.02)
+    (told,) = confirm(again, fitted)
+    assert np.isfinite(told.after)
+    assert told.after < 0.5 * told.before
+
+
+LOAD = {"presliding.c@hinge": 0.05}
+
+
+@pytest.fixture(scope="module")
+def robot(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("robot")
+    make_folder(folder)
+    (folder / "robot.toml").write_text(TOML)
+    written(folder, *records(2))
+    return read_robot(folder / "robot.toml", folder / "log_0.csv", confirm=[folder / "log_1.csv"])
+
+
+def test_an_effect_with_states_of_its_own_is_compared_in_a_plant_that_has_them(robot):
+    (log,) = robot.records
+    told = compare_values(robot, log, {}, {**LOAD, "coulomb_friction.f_c@hinge": 0.05})
+    plant = robot.plant.with_states_of(LOAD)
+    values = {**LOAD, "coulomb_friction.f_c@hinge": 0.05}
+    error = window_error(plant, log, robot.file.horizon, values)
+    assert told.after == pytest.approx(float(np.sqrt(np.mean(error**2))), rel=1e-12)
+    assert told.after != told.before

@@ -1,110 +1,30 @@
 """No right log is refused: not with a payload, gravity, friction or mass that the model lacks."""
 
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import mujoco
 import numpy as np
 import pytest
+from tracked_cases import (
+    ARM,
+    MOTION,
+    PENDULUM,
+    friction,
+    no_gravity,
+    nothing,
+    payload,
+    robot,
+    tracked,
+)
 
-from identification import InputError, Log, write_log
-from identification.robot.file import read_robot_file
-from identification.robot.robot import read_robot_log, robot_of
+from identification import InputError, Log
+from identification.robot.same_units import different_units
+from identification.robot.scale import rescaled
 from identification.robot.wiring import refuse_miswired
 
 UR10E = Path(__file__).parents[3] / "shared" / "data" / "ur10e" / "ur10e.xml"
-HEAD = '<mujoco><compiler autolimits="true"/><option timestep="0.0025" integrator="RK4"/>'
-PENDULUM = (
-    HEAD
-    + """<worldbody><body><joint name="q1" axis="0 1 0" damping="0.05"/>
-<inertial pos="0 0 -0.3" mass="1" diaginertia="0.01 0.01 0.005"/></body></worldbody>
-<actuator><motor name="u1" joint="q1"/></actuator>
-<sensor><jointpos name="q1" joint="q1"/></sensor></mujoco>"""
-)
-ARM = (
-    HEAD
-    + """<worldbody><body><joint name="q1" axis="0 1 0" damping="0.3"/>
-<inertial pos="0 0 -0.2" mass="2" diaginertia="0.03 0.03 0.01"/>
-<body pos="0 0 -0.4"><joint name="q2" axis="0 1 0" damping="0.1"/>
-<inertial pos="0 0 -0.15" mass="1" diaginertia="0.01 0.01 0.005"/></body></body></worldbody>
-<actuator><motor name="u1" joint="q1"/><motor name="u2" joint="q2"/></actuator>
-<sensor><jointpos name="q1" joint="q1"/><jointpos name="q2" joint="q2"/></sensor></mujoco>"""
-)
-MOTION = {  # amplitude [rad], frequency [Hz] and middle of each joint
-    PENDULUM: ((0.8, 0.5, 0.3),),
-    ARM: ((0.6, 0.4, 0.5), (0.9, 0.7, -0.8)),
-}
-
-
-def payload(model, mass=1.0):
-    last = model.nbody - 1
-    model.body_mass[last] += mass
-    model.body_ipos[last] *= 1.2
-    model.body_inertia[last] += 0.01 * mass
-
-
-def no_gravity(model):
-    model.opt.gravity[:] = 0.0
-
-
-def friction(model):
-    model.dof_damping[:] *= 3.0
-    model.dof_frictionloss[:] = 0.2
-
-
-def heavy(model):
-    model.body_mass[:] *= 2.0
-    model.body_inertia[:] *= 2.0
-
-
-def nothing(model):
-    pass
-
-
-def tracked(model, motion, seconds=6.0, seed=0):
-    """A log of an arm that a controller holds to a motion: it knows nothing of the model."""
-    rng, data = np.random.default_rng(seed), mujoco.MjData(model)
-    a, f, middle = (np.array(x) for x in zip(*motion, strict=True))
-    n, gear = round(100 * seconds), model.actuator_gear[:, 0]
-    mujoco.mj_setConst(model, data)
-    data.qpos[:] = middle
-    mujoco.mj_forward(model, data)
-    hold, size = np.zeros(model.nv), np.diag(_mass(model, data)).copy()
-    u, y = np.zeros((n, model.nu)), np.zeros((n, model.nv))
-    for k in range(n):
-        t = 0.01 * k
-        wanted = middle + a * np.sin(2 * np.pi * f * t) + 0.1 * a * np.sin(2 * np.pi * 2.3 * f * t)
-        rate = (
-            2 * np.pi * f * a * (np.cos(2 * np.pi * f * t) + 0.23 * np.cos(2 * np.pi * 2.3 * f * t))
-        )
-        y[k] = data.qpos
-        hold += 0.01 * 2000 * size * (wanted - data.qpos)
-        force = size * (400 * (wanted - data.qpos) + 30 * (rate - data.qvel)) + hold
-        u[k] = data.ctrl[:] = force / gear
-        mujoco.mj_step(model, data, 4)
-    y += 2e-4 * rng.standard_normal(y.shape)
-    return Log(time=0.01 * np.arange(n), inputs=u, outputs=y,
-               input_names=[model.actuator(i).name for i in range(model.nu)],
-               output_names=[model.sensor(i).name for i in range(model.nsensor)])  # fmt: skip
-
-
-def _mass(model, data):
-    full = np.zeros((model.nv, model.nv))
-    mujoco.mj_fullM(model, data, full)
-    return full
-
-
-def robot(folder, xml, log, horizon):
-    """The robot of a model, and a log as it is read for it."""
-    (folder / "robot.xml").write_text(xml)
-    joint = mujoco.MjModel.from_xml_string(xml).joint(0).name
-    (folder / "robot.toml").write_text(
-        f'{horizon}\nmodel = "robot.xml"\nfree = ["joint/{joint}.damping"]\n'
-    )
-    write_log(log, folder / "log.csv")
-    file = read_robot_file(folder / "robot.toml")
-    read = read_robot_log(file, folder / "log.csv")
-    return robot_of(file, read), read
 
 
 @pytest.mark.parametrize(
@@ -115,9 +35,7 @@ def robot(folder, xml, log, horizon):
 @pytest.mark.parametrize(
     ("world", "lacking"),
     [
-    (payload, nothing),
-    (nothing, no_gravity),
-    (friction, nothing),
+    (payload, nothing), (nothing, no_gravity), (friction, nothing),
 ],
     ids=lambda f: f.__name__,
 )  # fmt: skip
@@ -154,3 +72,121 @@ def test_an_arm_of_six_joints_that_holds_5_kg_is_not_refused(tmp_path):
     motion = [(0.4, 0.15, 0.0), (0.3, 0.2, -1.3), (0.4, 0.25, 0.8),
               (0.3, 0.3, -1.0), (0.05, 0.35, 0.3), (0.5, 0.4, 0.0)]  # fmt: skip
     refuse_miswired(*robot(tmp_path, xml, tracked(model, motion), "horizon = 0.2"))
+
+
+DEG = 180 / np.pi
+HOLDING = PENDULUM.replace(
+    '<motor name="u1" joint="q1"/>', '<position name="u1" joint="q1" kp="40" kv="4"/>'
+)
+BOTH = PENDULUM.replace("</sensor>", '<jointvel name="v1" joint="q1"/></sensor>')
+
+
+@cache
+def log_of(xml, world):
+    model = mujoco.MjModel.from_xml_string(xml)
+    world(model)
+    return tracked(model, MOTION[xml])
+
+
+def scaled(log, factor):
+    return replace(log, outputs=log.outputs * factor)
+
+
+@pytest.mark.parametrize(
+    ("xml", "world", "factor", "unit"),
+    [
+    (ARM, payload, 1e3, "mrad"),
+],
+    ids=lambda x: getattr(x, "__name__", None),
+)  # fmt: skip
+def test_degrees_are_told_whatever_the_model_lacks(tmp_path, xml, world, factor, unit):
+    wrong = scaled(log_of(xml, world), factor)
+    own, read = robot(tmp_path, xml, wrong, "horizon = 0.2")
+    with pytest.raises(InputError, match=f'q1 = "{unit}"') as refused:
+        refuse_miswired(own, read)
+    assert 'or write trust = ["units"] into' in str(refused.value)
+    refuse_miswired(replace(own, file=replace(own.file, trust=("units", "wiring"))), read)
+
+
+def test_inputs_in_a_larger_unit_are_among_the_causes(tmp_path):
+    """A thousand times less torque is the same to the balance as motions that are too large."""
+    log = log_of(ARM, payload)
+    own, read = robot(tmp_path, ARM, replace(log, inputs=1e-3 * log.inputs), "horizon = 0.2")
+    with pytest.raises(InputError, match="the inputs are in a larger unit"):
+        refuse_miswired(own, read)
+
+
+@pytest.mark.parametrize(
+    ("late", "step"),
+    [(0, 1.5e-3), (-3, 2e-2), (6, 2e-2)],
+)
+@pytest.mark.parametrize("world", [nothing, payload, friction], ids=lambda f: f.__name__)
+def test_a_right_log_of_a_coarse_encoder_or_a_late_torque_passes(world, late, step):
+    log = log_of(ARM, world)
+    y = step * np.round(log.outputs / step) if step else log.outputs
+    u = np.roll(log.inputs, late, axis=0)
+    read = replace(log, outputs=y, inputs=u, units=dict.fromkeys(log.output_names, "rad"))
+    same = {n: n for n in (*log.input_names, *log.output_names)}
+    assert rescaled(mujoco.MjModel.from_xml_string(ARM), read, same) is None
+
+
+def moved(samples=400, step=0.01, seed=0):
+    """Position and rate of a joint under random forces."""
+    rng = np.random.default_rng(seed)
+    a = np.repeat(rng.uniform(-4, 4, samples // 20), 20)
+    v = np.cumsum(a) * step
+    v -= np.linspace(0, 1, samples) * v[-1]
+    return np.cumsum(v) * step, v, a
+
+
+def read_as(q, other, name, of):
+    """A log with a position and one column more, an output or an input."""
+    u = other if of == "input" else np.zeros(len(q))
+    outputs = np.stack([q, other], axis=1) if of == "output" else q[:, None]
+    names = ("q1", name) if of == "output" else ("q1",)
+    return Log(time=0.01 * np.arange(len(q)), inputs=u[:, None], outputs=outputs,
+               input_names=("u1",), output_names=names,
+               units=dict(zip(names, ("rad", "rad/s"), strict=False)))  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("of_q", "of_v", "cure"),
+    [(1, 1, None), (1, DEG, 'v1 = "deg/s"'), (1, 30 / np.pi, 'v1 = "rpm"'),
+     (DEG, 1, 'q1 = "deg"'), (1 / (2 * np.pi), 1, 'q1 = "rev"'), (1, 1.2, None)],
+)  # fmt: skip
+def test_a_rate_in_another_unit_than_its_position_is_told(of_q, of_v, cure):
+    model = mujoco.MjModel.from_xml_string(BOTH)
+    q, v, _ = moved()
+    log = read_as(of_q * q, of_v * v + 0.3, "v1", "output")
+    said = different_units(model, log, {n: n for n in ("u1", "q1", "v1")})
+    assert said is None if cure is None else cure in said
+
+
+@pytest.mark.parametrize(
+    ("of_q", "of_u", "cure"),
+    [(1, 1, None), (1, DEG, 'u1 = "deg"'), (DEG, 1, 'q1 = "deg"'), (0.2, 1, None), (5, 1, None),
+     (DEG, DEG, None)],
+)  # fmt: skip
+def test_a_wanted_position_in_another_unit_than_the_measured_one_is_told(of_q, of_u, cure):
+    model = mujoco.MjModel.from_xml_string(HOLDING)
+    q, *_ = moved()
+    late = np.concatenate([q[:1].repeat(5), q[:-5]])
+    log = read_as(of_q * (late + 0.1), of_u * q, "u1", "input")
+    said = different_units(model, log, {n: n for n in ("u1", "q1")})
+    assert said is None if cure is None else cure in said
+
+
+def test_a_wanted_position_in_degrees_is_refused_by_the_robot(tmp_path):
+    model = mujoco.MjModel.from_xml_string(HOLDING)
+    data, q, _ = mujoco.MjData(model), *moved()[:2]
+    y = np.zeros((len(q), 1))
+    for k in range(len(q)):
+        y[k] = data.qpos
+        data.ctrl[0] = q[k]
+        mujoco.mj_step(model, data, 4)
+    log = Log(time=0.01 * np.arange(len(q)), inputs=q[:, None], outputs=y,
+              input_names=("u1",), output_names=("q1",))  # fmt: skip
+    own, read = robot(tmp_path, HOLDING, log, "horizon = 0.2")
+    refuse_miswired(own, read)
+    with pytest.raises(InputError, match='write u1 = "deg" under'):
+        refuse_miswired(own, replace(read, inputs=DEG * read.inputs))

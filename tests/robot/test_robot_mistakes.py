@@ -61,10 +61,7 @@ def test_a_thing_without_a_name_is_told(folder, capsys, change, thing, outputs):
 
 @pytest.mark.parametrize(
     "log",
-    [
-        ".",
-        "",
-    ],
+    [".", ""],
 )
 def test_a_folder_is_no_log(folder, capsys, log):
     path = folder / "robot.toml"
@@ -80,10 +77,8 @@ def test_a_folder_is_no_log(folder, capsys, log):
     [
     ("coulomb_friction.f_c@x", "slide_coulomb_friction.f_c@x"),
     ("slide_coulomb_friction.f_c@swing", "coulomb_friction.f_c@swing"),
-    ("f_c@x", "slide_coulomb_friction.f_c@x"),
-    ("coulomb@x", "slide_coulomb_friction.f_c@x"),
-    ("friction", "coulomb_friction.f_c@swing"),
-    ("stiction", "stribeck_friction.f_s@swing"),
+    ("f_c@x", "slide_coulomb_friction.f_c@x"), ("coulomb@x", "slide_coulomb_friction.f_c@x"),
+    ("friction", "coulomb_friction.f_c@swing"), ("stiction", "stribeck_friction.f_s@swing"),
     ("viscous_friction", "joint/swing.damping"),
     ("slide_viscous_friction.b@x", "joint/x.damping"),
 ],
@@ -115,9 +110,7 @@ def test_how_much_a_log_may_be_thinned_is_told(folder, capsys):
 )
 @pytest.mark.parametrize(
     "command",
-    [
-        "fit",
-    ],
+    ["fit"],
 )
 def test_how_long_a_horizon_may_be_is_told(folder, capsys, command, confirm, horizon, most):
     path = folder / "horizon.toml"
@@ -167,9 +160,7 @@ def test_a_column_that_the_log_lacks_is_a_matter_of_the_file_that_names_it(folde
 
 @pytest.mark.parametrize(
     "command",
-    [
-        "fit",
-    ],
+    ["fit"],
 )
 def test_a_dead_sensor_is_named(folder, capsys, command):
     log = simulated({})

@@ -54,10 +54,7 @@ def test_a_base_that_was_fixed_collides_with_its_link_and_is_refused(tmp_path, x
 
 @pytest.mark.parametrize(
     "verb",
-    [
-        "fit",
-        "linearize",
-    ],
+    ["fit", "linearize"],
 )
 def test_no_verb_begins_with_such_a_model(tmp_path, capsys, log, verb):
     path = make_robot(tmp_path, pedestal(), log, "q")
@@ -93,9 +90,7 @@ def test_a_user_may_know_better(tmp_path, log):
 @HORIZONS
 @pytest.mark.parametrize(
     "values",
-    [
-        {"mass": 3.0},
-    ],
+    [{"mass": 3.0}],
 )
 def test_a_wheel_on_the_ground_is_never_refused(tmp_path, more, values):
     log = simulated(WHEEL.format(**PLAIN))

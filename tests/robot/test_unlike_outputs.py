@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,11 +12,14 @@ from unlike_cases import MODEL, NOISE, TOML, TRUE, write_robot_and_logs
 
 from identification import InputError, discover, fit, read_robot
 from identification.logs.by_unit import relative
+from identification.prediction.record_errors import error_unit, errors_by_unit
 from identification.report.discovery_json import discovery_to_json
 from identification.report.discovery_sections import gap_section, where_section
 from identification.report.discovery_text import discovery_text
 from identification.report.fit_verdict import fit_verdict
 from identification.report.vector import svg
+from identification.robot.record_error import AS_WRITTEN, FITTED, Confirmation
+from identification.robot.worse_unit import worse_unit
 
 PAIR = r"[\d.]+ [mµ]*rad{0} \(angles\) and [\d.]+ [mµ]*m{0} \(slides\)"
 
@@ -108,3 +112,111 @@ def test_relative_errors_are_the_same_in_every_unit():
     assert relative(*in_mm) == pytest.approx(relative(errors, of))
     assert relative(errors, {"rad": 0.0, "m": 1.0}) == np.inf
     assert relative({"rad": 3.0}, {"rad": 1.5}) == 2.0
+
+
+def confirmation(before, after):
+    return Confirmation("log", 1.0, 0.9, "", (AS_WRITTEN, FITTED), before, after)
+
+
+def test_the_worse_outputs_are_named_beside_the_others():
+    (said,) = worse_unit([confirmation({"m": 1.9, "rad": 0.4}, {"m": 0.5, "rad": 0.7})])
+    assert "the angles (mean square +206 %) of what was not fitted worse than the values" in said
+    assert "began, and not the slides (mean square -93 %). This may be chance" in said
+    assert "before you rely on what it predicts of angles." in said
+
+
+def test_records_count_together():
+    one = confirmation({"m": 1.0, "rad": 1.0}, {"m": 0.5, "rad": 1.2})
+    other = confirmation({"m": 1.0, "rad": 2.0}, {"m": 0.5, "rad": 1.0})
+    assert worse_unit([one])
+    assert not worse_unit([one, other])
+
+
+@pytest.mark.parametrize(
+    "after",
+    [{"m": 0.9, "rad": 0.9}, {"m": 0.9, "rad": 1.04}, {"m": 1.2, "rad": 1.2}],
+    ids=["both better", "within noise", "both worse"],
+)
+def test_nothing_is_said_where_no_unit_is_given_up_for_another(after):
+    assert worse_unit([confirmation({"m": 1.0, "rad": 1.0}, after)]) == []
+
+
+def test_outputs_of_one_unit_are_told_by_their_own_sentence():
+    assert worse_unit([confirmation({"rad": 1.0}, {"rad": 2.0})]) == []
+
+
+ERRORS, SIZES = PAIR.format(" rms"), PAIR.format("")
+
+
+@pytest.fixture(scope="module")
+def folder_horizon(tmp_path_factory):
+    path = write_robot_and_logs(tmp_path_factory.mktemp("unlike"))
+    lines = TOML.replace("free = ", "horizon = 0.3\nfree = ").replace("robot.xml", "stiff.xml")
+    stiff = (path / "robot.xml").read_text().replace('stiffness="200"', 'stiffness="201"')
+    (path / "stiff.xml").write_text(stiff)
+    known = "[effects]\njoints = ['slide']\nonly = ['stiffness', 'offset']\n"
+    (path / "horizon.toml").write_text(lines + known)
+    return path
+
+
+def test_a_fit_over_a_horizon_tells_each_unit_by_itself(folder_horizon, capsys):
+    logs = (
+        folder_horizon / "horizon.toml",
+        folder_horizon / "first.csv",
+        "--confirm",
+        folder_horizon / "second.csv",
+    )
+    said = run(capsys, "fit", *logs)
+    text = " ".join(said["verdict"])
+    for words in (
+        rf"windows of 0.3 s leave {ERRORS}, [\d.]+ and [\d.]+ times the noise floor of {SIZES}\.",
+        rf"On second: {ERRORS} with the values of the robot's file, {ERRORS} with those that were",
+        r"A mean square over outputs of several units counts the error of each output in multiples",
+    ):
+        assert re.search(words, text), words
+    for key in ("rms_by_unit", "validation_rms_by_unit", "noise_floor_by_unit"):
+        assert said[key]["rad"] == pytest.approx(NOISE["turn"], rel=0.2), key
+    (there,) = said["confirm"]
+    (second,) = (r for r in said["records"] if r["role"] == "confirm")
+    assert there["after_by_unit"] == second["after_by_unit"] == said["validation_rms_by_unit"]
+
+
+def test_a_discovery_over_a_horizon_tells_each_unit_by_itself(folder_horizon, capsys, tmp_path):
+    logs = (
+        folder_horizon / "horizon.toml",
+        folder_horizon / "first.csv",
+        "--confirm",
+        folder_horizon / "second.csv",
+    )
+    said = run(capsys, "discover", *logs, "--out", tmp_path / "out")
+    page = (tmp_path / "out" / "report.html").read_text()
+    text = re.sub(r"</?span[^>]*>", "", page)
+    assert re.search(rf"{SIZES}</td>", text)
+    ways = f"from {ERRORS} to {ERRORS}|is {ERRORS} off|(noise,|It is) {ERRORS} over"
+    assert re.search(ways, text)
+    gap = said["gap"]
+    assert set(gap["noise_rms_by_unit"]) == set(gap["after"]["rms_by_unit"]) == {"rad", "m"}
+    assert set(said["records"][0]["before_by_unit"]) == {"rad", "m"}
+
+
+def unlike(units):
+    return SimpleNamespace(units=units, output_names=[*units])
+
+
+def test_outputs_of_one_unit_have_the_error_over_all_outputs():
+    rng = np.random.default_rng(0)
+    scale, log = np.array([2e-3, 5e-3]), unlike({"a": "rad", "b": "rad"})
+    log.output_unit = "rad"
+    squares = rng.uniform(size=(7, 2))
+    whole, _ = error_unit(log, scale)
+    told = errors_by_unit(squares, scale, log)
+    assert told == {"rad": pytest.approx(whole * np.sqrt(squares.mean()))}
+
+
+def test_an_error_of_one_unit_does_not_depend_on_that_of_another():
+    e = np.random.default_rng(1).standard_normal((7, 30, 2)) * (1e-3, 2e-5)
+    for scale in (np.array([1e-3, 2e-5]), np.array([4e-3, 1.0])):
+        squares = np.mean((e / scale) ** 2, axis=1)
+        told = errors_by_unit(squares, scale, unlike({"turn": "rad", "way": "m"}))
+        rms = np.sqrt(np.mean(e**2, axis=(0, 1)))
+        assert told == {"rad": pytest.approx(rms[0]), "m": pytest.approx(rms[1])}

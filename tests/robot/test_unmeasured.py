@@ -44,10 +44,7 @@ def read(folder, xml, log, more="horizon = 0.3\n", **options):
 
 @pytest.mark.parametrize(
     "verb",
-    [
-        "fit",
-        "linearize",
-    ],
+    ["fit", "linearize"],
 )
 def test_no_verb_begins_with_a_base_that_falls(tmp_path, capsys, log, verb):
     path = make_robot(tmp_path, leg(FREE), log, "hip")
