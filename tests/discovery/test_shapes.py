@@ -18,8 +18,8 @@ from identification.model.coordinates import coordinates
 from inca_mj.effects.catalogue import CATALOGUE
 from inca_mj.effects.hooks import Drive
 from inca_mj.effects.motor import CURRENT_SATURATION
-from inca_mj.studies.worlds import HiddenSetting, effect, world
 from inca_mj.robot.inputs import make_input
+from inca_mj.studies.worlds import HiddenSetting, effect, world
 from inca_mj.twin.logs import ANGLES, CURRENTS
 from inca_mj.workflows.discovery import discover
 from inca_mj.workflows.spread import spread_of
