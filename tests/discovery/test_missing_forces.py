@@ -18,15 +18,12 @@ from discovery_cases import (
 from identification.discovery.findings.location import locate_error
 from identification.discovery.missing_forces import estimate_missing_forces
 from identification.discovery.nominal_model import NominalModel, fit_with_effects
-from identification.kalman.noise_model import Noise, smooth
 from identification.discovery.options import DiscoveryOptions
-from identification.kalman.noise_model import Noise
-from identification.kalman.smoother import smooth
+from identification.kalman.noise_model import Noise, smooth
 from identification.report.finding_words import describe_finding
 from inca_mj.effects.motor import DELAY
 from inca_mj.twin.twin import build_twin
 from inca_mj.workflows.spread import KNOWN as KNOWN_INCA
-from inca_mj.worlds import HiddenSetting, effect, world
 
 
 @pytest.mark.parametrize("seed", range(4))
