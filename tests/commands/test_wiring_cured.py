@@ -10,12 +10,9 @@ from advice import advised
 
 from identification import InputError, write_log
 from inca_mj.cli import main
-from inca_mj.twin.logs import JUDGED, read_inca_log
 from inca_mj.robot.inputs import make_input
-from inca_mj.twin.cable_lengths import some, unreached_share
-from inca_mj.twin.followed_log import follow, places_of
-from inca_mj.twin.judged import JUDGED
-from inca_mj.twin.logs import read_inca_log, run_to_log
+from inca_mj.twin.agreement import follow, places_of, some, unreached_share
+from inca_mj.twin.logs import JUDGED, read_inca_log, run_to_log
 from inca_mj.twin.run import simulate
 from inca_mj.twin.twin import build_twin
 from inca_mj.twin.wiring import refuse_miswired
