@@ -22,6 +22,7 @@ from identification.discovery.options import DiscoveryOptions
 from identification.kalman.noise_model import Noise, smooth
 from identification.report.finding_words import describe_finding
 from inca_mj.effects.motor import DELAY
+from inca_mj.studies.worlds import HiddenSetting, effect, world
 from inca_mj.twin.twin import build_twin
 from inca_mj.workflows.spread import KNOWN as KNOWN_INCA
 
