@@ -17,6 +17,7 @@ from pathlib import Path
 import numpy as np
 
 from identification.report.style import save_png
+from inca_mj.kinematics.cables import inverse
 from inca_mj.robot.geometry import INCA
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.statics.cable_mass import line_errors
@@ -24,7 +25,7 @@ from inca_mj.statics.catenary import hang
 from inca_mj.statics.closure import closure
 from inca_mj.statics.equilibrium import equilibrium
 from inca_mj.statics.interference import interference
-from inca_mj.statics.robot import lines, static_robot
+from inca_mj.statics.robot import static_robot
 from inca_mj.statics.stiffness import stiffness
 from inca_mj.statics.tensions import distribute, nearest
 from inca_mj.statics.vibration import coupled_modes
@@ -32,8 +33,8 @@ from inca_mj.statics.workspace import KINDS, workspace
 
 TRIAL = parameter_set("trial")
 ROBOT = static_robot(TRIAL, INCA)
-AT = lines(ROBOT.start, INCA)
-CONNECTOR = ROBOT.start[:3] + AT.r[0]
+AT = inverse(ROBOT.start, INCA)
+CONNECTOR = ROBOT.start[:3] + AT.arms[0]
 LOAD = np.array([0.5, 0.0, -1.0, 0.0, 0.0, 0.0])
 
 

@@ -35,7 +35,6 @@ from identification.errors import InputError
 from inca_mj.kinematics.balance import DRUMS, LENGTHS, PLATFORM, Balance, NoLoad, Weights, balance
 from inca_mj.kinematics.cables import cables_at
 from inca_mj.kinematics.elastic import (
-    ElasticRobot,
     Measured,
     drum_tension,
     no_load_along,
@@ -43,11 +42,13 @@ from inca_mj.kinematics.elastic import (
 )
 from inca_mj.kinematics.forward import find
 from inca_mj.kinematics.rotations import rotation
+from inca_mj.robot.elastic import Robot
 
 LEAST = 1e-3  # smallest std of a tension or a force [N]
 TOLD = 3.0  # times the std of the encoders: a smaller one of the lengths is not told from it
 ROUNDS = 50
 STILL = 0.01  # relative change of a std that counts as none
+
 Array = np.ndarray
 WINDOW = 0.05  # over which rates are taken, but at least five samples [s]
 FEWEST = 5  # samples
@@ -133,7 +134,7 @@ def measure(
     return measured, window // 2
 
 
-def poses_along(robot: ElasticRobot, measured: Measured, encoder: Array, ends: int) -> Along:
+def poses_along(robot: Robot, measured: Measured, encoder: Array, ends: int) -> Along:
     """Returns poses and tensions at each sample of a log that begins at rest with all angles zero.
 
     Args:
@@ -167,21 +168,21 @@ def poses_along(robot: ElasticRobot, measured: Measured, encoder: Array, ends: i
     return Along(found=found, std=σ, weights=weights)
 
 
-def no_load_path(angles: Array, path: Array, robot: ElasticRobot, T: Array) -> tuple[Array, Array]:
+def no_load_path(angles: Array, path: Array, robot: Robot, T: Array) -> tuple[Array, Array]:
     """Returns d₀ of a robot with other numbers along the same path of tensions, and ∂d₀/∂T = 0."""
     return no_load_along(robot, angles, path), np.zeros_like(T)
 
 
-def _fixed(d_0: Array, robot: ElasticRobot, T: Array) -> tuple[Array, Array]:
+def _fixed(d_0: Array, robot: Robot, T: Array) -> tuple[Array, Array]:
     return d_0, np.zeros_like(T)
 
 
-def _rigid(robot: ElasticRobot, measured: Measured, σ: Array) -> tuple[Array, Array, Array]:
+def _rigid(robot: Robot, measured: Measured, σ: Array) -> tuple[Array, Array, Array]:
     """Returns poses from the lengths alone, one for every few samples, and tensions by drums."""
     T = np.maximum(drum_tension(robot, measured), 0)
     d_0, _ = no_load_at_rest(measured.angles, robot, T)
     lengths = d_0 * (1 + T / robot.lambda_)
-    position, R = robot.pose[:3], rotation(*robot.pose[3:])
+    position, R = robot.start[:3], rotation(*robot.start[3:])
     positions, rotations = np.empty((len(T), 3)), np.empty((len(T), 3, 3))
     for k in range(0, len(T), STRIDE):
         position, R, _ = find(lengths[k], robot.geometry, (position, R), σ, tolerance=1e-6)
@@ -206,7 +207,7 @@ def _refuse_unreached(missed: Array, samples: Array) -> None:
         )
 
 
-def weights_of(σ: Components, robot: ElasticRobot, encoder: Array) -> Weights:
+def weights_of(σ: Components, robot: Robot, encoder: Array) -> Weights:
     """Returns the std of all statements; `encoder` is that of each angle, shape (8,) [rad]."""
     ρ = np.linalg.norm(robot.geometry.B, axis=1).mean()
     return Weights(
@@ -218,7 +219,7 @@ def weights_of(σ: Components, robot: ElasticRobot, encoder: Array) -> Weights:
 
 
 def components(
-    robot: ElasticRobot,
+    robot: Robot,
     measured: Measured,
     encoder: Array,
     σ: Components,
@@ -247,7 +248,7 @@ def components(
 
 
 def _estimated(
-    robot: ElasticRobot,
+    robot: Robot,
     measured: Measured,
     encoder: Array,
     σ: Components,

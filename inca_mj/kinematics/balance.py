@@ -24,12 +24,13 @@ import numpy as np
 
 from identification.errors import InputError
 from inca_mj.kinematics.cables import cables_at
-from inca_mj.kinematics.elastic import ElasticRobot, Measured, drum_tension
+from inca_mj.kinematics.elastic import Measured, drum_tension
 from inca_mj.kinematics.jacobians import jacobian, jacobian_rate
 from inca_mj.kinematics.rotations import euler_of, pose_rate_matrix, turn
+from inca_mj.robot.elastic import Robot
 
 Array = np.ndarray
-NoLoad = Callable[[ElasticRobot, Array], tuple[Array, Array]]
+NoLoad = Callable[[Robot, Array], tuple[Array, Array]]
 
 STEPS = 40
 CLOSE = 1e-9  # largest last step [m, rad]
@@ -109,7 +110,7 @@ class Balance:
 
 
 def balance(
-    robot: ElasticRobot,
+    robot: Robot,
     measured: Measured,
     weights: Weights,
     no_load: NoLoad,
@@ -144,7 +145,7 @@ def balance(
 
 
 def statements(
-    robot: ElasticRobot,
+    robot: Robot,
     measured: Measured,
     weights: Weights,
     no_load: NoLoad,
@@ -191,7 +192,7 @@ def statements(
 
 
 def _search(
-    robot: ElasticRobot,
+    robot: Robot,
     measured: Measured,
     weights: Weights,
     no_load: NoLoad,

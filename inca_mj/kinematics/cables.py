@@ -34,7 +34,7 @@ from functools import cached_property
 import numpy as np
 
 from identification.errors import InputError
-from inca_mj.kinematics.rotations import rotation
+from inca_mj.kinematics.rotations import pose_rotation, rotation
 from inca_mj.robot.geometry import DRIVES, Geometry
 
 Array = np.ndarray
@@ -84,6 +84,16 @@ class Cables:
     wraps: Array
     pulleys: Pulleys | None = None
 
+    @property
+    def L(self) -> Array:
+        """Jacobian ∂ḋ/∂(v, ω), rows [s_iᵀ, (b_i × s_i)ᵀ], shape (..., 8, 6) [-, m]."""
+        return np.concatenate([self.directions, np.cross(self.arms, self.directions)], -1)
+
+    @property
+    def W(self) -> Array:
+        """Wrench of the cables on the platform per tension, -Lᵀ, shape (..., 6, 8) [-, m]."""
+        return -np.swapaxes(self.L, -1, -2)
+
     @cached_property
     def bends(self) -> Array:
         """∂s_i/∂B_i, in O, shape (..., 8, 3, 3) [1/m]."""
@@ -130,8 +140,7 @@ def inverse(pose: Array, geometry: Geometry, pulleys: Pulleys | None = None) -> 
             "a pose is six finite numbers: x, y, z [m], roll, pitch, yaw [rad]; not shape"
             f" {pose.shape}" + ("" if np.isfinite(pose).all() else " with what is not finite")
         )
-    R = rotation(*np.moveaxis(pose[..., 3:], -1, 0))
-    return cables_at(pose[..., :3], R, geometry, pulleys)
+    return cables_at(pose[..., :3], pose_rotation(pose), geometry, pulleys)
 
 
 def cables_at(

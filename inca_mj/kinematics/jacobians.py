@@ -67,8 +67,7 @@ def jacobian(cables: Cables) -> Array:
     Returns:
         Shape (..., 8, 6) [-, m].
     """
-    s = cables.directions
-    return np.concatenate([s, np.cross(cables.arms, s)], -1)
+    return cables.L
 
 
 def jacobian_rate(cables: Cables, twist: Array) -> Array:

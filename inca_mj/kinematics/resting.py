@@ -13,9 +13,10 @@ import numpy as np
 from identification.errors import InputError
 from inca_mj.kinematics.along import FIRST, ROUNDS, STILL, TOLD
 from inca_mj.kinematics.balance import LENGTHS, Balance, NoLoad, Weights, balance
-from inca_mj.kinematics.elastic import ElasticRobot, Measured, drum_tension, no_load_at_rest
+from inca_mj.kinematics.elastic import Measured, drum_tension, no_load_at_rest
 from inca_mj.kinematics.forward import REACH, find
 from inca_mj.kinematics.rotations import rotation
+from inca_mj.robot.elastic import Robot
 from inca_mj.robot.geometry import DRIVES
 
 Array = np.ndarray
@@ -45,18 +46,18 @@ def at_rest(angles: Array, currents: Array) -> Measured:
     return Measured(angles=rows["angles"], currents=rows["currents"], rates=zero, rate_changes=zero)
 
 
-def rest_weights(robot: ElasticRobot, encoder: float, length: float = 0.0) -> Weights:
+def rest_weights(robot: Robot, encoder: float, length: float = 0.0) -> Weights:
     """Returns the std of the statements at rest, by that of angles [rad] and wrong geometry [m]."""
     return Weights(
         length=np.maximum(robot.R * encoder, length),
-        tension=np.maximum(robot.held, LEAST),
+        tension=np.maximum(robot.friction_std, LEAST),
         force=FORCE,
         moment=MOMENT,
     )
 
 
 def rest_pose(
-    robot: ElasticRobot, measured: Measured, encoder: float = ENCODER
+    robot: Robot, measured: Measured, encoder: float = ENCODER
 ) -> tuple[Balance, Weights]:
     """Returns the pose and tensions of a robot at rest, and the std of the statements.
 
@@ -72,8 +73,8 @@ def rest_pose(
     """
     φ, σ = measured.angles, robot.R * encoder
     balanced = drum_tension(robot, measured)
-    weakest = int((balanced + 3 * robot.held)[0].argmin())
-    if balanced[0, weakest] + 3 * robot.held[weakest] < 0:
+    weakest = int((balanced + 3 * robot.friction_std)[0].argmin())
+    if balanced[0, weakest] + 3 * robot.friction_std[weakest] < 0:
         raise InputError(
             f"cable {weakest + 1} is slack at rest: its motor and spring would have to push with"
             f" {-balanced[0, weakest]:.3g} N; give angles and currents that keep all cables taut"
@@ -87,7 +88,7 @@ def rest_pose(
             f"motor {k + 1} at {φ[0, k]:.3g} rad would have wound more than its whole cable; check"
             " the sign of the motor angles (positive winds in) and their unit [rad]"
         )
-    position, R, _ = find(lengths, robot.geometry, (robot.pose[:3], rotation(*robot.pose[3:])), σ)
+    position, R, _ = find(lengths, robot.geometry, (robot.start[:3], rotation(*robot.start[3:])), σ)
     no_load = partial(no_load_at_rest, φ)
     found, weights = _weighted(robot, measured, encoder, no_load, (position[None], R[None], T))
     missed = found.residual[0, :DRIVES] * weights.length
@@ -108,7 +109,7 @@ def rest_pose(
 
 
 def _weighted(
-    robot: ElasticRobot,
+    robot: Robot,
     measured: Measured,
     encoder: float,
     no_load: NoLoad,

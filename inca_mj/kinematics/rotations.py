@@ -45,6 +45,11 @@ def rotation(roll: float | Array, pitch: float | Array, yaw: float | Array) -> A
     return np.stack([np.stack(row, -1) for row in rows], -2)
 
 
+def pose_rotation(pose: Array) -> Array:
+    """Returns `rotation` of poses, shape (..., 6) [m, rad] -> (..., 3, 3)."""
+    return rotation(*np.moveaxis(np.asarray(pose, float)[..., 3:], -1, 0))
+
+
 def quaternion(roll: float, pitch: float, yaw: float) -> Array:
     """Returns the unit quaternion (w, x, y, z) of `rotation`.
 
@@ -154,7 +159,7 @@ def pose_rate_matrix(pose: Array) -> Array:
     Raises:
         InputError: the pitch is ±90 degrees.
     """
-    R = rotation(*np.moveaxis(np.asarray(pose, float)[..., 3:], -1, 0))
+    R = pose_rotation(pose)
     E = np.zeros((*R.shape[:-2], 6, 6))
     E[..., :3, :3] = np.eye(3)
     E[..., 3:, 3:] = euler_rate_matrix(pose) @ np.swapaxes(R, -1, -2)

@@ -7,9 +7,10 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from identification.report.style import GREY, INK, MEASURED, SERIES, SIMULATED, STYLE
+from inca_mj.kinematics.cables import inverse
+from inca_mj.robot.elastic import Robot
 from inca_mj.statics.cable_mass import NOISE, RHO
 from inca_mj.statics.catenary import sag_length
-from inca_mj.statics.robot import Robot, lines
 from inca_mj.statics.workspace import Kind, margin
 from inca_mj.workflows.statics import StaticAnalysis
 
@@ -86,16 +87,19 @@ def slices_figure(
 def cable_mass_figure(found: StaticAnalysis) -> Figure:
     """Returns a figure of the massless line's length error over the tension, for some masses."""
     robot = found.robot
-    at = lines(found.pose, robot.geometry)
-    span = np.hypot(at.s[:, 0], at.s[:, 1]) * at.d
+    at = inverse(found.pose, robot.geometry)
+    span = np.hypot(at.directions[:, 0], at.directions[:, 1]) * at.lengths
     T = np.geomspace(0.5, 20, 60)
     noise = NOISE * float(robot.R.mean())
     with matplotlib.rc_context(STYLE):
         figure = Figure((6.4, 3.6), layout="constrained")
         ax = figure.subplots()
         for n, rho in enumerate(found.rho or RHO):
-            longest = int(np.argmax(span**2 * at.d))
-            line = [1e6 * sag_length(float(at.d[longest]), float(span[longest]), t, rho) for t in T]
+            longest = int(np.argmax(span**2 * at.lengths))
+            line = [
+                1e6 * sag_length(float(at.lengths[longest]), float(span[longest]), t, rho)
+                for t in T
+            ]
             ax.plot(T, line, color=SERIES[n], label=f"ρ = {1e3 * rho:g} g/m, Irvine's parabola")
             exact = [(e.tension, 1e6 * e.length) for e in found.line_errors if e.rho == rho]
             ax.plot(*zip(*exact, strict=True), "o", ms=5, color=SERIES[n])

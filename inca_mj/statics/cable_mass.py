@@ -19,9 +19,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from inca_mj.kinematics.cables import inverse
+from inca_mj.robot.elastic import Robot
 from inca_mj.robot.parameters import GRAVITY
 from inca_mj.statics.catenary import ernst_modulus, pulled, sag
-from inca_mj.statics.robot import Robot, lines, pull
+from inca_mj.statics.robot import pull
 from inca_mj.statics.stiffness import stiffness
 
 NOISE = 5e-4  # std of the noise on a motor angle [rad]
@@ -96,23 +98,23 @@ def line_errors(
 
 
 def _line_error(robot: Robot, pose: np.ndarray, rho: float, T: float) -> LineError:
-    at = lines(pose, robot.geometry)
-    B = pose[:3] + at.r
-    length, force, half, lost = (np.empty(len(at.d)) for _ in range(4))
+    at = inverse(pose, robot.geometry)
+    B = pose[:3] + at.arms
+    length, force, half, lost = (np.empty(len(at.lengths)) for _ in range(4))
     weight = np.zeros(6)
-    for k, (A, d, λ) in enumerate(zip(robot.geometry.A, at.d, robot.lambda_, strict=True)):
+    for k, (A, d, λ) in enumerate(zip(robot.geometry.A, at.lengths, robot.lambda_, strict=True)):
         cable = pulled(A, B[k], T, rho, λ)
         straight, F = λ * d / (λ + T), cable.force_on_connector()
         hanging = np.array([0, 0, -rho * GRAVITY * d / 2])
-        along = -T * at.s[k]
+        along = -T * at.directions[k]
         length[k], force[k] = cable.no_load - straight, np.linalg.norm(F - along)
         # with the half weight the tension of the line is that of the middle of the cable
         middle = float(cable.tension(cable.no_load / 2))
-        half[k] = np.linalg.norm(F - (-middle * at.s[k] + hanging))
+        half[k] = np.linalg.norm(F - (-middle * at.directions[k] + hanging))
         span = float(np.linalg.norm((B[k] - A)[:2]))
         lost[k] = 1 - ernst_modulus(span, T, rho, λ) / λ
-        weight += np.concatenate([hanging, np.cross(at.r[k], hanging)])
-    free = pull(robot, at.d)
+        weight += np.concatenate([hanging, np.cross(at.arms[k], hanging)])
+    free = pull(robot, at.lengths)
     δ = np.linalg.solve(stiffness(at, free.tension, free.stiffness), weight)
     turned = np.abs(-at.W.T @ δ) / robot.R
     worst = int(np.abs(length).argmax())
@@ -124,7 +126,7 @@ def _line_error(robot: Robot, pose: np.ndarray, rho: float, T: float) -> LineErr
         angle=float((np.abs(length) / robot.R).max()),
         force=float(force.max()),
         force_half=float(half.max()),
-        sag=sag(float(at.d.max()), T, rho),
+        sag=sag(float(at.lengths.max()), T, rho),
         stiffness_lost=float(lost.max()),
         moved=float(np.linalg.norm(δ[:3])),
         moved_angle=float(turned.max()),

@@ -22,7 +22,10 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from identification.errors import InputError
-from inca_mj.statics.robot import Pull, Robot, lines, pull, turn
+from inca_mj.kinematics.cables import inverse
+from inca_mj.kinematics.rotations import pose_rotation
+from inca_mj.robot.elastic import Robot
+from inca_mj.statics.robot import Pull, pull
 from inca_mj.statics.stiffness import stiffness
 
 STEPS, HALVINGS = 100, 30
@@ -84,8 +87,8 @@ def equilibrium(
             f"the platform would rest at {np.round(pose[:3], 3).tolist()} m, outside the frame,"
             f" whose exit points span {low.tolist()} to {high.tolist()} m; give a smaller load"
         )
-    at = lines(pose, robot.geometry)
-    found = pull(robot, at.d, current)
+    at = inverse(pose, robot.geometry)
+    found = pull(robot, at.lengths, current)
     if found.tension.min() <= 0:
         raise InputError(
             f"cable {found.tension.argmin() + 1} is slack where the platform would rest,"
@@ -127,8 +130,8 @@ def _left(
     robot: Robot, pose: np.ndarray, current: np.ndarray, load: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Returns the wrench that is left, and K."""
-    at = lines(pose, robot.geometry)
-    found: Pull = pull(robot, at.d, current)
+    at = inverse(pose, robot.geometry)
+    found: Pull = pull(robot, at.lengths, current)
     left = at.W @ found.tension - robot.weight + load
     return left, stiffness(at, found.tension, found.stiffness)
 
@@ -147,5 +150,5 @@ def moved(pose: np.ndarray, x: np.ndarray) -> np.ndarray:
     Returns:
         The pose, shape (6,) [m, rad].
     """
-    turned = Rotation.from_rotvec(x[3:]) * Rotation.from_matrix(turn(pose))
+    turned = Rotation.from_rotvec(x[3:]) * Rotation.from_matrix(pose_rotation(pose))
     return np.concatenate([pose[:3] + x[:3], turned.as_euler("ZYX")[::-1]])

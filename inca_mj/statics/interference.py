@@ -16,8 +16,9 @@ from itertools import combinations
 
 import numpy as np
 
+from inca_mj.kinematics.cables import inverse
+from inca_mj.kinematics.rotations import pose_rotation
 from inca_mj.robot.geometry import ARM_RADIUS, DRIVES, GRIP, GRIP_RADIUS, Geometry
-from inca_mj.statics.robot import lines_of_many, turn
 
 SHARED = 1e-6  # anchors that are nearer than this are one point [m]
 PARALLEL = 1e-12
@@ -97,15 +98,17 @@ def interference(poses: np.ndarray, geometry: Geometry) -> Interference:
         geometry: anchors of the cables; the platform is that of `inca_mj.robot.geometry`.
     """
     poses = np.atleast_2d(np.asarray(poses, float))
-    at = lines_of_many(poses, geometry)
-    u = at.s * at.d[..., None]  # from exit to connector
+    at = inverse(poses, geometry)
+    u = at.directions * at.lengths[..., None]  # from exit to connector
     all_pairs = list(combinations(range(DRIVES), 2))
     shared = [_share(geometry, i, j) for i, j in all_pairs]
     apart = [pair for pair, one in zip(all_pairs, shared, strict=True) if not one]
     joined = [pair for pair, one in zip(all_pairs, shared, strict=True) if one]
     A = np.broadcast_to(geometry.A, u.shape)
     between = [segment_distance(A[:, i], u[:, i], A[:, j], u[:, j]) for i, j in apart]
-    angles = [np.arccos(np.clip(_dot(at.s[:, i], at.s[:, j]), -1, 1)) for i, j in joined]
+    angles = [
+        np.arccos(np.clip(_dot(at.directions[:, i], at.directions[:, j]), -1, 1)) for i, j in joined
+    ]
     return Interference(
         tuple((i + 1, j + 1) for i, j in apart),
         np.reshape(between, (len(apart), len(poses))).T,
@@ -117,7 +120,7 @@ def interference(poses: np.ndarray, geometry: Geometry) -> Interference:
 
 def _clearance(poses: np.ndarray, geometry: Geometry, A: np.ndarray, u: np.ndarray) -> np.ndarray:
     """Returns the distance of each cable from the surface of grip and arms, shape (N, 8) [m]."""
-    R, P = turn(poses), poses[:, :3]
+    R, P = pose_rotation(poses), poses[:, :3]
     ends = [(np.array(GRIP[0]), np.array(GRIP[1]), GRIP_RADIUS, np.zeros(DRIVES, bool))]
     for b in np.unique(geometry.B, axis=0):
         own = np.linalg.norm(geometry.B - b, axis=1) < SHARED

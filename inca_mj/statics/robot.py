@@ -1,9 +1,7 @@
-"""The numbers that statics needs of a robot, where its cables run, and how its drums pull at them.
+"""A robot at rest: its pretension, and how its drums pull at cables of given lengths.
 
-d_i s_i = p + r_i − a_i,  r_i = R b_i                  (thesis 2.6 to 2.8)
-W = [−s_i; −r_i × s_i]                                 wrench per tension, in O, about P
-T(0) = t₀ + W⁺ (w − W t₀)                              pretension that balances the drum springs
-d₀(0) = λ d/(λ + T(0))                                 (2.24, 2.25 at rest)
+    T(0) = t₀ + W⁺ (w − W t₀)         pretension that balances the drum springs
+    d₀(0) = λ d/(λ + T(0))            (thesis 2.24, 2.25 at rest)
 
 A drum that turns freely against its spring is in balance at rest where
 
@@ -24,122 +22,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from identification.errors import InputError
 from identification.model.parameter import ParameterSet
+from inca_mj.kinematics.cables import inverse
+from inca_mj.robot.elastic import Robot, robot_of
 from inca_mj.robot.geometry import Geometry
-from inca_mj.robot.parameters import GRAVITY
+from inca_mj.robot.parameters import GRAVITY, POSE
 from inca_mj.robot.spread import at_drives, displaced
 from inca_mj.statics.tensions import nearest
 
 STEPS = 12  # many more than enough: the equation is almost a straight line
-POSE = ("x", "y", "z", "roll", "pitch", "yaw")
-SHORTEST = 1e-3  # a cable of less has no direction [m]
-
-
-@dataclass(frozen=True)
-class Lines:
-    """Straight cables at one pose or at many; ... stands for the poses.
-
-    Attributes:
-        d: lengths, shape (..., 8) [m].
-        s: unit vectors from exit to connector in O, shape (..., 8, 3), without unit.
-        r: connectors relative to the platform's centre in O, shape (..., 8, 3) [m].
-    """
-
-    d: np.ndarray
-    s: np.ndarray
-    r: np.ndarray
-
-    @property
-    def W(self) -> np.ndarray:
-        """Wrench of the cables on the platform per tension, shape (..., 6, 8) [-, m]."""
-        rows = np.concatenate([self.s, np.cross(self.r, self.s)], axis=-1)
-        return -np.swapaxes(rows, -1, -2)
-
-
-def turn(pose: np.ndarray) -> np.ndarray:
-    """Returns rotations Rz Ry Rx (thesis 2.1) of poses, shape (..., 6) [m, rad] -> (..., 3, 3)."""
-    pose = np.asarray(pose, float)
-    angles = pose[..., :2:-1].reshape(-1, 3)  # yaw, pitch, roll
-    return Rotation.from_euler("ZYX", angles).as_matrix().reshape(*pose.shape[:-1], 3, 3)
-
-
-def lines(pose: np.ndarray, geometry: Geometry) -> Lines:
-    """Returns the straight cables at poses.
-
-    Args:
-        pose: x, y, z [m], roll, pitch, yaw [rad], shape (6,) or (N, 6).
-        geometry: anchors of the cables.
-
-    Raises:
-        InputError: a pose is not six finite numbers, or a cable has no length there.
-    """
-    pose = np.asarray(pose, float)
-    if pose.shape[-1:] != (6,) or not np.isfinite(pose).all():
-        raise InputError(
-            f"a pose is six finite numbers x, y, z [m], roll, pitch, yaw [rad], not {pose.tolist()}"
-        )
-    found = lines_of_many(pose, geometry)
-    if found.d.size and found.d.min() <= SHORTEST:
-        at = np.unravel_index(found.d.argmin(), found.d.shape)
-        raise InputError(
-            f"cable {at[-1] + 1} has no length at pose {np.round(pose[at[:-1]], 4).tolist()};"
-            " give a pose that is farther from its exit point"
-        )
-    return found
-
-
-def lines_of_many(pose: np.ndarray, geometry: Geometry) -> Lines:
-    """Returns `lines` without its checks, for grids: a cable is taken to be a millimetre at least.
-
-    Args:
-        pose: x, y, z [m], roll, pitch, yaw [rad], shape (..., 6).
-        geometry: anchors of the cables.
-    """
-    r = geometry.B @ np.swapaxes(turn(pose), -1, -2)
-    span = pose[..., None, :3] + r - geometry.A
-    d = np.maximum(np.linalg.norm(span, axis=-1), SHORTEST)
-    return Lines(d, span / d[..., None], r)
-
-
-@dataclass(frozen=True, kw_only=True)
-class Robot:
-    """A robot whose drum springs balance the pretension at its start pose.
-
-    Attributes:
-        geometry: anchors, where they truly are.
-        start: pose at which all motor angles are zero, shape (6,) [m, rad].
-        tension: T(0) at the start, shape (8,) [N].
-        no_load: d₀(0), shape (8,) [m].
-        m: mass of the platform [kg].
-        I: its principal inertias about body axes, shape (3,) [kg m^2].
-        lambda_: λ of each cable, shape (8,) [N].
-        R: radius of each roller, shape (8,) [m].
-        drum: κ = k_s R_s²/R, tension that a drum spring loses per turn, shape (8,) [N/rad].
-        K_t: torque constants, shape (8,) [N m/A].
-        J: inertia of each motor, shape (8,) [kg m^2].
-        b_c: Coulomb friction of each motor, shape (8,) [N m].
-    """
-
-    geometry: Geometry
-    start: np.ndarray
-    tension: np.ndarray
-    no_load: np.ndarray
-    m: float
-    I: np.ndarray
-    lambda_: np.ndarray
-    R: np.ndarray
-    drum: np.ndarray
-    K_t: np.ndarray
-    J: np.ndarray
-    b_c: np.ndarray
-
-    @property
-    def weight(self) -> np.ndarray:
-        """Wrench that the cables exert to carry the platform, in O, shape (6,) [N, N m]."""
-        return np.array([0, 0, self.m * GRAVITY, 0, 0, 0])
 
 
 def static_robot(parameters: ParameterSet, geometry: Geometry) -> Robot:
@@ -153,31 +46,15 @@ def static_robot(parameters: ParameterSet, geometry: Geometry) -> Robot:
         InputError: the cables cannot hold the platform at its start, or one would have to push.
     """
     values = parameters.values()
-    each = {
-        name: at_drives(name, values) for name in ("R", "R_s", "k_s", "lambda", "K_t", "J", "b_c")
-    }
-    placed, start = displaced(geometry, values), np.array([values[name] for name in POSE])
-    at, weight = lines(start, placed), np.array([0, 0, values["m"] * GRAVITY, 0, 0, 0])
-    T = nearest(at.W, weight)
+    λ, start = at_drives("lambda", values), np.array([values[name] for name in POSE])
+    at = inverse(start, displaced(geometry, values))
+    T = nearest(at.W, np.array([0, 0, values["m"] * GRAVITY, 0, 0, 0]))
     if T.min() <= 0:
         raise InputError(
             f"cable {T.argmin() + 1} would have to push ({T.min():.3g} N) at the start pose"
             f" {np.round(start, 4).tolist()}; move the start towards the middle, or lower m"
         )
-    return Robot(
-        geometry=placed,
-        start=start,
-        tension=T,
-        no_load=each["lambda"] * at.d / (each["lambda"] + T),
-        m=values["m"],
-        I=np.array([values[f"I_{axis}"] for axis in "xyz"]),
-        lambda_=each["lambda"],
-        R=each["R"],
-        drum=each["k_s"] * each["R_s"] ** 2 / each["R"],
-        K_t=each["K_t"],
-        J=each["J"],
-        b_c=each["b_c"],
-    )
+    return robot_of(values, geometry, T, λ * at.lengths / (λ + T))
 
 
 @dataclass(frozen=True)

@@ -28,20 +28,15 @@ import numpy as np
 from scipy.linalg import eigh
 
 from identification.errors import InputError
-from inca_mj.statics.robot import Lines, Robot, turn
+from inca_mj.kinematics.cables import Cables
+from inca_mj.kinematics.rotations import cross_matrix, pose_rotation
+from inca_mj.robot.elastic import Robot
 
 AXES = ("x", "y", "z")
 SMALL = 0.15  # a part of an eigenvector that is smaller than this is not told
 
 
-def cross_matrix(v: np.ndarray) -> np.ndarray:
-    """Returns [v]×, shape (..., 3) -> (..., 3, 3), in the unit of v."""
-    x, y, z = np.moveaxis(np.asarray(v, float), -1, 0)
-    o = np.zeros_like(x)
-    return np.stack([o, -z, y, z, o, -x, -y, x, o], -1).reshape(*x.shape, 3, 3)
-
-
-def stiffness(at: Lines, tension: np.ndarray, k: np.ndarray) -> np.ndarray:
+def stiffness(at: Cables, tension: np.ndarray, k: np.ndarray) -> np.ndarray:
     """Returns K, shape (..., 6, 6) [N/m, N, N m/rad].
 
     Args:
@@ -49,23 +44,24 @@ def stiffness(at: Lines, tension: np.ndarray, k: np.ndarray) -> np.ndarray:
         tension: of the cables, shape (..., 8) [N].
         k: stiffness of each along itself, shape (..., 8) [N/m].
     """
-    J = -np.swapaxes(at.W, -1, -2)
-    elastic = np.einsum("...ka,...k,...kb->...ab", J, k, J)
+    elastic = np.einsum("...ka,...k,...kb->...ab", at.L, k, at.L)
     return elastic + geometric_stiffness(at, tension)
 
 
-def geometric_stiffness(at: Lines, tension: np.ndarray) -> np.ndarray:
+def geometric_stiffness(at: Cables, tension: np.ndarray) -> np.ndarray:
     """Returns the part of K that tensions make by turning the cables, shape (..., 6, 6).
 
     Args:
         at: the cables.
         tension: of the cables, shape (..., 8) [N].
     """
-    r, eye = cross_matrix(at.r), np.eye(3)
+    s, r, eye = at.directions, cross_matrix(at.arms), np.eye(3)
     A = np.concatenate([np.broadcast_to(eye, r.shape), -r], axis=-1)  # (..., 8, 3, 6)
-    P = eye - at.s[..., :, None] * at.s[..., None, :]
-    K = np.einsum("...k,...kia,...kij,...kjb->...ab", tension / at.d, A, P, A)
-    K[..., 3:, 3:] += np.einsum("...k,...kij,...kjl->...il", tension, cross_matrix(at.s), r)
+    P = eye - s[..., :, None] * s[..., None, :]
+    K = np.einsum("...k,...kia,...kij,...kjb->...ab", tension / at.lengths, A, P, A)
+    K[..., 3:, 3:] += np.einsum(
+        "...k,...kij,...kjl->...il", tension, cross_matrix(at.directions), r
+    )
     return K
 
 
@@ -76,12 +72,12 @@ def mass_matrix(robot: Robot, pose: np.ndarray) -> np.ndarray:
         robot: its numbers.
         pose: x, y, z [m], roll, pitch, yaw [rad], shape (6,).
     """
-    M, R = robot.m * np.eye(6), turn(pose)
+    M, R = robot.m * np.eye(6), pose_rotation(pose)
     M[3:, 3:] = R @ np.diag(robot.I) @ R.T
     return M
 
 
-def with_drums(robot: Robot, at: Lines, tension: np.ndarray, no_load: np.ndarray) -> np.ndarray:
+def with_drums(robot: Robot, at: Cables, tension: np.ndarray, no_load: np.ndarray) -> np.ndarray:
     """Returns stiffness of platform and drums together, in the coordinates (δp, δθ, φ_1 … φ_8).
 
     A turn φ of a drum stretches its cable by R φ, and its spring by R_s φ:
@@ -97,8 +93,8 @@ def with_drums(robot: Robot, at: Lines, tension: np.ndarray, no_load: np.ndarray
     Returns:
         Shape (14, 14) [N/m, N, N m/rad].
     """
-    J, k = -at.W.T, robot.lambda_ / no_load
-    upper = J.T * (k * robot.R)
+    k = robot.lambda_ / no_load
+    upper = at.L.T * (k * robot.R)
     drums = np.diag(robot.R**2 * k + robot.drum * robot.R)
     return np.block([[stiffness(at, tension, k), upper], [upper.T, drums]])
 

@@ -29,9 +29,11 @@ import numpy as np
 from scipy.linalg import block_diag, eigh
 from scipy.optimize import brentq
 
+from inca_mj.kinematics.cables import Cables
+from inca_mj.kinematics.rotations import cross_matrix
+from inca_mj.robot.elastic import Robot
 from inca_mj.robot.parameters import GRAVITY
-from inca_mj.statics.robot import Lines, Robot
-from inca_mj.statics.stiffness import cross_matrix, mass_matrix, stiffness
+from inca_mj.statics.stiffness import mass_matrix, stiffness
 
 SINES = 12
 STRAIGHT = 1e-9  # Λ² below which sag changes no digit that counts
@@ -108,7 +110,7 @@ class Coupled:
 
 
 def coupled_modes(
-    robot: Robot, pose: np.ndarray, at: Lines, tension: np.ndarray, rho: float, sines: int = SINES
+    robot: Robot, pose: np.ndarray, at: Cables, tension: np.ndarray, rho: float, sines: int = SINES
 ) -> Coupled:
     """Returns the modes of platform and cables together.
 
@@ -120,16 +122,16 @@ def coupled_modes(
         rho: mass of the cables per length [kg/m].
         sines: how many for each cable and direction.
     """
-    d_0 = robot.lambda_ * at.d / (robot.lambda_ + tension)
+    d_0 = robot.lambda_ * at.lengths / (robot.lambda_ + tension)
     K, M = stiffness(at, tension, robot.lambda_ / d_0), mass_matrix(robot, pose)
     K = (K + K.T) / 2
     connector = np.concatenate(
-        [np.broadcast_to(np.eye(3), (len(at.d), 3, 3)), -cross_matrix(at.r)], 2
+        [np.broadcast_to(np.eye(3), (len(at.lengths), 3, 3)), -cross_matrix(at.arms)], 2
     )
-    heavier = M + np.einsum("k,kia,kib->ab", rho * at.d / 3, connector, connector)
+    heavier = M + np.einsum("k,kia,kib->ab", rho * at.lengths / 3, connector, connector)
     n = np.arange(1, sines + 1)
     masses, springs, between = [heavier], [K], []
-    for d, T, s, C in zip(at.d, tension, at.s, connector, strict=True):
+    for d, T, s, C in zip(at.lengths, tension, at.directions, connector, strict=True):
         for across in _across(s):
             masses.append(np.diag(np.full(sines, rho * d / 2)))
             springs.append(np.diag(T * (n * np.pi) ** 2 / (2 * d)))
@@ -140,8 +142,8 @@ def coupled_modes(
     ω2, x = eigh(stiff, whole)
     share = np.clip(np.einsum("ai,ab,bi->i", x[:6], M, x[:6]), 0.0, 1.0)
     most = np.sort(np.argsort(-share)[:6])
-    rows = list(zip(at.d, tension, strict=True))
-    span = np.hypot(at.s[:, 0], at.s[:, 1]) * at.d
+    rows = list(zip(at.lengths, tension, strict=True))
+    span = np.hypot(at.directions[:, 0], at.directions[:, 1]) * at.lengths
     return Coupled(
         massless=_hertz(eigh(K, M, eigvals_only=True)),
         added=_hertz(eigh(K, heavier, eigvals_only=True)),

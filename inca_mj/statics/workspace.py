@@ -29,8 +29,10 @@ from typing import Literal
 import numpy as np
 
 from identification.errors import InputError, unknown_name
+from inca_mj.kinematics.cables import inverse
+from inca_mj.robot.elastic import Robot
 from inca_mj.statics.closure import gap_margin, split, wrench_margin
-from inca_mj.statics.robot import Robot, lines_of_many, pull
+from inca_mj.statics.robot import pull
 
 Kind = Literal["closure", "feasible", "static"]
 KINDS: tuple[Kind, ...] = ("closure", "feasible", "static")
@@ -100,11 +102,11 @@ def margin(kind: Kind, robot: Robot, poses: np.ndarray, limits: DriveLimits) -> 
     """
     if kind not in KINDS:
         raise unknown_name("workspace", kind, KINDS)
-    at = lines_of_many(poses, robot.geometry)
+    at = inverse(poses, robot.geometry)
     plus, N, full = split(at.W)
     if kind == "closure":
         return gap_margin(N, full)
-    low, high = tension_limits(robot, at.d, limits)
+    low, high = tension_limits(robot, at.lengths, limits)
     more = (limits.force, limits.torque) if kind == "feasible" else ()
     return wrench_margin(plus, N, full, low, high, robot.weight, *more)
 

@@ -22,8 +22,9 @@ from identification.errors import unknown_name
 from identification.model.parameter import ParameterSet
 from inca_mj.kinematics.along import measure, no_load_path, poses_along
 from inca_mj.kinematics.balance import Balance, NoLoad, Weights, statements
-from inca_mj.kinematics.elastic import ElasticRobot, Measured, elastic_robot, no_load_at_rest
+from inca_mj.kinematics.elastic import Measured, no_load_at_rest
 from inca_mj.kinematics.resting import ENCODER, at_rest, rest_pose
+from inca_mj.robot.elastic import Robot, robot_of
 from inca_mj.robot.geometry import DRIVES, INCA, Geometry
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.robot.spread import with_spread
@@ -195,9 +196,9 @@ def log_poses(
     )
 
 
-def _robot(values: Mapping[str, float], geometry: Geometry) -> ElasticRobot:
+def _robot(values: Mapping[str, float], geometry: Geometry) -> Robot:
     begin = start_from(values, geometry)
-    return elastic_robot(values, geometry, begin.tension, begin.no_load_length)
+    return robot_of(values, geometry, begin.tension, begin.no_load_length)
 
 
 def _noise(found: Balance) -> np.ndarray:

@@ -11,14 +11,16 @@ from scipy.linalg import block_diag
 from identification.errors import InputError
 from identification.logs.log import Log
 from identification.model.parameter import ParameterSet
+from inca_mj.kinematics.cables import Cables, inverse
 from inca_mj.kinematics.stiff import poses_with_stiff_cables
+from inca_mj.robot.elastic import Robot
 from inca_mj.robot.geometry import INCA, Geometry
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.statics.cable_mass import RHO, LineError, line_errors
 from inca_mj.statics.closure import Closure, closure, require_closure
 from inca_mj.statics.equilibrium import NONE, Equilibrium, equilibrium
 from inca_mj.statics.interference import Interference, interference
-from inca_mj.statics.robot import Lines, Robot, lines, pull, static_robot
+from inca_mj.statics.robot import pull, static_robot
 from inca_mj.statics.stiffness import (
     Axes,
     Modes,
@@ -139,13 +141,13 @@ def analyse_statics(
     pose = robot.start if pose is None else _reachable(pose, robot.geometry)
     if not rho or not (np.isfinite(rho).all() and min(rho) > 0):
         raise InputError(f"rho {list(rho)} kg/m: give masses per length above zero")
-    at = lines(pose, robot.geometry)
+    at = inverse(pose, robot.geometry)
     spans = closure(at.W)
     require_closure(spans, pose)
     rest = equilibrium(robot, load=load)
     held = _held(robot, at, load, limits)
-    locked = stiffness(at, held.within, (robot.lambda_ + held.within) / at.d)
-    with_current = pull(robot, at.d, held.current)
+    locked = stiffness(at, held.within, (robot.lambda_ + held.within) / at.lengths)
+    with_current = pull(robot, at.lengths, held.current)
     free = stiffness(at, with_current.tension, with_current.stiffness)
     push, twist = principal(locked)
     M = mass_matrix(robot, pose)
@@ -181,8 +183,8 @@ def analyse_statics(
     )
 
 
-def _held(robot: Robot, at: Lines, load: np.ndarray, limits: DriveLimits) -> Held:
-    low, high = tension_limits(robot, at.d, limits)
+def _held(robot: Robot, at: Cables, load: np.ndarray, limits: DriveLimits) -> Held:
+    low, high = tension_limits(robot, at.lengths, limits)
     weak = int(np.argmin(high))
     if limits.taut > high[weak]:
         raise InputError(
@@ -192,14 +194,14 @@ def _held(robot: Robot, at: Lines, load: np.ndarray, limits: DriveLimits) -> Hel
         )
     w = robot.weight - load
     T = distribute(at.W, w, low, high)
-    springs = pull(robot, at.d).tension  # a current adds K_t i/R, and the drum does not turn
+    springs = pull(robot, at.lengths).tension  # a current adds K_t i/R, and the drum does not turn
     return Held(
         low=low,
         high=high,
         nearest=nearest(at.W, w),
         minimum_norm=nearest(at.W, w, 0.0),
         within=T,
-        current=_current(robot, at.d, T, springs),
+        current=_current(robot, at.lengths, T, springs),
     )
 
 

@@ -10,9 +10,10 @@ import pytest
 from statics_cases import RADIAL
 
 from inca_mj.cli import main
+from inca_mj.kinematics.cables import inverse
 from inca_mj.robot.geometry import write_geometry
 from inca_mj.robot.parameters import GRAVITY, parameter_set
-from inca_mj.statics.robot import lines, pull
+from inca_mj.statics.robot import pull
 from inca_mj.statics.workspace import DriveLimits
 from inca_mj.twin.logs import run_to_log
 from inca_mj.twin.run import simulate
@@ -56,14 +57,14 @@ def test_out_gets_figures_and_a_report(tmp_path):
 def test_tensions_and_currents_hold_the_load():
     pose, load = np.array([0.3, 0.2, 1.2, 0.05, 0.0, 0.1]), np.array([0.2, 0, -1.0, 0, 0.01, 0])
     found = analyse_statics(pose=pose, load=load)
-    held, at = found.held, lines(pose, found.robot.geometry)
+    held, at = found.held, inverse(pose, found.robot.geometry)
     m = parameter_set("trial").values()["m"]
     for T in (held.nearest, held.minimum_norm, held.within):
         np.testing.assert_allclose(at.W @ T, np.r_[0, 0, m * GRAVITY, 0, 0, 0] - load, atol=1e-7)
     assert np.linalg.norm(held.minimum_norm) <= np.linalg.norm(held.within)
     assert np.linalg.norm(held.nearest - 4) <= np.linalg.norm(held.within - 4) + 1e-9
     np.testing.assert_allclose(
-        pull(found.robot, at.d, held.current).tension, held.within, atol=1e-8
+        pull(found.robot, at.lengths, held.current).tension, held.within, atol=1e-8
     )
     low, high = DriveLimits().current
     assert (low <= held.current).all()

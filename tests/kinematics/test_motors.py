@@ -11,11 +11,11 @@ from inca_mj import log_poses, parameter_set, pose_at_rest, run_to_log
 from inca_mj.kinematics.along import measure
 from inca_mj.kinematics.elastic import (
     drum_tension,
-    elastic_robot,
     no_load_along,
     no_load_at_rest,
 )
 from inca_mj.kinematics.resting import at_rest
+from inca_mj.robot.elastic import robot_of
 from inca_mj.robot.geometry import INCA
 
 
@@ -29,10 +29,10 @@ def moving():
     return moving_run("prbs", 1.5)
 
 
-def robot_of(run):
+def robot_that(run):
     begin = run.twin.start
     values = run.twin.parameters.values()
-    return elastic_robot(values, INCA, begin.tension, begin.no_load_length)
+    return robot_of(values, INCA, begin.tension, begin.no_load_length)
 
 
 def poses_of(run):
@@ -44,13 +44,13 @@ def noisy_log(run, seed=0):
 
 
 def test_the_drums_balance_gives_the_tension_of_a_twin_at_rest(settled):
-    T = drum_tension(robot_of(settled), at_rest(settled.motor_angle[-1], settled.currents[-1]))
+    T = drum_tension(robot_that(settled), at_rest(settled.motor_angle[-1], settled.currents[-1]))
     assert np.ptp(T) > 1
     np.testing.assert_allclose(T[0], settled.tension[-1], atol=2e-3)
 
 
 def test_the_no_load_length_along_a_log_is_that_of_the_twin(moving):
-    robot, φ = robot_of(moving), moving.motor_angle
+    robot, φ = robot_that(moving), moving.motor_angle
     along = no_load_along(robot, φ, moving.tension)
     # the trapezoidal rule at 100 Hz errs by (h²/12) d(ε φ̇)/dt R, some hundredths of a micrometre
     np.testing.assert_allclose(along, moving.act, atol=1e-6)

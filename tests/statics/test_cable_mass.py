@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from statics_cases import ROBOT
 
+from inca_mj.kinematics.cables import inverse
 from inca_mj.robot.parameters import GRAVITY
 from inca_mj.statics.cable_mass import NOISE, line_errors
 from inca_mj.statics.equilibrium import equilibrium
-from inca_mj.statics.robot import lines
 
 
 def test_errors_grow_with_the_mass_and_fall_with_the_tension():
@@ -29,12 +29,12 @@ def test_errors_grow_with_the_mass_and_fall_with_the_tension():
 def test_the_weight_moves_the_handle_as_a_load_does():
     rho = 1e-5  # so light that the answer is linear
     (e,) = line_errors(ROBOT, ROBOT.start, (rho,), (4.0,))
-    at = lines(ROBOT.start, ROBOT.geometry)
-    half = -rho * GRAVITY * at.d / 2
+    at = inverse(ROBOT.start, ROBOT.geometry)
+    half = -rho * GRAVITY * at.lengths / 2
     load = np.zeros(6)
     for k in range(8):
         F = np.array([0, 0, half[k]])
-        load += np.r_[F, np.cross(at.r[k], F)]
+        load += np.r_[F, np.cross(at.arms[k], F)]
     rest = equilibrium(ROBOT, load=load)
     assert e.moved == pytest.approx(np.linalg.norm(rest.pose[:3] - ROBOT.start[:3]), rel=1e-3)
     assert e.moved_angle == pytest.approx(np.abs(rest.angle).max(), rel=1e-2)

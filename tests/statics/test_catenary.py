@@ -11,10 +11,10 @@ from inca_mj import build_twin, parameter_set, simulate
 from inca_mj.effects.cable import CABLE_WEIGHT, cable_weight
 from inca_mj.effects.catalogue import CATALOGUE
 from inca_mj.effects.hooks import Drive
+from inca_mj.kinematics.cables import inverse
 from inca_mj.robot.geometry import INCA
 from inca_mj.robot.parameters import GRAVITY
 from inca_mj.statics.catenary import ernst_modulus, hang, pulled, sag, sag_length
-from inca_mj.statics.robot import lines
 
 LAMBDA = 25000.0
 EXIT, CONNECTOR = np.array([1.5, 1.5, 3.0]), np.array([0.1, -0.05, 1.4])
@@ -143,15 +143,15 @@ def test_the_twin_with_cable_weight_rests_where_catenaries_balance():
     robot = build_twin(effects=effects).with_values(values)
     run = simulate(robot, np.zeros((6000, 8)), 0.01)
     pose = np.r_[run.position[-1], run.angles[-1]]
-    at = lines(pose, INCA)
+    at = inverse(pose, INCA)
     force, torque = np.zeros(3), np.zeros(3)
     for k in range(8):
-        cable = hang(INCA.A[k], pose[:3] + at.r[k], run.act[-1, k], rho, LAMBDA)
+        cable = hang(INCA.A[k], pose[:3] + at.arms[k], run.act[-1, k], rho, LAMBDA)
         F = cable.force_on_connector()
         force += F
-        torque += np.cross(at.r[k], F)
+        torque += np.cross(at.arms[k], F)
     weight = parameter_set("trial").values()["m"] * GRAVITY
-    hanging = rho * GRAVITY * at.d.sum() / 2
+    hanging = rho * GRAVITY * at.lengths.sum() / 2
     # sag shortens what is free: at 4 N by 3 µm, which is 0.04 N of tension in each cable
     assert abs(force[2] - weight) < 0.1 * hanging
     assert np.abs(force[:2]).max() < 0.02 * hanging

@@ -8,13 +8,13 @@ from scipy.linalg import null_space
 from statics_cases import EDGES, RADIAL, ROBOT, poses, random_poses
 
 from identification.errors import InputError
+from inca_mj.kinematics.cables import inverse
 from inca_mj.robot.geometry import INCA
 from inca_mj.statics.closure import closure, gap_margin, require_closure, split
-from inca_mj.statics.robot import lines
 
 
 def test_many_poses_are_split_as_one_is():
-    W = lines(random_poses(200), INCA).W
+    W = inverse(random_poses(200), INCA).W
     plus, N, full = split(W)
     assert full.all()
     for k in range(len(W)):
@@ -23,7 +23,7 @@ def test_many_poses_are_split_as_one_is():
 
 
 def test_the_linear_program_and_the_largest_gap_agree():
-    W = lines(random_poses(200), INCA).W
+    W = inverse(random_poses(200), INCA).W
     _, N, full = split(W)
     margin = gap_margin(N, full)
     for k in np.flatnonzero(np.abs(margin) > 1e-4):
@@ -34,7 +34,7 @@ def test_the_linear_program_and_the_largest_gap_agree():
 @given(poses, st.floats(0.1, 10))
 @settings(max_examples=30, deadline=None)
 def test_an_internal_tension_balances_and_its_margin_is_the_best(pose, scale):
-    W = lines(pose, INCA).W
+    W = inverse(pose, INCA).W
     found = closure(W)
     if not found.closed:
         return
@@ -50,7 +50,7 @@ def test_an_internal_tension_balances_and_its_margin_is_the_best(pose, scale):
 
 
 def test_one_connector_for_each_edge_has_rank_6_and_no_closure():
-    at = lines(ROBOT.start, EDGES)
+    at = inverse(ROBOT.start, EDGES)
     found = closure(at.W)
     assert found.rank == 6
     assert not found.closed
@@ -62,7 +62,7 @@ def test_one_connector_for_each_edge_has_rank_6_and_no_closure():
 
 
 def test_cables_that_point_at_an_axis_lack_a_rank():
-    at = lines(ROBOT.start, RADIAL)
+    at = inverse(ROBOT.start, RADIAL)
     found = closure(at.W)
     assert found.rank == 5
     assert np.isinf(found.condition)
@@ -83,4 +83,4 @@ def test_cables_that_point_at_an_axis_lack_a_rank():
 )
 def test_poses_that_are_none_are_refused(pose, sentence):
     with pytest.raises(InputError, match=sentence):
-        lines(pose, INCA)
+        inverse(pose, INCA)

@@ -8,10 +8,11 @@ from statics_cases import ROBOT
 
 from identification.errors import InputError
 from inca_mj import build_twin, parameter_set, simulate
+from inca_mj.kinematics.cables import inverse
 from inca_mj.robot.geometry import INCA
 from inca_mj.robot.parameters import GRAVITY
 from inca_mj.statics.equilibrium import equilibrium
-from inca_mj.statics.robot import lines, pull, static_robot
+from inca_mj.statics.robot import pull, static_robot
 
 CURRENT = np.array([0.3, 0.0, 0.1, 0.0, 0.2, 0.0, 0.0, -0.05])
 
@@ -41,7 +42,7 @@ def test_the_energy_is_least_there():
     rest = equilibrium(ROBOT, load=load)
 
     def energy(x):
-        d = lines(x[:6], INCA).d
+        d = inverse(x[:6], INCA).lengths
         φ = x[6:]
         d_0 = ROBOT.no_load - ROBOT.R * φ / (1 + ROBOT.tension / ROBOT.lambda_)
         cable = (0.5 * ROBOT.lambda_ * (d - d_0) ** 2 / d_0).sum()
@@ -59,7 +60,7 @@ def test_the_energy_is_least_there():
 
 def test_pull_is_the_law_turned_slowly():
     """dφ by d as the differential equations of the thesis have it, integrated along a slow path."""
-    d_start = lines(ROBOT.start, INCA).d
+    d_start = inverse(ROBOT.start, INCA).lengths
     λ, κ, R = ROBOT.lambda_, ROBOT.drum, ROBOT.R
 
     def rates(share, y):
@@ -93,7 +94,7 @@ def test_pull_joins_the_unwound_spring_without_a_step():
 
 def test_drums_without_springs_pull_alike_everywhere():
     loose = static_robot(parameter_set("trial", {"k_s": 0.0}), INCA)
-    found = pull(loose, lines(loose.start, INCA).d + np.linspace(-0.5, 0.5, 8))
+    found = pull(loose, inverse(loose.start, INCA).lengths + np.linspace(-0.5, 0.5, 8))
     np.testing.assert_allclose(found.tension, loose.tension)
     assert (found.stiffness == 0).all()
 

@@ -6,9 +6,9 @@ from hypothesis import strategies as st
 from scipy.optimize import lsq_linear
 from statics_cases import ROBOT, random_poses
 
+from inca_mj.kinematics.cables import inverse
 from inca_mj.robot.geometry import GRIP, GRIP_RADIUS, INCA
 from inca_mj.statics.interference import interference, point_distance, segment_distance
-from inca_mj.statics.robot import lines
 
 number = st.integers(-3, 3).map(float)  # whole numbers also make parallel and touching segments
 vector = st.tuples(number, number, number).map(np.array)
@@ -52,7 +52,7 @@ def test_cables_with_a_common_connector_are_told_by_their_angle():
     found = interference(ROBOT.start, INCA)
     assert found.sharing == ((1, 2), (3, 4), (5, 8), (6, 7))
     assert len(found.pairs) + len(found.sharing) == 28
-    s = lines(ROBOT.start, INCA).s
+    s = inverse(ROBOT.start, INCA).directions
     np.testing.assert_allclose(np.cos(found.angle[0]), [s[0] @ s[1], s[2] @ s[3], s[4] @ s[7],
                                                         s[5] @ s[6]])  # fmt: skip
 
@@ -66,7 +66,7 @@ def test_a_grip_that_is_turned_into_a_cable_is_found():
     cable, pose = upright.nearest_to_platform()
     assert pose == 0
     assert upright.platform[0, cable - 1] == upright.platform.min() > 0
-    at = lines(ROBOT.start, INCA)
+    at = inverse(ROBOT.start, INCA)
     tip = ROBOT.start[:3] + np.array(GRIP[1])
-    far = point_distance(tip, INCA.A, at.s * at.d[:, None]) - GRIP_RADIUS
+    far = point_distance(tip, INCA.A, at.directions * at.lengths[:, None]) - GRIP_RADIUS
     assert (upright.platform[0] <= far + 1e-12).all()

@@ -6,9 +6,10 @@ from hypothesis import given, settings
 from scipy.linalg import block_diag
 from statics_cases import ROBOT, poses
 
+from inca_mj.kinematics.cables import inverse
 from inca_mj.robot.geometry import INCA
 from inca_mj.statics.equilibrium import equilibrium, moved
-from inca_mj.statics.robot import lines, pull
+from inca_mj.statics.robot import pull
 from inca_mj.statics.stiffness import (
     axis_words,
     mass_matrix,
@@ -27,8 +28,8 @@ def differences(pose, tension_at):
     for step in STEP * np.eye(6):
         ends = []
         for sign in (1, -1):
-            at = lines(moved(pose, sign * step), INCA)
-            ends.append(at.W @ tension_at(at.d))
+            at = inverse(moved(pose, sign * step), INCA)
+            ends.append(at.W @ tension_at(at.lengths))
         columns.append(-(ends[0] - ends[1]) / (2 * STEP))
     return np.array(columns).T
 
@@ -36,9 +37,9 @@ def differences(pose, tension_at):
 @given(poses)
 @settings(max_examples=20, deadline=None)
 def test_locked_drums(pose):
-    at = lines(pose, INCA)
+    at = inverse(pose, INCA)
     T = np.linspace(2, 9, 8)
-    d_0 = ROBOT.lambda_ * at.d / (ROBOT.lambda_ + T)
+    d_0 = ROBOT.lambda_ * at.lengths / (ROBOT.lambda_ + T)
     K = stiffness(at, T, ROBOT.lambda_ / d_0)
     want = differences(pose, lambda d: ROBOT.lambda_ * (d - d_0) / d_0)
     np.testing.assert_allclose(K, want, atol=1e-7 * np.abs(K).max())
@@ -48,8 +49,8 @@ def test_locked_drums(pose):
 @settings(max_examples=20, deadline=None)
 def test_free_drums(pose):
     current = np.linspace(-0.3, 0.5, 8)
-    at = lines(pose, INCA)
-    found = pull(ROBOT, at.d, current)
+    at = inverse(pose, INCA)
+    found = pull(ROBOT, at.lengths, current)
     K = stiffness(at, found.tension, found.stiffness)
     want = differences(pose, lambda d: pull(ROBOT, d, current).tension)
     np.testing.assert_allclose(K, want, atol=3e-7 * np.abs(K).max())
@@ -66,15 +67,15 @@ def test_it_is_symmetric_at_rest_and_only_there():
 
 
 def test_many_poses_at_once_are_the_same_as_each():
-    at = lines(np.array([ROBOT.start, ROBOT.start + 0.05]), INCA)
+    at = inverse(np.array([ROBOT.start, ROBOT.start + 0.05]), INCA)
     T, k = np.full((2, 8), 4.0), np.full((2, 8), 1e4)
     both = stiffness(at, T, k)
     for n, pose in enumerate((ROBOT.start, ROBOT.start + 0.05)):
-        np.testing.assert_allclose(both[n], stiffness(lines(pose, INCA), T[n], k[n]))
+        np.testing.assert_allclose(both[n], stiffness(inverse(pose, INCA), T[n], k[n]))
 
 
 def test_eliminating_the_drums_gives_the_stiffness_with_free_drums():
-    at = lines(ROBOT.start, INCA)
+    at = inverse(ROBOT.start, INCA)
     whole = with_drums(ROBOT, at, ROBOT.tension, ROBOT.no_load)
     drums = np.linalg.solve(whole[6:, 6:], whole[6:, :6])
     np.testing.assert_allclose(whole[:6, :6] - whole[:6, 6:] @ drums,
@@ -82,8 +83,8 @@ def test_eliminating_the_drums_gives_the_stiffness_with_free_drums():
 
 
 def test_principal_values_are_forces_over_displacements():
-    at = lines(ROBOT.start + np.r_[0.2, 0.1, -0.2, 0, 0, 0.1], INCA)
-    K = stiffness(at, np.full(8, 4.0), ROBOT.lambda_ / at.d)
+    at = inverse(ROBOT.start + np.r_[0.2, 0.1, -0.2, 0, 0, 0.1], INCA)
+    K = stiffness(at, np.full(8, 4.0), ROBOT.lambda_ / at.lengths)
     K = (K + K.T) / 2
     push, twist = principal(K)
     for values, vectors, side in ((push.values, push.vectors, 0), (twist.values, twist.vectors, 3)):
@@ -95,7 +96,7 @@ def test_principal_values_are_forces_over_displacements():
 
 
 def test_modes_solve_the_equation_and_drums_slow_them():
-    at = lines(ROBOT.start, INCA)
+    at = inverse(ROBOT.start, INCA)
     K, M = (
         stiffness(at, ROBOT.tension, ROBOT.lambda_ / ROBOT.no_load),
         mass_matrix(ROBOT, ROBOT.start),

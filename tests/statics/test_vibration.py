@@ -5,9 +5,10 @@ import pytest
 from scipy.linalg import eigh
 from statics_cases import ROBOT
 
+from inca_mj.kinematics.cables import inverse
+from inca_mj.kinematics.rotations import cross_matrix
 from inca_mj.robot.geometry import INCA
-from inca_mj.statics.robot import lines
-from inca_mj.statics.stiffness import cross_matrix, mass_matrix, stiffness
+from inca_mj.statics.stiffness import mass_matrix, stiffness
 from inca_mj.statics.vibration import (
     coupled_modes,
     in_plane_frequency,
@@ -15,7 +16,7 @@ from inca_mj.statics.vibration import (
     string_frequencies,
 )
 
-AT = lines(ROBOT.start, INCA)
+AT = inverse(ROBOT.start, INCA)
 RHO = 1e-3
 
 
@@ -57,10 +58,10 @@ def test_light_cables_change_nothing_and_more_sines_converge_from_above():
 def test_the_exact_dynamic_stiffness_of_strings_is_singular_there():
     """A string pulls its moving end back with T (ω/c) cot(ω d/c), exactly."""
     found = coupled(sines=40)
-    T, d, s = ROBOT.tension, AT.d, AT.s
+    T, d, s = ROBOT.tension, AT.lengths, AT.directions
     d_0 = ROBOT.lambda_ * d / (ROBOT.lambda_ + T)
     K, M = stiffness(AT, T, ROBOT.lambda_ / d_0), mass_matrix(ROBOT, ROBOT.start)
-    C = np.concatenate([np.broadcast_to(np.eye(3), (8, 3, 3)), -cross_matrix(AT.r)], axis=2)
+    C = np.concatenate([np.broadcast_to(np.eye(3), (8, 3, 3)), -cross_matrix(AT.arms)], axis=2)
     along = s[:, :, None] * s[:, None, :]
     across = np.eye(3) - along
 

@@ -5,10 +5,10 @@ import pytest
 from statics_cases import ROBOT, possible, random_poses
 
 from identification.errors import InputError
+from inca_mj.kinematics.cables import inverse
 from inca_mj.rendering.workspace_picture import surface
 from inca_mj.robot.geometry import INCA
 from inca_mj.statics.closure import split, wrench_margin
-from inca_mj.statics.robot import lines
 from inca_mj.statics.workspace import KINDS, DriveLimits, margin, tension_limits, workspace
 
 LIMITS = DriveLimits()
@@ -16,8 +16,8 @@ LIMITS = DriveLimits()
 
 def test_one_wrench_is_feasible_exactly_where_a_linear_program_says_so():
     poses = random_poses(150)
-    at = lines(poses, INCA)
-    low, high = tension_limits(ROBOT, at.d, LIMITS)
+    at = inverse(poses, INCA)
+    low, high = tension_limits(ROBOT, at.lengths, LIMITS)
     found = wrench_margin(*split(at.W), low, high, ROBOT.weight)
     clear = np.flatnonzero(np.abs(found) > 1e-6)
     assert 10 < (found > 0).sum() < 130
@@ -30,7 +30,7 @@ def test_the_margin_of_a_set_is_the_least_over_its_wrenches():
     directions = rng.normal(size=(6000, 3))
     directions /= np.linalg.norm(directions, axis=1)[:, None]
     for pose in random_poses(4, across=0.5):
-        at = lines(np.tile(pose, (1, 1)), INCA)
+        at = inverse(np.tile(pose, (1, 1)), INCA)
         parts = split(at.W)
         whole = wrench_margin(*parts, 0.5, 12.0, ROBOT.weight, force=2.0)[0]
         each = [
