@@ -47,14 +47,14 @@ _PUBLIC = {
     "Candidate": "effects.effect",
     "Axis": "effects.axes",
     "axes": "effects.axes",
-    "joint_effects": "effects.joint_catalogue",
-    "drives": "effects.input_effects",
-    "input_effects": "effects.input_effects",
+    "joint_effects": "effects.catalogue",
+    "drives": "effects.inputs",
+    "input_effects": "effects.inputs",
     "JointPlant": "effects.jointed",
     "joint_plant": "effects.joint_plant",
     "candidates": "effects.joint_plant",
     "read_model": "effects.rows",
-    "places": "effects.places",
+    "places": "effects.effect",
     # linear models
     "LinearSystem": "linear.system",
     "OperatingPoints": "linear.operating_points",
@@ -129,17 +129,17 @@ if TYPE_CHECKING:  # the same list, for type checkers and editors
     from identification.discovery.result import Discovery as Discovery
     from identification.effects.axes import Axis as Axis
     from identification.effects.axes import axes as axes
+    from identification.effects.catalogue import joint_effects as joint_effects
     from identification.effects.effect import Candidate as Candidate
     from identification.effects.effect import Effect as Effect
     from identification.effects.effect import Shape as Shape
     from identification.effects.effect import Size as Size
-    from identification.effects.input_effects import drives as drives
-    from identification.effects.input_effects import input_effects as input_effects
-    from identification.effects.joint_catalogue import joint_effects as joint_effects
+    from identification.effects.effect import places as places
+    from identification.effects.inputs import drives as drives
+    from identification.effects.inputs import input_effects as input_effects
     from identification.effects.joint_plant import candidates as candidates
     from identification.effects.joint_plant import joint_plant as joint_plant
     from identification.effects.jointed import JointPlant as JointPlant
-    from identification.effects.places import places as places
     from identification.effects.rows import read_model as read_model
     from identification.errors import DivergenceError as DivergenceError
     from identification.errors import GraphicsError as GraphicsError

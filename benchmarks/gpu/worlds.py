@@ -16,7 +16,7 @@ import numpy as np
 from identification.model import rollout
 from identification.model.predictor import Numbers
 from identification.model.sensitivity import FORWARD_STEP, STEP
-from inca_mj.effects.layout import Layout
+from inca_mj.effects.hooks import Layout
 from inca_mj.robot.inputs import prbs
 from inca_mj.robot.parameters import TIMESTEP
 from inca_mj.twin.mjcf import build

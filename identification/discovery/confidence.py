@@ -28,7 +28,7 @@ from identification.discovery.replacement import replace_effect
 from identification.discovery.retuning import retune
 from identification.discovery.scoring.sensitivities import Sensitivity
 from identification.discovery.task import DiscoveryTask
-from identification.effects.curve_laws import NODES
+from identification.effects.curves import NODES
 from identification.effects.effect import CURVE, Candidate
 from identification.kalman.noise_model import build_whitener
 from identification.pool import one_blas_thread

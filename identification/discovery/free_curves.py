@@ -20,7 +20,7 @@ from identification.discovery.options import DiscoveryOptions
 from identification.discovery.scoring.scores import score
 from identification.discovery.scoring.sensitivities import Sensitivity
 from identification.discovery.scoring.significance import correct_p_value
-from identification.effects.curve_laws import NODES
+from identification.effects.curves import NODES
 from identification.effects.effect import CURVE, Candidate, Effect, Size
 from identification.kalman.linear import Linearisation, linearise_records
 from identification.kalman.noise_fit import NoiseLevel

@@ -20,6 +20,58 @@ from typing import Any, Literal
 import numpy as np
 
 from identification.errors import InputError
+from identification.model.parameter import Parameter
+
+
+def effect_parameters(effect: Effect) -> tuple[Parameter, ...]:
+    """Returns records of `effect.size` + suffix at all places of an effect, and `effect.shape`."""
+    sizes = [
+        _size(effect.parameter(size.name, where), size)
+        for size in effect.sizes
+        for where in effect.places
+    ]
+    return (*sizes, *(_shape(f"{effect.name}.{shape.name}", shape) for shape in effect.shapes))
+
+
+def _size(name: str, size: Size) -> Parameter:
+    lower = -size.farthest if size.sign <= 0 else 0.0
+    upper = size.farthest if size.sign >= 0 else 0.0
+    return Parameter(
+        name=name,
+        value=0.0,
+        unit=size.unit,
+        where="effect",
+        lower=lower,
+        upper=upper,
+        symbol=size.name,
+        about=size.about,
+        scale=size.probe,
+    )
+
+
+def _shape(name: str, shape: Shape) -> Parameter:
+    return Parameter(
+        name=name,
+        value=shape.at_first,
+        unit=shape.unit,
+        where="effect",
+        lower=shape.lower,
+        upper=shape.upper,
+        symbol=shape.name,
+        about=shape.about,
+    )
+
+
+def places(kind: str, names: tuple[str, ...]) -> dict[str, str]:
+    """Returns the places of an effect, in words, with the suffix of their parameters' names.
+
+    Args:
+        kind: of the things, e.g. "joint".
+        names: of the things; where there are several, the effect may act on all alike, or on one.
+    """
+    each = {f"{kind} {name}": f"@{name}" for name in names}
+    return each if len(names) < 2 else {f"all {kind}s": "", **each}
+
 
 Sign = Literal[-1, 0, 1]
 FARTHEST = 5.0  # of the largest plausible size

@@ -15,25 +15,73 @@ import numpy as np
 
 from identification.effects.axes import Axis
 from identification.effects.effect import Effect
-from identification.effects.first_loads import first_states_of
 from identification.effects.joint_states import (
     WIDTH,
     GearNumbers,
     JointState,
     begun,
+    first_states_of,
     gear_numbers,
     places_of,
     shown,
 )
-from identification.effects.motor_shares import felt_inertias, mobilities, refuse_greedy
 from identification.effects.values import Values
-from identification.errors import InputError
+from identification.engine import quiet
+from identification.errors import DivergenceError, InputError
 from identification.logs.names import listed
 from identification.model.paths import Slot
 from identification.model.predictor import Numbers
 from identification.model.rollout import State
 from identification.native.gear import GEARS, GRIP, MOTOR, SIDE
 from identification.native.joint_callback import LAST
+
+POSES = 8  # random ones, behind the model's own
+
+
+@quiet()
+def mobilities(model: mujoco.MjModel, joints: Sequence[str]) -> np.ndarray:
+    """Returns A among some joints in several poses, shape (`POSES`, g, g) [1/kg or 1/(kg m²)]."""
+    data, rng = mujoco.MjData(model), np.random.default_rng(0)
+    dofs = [int(model.joint(joint).dofadr[0]) for joint in joints]
+    units, columns = np.zeros((len(dofs), model.nv)), np.zeros((len(dofs), model.nv))
+    units[range(len(dofs)), dofs] = 1.0
+    out = np.empty((POSES, len(dofs), len(dofs)))
+    for pose in out:
+        mujoco.mj_forward(model, data)
+        if dofs:
+            mujoco.mj_solveM(model, data, columns, units)
+        pose[:] = columns[:, dofs]
+        mujoco.mj_integratePos(model, data.qpos, rng.normal(0, 1, model.nv), 1.0)
+    return out
+
+
+def felt_inertias(A: np.ndarray) -> np.ndarray:
+    """Returns I of each joint, shape (g,) [kg m² or kg], from A of `mobilities`."""
+    return np.asarray(1 / np.max(np.diagonal(A, axis1=1, axis2=2), axis=0))
+
+
+def refuse_greedy(J: np.ndarray, A: np.ndarray, joints: Sequence[str]) -> None:
+    """Refuse motors that leave less than nothing to the links.
+
+    Args:
+        J: inertias of the motors that move by themselves, else 0, in n value sets, shape (n, g).
+        A: of `mobilities`.
+        joints: their names.
+
+    Raises:
+        DivergenceError: a value set has such motors.
+    """
+    J = J[np.count_nonzero(J, axis=1) > 1]
+    if not len(J):
+        return
+    root = np.sqrt(J)[:, None]
+    share = np.linalg.eigvalsh(root[..., None] * A * root[..., None, :])[..., -1]
+    if np.any(share >= 1):
+        raise DivergenceError(
+            f"the motors of {listed(joints)} would have more inertia than the robot has; take a"
+            " smaller share rho"
+        )
+
 
 _WHERE = {"motor": MOTOR, "grip": GRIP}
 

@@ -4,21 +4,29 @@
 
 A size is plausible up to a share of what the drives can do: of F for a force, of F/V for what
 grows with speed, of F/A for what grows along the way, of F/T for what grows with time (see `axes`).
+
+One law has other units on a slide than on a hinge. A robot with both therefore has two effects of
+it: `coulomb_friction` of its hinges, and `slide_coulomb_friction` of its slides. A robot with
+joints of one kind has `coulomb_friction`, whichever kind that is.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property, partialmethod
+from math import pi
+from typing import Any
 
 from identification.effects.axes import Axis, Kind
-from identification.effects.effect import Effect, Shape, Sign, Size
-from identification.effects.kinds import prefix_of, with_kind
-from identification.effects.places import places
+from identification.effects.effect import Effect, Shape, Sign, Size, places
 from identification.native.element import Function
 
 PROBE = 0.01  # of the largest plausible size
+# Of a slide's travel, to try: a wave that is off by one period of the travel is out of step with
+# the true one at an end, so that none is left out up to the pitch of usual linear motors.
+PERIODS = tuple(map(float, range(2, 33)))
+SEEN = 2.0  # periods within the travel, below which a curve is not seen to repeat
 
 
 @dataclass(frozen=True)
@@ -41,10 +49,6 @@ class Group:
     def prefix(self) -> str:
         """The prefix of the effects' names."""
         return prefix_of(self.kind, self.both)
-
-    def told(self, phrase: str) -> str:
-        """Returns an effect of these joints in words."""
-        return with_kind(phrase, self.kind, self.both)
 
     @property
     def F(self) -> float:
@@ -110,28 +114,72 @@ class Group:
         """Returns a size that is probed at a share of its largest plausible value."""
         return Size(name, unit, largest, PROBE * largest, sign, about)
 
-    def friction(
-        self, law: Function, said: str, sizes: tuple[Size, ...], phrase: str, reference: str = "",
-        shapes: tuple[Shape, ...] = (), where: Mapping[str, str] | None = None,
-        needs: str = "",
-    ) -> Effect:  # fmt: skip
-        """Returns an effect on the largest friction, named like its law."""
-        found = self._effect("friction", law, said, sizes, phrase, reference, shapes, where)
-        return replace(found, needs=self.prefix + needs) if needs else found
+    def effect(
+        self, hook: str, law: Function, said: str, phrase: str, *sizes: Size, **more: Any
+    ) -> Effect:
+        """Returns an effect that is named like its law and acts on all these joints, or on one.
 
-    def force(
-        self, law: Function, said: str, sizes: tuple[Size, ...], phrase: str, reference: str = "",
-        shapes: tuple[Shape, ...] = (), where: Mapping[str, str] | None = None,
-    ) -> Effect:  # fmt: skip
-        """Returns a force, named like its law."""
-        return self._effect("force", law, said, sizes, phrase, reference, shapes, where)
+        Args:
+            hook: "force", "friction", "series" or "slip".
+            law: its njit function.
+            said: the law as a reader writes it.
+            phrase: the effect in words.
+            sizes: its sizes.
+            more: other fields of `Effect`, such as shapes, places and reference.
+        """
+        phrase = with_kind(phrase, self.kind, self.both)
+        fields = {"places": self.at, **more, "hooks": {hook: law}, "phrase": phrase}
+        return Effect(self.prefix + law.__name__, said, sizes, **fields)
 
-    def _effect(
-        self, hook: str, law: Function, said: str, sizes: tuple[Size, ...], phrase: str,
-        reference: str, shapes: tuple[Shape, ...], where: Mapping[str, str] | None,
-    ) -> Effect:  # fmt: skip
-        return Effect(
-            self.prefix + law.__name__, said, sizes, shapes, phrase=self.told(phrase),
-            reference=reference,
-            places=self.at if where is None else where, hooks={hook: law},
-        )  # fmt: skip
+    force = partialmethod(effect, "force")
+    friction = partialmethod(effect, "friction")
+
+
+def wave_sizes(g: Group) -> tuple[Size, ...]:
+    """Returns the amplitudes of cosine and sine."""
+    return (
+        g.size("a", 0.2 * g.F, g.f, "amplitude of the cosine"),
+        g.size("b", 0.2 * g.F, g.f, "amplitude of the sine"),
+    )
+
+
+def waves(g: Group) -> tuple[Shape, ...]:
+    """Returns how often a periodic force repeats: in a turn, or in 2π m of a slide.
+
+    A wave of which the log shows fewer than `SEEN` periods is not seen to repeat: any curve would
+    do as well. Returns none where there is no wave to try.
+    """
+    least = 2 * pi * SEEN / g.L
+    if g.kind == "slide":
+        grid = tuple(2 * pi * w / g.L for w in PERIODS)
+        return (Shape("n", "rad/m", grid, 0.9 * least, 2 * grid[-1], about="wave number"),)
+    seen = tuple(n for n in g.turns if n >= least)
+    if not seen:
+        return ()
+    high = max(48.0, *seen)
+    return (Shape("n", "", seen, least, high, free=False, about="periods in a turn"),)
+
+
+SLIDE = "slide_"  # before names of effects of slides, on a robot that has hinges too
+_WORDS: dict[Kind, str] = {"hinge": "(hinges)", "slide": "(slides)"}
+
+
+def prefix_of(kind: Kind, both: bool) -> str:
+    """Returns the prefix of names of effects of a kind of joints; `both`: the robot has both."""
+    return SLIDE if both and kind == "slide" else ""
+
+
+def with_kind(phrase: str, kind: Kind, both: bool) -> str:
+    """Returns an effect in words, with the kind of its joints where the robot has both."""
+    return f"{phrase} {_WORDS[kind]}" if both else phrase
+
+
+def about_names(asked: str, known: Iterable[str]) -> str:
+    """Returns a sentence on the names of slides' effects, behind a list of good names, or ""."""
+    if any(name.startswith(SLIDE) for name in known):
+        where = "here, because effects may act on hinges too."
+    elif asked.startswith(SLIDE):
+        where = "only where effects may act on hinges too."
+    else:
+        return ""
+    return f" Names of effects of slides begin with {SLIDE} {where}"

@@ -6,22 +6,86 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from itertools import product
+from math import isfinite
 from pathlib import Path
+from typing import Any
 
 import mujoco
+import numpy as np
 
 from identification.effects.axes import Axis, axes
 from identification.effects.catalogue import all_effects
-from identification.effects.effect import Effect
-from identification.effects.effect_parameters import effect_parameters
-from identification.effects.joint_layout import JointLayout
+from identification.effects.effect import Effect, effect_parameters
 from identification.effects.jointed import JointPlant as JointPlant
-from identification.effects.own_effects import refuse_unfit_own
-from identification.effects.rows import read_model, with_rows
+from identification.effects.rows import JointLayout, read_model, with_rows
+from identification.effects.values import terms_of
+from identification.errors import InputError, unknown_name
 from identification.logs.log import Log
 from identification.model.parameter import Parameter, ParameterSet
 from identification.model.plant import ModelPlant
 from identification.model.rollout import State
+from identification.native.element import Element
+from identification.native.hook_checks import refuse_unfit_functions
+from identification.native.input_filter import INPUT
+from identification.native.joint_callback import JOINT, Joint
+
+VALUES = (0.0, 0.3, -0.7)  # of position and rate: at rest, and in both directions
+
+
+def refuse_unfit_own(
+    effects: Sequence[Effect], joints: Sequence[str], actuators: Sequence[str]
+) -> None:
+    """Refuse own effects at a place that is not there, or with functions that fail.
+
+    Args:
+        effects: of the user's own.
+        joints: names of the joints that may have effects.
+        actuators: names of the inputs.
+
+    Raises:
+        InputError: a place is unknown, or a function cannot be compiled, may return nothing,
+            raises, or returns a number that is not finite.
+    """
+    for element, things in ((JOINT, joints), (INPUT, actuators)):
+        own = [e for e in effects if {h.name for h in element.hooks} & {*e.hooks}]
+        for effect in own:
+            for suffix in effect.places.values():
+                if suffix and suffix.removeprefix("@") not in things:
+                    raise unknown_name(f"{element.name} of effect {effect.name!r}:",
+                                       suffix.removeprefix("@"), things)  # fmt: skip
+        refuse_unfit_functions(element, terms_of(own, element))
+    for effect in effects:
+        for name, function in effect.hooks.items():
+            if name in {hook.name for hook in JOINT.hooks}:
+                _try(effect, JOINT, name, function.py_func)  # type: ignore[attr-defined]
+
+
+def _try(effect: Effect, element: Element, hook: str, law: Any) -> None:
+    """Call a function of a joint at rest and in motion."""
+    where = f"effect {effect.name!r}: the function {law.__name__} of its hook {hook!r}"
+    shapes = [_usual(s.grid, s.usual) for s in effect.shapes]
+    p = tuple(float(x) for x in (*(size.probe for size in effect.sizes), *shapes))
+    for q, v, sign in product(VALUES, VALUES, (-1.0, 1.0)):
+        s = Joint(time=0.5, q=q, v=v, f_u=0.2, f_g=-0.1, sign=sign)
+        at = f"at {', '.join(f'{k} = {x:g}' for k, x in s._asdict().items())} and {p}"
+        try:
+            with np.errstate(all="ignore"):
+                value = law(s, p)
+        except Exception as error:  # whatever the user's own lines raise
+            reason = f"{type(error).__name__}: {error}".rstrip(": ")
+            raise InputError(f"{where} raises {reason} {at}; let it return {_what(element, hook)}"
+                             ) from error  # fmt: skip
+        if value is None or isinstance(value, complex) or not isfinite(value):
+            raise InputError(f"{where} returns {value} {at}; let it return {_what(element, hook)}")
+
+
+def _what(element: Element, hook: str) -> str:
+    return f"{element.hook(hook)}, finite in every state"
+
+
+def _usual(grid: Sequence[float], usual: float | None) -> float:
+    return usual if usual is not None else grid[len(grid) // 2]
 
 
 def joint_plant(

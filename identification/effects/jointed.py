@@ -22,14 +22,12 @@ import numpy as np
 
 from identification.effects import values as effect_values
 from identification.effects.axes import Axis
-from identification.effects.body_numbers import body_numbers
+from identification.effects.body import body_numbers
 from identification.effects.effect import Effect
-from identification.effects.first_loads import first_loads
 from identification.effects.gears import Gears, needed_states
-from identification.effects.joint_layout import JointLayout
-from identification.effects.joint_states import JointState, fitting, with_actuators
+from identification.effects.joint_states import JointState, first_loads, fitting, with_actuators
 from identification.effects.moving_bodies import MovingBody, moving_bodies
-from identification.effects.rows import changed_rows, with_rows
+from identification.effects.rows import JointLayout, changed_rows, with_rows
 from identification.engine import derive
 from identification.model.parameter import ParameterSet
 from identification.model.paths import write

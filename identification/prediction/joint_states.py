@@ -1,7 +1,7 @@
 """Windows of a plant that gets states of joints, because an effect needs them.
 
 The states that a plant has already stay as they are. Those that it gets begin at the loads of gears
-and frictions (`identification.effects.first_loads`), and windows do not move them yet. With sizes
+and frictions (`identification.effects.joint_states`), and windows do not move them yet. With sizes
 of zero the outputs are the same, to the bit.
 """
 

@@ -23,7 +23,7 @@ from identification.discovery.findings.records_evidence import (
     UnprovenEffect,
     WorseFit,
 )
-from identification.effects.neighbours import phrase_there
+from identification.effects.named import phrase_there
 from identification.model.predictor import Plant
 from identification.prediction.clocks import told_shifts
 from identification.prediction.state import rise

@@ -12,7 +12,7 @@ brakes.
 from __future__ import annotations
 
 from identification.effects.effect import Candidate
-from identification.effects.kinds import SLIDE
+from identification.effects.joint_group import SLIDE
 from identification.prediction.model import WindowModel
 
 TWINS = {"offset": "asymmetric_friction", "asymmetric_friction": "offset"}

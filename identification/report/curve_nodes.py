@@ -6,7 +6,7 @@
     position        q = q_mid + x q_far         x evenly from -1 to 1; also of a neighbouring joint
     time            t = (x + 1)/2 t_end         the same
 
-The laws are those of `identification.effects.curve_laws`.
+The laws are those of `identification.effects.curves`.
 """
 
 from __future__ import annotations
@@ -16,10 +16,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from identification.effects.curve_laws import NODES
+from identification.effects.curves import NODES
 from identification.effects.effect import Candidate
 from identification.effects.jointed import JointPlant
-from identification.effects.neighbours import joints_of, neighbour
+from identification.effects.named import joints_of, neighbour
 from identification.model.predictor import Plant
 from identification.quantities import held
 

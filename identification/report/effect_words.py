@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import isfinite, isinf, isnan
 from typing import TYPE_CHECKING
 
-from identification.effects.neighbours import phrase_there
+from identification.effects.named import phrase_there
 from identification.quantities import probability, quantity
 
 if TYPE_CHECKING:  # a search is slow to import, and a page may tell of a model alone

@@ -10,8 +10,7 @@ from collections.abc import Sequence
 
 import mujoco
 
-from identification.effects.effect import Effect
-from identification.effects.effect_parameters import effect_parameters
+from identification.effects.effect import Effect, effect_parameters
 from identification.effects.joint_plant import JointPlant
 from identification.errors import InputError, told_of
 from identification.logs.log import Log

@@ -14,8 +14,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from identification.effects.effect import Effect
-from identification.effects.effect_parameters import effect_parameters
+from identification.effects.effect import Effect, effect_parameters
 from identification.effects.moving_bodies import Felt
 from identification.effects.named import means_effect, unknown_number
 from identification.errors import InputError, told_of

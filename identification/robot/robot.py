@@ -11,9 +11,8 @@ import numpy as np
 
 from identification.discovery.nominal_model import NominalModel
 from identification.effects.axes import axes, reach
-from identification.effects.catalogue import all_effects
+from identification.effects.catalogue import TURNS, all_effects
 from identification.effects.effect import Effect
-from identification.effects.joint_catalogue import TURNS
 from identification.effects.joint_plant import JointPlant, candidates, joint_plant
 from identification.effects.named import unknown_effect
 from identification.errors import InputError, told_of, unknown_name

@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from identification.discovery.final_values import keep_of_robot
-from identification.effects.kinds import SLIDE
+from identification.effects.joint_group import SLIDE
 from identification.files import write_text
 from identification.robot.parameters import KNOWN, Free, effect_sizes
 from identification.robot.robot import Robot

@@ -1,68 +1,15 @@
-"""All candidate effects: those with a law of their own, then those by rule, then the sensors'."""
+"""All candidate effects: those with a law of their own, then those by rule, then the encoders'."""
 
 from identification.effects.effect import Effect
-from inca_mj.effects.cable import CABLE_CREEP, CABLE_HARDENING, CABLE_WEIGHT
+from inca_mj.effects.cable import OF_CABLES
 from inca_mj.effects.change import DRIFTS, JUMPS, MISMATCHES
-from inca_mj.effects.drum import (
-    BACKLASH,
-    DRUM_ECCENTRICITY,
-    DRUM_LAYERING,
-    SPRING_HARDENING,
-    SPRING_HYSTERESIS,
-)
-from inca_mj.effects.friction import (
-    ASYMMETRIC_FRICTION,
-    LOAD_DEPENDENT_FRICTION,
-    QUADRATIC_FRICTION,
-    STRIBECK_FRICTION,
-)
-from inca_mj.effects.motor import (
-    COGGING,
-    CURRENT_CROSSTALK,
-    CURRENT_LAG,
-    CURRENT_OFFSET,
-    CURRENT_SATURATION,
-    DELAY,
-)
-from inca_mj.effects.place import (
-    AIR_DRAG,
-    ANCHOR_OFFSET,
-    COM_OFFSET,
-    EXTERNAL_FORCE,
-    PULL,
-    PULLEY_RADIUS,
-)
-from inca_mj.effects.sensor import SENSORS
+from inca_mj.effects.motor import OF_ENCODERS, OF_MOTORS
+from inca_mj.effects.platform import OF_PLATFORM, PULL
 
+# The order is part of the contract: the sum of the effects, and the key of their law, follow it.
 CATALOGUE: tuple[Effect, ...] = (
-    STRIBECK_FRICTION,
-    ASYMMETRIC_FRICTION,
-    LOAD_DEPENDENT_FRICTION,
-    QUADRATIC_FRICTION,
-    COGGING,
-    DELAY,  # what acts on the currents, in the order in which they pass it
-    CURRENT_SATURATION,
-    CURRENT_LAG,
-    CURRENT_OFFSET,
-    CURRENT_CROSSTALK,
-    DRUM_ECCENTRICITY,
-    DRUM_LAYERING,
-    BACKLASH,
-    SPRING_HARDENING,
-    SPRING_HYSTERESIS,
-    CABLE_HARDENING,
-    CABLE_CREEP,
-    PULLEY_RADIUS,
-    CABLE_WEIGHT,
-    ANCHOR_OFFSET,
-    COM_OFFSET,
-    EXTERNAL_FORCE,
-    AIR_DRAG,
-    *MISMATCHES,
-    *DRIFTS,
-    *JUMPS,
-    *SENSORS,
-)
+    *OF_MOTORS, *OF_CABLES, *OF_PLATFORM, *MISMATCHES, *DRIFTS, *JUMPS, *OF_ENCODERS,
+)  # fmt: skip
 
 # What a saved twin or run may have: the candidates, and what only a simulation is given.
 EVERY: tuple[Effect, ...] = (*CATALOGUE, PULL)

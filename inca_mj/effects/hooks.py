@@ -8,16 +8,26 @@
 An effect is an `Effect` whose `hooks` name some of these. A hook's function is compiled by njit and
 takes a `Drive` (or a `Platform`) and the tuple of the effect's parameters, sizes first; it returns
 what is added. Everything added is zero when the sizes are.
+
+The parameters of drives and cables stand in the rows of `actuator_user`, behind the law's own
+columns; those of the platform in its row of `body_user`; those of inputs and sensors nowhere: they
+act before the model and behind it. States of effects follow d₀ in a drive's activations. One column
+holds the key of the set, so that a model is never advanced by the law of another.
 """
 
 from __future__ import annotations
 
 from collections import namedtuple
+from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
-from identification.native.element import Element, Hook
+from identification.effects.effect import Effect
+from identification.effects.values import key_of, refuse_misplaced, terms_of
+from identification.native.element import Element, Hook, Term
 from identification.native.input_filter import INPUT
 from identification.native.reading import SENSOR
+from inca_mj.robot import law
 from inca_mj.robot.geometry import DRIVES
 
 # What a hook sees of a drive; NaN where it comes before the quantity is known.
@@ -82,3 +92,58 @@ DRIVES_EACH = {"all drives": "", **_EACH}  # on all alike, or on one
 ONE_DRIVE = _EACH  # on one only: common to all, it would be a base parameter
 CABLES = {"all cables": ""}
 ON_PLATFORM = {"platform": ""}
+
+KEY = law.ACTUATOR_COLUMNS  # column of `actuator_user` with the key of the set
+FIRST = KEY + 1
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Columns and states of a set of effects.
+
+    Attributes:
+        effects: the set, in order.
+        settled: whether a robot starts at rest with its effects, as one that has stood for a
+            while; else with the nominal T(0), as one that was held until then.
+
+    Raises:
+        InputError: two effects have one name, or one has a hook that this robot has not.
+    """
+
+    effects: tuple[Effect, ...] = ()
+    settled: bool = field(default=False, compare=False)  # the compiled law is the same
+
+    def __post_init__(self) -> None:
+        refuse_misplaced(self.effects, ELEMENTS)
+
+    @cached_property
+    def key(self) -> float:
+        """Tells this set from others; zero, as where a drive carries no key, without effects."""
+        return key_of(self.effects) if self.effects else 0.0
+
+    @cached_property
+    def on_drives(self) -> tuple[Term, ...]:
+        """The effects with parameters in `actuator_user`."""
+        return terms_of(self.effects, DRIVE, first=FIRST, own="rate")
+
+    @cached_property
+    def on_platform(self) -> tuple[Term, ...]:
+        """The effects with parameters in `body_user`."""
+        return terms_of(self.effects, PLATFORM)
+
+    @property
+    def actuator_columns(self) -> int:
+        """Width of `actuator_user`."""
+        if not self.effects:
+            return KEY
+        return FIRST + sum(len(term.names) for term in self.on_drives)
+
+    @property
+    def body_columns(self) -> int:
+        """Width of `body_user`."""
+        return sum(len(term.names) for term in self.on_platform)
+
+    @property
+    def states(self) -> int:
+        """Activations of a drive: d₀ and the effects' own."""
+        return 1 + max((term.state for term in self.on_drives), default=0)

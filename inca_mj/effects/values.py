@@ -13,13 +13,11 @@ import mujoco
 import numpy as np
 
 from identification.effects import values as effect_values
-from identification.effects.effect import Effect
-from identification.effects.effect_parameters import effect_parameters
+from identification.effects.effect import Effect, effect_parameters
 from identification.effects.values import Values, table_at, written_at
 from identification.model.parameter import Parameter, ParameterSet
 from identification.model.paths import Slot
-from inca_mj.effects.hooks import THINGS, Platform
-from inca_mj.effects.layout import Layout
+from inca_mj.effects.hooks import THINGS, Layout, Platform
 from inca_mj.robot.geometry import Geometry
 
 _NOWHERE = Platform(

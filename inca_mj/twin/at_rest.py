@@ -18,8 +18,7 @@ from typing import Any
 import numpy as np
 
 from identification.effects.effect import Effect
-from inca_mj.effects.hooks import DRIVE, PLATFORM, Drive, Platform
-from inca_mj.effects.layout import Layout
+from inca_mj.effects.hooks import DRIVE, PLATFORM, Drive, Layout, Platform
 from inca_mj.effects.values import drive_values, present
 from inca_mj.kinematics.rotations import rotation
 from inca_mj.robot.geometry import DRIVES, Geometry

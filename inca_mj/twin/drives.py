@@ -11,8 +11,7 @@ import numpy as np
 from identification.native.access import double, integer, offsets, word
 from identification.native.decorators import inlined, internal
 from identification.native.memory import load_byte, load_constant, load_double, store_double
-from inca_mj.effects.hooks import Drive
-from inca_mj.effects.layout import KEY
+from inca_mj.effects.hooks import KEY, Drive
 from inca_mj.robot import law
 
 M = offsets(

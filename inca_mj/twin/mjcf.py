@@ -18,7 +18,7 @@ import numpy as np
 
 from identification.errors import InputError
 from identification.model.parameter import ParameterSet
-from inca_mj.effects.layout import KEY, Layout
+from inca_mj.effects.hooks import KEY, Layout
 from inca_mj.effects.values import about_centre, drive_values
 from inca_mj.kinematics.rotations import quaternion
 from inca_mj.robot import law

@@ -43,8 +43,7 @@ from identification.native.hook_checks import refuse_unfit_functions
 from identification.native.memory import load_constant, load_double, store_double
 from identification.native.table import SHARE, is_compiled
 from identification.native.tuples import replacer
-from inca_mj.effects.hooks import DRIVE, PLATFORM, Drive
-from inca_mj.effects.layout import Layout
+from inca_mj.effects.hooks import DRIVE, PLATFORM, Drive, Layout
 from inca_mj.robot import law
 from inca_mj.twin import drives
 from inca_mj.twin.drives import FIELDS, D, M, cable, double, drive, integer, word

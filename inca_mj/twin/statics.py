@@ -17,7 +17,7 @@ import numpy as np
 
 from identification.errors import InputError
 from identification.model.parameter import ParameterSet
-from inca_mj.effects.layout import Layout
+from inca_mj.effects.hooks import Layout
 from inca_mj.effects.values import about_centre
 from inca_mj.kinematics.cables import cables_at
 from inca_mj.kinematics.jacobians import length_jacobian

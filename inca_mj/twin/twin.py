@@ -19,7 +19,7 @@ from identification.model.parameter import ParameterSet
 from identification.model.paths import Slot, write
 from identification.model.predictor import Numbers
 from identification.model.rollout import State
-from inca_mj.effects.layout import Layout
+from inca_mj.effects.hooks import Layout
 from inca_mj.effects.values import inputs as effect_inputs
 from inca_mj.effects.values import readings as effect_readings
 from inca_mj.effects.values import with_effects

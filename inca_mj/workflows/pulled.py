@@ -12,7 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from identification.errors import InputError
-from inca_mj.effects.place import PULL
+from inca_mj.effects.platform import PULL
 from inca_mj.twin.twin import Twin, rebuild
 
 CENTRE = (0.0, 0.0, 0.0)

@@ -33,8 +33,7 @@ from identification.kalman.point import Point
 from identification.kalman.refit import Refit
 from identification.model.coordinates import coordinates
 from inca_mj.effects.change import MISMATCHES
-from inca_mj.effects.friction import STRIBECK_FRICTION
-from inca_mj.effects.motor import DELAY
+from inca_mj.effects.motor import DELAY, STRIBECK_FRICTION
 from inca_mj.robot.inputs import make_input
 from inca_mj.twin.logs import run_to_log
 from inca_mj.twin.run import simulate

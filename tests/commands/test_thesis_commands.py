@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from inca_mj.cli import main
-from inca_mj.effects.place import PULL
+from inca_mj.effects.platform import PULL
 from inca_mj.report.citation import THESIS, software, to_bibtex, to_cff, to_text
 from inca_mj.robot.inputs import make_input
 from inca_mj.robot.parameters import parameter_set

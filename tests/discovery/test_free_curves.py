@@ -23,7 +23,7 @@ from identification.discovery.fitted_model import fit_model
 from identification.discovery.free_curves import _respond, find_curves, list_curves
 from identification.discovery.replacement import replace_effect
 from identification.discovery.search import discover
-from identification.effects.curve_laws import NODES
+from identification.effects.curves import NODES
 from identification.effects.effect import Candidate
 from identification.kalman.linear import LinearPlant
 from identification.model.predictor import Predictor

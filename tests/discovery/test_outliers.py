@@ -10,7 +10,7 @@ from identification.discovery.scoring.outliers import (
     list_at_outliers,
 )
 from identification.effects.effect import Candidate, Effect, Shape, Size
-from identification.effects.sensor_laws import encoder_jump
+from identification.effects.sensors import encoder_jump
 from identification.logs.joined import join_logs
 
 T_S = Shape("t_s", "s", (1.0, 2.0), 0.1, 9.0, about="", step=0.1)

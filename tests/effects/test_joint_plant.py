@@ -18,7 +18,7 @@ from joint_cases import (
 
 from identification import InputError, Parameter
 from identification.effects.axes import Axis, axes, reach
-from identification.effects.joint_catalogue import joint_effects
+from identification.effects.catalogue import joint_effects
 from identification.effects.joint_plant import candidates, joint_plant
 from identification.native.joint_callback import STEPS
 from identification.windows.window_error import window_error

@@ -21,7 +21,7 @@ from state_cases import (
 from identification import InputError
 from identification.effects.effect import STATES
 from identification.effects.joint_states import JointState
-from identification.effects.state_laws import gear_backlash, joint_elasticity, presliding
+from identification.effects.state_effects import gear_backlash, joint_elasticity, presliding
 from identification.model.predictor import Predictor
 from identification.model.rollout import State, rollout
 from identification.native.gear_element import Gear

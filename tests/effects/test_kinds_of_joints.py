@@ -3,8 +3,8 @@
 import pytest
 
 from identification.effects.axes import Axis
-from identification.effects.joint_catalogue import TURNS, joint_effects
-from identification.effects.kinds import SLIDE
+from identification.effects.catalogue import TURNS, joint_effects
+from identification.effects.joint_group import SLIDE
 from identification.effects.named import unknown_effect, unknown_number
 
 HINGE, SLIDER = Axis("pivot", "hinge", 1.0, 1.0, 1.0), Axis("rail", "slide", 1.0, 1.0, 1.0)

@@ -10,13 +10,12 @@ from joint_cases import ARM, DAMPING, MASS, SLIDER, arm, arm_log, run, slider, s
 from numba import njit
 
 from identification.effects.axes import Axis
-from identification.effects.effect import Effect, Size
+from identification.effects.effect import Effect, Size, places
 from identification.effects.joint_plant import joint_plant
-from identification.effects.places import places
 from identification.logs.log import Log
 from identification.native import table
 from identification.native.installer import uninstall
-from inca_mj.effects.layout import KEY
+from inca_mj.effects.hooks import KEY
 from inca_mj.twin import native
 from inca_mj.twin.twin import build_twin
 

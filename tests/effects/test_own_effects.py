@@ -10,11 +10,10 @@ from joint_cases import DAMPING, MASS, SLIDER, run, slider, slider_log, steps
 from numba import njit
 
 from identification.effects.axes import Axis
-from identification.effects.effect import Effect, Shape, Size
-from identification.effects.input_effects import Drive, input_effects
-from identification.effects.joint_catalogue import joint_effects
+from identification.effects.catalogue import joint_effects
+from identification.effects.effect import Effect, Shape, Size, places
+from identification.effects.inputs import Drive, input_effects
 from identification.effects.joint_plant import joint_plant
-from identification.effects.places import places
 from identification.errors import DivergenceError, InputError
 from inca_mj.effects.hooks import DRIVES_EACH
 from inca_mj.twin.twin import build_twin

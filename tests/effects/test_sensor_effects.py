@@ -9,7 +9,7 @@ from joint_cases import ARM, DAMPING, MASS, SLIDER, arm, arm_log, run, slider_lo
 from identification import InputError, Log
 from identification.effects.axes import Axis
 from identification.effects.joint_plant import joint_plant
-from identification.effects.sensor_catalogue import sensor_effects
+from identification.effects.sensors import sensor_effects
 from identification.model.predictor import Predictor
 from identification.native.reading import Reading
 from identification.windows.window_error import window_error

@@ -5,7 +5,7 @@ import pytest
 from joint_cases import DAMPING, MASS, SLIDER, run, slider, slider_log, steps
 
 from identification.effects.axes import Axis
-from identification.effects.joint_catalogue import joint_effects
+from identification.effects.catalogue import joint_effects
 from identification.effects.joint_plant import joint_plant
 from identification.model.rollout import State
 from identification.windows.window_estimate import estimate_windows

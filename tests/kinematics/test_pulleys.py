@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from identification.errors import InputError
-from inca_mj.effects.place import pulley_radius
+from inca_mj.effects.cable import pulley_radius
 from inca_mj.kinematics import Pulleys
 from inca_mj.kinematics.cables import cables_along
 from inca_mj.studies.worlds.pulley import path as path_of_worlds

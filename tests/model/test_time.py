@@ -5,9 +5,8 @@ import pytest
 from joint_cases import DAMPING, MASS, SLIDER, run, slider, slider_log, steps
 from numba import njit
 
-from identification.effects.effect import Effect, Size
+from identification.effects.effect import Effect, Size, places
 from identification.effects.joint_plant import joint_plant
-from identification.effects.places import places
 from identification.errors import DivergenceError
 from identification.kalman.linear import linearise
 from identification.model.predictor import Predictor

@@ -5,7 +5,7 @@ from records_cases import AXIS, nominal_model, pendulum, record
 
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.axes import Axis
-from identification.effects.joint_catalogue import joint_effects
+from identification.effects.catalogue import joint_effects
 from identification.effects.joint_plant import candidates
 from identification.prediction.discovery import discover_records
 

@@ -8,7 +8,7 @@ import pytest
 
 from identification.errors import InputError
 from inca_mj import build_twin, make_input, simulate
-from inca_mj.effects.friction import STRIBECK_FRICTION
+from inca_mj.effects.motor import STRIBECK_FRICTION
 from inca_mj.twin.saved import load_twin, save_twin
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "own_effect.py"

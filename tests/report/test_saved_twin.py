@@ -9,7 +9,7 @@ from fake_discovery import SIZES, found, log, truth
 
 from identification.errors import InputError
 from inca_mj.effects.catalogue import CATALOGUE
-from inca_mj.effects.friction import STRIBECK_FRICTION
+from inca_mj.effects.motor import STRIBECK_FRICTION
 from inca_mj.twin.saved import load_twin, save_twin
 from inca_mj.workflows.discovery_model import named_twin, rerun
 

@@ -8,7 +8,7 @@ from robot_cases import TOML, refused, simulated
 
 from identification import write_log
 from identification.effects.axes import Axis
-from identification.effects.joint_catalogue import TURNS, joint_effects
+from identification.effects.catalogue import TURNS, joint_effects
 from identification.effects.named import unknown_number
 from identification.robot.file import read_robot_file
 from identification.robot.robot import read_robot_log

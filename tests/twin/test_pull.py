@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from identification.errors import InputError
-from inca_mj.effects.place import PULL
+from inca_mj.effects.platform import PULL
 from inca_mj.reference.integrate import simulate_reference
 from inca_mj.robot.geometry import INCA
 from inca_mj.robot.inputs import make_input

@@ -9,7 +9,7 @@ import pytest
 
 from identification.errors import InputError
 from inca_mj.effects.cable import CABLE_CREEP
-from inca_mj.effects.friction import STRIBECK_FRICTION
+from inca_mj.effects.motor import STRIBECK_FRICTION
 from inca_mj.robot import law
 from inca_mj.robot.inputs import make_input
 from inca_mj.robot.parameters import parameter_set

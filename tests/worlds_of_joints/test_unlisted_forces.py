@@ -10,7 +10,7 @@ from joint_worlds.slots import plain_joints
 from joint_worlds.unlisted import unlisted
 
 from identification.effects.axes import Axis
-from identification.effects.joint_catalogue import joint_effects
+from identification.effects.catalogue import joint_effects
 
 AXES = tuple(Axis(name, "hinge", 1.0, 1.0, 1.0, duration=2.0) for name in "ab")
 LAWS = [

@@ -1,4 +1,4 @@
-"""The laws of curves: forces on a joint that are drawn from the data, where no listed law fits.
+"""Curves: forces on a joint that are drawn from the data, where no listed law fits.
 
     f(x) = Σ_k c_k Λ_k(x)             Λ_k: 1 at the node x_k, 0 at all others
 
@@ -17,14 +17,25 @@ between others it is the natural cubic spline, for hoses and springs do not. On 
 A force that depends on a speed or on the drive alone is none at rest or without the drive: what
 would be left is a constant force, which is an effect by itself. Nodes of speed are dense where
 frictions bend. Beyond the last node a curve keeps its value. Each c_k is the force at its node.
+
+A curve has eight sizes, so that a law that explains as much with fewer wins by its criterion. It
+acts on one joint, because each joint has a range of its own. What it depends on may be a neighbour:
+a hose, a spring or a cable between two bodies pulls at one joint by the position of another, and a
+belt or a motor that both joints turn rubs by its speed. It may be as strong as the drives: a soft
+stop holds them.
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import sqrt
 
 import numpy as np
 from numba import njit
+
+from identification.effects.effect import CURVE, Effect
+from identification.effects.joint_group import Group
+from identification.native.element import Function
 
 NODES = 8
 
@@ -78,47 +89,67 @@ def _of_speed(v, c):  # type: ignore[no-untyped-def]
 
 @njit
 def curve_speed(s, p):  # type: ignore[no-untyped-def]
-    """f(sgn(v) √(|v|/v_top))."""
     return _of_speed(s.v / s.v_top, p)
 
 
 @njit
 def curve_load(s, p):  # type: ignore[no-untyped-def]
-    """f(f_u/f_top)."""
     return through_zero(s.f_u / s.f_top, p)
 
 
 @njit
 def curve_position(s, p):  # type: ignore[no-untyped-def]
-    """f((q - q_mid)/q_far)."""
     return smooth((s.q - s.q_mid) / s.q_far, p)
 
 
+# A curve over a neighbour is zero where there is no such joint.
 @njit
 def curve_before(s, p):  # type: ignore[no-untyped-def]
-    """f(x) of the joint before it in the model; none where there is no such joint."""
     return smooth(s.x_before, p) if s.x_before == s.x_before else 0.0
 
 
 @njit
 def curve_behind(s, p):  # type: ignore[no-untyped-def]
-    """f(x) of the joint behind it in the model; none where there is no such joint."""
     return smooth(s.x_behind, p) if s.x_behind == s.x_behind else 0.0
 
 
 @njit
 def curve_speed_before(s, p):  # type: ignore[no-untyped-def]
-    """f(sgn(v) √(|v|/v_top)) of the joint before it in the model; none where there is none."""
     return _of_speed(s.v_before, p) if s.v_before == s.v_before else 0.0
 
 
 @njit
 def curve_speed_behind(s, p):  # type: ignore[no-untyped-def]
-    """f(sgn(v) √(|v|/v_top)) of the joint behind it in the model; none where there is none."""
     return _of_speed(s.v_behind, p) if s.v_behind == s.v_behind else 0.0
 
 
 @njit
 def curve_time(s, p):  # type: ignore[no-untyped-def]
-    """f(2 t/t_end - 1)."""
     return smooth(2.0 * s.time / s.t_end - 1.0, p)
+
+
+def curve_effects(g: Group) -> list[Effect]:
+    """Returns curves of some joints; those without a place are left out by the caller."""
+    driven = {where: suffix for where, suffix in g.plain.items() if suffix}
+    beside = g.each if g.both or len(g.axes) > 1 else {}
+    return [
+        _curve(g, curve_speed, "f(v), none at rest", "speed", g.each),
+        _curve(g, curve_load, "f(f_u), f_u the drive's force", "the drive's force", driven),
+        _curve(g, curve_position, "f(q)", "position", g.each),
+        _curve(g, curve_before, "f(q) of the joint before it",
+               "the position of the joint before it", beside),
+        _curve(g, curve_behind, "f(q) of the joint behind it",
+               "the position of the joint behind it", beside),
+        _curve(g, curve_speed_before, "f(v) of the joint before it, none at rest",
+               "the speed of the joint before it", beside),
+        _curve(g, curve_speed_behind, "f(v) of the joint behind it, none at rest",
+               "the speed of the joint behind it", beside),
+        _curve(g, curve_time, "f(t)", "time", g.each if g.T > 0 else {}),
+    ]  # fmt: skip
+
+
+def _curve(g: Group, law: Function, said: str, what: str, where: dict[str, str]) -> Effect:
+    sizes = [g.size(f"c_{k}", g.F, g.f, f"force at node {k}") for k in range(1, NODES + 1)]
+    made = g.force(law, said, f"force: some curve of {what}", *sizes, places=where)
+    word = law.__name__.removeprefix(CURVE)  # "curve" stands first, so that it is seen to be one
+    return replace(made, name=f"{CURVE}_{g.prefix}".rstrip("_") + word)

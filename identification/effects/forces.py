@@ -1,0 +1,142 @@
+"""Forces on joints that do not come from friction, and all that changes with time t of the record.
+
+    f =   f_0                                   constant force
+        - k q                                   spring
+        - k_3 q³                                its hardening
+        - c f_u³                                a drive that weakens where it pushes hard
+        + a cos n q + b sin n q                 cogging
+        - d_t t v                               viscous friction that drifts
+        - d_j r(t - t_j) v                      ... that jumps
+        + f_p (r(t - t_0) - r(t - t_0 - t_p))   a push that begins and ends
+
+    b = + f_t t                                 Coulomb friction that drifts
+        + f_j r(t - t_j)                        ... that jumps
+
+    r(x) = clip(½ + x/w, 0, 1)                  from none to all within w about x = 0
+
+The letters are those of `identification.effects.friction`. Time is that of the record, from its
+first sample on, also in its parts and in windows of it. A jump takes a short time w so that the
+outputs follow its time smoothly, and its time can be searched.
+"""
+
+from __future__ import annotations
+
+from math import cos, sin
+
+from numba import njit
+
+from identification.effects.effect import Effect, Shape
+from identification.effects.joint_group import Group, wave_sizes, waves
+from identification.quantities import per
+
+MOMENTS = 8  # times of a record at which a jump or a push is tried
+EDGE = 0.02  # of the record: how long a jump takes, so that its time can be searched
+
+
+@njit
+def offset(s, p):  # type: ignore[no-untyped-def]
+    return p[0]
+
+
+@njit
+def stiffness(s, p):  # type: ignore[no-untyped-def]
+    return -p[0] * s.q
+
+
+@njit
+def hardening(s, p):  # type: ignore[no-untyped-def]
+    return -p[0] * s.q * s.q * s.q
+
+
+@njit
+def torque_saturation(s, p):  # type: ignore[no-untyped-def]
+    return -p[0] * s.f_u * s.f_u * s.f_u
+
+
+@njit
+def cogging(s, p):  # type: ignore[no-untyped-def]
+    a, b, n = p
+    return a * cos(n * s.q) + b * sin(n * s.q)
+
+
+@njit
+def risen(x, w):  # type: ignore[no-untyped-def]
+    """Returns r: how much of a change that takes w about x = 0 has happened at x, 0 to 1."""
+    return min(1.0, max(0.0, 0.5 + x / w))
+
+
+@njit
+def friction_drift(s, p):  # type: ignore[no-untyped-def]
+    return p[0] * s.time
+
+
+@njit
+def friction_jump(s, p):  # type: ignore[no-untyped-def]
+    f_j, t_j, w = p
+    return f_j * risen(s.time - t_j, w)
+
+
+@njit
+def viscous_friction_drift(s, p):  # type: ignore[no-untyped-def]
+    return -p[0] * s.time * s.v
+
+
+@njit
+def viscous_friction_jump(s, p):  # type: ignore[no-untyped-def]
+    d_j, t_j, w = p
+    return -d_j * risen(s.time - t_j, w) * s.v
+
+
+@njit
+def push(s, p):  # type: ignore[no-untyped-def]
+    f_p, t_0, t_p, w = p
+    return f_p * (risen(s.time - t_0, w) - risen(s.time - t_0 - t_p, w))
+
+
+def force_effects(g: Group) -> list[Effect]:
+    """Returns forces of position and drive; those without a place are left out by the caller."""
+    F, A = g.F, g.A
+    return [
+        g.force(offset, "f_0", "force: constant", g.size("f_0", 0.2 * F, g.f, "constant force")),
+        g.force(stiffness, "-k q", "spring: pulls back to zero",
+                g.size("k", 0.3 * F / A, f"{g.f}/{g.x}", "of a spring", 1)),
+        g.force(hardening, "-k_3 q³", "spring: grows with the cube of the way",
+                g.size("k_3", 0.3 * F / A**3, f"{g.f}/{g.x}^3",
+                       "of a spring that hardens, or softens"), reference="Duffing 1918"),
+        g.force(torque_saturation, "-c f_u³, f_u the drive's force",
+                "motor: weaker at high current",
+                g.size("c", 0.5 / F**2, per("1", g.f, 2), "relative loss per square of force", 1),
+                places=g.plain, reference="Krishnan 2010"),
+        *(g.force(cogging, "a cos nq + b sin nq", "motor: cogging", *wave_sizes(g), shapes=(n,),
+                  reference="Krishnan 2010") for n in waves(g)),
+    ]  # fmt: skip
+
+
+def time_effects(g: Group) -> list[Effect]:
+    """Returns drifts, jumps and pushes; none where the records' duration is not known."""
+    F, V, T = g.F, g.V, g.T
+    if T <= 0:
+        return []
+    edge = Shape("w", "s", (EDGE * T,), 0.1 * EDGE * T, 10 * EDGE * T, free=False,
+                 about="how long the change takes")  # fmt: skip
+    jump = (_moment("t_j", T, "when"), edge)
+    lasting = Shape("t_p", "s", (T / MOMENTS,), 2 * EDGE * T, T, about="how long it lasts")
+    drag = 0.3 * F / V
+    return [
+        g.friction(friction_drift, "at most f_t t more", "friction: Coulomb level drifts",
+                   g.size("f_t", 0.3 * F / T, f"{g.f}/s", "growth with time")),
+        g.force(viscous_friction_drift, "-d_t t v", "friction: viscous, drifts",
+                g.size("d_t", drag / T, f"{g.f}/{g.x}", "growth with time")),
+        g.friction(friction_jump, "at most f_j more from t_j on", "friction: Coulomb level jumps",
+                   g.size("f_j", 0.3 * F, g.f, "height of the jump"), shapes=jump),
+        g.force(viscous_friction_jump, "-d_j v from t_j on", "friction: viscous, jumps",
+                g.size("d_j", drag, f"{g.f} s/{g.x}", "height of the jump"), shapes=jump),
+        g.force(push, "f_p from t_0 to t_0 + t_p", "force: a push that begins and ends",
+                g.size("f_p", 0.5 * F, g.f, "the push"), places=g.each,
+                shapes=(_moment("t_0", T, "when it begins", 0.0), lasting, edge)),
+    ]  # fmt: skip
+
+
+def _moment(name: str, T: float, about: str, first: float = 0.5) -> Shape:
+    grid = tuple(T * max(EDGE, (k + first) / MOMENTS) for k in range(MOMENTS))
+    return Shape(name, "s", grid, 0.5 * EDGE * T, T, about=about)
