@@ -1,33 +1,80 @@
-"""The program `inca`: one command a file in `inca_mj.commands`; heavy imports wait until needed."""
+"""The program `inca`: its commands, and the two that need no file of their own, sweep and cite."""
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
 from typing import Annotated
 
 import tyro
 
+from identification.commands.common import import_without_graphics, say, say_json
 from identification.commands.program import run_program
+from identification.commands.sweep import SweepCommand
 from inca_mj.commands.calibrate import Calibrate
-from inca_mj.commands.cite import Cite
 from inca_mj.commands.compare import Compare
 from inca_mj.commands.crosscheck import Crosscheck
-from inca_mj.commands.demo import Demo
-from inca_mj.commands.discover import Discover
-from inca_mj.commands.excite import Excite
+from inca_mj.commands.discover import Demo, Discover
+from inca_mj.commands.experiment import Excite, Sensitivity
 from inca_mj.commands.film import Film
 from inca_mj.commands.identify import Identify
 from inca_mj.commands.kinematics import Kinematics
 from inca_mj.commands.linearize import Linearize
-from inca_mj.commands.sensitivity import Sensitivity
 from inca_mj.commands.simulate import Simulate
 from inca_mj.commands.statics import Statics
-from inca_mj.commands.sweep import Sweep
 from inca_mj.commands.thesis import Thesis
 from inca_mj.commands.track import Track
 from inca_mj.commands.trials import Trials
 from inca_mj.commands.view import View
+
+
+@dataclass(frozen=True)
+class Sweep(SweepCommand):
+    """Run the tasks of a sweep, keep a record of each, and say what they come to.
+
+    Examples:
+        inca sweep benchmarks/sweeps/trials.toml --jobs 2 --out out/trials
+        inca sweep benchmarks/sweeps/null_score.toml --backend dask --resume
+    """
+
+    def run(self) -> int:
+        """Run, keep, say; 1 where every task met an error."""
+        import_without_graphics(own_methods=True)
+        return super().run()
+
+    def methods(self) -> Mapping[str, str]:
+        """Returns the methods that a sweep may name: those on any robot, and those on INCA."""
+        from inca_mj.studies import METHODS
+
+        return METHODS
+
+
+@dataclass(frozen=True)
+class Cite:
+    """Say how to cite this program and the thesis that its equations are of.
+
+    Examples:
+        inca cite
+        inca cite --bibtex
+    """
+
+    bibtex: bool = False
+    """Print BibTeX entries."""
+    json: bool = False
+    """Print one JSON object on stdout and nothing else."""
+
+    def run(self) -> int:
+        """Print the citation."""
+        from inca_mj.report.citation import to_bibtex, to_text, works
+
+        if self.json:
+            record = {"works": [asdict(work) for work in works()]}
+            say_json({**record, "text": to_text(), "bibtex": to_bibtex()})
+        else:
+            say(to_bibtex() if self.bibtex else to_text())
+        return 0
+
 
 Command = (
     Annotated[Simulate, tyro.conf.subcommand("simulate")]

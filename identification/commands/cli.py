@@ -9,10 +9,9 @@ from typing import Annotated
 import tyro
 
 from identification.commands.common import import_without_graphics
-from identification.commands.discover import Discover
-from identification.commands.fit import Fit
 from identification.commands.linearize import Linearize
 from identification.commands.program import run_program
+from identification.commands.robots import Discover, Fit
 from identification.commands.sweep import SweepCommand
 
 Command = (

@@ -1,4 +1,4 @@
-"""Shared parts of the commands: where results go, and how they are printed."""
+"""Shared parts of the commands: values of options, and where results go and how they are told."""
 
 from __future__ import annotations
 
@@ -16,6 +16,13 @@ import tyro
 
 if TYPE_CHECKING:
     from identification.folders import Draft
+    from identification.report.page import Section
+
+T = TypeVar("T")
+_BACKENDS = ("egl", "osmesa", "glfw")  # of MuJoCo, by the words of MUJOCO_GL
+LogLists = Annotated[  # an option that takes logs and may be given again; see `flat`
+    tuple[tuple[Path, ...], ...], tyro.conf.UseAppendAction, tyro.conf.arg(metavar="LOG")
+]
 
 
 @dataclass(frozen=True)
@@ -35,19 +42,47 @@ class Output:
             note(text)
 
 
+output_field: Any = field(default_factory=Output)
+
+
 def say(text: str) -> None:
     """Writes one line of a result to stdout."""
     sys.stdout.write(text + "\n")
     sys.stdout.flush()
 
 
-T = TypeVar("T")
-_BACKENDS = ("egl", "osmesa", "glfw")  # of MuJoCo, by the words of MUJOCO_GL
-
-
 def flat(groups: Iterable[Iterable[T]]) -> list[T]:
     """Returns all values that were given to an option, however often it was written."""
     return [each for group in groups for each in group]
+
+
+def assignments(texts: Sequence[str], option: str, example: str = "m=0.2") -> dict[str, float]:
+    """Returns the values of an option that is given as NAME=VALUE.
+
+    Args:
+        texts: what was given.
+        option: its name.
+        example: a right one.
+
+    Raises:
+        InputError: one is malformed, or a name is given twice.
+    """
+    from identification.errors import InputError
+
+    values: dict[str, float] = {}
+    for text in texts:
+        name, equals, right = text.partition("=")
+        name = name.strip()
+        try:
+            value = float(right if equals else "none")
+        except ValueError:
+            raise InputError(f"{text!r} is not NAME=VALUE; write e.g. {option} {example}") from None
+        if name in values:
+            raise InputError(
+                f"{option} gives {name} twice, {values[name]:g} and {value:g}; give it once"
+            )
+        values[name] = value
+    return values
 
 
 def note(text: str) -> None:
@@ -178,6 +213,24 @@ def _note_without(what: str, error: Exception | str, where: str = "") -> None:
     note(f"no {what}: {reason}; the results are kept without{where}")
 
 
+def draw_report(
+    out: Path,
+    title: str,
+    verdict: Sequence[str],
+    sections: Sequence[Section],
+    *,
+    good: bool | None = None,
+    footer: str = "",
+    data: Sequence[str] = (),
+) -> None:
+    """Write the figures of sections and the one-file report into a folder; see `write_report`."""
+    from identification.report.page import save_figures, write_report
+
+    save_figures(sections, out)
+    path = out / "report.html"
+    write_report(path, title, verdict, sections, good=good, footer=footer, data=data)
+
+
 def import_without_graphics(*, own_methods: bool = False) -> None:
     """Makes MuJoCo be imported without OpenGL, here and in processes that begin from here.
 
@@ -220,6 +273,3 @@ def table(head: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> str:
         "  ".join(cell.rjust(width) for cell, width in zip(line, widths, strict=True))
         for line in lines
     )
-
-
-output_field: Any = field(default_factory=Output)

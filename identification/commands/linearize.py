@@ -9,7 +9,14 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from identification.commands.common import Output, conclude, output_field, table
+from identification.commands.common import (
+    Output,
+    assignments,
+    conclude,
+    draw_report,
+    output_field,
+    table,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -53,9 +60,8 @@ class Linearize:
         if self.rate is not None:
             sampling_time_of(self.rate)
         log = None if self.log is None else read_robot_log(read_robot_file(self.robot), self.log)
-        points, outputs = operating_points(
-            self.robot, log, self.time, dict(map(_assignment, self.input)), self.trust
-        )
+        inputs = assignments(self.input, "--input", "drive=0.5")
+        points, outputs = operating_points(self.robot, log, self.time, inputs, self.trust)
         systems = linearize(points, outputs)
         rate = 1 / log.sampling_time if self.rate is None and log is not None else self.rate
         labels = [f"at {t:g} s" for t in points.time] if self.time else ["at rest"]
@@ -94,25 +100,13 @@ def draw(
     """Write figures and the one-file report of the systems into a folder."""
     from identification.linear.modes import modes
     from identification.report.linear_sections import linear_sections, slowest_and_fastest
-    from identification.report.page import save_figures, write_report
 
-    sections = linear_sections(systems, labels, rate, units)
-    save_figures(sections, out)
     verdict = [slowest_and_fastest(modes(systems[0]))]
-    write_report(out / "report.html", "The linear model", verdict, sections)
+    draw_report(out, "The linear model", verdict, linear_sections(systems, labels, rate, units))
 
 
 def save_systems(systems: Sequence[LinearSystem], rate: float | None, out: Path) -> None:
-    """Write each system, its minimal realisation and its discrete form as .npz and .mat.
-
-    Args:
-        systems: continuous.
-        rate: of the samples [Hz]; no discrete form when None.
-        out: the folder.
-
-    Raises:
-        InputError: a file cannot be written.
-    """
+    """Write each continuous system, its minimal and its discrete form (at a rate in [Hz])."""
     from identification.linear.export import FORMATS, save_system
     from identification.linear.minimal import minimal
 
@@ -124,15 +118,3 @@ def save_systems(systems: Sequence[LinearSystem], rate: float | None, out: Path)
             number = f"_{k}" if len(systems) > 1 else ""
             for end in FORMATS:
                 save_system(form, out / f"{name}{number}{end}")
-
-
-def _assignment(text: str) -> tuple[str, float]:
-    from identification.errors import InputError
-
-    name, equals, value = text.partition("=")
-    try:
-        if not equals:
-            raise ValueError
-        return name.strip(), float(value)
-    except ValueError:
-        raise InputError(f"{text!r} is not NAME=VALUE; write e.g. --input drive=0.5") from None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -10,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from identification.commands.common import Output, conclude, note, output_field
+from identification.commands.common import Output, conclude, draw_report, note, output_field
 
 if TYPE_CHECKING:
     from identification.sweep.store import Store
@@ -77,8 +78,6 @@ class SweepCommand:
         return METHODS
 
     def _compute(self, sweep: Sweep, store: Store) -> None:
-        import sys
-
         from identification.sweep.backends.choice import backend_of
         from identification.sweep.run import run_sweep
 
@@ -104,11 +103,7 @@ class SweepCommand:
 
 
 def _options(words: Sequence[str]) -> dict[str, str]:
-    """Returns the options of jobs.
-
-    Raises:
-        InputError: a word is not NAME=VALUE.
-    """
+    """Returns the options of jobs, or refuses a word that is not NAME=VALUE."""
     from identification.errors import InputError
 
     for word in words:
@@ -118,8 +113,5 @@ def _options(words: Sequence[str]) -> dict[str, str]:
 
 
 def _draw(sweep: Sweep, found: Summary, out: Path) -> None:
-    from identification.report.page import save_figures, write_report
-
-    save_figures(found.sections, out)
     footer = f"seed {sweep.seed}, digest of the records {found.record['digest'][:16]}"
-    write_report(out / "report.html", sweep.about, found.sentences, found.sections, footer=footer)
+    draw_report(out, sweep.about, found.sentences, found.sections, footer=footer)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import tyro
 
 from identification.commands.common import (
+    LogLists,
     Output,
     conclude,
     flat,
@@ -40,9 +41,7 @@ class Calibrate:
 
     log: Annotated[tuple[Path, ...], tyro.conf.Positional, tyro.conf.arg(metavar="LOG")]
     """Logs of one robot; without --confirm the second half of each is kept unseen."""
-    confirm: Annotated[
-        tuple[tuple[Path, ...], ...], tyro.conf.UseAppendAction, tyro.conf.arg(metavar="LOG")
-    ] = ()
+    confirm: LogLists = ()
     """Logs of which only the start pose is fitted; the flag may be given again."""
     spread: str = "usual"
     """How much drives and points usually differ: usual, or a TOML file (models/inca6d_spread.toml

@@ -1,17 +1,22 @@
-"""The parts that commands share: the robot, the place of results, and how they are said."""
+"""Shared parts of the commands on INCA: the robot by its options, graphics, and saved runs."""
 
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import tyro
 
+from identification.commands.common import assignments
+
 if TYPE_CHECKING:
+    from identification.effects.effect import Effect
     from identification.model.parameter import ParameterSet
     from inca_mj.robot.geometry import Geometry
+    from inca_mj.twin.run import Run
     from inca_mj.twin.twin import Twin
 
 
@@ -32,11 +37,9 @@ class Values:
         Raises:
             InputError: a value is malformed, unknown, given twice or out of bounds.
         """
-        from inca_mj.commands.assignments import assignments
         from inca_mj.robot.parameters import parameter_set
 
-        values = assignments(self.param, "--param")
-        return parameter_set(self.set, values)
+        return parameter_set(self.set, assignments(self.param, "--param"))
 
     def place(self) -> Geometry:
         """Returns the geometry.
@@ -75,6 +78,18 @@ class Robot(Values):
         self.place()
         refuse_step(self.step)
 
+    def twin(self, sampling_time: float, effects: Sequence[Effect] = ()) -> Twin:
+        """Returns the robot, with a step that divides the sampling time [s].
+
+        Raises:
+            InputError: as `check`, or the robot has no pretension.
+        """
+        from inca_mj.twin.twin import build_twin
+        from inca_mj.workflows.comparison import timestep_for
+
+        step = timestep_for(sampling_time, self.step)
+        return build_twin(self.parameters(), self.place(), timestep=step, effects=effects)
+
 
 @dataclass(frozen=True)
 class SavedRobot(Robot):
@@ -84,11 +99,7 @@ class SavedRobot(Robot):
     """Folder of a twin that inca discover or inca calibrate saved; it has values of its own."""
 
     def check(self) -> None:
-        """Refuses what describes no robot, and options that do not go with a saved robot.
-
-        Raises:
-            InputError: it is not so.
-        """
+        """Refuses what describes no robot, and options that do not go with a saved robot."""
         from identification.errors import InputError
         from inca_mj.robot.parameters import refuse_step
 
@@ -104,34 +115,35 @@ class SavedRobot(Robot):
             raise InputError(f"no {own}; inca discover --out DIR writes one")
         return refuse_step(self.step)
 
-    def twin(self, sampling_time: float) -> Twin:
-        """Returns the robot, with a step that divides the sampling time [s].
-
-        Raises:
-            InputError: there is no such twin, another robot is given beside it, or as `parameters`
-                and `place`.
-        """
-        from inca_mj.twin.twin import build_twin, rebuild
+    def twin(self, sampling_time: float, effects: Sequence[Effect] = ()) -> Twin:
+        """Returns the robot; a saved one has effects of its own."""
+        from inca_mj.twin.twin import rebuild
         from inca_mj.workflows.comparison import timestep_for
 
-        step = timestep_for(sampling_time, self.step)
         saved = self.saved()
-        if saved is not None:
-            return rebuild(saved, timestep=step)
-        return build_twin(self.parameters(), self.place(), timestep=step)
+        if saved is None:
+            return super().twin(sampling_time, effects)
+        return rebuild(saved, timestep=timestep_for(sampling_time, self.step))
 
     def saved(self) -> Twin | None:
-        """Returns the twin that was saved; None where no folder is given.
-
-        Raises:
-            InputError: there is no such twin, or another robot is given beside it.
-        """
+        """Returns the twin that was saved; None where no folder is given."""
         from inca_mj.twin.saved import load_twin
 
         if self.model is None:
             return None
         self.check()
         return load_twin(self.model)
+
+
+def keep_run(run: Run, notes: str, out: Path) -> None:
+    """Write the log, the run and the model of a simulation into a folder."""
+    from identification import write_log
+    from inca_mj.twin.logs import run_to_log
+    from inca_mj.twin.run import save_run
+
+    write_log(run_to_log(run, notes=notes), out / "log.csv")
+    save_run(run, out / "run.npz")
+    run.twin.save(out / "model.xml")
 
 
 def cannot_draw() -> str:

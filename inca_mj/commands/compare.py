@@ -10,7 +10,15 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from identification.commands.common import Output, conclude, flat, note, output_field, table
+from identification.commands.common import (
+    Output,
+    conclude,
+    draw_report,
+    flat,
+    note,
+    output_field,
+    table,
+)
 from inca_mj.commands.common import SavedRobot, Trust, do_not_draw, saved_robot_field
 
 if TYPE_CHECKING:
@@ -54,18 +62,7 @@ class Compare:
 
 
 def compare_with(robot: SavedRobot, log: Log, trust: Sequence[str]) -> Comparison:
-    """Compare a log with the robot that the options describe, or with the saved one.
-
-    Args:
-        robot: the options.
-        log: what was measured.
-        trust: checks of the log that are overruled, words of `inca_mj.twin.logs.JUDGED`.
-
-    Raises:
-        InputError: the options describe no robot, the robot has no pretension, or the log is not
-            wired as the robot is.
-        DivergenceError: the simulation left the finite numbers.
-    """
+    """Compares a log with the robot that the options describe, or with the saved one."""
     from inca_mj.workflows.comparison import compare, compare_twin
 
     saved = robot.saved()
@@ -102,15 +99,8 @@ def keep(result: Comparison, out: Path) -> None:
 
 def draw(result: Comparison, out: Path) -> None:
     """Write the figure and the one-file report into a folder."""
-    from identification.report.page import save_figures, write_report
     from inca_mj.report.sections import compare_section, compare_verdict, model_section
 
     sections = [compare_section(result), model_section(result.run.twin)]
-    save_figures(sections, out)
-    write_report(
-        out / "report.html",
-        f"{result.log.name}: measured against simulated",
-        compare_verdict(result),
-        sections,
-        data=[result.log.name],
-    )
+    title = f"{result.log.name}: measured against simulated"
+    draw_report(out, title, compare_verdict(result), sections, data=[result.log.name])

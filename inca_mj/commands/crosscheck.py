@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from identification.commands.common import Output, conclude, output_field, table
+from identification.commands.common import Output, conclude, draw_report, output_field, table
 from inca_mj.commands.common import Values, do_not_draw, values_field
 
 if TYPE_CHECKING:
@@ -65,18 +65,10 @@ def summary(result: CrossCheck) -> str:
 
 def keep(result: CrossCheck, out: Path) -> None:
     """Write the figure and the one-file report into a folder."""
-    from identification.report.page import save_figures, write_report
     from inca_mj.report.sections import crosscheck_section
 
-    sections = [crosscheck_section(result)]
-    save_figures(sections, out)
-    write_report(
-        out / "report.html",
-        "The twin against the reference",
-        result.sentences,
-        sections,
-        good=result.passed,
-    )
+    title, sections = "The twin against the reference", [crosscheck_section(result)]
+    draw_report(out, title, result.sentences, sections, good=result.passed)
 
 
 def _error(value: float | None) -> str:

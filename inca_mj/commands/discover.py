@@ -1,16 +1,18 @@
-"""inca discover LOG...: what the model lacks, with proof on unseen data."""
+"""inca discover LOG..., inca demo: what the model lacks, with proof on unseen data."""
 
 from __future__ import annotations
 
 import time
 from contextlib import ExitStack
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import tyro
 
 from identification.commands.common import (
+    LogLists,
     Output,
     add_drawings,
     flat,
@@ -21,6 +23,7 @@ from identification.commands.common import (
     write_result,
 )
 from inca_mj.commands.common import Trust, Values, cannot_draw, do_not_draw, values_field
+from inca_mj.files import example_path
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -46,9 +49,7 @@ class Discover:
 
     log: Annotated[tuple[Path, ...], tyro.conf.Positional, tyro.conf.arg(metavar="LOG")]
     """Logs to explain; the TOML of each may name the split estimation; the rest is unseen."""
-    confirm: Annotated[
-        tuple[tuple[Path, ...], ...], tyro.conf.UseAppendAction, tyro.conf.arg(metavar="LOG")
-    ] = ()
+    confirm: LogLists = ()
     """Logs for the proof, of which a fit sees the first two seconds; the flag may be repeated."""
     spread: str = "usual"
     """How much the drives and points of one robot differ: none, usual, or a TOML file."""
@@ -140,7 +141,7 @@ class Discover:
             if blind and files.get("report"):
                 note(f"no film: {blind}")
             return
-        from inca_mj.commands.film_progress import FilmProgress
+        from inca_mj.commands.film import FilmProgress
         from inca_mj.commands.filmed import FPS, film_beside
 
         progress = FilmProgress(tell, FPS, hint=LEAVE_OUT)
@@ -149,6 +150,30 @@ class Discover:
             if "report" in files and add_drawings(draft, "film", lambda: report.write(film())):
                 files["film"] = Path("film.mp4")
                 tell(f"the film took {duration(time.monotonic() - begun)}")
+
+
+@dataclass(frozen=True)
+class Demo:
+    """Find what the model lacks of the robot in a log, prove it, film it, write one report.
+
+    Examples:
+        inca demo
+        inca demo examples/log.csv --no-film --out out/mine
+    """
+
+    log: Annotated[Path | None, tyro.conf.Positional, tyro.conf.arg(metavar="LOG")] = None
+    """The log; the one that comes with the program when none is given."""
+    film: bool = True
+    """Film the model before and after against unseen seconds of the log."""
+    robot: Annotated[Values, tyro.conf.OmitArgPrefixes] = values_field
+    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = field(
+        default_factory=partial(Output, out=Path("out/demo"))
+    )
+
+    def run(self) -> int:
+        """Do all of it, say the verdict first and where the report lies last."""
+        log = self.log or example_path()
+        return Discover((log,), film=self.film, robot=self.robot, output=self.output).run()
 
 
 def as_json(found: Discovery, model: Path | None) -> dict[str, Any]:
@@ -194,7 +219,5 @@ class _Report:
 
 def _without_zeros(robot: Twin) -> Twin:
     """Returns the twin without parameters of effects that are zero, which no table needs."""
-    from dataclasses import replace
-
     shown = tuple(p for p in robot.parameters if p.where != "effect" or p.value)
     return replace(robot, parameters=replace(robot.parameters, records=shown))

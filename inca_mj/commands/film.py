@@ -2,19 +2,27 @@
 
 from __future__ import annotations
 
+import sys
+import time
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import tyro
 
 from identification.commands.common import Output, say, say_json, write_result
+from identification.progress import duration
 from inca_mj.commands.common import SavedRobot, cannot_draw, saved_robot_field
-
-FPS = 30.0  # frames per second of the film
 
 if TYPE_CHECKING:
     from inca_mj.rendering.scene import Scene
+
+FPS = 30.0  # frames per second of the film
+FIRST = 10  # frames whose rate is measured; the first of all also waits for the renderer
+SOON = 5.0  # [s] after which the rate of fewer frames is told
+EVERY = 15.0  # [s] between two lines
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,7 +52,7 @@ class Film:
     """Times [s] at which to write a PNG of the picture too."""
     robot: Annotated[SavedRobot, tyro.conf.OmitArgPrefixes] = saved_robot_field
     output: Annotated[Output, tyro.conf.OmitArgPrefixes] = field(
-        default_factory=lambda: Output(out=Path("out/film"))
+        default_factory=partial(Output, out=Path("out/film"))
     )
 
     def run(self) -> int:
@@ -57,7 +65,6 @@ class Film:
             raise GraphicsError(blind)
         from identification.errors import InputError
         from identification.folders import whole_folder
-        from inca_mj.commands.film_progress import FilmProgress
         from inca_mj.rendering.film import common_time, film, stills
 
         scenes = [self._scene(source) for source in self._sources()]
@@ -161,3 +168,45 @@ class Film:
             log = log.between(float("-inf"), float(log.time[0]) + self.seconds)
         self.output.tell(f"simulating {log.duration:g} s of {source}")
         return make_scene(compare_with(self.robot, log, UNJUDGED), self.seconds)
+
+
+@dataclass
+class FilmProgress:
+    """Counts the frames of a film, and says how long the rest will take.
+
+    Attributes:
+        tell: is told each line.
+        fps: frames per second of the film.
+        lines: whether it is told a line now and then; where stderr is a terminal, a bar says it.
+        clock: the time [s].
+        hint: how to do without the film; told where it begins.
+    """
+
+    tell: Callable[[str], None]
+    fps: float
+    lines: bool = field(default_factory=lambda: not sys.stderr.isatty())
+    clock: Callable[[], float] = time.monotonic
+    hint: str = ""
+    _first: int = 0
+    _began: float = 0.0
+    _last_line: float = 0.0
+    _is_promised: bool = False
+
+    def __call__(self, done: int, frames: int) -> None:
+        """Counts `done` frames of all; some may have been drawn before the first call."""
+        now = self.clock()
+        if not self._first:
+            self._first, self._began, self._last_line = done, now, now
+            more = f"; {self.hint}" if self.hint else ""
+            self.tell(f"film: {frames} frames, {frames / self.fps:.3g} s of film{more}")
+            return
+        left = (now - self._began) / (done - self._first) * (frames - done)
+        if done == frames:
+            return
+        if not self._is_promised:
+            if done - self._first >= FIRST or now - self._began >= SOON:
+                self._last_line, self._is_promised = now, True
+                self.tell(f"film: {frames} frames, about {duration(left)} to draw")
+        elif self.lines and now - self._last_line >= EVERY:
+            self._last_line = now
+            self.tell(f"film: {done} of {frames} frames, {duration(left)} left")

@@ -13,6 +13,7 @@ import tyro
 from identification.commands.common import (
     Output,
     conclude,
+    draw_report,
     flat,
     output_field,
     table,
@@ -199,7 +200,6 @@ def compared(result: Identification, robot: Robot) -> Comparison:
 
 def draw(result: Identification, profiles: Sequence[Profile], shown: Comparison, out: Path) -> None:
     """Write figures and the one-file report into a folder."""
-    from identification.report.page import save_figures, write_report
     from inca_mj.report.identification import (
         fit_section,
         identification_verdict,
@@ -219,11 +219,5 @@ def draw(result: Identification, profiles: Sequence[Profile], shown: Comparison,
         compare_section(shown),
         model_section(shown.run.twin),
     ]
-    save_figures(sections, out)
-    write_report(
-        out / "report.html",
-        f"{result.log.name}: identified",
-        identification_verdict(result),
-        sections,
-        data=[result.log.name],
-    )
+    title, verdict = f"{result.log.name}: identified", identification_verdict(result)
+    draw_report(out, title, verdict, sections, data=[result.log.name])

@@ -9,7 +9,14 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from identification.commands.common import Output, conclude, output_field, table
+from identification.commands.common import (
+    Output,
+    assignments,
+    conclude,
+    draw_report,
+    output_field,
+    table,
+)
 from inca_mj.commands.common import Values, do_not_draw, values_field
 
 if TYPE_CHECKING:
@@ -95,7 +102,6 @@ class Kinematics:
 
     def _along(self) -> None:
         from identification.errors import InputError
-        from inca_mj.commands.assignments import assignments
         from inca_mj.report.poses import poses_json, poses_verdict, write_poses
         from inca_mj.twin.logs import read_inca_log
         from inca_mj.workflows.poses import log_poses
@@ -145,22 +151,14 @@ def draw_pose(
     pose: np.ndarray, cables: Cables, geometry: Geometry, said: list[str], out: Path
 ) -> None:
     """Write the figure and the one-file report of a pose into a folder."""
-    from identification.report.page import save_figures, write_report
     from inca_mj.report.poses import cables_section
 
-    sections = [cables_section(pose, cables, geometry)]
-    save_figures(sections, out)
-    write_report(out / "report.html", "A pose and its cables", said, sections)
+    draw_report(out, "A pose and its cables", said, [cables_section(pose, cables, geometry)])
 
 
 def draw_log(found: LogPoses, out: Path) -> None:
     """Write the figure and the one-file report of a log into a folder."""
-    from identification.report.page import save_figures, write_report
     from inca_mj.report.poses import poses_section, poses_verdict
 
-    sections = [poses_section(found)]
-    save_figures(sections, out)
-    write_report(
-        out / "report.html", f"{found.log.name}: where the platform was", poses_verdict(found),
-        sections,
-    )  # fmt: skip
+    title = f"{found.log.name}: where the platform was"
+    draw_report(out, title, poses_verdict(found), [poses_section(found)])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -9,14 +10,17 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import tyro
 
-from identification.commands.common import Output, conclude, output_field, table
+from identification.commands.common import Output, conclude, draw_report, output_field, table
+from identification.commands.linearize import save_systems
 from inca_mj.commands.common import Robot, do_not_draw, robot_field
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    import numpy as np
 
     from identification.linear.gridded import GriddedSystem
     from inca_mj.linear.linearization import LinearModel
+
+MOST = 200  # points of one axis of a grid
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -76,7 +80,6 @@ class Linearize:
         from identification.errors import InputError
         from identification.files import check_file
         from identification.linear.system import sampling_time_of
-        from inca_mj.commands.grid import grid_axes
         from inca_mj.robot.parameters import pose_values
 
         if self.grid == ():
@@ -117,7 +120,6 @@ class Linearize:
 
     def _grid(self, model: LinearModel, rate: float) -> tuple[GriddedSystem, Any, Any]:
         """Returns the gridded model, its errors off the grid, and a run beside the twin."""
-        from inca_mj.commands.grid import grid_axes
         from inca_mj.linear.accuracy import interpolation_errors, random_points, run_error
         from inca_mj.linear.linearization import linearize_grid
         from inca_mj.twin.logs import POSE
@@ -134,7 +136,6 @@ class Linearize:
 
 def keep(models: Sequence[LinearModel], rate: float, grid: GriddedSystem | None, out: Path) -> None:
     """Write the systems for Python and MATLAB into a folder."""
-    from identification.commands.linearize import save_systems
     from identification.linear.export import FORMATS
 
     save_systems([m.system for m in models], rate, out)
@@ -151,10 +152,38 @@ def draw(
     out: Path,
 ) -> None:
     """Write figures and the one-file report into a folder."""
-    from identification.report.page import save_figures, write_report
     from inca_mj.report.linear import model_sections
 
-    sections = model_sections(models, labels, rate)
-    save_figures(sections, out)
     verdict = [line for line in said if "\n" not in line]
-    write_report(out / "report.html", "The robot linearised", verdict, sections)
+    draw_report(out, "The robot linearised", verdict, model_sections(models, labels, rate))
+
+
+def grid_axes(words: Sequence[str]) -> dict[str, np.ndarray]:
+    """Returns the axes [m, rad] of a grid from words NAME=LOW:HIGH:POINTS, such as `x=-0.4:0.4:5`.
+
+    Raises:
+        InputError: a word is malformed, names no scheduling variable, or names one twice.
+    """
+    import numpy as np
+
+    from identification.errors import InputError, unknown_name
+    from inca_mj.robot.parameters import POSE
+
+    axes: dict[str, np.ndarray] = {}
+    for word in words:
+        name, _, rest = word.partition("=")
+        try:
+            first, last, count = rest.split(":")
+            low, high, points = float(first), float(last), int(count)
+        except ValueError:
+            raise InputError(
+                f"{word!r} is not NAME=LOW:HIGH:POINTS; write e.g. --grid x=-0.4:0.4:5"
+            ) from None
+        if name not in POSE:
+            raise unknown_name("scheduling variable", name, POSE)
+        if name in axes:
+            raise InputError(f"--grid gives {name} twice; give it once")
+        if not 2 <= points <= MOST:
+            raise InputError(f"--grid gives {points} points of {name}; give 2 to {MOST}")
+        axes[name] = np.linspace(low, high, points)
+    return axes

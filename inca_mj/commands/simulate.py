@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import tyro
 
-from identification.commands.common import Output, conclude, output_field, table
+from identification.commands.common import Output, conclude, draw_report, output_field, table
 from identification.commands.places import refuse_place
-from inca_mj.commands.common import SavedRobot, do_not_draw
+from inca_mj.commands.common import SavedRobot, do_not_draw, keep_run
 
 if TYPE_CHECKING:
     import numpy as np
@@ -86,7 +86,8 @@ class Simulate:
         saved = f"log.csv, run.npz and model.xml are in {now.output.out}; {more}"
         notes = now._notes()
         drawn = partial(draw, result, notes) if is_drawn else None
-        conclude(now, summary, _text(result), partial(keep, result, notes), drawn, saved)
+        keep = partial(keep_run, result, f"simulated by inca simulate: {notes}")
+        conclude(now, summary, _text(result), keep, drawn, saved)
         return 0
 
     def _resolved(self) -> Simulate:
@@ -186,27 +187,10 @@ def _text(result: Run) -> str:
     )
 
 
-def keep(result: Run, notes: str, out: Path) -> None:
-    """Write log, run and model into a folder."""
-    from identification import write_log
-    from inca_mj.twin.logs import run_to_log
-    from inca_mj.twin.run import save_run
-
-    write_log(run_to_log(result, notes=f"simulated by inca simulate: {notes}"), out / "log.csv")
-    save_run(result, out / "run.npz")
-    result.twin.save(out / "model.xml")
-
-
 def draw(result: Run, notes: str, out: Path) -> None:
     """Write figures and the report into a folder."""
-    from identification.report.page import save_figures, write_report
     from inca_mj.report.sections import model_section, run_section
 
     sections = [run_section(result), model_section(result.twin)]
-    save_figures(sections, out)
-    write_report(
-        out / "report.html",
-        "A run of the twin",
-        [f"{result.time[-1]:g} s simulated, {notes}."],
-        sections,
-    )
+    verdict = [f"{result.time[-1]:g} s simulated, {notes}."]
+    draw_report(out, "A run of the twin", verdict, sections)

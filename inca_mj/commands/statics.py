@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import tyro
 
-from identification.commands.common import Output, conclude, note, output_field, table
+from identification.commands.common import Output, conclude, draw_report, note, output_field, table
 from inca_mj.commands.common import Values, cannot_draw, do_not_draw, values_field
 
 if TYPE_CHECKING:
@@ -105,12 +105,9 @@ def summary(found: StaticAnalysis) -> str:
 
 def draw(command: Statics, found: StaticAnalysis, picture: bool, out: Path) -> None:
     """Write the figures, the picture of the workspace, and the report into a folder."""
-    from identification.report.page import save_figures, write_report
     from inca_mj.report.statics import statics_sections, statics_verdict
 
-    sections = statics_sections(found)
-    save_figures(sections, out)
-    write_report(out / "report.html", "Statics of the robot", statics_verdict(found), sections)
+    draw_report(out, "Statics of the robot", statics_verdict(found), statics_sections(found))
     if picture and found.workspace is not None and found.workspace.inside.any():
         from inca_mj.rendering.workspace_picture import workspace_picture
 

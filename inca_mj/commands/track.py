@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
@@ -9,12 +10,11 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import tyro
 
-from identification.commands.common import Output, conclude
-from inca_mj.commands.assignments import effects_of
-from inca_mj.commands.common import Robot, do_not_draw, robot_field
+from identification.commands.common import Output, assignments, conclude, draw_report
+from inca_mj.commands.common import Robot, do_not_draw, keep_run, robot_field
 
 if TYPE_CHECKING:
-    from inca_mj.twin.twin import Twin
+    from identification.effects.effect import Effect
     from inca_mj.workflows.tracking import Tracking
 
 
@@ -49,7 +49,7 @@ class Track:
     """Tell the controller the true pose, which the real robot cannot measure."""
     robot: Annotated[Robot, tyro.conf.OmitArgPrefixes] = robot_field
     output: Annotated[Output, tyro.conf.OmitArgPrefixes] = field(
-        default_factory=lambda: Output(out=Path("out/track"))
+        default_factory=partial(Output, out=Path("out/track"))
     )
 
     def run(self) -> int:
@@ -58,22 +58,17 @@ class Track:
         from inca_mj.control.controller import CONTROL_TIMESTEP, Gains
         from inca_mj.control.paths import Circle
         from inca_mj.twin.saved import load_twin
-        from inca_mj.workflows.comparison import timestep_for
         from inca_mj.workflows.tracking import track
 
-        step = timestep_for(CONTROL_TIMESTEP, self.robot.step)
-        robot = self._robot(step)
-        model = self._nominal(step) if self.model is None else load_twin(self.model)
-        x, y, z = robot.start.pose[:3]
+        effects, values = effects_of(self.effect)
+        robot = self.robot.twin(CONTROL_TIMESTEP, effects).with_values(values)
+        model = self.robot.twin(CONTROL_TIMESTEP) if self.model is None else load_twin(self.model)
+        x, y, z = map(float, robot.start.pose[:3])
+        circle = Circle(centre=(x, y, z), radius=self.radius, rate=self.rate, plane=self.plane)
         result = track(
             robot,
             model,
-            Circle(
-                centre=(float(x), float(y), float(z)),
-                radius=self.radius,
-                rate=self.rate,
-                plane=self.plane,
-            ),
+            circle,
             duration=self.duration,
             gains=Gains(bandwidth=self.bandwidth),
             knows_pose=self.knows_pose,
@@ -84,22 +79,40 @@ class Track:
         if self.output.out is not None:
             files = "log.csv, run.npz and model.xml are in"
             text += f"\n{files} {self.output.out}; figures and report.html follow"
-        conclude(self, summary(result), text, partial(keep, result), partial(draw, result))
+        keep = partial(keep_run, result.run, "simulated by inca track")
+        conclude(self, summary(result), text, keep, partial(draw, result))
         return 0
 
-    def _nominal(self, step: float) -> Twin:
-        from inca_mj.twin.twin import build_twin
 
-        return build_twin(self.robot.parameters(), self.robot.place(), timestep=step)
+def effects_of(words: Sequence[str]) -> tuple[tuple[Effect, ...], dict[str, float]]:
+    """Returns the effects of the catalogue that NAME.SIZE=VALUE words name, and their values.
 
-    def _robot(self, step: float) -> Twin:
-        from inca_mj.twin.twin import build_twin
+    NAME alone stands for its first size, NAME.SIZE@3 for drive 3.
 
-        effects, values = effects_of(self.effect)
-        robot = build_twin(
-            self.robot.parameters(), self.robot.place(), timestep=step, effects=effects
-        )
-        return robot.with_values(values)
+    Raises:
+        InputError: a word is malformed, given twice, or names no effect or parameter of one.
+    """
+    from identification.errors import InputError, unknown_name
+    from inca_mj.effects.catalogue import CATALOGUE
+    from inca_mj.effects.values import records
+
+    known = {effect.name: effect for effect in CATALOGUE}
+    values: dict[str, float] = {}
+    given = assignments(words, "--effect", "load_dependent_friction.mu=0.05")
+    for word, value in given.items():
+        name, _, place = word.partition("@")
+        own, _, size = name.partition(".")
+        if own not in known:
+            raise unknown_name("effect", own, known)
+        full = f"{own}.{size or known[own].sizes[0].name}" + (f"@{place}" if place else "")
+        parameters = [p.name for p in records([known[own]])]
+        if full not in parameters:
+            raise unknown_name("parameter of an effect", full, parameters)
+        if full in values:
+            raise InputError(f"--effect gives {full} twice; give it once")
+        values[full] = value
+    named = {name.partition(".")[0] for name in values}
+    return tuple(e for e in CATALOGUE if e.name in named), values
 
 
 def summary(result: Tracking) -> dict[str, object]:
@@ -137,24 +150,10 @@ def _text(result: Tracking) -> str:
     )
 
 
-def keep(result: Tracking, out: Path) -> None:
-    """Write log, run and model into a folder."""
-    from identification import write_log
-    from inca_mj.twin.logs import run_to_log
-    from inca_mj.twin.run import save_run
-
-    run = result.run
-    write_log(run_to_log(run, notes="simulated by inca track"), out / "log.csv")
-    save_run(run, out / "run.npz")
-    run.twin.save(out / "model.xml")
-
-
 def draw(result: Tracking, out: Path) -> None:
     """Write figures and the report into a folder."""
-    from identification.report.page import save_figures, write_report
     from inca_mj.report.sections import model_section, run_section, tracking_section
 
     run = result.run
     sections = [tracking_section(result), run_section(run), model_section(run.twin)]
-    save_figures(sections, out)
-    write_report(out / "report.html", "A robot on a path", _text(result).split("\n"), sections)
+    draw_report(out, "A robot on a path", _text(result).split("\n"), sections)

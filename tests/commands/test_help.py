@@ -9,11 +9,10 @@ from io import StringIO
 import pytest
 
 from identification.__main__ import main as identification
+from identification.commands.arguments import SHELLS, _commands, examples_of, parsed
 from identification.commands.cli import EXAMPLES as ROBOT_EXAMPLES
 from identification.commands.cli import Command as RobotCommand
-from identification.commands.examples import examples_of
-from identification.commands.meter import metered
-from identification.commands.refusals import SHELLS, _commands, parsed
+from identification.commands.program import metered
 from identification.progress import stage
 from identification.robot.trust import TRUST
 from inca_mj.cli import EXAMPLES, Command
@@ -100,7 +99,7 @@ class Screen(StringIO):
 
 
 def test_bars_are_drawn_on_a_terminal_only(monkeypatch):
-    monkeypatch.setattr("identification.commands.meter.SLOW", 0)
+    monkeypatch.setattr("identification.commands.program.SLOW", 0)
     monkeypatch.setenv("COLUMNS", "80")
     for screen, quiet, drawn in [(Screen(), False, True), (Screen(), True, False),
                                  (StringIO(), False, False)]:  # fmt: skip

@@ -5,8 +5,8 @@ from importlib.metadata import version
 import pytest
 
 from identification.__main__ import main as identification
+from identification.commands.arguments import gathered
 from identification.commands.cli import Command
-from identification.commands.repeated import gathered
 from identification.errors import LISTED, NEAREST, unknown_name
 from identification.native.cache import VARIABLE, enabled
 from inca_mj.cli import Command as IncaCommand

@@ -11,7 +11,7 @@ import numpy as np
 from scipy.io import savemat
 
 from identification import read_log, read_robot
-from identification.commands.refusals import parsed
+from identification.commands.arguments import parsed
 from identification.discovery.options import read_options
 from identification.folders import MADE, whole_folder
 from identification.linear.export import load_system, save_system

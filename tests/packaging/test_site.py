@@ -13,7 +13,7 @@ from test_public_names import PACKAGES
 
 import identification.commands.cli
 import inca_mj.cli
-from identification.commands.refusals import parsed
+from identification.commands.arguments import parsed
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"

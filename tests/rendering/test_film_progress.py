@@ -3,7 +3,7 @@
 import pytest
 
 from identification.progress import duration
-from inca_mj.commands.film_progress import EVERY, FIRST, SOON, FilmProgress
+from inca_mj.commands.film import EVERY, FIRST, SOON, FilmProgress
 
 
 def told(frames, seconds, begin=60.0, lines=True):

@@ -1,19 +1,23 @@
-"""Errors of a command line in one sentence, instead of the parser's page."""
+"""The arguments of a program: the command that they name, its help, and errors in one sentence.
+
+Options that take several values add up when they are repeated: `--free A --free B` is `--free A B`.
+A parser that keeps the last of them would leave out what a user wrote, without a word. What follows
+an option up to the next one belongs to it; several values are those of a field `tuple[X, ...]`.
+"""
 
 from __future__ import annotations
 
 import dataclasses
+import inspect
 import io
 import re
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import redirect_stderr
+from itertools import chain
 from typing import Annotated, Any, get_args, get_origin, get_type_hints
 
 import tyro
-
-from identification.commands.examples import examples_of, examples_text
-from identification.commands.repeated import gathered
 
 _FRAME = "│╭╮╰╯─|+ "  # of a box, also where a terminal knows no lines
 COMPLETION, SHELLS = "--completion", ("bash", "zsh", "fish")
@@ -49,9 +53,9 @@ def parsed(
         if shell not in SHELLS:
             raise InputError(f"{COMPLETION} {shell!r} is no shell; give one of {', '.join(SHELLS)}")
         arguments = ["--tyro-print-completion", shell]
-    said = io.StringIO()
+    parser_words = io.StringIO()
     try:
-        with redirect_stderr(said):
+        with redirect_stderr(parser_words):
             return tyro.cli(
                 commands, prog=name, description=description, args=gathered(commands, arguments),
                 config=(tyro.conf.AvoidSubcommands,),
@@ -61,11 +65,12 @@ def parsed(
         if end.code in (0, None):
             command = at_hand.get(next(iter(arguments), ""))
             if {"-h", "--help"} & {*arguments}:
-                sys.stdout.write(
-                    examples_text(examples if command is None else examples_of(command))
-                )
+                shown = examples if command is None else examples_of(command)
+                sys.stdout.write("\n  ".join(["examples:", *shown]) + "\n")
             raise
-        raise InputError(_sentence(_unboxed(said.getvalue()), name, arguments, at_hand)) from None
+        lines = (line.strip(_FRAME) for line in parser_words.getvalue().splitlines())
+        text = " ".join(filter(None, lines))
+        raise InputError(_sentence(text, name, arguments, at_hand)) from None
     except RecursionError:  # of the parser's boxes, which hold no word without end
         longest = max(arguments, key=len)
         raise InputError(
@@ -73,26 +78,76 @@ def parsed(
         ) from None
 
 
+def examples_of(command: type) -> tuple[str, ...]:
+    """Returns the command lines below `Examples:` in the docstring of a command's class."""
+    _, _, block = (inspect.getdoc(command) or "").partition("\nExamples:\n")
+    return tuple(line.strip() for line in block.splitlines() if line.strip())
+
+
+def gathered(commands: Any, arguments: Sequence[str]) -> list[str]:
+    """Returns arguments in which each option of several values stands once, with all its values.
+
+    Args:
+        commands: dataclasses, or unions of them, as a parser takes them.
+        arguments: those of the command line.
+    """
+    several = {f"--{name}" for name in _several(commands)}
+    groups: list[list[str]] = [[]]
+    first: dict[str, list[str]] = {}
+    current = groups[0]
+    for k, argument in enumerate(arguments):
+        option, equals, value = argument.partition("=")
+        option = option.replace("_", "-")
+        if argument == "--":
+            return [*chain(*groups), *arguments[k:]]
+        if not argument.startswith("--"):
+            current.append(argument)
+            continue
+        if option not in several:
+            groups.append([argument])
+        elif option not in first:
+            first[option] = [option, value] if equals else [option]
+            groups.append(first[option])
+        elif equals:
+            first[option].append(value)
+        current = first.get(option, groups[-1])
+    return [*chain(*groups)]
+
+
+def _several(kind: Any) -> Iterator[str]:
+    """Yields names of the options of several values, as written on the command line."""
+    if isinstance(kind, type) and dataclasses.is_dataclass(kind):
+        for name, hint in get_type_hints(kind).items():
+            if dataclasses.is_dataclass(hint):
+                yield from _several(hint)
+            elif any(get_origin(each) is tuple and get_args(each)[1:] == (...,)
+                     for each in (hint, *get_args(hint))):  # fmt: skip
+                yield name.replace("_", "-")
+    else:
+        is_annotated = get_origin(kind) is Annotated
+        for each in get_args(kind)[: 1 if is_annotated else None]:
+            yield from _several(each)
+
+
 def _sentence(text: str, name: str, arguments: Sequence[str], commands: dict[str, type]) -> str:
-    """Returns one sentence on what the parser said."""
+    """Returns one sentence on what the parser wrote."""
     from identification.errors import unknown_name
 
     command = arguments[0] if arguments else ""
+    if not command:
+        return f"no command is given; give one of {', '.join(commands)}"
     if command not in commands:
-        return (
-            str(unknown_name("command", command, commands))
-            if command
-            else (f"no command is given; give one of {', '.join(commands)}")
-        )
+        return str(unknown_name("command", command, commands))
     see = f"; {name} {command} --help tells more"
+    options = [*_options(commands[command])]
     if found := re.search(r"Unrecognized (?:or misplaced )?options: ([^\s,]+)", text):
-        options = [f"--{option}" for option in _options(commands[command])]
-        if found[1].startswith("-"):
-            return str(unknown_name(f"option of {name} {command}:", found[1], options))
-        return f"{found[1]} is one argument too many{see}"
+        if not found[1].startswith("-"):
+            return f"{found[1]} is one argument too many{see}"
+        known = [f"--{option}" for option in options]
+        return str(unknown_name(f"option of {name} {command}:", found[1], known))
     if found := re.search(r"Error parsing (\S+?):", text):
         given = _given(found[1], arguments)
-        if given.endswith((".csv", ".mat")) and "log" in _options(commands[command]):
+        if given.endswith((".csv", ".mat")) and "log" in options:
             return f"{found[1]} is {given!r}; write a log behind --log, as --log {given}{see}"
         return f"{found[1]} is {given!r}; give {_wanted(text)}{see}"
     if found := re.search(r"invalid choice (.+) for argument '([^']+)'.*\((.+)\)", text):
@@ -117,12 +172,6 @@ def _wanted(text: str) -> str:
     return _KINDS[kind[1]] if kind else " ".join(words) or "another value"
 
 
-def _unboxed(text: str) -> str:
-    """Returns the text in a box of the parser, without the frame."""
-    lines = (line.strip(_FRAME) for line in text.splitlines())
-    return " ".join(line for line in lines if line)
-
-
 def _given(option: str, arguments: Sequence[str]) -> str:
     """Returns the argument that stands behind an option."""
     for k, argument in enumerate(arguments):
@@ -143,23 +192,19 @@ def _commands(kind: Any) -> Iterator[tuple[str, type]]:
 def _positional(command: type) -> dict[str, str]:
     """Returns the words in the help for a command's positional arguments, by field name."""
     hints = get_type_hints(command, include_extras=True)
-    marks = {field: hint.__metadata__ for field, hint in hints.items() if _is_annotated(hint)}
+    marks = {name: getattr(hint, "__metadata__", ()) for name, hint in hints.items()}
     return {
-        field: next((m.metavar for m in each if getattr(m, "metavar", None)), field.upper())
-        for field, each in marks.items()
+        name: next((m.metavar for m in each if getattr(m, "metavar", None)), name.upper())
+        for name, each in marks.items()
         if tyro.conf.Positional in each
     }
-
-
-def _is_annotated(hint: Any) -> bool:
-    return get_origin(hint) is Annotated
 
 
 def _options(command: type) -> Iterator[str]:
     """Yields the names of a command's options, those of its parts among them."""
     positional = _positional(command)
-    for field, hint in get_type_hints(command).items():
+    for name, hint in get_type_hints(command).items():
         if dataclasses.is_dataclass(hint):
             yield from _options(hint)  # type: ignore[arg-type]
-        elif field not in positional:
-            yield field.replace("_", "-")
+        elif name not in positional:
+            yield name.replace("_", "-")
