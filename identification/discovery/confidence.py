@@ -147,7 +147,7 @@ def _compare(
         stacked = np.concatenate([point.J[..., keep], *wanted], axis=2)
         W = filter_(stacked).reshape(point.e.size, -1)
     F, S = W[:, : len(keep)], W[:, len(keep) :]
-    ridge = np.diag((final.refit.prior[keep] * level.sigma) ** 2)
+    ridge = np.diag((final.refit.priors.weight[keep] * level.sigma) ** 2)
     S = S - F @ np.linalg.solve(F.T @ F + ridge, F.T @ S)
     ends = np.cumsum([w.shape[2] for w in wanted])
     spans = [np.linalg.qr(S[:, e - w.shape[2] : e])[0] for e, w in zip(ends, wanted, strict=True)]

@@ -60,7 +60,7 @@ def estimate_missing_forces(fit: Refit) -> tuple[MissingForce, ...]:
     dofs = [d for _, of, _, _ in groups for d in of]
     plant = linearise(point.predictor, point.space.decode(point.q), forces=dofs)
     Ts, time, out, done = point.log.sampling_time, START_CORRELATION_TIME, [], 0
-    known = point.e, point.J, fit.prior, Ts
+    known = point.e, point.J, fit.priors.weight, Ts
     with one_blas_thread():
         none = fit_noise(plant, *known, levels=(0.0,), fine=False)
         for where, of, names, units in groups:

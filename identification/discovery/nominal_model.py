@@ -11,6 +11,7 @@ from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate
 from identification.errors import InputError
 from identification.estimation.options import Progress
+from identification.estimation.priors import Priors
 from identification.kalman.noise_fit import START_CORRELATION_TIME
 from identification.kalman.point import Point, evaluate_point
 from identification.kalman.refit import Refit, refit
@@ -148,6 +149,7 @@ def fit_with_effects(
     mean = space.encode(np.where([n in known for n in names], [middle[n] for n in names], first))
     of_shapes = np.full(len(shapes), 1 / SHAPE_STD)
     weight = np.concatenate([1 / nominal_model.prior_std, np.zeros(len(sizes)), of_shapes])
+    priors = Priors(space, mean, weight)
     level, beside = (None, None) if near is None else (near.level, near.point)
     predictor = Predictor(nominal_model.plant, log, names, fixed)
     small = frozenset(nominal_model.grouped)
@@ -158,12 +160,12 @@ def fit_with_effects(
         # The correlation time that was found without the effect may have been the effect's own.
         level = replace(level, noise=level.noise.lasting(START_CORRELATION_TIME))
     is_near = near is not None and near.point.space.names == names
-    found = refit(point, mean, weight, options, steps, level, progress, is_near, least)
+    found = refit(point, priors, options, steps, level, progress, is_near, least)
     if near is None or not _is_less_likely(found, near) or nominal_model.is_bounded:
         return found
     # A model is at least as likely as the one that it contains: the search, which believes no large
     # errors of the inputs at first, went another way.
-    again = refit(point, mean, weight, options, steps, near.level, progress, True, least)
+    again = refit(point, priors, options, steps, near.level, progress, True, least)
     return max(found, again, key=lambda fit: fit.log_posterior)
 
 
@@ -190,8 +192,8 @@ def _same_point(
 
 def _is_less_likely(found: Refit, near: Refit) -> bool:
     """Returns whether a fit is less likely than one with fewer parameters and the same priors."""
-    prior = dict(zip(found.point.space.names, found.prior, strict=True))
-    fewer = dict(zip(near.point.space.names, near.prior, strict=True))
+    prior = dict(zip(found.point.space.names, found.priors.weight, strict=True))
+    fewer = dict(zip(near.point.space.names, near.priors.weight, strict=True))
     contained = len(fewer) < len(prior) and all(prior.get(n) == s for n, s in fewer.items())
     return contained and found.log_posterior < near.log_posterior
 

@@ -20,7 +20,6 @@ from identification.discovery.recovered_force import (
 )
 from identification.effects.effect import Candidate
 from identification.kalman.noise_model import build_whitener
-from identification.kalman.problem import linearise_criterion
 from identification.kalman.refit import Refit
 from identification.pool import one_blas_thread
 
@@ -58,7 +57,7 @@ def recover_force(
         if shown is None or shown.is_mixed:
             return None
         c, std = _solve(fit, fit.point.log.outputs - shown.predicted, shown.response)
-    covariance = linearise_criterion(point, fit.level, fit.mean, fit.prior).covariance
+    covariance = fit.problem.covariance
     moved_so = moved_by(steps, space.names, covariance, slope)
     return compare_force(candidate, shown, c, std, moved_so, [r.candidate for r in rivals])
 

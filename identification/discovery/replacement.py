@@ -54,7 +54,7 @@ def replace_effect(
     if not mine.any():
         return Replacement(np.inf, np.inf, np.zeros(m))
     with one_blas_thread():
-        problem = linearise_criterion(point, level, fit.mean, fit.prior)
+        problem = linearise_criterion(point, level, fit.priors)
         W = problem.filter(S).reshape(point.e.size, m) / level.sigma
     added = np.vstack([W, np.zeros((len(names), m))])
     others = problem.rows[:, ~np.isin(names, candidate.estimated)]

@@ -11,6 +11,8 @@ prior. The deviations of that kind keep theirs: with wider ones such a part woul
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from scipy.optimize import lsq_linear
 
@@ -45,14 +47,15 @@ def retune(fit: Refit, nominal: NominalModel, candidate: Candidate) -> tuple[flo
         return np.inf, Retuned(nominal.names[0], 0.0, 0.0)
     kind = [n for n, (effect, _) in nominal.deviants.items() if effect == candidate.effect.name]
     wider = own & ~np.isin(names, kind)
-    prior = np.where(wider, fit.prior / PRIOR_WIDENING, fit.prior)
-    problem = linearise_criterion(fit.point, fit.level, fit.mean, prior)
+    known = fit.priors
+    widened = np.where(wider, known.weight / PRIOR_WIDENING, known.weight)
+    problem = linearise_criterion(fit.point, fit.level, replace(known, weight=widened))
     lower, upper = space.lower - q, space.upper - q
     _, with_it = _minimise(problem.rows, problem.target, lower, upper)
     rest = ~mine  # the coordinates of sizes are linear, and zero in the nominal model
     target = problem.target + problem.rows[:, mine] @ q[mine]
     move, without = _minimise(problem.rows[:, rest], target, lower[rest], upper[rest])
-    away = np.where(own[rest], (q[rest] + move - fit.mean[rest]) * fit.prior[rest], 0.0)
+    away = np.where(own[rest], (q[rest] + move - known.mean[rest]) * known.weight[rest], 0.0)
     far = int(np.abs(away).argmax())
     return max(0.0, without - with_it), Retuned(str(names[rest][far]), float(away[far]), 0.0)
 

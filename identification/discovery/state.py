@@ -35,7 +35,6 @@ from identification.discovery.selection.pairs import find_pair
 from identification.discovery.selection.pruning import eliminate, exchange
 from identification.discovery.task import DiscoveryTask
 from identification.estimation.options import Progress
-from identification.kalman.hierarchy import estimate_scatter
 from identification.model.sensitivity import refuse_without_effect
 from identification.quantities import held
 
@@ -94,7 +93,7 @@ def _with_scatter(task: DiscoveryTask, nominal: FittedModel) -> tuple[DiscoveryT
     """Returns the task with the scatter that the nominal fit shows, and a nominal fit under it."""
     model = task.nominal_model
     groups = {group: model.groups[group] for group in model.scattering}
-    scatter = estimate_scatter(nominal.refit, groups)
+    scatter = nominal.refit.problem.scatter(groups)
     task = replace(task, nominal_model=replace(model, scatter=scatter))
     return task, fit_model(task, (), nominal.refit.point.values, nominal)
 

@@ -36,7 +36,7 @@ def cost(found: Estimate, error: np.ndarray, known: np.ndarray) -> float:
     """
     options, log = found.options, found.predictor.log
     weighed = relative_weight(log.outputs, options.relative_noise) * error
-    prior = (found.q - known) * found.prior
+    prior = (found.q - known) * found.priors.weight
     if options.criterion == "det":
         _, size = np.linalg.slogdet(whitener_of(weighed))  # log det Λ = -2 log det C
         return float(-2 * len(error) * size + prior @ prior)

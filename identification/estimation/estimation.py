@@ -29,7 +29,8 @@ from identification.errors import InputError, refuse_kind
 from identification.estimation.options import HORIZONS as HORIZONS
 from identification.estimation.options import Options as Options
 from identification.estimation.options import Progress as Progress
-from identification.estimation.options import Status, prior_weight
+from identification.estimation.options import Status
+from identification.estimation.priors import Priors
 from identification.estimation.search import Search
 from identification.logs.by_unit import by_unit, of_outputs
 from identification.logs.log import Log
@@ -72,9 +73,9 @@ class Estimate:
     seconds: float
 
     @property
-    def prior(self) -> np.ndarray:
-        """1/std of the prior of each q, zero where there is none, shape (p,)."""
-        return prior_weight(self.options, self.space.names)
+    def priors(self) -> Priors:
+        """What was known of the parameters before the search."""
+        return Priors.of(self.space, self.space.encode(self.start), self.options.priors)
 
     @property
     def values(self) -> dict[str, float]:

@@ -176,7 +176,7 @@ def assess(estimate: Estimate, validation: Log | None = None) -> Fit:
         validation, prior = None, np.zeros((len(q), len(q)))
         resolved = nothing_resolved(space.names, residual.size)
     else:
-        prior = np.diag(estimate.prior)
+        prior = estimate.priors.rows
         resolved = resolve(predictor, space, q, whiten)
     S, found = resolved.S, resolved.found
     E = np.concatenate([resolved.E, np.zeros_like(prior)])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -56,8 +56,3 @@ class Options:
         for name, std in self.priors.items():
             if not std > 0:
                 raise InputError(f"the prior of {name} has std {std:g}; give a positive one")
-
-
-def prior_weight(options: Options, names: Sequence[str]) -> np.ndarray:
-    """Returns 1/std of the prior of each q, zero where there is none, shape (p,)."""
-    return np.array([1 / options.priors.get(name, np.inf) for name in names])

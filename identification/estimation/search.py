@@ -18,7 +18,8 @@ from scipy.optimize import least_squares
 
 from identification.errors import DivergenceError, InputError
 from identification.estimation.levenberg_marquardt import SLOPE_ERROR
-from identification.estimation.options import Options, Progress, Status, prior_weight
+from identification.estimation.options import Options, Progress, Status
+from identification.estimation.priors import Priors
 from identification.logs.noise import relative_weight, whitener_of
 from identification.model.coordinates import Coordinates
 from identification.model.predictor import Predictor
@@ -78,10 +79,10 @@ class Search:
             options,
             progress,
         )
-        self.first = self.best = q
+        self.best = q
         self.whitener = whitener
         self.weight = relative_weight(predictor.log.outputs, options.relative_noise)
-        self.prior = prior_weight(options, space.names)
+        self.priors = Priors.of(space, q, options.priors)
         self.evaluations = self.jacobians = 0
         self._last = np.full_like(q, np.nan), np.empty((0, 0))  # a point and its ŷ
 
@@ -174,9 +175,7 @@ class Search:
         slopes: Slopes | None = None
 
         def stacked(q: np.ndarray, weighed: np.ndarray) -> np.ndarray:
-            return np.concatenate(
-                [weighed.ravel(), (q - self.first) * self.prior, (q - origin) * hold]
-            )
+            return np.concatenate([weighed.ravel(), -self.priors.against(q), (q - origin) * hold])
 
         def residual(q: np.ndarray) -> np.ndarray:
             nonlocal cost, gain
@@ -204,7 +203,7 @@ class Search:
                 J = forward_sensitivity(self.predictor, self.space, q, self.predicted(q, samples))
                 J = weight[:, :, None] * J
                 weighed = -np.einsum("ij,njp->nip", self.whitener, J).reshape(-1, len(q))
-                J = np.concatenate([weighed, np.diag(self.prior), np.diag(hold)])
+                J = np.concatenate([weighed, self.priors.rows, np.diag(hold)])
                 slopes = Slopes(q.copy(), r, J)
             return slopes.J
 

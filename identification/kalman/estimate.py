@@ -20,7 +20,8 @@ from identification.errors import InputError
 from identification.estimation.estimation import Estimate
 from identification.estimation.fit import Fit, assess, combinations_of
 from identification.estimation.information import information_of
-from identification.estimation.options import Options, Progress, Status, prior_weight
+from identification.estimation.options import Options, Progress, Status
+from identification.estimation.priors import Priors
 from identification.estimation.residuals import residual_tests
 from identification.estimation.resolution import resolve
 from identification.kalman.noise_fit import NoiseLevel
@@ -109,16 +110,16 @@ def estimate_innovations(
     first = np.array([own[name] for name in names])
     space = coordinates(plant.parameters, names, first)
     predictor = Predictor(plant, part, tuple(names), dict(start or {}))
-    mean = space.encode(first)
-    prior = np.maximum(prior_weight(weights, names), RIDGE_WEIGHT)
-    begun = evaluate_point(predictor, space, mean)
+    known = Priors.of(space, space.encode(first), weights.priors)
+    held = replace(known, weight=np.maximum(known.weight, RIDGE_WEIGHT))
+    begun = evaluate_point(predictor, space, known.mean)
     if without_effect(begun.J, part.outputs).any():
         refuse_without_effect(begun.J, space.names, part)
     seen = [(begun, NoiseLevel(Noise(0.0, 1.0), 1.0, 0.0))]
-    points = descend(begun, mean, prior, options or KalmanOptions(), steps=steps)
+    points = descend(begun, held, options or KalmanOptions(), steps=steps)
     status = _search(points, seen, progress)
     taken = max(0, len(seen) - 2)
-    end = conclude(*seen[-1], mean, prior, taken)
+    end = conclude(*seen[-1], held, taken)
     ends = Estimate(
         predictor=predictor,
         space=space,
@@ -187,7 +188,7 @@ def _of_innovations(end: Refit, fit: Fit) -> Fit:
             lambda J: filter_(J).reshape(point.e.size, -1) / σ,
         )  # fmt: skip
     S, found = resolved.S, resolved.found
-    covariance = np.linalg.pinv(S.T @ S + np.diag(end.prior**2), hermitian=True)
+    covariance = np.linalg.pinv(S.T @ S + np.diag(end.priors.weight**2), hermitian=True)
     std = np.sqrt(np.diag(covariance))
     return replace(
         fit,

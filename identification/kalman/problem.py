@@ -11,6 +11,7 @@ second derivative of the residual ("geodesic acceleration", Transtrum and Sethna
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -20,6 +21,7 @@ from scipy.optimize import lsq_linear
 
 from identification.errors import DivergenceError, InputError
 from identification.estimation.levenberg_marquardt import KEPT_GAIN, Cost, Criterion
+from identification.estimation.priors import Priors, estimate_scatter
 from identification.kalman.noise_fit import NoiseLevel, fit_noise
 from identification.kalman.noise_model import Whitener, keep, whiten
 from identification.kalman.point import Point, evaluate_point, is_costly, shift_point
@@ -44,8 +46,7 @@ class Problem(Criterion[np.ndarray]):
     Attributes:
         point: the plant at the point, with p free parameters.
         level: the noise.
-        mean: q̄ of the priors, shape (p,).
-        prior: 1/std of each prior, zero where there is none, shape (p,).
+        priors: what is known of the parameters.
         filter: the whitening filter of the noise.
         rows: F, shape (N ny + p, p).
         target: -r, shape (N ny + p,).
@@ -56,8 +57,7 @@ class Problem(Criterion[np.ndarray]):
 
     point: Point
     level: NoiseLevel
-    mean: np.ndarray
-    prior: np.ndarray
+    priors: Priors
     filter: Whitener
     rows: np.ndarray
     target: np.ndarray
@@ -150,7 +150,7 @@ class Problem(Criterion[np.ndarray]):
         except (DivergenceError, InputError):  # InputError: the robot cannot rest at its start
             return None
         E = self.filter(self.point.log.outputs - predicted) / self.level.sigma
-        return np.concatenate([E.ravel(), self.prior * (self.mean - q)])
+        return np.concatenate([E.ravel(), self.priors.against(q)])
 
     def cost_after(self, move: np.ndarray) -> float:
         """Returns the criterion after a step; infinite where the plant cannot be simulated."""
@@ -168,8 +168,13 @@ class Problem(Criterion[np.ndarray]):
         if new is None:
             near = point if change < SIMILAR_CHANGE else None
             new = evaluate_point(point.predictor, point.space, q, near, point.small, run)
-        level = estimate_noise(new, self.prior, self.level, largest=self.largest)
-        return linearise_criterion(new, level, self.mean, self.prior, self.largest)
+        level = estimate_noise(new, self.priors, self.level, largest=self.largest)
+        return linearise_criterion(new, level, self.priors, self.largest)
+
+    def scatter(self, groups: Mapping[str, Sequence[str]]) -> dict[str, float]:
+        """Returns the most probable std of the prior of each group of parameters, by group."""
+        F, y = self.rows[: self.point.e.size], self.target[: self.point.e.size]
+        return estimate_scatter(self.priors, self.point.q, F, y, groups)
 
     @property
     def covariance(self) -> np.ndarray:
@@ -182,36 +187,31 @@ class Problem(Criterion[np.ndarray]):
 
 
 def linearise_criterion(
-    point: Point,
-    level: NoiseLevel,
-    mean: np.ndarray,
-    prior: np.ndarray,
-    largest: float = np.inf,
+    point: Point, level: NoiseLevel, priors: Priors, largest: float = np.inf
 ) -> Problem:
     """Returns the criterion, linearised about a point.
 
     Args:
         point: the plant at the point.
         level: the noise.
-        mean: q̄ of the priors, shape (p,).
-        prior: 1/std of each prior, zero where there is none, shape (p,).
+        priors: what is known of the parameters.
         largest: see `Problem`.
     """
     white = whiten(point.linear, point.J, level.noise, point.log.sampling_time)
     keep(white)
     E = white.filter(point.e).ravel() / level.sigma
-    rows = np.vstack([white.F / level.sigma, np.diag(prior)])
-    target = np.concatenate([E, prior * (mean - point.q)])
+    rows = np.vstack([white.F / level.sigma, priors.rows])
+    target = np.concatenate([E, priors.against(point.q)])
     return Problem(
-        point=point, level=level, mean=mean, prior=prior, filter=white.filter, rows=rows,
-        target=target, curvature=white.H / level.sigma**2 + np.diag(prior**2),
+        point=point, level=level, priors=priors, filter=white.filter, rows=rows,
+        target=target, curvature=white.H / level.sigma**2 + np.diag(priors.weight**2),
         largest=largest,
     )  # fmt: skip
 
 
 def estimate_noise(
     point: Point,
-    prior: np.ndarray,
+    priors: Priors,
     near: NoiseLevel | None,
     fine: bool = False,
     largest: float = np.inf,
@@ -220,10 +220,10 @@ def estimate_noise(
 
     Args:
         point: the plant with its residual.
-        prior: 1/std of each prior, zero where there is none, shape (p,).
+        priors: what is known of the parameters.
         near: the noise of a point nearby, where one is known.
         fine: whether the noise is refined by a search.
         largest: largest error of the inputs that is believed before, in the inputs' unit.
     """
     linear, e, J, Ts = point.linear, point.e, point.J, point.log.sampling_time
-    return fit_noise(linear, e, J, prior, Ts, near, fine, largest=largest)
+    return fit_noise(linear, e, J, priors.weight, Ts, near, fine, largest=largest)

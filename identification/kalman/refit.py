@@ -18,6 +18,7 @@ import numpy as np
 
 from identification.estimation.levenberg_marquardt import Damping, levenberg_marquardt
 from identification.estimation.options import Progress
+from identification.estimation.priors import Priors
 from identification.kalman.innovations import innovation_tests
 from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.options import KalmanOptions
@@ -49,22 +50,25 @@ class Refit:
         point: the plant at the estimate.
         level: the noise.
         std: of q, by the curvature of the likelihood, shape (p,).
-        mean: q̄ of the priors, shape (p,).
-        prior: 1/std of each prior, zero where there is none, shape (p,).
+        priors: what was known of the parameters.
         steps: number of steps that were taken.
     """
 
     point: Point
     level: NoiseLevel
     std: np.ndarray
-    mean: np.ndarray
-    prior: np.ndarray
+    priors: Priors
     steps: int
 
     @property
     def log_posterior(self) -> float:
         """Log likelihood plus log density of the priors, up to a constant."""
-        return _posterior(self.point, self.level, self.mean, self.prior)
+        return _posterior(self.point, self.level, self.priors)
+
+    @property
+    def problem(self) -> Problem:
+        """The criterion, linearised about the estimate."""
+        return linearise_criterion(self.point, self.level, self.priors)
 
     @property
     def plant(self) -> Plant:
@@ -100,7 +104,7 @@ class Refit:
     @property
     def unlearned(self) -> dict[str, float]:
         """Std of each free parameter over the std that was known before; 0 where none was."""
-        left = (self.std * self.prior).tolist()
+        left = (self.std * self.priors.weight).tolist()
         return dict(zip(self.point.space.names, left, strict=True))
 
     @property
@@ -117,8 +121,7 @@ class Refit:
 
 def refit(
     point: Point,
-    mean: np.ndarray,
-    prior: np.ndarray,
+    priors: Priors,
     options: KalmanOptions,
     steps: int = 20,
     near: NoiseLevel | None = None,
@@ -130,8 +133,7 @@ def refit(
 
     Args:
         point: where to begin.
-        mean: q̄ of the priors, shape (p,).
-        prior: 1/std of each prior, zero where there is none, shape (p,).
+        priors: what is known of the parameters.
         options: which noise is believed.
         steps: largest number of steps.
         near: a noise to begin at, where one is known.
@@ -139,19 +141,18 @@ def refit(
         is_near: whether the point is near the optimum, so that only the likelihood counts.
         least: log posterior that an estimate must come to, to matter.
     """
-    search = descend(point, mean, prior, options, near, steps, is_near, least)
+    search = descend(point, priors, options, near, steps, is_near, least)
     for step in enumerate(counted(search, "steps of a fit")):
         taken, (end, level) = step
         if progress is not None:
             off = float(np.sqrt(np.mean(end.e**2)))
             progress(f"step {taken}: free run {off:.3g}, sensors {level.sigma:.3g} rms")
-    return conclude(end, level, mean, prior, taken)
+    return conclude(end, level, priors, taken)
 
 
 def descend(
     point: Point,
-    mean: np.ndarray,
-    prior: np.ndarray,
+    priors: Priors,
     options: KalmanOptions,
     near: NoiseLevel | None = None,
     steps: int = 20,
@@ -167,8 +168,7 @@ def descend(
 
     Args:
         point: where to begin.
-        mean: q̄ of the priors, shape (p,).
-        prior: 1/std of each prior, zero where there is none, shape (p,).
+        priors: what is known of the parameters.
         options: which noise is believed.
         near: a noise to begin at, where one is known.
         steps: largest number of steps.
@@ -180,27 +180,27 @@ def descend(
         Whether the search ended before it had used all steps.
     """
     believed = np.inf if is_near else largest_input_error(point, options)
-    level = estimate_noise(point, prior, near, largest=believed)
+    level = estimate_noise(point, priors, near, largest=believed)
     yield point, level
     for fine in (True,) if is_near else (False, True):
         ended = (END_FALL if fine else APPROACH_END_FALL) * len(point.q)
         if fine:
-            level = estimate_noise(point, prior, level, fine)
+            level = estimate_noise(point, priors, level, fine)
             yield point, level
         last, largest = point, np.inf if fine else believed
-        problem = linearise_criterion(point, level, mean, prior, largest)
+        problem = linearise_criterion(point, level, priors, largest)
         best, most, nearest, idle = (point, level), problem.log_posterior, _rms(point), 0
         trials = levenberg_marquardt(problem, DAMPING)
         while steps and idle < PATIENCE and not (fine and _is_refuted(problem, options)):
             if problem.expected_fall(problem.step(0.0)) < ended:
                 break
-            if fine and _posterior(point, level, mean, prior) < least:
+            if fine and _posterior(point, level, priors) < least:
                 break
             tries = MAX_BORROWED_ATTEMPTS if point.is_borrowed else MAX_ATTEMPTS
             trial = next((t for t in islice(trials, tries) if t.taken), None)
             if trial is None and point.is_borrowed:
                 point = evaluate_point(point.predictor, point.space, point.q, None, point.small)
-                problem = linearise_criterion(point, level, mean, prior, largest)
+                problem = linearise_criterion(point, level, priors, largest)
                 trials = levenberg_marquardt(problem, DAMPING)
                 continue
             if trial is None:
@@ -222,9 +222,9 @@ def descend(
     return steps > 0
 
 
-def _posterior(point: Point, level: NoiseLevel, mean: np.ndarray, prior: np.ndarray) -> float:
+def _posterior(point: Point, level: NoiseLevel, priors: Priors) -> float:
     """Returns the log likelihood plus the log density of the priors, up to a constant."""
-    return level.log_likelihood - float(np.sum(((point.q - mean) * prior) ** 2)) / 2
+    return level.log_likelihood - float(np.sum(priors.against(point.q) ** 2)) / 2
 
 
 def _is_refuted(problem: Problem, options: KalmanOptions) -> bool:
@@ -252,9 +252,7 @@ def _rms(point: Point) -> float:
     return float(np.sqrt(np.mean(point.e**2)))
 
 
-def conclude(
-    point: Point, level: NoiseLevel, mean: np.ndarray, prior: np.ndarray, taken: int
-) -> Refit:
+def conclude(point: Point, level: NoiseLevel, priors: Priors, taken: int) -> Refit:
     """Returns the estimate at the point where a search ended after `taken` steps."""
-    std = linearise_criterion(point, level, mean, prior).std()
-    return Refit(point=point, level=level, std=std, mean=mean, prior=prior, steps=taken)
+    std = linearise_criterion(point, level, priors).std()
+    return Refit(point=point, level=level, std=std, priors=priors, steps=taken)

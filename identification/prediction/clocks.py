@@ -23,6 +23,7 @@ from identification.discovery.attempts import attempt
 from identification.discovery.findings.records_evidence import ShiftedRecord
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate
+from identification.estimation.priors import Priors
 from identification.model.coordinates import coordinates
 from identification.pool import run_parts
 from identification.prediction.fit import WindowFit, solve
@@ -32,7 +33,6 @@ from identification.prediction.records import Record
 from identification.prediction.scores import WindowScore, window_scores
 from identification.prediction.task import RecordsTask
 from identification.prediction.told_std import degrees_of_freedom, told_std
-from identification.prediction.unknowns import Prior
 
 SHIFT = "time_shift"  # the effect
 # Of the sampling time: a smaller shift that may be chance stands in the JSON alone.
@@ -116,7 +116,7 @@ def _alone(model: WindowModel, record: Record, horizon: float) -> WindowFit:
     """Returns the fit of one record at the model's values: its states settled, nothing free."""
     values = {**model.values, **model.own_values.get(record.log.name, {})}
     task = problem(
-        model.plant, [record], Prior(), Prior(), horizon, values, model.scale, ALONE_STEPS
+        model.plant, [record], Priors(), Priors(), horizon, values, model.scale, ALONE_STEPS
     )
     moves, r = task.settled(np.zeros(0), no_moves(task), is_thorough=True)
     return solve(task, np.zeros(0), moves, known=r)
@@ -157,7 +157,7 @@ def _with(at: WindowFit, rows: np.ndarray, score: WindowScore) -> Problem:
     """Returns the problem of some windows with the shift free, begun at the score's size."""
     (part,), (name,) = at.problem.parts, score.candidate.sizes
     space = coordinates(part.predictor.plant.parameters, [name], score.size, linear=[name])
-    prior = Prior(space, space.encode(score.size), np.zeros(1))
+    prior = Priors(space, space.encode(score.size), np.zeros(1))
     predictor = replace(part.predictor, names=prior.names)
     here = replace(part.rows(rows), space=space, predictor=predictor)
     return Problem((here,), replace(at.problem.unknowns, shared=prior))

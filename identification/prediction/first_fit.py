@@ -17,6 +17,7 @@ from identification.discovery.nominal_model import SHAPE_STD, nonzero
 from identification.discovery.scoring.sensitivities import iterate_shapes
 from identification.effects.effect import Candidate
 from identification.errors import InputError
+from identification.estimation.priors import Priors
 from identification.model.coordinates import coordinates
 from identification.model.predictor import Plant
 from identification.prediction.fit import solve
@@ -25,7 +26,6 @@ from identification.prediction.model import WindowModel
 from identification.prediction.problem import Problem, with_unknowns
 from identification.prediction.scores import WindowScore, inside
 from identification.prediction.thinning import picks, thinned, thinned_moves, thinned_tangents
-from identification.prediction.unknowns import Prior
 
 START_SHARES = (1.0, 0.3, 0.05, 0.01)  # of the size that a score gives, at which a fit begins
 REFIT_TOLERANCE = 1e-3  # relative fall of the criterion at which the refit of an effect ends
@@ -128,16 +128,16 @@ def _shaped(score: WindowScore) -> list[WindowScore]:
     ]
 
 
-def _free(plant: Plant, c: Candidate, names: Sequence[str]) -> Prior:
+def _free(plant: Plant, c: Candidate, names: Sequence[str]) -> Priors:
     """Returns the prior of an effect's parameters: none of sizes, shapes near the grid's value."""
     if not names:
-        return Prior()
+        return Priors()
     values = {**plant.parameters.values(), **c.fixed}
     start = [nonzero(plant.parameters[n], 0.0) if n in c.sizes else values[n] for n in names]
     first = inside(plant.parameters, names, np.array(start))
     space = coordinates(plant.parameters, names, first, linear=c.sizes)
     weight = np.array([0.0 if n in c.sizes else 1 / SHAPE_STD for n in names])
-    return Prior(space, space.encode(first), weight)
+    return Priors(space, space.encode(first), weight)
 
 
 def _begin(task: Problem, parent: WindowModel, score: WindowScore, share: float) -> np.ndarray:

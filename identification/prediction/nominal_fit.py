@@ -14,6 +14,7 @@ import numpy as np
 from identification.discovery.nominal_model import NominalModel
 from identification.errors import InputError
 from identification.estimation.options import Progress
+from identification.estimation.priors import Priors
 from identification.estimation.search import ROUGH_TOLERANCE
 from identification.logs.noise import noise_floor
 from identification.model.coordinates import coordinates
@@ -27,7 +28,7 @@ from identification.prediction.problem import (
     with_scale,
 )
 from identification.prediction.records import Record
-from identification.prediction.unknowns import Prior, Unknowns
+from identification.prediction.unknowns import Unknowns
 from identification.prediction.unseen import Unseen
 
 HORIZON_GROWTH = (0.25, 0.5, 1.0)  # of the horizon
@@ -129,14 +130,14 @@ def begin(nominal_model: NominalModel, unknowns: Unknowns) -> np.ndarray:
     return np.asarray(unknowns.all.space.encode(np.array(first)))
 
 
-def _priors(nominal_model: NominalModel) -> tuple[Prior, Prior]:
+def _priors(nominal_model: NominalModel) -> tuple[Priors, Priors]:
     """Returns the priors of a nominal model's free parameters: shared ones, and own ones."""
     plant, names, own = nominal_model.plant, nominal_model.names, nominal_model.own
     values = plant.parameters.values()
     first = np.array([values[n] for n in names])
     space = coordinates(plant.parameters, names, first, linear=nominal_model.linear)
     mean = np.array([nominal_model.mean.get(n, values[n]) for n in names])
-    prior = Prior(space, space.encode(mean), 1 / np.asarray(nominal_model.std, float))
+    prior = Priors(space, space.encode(mean), 1 / np.asarray(nominal_model.std, float))
     return prior.only([n for n in names if n not in own]), prior.only(own)
 
 

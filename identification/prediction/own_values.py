@@ -7,12 +7,12 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from identification.estimation.priors import Priors
 from identification.estimation.search import ROUGH_TOLERANCE
 from identification.model.predictor import Plant
 from identification.prediction.fit import solve
 from identification.prediction.problem import no_moves, problem
 from identification.prediction.records import Record
-from identification.prediction.unknowns import Prior
 
 
 @dataclass(frozen=True)
@@ -24,7 +24,7 @@ class Own:
         start: where their search begins, shape (m,), in coordinates.
     """
 
-    prior: Prior = field(default_factory=Prior)
+    prior: Priors = field(default_factory=Priors)
     start: np.ndarray = field(default_factory=lambda: np.zeros(0))
 
 
@@ -35,7 +35,7 @@ def own_values(
     """Returns a record's own values for each of its halves, as the other half tells them."""
     if not own.prior.names:
         return {}, {}
-    task = problem(plant, [record], Prior(), own.prior, horizon, values, scale)
+    task = problem(plant, [record], Priors(), own.prior, horizon, values, scale)
     (part,) = task.parts
     is_late = part.cut.starts >= len(record.log) // 2
     out = []

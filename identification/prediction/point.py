@@ -76,7 +76,7 @@ class AtPoint(Criterion[Step]):
     def cost(self) -> float:
         """V."""
         data = sum(float(np.sum(t.r**2)) for t in self.tangents)
-        return data + float(np.sum(self.problem.against(self.q) ** 2))
+        return data + float(np.sum(self.problem.prior.against(self.q) ** 2))
 
     def step(self, μ: Cost) -> Step:
         """Returns the end of the step with damping μ."""
@@ -84,7 +84,7 @@ class AtPoint(Criterion[Step]):
         q = self.q + dq
         expected = self._expected(dq, dd)
         promised = sum(float(e.sum()) for e in expected)
-        promised += float(np.sum(self.problem.against(q) ** 2))
+        promised += float(np.sum(self.problem.prior.against(q) ** 2))
         moves = tuple(d + more for d, more in zip(self.moves, dd, strict=True))
         try:
             held = self.problem.held(q)
@@ -158,7 +158,7 @@ def step_of(
     problem: Problem, q: np.ndarray, tangents: Sequence[Tangent], damping: float
 ) -> tuple[np.ndarray, Moves]:
     """Returns the damped step of the parameters, within bounds, and of the windows' states."""
-    H, g = np.diag(problem.prior.weight**2), problem.prior.weight * problem.against(q)
+    H, g = np.diag(problem.prior.weight**2), problem.prior.weight * problem.prior.against(q)
     each = [t.eliminated(damping) for t in tangents]
     for t, (against, left, share) in zip(tangents, each, strict=True):
         H = H + np.einsum("wmp,wmq->pq", t.S, t.S)

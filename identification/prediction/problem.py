@@ -17,9 +17,10 @@ import numpy as np
 
 from identification.effects.jointed import JointPlant
 from identification.errors import DivergenceError
+from identification.estimation.priors import Priors
 from identification.model.predictor import Plant, Predictor
 from identification.prediction.records import Record
-from identification.prediction.unknowns import Prior, Unknowns
+from identification.prediction.unknowns import Unknowns
 from identification.windows.coarse import (
     own_step,
     with_longest_slope_steps,
@@ -50,7 +51,7 @@ class Problem:
     unknowns: Unknowns
 
     @cached_property
-    def prior(self) -> Prior:
+    def prior(self) -> Priors:
         """The prior of all p free parameters."""
         return self.unknowns.all
 
@@ -63,10 +64,6 @@ class Problem:
     def names(self) -> tuple[str, ...]:
         """The free parameters."""
         return self.prior.names
-
-    def against(self, q: np.ndarray) -> np.ndarray:
-        """Returns the priors' means less q, in their std, shape (p,)."""
-        return self.prior.weight * (self.prior.mean - q)
 
     def held(self, q: np.ndarray) -> HeldRecords:
         """Returns the windows of all records with the parameters q (p,) held."""
@@ -82,7 +79,7 @@ class Problem:
         data = sum(float(np.sum(r**2)) for r in residuals)
         if not np.isfinite(data):
             raise DivergenceError("the simulation of a window diverged; use a smaller step")
-        return data + float(np.sum(self.against(q) ** 2))
+        return data + float(np.sum(self.prior.against(q) ** 2))
 
     def tangents(
         self, q: np.ndarray, d: Sequence[np.ndarray], known: Sequence[np.ndarray] | None = None
@@ -182,8 +179,8 @@ def best_of(
 def problem(
     plant: Plant,
     records: Sequence[Record],
-    shared: Prior,
-    own: Prior,
+    shared: Priors,
+    own: Priors,
     length: float,
     values: Mapping[str, float],
     scale: np.ndarray,
@@ -236,7 +233,7 @@ def no_moves(problem_: Problem) -> tuple[np.ndarray, ...]:
 
 
 def with_unknowns(
-    problem_: Problem, shared: Prior, own: Prior, fixed: Mapping[str, float]
+    problem_: Problem, shared: Priors, own: Priors, fixed: Mapping[str, float]
 ) -> Problem:
     """Returns the same windows with other free parameters, and other values of those not free."""
     parts, space = [], shared.plus(own).space

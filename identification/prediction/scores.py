@@ -124,14 +124,13 @@ class _Base:
         each = [t.projected for t in fit.tangents]
         p = len(fit.q)
         F = np.vstack(
-            [S.reshape(S.shape[0] * S.shape[1], p) for S, _ in each]
-            + [np.diag(fit.problem.prior.weight)]
+            [S.reshape(S.shape[0] * S.shape[1], p) for S, _ in each] + [fit.problem.prior.rows]
         )
         scale = np.linalg.norm(F, axis=0)
         self.scale = np.where(scale > 0, scale, 1.0)
         self.Q, self.R = np.linalg.qr(F / self.scale)
         self.free = np.linalg.qr(F[: len(F) - p] / self.scale)[0]
-        below = fit.problem.against(fit.q)[:, None]
+        below = fit.problem.prior.against(fit.q)[:, None]
         r = np.vstack([r.reshape(-1, 1) for _, r in each] + [below])
         self.r = self._without_base(r)[:, 0]
         self.rows = [r.shape for _, r in each]  # (W, m) a record

@@ -146,8 +146,6 @@ def calibrate(
 
     from identification.discovery.nominal_model import fit_with_effects  # slow to import
     from identification.discovery.options import DiscoveryOptions
-    from identification.kalman.hierarchy import estimate_scatter
-    from identification.kalman.problem import linearise_criterion
 
     def fit(model: NominalModel, start: Mapping[str, float], near: Refit | None = None) -> Refit:
         return fit_with_effects(
@@ -159,7 +157,7 @@ def calibrate(
     model = nominal_model(plant, spread, len(logs))
     rough = fit(model, {})
     drives = {group: spread.groups[group] for group in spread.drives}
-    scatter = {**spread.points, **estimate_scatter(rough, drives)}
+    scatter = {**spread.points, **rough.problem.scatter(drives)}
     say("the same with the scatter of the drives that the data show")
     end = fit(replace(model, scatter=scatter), rough.point.values, rough)
     say("for comparison, all drives alike and all points as drawn")
@@ -172,7 +170,7 @@ def calibrate(
         scatter=scatter,
         alike=alike,
         fit=end,
-        covariance=linearise_criterion(end.point, end.level, end.mean, end.prior).covariance,
+        covariance=end.problem.covariance,
         robot=robots[1],
         unseen=(
             *(_gap(log, robots, [alike, end], k) for k, log in enumerate(logs, 1) if not confirm),

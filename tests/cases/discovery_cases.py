@@ -16,6 +16,7 @@ from identification.discovery.scoring.sensitivities import Sensitivity
 from identification.discovery.state import InnovationSearch, first_state, next_state
 from identification.discovery.task import DiscoveryTask
 from identification.effects.effect import Candidate, Effect, Size
+from identification.estimation.priors import Priors
 from identification.kalman.linear import LinearPlant
 from identification.kalman.point import Point
 from identification.kalman.refit import Refit
@@ -86,8 +87,8 @@ def point_of(plant, e, J):
 def refit_at(point, level, prior, mean=None):
     """A fit with these priors that has ended at a point."""
     mean = np.zeros(len(prior)) if mean is None else mean
-    std = np.ones(len(prior))
-    return Refit(point=point, level=level, std=std, mean=mean, prior=prior, steps=0)
+    std, priors = np.ones(len(prior)), Priors(point.space, mean, prior)
+    return Refit(point=point, level=level, std=std, priors=priors, steps=0)
 
 
 def scored(point, level, prior, sensitivities, mean=None):

@@ -26,6 +26,7 @@ from identification.discovery.recovery import recover_force
 from identification.discovery.result import Discovery
 from identification.discovery.scoring.scores import Score
 from identification.effects.effect import Candidate
+from identification.estimation.priors import Priors
 from identification.kalman.linear import linearise
 from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.noise_model import Noise
@@ -90,7 +91,7 @@ def _fit(items: tuple[tuple[str, float], ...]) -> Refit:
     linear = linearise(predictor, space.decode(q))
     point = Point(predictor=predictor, space=space, q=q, e=e, J=J, linear=linear)
     std, prior = np.full(p, 0.02), np.zeros(p)
-    return Refit(point=point, level=_level(), std=std, mean=q, prior=prior, steps=3)
+    return Refit(point=point, level=_level(), std=std, priors=Priors(space, q, prior), steps=3)
 
 
 class ByHand(FreeRun):

@@ -13,6 +13,7 @@ from identification.discovery.options import DiscoveryOptions
 from identification.discovery.recovery import recover_force
 from identification.effects.effect import Candidate
 from identification.effects.joint_plant import joint_plant
+from identification.estimation.priors import Priors
 from identification.kalman.point import evaluate_point
 from identification.kalman.problem import estimate_noise
 from identification.kalman.refit import conclude, refit
@@ -50,11 +51,11 @@ def fitted(name, true, start=None, shape=None, known=(), steps=0):
     space = coordinates(plant().parameters, names, values, linear=candidate.sizes)
     q = space.encode(values)
     point = evaluate_point(Predictor(plant(), log, names, fixed), space, q)
-    weak = np.full(len(q), 1e-3)
+    weak = Priors(space, q, np.full(len(q), 1e-3))
     if steps:
-        return refit(point, q, weak, DiscoveryOptions(), steps=steps), candidate
+        return refit(point, weak, DiscoveryOptions(), steps=steps), candidate
     level = estimate_noise(point, weak, None)
-    return conclude(point, level, q, weak, 0), candidate
+    return conclude(point, level, weak, 0), candidate
 
 
 STRIBECK = {"stribeck_friction.f_s@slide": 2.0, "stribeck_friction.v_s": 0.4,

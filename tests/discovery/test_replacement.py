@@ -30,7 +30,6 @@ from identification.discovery.scoring.sensitivities import compute_sensitivities
 from identification.effects.effect import Candidate, Effect, Size
 from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.noise_model import Noise
-from identification.kalman.problem import linearise_criterion
 from identification.model.plant import ModelPlant
 
 SPRING, OFFSET, RUBBING = (Candidate(effect, "joint", {}) for effect in EFFECTS)
@@ -51,7 +50,7 @@ def fitted():
 
 def dense(fit, gone, new):
     """The least criterion without some effects and with new columns, from all samples."""
-    problem = linearise_criterion(fit.point, fit.level, fit.mean, fit.prior)
+    problem = fit.problem
     names = [*fit.point.space.names]
     away = [names.index(n) for n in gone]
     kept = [j for j in range(len(names)) if j not in away]

@@ -12,6 +12,7 @@ from records_cases import AXIS, MJCF, PARAMETERS, STEP, record
 from identification.effects.joint_plant import joint_plant
 from identification.errors import DivergenceError
 from identification.estimation.levenberg_marquardt import SLOPE_ERROR
+from identification.estimation.priors import Priors
 from identification.model.coordinates import NOTHING, coordinates
 from identification.model.predictor import Predictor
 from identification.model.rollout import substeps
@@ -26,7 +27,7 @@ from identification.prediction.problem import (
     with_longer_steps,
 )
 from identification.prediction.records import Record
-from identification.prediction.unknowns import Prior, Unknowns
+from identification.prediction.unknowns import Unknowns
 from identification.windows import shooting
 from identification.windows.coarse import (
     OUTPUT_ERROR,
@@ -108,8 +109,8 @@ def test_the_residual_is_the_same_to_the_bit_whatever_steps_slopes_take():
 
 def test_a_fit_ends_at_the_same_values_with_fewer_steps_of_simulation():
     part = cut(plant())
-    own = Prior(part.space, np.zeros(2), np.zeros(2))
-    task = Problem((part,), Unknowns(own, Prior(), ("record",)))
+    own = Priors(part.space, np.zeros(2), np.zeros(2))
+    task = Problem((part,), Unknowns(own, Priors(), ("record",)))
     slow = with_longer_steps(task, np.zeros(2), no_moves(task), is_for_slopes=True)
     assert slow.plant.slope_steps > 1
     moves, _ = task.settled(np.zeros(2), no_moves(task))
@@ -135,8 +136,8 @@ def predicted(part, steps):
 
 def settled(part):
     q = np.zeros(2)
-    own = Prior(part.space, q, q)
-    task = Problem((part,), Unknowns(own, Prior(), ("record",)))
+    own = Priors(part.space, q, q)
+    task = Problem((part,), Unknowns(own, Priors(), ("record",)))
     return task.settled(q, no_moves(task))[0][0]
 
 
@@ -226,9 +227,9 @@ def rough_model(own, noise, steps):
     fitted, confirm = Record(logs[0], "fit"), [Record(logs[1], "confirm")]
     names, scale = ("J", "d"), np.array([1e-3])
     space = coordinates(own.parameters, names, np.array([*TRUTH.values()]))
-    prior = Prior(space, space.encode(np.array([*TRUTH.values()])), np.zeros(2))
+    prior = Priors(space, space.encode(np.array([*TRUTH.values()])), np.zeros(2))
     long = replace(own, steps=steps)
-    task = problem(long, [fitted], prior, Prior(), 0.2, {}, scale)
+    task = problem(long, [fitted], prior, Priors(), 0.2, {}, scale)
     q = prior.mean
     found = solve(task, q, task.settled(q, no_moves(task))[0])
     seen = predict_fitted(long, confirm, 0.2, scale, found, {})

@@ -11,6 +11,7 @@ from identification import Parameter
 from identification.discovery import nominal_model as nominal_model_file
 from identification.discovery.nominal_model import _inside, fit_with_effects
 from identification.effects.effect import Candidate
+from identification.estimation.priors import Priors
 from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.noise_model import Noise
 from identification.kalman.problem import estimate_noise, linearise_criterion
@@ -73,7 +74,7 @@ def test_a_fit_under_other_priors_begins_at_the_point_that_is_known(monkeypatch)
     assert len(begun) == 1
     assert np.abs((found.point.q - expected.point.q) / expected.std).max() < 0.1
     assert found.log_posterior == pytest.approx(expected.log_posterior, abs=0.1)
-    np.testing.assert_allclose(found.prior, 3 * first.prior)
+    np.testing.assert_allclose(found.priors.weight, 3 * first.priors.weight)
 
 
 def test_without_noise_it_finds_the_truth_as_it_is():
@@ -121,13 +122,14 @@ def test_a_search_ends_at_the_likeliest_point_since_its_noise_was_sharpened(monk
     begun = shaken()
     sharpened = []
 
-    def spy(point, prior, near, fine=False, largest=np.inf):
+    def spy(point, priors, near, fine=False, largest=np.inf):
         sharpened.append(fine)
-        return estimate_noise(point, prior, near, fine, largest)
+        return estimate_noise(point, priors, near, fine, largest)
 
-    monkeypatch.setattr("identification.kalman.refit.estimate_noise", spy)
-    points = [*descend(begun.point, begun.mean, begun.prior, OPTIONS, steps=steps)]
-    likely = [linearise_criterion(*p, begun.mean, begun.prior).log_posterior for p in points]
+    for module in ("refit", "problem"):
+        monkeypatch.setattr(f"identification.kalman.{module}.estimate_noise", spy)
+    points = [*descend(begun.point, begun.priors, OPTIONS, steps=steps)]
+    likely = [linearise_criterion(*p, begun.priors).log_posterior for p in points]
     assert sharpened.count(True) == 1
     assert sharpened.count(False) <= 1 + steps
     assert likely[-1] == max(likely[sharpened.index(True) :])
@@ -148,7 +150,7 @@ def test_a_fit_that_cannot_come_to_what_matters_ends_early_and_says_so():
 
 def test_likelihood_does_not_lead_where_inputs_err_beyond_belief_and_not_by_chance():
     begun = shaken()
-    points = [*descend(begun.point, begun.mean, begun.prior, OPTIONS)]
+    points = [*descend(begun.point, begun.priors, OPTIONS)]
     (end, level), levels = points[-1], [lv for _, lv in points]
     assert level.input_std > ALLOWED * end.motion  # which the vibration needs
     sharpened = levels.index(level)
@@ -159,8 +161,8 @@ def test_likelihood_does_not_lead_where_inputs_err_beyond_belief_and_not_by_chan
 def test_likelihood_does_lead_where_inputs_err_much_but_by_chance():
     log = record(slider(**TRUE), 300, seed=1, error=wander(300, 0.3, 0.1, seed=1))
     begun = begun_at(log, {"mass": 4.0})
-    points = [*descend(begun.point, begun.mean, begun.prior, OPTIONS)]
-    likely = [linearise_criterion(*p, begun.mean, begun.prior).log_posterior for p in points]
+    points = [*descend(begun.point, begun.priors, OPTIONS)]
+    likely = [linearise_criterion(*p, begun.priors).log_posterior for p in points]
     sharpened = next(
         k for k, (_, lv) in enumerate(points) if lv.input_std > ALLOWED * begun.point.motion
     )
@@ -172,7 +174,7 @@ def test_a_bent_step_follows_the_curve_of_the_residual_to_one_order_more():
     left = {}
     for away in (0.2, 0.1):  # of the logarithm of the mass
         far = begun_at(log, {**TRUE, "mass": TRUE["mass"] * np.exp(away)}).point
-        problem = linearise_criterion(far, white, far.q, np.zeros(4))
+        problem = linearise_criterion(far, white, Priors(far.space, far.q, np.zeros(4)))
         move = problem.step(0.0)
         bent = problem.bend(move, np.inf, 0.0)
         left[away] = [problem.cost_after(m) ** 0.5 for m in (move, bent)]

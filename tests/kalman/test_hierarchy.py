@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from discovery_cases import STEP, linear_plant, point_of
 
-from identification.kalman.hierarchy import MIN_STD_SHARE, estimate_scatter
+from identification.estimation.priors import MIN_STD_SHARE, Priors
 from identification.kalman.linear import LinearPlant
 from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.noise_model import Noise
@@ -22,9 +22,8 @@ def fit_of(x, noise, seed):
     point = point_of(LinearPlant(quiet.A, 0 * quiet.B, quiet.C), e, J)
     level = NoiseLevel(Noise(0.0, STEP), noise, 0.0)
     zero = np.zeros(P)
-    return Refit(
-        point=point, level=level, std=zero, mean=zero, prior=np.full(P, 1 / TABLE), steps=0
-    )
+    priors = Priors(point.space, zero, np.full(P, 1 / TABLE))
+    return Refit(point=point, level=level, std=zero, priors=priors, steps=0)
 
 
 def groups():
@@ -38,39 +37,39 @@ def test_scatters_of_two_groups_are_found():
     for seed in range(40):
         rng = np.random.default_rng(100 + seed)
         x = rng.standard_normal(P) * np.tile([0.2, 0.5], P // 2)
-        found.append([*estimate_scatter(fit_of(x, 0.1, seed), groups()).values()])
+        found.append([*fit_of(x, 0.1, seed).problem.scatter(groups()).values()])
     mean = np.mean(np.square(found), axis=0)
     expected = np.array([0.2**2, 0.5**2]) * 12 / 11  # a sum of 12 squares over 12 - 1
     np.testing.assert_allclose(mean, expected, rtol=5 * np.sqrt(2 / 12 / 40))
 
 
 def test_parts_that_are_alike_have_no_scatter():
-    found = [estimate_scatter(fit_of(np.zeros(P), 0.1, seed), groups()) for seed in range(10)]
+    found = [fit_of(np.zeros(P), 0.1, seed).problem.scatter(groups()) for seed in range(10)]
     assert np.median([s["even"] for s in found]) <= 2 * MIN_STD_SHARE * TABLE
     assert min(s["odd"] for s in found) >= MIN_STD_SHARE * TABLE
 
 
 def test_what_the_data_do_not_tell_keeps_what_is_usual():
     """With noise that hides everything the likelihood is flat, and s hardly moves."""
-    s = estimate_scatter(fit_of(np.zeros(P), 1e4, 3), groups())
+    s = fit_of(np.zeros(P), 1e4, 3).problem.scatter(groups())
     assert s["even"] == pytest.approx(TABLE, rel=0.02)
 
 
 def test_more_than_the_table_is_not_believed():
-    s = estimate_scatter(fit_of(np.full(P, 5.0), 0.1, 4), groups())
+    s = fit_of(np.full(P, 5.0), 0.1, 4).problem.scatter(groups())
     assert s == {"even": TABLE, "odd": TABLE}
 
 
 def test_one_value_alone_tells_no_scatter():
     fit = fit_of(np.zeros(P), 0.1, 5)
-    assert estimate_scatter(fit, {"alone": ["p0"]}) == {"alone": TABLE}
+    assert fit.problem.scatter({"alone": ["p0"]}) == {"alone": TABLE}
 
 
 def test_the_order_of_groups_changes_nothing():
     x = np.random.default_rng(7).standard_normal(P) * 0.3
     fit = fit_of(x, 0.1, 8)
     turned = dict(reversed([(g, names[::-1]) for g, names in groups().items()]))
-    once, again = estimate_scatter(fit, groups()), estimate_scatter(fit, turned)
+    once, again = fit.problem.scatter(groups()), fit.problem.scatter(turned)
     for g in once:
         assert once[g] == pytest.approx(again[g], rel=1e-9)
 
@@ -85,7 +84,7 @@ def test_values_that_the_data_hardly_tell_are_not_told_too_surely():
     for seed in range(60):
         x = TABLE * np.random.default_rng(300 + seed).standard_normal(P)
         fit = fit_of(x, noise := 1.4 * TABLE * np.sqrt(2 * N), seed)
-        s = estimate_scatter(fit, groups())
+        s = fit.problem.scatter(groups())
         each = np.tile([s["even"], s["odd"]], P // 2)
         F = fit.point.J.reshape(-1, P) / noise
         V = np.linalg.inv(F.T @ F + np.diag(each**-2.0))

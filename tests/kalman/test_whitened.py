@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from discovery_cases import STEP, linear_plant, point_of
 
+from identification.estimation.priors import Priors
 from identification.kalman import problem as module
 from identification.kalman.noise_fit import NoiseLevel, evaluate_noise, fit_noise
 from identification.kalman.noise_model import Noise, build_whitener, whiten
@@ -52,8 +53,9 @@ def test_a_step_by_products_is_that_of_the_columns(damping, alike, monkeypatch):
     plant, e, J = case(2)
     J[..., 1] = alike * J[..., 0] + (1 - alike) * J[..., 1]
     level = NoiseLevel(Noise(0.5, 0.1), 1.3, 0.0)
-    prior = np.array([0.0, 0.0, 3.0])
-    task = linearise_criterion(point_of(plant, e, J), level, np.ones(3), prior)
+    point = point_of(plant, e, J)
+    priors = Priors(point.space, np.ones(3), np.array([0.0, 0.0, 3.0]))
+    task = linearise_criterion(point, level, priors)
     np.testing.assert_allclose(task.curvature, task.rows.T @ task.rows, rtol=1e-12)
     quick = task.step(damping)
     monkeypatch.setattr(module, "MAX_CONDITION", 0.0)

@@ -7,9 +7,9 @@ from functools import cache
 import numpy as np
 from records_cases import HORIZON, nominal_model, records
 
+from identification.estimation.priors import Priors
 from identification.prediction.problem import best_of, no_moves, problem
 from identification.prediction.records import as_records
-from identification.prediction.unknowns import Prior
 from identification.windows.held import HeldWindows
 
 AWAY = 0.5  # of what is believed of a state
@@ -21,7 +21,7 @@ def windows():
     logs = records(4)
     every = [r for r in as_records(logs[:2], logs[2:]) if r.role == "fit"]
     plant = nominal_model().plant
-    task = problem(plant, every, Prior(), Prior(), HORIZON, {}, np.array([0.01]))
+    task = problem(plant, every, Priors(), Priors(), HORIZON, {}, np.array([0.01]))
     measured = no_moves(task)
     first = [np.arange(len(d))[:, None] % 2 == 0 for d in measured]
     beside = [AWAY / p.first.weight + d for d, p in zip(measured, task.parts, strict=True)]

@@ -11,6 +11,7 @@ from records_cases import FREE, nominal_model, pendulum, record, records
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.scoring.sensitivities import list_common
 from identification.effects.joint_plant import candidates
+from identification.estimation.priors import Priors
 from identification.model.coordinates import Coordinates
 from identification.prediction.clocks import record_shifts, told_shifts
 from identification.prediction.extension import with_effect
@@ -19,7 +20,7 @@ from identification.prediction.nominal_fit import fit_nominal
 from identification.prediction.records import as_records
 from identification.prediction.scores import window_scores
 from identification.prediction.task import RecordsTask
-from identification.prediction.unknowns import Prior, Unknowns
+from identification.prediction.unknowns import Unknowns
 
 SAMPLES = 300  # of each record
 SHIFTS = (0.02, -0.015, 0.01)  # of three records' inputs [s]
@@ -28,7 +29,7 @@ SHIFTS = (0.02, -0.015, 0.01)  # of three records' inputs [s]
 def prior(*names):
     p = len(names)
     space = Coordinates(names, np.zeros(p, bool), *(np.full(p, x) for x in (-9.0, 9.0, 1.0)))
-    return Prior(space, np.arange(p, dtype=float), np.ones(p))
+    return Priors(space, np.arange(p, dtype=float), np.ones(p))
 
 
 @given(st.integers(0, 3), st.integers(0, 3), st.integers(1, 4))

@@ -40,7 +40,6 @@ def test_what_a_log_does_not_tell_has_the_std_that_was_known_before():
     found = fit({"b_v": 2e-4, "x": 0.0})
     space = replace(found.point.space, names=("K_t@3", "stribeck_friction.delta@3"))
     point = replace(found.point, space=space)
-    left = unknown_shares(
-        replace(found, point=point, std=np.array([0.02, 0.1]), prior=np.array([50.0, 1.0]))
-    )
+    priors = replace(found.priors, weight=np.array([50.0, 1.0]))
+    left = unknown_shares(replace(found, point=point, std=np.array([0.02, 0.1]), priors=priors))
     assert left == {"K_t@3": pytest.approx(1.0)}

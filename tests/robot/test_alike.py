@@ -11,7 +11,6 @@ from robot_cases import refused, run
 from identification import InputError, Log, ParameterSet, Predictor, read_robot, write_log
 from identification.discovery.nominal_model import fit_with_effects
 from identification.discovery.options import DiscoveryOptions
-from identification.kalman.hierarchy import estimate_scatter
 from identification.model.plant import ModelPlant
 from identification.robot.file import read_robot_file
 
@@ -109,9 +108,9 @@ def test_deviations_come_back_and_their_scatter_is_that_of_the_robot(folder):
         assert d / 3.0 * values["damping"] * (1 + values[f"damping@{a}"]) == pytest.approx(
             true, rel=0.01
         )
-    scatter = estimate_scatter(found, model.groups)["damping"]
+    scatter = found.problem.scatter(model.groups)["damping"]
     assert 0.1 < scatter <= 0.2
-    assert estimate_scatter(known(folder, "alike")[1], model.groups)["damping"] < 0.02
+    assert known(folder, "alike")[1].problem.scatter(model.groups)["damping"] < 0.02
 
 
 def test_without_room_to_deviate_they_are_one_factor(folder):

@@ -190,8 +190,8 @@ def _fit_family(
     r = fit.level.input_std * family.r
     moved = simulate_response(validation.filter, r)
     X = np.concatenate([F, validation.filter(moved) / fit.level.sigma], axis=2)
-    weight = np.concatenate([fit.prior, np.ones(r.shape[2])])
-    off = np.concatenate([fit.mean - fit.point.q, np.zeros(r.shape[2])])
+    weight = np.concatenate([fit.priors.weight, np.ones(r.shape[2])])
+    off = np.concatenate([fit.priors.mean - fit.point.q, np.zeros(r.shape[2])])
     rows = np.vstack([X[seen].reshape(-1, X.shape[2]), np.diag(weight)])
     target = np.concatenate([E[seen].ravel(), weight * off])
     scale = 1 / (np.linalg.norm(rows, axis=0) + 1e-300)

@@ -36,7 +36,7 @@ def find_input_hold(fit: Refit) -> tuple[Finding, ...]:
     there = attempt(None, evaluate)
     if there is None:
         return ()
-    level = estimate_noise(there, fit.prior, fit.level)
+    level = estimate_noise(there, fit.priors, fit.level)
     if level.input_std >= OTHER_HOLD_SHARE * fit.level.input_std:
         return ()
     unit = point.log.units.get(point.log.input_names[0], "")

@@ -89,10 +89,8 @@ def _explain(validation: Validation) -> np.ndarray:
     with one_blas_thread():
         J = evaluate_sensitivities(fit.point, validation.log)
         F = validation.filter(J).reshape(validation.e.size, -1) / fit.level.sigma
-        rows = np.vstack([F, np.diag(fit.prior)])
-        target = np.concatenate(
-            [validation.innovations.ravel(), fit.prior * (fit.mean - fit.point.q)]
-        )
+        rows = np.vstack([F, fit.priors.rows])
+        target = np.concatenate([validation.innovations.ravel(), fit.priors.against(fit.point.q)])
         scale = np.linalg.norm(rows, axis=0) + 1e-300
         move = np.linalg.lstsq(rows / scale, target, rcond=1e-12)[0] / scale
     return np.asarray((F @ move).reshape(validation.e.shape))

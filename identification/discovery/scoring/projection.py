@@ -62,8 +62,8 @@ class Projection:
         self._filter, self._F = white.filter, white.F
         E = self._filter(point.e).ravel()
         # The priors enter as further measurements: rows below the samples, in units of σ.
-        self._ridge = fit.prior * fit.level.sigma
-        below = self._ridge * (fit.mean - point.q)
+        self._ridge = fit.priors.weight * fit.level.sigma
+        below = self._ridge * (fit.priors.mean - point.q)
         w, V = np.linalg.eigh(white.H + np.diag(self._ridge**2))
         kept = w > MIN_EIGENVALUE_SHARE * w.max(initial=0.0)
         self._w, self._V = w[kept], V[:, kept]
