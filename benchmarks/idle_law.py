@@ -14,7 +14,7 @@ import mujoco
 from identification.native import structs
 from identification.native.cache import compile_once
 from identification.native.memory import load_double, store_double
-from identification.native.trampolines import SIGNATURES
+from identification.native.table import SIGNATURES
 from inca_mj.robot import law
 from inca_mj.twin.drives import FIELDS, D, M, double, drive, integer, word
 

@@ -25,8 +25,7 @@ from identification.logs.log import Log
 from identification.model.parameter import Parameter, ParameterSet
 from identification.model.plant import ModelPlant
 from identification.model.rollout import State
-from identification.native.element import Element
-from identification.native.hook_checks import refuse_unfit_functions
+from identification.native.element import Element, refuse_unfit_functions
 from identification.native.input_filter import INPUT
 from identification.native.joint_callback import JOINT, Joint
 

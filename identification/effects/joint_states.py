@@ -27,7 +27,7 @@ from identification.engine import quiet
 from identification.model.paths import write
 from identification.model.predictor import Numbers
 from identification.model.rollout import UNLOGGED, State
-from identification.native.gear_element import Gear
+from identification.native.gear import Gear
 from identification.native.joint_callback import FIRST, TAG
 
 LEAST = 1e-3  # of the largest force of the drives: the smallest std of a force

@@ -34,10 +34,9 @@ from identification.logs.names import quoted
 from identification.model.hostile import refuse_hostile, refuse_numbers
 from identification.model.large import refuse_endless
 from identification.model.paths import Slot
-from identification.native.element import Term
+from identification.native.element import Term, refuse_unfit_functions
 from identification.native.gear import FIELDS as STATE_FIELDS
-from identification.native.gear_element import GEAR
-from identification.native.hook_checks import refuse_unfit_functions
+from identification.native.gear import GEAR
 from identification.native.input_filter import INPUT
 from identification.native.installer import Law, install
 from identification.native.joint_callback import (

@@ -24,7 +24,7 @@ import numpy as np
 from numba import carray, types
 
 from identification.native.cache import compile_once
-from identification.native.decorators import internal
+from identification.native.memory import internal
 from identification.pool import run_parts, split
 
 # Columns that are filtered together: their states stay in a processor's own cache, and products

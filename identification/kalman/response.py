@@ -23,7 +23,7 @@ from numba import carray
 from scipy.linalg import matrix_balance
 
 from identification.kalman.recursion import call
-from identification.native.decorators import internal
+from identification.native.memory import internal
 from identification.pool import run_parts, split, threads
 
 MAX_SERIES_NORM = 2.8  # 2.8^25/26! is below the rounding of doubles

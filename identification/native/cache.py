@@ -13,24 +13,43 @@ An entry is a header of five lines and the object file; nothing in it is unpickl
     DIGEST                          SHA-256 of the key and of all that follows
     SYMBOL                          name of the callback in the object file
     NAME NAME …                     what the object file takes from outside
+
+The object file holds the callback and all functions that it calls. What it takes from outside (the
+C library's mathematics, numba's helpers, Python's errors) LLVM finds in the process, as numba
+itself does; LLVM says nothing where it does not find one, so all of them are looked up first. Each
+object file has an engine of its own: the names that numba makes are unique in one process only, so
+those of two processes could be confused.
 """
 
 from __future__ import annotations
 
+import ctypes
+import gc
 import hashlib
 import logging
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
 from functools import cache
+from itertools import chain
 from typing import Any
+
+import llvmlite.binding as llvm
+from numba import cfunc
+from numba.core.codegen import JITCPUCodegen
+from numba.core.compiler_lock import global_compiler_lock
+from numba.core.registry import cpu_target
+from numba.core.runtime import rtsys
+from numba.core.typing.ctypes_utils import to_ctypes
 
 from identification.native import cache_folder
 from identification.native.cache_key import UnknownDependency, key_of
-from identification.native.machine_code import MachineCode, compile_callback, load_callback
 
 VARIABLE = "INCA_MJ_CACHE"
 OFF = ("off", "no", "0", "false")
 _FORMAT = b"inca_mj machine code 1"
+_ENGINES: list[Any] = []  # they own the code that bare pointers in MuJoCo lead to
 
 
 def compile_once(function: Callable[..., Any], signature: Any) -> Any:
@@ -115,3 +134,69 @@ def _write(key: str, code: MachineCode) -> None:
 def _note(text: str) -> None:
     """Say once, to those who ask for debug messages, what is compiled in memory and why."""
     logging.getLogger(__name__).debug(text)
+
+
+@dataclass(frozen=True)
+class MachineCode:
+    """The machine code of one callback.
+
+    Attributes:
+        symbol: name of the callback in the object file.
+        needs: names of what the object file takes from outside.
+        object_file: the object file, as LLVM wrote it.
+    """
+
+    symbol: str
+    needs: tuple[str, ...]
+    object_file: bytes
+
+
+def compile_callback(
+    function: Callable[..., Any], signature: Any
+) -> tuple[Any, MachineCode | None]:
+    """Compiles a callback with numba.
+
+    Returns:
+        The ctypes function, and its machine code; None where it holds addresses of this process.
+    """
+    with _uncollected():
+        compiled: Any = cfunc(signature, error_model="numpy")(function)
+    pointer, library = compiled.ctypes, compiled._library
+    pointer.callback = compiled  # the machine code lives as long as the pointer to it
+    if library.has_dynamic_globals:
+        return pointer, None
+    module = llvm.parse_assembly(compiled.inspect_llvm())
+    declared = (
+        v.name for v in chain(module.functions, module.global_variables) if v.is_declaration
+    )
+    needs = tuple(sorted(name for name in declared if not name.startswith("llvm.")))
+    code = MachineCode(compiled.native_name, needs, library._get_compiled_object())
+    return pointer, code
+
+
+@contextmanager
+def _uncollected() -> Iterator[None]:
+    """Stops garbage collection in the block; it took an eighth of the time."""
+    was_on = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_on:
+            gc.enable()
+
+
+@global_compiler_lock
+def load_callback(code: MachineCode, signature: Any) -> Any | None:
+    """Returns the ctypes function of kept code; None where this process lacks what it needs."""
+    rtsys.initialize(cpu_target.target_context)  # tells LLVM where numba's helpers are
+    if not all(map(llvm.address_of_symbol, code.needs)):
+        return None
+    codegen = JITCPUCodegen(code.symbol)  # it sets an engine up for this processor
+    engine = codegen._engine._ee
+    engine.add_object_file(llvm.ObjectFileRef.from_data(code.object_file))
+    engine.finalize_object()
+    _ENGINES.append(codegen)
+    arguments = [to_ctypes(kind) for kind in signature.args]
+    prototype = ctypes.CFUNCTYPE(to_ctypes(signature.return_type), *arguments)
+    return prototype(engine.get_function_address(code.symbol))

@@ -12,10 +12,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from identification.native.decorators import internal
 from identification.native.element import Element, Function, Term
-from identification.native.memory import load_double, store_double
-from identification.native.tuples import added, loader, replacer
+from identification.native.memory import (
+    added,
+    internal,
+    load_double,
+    loader,
+    replacer,
+    store_double,
+)
 
 
 @internal

@@ -7,7 +7,7 @@ from these alone. They share the kinematics of the base, its inertias and their 
 bias forces, which are most of an evaluation: what is left of it are forces and accelerations.
 
 A change of what single actuators of a law read takes the shares of these alone
-(`identification.native.share`).
+(`identification.native.installer`).
 
     rates       r_j(p)                                    a case at a point
     increments  Σ_p w_p c(p) (r_j(p) - r_0(p)) over an interval    how far it is from the base

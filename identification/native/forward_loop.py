@@ -9,13 +9,17 @@ import mujoco
 from numba import types
 
 from identification.native import structs
-from identification.native.access import offsets, word
 from identification.native.cache import compile_once
-from identification.native.decorators import internal
-from identification.native.library import mj_forwardSkip, mj_passive
-from identification.native.mass import solve
-from identification.native.memory import load_double, load_word, store_double
-from identification.native.share import add_share
+from identification.native.installer import add_share
+from identification.native.library import mj_forwardSkip, mj_passive, solve
+from identification.native.memory import (
+    internal,
+    load_double,
+    load_word,
+    offsets,
+    store_double,
+    word,
+)
 
 M = offsets("mjModel", "nq nv na nu")
 D = offsets("mjData", "time qpos qvel act ctrl qacc_warmstart qacc act_dot qfrc_passive")

@@ -35,21 +35,48 @@ activations: θ and ω of one actuator, p of another.
 
 from __future__ import annotations
 
+from collections import namedtuple
 from math import sqrt
+from typing import Any
 
 import mujoco
 import numpy as np
 
-from identification.native import mass, structs
-from identification.native.access import double, integer, offsets, word
-from identification.native.decorators import inlined
+from identification.native import structs
+from identification.native.element import Element, Hook
 from identification.native.holding import RESOLVED
 from identification.native.joint_callback import FIELDS as JOINT_FIELDS
-from identification.native.joint_callback import LAST, Joint, drive_force, joint
-from identification.native.joint_callback import D as JOINT_D
-from identification.native.joint_callback import M as JOINT_M
-from identification.native.memory import load_constant
-from identification.native.tuples import replacer
+from identification.native.joint_callback import LAST, TIMESTEP, D, Joint, M, drive_force, joint
+from identification.native.library import FIELDS as MASS_FIELDS
+from identification.native.library import mobility
+from identification.native.memory import (
+    double,
+    inlined,
+    integer,
+    load_constant,
+    replacer,
+    word,
+)
+
+# What an effect with states sees of a joint: its inertia as its drive feels it [kg m² or kg]
+Gear: Any = namedtuple("Gear", "inertia")
+
+GEAR = Element(
+    "gear",
+    Gear,
+    (
+        Hook(
+            "series",
+            (
+                "compliance [rad/(N m)] or [m/N]", "half the gap [rad] or [m]",
+                "inertia of the motor [kg m²] or [kg]", "damping ratio",
+                "1 where the encoder sits on the motor's side, 0 on the link's",
+            ),
+        ),
+        Hook("slip", ("compliance of the friction that holds [rad/(N m)] or [m/N]",)),
+    ),
+)  # fmt: skip
+
 
 GEARS = 8  # numbers of a row behind the parameters:
 MOTOR, GRIP = 0, 1  # where θ and p stand among the activations, -1 where there is none
@@ -60,20 +87,16 @@ COMPLIANCE, GAP, INERTIA, RATIO, SLIP = 3, 4, 5, 6, 7  # c, ε, J, ζ, and the f
 SETTLED, DAMPED = 0.25, 0.75
 MOST_DAMPED = 1.2  # largest D h/m; with X such a step is stable up to 1.5
 
-M = offsets("mjModel", "nv actuator_actadr actuator_trntype actuator_trnid jnt_user")
-D = offsets("mjData", "act act_dot qfrc_bias qfrc_smooth qacc_smooth qfrc_actuator")
 INTEGRATOR = structs.inner_byte("mjModel", "opt", "integrator")
-TIMESTEP = 8 * structs.inner_word("mjModel", "opt", "timestep")
-FIELDS = JOINT_FIELDS | mass.FIELDS | {*M._fields, *D._fields, "opt.integrator", "opt.timestep"}
+FIELDS = JOINT_FIELDS | MASS_FIELDS | {"opt.integrator"}
 RK4, IS_JOINT = int(mujoco.mjtIntegrator.mjINT_RK4), int(mujoco.mjtTrn.mjTRN_JOINT)
 _with_drive = replacer(Joint, "f_u")
-with_sign = replacer(Joint, "sign")
 
 
 @inlined
 def gears_of(m, j):  # type: ignore[no-untyped-def]
     """Returns the address of the gear's numbers of joint j, behind those of the other effects."""
-    columns = word(m, JOINT_M.nuser_jnt)
+    columns = word(m, M.nuser_jnt)
     return word(m, M.jnt_user) + 8 * (columns * (j + 1) - LAST - GEARS)
 
 
@@ -84,10 +107,10 @@ def is_geared(gears):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def spring(gears, mobility, h):  # type: ignore[no-untyped-def]
-    """Returns m, κ, r and D of a gear; mobility: A."""
+def spring(gears, A, h):  # type: ignore[no-untyped-def]
+    """Returns m, κ, r and D of a gear."""
     c, J = load_constant(gears + 8 * COMPLIANCE), load_constant(gears + 8 * INERTIA)
-    swinging = 1.0 / (1.0 / J + mobility)
+    swinging = 1.0 / (1.0 / J + A)
     stiff = swinging / h**2
     x2 = RESOLVED**2 * stiff * c  # (X/(ω h))², ω of the swing
     kappa = stiff * (SETTLED + (RESOLVED**2 - SETTLED) * x2)
@@ -119,8 +142,8 @@ def motor_force(m, d, j, gears):  # type: ignore[no-untyped-def]
     """Returns f_m, the drives' force on the motor of joint j, and the gear's δ and its rate."""
     at = word(d, D.act) + 8 * np.int64(load_constant(gears + 8 * MOTOR))
     theta, omega = load_constant(at), load_constant(at + 8)
-    q = double(d, JOINT_D.qpos, integer(m, JOINT_M.jnt_qposadr, j))
-    v = double(d, JOINT_D.qvel, integer(m, JOINT_M.jnt_dofadr, j))
+    q = double(d, D.qpos, integer(m, M.jnt_qposadr, j))
+    v = double(d, D.qvel, integer(m, M.jnt_dofadr, j))
     if load_constant(gears + 8 * SIDE) != 0.0:
         return drive_force(m, d, j, theta, omega), theta - q, omega - v
     return drive_force(m, d, j, q, v), theta - q, omega - v
@@ -136,7 +159,7 @@ def felt(m, d, j, row, gears):  # type: ignore[no-untyped-def]
     if not is_geared(gears):
         return s, 0.0
     h = load_constant(m + TIMESTEP)
-    A = mass.mobility(m, d, integer(m, JOINT_M.jnt_dofadr, j), word(d, D.qfrc_smooth))
+    A = mobility(m, d, integer(m, M.jnt_dofadr, j), word(d, D.qfrc_smooth))
     f_m, delta, rate = motor_force(m, d, j, gears)
     _, kappa, r, damping = spring(gears, A, h)
     gap, J = load_constant(gears + 8 * GAP), load_constant(gears + 8 * INERTIA)

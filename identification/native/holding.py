@@ -26,7 +26,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from identification.native.decorators import inlined, internal
+from identification.native.memory import inlined, internal
 
 MOST = 24  # degrees of freedom up to which joints are held together; beyond, each by itself
 SWEEPS = 1000  # at most; mass matrices of arms take some ten

@@ -20,11 +20,8 @@ from numba import types
 
 from identification.native.cache import compile_once
 from identification.native.compose import is_absent
-from identification.native.decorators import internal
-from identification.native.element import Element, Function, Hook, Term
-from identification.native.hook_checks import refuse_unfit_functions
-from identification.native.memory import load_double, store_double
-from identification.native.tuples import loader
+from identification.native.element import Element, Function, Hook, Term, refuse_unfit_functions
+from identification.native.memory import internal, load_double, loader, store_double
 
 # What an effect sees of an input at step k.
 #   k; time of the record in the middle of the step [s]; step h [s]

@@ -4,7 +4,8 @@ The numbers stand at the end of a joint's user data, in a row
 
     (T, what the records reach, parameters of the effects, key of the set of effects, TAG)
 
-`identification.native.joint_friction` says what is made of them.
+`identification.native.joint_friction` says what is made of them, `identification.native.gear` what
+of those of states.
 """
 
 from __future__ import annotations
@@ -16,11 +17,18 @@ import mujoco
 import numpy as np
 
 from identification.native import structs
-from identification.native.access import double, integer, offsets, word
-from identification.native.decorators import inlined
 from identification.native.element import Element, Hook, Term
 from identification.native.holding import MOST
-from identification.native.memory import load_byte, load_constant
+from identification.native.memory import (
+    double,
+    inlined,
+    integer,
+    load_byte,
+    load_constant,
+    offsets,
+    replacer,
+    word,
+)
 
 TAG = 7351.0609  # last entry of a row of ours, first of the bias of an actuator of ours
 STOP, REACH, FIRST, LAST = 0, 1, 6, 2  # columns of T, of what is reached, of the first parameter;
@@ -59,11 +67,17 @@ M = offsets(
     " actuator_gear actuator_gainprm actuator_biasprm actuator_dyntype actuator_gaintype"
     " actuator_biastype actuator_ctrladr actuator_ctrllimited actuator_ctrlrange"
     " actuator_forcelimited actuator_forcerange jnt_type jnt_bodyid body_subtreemass M_rowadr"
-    " M_rownnz M_colind nv",
+    " M_rownnz M_colind nv actuator_actadr",
 )
-D = offsets("mjData", "time qpos qvel ctrl qfrc_passive qfrc_bias M subtree_com xanchor xaxis")
+D = offsets(
+    "mjData",
+    "time qpos qvel ctrl qfrc_passive qfrc_bias M subtree_com xanchor xaxis act act_dot qfrc_smooth"
+    " qacc_smooth qfrc_actuator",
+)
 GRAVITY = structs.inner_word("mjModel", "opt", "gravity")
-FIELDS = frozenset((*M._fields, *D._fields, "opt.gravity"))  # everything the callback touches
+TIMESTEP = 8 * structs.inner_word("mjModel", "opt", "timestep")
+FIELDS = frozenset((*M._fields, *D._fields, "opt.gravity", "opt.timestep"))  # all that is touched
+with_sign = replacer(Joint, "sign")
 
 _JOINT = int(mujoco.mjtTrn.mjTRN_JOINT)
 HINGE = int(mujoco.mjtJoint.mjJNT_HINGE)

@@ -23,10 +23,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from identification.native import structs
-from identification.native.access import double, integer, word
 from identification.native.compose import total
-from identification.native.decorators import inlined, internal
 from identification.native.element import Function, Term
 from identification.native.holding import MOST, hold, invert, resolved
 from identification.native.joint_callback import (
@@ -37,23 +34,30 @@ from identification.native.joint_callback import (
     SLIDE,
     STOP,
     TAG,
+    TIMESTEP,
     D,
-    Joint,
     M,
     drive_force,
     inertia,
     joint,
     width,
+    with_sign,
 )
 from identification.native.library import mj_rne
-from identification.native.memory import load_constant, load_double, store_double
+from identification.native.memory import (
+    double,
+    inlined,
+    integer,
+    internal,
+    load_constant,
+    load_double,
+    store_double,
+    word,
+)
 from identification.native.table import is_compiled
-from identification.native.tuples import replacer
 
 # rows of the room for joints held together
 DRIVE, LOW, HIGH, STOPPING, FRICTION, MORE, SHARE, SPRING, ROWS = range(9)
-TIMESTEP = 8 * structs.inner_word("mjModel", "opt", "timestep")
-with_sign = replacer(Joint, "sign")
 
 
 @inlined

@@ -5,10 +5,16 @@
     mjcb_act_dyn     rates of θ, ω and p
     mjcb_act_bias    τ in place of the drives' force, by the actuator that carries θ and ω
 
-`identification.native.gear` has the laws. MuJoCo asks all actuators for rates before it asks any
-for its force: the first one with states finds τ for all joints (`native.transmission`). A
-semi-implicit step moves q by the new rate, so that the rates of θ and p are those at the end of
-such a step too; without the damping that such steps take implicitly.
+`identification.native.gear` has the laws of one gear. Gears that are not resolved feel each other:
+
+    a = M⁻¹ (F + τ)                                         F: all forces but those of geared drives
+    T_j = m_j (f_mj/J_j - (a_j - A_jj τ_j))                 A = M⁻¹
+    τ_j ← τ(T_j, δ_j, dδ_j/dt),   a ← a + A_j Δτ_j          Gauss-Seidel over the joints j
+
+For one joint it is exact at once, and where all gears are resolved τ needs no load. MuJoCo asks all
+actuators for rates before it asks any for its force: the first one with states finds τ for all
+joints. A semi-implicit step moves q by the new rate, so that the rates of θ and p are those at the
+end of such a step too; without the damping that such steps take implicitly.
 """
 
 from __future__ import annotations
@@ -17,11 +23,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from identification.native.access import double, integer, word
 from identification.native.compose import total
-from identification.native.decorators import inlined
 from identification.native.element import Function, Term
 from identification.native.gear import (
+    GAP,
     GEARS,
     GRIP,
     INERTIA,
@@ -30,20 +35,151 @@ from identification.native.gear import (
     MOTOR,
     RK4,
     SLIP,
-    TIMESTEP,
-    D,
-    M,
     felt,
     gears_of,
     is_geared,
     motor_force,
+    spring,
+    transmitted,
 )
-from identification.native.joint_callback import FIRST, JOINT, LAST, drive_force
-from identification.native.joint_callback import D as JOINT_D
-from identification.native.joint_callback import M as JOINT_M
-from identification.native.joint_friction import passive_force, with_sign
-from identification.native.memory import load_constant, load_double, load_int, store_double
-from identification.native.transmission import is_ours, transmit
+from identification.native.joint_callback import (
+    FIRST,
+    JOINT,
+    LAST,
+    TAG,
+    TIMESTEP,
+    D,
+    M,
+    drive_force,
+    with_sign,
+)
+from identification.native.joint_friction import passive_force
+from identification.native.library import mobility, solve, unit
+from identification.native.memory import (
+    double,
+    inlined,
+    integer,
+    internal,
+    load_constant,
+    load_double,
+    load_int,
+    store_double,
+    word,
+)
+
+SWEEPS = 200  # at most; arms take some five
+ENOUGH = 1e-13  # change of a τ in a sweep that ends them, of the largest one
+# columns of a geared joint: its degree of freedom, f_m, δ, dδ/dt, ε, m, κ, r, D, A_jj, J and τ
+DOF, FORCE, DELTA, RATE, HALF, MASS, KAPPA, SHARE, DAMPING, MOBILITY, OWN, TAU = range(12)
+COLUMNS = 12
+
+
+@inlined
+def is_ours(m, j, key):  # type: ignore[no-untyped-def]
+    """Returns whether joint j has a row of a set of effects."""
+    end = gears_of(m, j) + 8 * (GEARS + LAST)
+    return load_constant(end - 8) == TAG and load_constant(end - 16) == key
+
+
+@inlined
+def _load(g, k, a):  # type: ignore[no-untyped-def]
+    """Returns T of geared joint k, which accelerates by a."""
+    return g[k, MASS] * (g[k, FORCE] / g[k, OWN] - (a - g[k, MOBILITY] * g[k, TAU]))
+
+
+@inlined
+def _passed_on(g, k, load, h):  # type: ignore[no-untyped-def]
+    """Returns τ of geared joint k under a load."""
+    return transmitted(
+        load, g[k, DELTA], g[k, RATE], g[k, HALF], g[k, KAPPA], g[k, SHARE], g[k, DAMPING], h
+    )
+
+
+@internal
+def _gather(m, d, key, g):  # type: ignore[no-untyped-def]
+    """Puts geared joints into the rows of g, and F into qacc_smooth.
+
+    Returns:
+        How many have a gear, how many of these are not resolved, whether a friction gives.
+    """
+    h, a, room = load_constant(m + TIMESTEP), word(d, D.qacc_smooth), word(d, D.qfrc_smooth)
+    for i in range(word(m, M.nv)):
+        f = load_double(word(d, D.qfrc_passive) + 8 * i) - double(d, D.qfrc_bias, i)
+        store_double(a + 8 * i, f)
+    count, loose, gives = 0, 0, False
+    for j in range(word(m, M.njnt)):
+        gears, dof = gears_of(m, j), integer(m, M.jnt_dofadr, j)
+        ours = is_ours(m, j, key)
+        gives = gives or (ours and load_constant(gears + 8 * SLIP) != 0.0)
+        if ours and is_geared(gears):
+            f_m, delta, rate = motor_force(m, d, j, gears)
+            A = mobility(m, d, dof, room)
+            g[count, DOF], g[count, FORCE], g[count, DELTA], g[count, RATE] = dof, f_m, delta, rate
+            g[count, MASS], g[count, KAPPA], g[count, SHARE], g[count, DAMPING] = spring(
+                gears, A, h
+            )
+            g[count, MOBILITY], g[count, OWN] = A, load_constant(gears + 8 * INERTIA)
+            g[count, HALF] = load_constant(gears + 8 * GAP)
+            g[count, TAU] = _passed_on(g, count, f_m, h)
+            loose += g[count, SHARE] < 1.0
+            count += 1
+            continue
+        q = double(d, D.qpos, integer(m, M.jnt_qposadr, j))
+        f = drive_force(m, d, j, q, double(d, D.qvel, dof))
+        if f == f and f != 0.0:  # where it is known
+            store_double(a + 8 * dof, load_double(a + 8 * dof) + f)
+    return count, loose, gives
+
+
+@internal
+def _settle(m, d, g, count, loose, h):  # type: ignore[no-untyped-def]
+    """Computes τ of the gears that are not resolved into g, and what they change of a, in place."""
+    n, room, a = word(m, M.nv), word(d, D.qfrc_smooth), word(d, D.qacc_smooth)
+    columns, at, largest = np.empty((loose, n)), 0, 0.0
+    for k in range(count):
+        largest = max(largest, abs(g[k, TAU]), abs(g[k, FORCE]))
+        if g[k, SHARE] < 1.0:
+            unit(room, np.int64(g[k, DOF]), n)
+            solve(m, d, room)
+            for i in range(n):
+                columns[at, i] = load_double(room + 8 * i)
+            at += 1
+    for _ in range(SWEEPS):
+        change, at = 0.0, 0
+        for k in range(count):
+            if g[k, SHARE] >= 1.0:
+                continue
+            load = _load(g, k, load_double(a + 8 * np.int64(g[k, DOF])))
+            tau = _passed_on(g, k, load, h)
+            more = tau - g[k, TAU]
+            g[k, TAU] = tau
+            change = max(change, abs(more))
+            for i in range(n):
+                store_double(a + 8 * i, load_double(a + 8 * i) + columns[at, i] * more)
+            at += 1
+        if loose == 1 or change <= ENOUGH * largest:
+            break
+
+
+@internal
+def transmit(m, d, key, is_implicit):  # type: ignore[no-untyped-def]
+    """Writes τ of all geared joints into qfrc_actuator, behind MuJoCo's velocity stage.
+
+    MuJoCo writes there, and into the room of qfrc_smooth and qacc_smooth, when it has asked all
+    actuators. Where a step moves friction that gives by the new rate, qacc_smooth holds a.
+    """
+    h, a, out = load_constant(m + TIMESTEP), word(d, D.qacc_smooth), word(d, D.qfrc_actuator)
+    g = np.empty((word(m, M.njnt), COLUMNS))
+    count, loose, gives = _gather(m, d, key, g)
+    if loose > 0 or (gives and is_implicit):
+        for k in range(count):
+            at = a + 8 * np.int64(g[k, DOF])
+            store_double(at, load_double(at) + g[k, TAU])
+        solve(m, d, a)
+    if loose > 0:
+        _settle(m, d, g, count, loose, h)
+    for k in range(count):
+        store_double(out + 8 * np.int64(g[k, DOF]), g[k, TAU])
 
 
 def width(terms: Sequence[Term]) -> int:
@@ -74,7 +210,7 @@ def callbacks(terms: Sequence[Term], key: float) -> dict[str, Function]:
         """Returns the joint of an actuator that carries states of this law; -1 if it does not."""
         if (
             i < 0
-            or word(m, JOINT_M.nuser_jnt) < entries
+            or word(m, M.nuser_jnt) < entries
             or integer(m, M.actuator_trntype, i) != IS_JOINT
             or integer(m, M.actuator_actadr, i) < 0
         ):
@@ -91,7 +227,7 @@ def callbacks(terms: Sequence[Term], key: float) -> dict[str, Function]:
         if j < 0:
             return 0.0
         gears, place = gears_of(m, j), integer(m, M.actuator_actadr, i)
-        dof = integer(m, JOINT_M.jnt_dofadr, j)
+        dof = integer(m, M.jnt_dofadr, j)
         out, h = word(d, D.act_dot) + 8 * place, load_constant(m + TIMESTEP)
         semi = 0.0 if load_int(m + INTEGRATOR) == RK4 else h  # such a step moves q by the new v
         if mine(m, i - 1) < 0:  # these actuators stand in a row
@@ -128,9 +264,9 @@ def callbacks(terms: Sequence[Term], key: float) -> dict[str, Function]:
             return 0.0
         if not is_geared(gears):
             return 0.0
-        dof = integer(m, JOINT_M.jnt_dofadr, j)
-        q = double(d, JOINT_D.qpos, integer(m, JOINT_M.jnt_qposadr, j))
-        v = double(d, JOINT_D.qvel, dof)
+        dof = integer(m, M.jnt_dofadr, j)
+        q = double(d, D.qpos, integer(m, M.jnt_qposadr, j))
+        v = double(d, D.qvel, dof)
         return load_double(word(d, D.qfrc_actuator) + 8 * dof) - drive_force(m, d, j, q, v)
 
     passive = passive_force(terms, key, entries, felt_of)

@@ -25,10 +25,8 @@ from numba import types
 
 from identification.native.cache import compile_once
 from identification.native.compose import total
-from identification.native.decorators import internal
-from identification.native.element import Element, Hook, Term
-from identification.native.hook_checks import refuse_unfit_functions
-from identification.native.memory import load_double, store_double
+from identification.native.element import Element, Hook, Term, refuse_unfit_functions
+from identification.native.memory import internal, load_double, store_double
 
 # What an effect sees of a sensor at a sample.
 #   y: what a perfect sensor would say [rad, m, rad/s or m/s]

@@ -8,9 +8,18 @@ from __future__ import annotations
 
 import numpy as np
 
-from identification.native.access import double, integer, offsets, word
-from identification.native.decorators import inlined, internal
-from identification.native.memory import load_byte, load_constant, load_double, store_double
+from identification.native.memory import (
+    double,
+    inlined,
+    integer,
+    internal,
+    load_byte,
+    load_constant,
+    load_double,
+    offsets,
+    store_double,
+    word,
+)
 from inca_mj.effects.hooks import KEY, Drive
 from inca_mj.robot import law
 

@@ -4,7 +4,7 @@
     mjcb_act_dyn    activation of a drive is d₀, its rate ḋ₀; RK4 integrates it with the rest
     mjcb_act_bias   force of a drive is its current [A]; the gear K_t makes it a torque
     mjcb_sensor     user sensors on a drive: tension [N], no-load length [m] of its cable
-    share           all of these of one drive (`identification.native.share`); MuJoCo has no such
+    share           all of these of one drive (`native.installer`); MuJoCo has no such
 
 A drive is an actuator whose `actuator_user` row starts with `law.TAG`. Every other actuator, sensor
 and model is left unchanged. The row also holds the key of a set of effects, and only the law of
@@ -37,12 +37,9 @@ import numpy as np
 
 from identification.native import installer
 from identification.native.compose import rates, total
-from identification.native.decorators import inlined
-from identification.native.element import Function, Term
-from identification.native.hook_checks import refuse_unfit_functions
-from identification.native.memory import load_constant, load_double, store_double
+from identification.native.element import Function, Term, refuse_unfit_functions
+from identification.native.memory import inlined, load_constant, load_double, replacer, store_double
 from identification.native.table import SHARE, is_compiled
-from identification.native.tuples import replacer
 from inca_mj.effects.hooks import DRIVE, PLATFORM, Drive, Layout
 from inca_mj.robot import law
 from inca_mj.twin import drives

@@ -19,7 +19,7 @@ from identification.effects.values import Values
 from identification.model.parameter import ParameterSet
 from identification.model.paths import Slot, resolve
 from identification.model.predictor import Numbers
-from identification.native.share import is_balanced_rotor
+from identification.native.installer import is_balanced_rotor
 from inca_mj.effects.hooks import KEY, Layout
 from inca_mj.effects.values import centre_of_mass
 from inca_mj.effects.values import numbers as effect_numbers

@@ -11,8 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from identification.native.decorators import inlined, internal
-from identification.native.memory import load_constant, load_double, store_double
+from identification.native.memory import inlined, internal, load_constant, load_double, store_double
 from inca_mj.effects.hooks import Platform
 from inca_mj.twin.drives import D, M, double, integer, word
 

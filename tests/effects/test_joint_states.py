@@ -24,7 +24,7 @@ from identification.effects.joint_states import JointState
 from identification.effects.state_effects import gear_backlash, joint_elasticity, presliding
 from identification.model.predictor import Predictor
 from identification.model.rollout import State, rollout
-from identification.native.gear_element import Gear
+from identification.native.gear import Gear
 
 LOG = record(3, samples=100)
 EACH = [(elastic(0.03), 0.0), (gap(0.01), 0.0), ({PRESLIDING: 0.1}, F_C)]

@@ -12,7 +12,7 @@ import pytest
 from cache_cases import SIGNATURE, power
 from numba.extending import register_jitable
 
-from identification.native import cache, cache_folder, machine_code
+from identification.native import cache, cache_folder
 from identification.native.cache import compile_once, decode, encode
 
 
@@ -82,7 +82,7 @@ def other_needs(entry):
     """Code for a process that has more than this one."""
     code = decode(entry.name, entry.read_bytes())
     needs = (*code.needs, "no_such_symbol")
-    entry.write_bytes(encode(entry.name, machine_code.MachineCode(code.symbol, needs, b"")))
+    entry.write_bytes(encode(entry.name, cache.MachineCode(code.symbol, needs, b"")))
 
 
 def other_layout(*lines):
