@@ -74,7 +74,7 @@ _PUBLIC = {
     # values from a log
     "estimate": "estimation.estimation",
     "Estimate": "estimation.estimation",
-    "Options": "estimation.options",
+    "Options": "estimation.search",
     "estimate_from": "estimation.multistart",
     "Starts": "estimation.multistart",
     "assess": "estimation.fit",
@@ -157,11 +157,11 @@ if TYPE_CHECKING:  # the same list, for type checkers and editors
     from identification.estimation.metrics import rms as rms
     from identification.estimation.multistart import Starts as Starts
     from identification.estimation.multistart import estimate_from as estimate_from
-    from identification.estimation.options import Options as Options
     from identification.estimation.profiles import Profile as Profile
     from identification.estimation.profiles import profile as profile
     from identification.estimation.residuals import ResidualTests as ResidualTests
     from identification.estimation.residuals import residual_tests as residual_tests
+    from identification.estimation.search import Options as Options
     from identification.kalman.estimate import InnovationsFit as InnovationsFit
     from identification.kalman.estimate import estimate_innovations as estimate_innovations
     from identification.linear.export import load_system as load_system

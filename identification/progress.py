@@ -15,6 +15,7 @@ from typing import TypeVar
 USUAL = 15  # steps of a search
 Item = TypeVar("Item")
 Advance = Callable[[], None]
+Progress = Callable[[str], None]  # is told one line after each step
 Watch = Callable[[str, int], AbstractContextManager[Advance]]  # of a stage and its steps
 
 _WATCH: ContextVar[Watch | None] = ContextVar("watch", default=None)

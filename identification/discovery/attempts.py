@@ -19,8 +19,8 @@ import numpy as np
 
 from identification.effects.effect import Candidate
 from identification.errors import DivergenceError, InputError
-from identification.estimation.options import Progress
 from identification.pool import each_part
+from identification.progress import Progress
 
 FAILURES = (InputError, np.linalg.LinAlgError, ArithmeticError)
 NOT_FINITE = "its simulation leaves the finite numbers"

@@ -35,7 +35,7 @@ from identification.discovery.nominal_model import NominalModel
 from identification.discovery.proof import prove
 from identification.discovery.task import DiscoveryTask
 from identification.effects.effect import Candidate
-from identification.estimation.options import Progress
+from identification.progress import Progress
 
 
 def find_deviants(task: DiscoveryTask, model: FittedModel) -> tuple[Candidate, ...]:

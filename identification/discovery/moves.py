@@ -16,7 +16,7 @@ from functools import partial
 from typing import Any, Generic, TypeVar
 
 from identification.discovery.attempts import Failed, attempt, collected
-from identification.estimation.options import Progress
+from identification.progress import Progress
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -10,7 +10,6 @@ import numpy as np
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate
 from identification.errors import InputError
-from identification.estimation.options import Progress
 from identification.estimation.priors import Priors
 from identification.kalman.noise_fit import START_CORRELATION_TIME
 from identification.kalman.point import Point, evaluate_point
@@ -19,6 +18,7 @@ from identification.logs.log import Log
 from identification.model.coordinates import Coordinates, coordinates
 from identification.model.parameter import Parameter, ParameterSet
 from identification.model.predictor import Plant, Predictor
+from identification.progress import Progress
 
 MAX_FIT_STEPS = 20  # of a fit
 # Of a logarithm, for the prior of a shape about the grid value with the best score; the grids are

@@ -13,10 +13,10 @@ from identification.discovery.task import DiscoveryTask
 from identification.discovery.verdict import conclude
 from identification.effects.effect import Effect
 from identification.errors import InputError
-from identification.estimation.options import Progress
 from identification.logs.joined import records_of, rows_of
 from identification.logs.log import Log
 from identification.pool import one_blas_thread
+from identification.progress import Progress
 
 
 @one_blas_thread()

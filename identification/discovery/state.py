@@ -34,8 +34,8 @@ from identification.discovery.selection.kinds import improve_kinds
 from identification.discovery.selection.pairs import find_pair
 from identification.discovery.selection.pruning import eliminate, exchange
 from identification.discovery.task import DiscoveryTask
-from identification.estimation.options import Progress
 from identification.model.sensitivity import refuse_without_effect
+from identification.progress import Progress
 from identification.quantities import held
 
 

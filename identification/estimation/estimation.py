@@ -26,18 +26,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from identification.errors import InputError, refuse_kind
-from identification.estimation.options import HORIZONS as HORIZONS
-from identification.estimation.options import Options as Options
-from identification.estimation.options import Progress as Progress
-from identification.estimation.options import Status
 from identification.estimation.priors import Priors
-from identification.estimation.search import Search
+from identification.estimation.search import Options as Options
+from identification.estimation.search import Search, Status
 from identification.logs.by_unit import by_unit, of_outputs
 from identification.logs.log import Log
 from identification.logs.noise import noise_floor
 from identification.model.coordinates import Coordinates, coordinates
 from identification.model.predictor import Plant, Predictor
 from identification.pool import one_blas_thread
+from identification.progress import Progress
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,13 +1,7 @@
 """A fit: the estimated values, their uncertainty, and how well they explain the log.
 
-    cov(q) = A⁺ B A⁺,   A = Σ_k S_kᵀ S_k,   B = Σ_blocks g_b g_bᵀ,   g_b = Σ_{k in b} S_kᵀ ψ_k/c
-
-ψ = C ε and c = 1 for least squares; for a robust loss see `identification.estimation.robust`.
-
-This covariance is the sandwich estimator (White 1980), with blocks for coloured noise. It stays
-right when the noise is not the same everywhere, as in the thesis' trial 4, where it is 5 % of each
-sample. A prior of std s adds 1/s² to A and to B. What the log alone can say about the parameters is
-computed without priors.
+The covariance is that of `identification.estimation.uncertainty`. What the log alone can say about
+the parameters is computed without priors.
 """
 
 from __future__ import annotations
@@ -16,20 +10,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from identification.estimation.beyond import beyond
-from identification.estimation.combination import Combination
+from identification.errors import DivergenceError
 from identification.estimation.estimation import Estimate
-from identification.estimation.finer_steps import step_shift
 from identification.estimation.identifiability import Identifiability, identifiability
 from identification.estimation.information import Information, information_of
 from identification.estimation.metrics import fit_percent, loss, rms
 from identification.estimation.residuals import ResidualTests, residual_tests
 from identification.estimation.resolution import nothing_resolved, resolve
-from identification.estimation.robust import influence
-from identification.estimation.whiteness import correlation_time
+from identification.estimation.scaling_symmetry import Combination
+from identification.estimation.uncertainty import bounded, influence, sandwich, step_shift
 from identification.logs.by_unit import by_unit, rms_by_unit
 from identification.logs.log import Log
 from identification.logs.noise import noise_floor
+from identification.model.predictor import Predictor
+from identification.model.sensitivity import sensitivity
 
 # Std: a smaller shift, known to first order only, may have the other sign.
 MIN_TOLD_SHIFT = 2.0
@@ -183,7 +177,7 @@ def assess(estimate: Estimate, validation: Log | None = None) -> Fit:
     known = identifiability(np.concatenate([S, prior]), space.names, E, resolved.least)
     error = (estimate.weight * residual) @ estimate.whitener.T
     pull, share = influence(error, estimate.options.loss)
-    covariance = _sandwich(S.reshape(*error.shape, -1), pull, share, error, known, prior)
+    covariance = sandwich(S.reshape(*error.shape, -1), pull, share, error, known, prior)
     at_bound = space.on_bound(q)
     std_q = np.where(at_bound, np.nan, np.sqrt(np.diag(covariance)))
     std_q[known.undetermined] = np.inf
@@ -193,7 +187,7 @@ def assess(estimate: Estimate, validation: Log | None = None) -> Fit:
     return Fit(
         estimate=estimate,
         std=std_q * space.slope(q),
-        correlation=_bounded(covariance / np.outer(scale, scale)),
+        correlation=bounded(covariance / np.outer(scale, scale)),
         at_bound=at_bound,
         found=found,
         combinations=combinations_of(found, estimate, covariance),
@@ -213,39 +207,26 @@ def assess(estimate: Estimate, validation: Log | None = None) -> Fit:
     )
 
 
-def _over_all(rms: np.ndarray) -> float:
-    """Returns the rms over all outputs, from that of each output, shape (ny,)."""
-    return float(np.sqrt(np.mean(rms**2)))
+def beyond(
+    estimate: Estimate, whole: Log | None, covariance: np.ndarray
+) -> tuple[np.ndarray | None, np.ndarray | None, np.ndarray]:
+    """Returns fit in %, rms error, and rms spread of the prediction by the covariance of q: (ny,).
 
-
-def _bounded(correlation: np.ndarray) -> np.ndarray:
-    """Returns a correlation without its rounding: within ±1, and 1 of a parameter with itself.
-
-    What no record determines has no variance and keeps its zero.
+    All three are of the samples after the fitted ones, in a free run from the start of the log.
     """
-    bounded = np.clip(correlation, -1.0, 1.0)
-    own = np.diag(bounded)
-    np.fill_diagonal(bounded, np.where(np.isclose(own, 1.0), 1.0, own))
-    return bounded
-
-
-def _sandwich(
-    S: np.ndarray,
-    pull: np.ndarray,
-    share: float,
-    error: np.ndarray,
-    found: Identifiability,
-    prior: np.ndarray,
-) -> np.ndarray:
-    """Returns the covariance of q along directions that log or priors determine, shape (p, p)."""
-    n, ny, p = S.shape
-    length = min(int(np.ceil(3 * correlation_time(error) - 2)), max(1, n // 30))
-    scores = np.einsum("nip,ni->np", S, pull / share)
-    blocks = np.add.reduceat(scores, np.arange(0, n, length), axis=0)
-    felt, strengths = found.directions[: found.rank], found.strengths[: found.rank]
-    inverse = (felt.T / strengths**2) @ felt
-    freedom = n * ny / max(1, n * ny - p)
-    return inverse @ (freedom * blocks.T @ blocks + prior**2) @ inverse
+    n, ny = estimate.predictor.log.outputs.shape
+    if whole is None or len(whole) <= n + 2:
+        return None, None, np.zeros(ny)
+    p = estimate.predictor
+    longer = Predictor(p.plant, whole, p.names, p.fixed)
+    try:
+        predicted = longer.predict(estimate.space.decode(estimate.q))[0][n:]
+        J = sensitivity(longer, estimate.space, estimate.q)[n:]
+    except DivergenceError:
+        return np.full(ny, -np.inf), np.full(ny, np.inf), np.zeros(ny)
+    measured = whole.outputs[n:]
+    spread = np.sqrt(np.mean(np.einsum("nip,pq,niq->ni", J, covariance, J), axis=0))
+    return fit_percent(measured, predicted), rms(measured - predicted), spread
 
 
 def combinations_of(
@@ -263,3 +244,8 @@ def combinations_of(
         std = np.inf if found.moved(powers[None])[0] else np.sqrt(powers @ covariance @ powers)
         out.append((combination, value, value * float(std)))
     return tuple(out)
+
+
+def _over_all(rms: np.ndarray) -> float:
+    """Returns the rms over all outputs, from that of each output, shape (ny,)."""
+    return float(np.sqrt(np.mean(rms**2)))

@@ -26,7 +26,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from identification.estimation.combination import (
+from identification.estimation.scaling_symmetry import (
     Combination,
     ScalingSymmetry,
     known_products,

@@ -19,7 +19,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from identification.errors import InputError, unknown_name
-from identification.estimation.combination import Combination, ScalingSymmetry
 from identification.estimation.identifiability import (
     Identifiability,
     column_errors,
@@ -27,6 +26,7 @@ from identification.estimation.identifiability import (
     unresolved_directions,
 )
 from identification.estimation.resolution import Resolved
+from identification.estimation.scaling_symmetry import Combination, ScalingSymmetry
 from identification.model.coordinates import Coordinates
 
 

@@ -1,10 +1,15 @@
 """One search from several starting values, and the best result.
 
     q⁽⁰⁾ = q_start,   q⁽ⁱ⁾ uniform in q_start ± spread, inside the bounds
+    trace    V(q) = Σ ρ(r²),                r: all of C W ε and (q - q̄)/s
+    det      V(q) = n log det Λ + Σ ((q - q̄)/s)²,    Λ: covariance of W ε
 
 If the criterion has local minima, different starts end in different places. If most starts end in
-the same place, this is a reason to believe it. The best is the one with the smallest criterion,
-in which each output counts by the noise of its unit: an angle and a way have no common rms.
+the same place, this is a reason to believe it. The best is the one with the smallest V, in which
+each output counts by the noise of its unit: an angle and a way have no common rms. C weighs each
+output by the noise of its unit, W by relative noise, q̄ ± s is what was known before. W is that of
+the measured outputs, because a model that predicts too much may not lower its own weights, and q̄
+is one for all searches.
 """
 
 from __future__ import annotations
@@ -15,14 +20,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from identification.errors import DivergenceError, InputError
-from identification.estimation.ended import cost
-from identification.estimation.estimation import Estimate, Options, Progress, estimate
+from identification.estimation.estimation import Estimate, Options, estimate
+from identification.estimation.uncertainty import LOSSES
 from identification.logs.by_unit import by_unit, relative, rms_by_unit
 from identification.logs.log import Log
-from identification.logs.noise import noise_floor
+from identification.logs.noise import noise_floor, relative_weight, whitener_of
 from identification.model.coordinates import Coordinates, coordinates
 from identification.model.predictor import Plant
-from identification.progress import counted
+from identification.progress import Progress, counted
 
 # Of the error to the noise floor: a search that ends below it is good enough.
 ENOUGH_NOISE_RATIO = 1.5
@@ -103,7 +108,7 @@ def estimate_from(
             rms.append(np.inf)
             reason = lost
             continue
-        ended = cost(found, error, space.encode(first))
+        ended = _cost(found, error, space.encode(first))
         if best is None or ended < min(costs):
             best = found
         costs.append(ended)
@@ -129,3 +134,21 @@ def _error(found: Estimate) -> np.ndarray:
     """Returns y - ŷ at the end of a search, shape (n, ny)."""
     predicted = found.predictor.predict(found.space.decode(found.q))[0]
     return np.asarray(found.predictor.log.outputs - predicted)
+
+
+def _cost(found: Estimate, error: np.ndarray, known: np.ndarray) -> float:
+    """Returns V at the end of a search.
+
+    Args:
+        found: where it ended.
+        error: ε = y - ŷ there, shape (n, ny).
+        known: q̄, what was known of each parameter before, shape (p,).
+    """
+    options, log = found.options, found.predictor.log
+    weighed = relative_weight(log.outputs, options.relative_noise) * error
+    prior = (found.q - known) * found.priors.weight
+    if options.criterion == "det":
+        _, size = np.linalg.slogdet(whitener_of(weighed))  # log det Λ = -2 log det C
+        return float(-2 * len(error) * size + prior @ prior)
+    r = np.concatenate([(weighed @ found.whitener.T).ravel(), prior])
+    return float(np.sum(LOSSES[options.loss].value(r**2)))

@@ -1,10 +1,17 @@
-"""Tests of a residual: is anything of the model left in it?
+"""Tests of residuals and innovations: is anything of the model left in them?
 
-    whiteness       see `identification.estimation.whiteness`
-    independence    √N r_ue(k)/√P ~ N(0, 1),  P = Σ_j r_e(j) r_u(j)   (Ljung 1999, 16.6)
+    r_k = Σ_t x_t x_{t-k} / Σ_t x_t²                of each channel, its mean taken off
+    Q = N (N+2) Σ_{k≤m} r_k²/(N-k)  ~  χ²_m         whiteness of one channel   (Ljung and Box 1978)
+    Σ_i Q_i  ~  χ²_{m ny}                           of all ny channels
+    Σ_k r_k² = a²/(1 - a²)                          of a first-order process x_t = a x_{t-1} + ν_t
+    √N r_ue(k)/√P ~ N(0, 1),  P = Σ_j r_e(j) r_u(j)     independence         (Ljung 1999, 16.6)
+    g = max_f I(f)/Σ_f I(f),  P(g > x) ≈ M (1 - x)^{M-1}   a line of M of the spectrum (Fisher 1929)
 
-r are normalised correlations. A residual may well depend on its own past (coloured noise) while
-the model is right; one that depends on the input shows a wrong model.
+A residual may well depend on its own past (coloured noise) while the model is right; one that
+depends on the input shows a wrong model. Innovations are white where the model is right. The noise
+model takes a missing effect that no candidate explains for an error of the inputs. The part of it
+that is not random (a line of the spectrum, correlation between samples, one output with a larger
+variance) remains in the innovations.
 """
 
 from __future__ import annotations
@@ -13,8 +20,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from identification.chances import normal_above
-from identification.estimation.whiteness import LAGS, autocorrelation, whiteness
+from identification.chances import chi2_above, normal_above, normal_level
+
+LAGS = 25  # as MATLAB's resid
 
 
 @dataclass(frozen=True)
@@ -41,6 +49,126 @@ def residual_tests(residual: np.ndarray, inputs: np.ndarray, lags: int = LAGS) -
     """
     white = whiteness(residual, lags).p_values
     return ResidualTests(white, _independence(residual, inputs, lags))
+
+
+@dataclass(frozen=True, kw_only=True)
+class InnovationTests:
+    """Tests of innovations.
+
+    Attributes:
+        p_correlation: p-value of the test of Ljung and Box over all channels.
+        predictable: share of the power that the correlations would predict, less the share that
+            chance would predict, 0 to 1.
+        p_line: p-value of the strongest spectral line of all channels.
+        channel: index of the output on which that line has the most power.
+        frequency: of that line [Hz].
+        p_louder: p-value of the test that all channels have the same variance.
+        loudest: index of the output with the largest variance.
+    """
+
+    p_correlation: float
+    predictable: float
+    p_line: float
+    channel: int
+    frequency: float
+    p_louder: float
+    loudest: int
+
+    def is_correlated(self, level: float, least_share: float) -> bool:
+        """Returns whether samples are correlated beyond chance, and by enough to matter."""
+        return self.p_correlation < level and self.predictable > least_share
+
+
+def innovation_tests(E: np.ndarray, sampling_time: float) -> InnovationTests:
+    """Test innovations.
+
+    Args:
+        E: innovations, shape (N, ny), of any scale that is common to all channels.
+        sampling_time: [s].
+    """
+    n, ny = E.shape
+    white = whiteness(E)
+    E = E - E.mean(axis=0)
+    power = np.mean(E**2, axis=0)
+    I = np.abs(np.fft.rfft(E, axis=0)[1 : (n + 1) // 2]) ** 2
+    share = I / I.sum(axis=0)
+    M = len(I)
+    at, sharp = np.unravel_index(int(share.argmax()), share.shape)
+    line = ny * M * (1 - share[at, sharp]) ** (M - 1)
+    channel = int(I[at].argmax())  # the line has the most power on the output that it comes from
+    ratio = power / power.mean()
+    louder = float(n / 2 * np.sum((ratio - 1) ** 2))
+    return InnovationTests(
+        p_correlation=white.p_value,
+        predictable=white.predictable,
+        p_line=float(min(1.0, line)),
+        channel=channel,
+        frequency=float((at + 1) / (n * sampling_time)),
+        p_louder=float(chi2_above(louder, ny - 1)) if ny > 1 else 1.0,
+        loudest=int(ratio.argmax()),
+    )
+
+
+@dataclass(frozen=True)
+class Whiteness:
+    """The test of Ljung and Box.
+
+    Attributes:
+        r: autocorrelation at the lags 1..m, shape (m, ny).
+        samples: N.
+    """
+
+    r: np.ndarray
+    samples: int
+
+    @property
+    def Q(self) -> np.ndarray:
+        """The statistic of each channel, shape (ny,)."""
+        n, m = self.samples, len(self.r)
+        return n * (n + 2) * (self.r**2 / (n - np.arange(1, m + 1))[:, None]).sum(axis=0)
+
+    @property
+    def p_values(self) -> np.ndarray:
+        """Chance that each channel, if it is white, looks less white still, shape (ny,)."""
+        return chi2_above(self.Q, len(self.r))
+
+    @property
+    def p_value(self) -> float:
+        """The p-value of all channels together."""
+        return float(chi2_above(self.Q.sum(), self.r.size))
+
+    @property
+    def predictable(self) -> float:
+        """Share of the power that the correlations would predict, beyond chance's.
+
+        It is a² of a first-order process with the coefficient a.
+        """
+        m, ny = self.r.shape
+        excess = max(0.0, float(np.sum(self.r**2) / ny - m / self.samples))
+        return excess / (1 + excess)
+
+
+def whiteness(x: np.ndarray, lags: int = LAGS) -> Whiteness:
+    """Test a signal (N, ny) at 1..lags, and no more lags than a quarter of its samples."""
+    return Whiteness(autocorrelation(x, min(lags, len(x) // 4))[1:], len(x))
+
+
+def autocorrelation(x: np.ndarray, lags: int) -> np.ndarray:
+    """Returns each column's normalised autocorrelation at lags 0..lags, (n, m) -> (lags + 1, m)."""
+    x = x - x.mean(axis=0)
+    power = (x * x).sum(axis=0)
+    power = np.where(power > 0, power, 1.0)
+    return np.stack([(x[k:] * x[: len(x) - k]).sum(axis=0) / power for k in range(lags + 1)])
+
+
+def correlation_time(residual: np.ndarray, lags: int = LAGS) -> float:
+    """Returns the integrated autocorrelation time of the most persistent column [samples].
+
+    Summed up to the first lag that is not significantly positive (Geyer's initial sequence).
+    """
+    r = autocorrelation(residual, min(lags, len(residual) - 1))[1:]
+    significant = np.cumprod(r > normal_level(0.01) / np.sqrt(len(residual)), axis=0)
+    return float(1 + 2 * (r * significant).sum(axis=0).max())
 
 
 def _independence(residual: np.ndarray, inputs: np.ndarray, lags: int) -> np.ndarray:

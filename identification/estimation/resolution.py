@@ -16,14 +16,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from identification.errors import DivergenceError, InputError
-from identification.estimation.combination import ScalingSymmetry
 from identification.estimation.identifiability import (
     Identifiability,
     column_errors,
     identifiability,
     unresolved_directions,
 )
-from identification.estimation.scaling_symmetry import Whiten, scaling_symmetries
+from identification.estimation.scaling_symmetry import ScalingSymmetry, Whiten, scaling_symmetries
 from identification.model.coordinates import Coordinates
 from identification.model.predictor import Predictor
 from identification.model.sensitivity import ROUND_OFF, STEP, two_sensitivities

@@ -5,20 +5,26 @@
 - A horizon ends at a relative gain of `ROUGH_TOLERANCE` if a longer one follows; the last horizon
   ends at the `tolerance` of the options.
 - No sensitivities are computed at the point where the search ends.
-- Sensitivities are kept where the outputs changed as they had promised (see `slopes`).
+- Sensitivities are kept where the outputs changed as they had promised:
+
+    J₊ = J + (Δr - J s)(D s)ᵀ/(sᵀ D s)      where ‖Δr - J s‖ <= SLOPE_ERROR ‖Δr‖
+
+s is the step, Δr the change of the residual, and D the diagonal of Jᵀ J, so that units of the
+parameters change nothing. It is Broyden's correction (Broyden 1965): the slopes are right along the
+step, and what they were across it. Near an optimum it saves a simulation for each free parameter.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, Literal
 
 import numpy as np
 from scipy.optimize import least_squares
 
 from identification.errors import DivergenceError, InputError
 from identification.estimation.levenberg_marquardt import SLOPE_ERROR
-from identification.estimation.options import Options, Progress, Status
 from identification.estimation.priors import Priors
 from identification.logs.noise import relative_weight, whitener_of
 from identification.model.coordinates import Coordinates
@@ -29,27 +35,10 @@ from identification.model.sensitivity import (
     sensitivity,
     without_effect,
 )
-from identification.progress import USUAL, stage
+from identification.progress import USUAL, Progress, stage
 
-
-@dataclass(frozen=True)
-class Slopes:
-    """Slopes J (n, p) of the weighed residual r (n,) at a point q (p,)."""
-
-    q: np.ndarray
-    r: np.ndarray
-    J: np.ndarray
-
-    def moved(self, q: np.ndarray, r: np.ndarray) -> Slopes | None:
-        """Returns the slopes at another point, not simulated; None if they differ by too much."""
-        step, change = q - self.q, r - self.r
-        off = change - self.J @ step
-        if not np.linalg.norm(off) <= SLOPE_ERROR * np.linalg.norm(change):
-            return None
-        along = np.sum(self.J**2, axis=0) * step  # lengths are those of the outputs' changes
-        return Slopes(q, r, self.J + np.outer(off, along / (along @ step)))
-
-
+HORIZONS = (0.05, 0.2, 0.5, 1.0)  # of the log: a short one keeps a search from local minima
+Status = Literal["converged", "iterations", "stopped"]
 ROUGH_TOLERANCE = 1e-2  # relative gain at which a search ends that another one follows
 PULL_WEIGHTS = (1.0, 0.1)  # towards the last result, on a short horizon and on the whole log
 # If a horizon that is longer by less than this share diverges, the search fails.
@@ -57,8 +46,47 @@ CLOSE_HORIZON_SHARE = 0.1
 EXACT_RESIDUAL = 1e-11  # over the outputs: below it only round-off is left
 
 
-class _Settled(Exception):
-    """The search ends here: what would come next is not worth its simulations."""
+@dataclass(frozen=True, kw_only=True)
+class Options:
+    """Options of a search.
+
+    Attributes:
+        method: the `method` of `scipy.optimize.least_squares`; "lm" has no bounds.
+        criterion: "trace" (least squares) or "det" (maximum likelihood, covariance estimated).
+        loss: robust loss of `least_squares`: "linear", "soft_l1", "huber", "cauchy", "arctan".
+        horizons: growing fractions of the log, of which the last is 1; (1.0,) is a single fit of
+            the free run over the whole log.
+        tolerance: relative change of cost and of q at which a search stops.
+        max_evaluations: largest number of simulations of the outputs for each horizon.
+        relative_noise: std of a sample's noise divided by the sample, where the noise grows with
+            the signal. Each residual is then divided by this std, computed from the prediction.
+        priors: std of the prior of q about the start, by name (of ln(value) where q is a
+            logarithm).
+
+    Raises:
+        InputError: the horizons do not grow to 1, or a prior's std is not positive.
+    """
+
+    method: Literal["trf", "lm", "dogbox"] = "trf"
+    criterion: Literal["trace", "det"] = "trace"
+    loss: str = "linear"
+    horizons: tuple[float, ...] = HORIZONS
+    tolerance: float = 1e-8
+    max_evaluations: int = 60
+    relative_noise: float = 0.0
+    priors: Mapping[str, float] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        h = self.horizons
+        if not h or not h[0] > 0 or h[-1] != 1 or not all(np.diff(h) > 0):
+            raise InputError(f"horizons {h} must grow to 1, such as {HORIZONS}")
+        if self.method == "lm" and self.loss != "linear":
+            raise InputError(
+                f"method 'lm' knows no robust loss; leave out {self.loss!r}, or search by 'trf'"
+            )
+        for name, std in self.priors.items():
+            if not std > 0:
+                raise InputError(f"the prior of {name} has std {std:g}; give a positive one")
 
 
 class Search:
@@ -228,3 +256,25 @@ class Search:
             seconds = samples * self.predictor.log.sampling_time
             rms = float(np.sqrt(np.mean(error**2)))
             self.progress(f"horizon {seconds:.2f} s: rms {rms:.4g} after {self.evaluations} runs")
+
+
+class _Settled(Exception):
+    """The search ends here: what would come next is not worth its simulations."""
+
+
+@dataclass(frozen=True)
+class Slopes:
+    """Slopes J (n, p) of the weighed residual r (n,) at a point q (p,)."""
+
+    q: np.ndarray
+    r: np.ndarray
+    J: np.ndarray
+
+    def moved(self, q: np.ndarray, r: np.ndarray) -> Slopes | None:
+        """Returns the slopes at another point, not simulated; None if they differ by too much."""
+        step, change = q - self.q, r - self.r
+        off = change - self.J @ step
+        if not np.linalg.norm(off) <= SLOPE_ERROR * np.linalg.norm(change):
+            return None
+        along = np.sum(self.J**2, axis=0) * step  # lengths are those of the outputs' changes
+        return Slopes(q, r, self.J + np.outer(off, along / (along @ step)))

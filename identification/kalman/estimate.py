@@ -20,10 +20,10 @@ from identification.errors import InputError
 from identification.estimation.estimation import Estimate
 from identification.estimation.fit import Fit, assess, combinations_of
 from identification.estimation.information import information_of
-from identification.estimation.options import Options, Progress, Status
 from identification.estimation.priors import Priors
 from identification.estimation.residuals import residual_tests
 from identification.estimation.resolution import resolve
+from identification.estimation.search import Options, Status
 from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.noise_model import Noise, build_whitener
 from identification.kalman.options import KalmanOptions
@@ -34,6 +34,7 @@ from identification.model.coordinates import coordinates
 from identification.model.predictor import Plant, Predictor
 from identification.model.sensitivity import refuse_without_effect, without_effect
 from identification.pool import one_blas_thread
+from identification.progress import Progress
 
 MIN_SAMPLES = 50  # with fewer, the noise of the sensors cannot be told from that of the inputs
 RIDGE_WEIGHT = 0.1  # 1/std of q: holds directions that have no effect on the outputs

@@ -17,15 +17,14 @@ from itertools import islice
 import numpy as np
 
 from identification.estimation.levenberg_marquardt import Damping, levenberg_marquardt
-from identification.estimation.options import Progress
 from identification.estimation.priors import Priors
-from identification.kalman.innovations import innovation_tests
+from identification.estimation.residuals import innovation_tests
 from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.options import KalmanOptions
 from identification.kalman.point import Point, evaluate_point
 from identification.kalman.problem import Problem, estimate_noise, linearise_criterion
 from identification.model.predictor import Plant
-from identification.progress import counted
+from identification.progress import Progress, counted
 
 # Expected fall of the criterion for each parameter, in units of the noise, below which a search
 # ends: the parameters are then, as a root mean square, within a tenth of their std of the optimum.
@@ -236,7 +235,7 @@ def _is_refuted(problem: Problem, options: KalmanOptions) -> bool:
     if problem.level.input_std <= largest_input_error(point, options):
         return False
     white = innovation_tests(problem.remaining_innovations, point.log.sampling_time)
-    return white.is_correlated(options)
+    return white.is_correlated(options.structure_level, options.min_structure_share)
 
 
 def largest_input_error(point: Point, options: KalmanOptions) -> float:

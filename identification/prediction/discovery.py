@@ -9,7 +9,6 @@ from identification.discovery.options import DiscoveryOptions
 from identification.discovery.result import Discovery
 from identification.effects.effect import Effect
 from identification.errors import InputError
-from identification.estimation.options import Progress
 from identification.logs.log import Log
 from identification.pool import one_blas_thread
 from identification.prediction.records import as_records
@@ -18,6 +17,7 @@ from identification.prediction.starts import without_starts
 from identification.prediction.state import first_state, next_state
 from identification.prediction.task import RecordsTask
 from identification.prediction.verdict import conclude
+from identification.progress import Progress
 
 
 @one_blas_thread()

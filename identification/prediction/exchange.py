@@ -16,7 +16,6 @@ import numpy as np
 from identification.discovery.attempts import attempt, refuse_infinite
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.passes import uses
-from identification.estimation.options import Progress
 from identification.prediction.crossing import at_their_best
 from identification.prediction.extension import MAX_LINEARISATIONS
 from identification.prediction.first_fit import REFIT_TOLERANCE
@@ -26,6 +25,7 @@ from identification.prediction.problem import ROUGH_STEPS, Problem, no_moves, pr
 from identification.prediction.records import Record
 from identification.prediction.selection import Contender
 from identification.prediction.unseen import HORIZON, compare
+from identification.progress import Progress
 
 
 def without_contradicted(

@@ -19,12 +19,11 @@ import numpy as np
 
 from identification.errors import InputError
 from identification.estimation.levenberg_marquardt import Damping, levenberg_marquardt
-from identification.estimation.options import Progress
 from identification.logs.by_unit import rms_by_unit
 from identification.model.rollout import State
 from identification.prediction.point import AtPoint, linearised
 from identification.prediction.problem import Problem
-from identification.progress import counted
+from identification.progress import Progress, counted
 from identification.quantities import alike
 from identification.windows.shooting import Tangent
 

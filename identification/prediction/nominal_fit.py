@@ -13,7 +13,6 @@ import numpy as np
 
 from identification.discovery.nominal_model import NominalModel
 from identification.errors import InputError
-from identification.estimation.options import Progress
 from identification.estimation.priors import Priors
 from identification.estimation.search import ROUGH_TOLERANCE
 from identification.logs.noise import noise_floor
@@ -30,6 +29,7 @@ from identification.prediction.problem import (
 from identification.prediction.records import Record
 from identification.prediction.unknowns import Unknowns
 from identification.prediction.unseen import Unseen
+from identification.progress import Progress
 
 HORIZON_GROWTH = (0.25, 0.5, 1.0)  # of the horizon
 MIN_WINDOW_SAMPLES = 4  # of the shortest windows

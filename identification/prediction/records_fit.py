@@ -19,7 +19,6 @@ from identification.discovery.attempts import attempt
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
 from identification.errors import InputError
-from identification.estimation.options import Progress
 from identification.logs.log import Log
 from identification.pool import one_blas_thread
 from identification.prediction.extension import at_own_steps
@@ -39,6 +38,7 @@ from identification.prediction.records import Record, as_records
 from identification.prediction.starts import without_starts
 from identification.prediction.told_std import told_std
 from identification.prediction.unseen import Prediction, Unseen, compare, predict
+from identification.progress import Progress
 from identification.windows.settling import settle
 
 NO_HORIZON = (

@@ -18,7 +18,6 @@ from identification.discovery.attempts import attempt_each, refuse_infinite
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.passes import uses
 from identification.effects.effect import Candidate
-from identification.estimation.options import Progress
 from identification.prediction.contenders import (
     count_numbers,
     list_contenders,
@@ -34,7 +33,7 @@ from identification.prediction.proof import Doubt, find_doubt, has_size, is_at_b
 from identification.prediction.records import Record
 from identification.prediction.scores import WindowScore
 from identification.prediction.unseen import Prediction, Unseen, compare
-from identification.progress import counted
+from identification.progress import Progress, counted
 from identification.quantities import fall_words
 
 STRONG_BIC = 10.0  # "very strong evidence" of one law against another (Kass and Raftery 1995)

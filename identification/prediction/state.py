@@ -16,7 +16,6 @@ from identification.discovery.moves import Move, Watch, asked_anew
 from identification.discovery.moves import next_state as next_of
 from identification.discovery.passes import uses
 from identification.errors import InputError
-from identification.estimation.options import Progress
 from identification.prediction.blocks import count_blocks
 from identification.prediction.moves.add_effect import add_effect
 from identification.prediction.moves.curve_for_laws import curve_for_laws
@@ -29,6 +28,7 @@ from identification.prediction.proof import find_doubt
 from identification.prediction.screening import score_all
 from identification.prediction.task import RecordsTask, WindowSearch, finishing
 from identification.prediction.unseen import HORIZON, Unseen, compare, predict
+from identification.progress import Progress
 
 FEWEST_BLOCKS = 3  # of unseen windows, whose scatter is known
 MOVES = (

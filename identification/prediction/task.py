@@ -9,11 +9,11 @@ from identification.discovery.moves import SearchState, Watch
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Effect
-from identification.estimation.options import Progress
 from identification.prediction.model import WindowModel
 from identification.prediction.records import Record
 from identification.prediction.selection import Contender
 from identification.prediction.unseen import Unseen
+from identification.progress import Progress
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from identification.estimation.combination import ScalingSymmetry
 from identification.estimation.identifiability import in_words
+from identification.estimation.scaling_symmetry import ScalingSymmetry
 from identification.quantities import matched
 from identification.report.parameter_words import parameter_words
 

@@ -22,7 +22,6 @@ from identification.estimation.levenberg_marquardt import (
     Damping,
     levenberg_marquardt,
 )
-from identification.estimation.options import Progress
 from identification.estimation.resolution import resolve_columns, round_off
 from identification.estimation.search import ROUGH_TOLERANCE
 from identification.logs.log import Log
@@ -32,7 +31,7 @@ from identification.model.predictor import Plant, Predictor
 from identification.model.rollout import State
 from identification.model.sensitivity import FORWARD_STEP, refuse_without_effect
 from identification.pool import one_blas_thread
-from identification.progress import stage
+from identification.progress import Progress, stage
 from identification.windows.shooting import Shooting, Tangent, tangent
 from identification.windows.windows import apart, first_states, windows
 

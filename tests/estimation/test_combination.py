@@ -5,7 +5,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from identification.estimation.combination import ScalingSymmetry, known_products
+from identification.estimation.scaling_symmetry import ScalingSymmetry, known_products
 
 
 def symmetry(**powers):

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from identification import fit, read_robot
-from identification.estimation.finer_steps import step_shift
+from identification.estimation.uncertainty import step_shift
 from identification.model.finer import FINER, finer
 from identification.report.fit_verdict import fit_verdict
 

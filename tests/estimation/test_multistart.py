@@ -7,9 +7,9 @@ from unlike_cases import MODEL, PARAMETERS, TRUE, write_robot_and_logs
 
 from identification import DivergenceError, InputError, joint_plant
 from identification.estimation import multistart
-from identification.estimation.ended import LOSSES, cost
 from identification.estimation.estimation import Options, estimate
-from identification.estimation.multistart import estimate_from
+from identification.estimation.multistart import _cost, estimate_from
+from identification.estimation.uncertainty import LOSSES
 from identification.robot.file import read_robot_file
 from identification.robot.robot import read_robot_log
 
@@ -81,7 +81,7 @@ def test_the_criterion_is_that_which_the_search_lowers(loss):
             horizons=(1.0,), loss=loss, priors={"stiffness": 0.1}, max_evaluations=most
         )
         found = estimate(far, log, ("stiffness",), options=options)
-        ends.append(cost(found, error_of(found), found.space.encode(found.start)))
+        ends.append(_cost(found, error_of(found), found.space.encode(found.start)))
     assert ends[1] < ends[0]
 
 
@@ -97,7 +97,7 @@ def test_with_an_unknown_covariance_units_do_not_matter():
         options = Options(criterion="det", horizons=(1.0,), max_evaluations=1)
         found = estimate(slider(stiffness=stiffness), log, ("stiffness",), options=options)
         units = (1.0, (1e3, 1.0))  # position in m, then in mm
-        ends.append([cost(found, error_of(found) * unit, found.q) for unit in units])
+        ends.append([_cost(found, error_of(found) * unit, found.q) for unit in units])
     (far, far_in_mm), (near, near_in_mm) = ends
     assert near < far
     assert near_in_mm - far_in_mm == pytest.approx(near - far, rel=1e-6)

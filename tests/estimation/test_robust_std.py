@@ -7,7 +7,7 @@ from scipy.optimize import approx_fprime
 
 from identification.estimation.estimation import Options, estimate
 from identification.estimation.fit import assess
-from identification.estimation.robust import _SLOPES, influence
+from identification.estimation.uncertainty import LOSSES, influence
 
 RHO = {
     "linear": lambda z: z,
@@ -20,7 +20,7 @@ RHO = {
 
 @pytest.mark.parametrize("loss", RHO)
 def test_the_slopes_are_those_of_the_loss(loss):
-    first, second = _SLOPES[loss]
+    _, first, second = LOSSES[loss]
     for z in (0.2, 0.7, 1.8, 9.0):
         at = np.array([z])
         assert first(at)[0] == pytest.approx(

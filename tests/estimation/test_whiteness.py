@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.stats import chi2, kstest
 
-from identification.estimation.whiteness import LAGS, autocorrelation, whiteness
+from identification.estimation.residuals import LAGS, autocorrelation, whiteness
 
 
 def signal(seed, n=400, ny=3):

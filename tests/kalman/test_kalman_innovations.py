@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from scipy.stats import kstest
 
-from identification.kalman.innovations import innovation_tests
-from identification.kalman.options import KalmanOptions
+from identification.estimation.residuals import innovation_tests
 
 H, N, NY = 0.01, 600, 8
 
@@ -74,4 +73,4 @@ def test_the_predictable_share_of_a_first_order_process(a):
     w = innovation_tests(E, H)
     assert w.predictable == pytest.approx(a**2, rel=0.1)
     assert w.p_correlation < 1e-4  # beyond chance in all three, but of the first too little
-    assert w.is_correlated(KalmanOptions()) == (a > 0.1)
+    assert w.is_correlated(1e-4, 0.03) == (a > 0.1)

@@ -5,7 +5,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from identification.estimation.combination import ScalingSymmetry
+from identification.estimation.scaling_symmetry import ScalingSymmetry
 from identification.report.untold_words import cure, too_weak, untold
 
 NAMES = ("m", "b", "k")

@@ -16,7 +16,7 @@ from identification.discovery.findings.evidence import (
 from identification.discovery.findings.finding import Finding, FindingKind
 from identification.discovery.fitted_model import FittedModel, list_parameters_at_limit
 from identification.discovery.options import DiscoveryOptions
-from identification.kalman.innovations import innovation_tests
+from identification.estimation.residuals import innovation_tests
 
 
 def find_structure(model: FittedModel, options: DiscoveryOptions) -> tuple[Finding, ...]:
@@ -35,7 +35,7 @@ def find_structure(model: FittedModel, options: DiscoveryOptions) -> tuple[Findi
     if white.p_louder < options.structure_level:
         noisy = NoisyOutput(log.output_names[white.loudest], white.p_louder)
         out.append(Finding(FindingKind.NOISY_OUTPUT, noisy))
-    if white.is_correlated(options):
+    if white.is_correlated(options.structure_level, options.min_structure_share):
         correlated = CorrelatedInnovations(white.predictable, white.p_correlation)
         out.append(Finding(FindingKind.CORRELATED_INNOVATIONS, correlated))
     if names := list_parameters_at_limit(model):

@@ -47,8 +47,7 @@ from identification.discovery.selection.kinds import improve_rivals
 from identification.discovery.selection.shapes import improve_shape
 from identification.discovery.task import DiscoveryTask
 from identification.effects.effect import Candidate
-from identification.estimation.options import Progress
-from identification.progress import counted
+from identification.progress import Progress, counted
 
 
 @dataclass(frozen=True)

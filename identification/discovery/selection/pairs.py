@@ -24,7 +24,7 @@ from identification.discovery.proof import prove
 from identification.discovery.scoring.sensitivities import Sensitivity
 from identification.discovery.selection.forward_selection import select_effect
 from identification.discovery.task import DiscoveryTask
-from identification.estimation.options import Progress
+from identification.progress import Progress
 
 
 def find_pair(

@@ -16,7 +16,7 @@ from identification.discovery.scoring.scores import Score
 from identification.discovery.scoring.significance import gain_of_whole
 from identification.discovery.task import DiscoveryTask
 from identification.effects.effect import Candidate
-from identification.kalman.innovations import innovation_tests
+from identification.estimation.residuals import innovation_tests
 
 
 def improve_shape(
@@ -41,7 +41,8 @@ def improve_shape(
 def is_structured(model: FittedModel, options: DiscoveryOptions) -> bool:
     """Returns whether the innovations are not white, or the inputs' error is not random."""
     white = innovation_tests(model.innovations, model.refit.point.log.sampling_time)
-    return white.is_correlated(options) or bool(find_input_error(model.validation, options))
+    level, share = options.structure_level, options.min_structure_share
+    return white.is_correlated(level, share) or bool(find_input_error(model.validation, options))
 
 
 def _try_from_nominal(task: DiscoveryTask, model: FittedModel, best: FittedModel) -> FittedModel:

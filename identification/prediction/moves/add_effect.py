@@ -12,7 +12,6 @@ from functools import partial
 from identification.discovery.attempts import attempt
 from identification.discovery.moves import Watch
 from identification.discovery.passes import uses
-from identification.estimation.options import Progress
 from identification.prediction.exchange import exchanged, without_contradicted
 from identification.prediction.extension import with_fitting_steps
 from identification.prediction.model import WindowModel
@@ -20,6 +19,7 @@ from identification.prediction.rivals import find_rivals
 from identification.prediction.screening import score_all
 from identification.prediction.selection import Contender, refit_contenders
 from identification.prediction.task import WindowSearch
+from identification.progress import Progress
 
 
 def add_effect(state: WindowSearch, progress: Progress) -> WindowSearch:

@@ -14,7 +14,6 @@ from dataclasses import replace
 from functools import partial
 
 from identification.discovery.attempts import attempt
-from identification.estimation.options import Progress
 from identification.prediction.contenders import count_numbers
 from identification.prediction.evidence import all_gains, count_windows, evidence
 from identification.prediction.extension import refitted
@@ -23,6 +22,7 @@ from identification.prediction.screening import score_all
 from identification.prediction.selection import Contender, refit_contenders
 from identification.prediction.several_places import places_of
 from identification.prediction.task import Change, WindowSearch
+from identification.progress import Progress
 
 
 def curve_for_laws(state: WindowSearch, progress: Progress) -> Change:

@@ -10,10 +10,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from identification.estimation.options import Progress
 from identification.prediction.extension import refitted
 from identification.prediction.selection import Contender
 from identification.prediction.task import Change, WindowSearch
+from identification.progress import Progress
 
 
 def drop_beside_curves(state: WindowSearch, progress: Progress) -> Change:

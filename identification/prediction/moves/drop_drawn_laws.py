@@ -15,13 +15,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from identification.estimation.options import Progress
 from identification.prediction.extension import refitted
 from identification.prediction.model import WindowModel
 from identification.prediction.rivals import OWN_SHARE
 from identification.prediction.selection import Contender
 from identification.prediction.several_places import places_of
 from identification.prediction.task import Change, WindowSearch
+from identification.progress import Progress
 
 ON_JOINTS = {"force", "friction"}  # hooks of what a curve, which is a force, may do as well
 

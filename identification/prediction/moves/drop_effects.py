@@ -10,13 +10,13 @@ from collections.abc import Sequence
 
 from identification.discovery.passes import uses
 from identification.effects.effect import Candidate
-from identification.estimation.options import Progress
 from identification.prediction.crossing import at_their_best
 from identification.prediction.extension import refitted
 from identification.prediction.model import WindowModel
 from identification.prediction.proof import Doubt, find_doubt
 from identification.prediction.task import Change, RecordsTask, WindowSearch
 from identification.prediction.unseen import compare
+from identification.progress import Progress
 
 NEEDLESS: tuple[Doubt, ...] = ("chance", "little")  # others make up for it
 
