@@ -234,8 +234,8 @@ def combinations_of(
 ) -> tuple[tuple[Combination, float, float], ...]:
     """Returns products of parameters, with the value and the std of each product.
 
-    The std is infinite where the product also changes along a direction that the differences cannot
-    resolve.
+    The std is infinite where the product also changes along a direction that the differences
+    cannot resolve.
     """
     out = []
     for combination in found.combinations:

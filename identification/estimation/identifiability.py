@@ -124,8 +124,7 @@ def identifiability(
     """Analyse whitened sensitivities.
 
     Args:
-        S: sensitivities, shape (n, p), with n rows of samples and outputs; zero along the
-            symmetries.
+        S: sensitivities, shape (n, p), a row for each reading; zero along the symmetries.
         names: the parameters.
         E: estimated errors of S, shape (n, p).
         least: norm of the round-off error of a column.

@@ -88,13 +88,7 @@ def nothing_resolved(names: tuple[str, ...], n: int) -> Resolved:
 
 
 def resolve(predictor: Predictor, space: Coordinates, q: np.ndarray, whiten: Whiten) -> Resolved:
-    """Returns the sensitivities of a predictor's outputs at q, and their errors.
-
-    Args:
-        predictor: predicts the outputs.
-        space: coordinates of the parameters.
-        q: the point, shape (p,).
-        whiten: makes the noise of the outputs white, of std 1.
+    """Returns the sensitivities, whitened, of a predictor's outputs at q (p,), and their errors.
 
     Raises:
         DivergenceError: a simulation left the finite numbers.

@@ -184,12 +184,7 @@ class Search:
         return known
 
     def solve(self, samples: int, tolerance: float) -> Status:
-        """Minimise the criterion over the first samples, from the best point.
-
-        `least_squares` asks for sensitivities also at the point where it ends, and these would cost
-        the most of a short search. So a step with too small a gain ends the search before they are
-        computed.
-        """
+        """Minimise the criterion over the first samples, from the best point."""
         self.error(self.best, samples)  # if the start diverges, the caller is told
         weight = self.weight[:samples]
         measured = (weight * self.predictor.log.outputs[:samples]) @ self.whitener.T
@@ -221,6 +216,7 @@ class Search:
             return r
 
         def jacobian(q: np.ndarray) -> np.ndarray:
+            # It is asked for also where it ends, and would cost the most of a short search.
             if linear and (gain <= tolerance * cost or cost <= exact):
                 raise _Settled
             nonlocal slopes

@@ -32,7 +32,7 @@ from identification.pool import one_blas_thread
 
 @dataclass(frozen=True, eq=False)
 class LinearPlant:
-    """Linearisation at the N samples of a log.
+    """The linearisation at the N samples of a log.
 
     Attributes:
         A: transition from each sample to the next, shape (N-1, nx, nx); zeros where another
@@ -70,10 +70,7 @@ class Linearisation:
 
     @cached_property
     def of_inputs(self) -> tuple[np.ndarray, np.ndarray]:
-        """The change of the rates per unit of each input, upwards and downwards.
-
-        Each of shape (M, nf, nu), at the points of the trajectory.
-        """
+        """Change of the rates per unit of each input, upwards and downwards, (M, nf, nu) each."""
         upwards, downwards = input_derivatives(self.along)
         felt = self.felt[self.along.model.nv :]
         return upwards[:, felt], downwards[:, felt]
@@ -88,11 +85,11 @@ class Linearisation:
 
 
 def linearise(predictor: Predictor, values: np.ndarray, forces: Sequence[int] = ()) -> LinearPlant:
-    """Linearise a plant along the trajectory that it predicts for one value set.
+    """Linearise a plant along the trajectory of one value set (p,), in the parameters' units.
 
     Args:
         predictor: plant and log.
-        values: shape (p,), in the parameters' units.
+        values: shape (p,).
         forces: degrees of freedom; where given, B is the effect of generalised forces on them
             instead of the effect of the inputs. All of them where the log has no inputs.
 
@@ -110,12 +107,8 @@ def linearise_records(
 ) -> tuple[Linearisation, ...]:
     """Returns the linearisation of each record of a log; see `linearise`.
 
-    Args:
-        predictor: plant and log.
-        values: shape (p,), in the parameters' units.
-        forces: degrees of freedom, as above.
-        points: at which it is known what acts, for each sample. Slopes need few: what a change adds
-            may turn with the angle of a motor within an interval, and slopes do not.
+    What acts is known at `points` for each sample. Slopes need few: what a change adds may turn
+    with the angle of a motor within an interval, and slopes do not.
     """
     coarse, fine = follow_records(predictor, values, COARSE_POINTS, points)
     return tuple(
@@ -144,26 +137,14 @@ def join_plants(each: Sequence[LinearPlant]) -> LinearPlant:
 def linearise_along(
     predictor: Predictor, along: Trajectory, forces: Sequence[int] = ()
 ) -> Linearisation:
-    """Returns the linearisation along one trajectory.
-
-    Args:
-        predictor: whose outputs are asked for.
-        along: the trajectory.
-        forces: degrees of freedom, as above.
-    """
+    """Returns the linearisation of a predictor's outputs along one trajectory."""
     F, G = _derivatives(predictor, along, forces)
     C = _outputs(predictor, along)
     return _linearisation(along, F, G, C, _felt(F, C))
 
 
 def extend(known: LinearPlant, predictor: Predictor, along: Trajectory) -> LinearPlant:
-    """Returns the plant along a record whose beginning is known: only the rest is linearised.
-
-    Args:
-        known: the plant at the first samples of the record.
-        predictor: whose outputs are asked for.
-        along: the trajectory of the whole record.
-    """
+    """Returns the plant along a record of which it knows the first samples already."""
     rest = along.after(len(known.A))
     if known.felt is None:
         return linearise_along(predictor, along).at_samples()
@@ -190,17 +171,7 @@ def _derivatives(
 
 
 def state_derivatives(along: Trajectory) -> tuple[np.ndarray, np.ndarray]:
-    """Returns F and G along a trajectory, as means over its intervals.
-
-    Args:
-        along: the trajectory.
-
-    Returns:
-        F, shape (L, nx, nx), nx = 2 nv + na, and G, shape (L, nx, nu).
-
-    Raises:
-        DivergenceError: the accelerations are not finite.
-    """
+    """Returns means of F (L, nx, nx) and G (L, nx, nu) over the intervals of a trajectory."""
     nv = along.model.nv
     of_state, of_inputs = differences(along, Points(along), FORWARD, along.weighted, along.moved)
     rows = along.average(position_rows(along.model, along.qvel))
@@ -211,18 +182,9 @@ def state_derivatives(along: Trajectory) -> tuple[np.ndarray, np.ndarray]:
 
 
 def input_derivatives(along: Trajectory) -> tuple[np.ndarray, np.ndarray]:
-    """Returns the change of all rates per unit of each input, upwards and downwards, at the points.
+    """Returns changes of all rates per unit of each input, upwards and downwards, at the points.
 
-    The two differ where an input is at its limit.
-
-    Args:
-        along: the trajectory.
-
-    Returns:
-        Each of shape (M, nf, nu), nf = nv + na.
-
-    Raises:
-        DivergenceError: the accelerations are not finite.
+    Each has the shape (M, nf, nu), nf = nv + na. They differ where an input is at its limit.
     """
     h, alone = FORWARD.step, Intervals(np.arange(len(along.time)), np.ones(len(along.time)))
     nu = along.inputs.shape[1]

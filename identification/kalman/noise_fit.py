@@ -54,13 +54,7 @@ class NoiseLevel:
 
 
 def compute_unit_ratio(plant: LinearPlant, sampling_time: float, time: float) -> float:
-    """Returns ρ₀ at a correlation time: then input errors move the outputs by σ (rms over the log).
-
-    Args:
-        plant: the linearised plant.
-        sampling_time: [s].
-        time: correlation time of the inputs' error [s].
-    """
+    """Returns ρ₀ at a correlation time [s]: input errors then move the outputs by σ, as an rms."""
     moved = propagate(*augment(plant, Noise(1.0, time), sampling_time))
     return float(1 / np.sqrt(moved.mean()))
 
@@ -68,15 +62,7 @@ def compute_unit_ratio(plant: LinearPlant, sampling_time: float, time: float) ->
 def evaluate_noise(
     filter_: Whitener, noise: Noise, e: np.ndarray, J: np.ndarray, prior: np.ndarray
 ) -> NoiseLevel:
-    """Returns the likelihood of a residual under a noise, with the parameters adjusted to it.
-
-    Args:
-        filter_: the whitening filter of the noise.
-        noise: ρ and τ.
-        e: residual, shape (N, ny).
-        J: sensitivities, shape (N, ny, p).
-        prior: 1/std of each parameter's prior, shape (p,).
-    """
+    """Returns the likelihood of a residual (N, ny) under a noise, the parameters adjusted to it."""
     E, F = filter_(e).ravel(), filter_(J).reshape(e.size, -1)
     return _level(E, F, F.T @ F, noise, prior, filter_.log_determinant)
 
@@ -96,10 +82,7 @@ def _level(
 
 
 def _solve(H: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Solves H c = b; returns the shortest c where outputs do not feel every direction of it.
-
-    Such is an effect without a prior that would begin after the log has ended.
-    """
+    """Solves H c = b; returns the shortest c where outputs do not feel every direction of it."""
     try:
         return np.linalg.solve(H, b)
     except np.linalg.LinAlgError:
@@ -187,15 +170,7 @@ class _Likeliest:
 def refine_noise(
     best: NoiseLevel, at: Callable[[Noise], NoiseLevel], times: tuple[float, float]
 ) -> NoiseLevel:
-    """Returns the most likely noise near a level, by a pattern search over ln ρ√τ and ln τ.
-
-    A slow plant responds to ρ²τ, so that the two directions are nearly independent.
-
-    Args:
-        best: where to begin.
-        at: gives the level of a noise.
-        times: shortest and longest correlation time [s].
-    """
+    """Returns the most likely noise near a level, by a pattern search over ln ρ√τ and ln τ."""
     step, alone = FIRST_FACTOR, True  # first ρ alone, because at a wrong ρ a wrong τ is likely
     known = [best]
     while step > LAST_FACTOR:

@@ -85,10 +85,7 @@ class Whitener:
 
 
 def build_whitener(plant: LinearPlant, noise: Noise, sampling_time: float) -> Whitener:
-    """Returns the whitening filter of a noise.
-
-    The state of the plant at the first sample is taken as known, because its errors are parameters.
-    """
+    """Returns the whitening filter of a noise; its first state counts as known."""
     if noise.ratio == 0:
         return Whitener(np.empty((0, 0, 0)), plant.C, np.empty(0), np.empty(0), 0.0)
     A, C, P, share = augment(plant, noise, sampling_time)
@@ -98,6 +95,10 @@ def build_whitener(plant: LinearPlant, noise: Noise, sampling_time: float) -> Wh
 @dataclass(frozen=True, eq=False)
 class Whitened:
     """Whitened sensitivities.
+
+    The noise that is found at a point is that of its criterion, of its scores and of the std of
+    its estimate, and after a short step the columns are those from before it. So the last ones
+    are kept.
 
     Attributes:
         plant: the linearised plant of the filter.
@@ -120,14 +121,7 @@ class Whitened:
 
 
 def whiten(plant: LinearPlant, J: np.ndarray, noise: Noise, sampling_time: float) -> Whitened:
-    """Whiten sensitivities, or take them from those that were kept.
-
-    Args:
-        plant: the linearised plant.
-        J: sensitivities, shape (N, ny, p).
-        noise: ρ and τ.
-        sampling_time: [s].
-    """
+    """Whiten sensitivities (N, ny, p), or take them from those that were kept."""
     for known in (*_kept,):
         if known.plant is plant and known.J is J and known.noise == noise:
             return known
@@ -146,16 +140,9 @@ def keep(whitened: Whitened) -> None:
 def smooth(
     plant: LinearPlant, noise: Noise, e: np.ndarray, sampling_time: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Returns the most likely errors of the inputs, and their part of the residual.
+    """Returns the most likely errors w of the inputs, and their part of a residual e (N, ny).
 
-    Args:
-        plant: the linearised plant.
-        noise: ρ and τ.
-        e: residual, shape (N, ny).
-        sampling_time: [s].
-
-    Returns:
-        w, shape (N, nu), in the inputs' unit, and its part of the residual, shape (N, ny).
+    w has the shape (N, nu) and the inputs' unit, its part the shape and the unit of e.
     """
     n, nu = len(e), plant.B.shape[2]
     if noise.ratio == 0:
@@ -177,11 +164,9 @@ def augment(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Returns the linear system of the state z = (x, w) of plant and input error.
 
-    Returns:
-        A, shape (N-1, nz, nz), C, shape (ny, nz), the covariance over σ² of the first state, P,
-        shape (nz, nz), and that of the process noise of each sample in units of P, shape (N-1,).
-        Where another record begins, A is zero and the share is 1: nothing is known of its inputs'
-        error.
+    These are A (N-1, nz, nz), C (ny, nz), the covariance over σ² of the first state, P (nz, nz),
+    and that of the process noise of each sample in units of P, shape (N-1,). Where another record
+    begins, A is zero and the share is 1: nothing is known of its inputs' error.
     """
     nx, nu = plant.B.shape[1:]
     a = float(np.exp(-sampling_time / noise.time))
@@ -194,10 +179,7 @@ def augment(
 
 @lru_cache(maxsize=3)  # a search of the correlation time tries a longer and a shorter one
 def _transitions(plant: LinearPlant, a: float) -> tuple[np.ndarray, np.ndarray]:
-    """Returns the transitions of the state (x, w), and which of them are to another record.
-
-    Noises of one correlation time share them.
-    """
+    """Returns transitions of the state (x, w), and which of them are to another record."""
     n, nx, nu = plant.B.shape
     A = np.zeros((n, nx + nu, nx + nu))
     A[:, :nx, :nx], A[:, :nx, nx:] = plant.A, plant.B

@@ -85,7 +85,7 @@ def evaluate_point(
     predictor: Predictor, space: Coordinates, q: np.ndarray, near: Point | None = None,
     small: frozenset[str] = frozenset(), run: Run | None = None,
 ) -> Point:  # fmt: skip
-    """Simulate a plant at q, with its sensitivities and its linearisation.
+    """Simulate a plant at q (p,), with its sensitivities and its linearisation.
 
     Args:
         predictor: plant, log and free parameters.
@@ -118,16 +118,7 @@ def evaluate_point(
 def shift_point(point: Point, q: np.ndarray, run: Run | None = None) -> Point | None:
     """Returns the point after a short step, with the columns and the linearisation from before it.
 
-    Args:
-        point: the point before the step.
-        q: shape (p,).
-        run: the simulation at q, where there is one already.
-
-    Returns:
-        None where the outputs do not go where the columns say: they no longer hold.
-
-    Raises:
-        DivergenceError: the simulation left the finite numbers.
+    None where the outputs do not go where the columns say: they no longer hold.
     """
     inside = point.space.inside(q)
     run = run or Run(point.predictor, point.space.decode(inside))
@@ -150,17 +141,7 @@ def evaluate_sensitivities(point: Point, whole: Log) -> np.ndarray:
 
 
 def extend_point(point: Point, whole: Log) -> Point:
-    """Returns the same point on a longer log, of which its own log is a part; without J.
-
-    The linearisation of its own log is kept where that is the beginning of a record.
-
-    Args:
-        point: the plant on its own log.
-        whole: the longer log.
-
-    Raises:
-        DivergenceError: the simulation of the longer log left the finite numbers.
-    """
+    """Returns the same point on a longer log, without J; known beginnings of records are kept."""
     run = Run(replace(point.predictor, log=whole), point.space.decode(point.q))
     known, each = _known_plants(point), []
     for (number, log), (record, _), along in zip(
@@ -210,22 +191,7 @@ def compute_columns(
     predictor: Predictor, space: Coordinates, q: np.ndarray, records: Sequence[Linearisation],
     known: Mapping[str, np.ndarray], predicted: np.ndarray,
 ) -> np.ndarray:  # fmt: skip
-    """Computes the sensitivities of the outputs to the free parameters.
-
-    Args:
-        predictor: plant, log and free parameters.
-        space: coordinates of the free parameters.
-        q: shape (p,).
-        records: the linearisation of each record there.
-        known: columns that need not be computed, by name, each (N, ny).
-        predicted: ŷ, shape (N, ny).
-
-    Returns:
-        J, shape (N, ny, p).
-
-    Raises:
-        DivergenceError: a simulation left the finite numbers.
-    """
+    """Computes J (N, ny, p); columns that are known, by name, are not computed."""
     asked = np.array([name not in known for name in space.names])
     J = np.empty((*predictor.log.outputs.shape, len(q)))
     for j in np.flatnonzero(~asked):
@@ -252,16 +218,9 @@ def do_equations_hold(
     predictor: Predictor, space: Coordinates, q: np.ndarray, records: Sequence[Linearisation],
     J: np.ndarray,
 ) -> bool:  # fmt: skip
-    """Returns whether the sensitivity equations agree with the columns J, with all of them at once.
+    """Returns whether the sensitivity equations agree with all columns of J (N, ny, p) at once.
 
     They do not where a joint hits its limit.
-
-    Args:
-        predictor: plant, log and free parameters.
-        space: coordinates of the free parameters.
-        q: shape (p,).
-        records: the linearisation of each record there.
-        J: shape (N, ny, p).
     """
     if not J.size or not can_solve(predictor, records):
         return False

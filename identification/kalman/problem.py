@@ -95,8 +95,7 @@ class Problem(Criterion[np.ndarray]):
     def bend(self, move: np.ndarray, after: Cost, μ: Cost) -> np.ndarray | None:
         """Returns the step with its second-order correction, shape (p,).
 
-        None where the step itself falls far enough, to the cost `after`, and where the plant
-        cannot be simulated along it.
+        None where the step itself falls far enough, or the plant cannot be simulated along it.
         """
         if self.cost - after >= KEPT_GAIN * self.expected_fall(move):
             return None
@@ -189,14 +188,7 @@ class Problem(Criterion[np.ndarray]):
 def linearise_criterion(
     point: Point, level: NoiseLevel, priors: Priors, largest: float = np.inf
 ) -> Problem:
-    """Returns the criterion, linearised about a point.
-
-    Args:
-        point: the plant at the point.
-        level: the noise.
-        priors: what is known of the parameters.
-        largest: see `Problem`.
-    """
+    """Returns the criterion under a noise and priors, linearised about a point; see `Problem`."""
     white = whiten(point.linear, point.J, level.noise, point.log.sampling_time)
     keep(white)
     E = white.filter(point.e).ravel() / level.sigma
@@ -216,14 +208,6 @@ def estimate_noise(
     fine: bool = False,
     largest: float = np.inf,
 ) -> NoiseLevel:
-    """Returns the most likely noise of a point's residual.
-
-    Args:
-        point: the plant with its residual.
-        priors: what is known of the parameters.
-        near: the noise of a point nearby, where one is known.
-        fine: whether the noise is refined by a search.
-        largest: largest error of the inputs that is believed before, in the inputs' unit.
-    """
+    """Returns the most likely noise of a point's residual; see `fit_noise`."""
     linear, e, J, Ts = point.linear, point.e, point.J, point.log.sampling_time
     return fit_noise(linear, e, J, priors.weight, Ts, near, fine, largest=largest)

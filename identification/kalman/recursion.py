@@ -42,16 +42,13 @@ _LOCK = Lock()
 def filter_gains(
     A: np.ndarray, C: np.ndarray, P: np.ndarray, share: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, float]:
-    """Returns the gains of the Kalman filter at each sample.
+    """Returns the gains K (N, nz, ny) of the Kalman filter, L (N, ny, ny), and Σ log det S.
 
     Args:
         A: transitions of the state, shape (N-1, nz, nz).
         C: outputs from the state, shape (ny, nz).
         P: covariance over σ² of the first state, shape (nz, nz).
         share: s, the covariance of each sample's process noise in units of P, shape (N-1,).
-
-    Returns:
-        K, shape (N, nz, ny), L, shape (N, ny, ny), and Σ log det S.
     """
     n, nz, ny = len(A), len(P), len(C)
     K, L = np.empty((n + 1, nz, ny)), np.empty((n + 1, ny, ny))
@@ -63,18 +60,7 @@ def filter_gains(
 def filter_innovations(
     A: np.ndarray, C: np.ndarray, K: np.ndarray, L: np.ndarray, e: np.ndarray
 ) -> np.ndarray:
-    """Returns the innovations of residuals, of std σ each.
-
-    Args:
-        A: transitions of the state, shape (N-1, nz, nz).
-        C: outputs from the state, shape (ny, nz).
-        K: gains, shape (N, nz, ny).
-        L: inverted factors, shape (N, ny, ny).
-        e: residuals, shape (n, ny, p) for n <= N samples.
-
-    Returns:
-        E, shape (n, ny, p).
-    """
+    """Returns the innovations, of std σ each, of residuals e (n, ny, p) of n <= N samples."""
     n, ny, p = e.shape
     out = np.empty((n, ny, p))
     given = [np.ascontiguousarray(a, float) for a in (A, C, K, L, e)]
@@ -89,19 +75,11 @@ def filter_innovations(
 def transpose_filter(
     A: np.ndarray, C: np.ndarray, K: np.ndarray, L: np.ndarray, E: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Applies the transposed filter, backwards in time: x · e = E · (innovations of e) for any e.
+    """Applies the transposed filter to E (n, ny): x · e = E · (innovations of e) for any e.
 
         r_k = A_kᵀ r_{k+1} + Cᵀ x_k,    x_k = L_kᵀ E_k - K_kᵀ A_kᵀ r_{k+1}
 
-    Args:
-        A: as of `filter_innovations`.
-        C: as of `filter_innovations`.
-        K: as of `filter_innovations`.
-        L: as of `filter_innovations`.
-        E: shape (n, ny) for n <= N samples.
-
-    Returns:
-        x, shape (n, ny), and r, shape (n, nz).
+    Returns x, shape (n, ny), and r, shape (n, nz).
     """
     n, ny = E.shape
     out, r = np.empty((n, ny)), np.empty((n, A.shape[1]))
@@ -111,17 +89,7 @@ def transpose_filter(
 
 
 def propagate(A: np.ndarray, C: np.ndarray, P: np.ndarray, share: np.ndarray) -> np.ndarray:
-    """Returns output variances over σ² that the process noise causes if nothing is measured.
-
-    Args:
-        A: as of `filter_gains`.
-        C: as of `filter_gains`.
-        P: as of `filter_gains`.
-        share: as of `filter_gains`.
-
-    Returns:
-        Of each output at each sample but the first, shape (N-1, ny).
-    """
+    """Returns output variances over σ² (N-1, ny) by the process noise if nothing is measured."""
     n, nz, ny = len(A), len(P), len(C)
     out = np.empty((n, ny))
     given = (np.ascontiguousarray(a, float) for a in (A, C, P, share))

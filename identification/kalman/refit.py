@@ -163,17 +163,8 @@ def descend(
     First the model approaches the data: a step counts as progress when likelihood or free run
     improve, under a noise that is chosen from a grid and bounded by `options.allowed_input_error`.
     Then the noise is refined without that bound, and only the likelihood counts. This second part
-    is left out where the refined noise exceeds the bound and its innovations are not white.
-
-    Args:
-        point: where to begin.
-        priors: what is known of the parameters.
-        options: which noise is believed.
-        near: a noise to begin at, where one is known.
-        steps: largest number of steps.
-        is_near: whether the point is near the optimum: the first part is left out.
-        least: log posterior that an estimate must come to, to matter: the second part ends where a
-            point, after the best small change of its parameters, stays below.
+    is left out where the refined noise exceeds the bound and its innovations are not white; it ends
+    where a point, after the best small change of its parameters, stays below `least`.
 
     Returns:
         Whether the search ended before it had used all steps.

@@ -36,15 +36,9 @@ COLUMNS_PER_RECURSION = 64  # at most, so that all threads have some
 def transitions(
     F: np.ndarray, duration: np.ndarray, forced: int = 0
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Returns the transition of a linear system, and the effect of a constant rate of change.
+    """Returns A (n, nx, nx) and Γ (n, nx, nx - forced) of F (n, nx, nx) [1/s] over times (n,) [s].
 
-    Args:
-        F: shape (n, nx, nx) [1/s].
-        duration: shape (n,) [s].
-        forced: index of the first state whose rate is forced.
-
-    Returns:
-        A, shape (n, nx, nx), and Γ, shape (n, nx, nx - forced).
+    Only the rates of the states from the index `forced` on are forced.
     """
     F, duration = (np.ascontiguousarray(a, float) for a in (F, duration))
     D = _balance(np.maximum(F.max(axis=0, initial=0.0), -F.min(axis=0, initial=0.0)))
@@ -62,20 +56,17 @@ def transitions(
 def respond(
     A: np.ndarray, Γ: np.ndarray, first: np.ndarray, g: np.ndarray, every: int, rows: np.ndarray
 ) -> np.ndarray:
-    """Computes some entries of the state at the samples, for many forcings of its rates at once.
+    """Computes entries of the state at the samples for m forcings of its rates: (m, N, r).
 
-        δx_{l+1} = A_l δx_l + Γ_l g_l,    δx_0 given            l: the intervals of a trajectory
+        δx_{l+1} = A_l δx_l + Γ_l g_l,    δx_0 given            l: the L intervals of a trajectory
 
     Args:
         A: transition over each interval, shape (L, nx, nx).
         Γ: effect of a constant rate of change, shape (L, nx, nf).
-        first: the first state of each column, shape (m, nx).
-        g: forcings of each column, means over the intervals, shape (m, L, nf).
+        first: the first state of each forcing, shape (m, nx).
+        g: means of the forcings over the intervals, shape (m, L, nf).
         every: intervals of a sample.
-        rows: indices of r entries of the state, shape (r,).
-
-    Returns:
-        Shape (m, N, r), N = L/every + 1.
+        rows: indices of the r entries.
     """
     L, nx, nf = Γ.shape
     m, wanted = len(g), np.asarray(rows, np.int64)

@@ -36,12 +36,7 @@ RATE_ROUNDING = 1e-12  # of the largest rate
 
 
 def can_solve(predictor: Predictor, records: Sequence[Linearisation]) -> bool:
-    """Returns whether the equations hold for a plant: all states, also of its sensors, are in x.
-
-    Args:
-        predictor: plant and log.
-        records: the linearisation of each record.
-    """
+    """Returns whether the equations hold for a plant: all states, also of its sensors, are in x."""
     read = [i for of in _indices(predictor) for i in of]
     return with_states(predictor.plant) is None and all(r.felt[read].all() for r in records)
 
@@ -54,20 +49,18 @@ def solve_sensitivities(
     change: np.ndarray,
     courses: Sequence[Courses] = (),
 ) -> np.ndarray:
-    """Computes the change of all outputs per unit of some changes of the parameters.
+    """Computes the change of all outputs per unit of m changes of the parameters: (N, ny, c).
+
+    There is a column for each course, NaN for changes that the equations do not describe.
 
     Args:
         predictor: plant and log, with p parameters.
         records: the linearisation of each record at `values`.
         values: shape (p,), in the parameters' units.
-        changed: values of the parameters after each of m changes, shape (m, p).
+        changed: values of the parameters after each change, shape (m, p).
         change: the size of each change, shape (m,).
         courses: of each change the courses in time that multiply what it adds, one or more; none
             where each change counts throughout.
-
-    Returns:
-        Shape (N, ny, c), a column for each course; NaN in the columns of changes that the
-        equations do not describe.
 
     Raises:
         DivergenceError: accelerations along the trajectory are not finite.
@@ -111,11 +104,9 @@ def _forcing(
     predictor: Predictor, linear: Linearisation, rows: np.ndarray, numbers: Numbers,
     courses: Sequence[Courses],
 ) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
-    """Returns how each change moves the rates.
+    """Returns how each change moves the rates, and whether that is all that it does, shape (m,).
 
-    Returns:
-        Means over the intervals, shape (c, L, nf), a row for each course, and whether that is all
-        that each change does, shape (m,).
+    The first are means over the intervals, shape (c, L, nf), a row for each course.
     """
     along, log, model = linear.along, predictor.log, predictor.plant.model
     every = substeps(log.sampling_time, model.opt.timestep)
@@ -150,16 +141,7 @@ def _change(entries: Entries, inputs: np.ndarray, nominal: np.ndarray, of: np.nd
 
 
 def _by_inputs(linear: Linearisation, δu: np.ndarray, courses: np.ndarray) -> np.ndarray:
-    """Returns how other inputs alone move the rates (linear in them), as means over the intervals.
-
-    Args:
-        linear: the linearisation.
-        δu: change of the inputs at the points, shape (M, nu).
-        courses: factors at the points, shape (k, M).
-
-    Returns:
-        Shape (k, L, nf).
-    """
+    """Returns how a change of the inputs (M, nu) moves the rates, by course (k, M): (k, L, nf)."""
     along = linear.along
     if not δu.any():
         return np.zeros((len(courses), len(along.begins), linear.Γ.shape[2]))
@@ -170,12 +152,7 @@ def _by_inputs(linear: Linearisation, δu: np.ndarray, courses: np.ndarray) -> n
 
 
 def _reads_what_it_changes(linear: Linearisation, changes: Sequence[Entries]) -> np.ndarray:
-    """Returns which changes move activations that no output felt, and read them.
-
-    Args:
-        linear: the linearisation.
-        changes: entries of the model that differ.
-    """
+    """Returns which changes move activations that no output felt, and read them."""
     felt = linear.felt[linear.along.model.nv :]
     if felt.all() or not changes:
         return np.zeros(len(changes), bool)

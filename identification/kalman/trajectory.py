@@ -103,13 +103,13 @@ class Trajectory:
 class Run:
     """A simulation of all records of a log, made when something of it is first asked for.
 
+    A search simulates a step to see whether it is a good one, and then linearises along the same
+    trajectory. What is asked raises a DivergenceError where the simulation diverges, and an
+    InputError where the robot cannot rest at its start.
+
     Attributes:
         predictor: plant and log, with p parameters.
         values: shape (p,), in the parameters' units.
-
-    Raises:
-        DivergenceError: the simulation left the finite numbers; as for all that is asked.
-        InputError: the robot cannot rest at its start.
     """
 
     predictor: Predictor
@@ -123,11 +123,7 @@ class Run:
 
     @cached_property
     def outputs(self) -> np.ndarray:
-        """The outputs of all records, shape (N, ny).
-
-        A plant whose sensors see states that no model file has is simulated once more for them: a
-        trajectory lacks these.
-        """
+        """The outputs of all records, shape (N, ny)."""
         if with_states(self.predictor.plant) is not None:
             return self.predictor.predict(self.values)[0]
         each = zip(self.predictor.records(), self.along, strict=True)
@@ -142,35 +138,14 @@ class Run:
 def follow_records(
     predictor: Predictor, values: np.ndarray, *points: int
 ) -> list[list[Trajectory]]:
-    """Simulate one value set over each record of a log, side by side.
-
-    Args:
-        predictor: plant and log.
-        values: shape (p,), in the parameters' units.
-        points: each P that is wanted.
-
-    Returns:
-        For each P the trajectories of the records.
-
-    Raises:
-        DivergenceError: a simulation left the finite numbers.
-    """
+    """Returns trajectories of the records for each wanted P, simulated once side by side."""
     records = [*predictor.records()]
     runs = run_parts(lambda each: _simulated(each[0], values[..., each[1]]), records)
     return [[run(P) for run in runs] for P in points]
 
 
 def follow(predictor: Predictor, values: np.ndarray, points: int) -> Trajectory:
-    """Simulate one value set over one record.
-
-    Args:
-        predictor: plant and log.
-        values: shape (p,), in the parameters' units.
-        points: P, if the simulation has as many steps in a sample.
-
-    Raises:
-        DivergenceError: the simulation left the finite numbers.
-    """
+    """Returns the trajectory of one value set (p,) over one record."""
     return _simulated(predictor, values)(points)
 
 
@@ -242,15 +217,9 @@ def _between(x: np.ndarray, at: np.ndarray) -> np.ndarray:
 
 
 def average_inputs(held: np.ndarray, steps: np.ndarray, nu: int) -> np.ndarray:
-    """Returns means of the inputs about points.
+    """Returns means of held inputs (steps, inputs) or (n, steps, inputs) about points: (n, M, nu).
 
-    Args:
-        held: at the steps of the simulation, shape (steps, inputs) or (n, steps, inputs).
-        steps: between which the points lie, shape (M + 1,).
-        nu: inputs of the model; those beyond the log's are zero.
-
-    Returns:
-        Shape (n, M, nu).
+    The points lie between `steps`; inputs of the model beyond the log's are zero.
     """
     each = held if held.ndim == 3 else held[None]
     mean = np.add.reduceat(each, steps[:-1], axis=1) / np.diff(steps)[:, None]

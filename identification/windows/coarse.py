@@ -41,7 +41,7 @@ def steps_of(plant: Plant) -> tuple[float, float]:
 def with_longest_steps(
     parts: Sequence[Shooting], q: Sequence[np.ndarray], d: Sequence[np.ndarray]
 ) -> list[Shooting]:
-    """Returns the windows with the longest steps that change predictions by less than the bound.
+    """Returns the windows with the longest steps that change predictions by less than ε_y.
 
     Args:
         parts: windows of each record, all of one plant.
@@ -66,13 +66,7 @@ def with_longest_steps(
 def with_longest_slope_steps(
     parts: Sequence[Shooting], q: Sequence[np.ndarray], d: Sequence[np.ndarray]
 ) -> list[Shooting]:
-    """Returns the windows with the longest steps of simulations for slopes that keep the bound.
-
-    Args:
-        parts: windows of each record, all of one plant.
-        q: the parameters of each, shape (p,).
-        d: moves of the states of its windows, shape (W, nx).
-    """
+    """Returns the windows with the longest steps that change slopes by less than ε_S."""
 
     def differs(n: int) -> bool:
         coarse = [_columns(n, *at) for at in few]

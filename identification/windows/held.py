@@ -53,10 +53,7 @@ class HeldRecords:
     ) -> tuple[np.ndarray, ...]:
         """Returns r at moves of states (W, nx), (W, L ny + nx) a record; NaN where one diverges.
 
-        Args:
-            moves: one array a record.
-            at: masks of the windows that are simulated, shape (W,) a record, whose rows alone are
-                returned; all of them when None.
+        Only windows of the masks `at`, shape (W,) a record, are simulated and returned.
         """
         masks = at or [np.ones(len(d), bool) for d in moves]
         out: dict[int, np.ndarray] = {}

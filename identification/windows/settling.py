@@ -82,14 +82,10 @@ class Starts:
 
 
 def best_starts(own: Starts, others: Sequence[Starts]) -> tuple[np.ndarray, np.ndarray]:
-    """Returns each window's start by the model with the least error, and whether it is another one.
+    """Returns each window's start by the model with the least error, and whether it is another's.
 
-    Args:
-        own: of a model.
-        others: of others, which may have more states or fewer: the first ones are the same.
-
-    Returns:
-        Changes of the initial states, shape (W, nx), and a mask, shape (W,).
+    Other models may have more states or fewer: the first ones are the same. The start is a change
+    of the initial states, shape (W, nx), the second a mask, shape (W,).
     """
     best = np.argmin([own.squares, *(o.squares for o in others)], axis=0)
     d = np.array(own.d)
@@ -105,15 +101,14 @@ def sought_from_others(
 ) -> tuple[Settled, ...]:  # fmt: skip
     """Returns windows at given states, some sought again from other states: the better of both.
 
+    The residual of a window that diverges at given states is NaN.
+
     Args:
         held: the windows.
         moves: their states, one array (W, nx) a record.
         starts: of each record, other states and the mask of the windows that are sought from there.
         known: residuals at the given states, one array (W, m) a record; they are computed when
             None.
-
-    Returns:
-        The windows of each record; NaN in the residual of one that diverges at given states.
     """
     out: dict[int, Settled] = {}
     for records, windows in held.groups:

@@ -72,7 +72,7 @@ class Shooting:
         return moved(self.predictor.plant.model, self.first.states, d)
 
     def residual(self, q: np.ndarray, d: np.ndarray) -> np.ndarray:
-        """Returns r of all windows at q and d (W, nx), shape (W, L ny + nx).
+        """Returns r (W, L ny + nx) of all windows at q (p,) and d (W, nx).
 
         Raises:
             DivergenceError: a window left the finite numbers.
@@ -93,12 +93,9 @@ class Shooting:
     def outputs(
         self, q: np.ndarray, moves: Sequence[np.ndarray], is_rough: bool = False
     ) -> np.ndarray:
-        """Returns outputs of k points q (k, p), each over all windows from its d: (k, W, L, ny).
+        """Returns outputs of k points q (k, p) over all windows, each from its d: (k, W, L, ny).
 
-        Args:
-            q: the points.
-            moves: d of each, shape (W, nx).
-            is_rough: for slopes, where only differences matter.
+        Rough ones are for slopes, where only differences matter.
         """
         plant = self.predictor.plant
         if not is_rough:
@@ -128,11 +125,7 @@ class Shooting:
         return y.reshape(len(q), W, *y.shape[1:])
 
     def held_inputs(self, values: np.ndarray) -> tuple[np.ndarray, int, str]:
-        """Returns inputs of all windows for k value sets, their number per sample, and their hold.
-
-        The plant changes the inputs of the whole log, because its effects may depend on inputs
-        before the window.
-        """
+        """Returns inputs of all windows for some value sets, their number per sample, and hold."""
         predictor, cut, log = self.predictor, self.cut, self.predictor.log
         every = substeps(log.sampling_time, predictor.plant.model.opt.timestep)
         held = hold(log.inputs, every, log.hold)
@@ -283,13 +276,10 @@ def at_own_steps(model: mujoco.MjModel, own: mujoco.MjModel) -> mujoco.MjModel:
 def slower(
     inputs: np.ndarray, every: int, model: mujoco.MjModel, other: mujoco.MjModel
 ) -> tuple[np.ndarray, int]:
-    """Returns inputs, `every` of them a sample, for another model whose steps may be longer.
+    """Returns inputs (k, steps + 1, nu), `every` a sample, for another model with longer steps.
 
-    Args:
-        inputs: shape (k, steps + 1, nu); the last one stands behind the last step.
-        every: one, or as many as a model takes steps.
-        model: that model.
-        other: one whose steps take a whole number of its steps.
+    The last input stands behind the last step; a step of the other model takes a whole number of
+    steps of the model.
     """
     n = round(other.opt.timestep / model.opt.timestep)
     if n == 1 or every == 1:

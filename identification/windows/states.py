@@ -41,9 +41,7 @@ RESTART_SHARES = (0.0, 0.5)  # of its changes, where such a window begins again
 def search(at: States, expected: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
     """Returns the best states and the residuals there; a finished window is no longer simulated.
 
-    Args:
-        at: the windows where the search begins.
-        expected: sums of squares, shape (W,), that are small enough.
+    Windows whose sums of squares are near those `expected`, shape (W,), stay as they are.
     """
     d, r = np.array(at.d), np.array(at.tangent.r)
     part, going, μ = at, np.arange(len(d)), None

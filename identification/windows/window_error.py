@@ -48,7 +48,7 @@ def window_error(
 
 
 def first_error(plant: Plant, log: Log, length: float, most: int, part: float = 1.0) -> np.ndarray:
-    """Returns errors in the same windows, each from the mean of the prior of its initial state.
+    """Returns errors (W, L, ny) of windows, each from the mean of the prior of its initial state.
 
     Args:
         plant: the model, with its own values.
@@ -56,13 +56,6 @@ def first_error(plant: Plant, log: Log, length: float, most: int, part: float = 
         length: of a window [s].
         most: windows, spread over the log.
         part: of these, that is simulated: some of the windows, or the beginning of the only one.
-
-    Returns:
-        Shape (W, L, ny), in the outputs' unit.
-
-    Raises:
-        InputError: the windows do not fit the log.
-        DivergenceError: the model cannot be simulated.
     """
     cut = some(spread(windows(log, length), most), part)
     shooting, d = _fixed(plant, log, cut, None)

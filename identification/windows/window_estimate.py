@@ -201,13 +201,7 @@ def _windows_at(shooting: Shooting, q: np.ndarray, d: np.ndarray) -> WindowsAtPo
 def _search(
     at: WindowsAtPoint, tolerance: float, most: int, progress: Progress | None
 ) -> tuple[WindowsAtPoint, bool, int]:
-    """Fits q and the initial states of all windows.
-
-    Args:
-        at: the criterion where the search begins.
-        tolerance: relative change of cost and of q at which the search stops.
-        most: largest number of linearisations after the first.
-        progress: receives one line per linearisation.
+    """Fits q and the initial states of all windows, with at most `most` linearisations more.
 
     Returns:
         The criterion at the last point, whether the search ended by itself rather than out of

@@ -84,12 +84,7 @@ def spread(cut: Windows, most: int) -> Windows:
 
 
 def some(cut: Windows, part: float) -> Windows:
-    """Returns a part of some windows: some of them, evenly spread; of one window its beginning.
-
-    Args:
-        cut: the windows.
-        part: about the share of their samples that is kept, in (0, 1].
-    """
+    """Returns about a share `part` of some windows, evenly spread; of one window its beginning."""
     n, samples = cut.inputs.shape[:2]
     if n > 1:
         return spread(cut, max(1, round(part * n)))
@@ -120,11 +115,6 @@ def first_states(predictor: Predictor, values: np.ndarray, cut: Windows) -> Firs
 
     Where the free run diverges, states that are not measured begin at the plant's start and are
     free without limit. Where all positions are measured, no free run is simulated.
-
-    Args:
-        predictor: the plant and the log.
-        values: values of its free parameters, shape (p,).
-        cut: the windows.
     """
     plant, log = predictor.plant, predictor.log
     model, known = plant.model, with_states(plant)
@@ -155,14 +145,7 @@ def first_states(predictor: Predictor, values: np.ndarray, cut: Windows) -> Firs
 def extended(
     predictor: Predictor, values: np.ndarray, cut: Windows, first: FirstStates
 ) -> FirstStates:
-    """Returns first states, extended by those that a plant has beside its model's.
-
-    Args:
-        predictor: the plant and the log.
-        values: values of its free parameters, shape (p,).
-        cut: the windows.
-        first: of some or none of these states.
-    """
+    """Returns first states, extended by those that a plant has beside its model's."""
     log = predictor.log
     before = np.maximum(cut.starts - (log.hold == "zoh"), 0)  # what has acted until then
     known, more = predictor.first_loads(values, first.states, log.inputs[before])
