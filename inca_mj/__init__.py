@@ -63,7 +63,7 @@ _PUBLIC = {
     "Identification": "workflows.identification",
     "identify_windows": "workflows.disturbed",
     "identify_innovations": "workflows.disturbed",
-    "identify_as_thesis": "workflows.procedure",
+    "identify_as_thesis": "workflows.identification",
     "calibrate": "workflows.calibration",
     "Calibration": "workflows.calibration",
     "Spread": "workflows.spread",
@@ -181,12 +181,12 @@ if TYPE_CHECKING:  # the same list, for type checkers and editors
     from inca_mj.workflows.excitation import excite as excite
     from inca_mj.workflows.identification import Identification as Identification
     from inca_mj.workflows.identification import identify as identify
+    from inca_mj.workflows.identification import identify_as_thesis as identify_as_thesis
     from inca_mj.workflows.limits import Limits as Limits
     from inca_mj.workflows.poses import LogPoses as LogPoses
     from inca_mj.workflows.poses import RestingPose as RestingPose
     from inca_mj.workflows.poses import log_poses as log_poses
     from inca_mj.workflows.poses import pose_at_rest as pose_at_rest
-    from inca_mj.workflows.procedure import identify_as_thesis as identify_as_thesis
     from inca_mj.workflows.pulled import with_force as with_force
     from inca_mj.workflows.sensitivity import sensitivity as sensitivity
     from inca_mj.workflows.spread import Spread as Spread

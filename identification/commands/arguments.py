@@ -19,6 +19,8 @@ from typing import Annotated, Any, get_args, get_origin, get_type_hints
 
 import tyro
 
+from identification.errors import InputError, unknown_name
+
 _FRAME = "│╭╮╰╯─|+ "  # of a box, also where a terminal knows no lines
 COMPLETION, SHELLS = "--completion", ("bash", "zsh", "fish")
 _KINDS = {"FLOAT": "a number", "INT": "a whole number", "PATH": "a path"}
@@ -46,8 +48,6 @@ def parsed(
         InputError: they name no command, or one that cannot be had with them.
         SystemExit: they ask for help, which is then printed.
     """
-    from identification.errors import InputError
-
     if arguments[:1] == [COMPLETION]:
         shell = " ".join(arguments[1:])
         if shell not in SHELLS:
@@ -131,8 +131,6 @@ def _several(kind: Any) -> Iterator[str]:
 
 def _sentence(text: str, name: str, arguments: Sequence[str], commands: dict[str, type]) -> str:
     """Returns one sentence on what the parser wrote."""
-    from identification.errors import unknown_name
-
     command = arguments[0] if arguments else ""
     if not command:
         return f"no command is given; give one of {', '.join(commands)}"

@@ -14,6 +14,11 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import tyro
 
+from identification.commands.stopping import leaving_out
+from identification.errors import InputError
+from identification.files import readable, write_text
+from identification.folders import draft_of
+
 if TYPE_CHECKING:
     from identification.folders import Draft
     from identification.report.page import Section
@@ -57,18 +62,7 @@ def flat(groups: Iterable[Iterable[T]]) -> list[T]:
 
 
 def assignments(texts: Sequence[str], option: str, example: str = "m=0.2") -> dict[str, float]:
-    """Returns the values of an option that is given as NAME=VALUE.
-
-    Args:
-        texts: what was given.
-        option: its name.
-        example: a right one.
-
-    Raises:
-        InputError: one is malformed, or a name is given twice.
-    """
-    from identification.errors import InputError
-
+    """Returns the values of an option whose words are NAME=VALUE, or refuses a wrong one."""
     values: dict[str, float] = {}
     for text in texts:
         name, equals, right = text.partition("=")
@@ -100,8 +94,6 @@ def say_json(result: Mapping[str, Any]) -> None:
 
 def write_result(path: Path, command: Any, result: Mapping[str, Any]) -> None:
     """Write result.json: the result, the resolved configuration and the versions that made it."""
-    from identification.files import write_text
-
     packages = ("inca-mj", "mujoco", "numpy", "scipy", "numba")
     record = {
         **_plain(result),
@@ -121,9 +113,6 @@ def conclude(
 ) -> bool:
     """Save the results in the folder that was asked for, say them, then draw.
 
-    They are said even where they cannot be saved: a full disk must not cost what took minutes.
-    They are saved before anything is drawn, so that an interrupt or an error costs the drawings.
-
     Args:
         command: with its `output`; its fields are the configuration that result.json tells.
         record: the results as plain values: result.json, and what `--json` prints.
@@ -134,12 +123,7 @@ def conclude(
 
     Returns:
         Whether figures and report were written.
-
-    Raises:
-        InputError: the folder cannot be written.
     """
-    from identification.folders import draft_of
-
     output: Output = command.output
     with ExitStack() as stack:
         draft, told = None, text
@@ -151,29 +135,19 @@ def conclude(
                     keep_if_possible("data and model", partial(keep, draft.folder))
                 draft.save()
                 told = "\n".join(line for line in (text, saved) if line)
-        finally:
+        finally:  # a full disk must not cost what took minutes
             if output.json:
                 say_json(record)
             else:
                 say(told)
         if draft is None or draw is None:
             return False
+        # Behind the results, so that an interrupt or an error costs the drawings only.
         return add_drawings(draft, "figures and report", partial(draw, draft.folder))
 
 
 def keep_if_possible(what: str, write: Callable[[], object]) -> bool:
-    """Write more than result.json, or say in one sentence why not: what was found is kept.
-
-    Args:
-        what: is written.
-        write: does so.
-
-    Raises:
-        InputError: the folder cannot be written.
-        OSError: as for `InputError`, from a library.
-    """
-    from identification.errors import InputError
-
+    """Write more than result.json, or say in one sentence why not: what was found is kept."""
     try:
         write()
     except (InputError, OSError):
@@ -185,18 +159,7 @@ def keep_if_possible(what: str, write: Callable[[], object]) -> bool:
 
 
 def add_drawings(draft: Draft, what: str, write: Callable[[], object]) -> bool:
-    """Add drawings to results that were saved; an error or Ctrl-C costs the drawings only.
-
-    Args:
-        draft: of the results.
-        what: is drawn, such as "figures and report".
-        write: writes it into the folder of the draft.
-
-    Returns:
-        Whether it was added.
-    """
-    from identification.commands.stopping import leaving_out
-
+    """Add drawings to results that were saved; returns whether no error kept them away."""
     try:
         with leaving_out(f"left out: {what}; the results are kept in {draft.place}"):
             write()
@@ -234,11 +197,8 @@ def draw_report(
 def import_without_graphics(*, own_methods: bool = False) -> None:
     """Makes MuJoCo be imported without OpenGL, here and in processes that begin from here.
 
-    Nothing of these commands draws with it, and MuJoCo's import dies of a wrong MUJOCO_GL.
-
-    Args:
-        own_methods: whether methods of the user may run, which may draw: MUJOCO_GL then stays where
-            it names one of MuJoCo's backends.
+    Nothing of these commands draws with it, and MuJoCo's import dies of a wrong MUJOCO_GL. Where
+    methods of the user run, which may draw, it stays if it names one of MuJoCo's backends.
     """
     backend = os.environ.get("MUJOCO_GL", "").lower().strip()
     if not (own_methods and backend in _BACKENDS):
@@ -256,8 +216,6 @@ def _version(package: str) -> str:
 
 def _plain(value: Any) -> Any:
     """Returns a value with paths as text, and with text that every reader of JSON takes."""
-    from identification.files import readable
-
     if isinstance(value, Mapping):
         return {k: _plain(v) for k, v in value.items()}
     if isinstance(value, list | tuple):
@@ -273,3 +231,14 @@ def table(head: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> str:
         "  ".join(cell.rjust(width) for cell, width in zip(line, widths, strict=True))
         for line in lines
     )
+
+
+def parameter_table(rows: Iterable[tuple[str, float, float, str, float, bool]]) -> str:
+    """Returns a table of name, value, std, unit, start and whether the value is at a bound."""
+    from identification.quantities import matched
+
+    cells = [
+        (name, *matched(value, std), unit, f"{start:z.6g}", "at bound" if bound else "")
+        for name, value, std, unit, start, bound in rows
+    ]
+    return table(("parameter", "value", "std", "unit", "start", ""), cells)

@@ -13,16 +13,13 @@ from pathlib import Path
 from typing import Any
 
 from identification.commands.common import Output
+from identification.errors import InputError
+from identification.files import exists, is_file
+from identification.folders import try_folder
 
 
 def refuse_empty(arguments: Sequence[str]) -> None:
-    """Refuse `--out ""`, which would be the folder in which the user stands.
-
-    Raises:
-        InputError: it is among the arguments.
-    """
-    from identification.errors import InputError
-
+    """Refuses `--out ""`, which would be the folder in which the user stands."""
     if "--out=" in arguments or ("--out", "") in pairwise(arguments):
         raise InputError('--out is given as ""; name a folder, such as --out out/run')
 
@@ -38,10 +35,6 @@ def refuse_place(command: Any) -> None:
             input of the command is it or lies in it; or another file lies there that the program
             did not make.
     """
-    from identification.errors import InputError
-    from identification.files import exists
-    from identification.folders import try_folder
-
     output = getattr(command, "output", None)
     out = output.out if isinstance(output, Output) else None
     if out is None:
@@ -69,8 +62,6 @@ def refuse_place(command: Any) -> None:
 
 def _inputs(value: Any) -> Iterator[Path]:
     """Yields the files and folders that a command's fields name."""
-    from identification.files import is_file
-
     if isinstance(value, Output):
         return
     if is_dataclass(value):

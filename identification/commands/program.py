@@ -14,6 +14,7 @@ from typing import Any
 from identification.commands.arguments import parsed
 from identification.commands.places import refuse_empty, refuse_place
 from identification.commands.stopping import STOPPED, stoppable
+from identification.errors import InputError
 from identification.progress import watched
 
 SLOW = 0.5  # [s] before a bar is drawn, so that short stages do not flicker
@@ -66,8 +67,6 @@ def run_program(
             finally:
                 sys.stdout.flush()  # the help too may not find room
     except ValueError as error:
-        from identification.errors import InputError
-
         if not isinstance(error, InputError):
             raise
         sys.stderr.write(f"{name}: {error}\n")

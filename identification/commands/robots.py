@@ -18,9 +18,11 @@ from identification.commands.common import (
     flat,
     note,
     output_field,
-    table,
+    parameter_table,
 )
 from identification.commands.stopping import STOPPED
+from identification.errors import InputError
+from identification.progress import duration
 
 if TYPE_CHECKING:
     from identification.robot.robot import Robot
@@ -51,12 +53,7 @@ class OnRobot:
     output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
 
     def read(self) -> Robot:
-        """Returns the robot, compiled for its log, with the records that confirm.
-
-        Raises:
-            InputError: as `identification.read_robot`.
-        """
-        from identification.errors import InputError
+        """Returns the robot, compiled for its log, with the records that confirm."""
         from identification.robot.file import read_robot_file
 
         if not self.logs:
@@ -159,7 +156,6 @@ class Discover(OnRobot):
 
 def timed(output: Output, draw: Callable[..., object]) -> Callable[[Path], None]:
     """Returns what draws figures and report into a folder, and says how long it took."""
-    from identification.progress import duration
 
     def drawn(out: Path) -> None:
         output.tell("drawing the report")
@@ -173,14 +169,13 @@ def timed(output: Output, draw: Callable[..., object]) -> Callable[[Path], None]
 
 def _fit_text(record: dict[str, Any]) -> str:
     """Returns a fit as a table and its verdict."""
-    from identification.quantities import matched, plain_unit
+    from identification.quantities import plain_unit
 
-    cells = [
-        (name, *matched(p["value"], float("inf") if p["std"] is None else p["std"]),
-         plain_unit(p["unit"]), f"{p['initial']:z.6g}", "at bound" if p["at_bound"] else "")
+    rows = [
+        (name, p["value"], float("inf") if p["std"] is None else p["std"],
+         plain_unit(p["unit"]), p["initial"], p["at_bound"])
         for name, p in record["parameters"].items()
     ]  # fmt: skip
-    head = ("parameter", "value", "std", "unit", "start", "")
     first = int(record["worse"] is not None)  # a warning stands above the values it warns of
     verdict = record["verdict"]
-    return "\n".join([*verdict[:first], table(head, cells), *verdict[first:]])
+    return "\n".join([*verdict[:first], parameter_table(rows), *verdict[first:]])

@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Annotated
 import tyro
 
 from identification.commands.common import Output, conclude, draw_report, note, output_field
+from identification.commands.places import refuse_place
+from identification.errors import InputError
 
 if TYPE_CHECKING:
     from identification.sweep.store import Store
@@ -49,8 +51,6 @@ class SweepCommand:
 
     def run(self) -> int:
         """Run, keep, say; 1 where every task met an error."""
-        from identification.commands.places import refuse_place
-        from identification.errors import InputError
         from identification.sweep.config import read_sweep
         from identification.sweep.store import Store
 
@@ -104,8 +104,6 @@ class SweepCommand:
 
 def _options(words: Sequence[str]) -> dict[str, str]:
     """Returns the options of jobs, or refuses a word that is not NAME=VALUE."""
-    from identification.errors import InputError
-
     for word in words:
         if not word.partition("=")[2]:
             raise InputError(f"{word!r} is not NAME=VALUE; write e.g. --job slurm_partition=long")

@@ -16,9 +16,8 @@ import numpy as np
 
 from identification.logs.log import Log
 from identification.logs.noise import noise_floor
-from identification.logs.readings import UNEXPLAINED
 
-REPLAYED = 1 - UNEXPLAINED  # R above which a log says little beside the others
+REPLAYED = 0.95  # R above which a log says little beside the others
 BLOCKS = 4
 
 

@@ -46,6 +46,7 @@ from typing import Any
 
 from identification.errors import InputError
 from identification.files import is_file, read_toml
+from identification.refusals.trust import trusted
 from identification.robot.alike import Alike, read_alike
 from identification.robot.file_checks import (
     check_table,
@@ -55,7 +56,6 @@ from identification.robot.file_checks import (
     texts,
 )
 from identification.robot.file_keys import EFFECTS_KEYS, KEYS, PARAMETER_KEYS
-from identification.robot.trust import trusted
 
 LONGEST = 1e6  # [s] of a horizon
 
@@ -72,7 +72,7 @@ class RobotFile:
         outputs: sensors; empty for all joint positions.
         horizon: length of the windows over which predictions are judged [s]; None for a free run.
         every: n, where every n-th sample is kept.
-        trust: words of `identification.robot.trust.TRUST`: judgements that do not refuse a log.
+        trust: words of `identification.refusals.trust.TRUST`: judgements that do not refuse a log.
         start: entries of the initial state by path.
         log: what the TOML beside a log says, for all logs that do not say it themselves.
         columns: column of the log by actuator or sensor.

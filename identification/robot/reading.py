@@ -10,6 +10,15 @@ from identification.effects.axes import axes
 from identification.errors import InputError, refuse_kind
 from identification.logs.frozen import still_sentence
 from identification.logs.log import Log
+from identification.refusals.touching import (
+    find_touches,
+    is_contradicted,
+    refuse_touching,
+    told_of_touches,
+    touch_sentence,
+)
+from identification.refusals.trust import trusted
+from identification.refusals.wiring import refuse_miswired
 from identification.robot.absurd_start import refuse_absurd_start
 from identification.robot.checks import with_judged_gaps
 from identification.robot.clipped import clipped_sentence
@@ -25,10 +34,6 @@ from identification.robot.start_words import (
     unused_sentence,
 )
 from identification.robot.step_error import refuse_coarse_steps
-from identification.robot.touch_words import refuse_touching, told_of_touches, touch_sentence
-from identification.robot.touching import find_touches, is_contradicted
-from identification.robot.trust import trusted
-from identification.robot.wiring import refuse_miswired
 
 
 def read_robot(
@@ -47,7 +52,7 @@ def read_robot(
             them are fitted together.
         confirm: records of the same robot to which nothing will be fitted.
         trust: judgements that are not to refuse a log, beside those of the file's key `trust`:
-            words of `identification.robot.trust.TRUST`.
+            words of `identification.refusals.trust.TRUST`.
         spread: of values that are alike: "usual" for that of the file's [spread] tables, "none" for
             no deviations from their common values, or the path of a TOML with such tables.
 

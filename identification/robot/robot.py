@@ -24,6 +24,7 @@ from identification.logs.read import read_log
 from identification.logs.table import MissingColumnsError
 from identification.model.plant import start_place
 from identification.model.predictor import output_columns
+from identification.refusals.unmeasured import refuse_unmeasured
 from identification.robot.checks import (
     outputs_of,
     refuse_every,
@@ -38,7 +39,6 @@ from identification.robot.model_units import unit_of
 from identification.robot.own_values import refuse_impossible, value_parameters
 from identification.robot.parameters import free_parameter, measured_start
 from identification.robot.start import refuse_start, start_of
-from identification.robot.unmeasured import refuse_unmeasured
 
 
 @dataclass(frozen=True)

@@ -5,22 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import tyro
 
-from identification.commands.common import (
-    LogLists,
-    Output,
-    conclude,
-    flat,
-    output_field,
-    table,
-)
-from inca_mj.commands.common import Trust, Values, do_not_draw, values_field
-
-if TYPE_CHECKING:
-    from inca_mj.workflows.calibration import Calibration
+import inca_mj as inca
+from identification.commands.common import LogLists, Output, conclude, flat, output_field, table
+from identification.errors import InputError
+from inca_mj.commands.common import Trust, Values, do_not_draw, read_logs, values_field
 
 FILES = "The calibrated robot is in model.xml and effects.json; inca_mj.load_twin reads them."
 
@@ -54,36 +46,23 @@ class Calibrate:
     def run(self) -> int:
         """Calibrate, say, keep."""
         do_not_draw()
-        from identification.errors import InputError
         from inca_mj.report.calibration import calibration_json
-        from inca_mj.twin.logs import read_inca_log
-        from inca_mj.workflows.calibration import calibrate
-        from inca_mj.workflows.spread import spread_of
 
         if not self.log:
             raise InputError("no log is given; write inca calibrate LOG...")
-        logs, confirm = (
-            [read_inca_log(path, flat(self.trust)) for path in paths]
-            for paths in (self.log, flat(self.confirm))
-        )
-        spread, parameters, place = (
-            spread_of(self.spread), self.robot.parameters(), self.robot.place()
+        trust = flat(self.trust)
+        logs, confirm = read_logs(self.log, trust), read_logs(flat(self.confirm), trust)
+        spread = inca.spread_of(self.spread)
+        found = inca.calibrate(
+            logs, self.robot.parameters(), self.robot.place(), confirm=confirm, spread=spread,
+            progress=self.output.tell, trust=trust,
         )  # fmt: skip
-        found = calibrate(
-            logs,
-            parameters,
-            place,
-            confirm=confirm,
-            spread=spread,
-            progress=self.output.tell,
-            trust=flat(self.trust),
-        )
         record = calibration_json(found)
         conclude(self, record, text(found), partial(keep, found), partial(draw, found))
         return 0
 
 
-def text(found: Calibration) -> str:
+def text(found: inca.Calibration) -> str:
     """Returns the calibration as text for a terminal."""
     from inca_mj.report import calibration as told
 
@@ -98,16 +77,15 @@ def text(found: Calibration) -> str:
     return "\n\n".join(parts)
 
 
-def keep(found: Calibration, out: Path) -> None:
+def keep(found: inca.Calibration, out: Path) -> None:
     """Write the twin and its geometry into a folder."""
     from inca_mj.robot.geometry import write_geometry
-    from inca_mj.twin.saved import save_twin
 
-    save_twin(found.robot, out)
+    inca.save_twin(found.robot, out)
     write_geometry(found.robot.geometry, out / "geometry.toml")
 
 
-def draw(found: Calibration, out: Path) -> None:
+def draw(found: inca.Calibration, out: Path) -> None:
     """Write figures and the report into a folder."""
     from identification.report.page import Section, Table, write_report
     from identification.report.style import save_png

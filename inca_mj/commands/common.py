@@ -3,21 +3,21 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import tyro
 
+import inca_mj as inca
 from identification.commands.common import assignments
+from identification.errors import GraphicsError, InputError
 
 if TYPE_CHECKING:
+    from identification import Log
     from identification.effects.effect import Effect
     from identification.model.parameter import ParameterSet
-    from inca_mj.robot.geometry import Geometry
-    from inca_mj.twin.run import Run
-    from inca_mj.twin.twin import Twin
 
 
 @dataclass(frozen=True)
@@ -32,24 +32,12 @@ class Values:
     """TOML file with exit points and connectors; the built-in ones are assumed."""
 
     def parameters(self) -> ParameterSet:
-        """Returns the parameter set with the values replaced.
+        """Returns the parameter set with the values replaced."""
+        return inca.parameter_set(self.set, assignments(self.param, "--param"))
 
-        Raises:
-            InputError: a value is malformed, unknown, given twice or out of bounds.
-        """
-        from inca_mj.robot.parameters import parameter_set
-
-        return parameter_set(self.set, assignments(self.param, "--param"))
-
-    def place(self) -> Geometry:
-        """Returns the geometry.
-
-        Raises:
-            InputError: the file cannot be read as one.
-        """
-        from inca_mj.robot.geometry import INCA, read_geometry
-
-        return INCA if self.geometry is None else read_geometry(self.geometry)
+    def place(self) -> inca.Geometry:
+        """Returns the geometry."""
+        return inca.INCA if self.geometry is None else inca.read_geometry(self.geometry)
 
 
 Trust = Annotated[
@@ -78,17 +66,16 @@ class Robot(Values):
         self.place()
         refuse_step(self.step)
 
-    def twin(self, sampling_time: float, effects: Sequence[Effect] = ()) -> Twin:
+    def twin(self, sampling_time: float, effects: Sequence[Effect] = ()) -> inca.Twin:
         """Returns the robot, with a step that divides the sampling time [s].
 
         Raises:
             InputError: as `check`, or the robot has no pretension.
         """
-        from inca_mj.twin.twin import build_twin
         from inca_mj.workflows.comparison import timestep_for
 
         step = timestep_for(sampling_time, self.step)
-        return build_twin(self.parameters(), self.place(), timestep=step, effects=effects)
+        return inca.build_twin(self.parameters(), self.place(), timestep=step, effects=effects)
 
 
 @dataclass(frozen=True)
@@ -100,7 +87,6 @@ class SavedRobot(Robot):
 
     def check(self) -> None:
         """Refuses what describes no robot, and options that do not go with a saved robot."""
-        from identification.errors import InputError
         from inca_mj.robot.parameters import refuse_step
 
         if self.model is None:
@@ -115,7 +101,7 @@ class SavedRobot(Robot):
             raise InputError(f"no {own}; inca discover --out DIR writes one")
         return refuse_step(self.step)
 
-    def twin(self, sampling_time: float, effects: Sequence[Effect] = ()) -> Twin:
+    def twin(self, sampling_time: float, effects: Sequence[Effect] = ()) -> inca.Twin:
         """Returns the robot; a saved one has effects of its own."""
         from inca_mj.twin.twin import rebuild
         from inca_mj.workflows.comparison import timestep_for
@@ -125,30 +111,30 @@ class SavedRobot(Robot):
             return super().twin(sampling_time, effects)
         return rebuild(saved, timestep=timestep_for(sampling_time, self.step))
 
-    def saved(self) -> Twin | None:
+    def saved(self) -> inca.Twin | None:
         """Returns the twin that was saved; None where no folder is given."""
-        from inca_mj.twin.saved import load_twin
-
         if self.model is None:
             return None
         self.check()
-        return load_twin(self.model)
+        return inca.load_twin(self.model)
 
 
-def keep_run(run: Run, notes: str, out: Path) -> None:
+def read_logs(paths: Iterable[Path], trust: Sequence[str]) -> list[Log]:
+    """Returns logs of INCA; `trust` names checks that the user overrules."""
+    return [inca.read_inca_log(path, trust) for path in paths]
+
+
+def keep_run(run: inca.Run, notes: str, out: Path) -> None:
     """Write the log, the run and the model of a simulation into a folder."""
     from identification import write_log
-    from inca_mj.twin.logs import run_to_log
-    from inca_mj.twin.run import save_run
 
-    write_log(run_to_log(run, notes=notes), out / "log.csv")
-    save_run(run, out / "run.npz")
+    write_log(inca.run_to_log(run, notes=notes), out / "log.csv")
+    inca.save_run(run, out / "run.npz")
     run.twin.save(out / "model.xml")
 
 
 def cannot_draw() -> str:
     """Settle the OpenGL backend before MuJoCo is imported: "" or why nothing can be drawn."""
-    from identification.errors import GraphicsError
     from inca_mj.rendering.graphics import choose_backend
 
     try:

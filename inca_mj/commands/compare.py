@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
+import inca_mj as inca
 from identification.commands.common import (
     Output,
     conclude,
@@ -23,7 +24,6 @@ from inca_mj.commands.common import SavedRobot, Trust, do_not_draw, saved_robot_
 
 if TYPE_CHECKING:
     from identification import Log
-    from inca_mj.workflows.comparison import Comparison
 
 
 @dataclass(frozen=True)
@@ -48,10 +48,8 @@ class Compare:
     def run(self) -> int:
         """Compare, say and keep the result; 0 unless the input is bad."""
         do_not_draw()
-        from inca_mj.twin.logs import read_inca_log
-
         result = compare_with(
-            self.robot, read_inca_log(self.log, flat(self.trust)), flat(self.trust)
+            self.robot, inca.read_inca_log(self.log, flat(self.trust)), flat(self.trust)
         )
         is_drawn = conclude(
             self, result.to_json(), summary(result), partial(keep, result), partial(draw, result)
@@ -61,18 +59,16 @@ class Compare:
         return 0
 
 
-def compare_with(robot: SavedRobot, log: Log, trust: Sequence[str]) -> Comparison:
+def compare_with(robot: SavedRobot, log: Log, trust: Sequence[str]) -> inca.Comparison:
     """Compares a log with the robot that the options describe, or with the saved one."""
-    from inca_mj.workflows.comparison import compare, compare_twin
-
     saved = robot.saved()
     if saved is not None:
-        return compare_twin(log, saved, timestep=robot.step, trust=trust)
+        return inca.compare_twin(log, saved, timestep=robot.step, trust=trust)
     place, step = robot.place(), robot.step
-    return compare(log, robot.parameters(), place, timestep=step, trust=trust)
+    return inca.compare(log, robot.parameters(), place, timestep=step, trust=trust)
 
 
-def summary(result: Comparison) -> str:
+def summary(result: inca.Comparison) -> str:
     """Returns the comparison as a text table; an output that never moves has no fit."""
     from identification.estimation.metrics import mean_fit
 
@@ -89,15 +85,13 @@ def summary(result: Comparison) -> str:
     )  # fmt: skip
 
 
-def keep(result: Comparison, out: Path) -> None:
+def keep(result: inca.Comparison, out: Path) -> None:
     """Write the model and the run into a folder."""
-    from inca_mj.twin.run import save_run
-
     result.run.twin.save(out / "model.xml")
-    save_run(result.run, out / "run.npz")
+    inca.save_run(result.run, out / "run.npz")
 
 
-def draw(result: Comparison, out: Path) -> None:
+def draw(result: inca.Comparison, out: Path) -> None:
     """Write the figure and the one-file report into a folder."""
     from inca_mj.report.sections import compare_section, compare_verdict, model_section
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import tyro
 
+import inca_mj as inca
 from identification.commands.common import (
     LogLists,
     Output,
@@ -22,7 +23,17 @@ from identification.commands.common import (
     say_json,
     write_result,
 )
-from inca_mj.commands.common import Trust, Values, cannot_draw, do_not_draw, values_field
+from identification.errors import InputError
+from identification.folders import draft_of
+from identification.progress import duration
+from inca_mj.commands.common import (
+    Trust,
+    Values,
+    cannot_draw,
+    do_not_draw,
+    read_logs,
+    values_field,
+)
 from inca_mj.files import example_path
 
 if TYPE_CHECKING:
@@ -31,7 +42,6 @@ if TYPE_CHECKING:
     from identification.discovery.result import Discovery
     from identification.folders import Draft
     from identification.report.page import Section
-    from inca_mj.twin.twin import Twin
 
 ORDER = ("report", "model", "effects", "film")  # in which files are named
 LEAVE_OUT = "Ctrl-C leaves it out, and so does --no-film"
@@ -72,32 +82,20 @@ class Discover:
         else:
             do_not_draw()
         from identification.discovery.options import read_options
-        from identification.errors import InputError
-        from identification.folders import draft_of
-        from inca_mj.twin.logs import read_inca_log
-        from inca_mj.workflows.discovery import discover
-        from inca_mj.workflows.spread import spread_of
 
         if not self.log:
             raise InputError("no log is given; write inca discover LOG")
-        logs = [read_inca_log(path, flat(self.trust)) for path in self.log]
-        confirm = [read_inca_log(path, flat(self.trust)) for path in flat(self.confirm)]
+        trust = flat(self.trust)
+        logs, confirm = read_logs(self.log, trust), read_logs(flat(self.confirm), trust)
         parameters, place = self.robot.parameters(), self.robot.place()
-        spread = spread_of(self.spread)
+        spread = inca.spread_of(self.spread)
         options = None if self.options is None else read_options(self.options)
         for path, log in zip(self.log, logs, strict=True):
             self.output.tell(f"log {path}: {log.duration:.4g} s, {len(log)} samples")
-        found = discover(
-            logs,
-            parameters,
-            place,
-            confirm=confirm,
-            spread=spread,
-            progress=self.output.tell,
-            settled=self.settled,
-            options=options,
-            trust=flat(self.trust),
-        )
+        found = inca.discover(
+            logs, parameters, place, confirm=confirm, spread=spread, progress=self.output.tell,
+            settled=self.settled, options=options, trust=trust,
+        )  # fmt: skip
         from identification.report.discovery_text import discovery_text  # slow to import
 
         if not self.output.json:
@@ -123,8 +121,6 @@ class Discover:
 
     def _draw(self, found: Discovery, draft: Draft, files: dict[str, Path], blind: str) -> None:
         """Add figures and the report to the saved results, and then the film; adds their names."""
-        from identification.progress import duration
-
         begun, tell = time.monotonic(), self.output.tell
         report = _Report(found, draft.folder)
 
@@ -185,10 +181,7 @@ def as_json(found: Discovery, model: Path | None) -> dict[str, Any]:
 
 def keep(found: Discovery, out: Path, command: Any) -> dict[str, Path]:
     """Write model, effects and result into a folder; returns their names by kind."""
-    from inca_mj.twin.saved import save_twin
-    from inca_mj.workflows.discovery_model import named_twin
-
-    model, effects = (Path(path.name) for path in save_twin(named_twin(found), out))
+    model, effects = (Path(path.name) for path in inca.save_twin(inca.named_twin(found), out))
     write_result(out / "result.json", command, as_json(found, model))
     return {"model": model, "effects": effects}
 
@@ -206,10 +199,9 @@ class _Report:
         from identification.report.discovery_report import discovery_sections, write_page
         from identification.report.page import save_figures
         from inca_mj.report.sections import model_section
-        from inca_mj.workflows.discovery_model import named_twin
 
         if not self._sections:
-            model = model_section(_without_zeros(named_twin(self._found)))
+            model = model_section(_without_zeros(inca.named_twin(self._found)))
             self._sections = [*discovery_sections(self._found, FILES), model]
             save_figures(self._sections, self._folder)
         *shown, model = self._sections
@@ -217,7 +209,7 @@ class _Report:
         write_page(self._found, self._folder, sections, drawings=self._drawings)
 
 
-def _without_zeros(robot: Twin) -> Twin:
+def _without_zeros(robot: inca.Twin) -> inca.Twin:
     """Returns the twin without parameters of effects that are zero, which no table needs."""
     shown = tuple(p for p in robot.parameters if p.where != "effect" or p.value)
     return replace(robot, parameters=replace(robot.parameters, records=shown))

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import partial
+from math import radians
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
+import inca_mj as inca
 from identification.commands.common import Output, conclude, draw_report, output_field, table
 from inca_mj.commands.common import Robot, do_not_draw, robot_field
 
 if TYPE_CHECKING:
     from identification.estimation.information import Information
-    from inca_mj.workflows.excitation import Design
 
 Names = Annotated[tuple[str, ...], tyro.conf.arg(metavar="NAME")]
 UNKNOWN = ("lambda", "b", "J", "b_v", "b_c", "beta")
@@ -44,18 +45,13 @@ class Sensitivity:
         """Analyse, say, keep."""
         do_not_draw()
         from inca_mj.report.information import information_json, information_verdict
-        from inca_mj.twin.logs import read_inca_log
         from inca_mj.workflows.sensitivity import planned_experiment, robot_information
 
-        log = None if self.log is None else read_inca_log(self.log)
+        log = None if self.log is None else inca.read_inca_log(self.log)
         trial = planned_experiment(
-            log,
-            self.robot.parameters(),
-            self.robot.place(),
-            noise=self.noise,
-            duration=self.duration,
-            timestep=self.robot.step,
-        )
+            log, self.robot.parameters(), self.robot.place(), noise=self.noise,
+            duration=self.duration, timestep=self.robot.step,
+        )  # fmt: skip
         found = robot_information(trial, self.free)
         what = f"{self.duration:g} s of the thesis' PRBS"
         if log is not None:
@@ -115,25 +111,15 @@ class Excite:
     def run(self) -> int:
         """Design, say, keep."""
         do_not_draw()
-        from math import radians
-
         from inca_mj.report.information import design_json, design_verdict
-        from inca_mj.workflows.bench import SAMPLING
-        from inca_mj.workflows.excitation import excite
-        from inca_mj.workflows.limits import Limits
+        from inca_mj.workflows.recipes import SAMPLING
 
         (low, high), turn = self.current, radians(self.turn)
-        limits = Limits(low=low, high=high, margin=self.margin, reach=self.reach, turn=turn)
-        result = excite(
-            self.robot.twin(SAMPLING),
-            self.duration,
-            noise=self.noise,
-            free=self.free,
-            limits=limits,
-            budget=self.budget,
-            seed=self.seed,
-            progress=self.output.tell,
-        )
+        limits = inca.Limits(low=low, high=high, margin=self.margin, reach=self.reach, turn=turn)
+        result = inca.excite(
+            self.robot.twin(SAMPLING), self.duration, noise=self.noise, free=self.free,
+            limits=limits, budget=self.budget, seed=self.seed, progress=self.output.tell,
+        )  # fmt: skip
         lines = [summary(result), *design_verdict(result)]
         if self.output.out is not None:
             lines.append(f"inca simulate --input {self.output.out / 'excite.csv'} replays it")
@@ -142,7 +128,7 @@ class Excite:
         return 0
 
 
-def summary(result: Design) -> str:
+def summary(result: inca.Design) -> str:
     """Returns the std of every parameter under the PRBS and the design."""
     found = result.best.found
     columns = zip(found.names, result.prbs.found.std, found.std, result.gain, strict=False)
@@ -150,16 +136,15 @@ def summary(result: Design) -> str:
     return table(("parameter", "std, PRBS", "std, designed", "gain"), rows)
 
 
-def keep(result: Design, out: Path) -> None:
+def keep(result: inca.Design, out: Path) -> None:
     """Write the input as a log that the twin replays."""
     from identification import write_log
-    from inca_mj.twin.logs import run_to_log
 
     notes = f"designed by inca excite: {result.best.name}, simulated"
-    write_log(run_to_log(result.best.run, "excite", notes), out / "excite.csv")
+    write_log(inca.run_to_log(result.best.run, "excite", notes), out / "excite.csv")
 
 
-def draw(result: Design, out: Path) -> None:
+def draw(result: inca.Design, out: Path) -> None:
     """Write figures and the report into a folder."""
     from inca_mj.report.information import design_section, design_verdict
     from inca_mj.report.sections import run_section

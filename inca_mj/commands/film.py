@@ -8,11 +8,14 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import tyro
 
 from identification.commands.common import Output, say, say_json, write_result
+from identification.errors import GraphicsError, InputError
+from identification.files import check_file
+from identification.folders import whole_folder
 from identification.progress import duration
 from inca_mj.commands.common import SavedRobot, cannot_draw, saved_robot_field
 
@@ -60,46 +63,26 @@ class Film:
         self._refuse_unclear()
         blind = cannot_draw()  # before MuJoCo is imported
         if blind:
-            from identification.errors import GraphicsError
-
             raise GraphicsError(blind)
-        from identification.errors import InputError
-        from identification.folders import whole_folder
         from inca_mj.rendering.film import common_time, film, stills
 
-        scenes = [self._scene(source) for source in self._sources()]
+        scenes = [self._scene(source) for source in self.source]
         begin, end = common_time(scenes)
         off = [t for t in self.still if not begin <= t <= end]
         if off:
             raise InputError(f"no still at {off[0]:g} s: the film is of {begin:g} to {end:g} s")
-        scene, beside = scenes[0], scenes[1] if len(scenes) > 1 else None
-        titles = self._titles()
-        plots = None if self.plots else False
-        out = self.output.out or Path("out/film")
+        scene, titles = scenes[0], list(self.title)
+        if not titles and len(scenes) > 1:
+            titles = [path.resolve().parent.name for path in self.source]
+        look: Any = {
+            "beside": scenes[1] if len(scenes) > 1 else None, "titles": titles,
+            "camera": self.camera, "plots": None if self.plots else False, "magnify": self.magnify,
+        }  # fmt: skip
+        out, progress = self.output.out or Path("out/film"), FilmProgress(self.output.tell, FPS)
         with whole_folder(out) as draft:
-            path = film(
-                scene,
-                draft / "film.mp4",
-                beside=beside,
-                titles=titles,
-                camera=self.camera,
-                plots=plots,
-                fps=FPS,
-                speed=self.speed,
-                magnify=self.magnify,
-                progress=FilmProgress(self.output.tell, FPS),
-            )
-            pictures = stills(
-                scene,
-                draft,
-                self.still,
-                beside=beside,
-                titles=titles,
-                camera=self.camera,
-                plots=plots,
-                magnify=self.magnify,
-            )
-            names = [p.name for p in (path, *pictures)]
+            path = draft / "film.mp4"
+            film(scene, path, fps=FPS, speed=self.speed, progress=progress, **look)
+            names = [p.name for p in (path, *stills(scene, draft, self.still, **look))]
             record = {"film": names[0], "stills": names[1:], "seconds": end, "titles": titles}
             write_result(draft / "result.json", self, record)
         files = [str(out / name) for name in names]
@@ -111,35 +94,7 @@ class Film:
 
     def _refuse_unclear(self) -> None:
         """Refuse options and files that make no sense, before anything heavy is imported."""
-        from identification.errors import InputError
-        from identification.files import check_file
-        from inca_mj.rendering.checks import (
-            refuse_magnify,
-            refuse_seconds,
-            refuse_speed,
-            refuse_titles,
-        )
-
-        for source in self._sources():
-            if source.suffix not in (".npz", ".csv", ".mat") and not source.is_dir():
-                raise InputError(
-                    f"{source} is neither a log nor a run; give a log (.csv, .mat), or the run.npz"
-                    " that inca simulate and inca track keep in their folder --out"
-                )
-            check_file(source, what="log (.csv, .mat) or run (.npz)")
-        refuse_titles(self.title, len(self.source))
-        refuse_seconds(self.seconds)
-        refuse_speed(FPS, self.speed)
-        refuse_magnify(self.magnify)
-        self.robot.check()
-
-    def _sources(self) -> tuple[Path, ...]:
-        """Returns the sources, one or two.
-
-        Raises:
-            InputError: there are none, or more than two.
-        """
-        from identification.errors import InputError
+        from inca_mj.rendering import checks
 
         if not self.source:
             raise InputError("LOG|RUN is missing; write inca film LOG|RUN")
@@ -147,13 +102,18 @@ class Film:
             raise InputError(
                 f"{len(self.source)} logs and runs; a film shows one, or two side by side"
             )
-        return self.source
-
-    def _titles(self) -> list[str]:
-        """Returns the given titles, or the names of the folders of two sources."""
-        if self.title or len(self.source) == 1:
-            return list(self.title)
-        return [path.resolve().parent.name for path in self.source]
+        for source in self.source:
+            if source.suffix not in (".npz", ".csv", ".mat") and not source.is_dir():
+                raise InputError(
+                    f"{source} is neither a log nor a run; give a log (.csv, .mat), or the run.npz"
+                    " that inca simulate and inca track keep in their folder --out"
+                )
+            check_file(source, what="log (.csv, .mat) or run (.npz)")
+        checks.refuse_titles(self.title, len(self.source))
+        checks.refuse_seconds(self.seconds)
+        checks.refuse_speed(FPS, self.speed)
+        checks.refuse_magnify(self.magnify)
+        self.robot.check()
 
     def _scene(self, source: Path) -> Scene:
         """Returns the scene of a saved run, or of a log beside the twin with the given values."""

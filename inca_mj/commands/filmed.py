@@ -40,16 +40,7 @@ def film_beside(
 
     The block begins with the first frame: what is opened before it, and figures, change settings
     that all threads share. Where OpenGL needs a window, the film is drawn when it is waited for.
-
-    Args:
-        found: the discovery, of twins.
-        folder: where film.mp4 and its picture film.jpg are written.
-        progress: told the frames done and the frames in all, as soon as the film is waited for.
-
-    Raises:
-        InputError: the discovery is not of a twin, or the film cannot be written.
-        GraphicsError: no OpenGL context can be made here.
-        DivergenceError: a twin cannot be simulated.
+    Progress is told as soon as the film is waited for.
     """
     if not draws_in_any_thread():
         yield lambda: film_discovery(found, folder, progress)
@@ -84,18 +75,7 @@ def film_beside(
 
 
 def film_discovery(found: Discovery, folder: Path, progress: Progress | None = None) -> Section:
-    """Film a discovery; returns the section of a report that shows the film.
-
-    Args:
-        found: the discovery, of twins.
-        folder: where film.mp4 and its picture film.jpg are written.
-        progress: told the frames done and the frames in all.
-
-    Raises:
-        InputError: the discovery is not of a twin, or the film cannot be written.
-        GraphicsError: no OpenGL context can be made here.
-        DivergenceError: a twin cannot be simulated.
-    """
+    """Writes film.mp4 and film.jpg of a discovery of twins; returns the section that shows them."""
     log = found.records[0].log
     seconds = filmed_seconds(log)
     before = _scene(nominal_twin(found), log, seconds)
@@ -109,11 +89,7 @@ def film_discovery(found: Discovery, folder: Path, progress: Progress | None = N
 
 
 def filmed_seconds(log: Log) -> tuple[float, float]:
-    """Begin and end of the first seconds that no fit has seen; of the log where it saw all [s].
-
-    Args:
-        log: one record; its part `estimation`, or its first half, was fitted.
-    """
+    """Returns begin and end [s] of the first seconds that no fit has seen, else of the record."""
     first, last = (log.splits or halves(log)).get("estimation", (log.time[0], log.time[0]))
     begin, end = float(log.time[0]), float(log.time[-1])
     at = last if last < end - 1.0 else begin

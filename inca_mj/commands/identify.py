@@ -10,22 +10,22 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import tyro
 
+import inca_mj as inca
 from identification.commands.common import (
     Output,
     conclude,
     draw_report,
     flat,
     output_field,
-    table,
+    parameter_table,
 )
 from identification.commands.stopping import STOPPED
+from identification.errors import InputError
 from inca_mj.commands.common import Robot, Trust, do_not_draw, robot_field
 
 if TYPE_CHECKING:
     from identification.estimation.fit import Fit
     from identification.estimation.profiles import Profile
-    from inca_mj.workflows.comparison import Comparison
-    from inca_mj.workflows.identification import Identification
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -87,79 +87,61 @@ class Identify:
             return STOPPED
         shown = cache(partial(compared, result, self.robot))
         conclude(
-            self,
-            best,
-            "\n".join(said),
+            self, best, "\n".join(said),
             keep=lambda out: shown().run.twin.save(out / "model.xml"),
             draw=lambda out: draw(result, profiles, shown(), out),
-        )
+        )  # fmt: skip
         return 0
 
-    def _identify(self) -> Identification:
-        """Returns the identification that the options ask for.
-
-        Raises:
-            InputError: two options do not go together, or as `inca_mj.workflows.identification`.
-        """
-        from identification.errors import InputError
+    def _identify(self) -> inca.Identification:
+        """Returns the identification that the options ask for, or refuses a contradiction."""
         from identification.estimation.estimation import Options
-        from inca_mj.twin.logs import read_inca_log
-        from inca_mj.workflows.disturbed import identify_innovations, identify_windows
         from inca_mj.workflows.identification import (
             MECHANICS,
             POSE,
+            STEP_1,
             identify,
+            identify_as_thesis,
         )
-        from inca_mj.workflows.procedure import STEP_1, identify_as_thesis
 
-        if self.free == ():
-            raise InputError(
-                f"--free names no parameter; name some of {', '.join((*MECHANICS, *POSE))}, or"
-                " leave it out for the two steps"
-            )
-        free = self.free or ()
         options = Options(
-            method=self.method,
-            criterion=self.criterion,
-            loss=self.loss,
-            horizons=self.horizons,
+            method=self.method, criterion=self.criterion, loss=self.loss, horizons=self.horizons
         )
-        alone = "--windows" if self.windows is not None else "--innovations"
-        if (self.windows is not None or self.innovations) and (
-            options != Options() or self.starts != 1 or self.profile
-        ):
-            raise InputError(
-                f"{alone} is a search of its own; leave out --criterion, --method,"
-                " --loss, --horizons, --starts and --profile"
-            )
-        if self.windows is not None and self.innovations:
-            raise InputError("--windows and --innovations are two searches; choose one")
-        if self.procedure == "thesis" and (
-            free or self.windows is not None or self.innovations or self.starts != 1
-        ):
-            raise InputError(
-                "--procedure thesis says what is free and where it begins; leave out --free,"
-                " --windows, --innovations and --starts"
-            )
-        log, parameters, place = (
-            read_inca_log(self.log, flat(self.trust)), self.robot.parameters(), self.robot.place()
-        )  # fmt: skip
+        free, known = self.free or (), (*MECHANICS, *POSE)
+        given = {"--windows": self.windows is not None, "--innovations": self.innovations}
+        alone = [name for name, is_given in given.items() if is_given]
+        is_thesis = self.procedure == "thesis"
+        for is_wrong, sentence in (
+            (self.free == (),
+             f"--free names no parameter; name some of {', '.join(known)}, or leave it out for the"
+             " two steps"),
+            (alone and (options != Options() or self.starts != 1 or self.profile),
+             f"{''.join(alone[:1])} is a search of its own; leave out --criterion, --method,"
+             " --loss, --horizons, --starts and --profile"),
+            (len(alone) > 1, "--windows and --innovations are two searches; choose one"),
+            (is_thesis and (free or alone or self.starts != 1),
+             "--procedure thesis says what is free and where it begins; leave out --free,"
+             " --windows, --innovations and --starts"),
+        ):  # fmt: skip
+            if is_wrong:
+                raise InputError(sentence)
+        trust = flat(self.trust)
+        log = inca.read_inca_log(self.log, trust)
+        parameters, place = self.robot.parameters(), self.robot.place()
         common: Any = {
-            "free": free, "progress": self.output.tell, "timestep": self.robot.step,
-            "trust": flat(self.trust),
+            "free": free, "progress": self.output.tell, "timestep": self.robot.step, "trust": trust
         }  # fmt: skip
         if self.windows is not None:
-            return identify_windows(log, self.windows, parameters, place, **common)
+            return inca.identify_windows(log, self.windows, parameters, place, **common)
         if self.innovations:
-            return identify_innovations(log, parameters, place, **common)
-        thesis = self.procedure == "thesis"
-        estimated = free or (tuple(STEP_1) if thesis else (*MECHANICS, *POSE))
+            return inca.identify_innovations(log, parameters, place, **common)
+        estimated = free or (tuple(STEP_1) if is_thesis else known)
         for name in self.profile:
             if name not in estimated:
                 raise InputError(
                     f"{name!r} is not estimated; profile one of {', '.join(estimated)}"
                 )
-        if thesis:
+        if is_thesis:
             del common["free"]
             return identify_as_thesis(log, parameters, place, options=options, **common)
         return identify(
@@ -167,44 +149,35 @@ class Identify:
         )
 
 
-def summary(result: Identification, fit: Fit) -> str:
+def summary(result: inca.Identification, fit: Fit) -> str:
     """Returns a fit as a text table and its verdict."""
     from identification.estimation.metrics import mean_fit
-    from identification.quantities import matched
     from identification.report.fit_verdict import fit_verdict
     from inca_mj.report.identification import identification_verdict, rows
 
-    cells = [
-        (name, *matched(value, std), unit,
-         f"{first:z.6g}", "at bound" if bound else "")
-        for name, value, std, unit, first, bound in rows(result, fit)
-    ]  # fmt: skip
     seconds = fit.estimate.seconds + (result.windows.seconds if result.windows else 0.0)
     return (
-        table(("parameter", "value", "std", "unit", "start", ""), cells)
+        parameter_table(rows(result, fit))
         + f"\nfit {mean_fit(fit.fit_percent)}, {seconds:.1f} s\n"
         + "\n".join(identification_verdict(result) if fit is result.fit else fit_verdict(fit))
     )
 
 
-def compared(result: Identification, robot: Robot) -> Comparison:
+def compared(result: inca.Identification, robot: Robot) -> inca.Comparison:
     """Returns the log beside a run of the identified model."""
     from inca_mj.twin.logs import UNJUDGED
-    from inca_mj.workflows.comparison import compare
 
     plant = result.fit.estimate.predictor.plant
     final = plant.parameters.with_values(result.values, "fitted to the log")
     place, step = robot.place(), robot.step
-    return compare(result.log, final, place, timestep=step, trust=UNJUDGED)  # judged before it
+    return inca.compare(result.log, final, place, timestep=step, trust=UNJUDGED)  # judged before it
 
 
-def draw(result: Identification, profiles: Sequence[Profile], shown: Comparison, out: Path) -> None:
+def draw(
+    result: inca.Identification, profiles: Sequence[Profile], shown: inca.Comparison, out: Path
+) -> None:
     """Write figures and the one-file report into a folder."""
-    from inca_mj.report.identification import (
-        fit_section,
-        identification_verdict,
-        profile_section,
-    )
+    from inca_mj.report.identification import fit_section, identification_verdict, profile_section
     from inca_mj.report.information import information_section
     from inca_mj.report.sections import compare_section, model_section
 

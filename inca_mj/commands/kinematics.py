@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
+import inca_mj as inca
 from identification.commands.common import (
     Output,
     assignments,
@@ -17,14 +18,13 @@ from identification.commands.common import (
     output_field,
     table,
 )
+from identification.errors import InputError
 from inca_mj.commands.common import Values, do_not_draw, values_field
 
 if TYPE_CHECKING:
     import numpy as np
 
     from inca_mj.kinematics.cables import Cables
-    from inca_mj.robot.geometry import Geometry
-    from inca_mj.workflows.poses import LogPoses
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,14 +58,8 @@ class Kinematics:
         return 0
 
     def _pose(self) -> np.ndarray | None:
-        """Returns the six numbers of a pose, or None where a log is named.
-
-        Raises:
-            InputError: nothing is given, or what is given is neither.
-        """
+        """Returns the six numbers of a pose, or None where a log is named."""
         import numpy as np
-
-        from identification.errors import InputError
 
         if not self.what:
             raise InputError(
@@ -86,7 +80,6 @@ class Kinematics:
         return pose
 
     def _at(self, pose: np.ndarray) -> None:
-        from identification.errors import InputError
         from inca_mj.kinematics.cables import Pulleys, inverse
         from inca_mj.report.poses import cables_json, cables_rows, cables_verdict
         from inca_mj.robot.spread import displaced
@@ -101,30 +94,20 @@ class Kinematics:
         conclude(self, cables_json(pose, there), text, draw=draw)
 
     def _along(self) -> None:
-        from identification.errors import InputError
         from inca_mj.report.poses import poses_json, poses_verdict, write_poses
-        from inca_mj.twin.logs import read_inca_log
-        from inca_mj.workflows.poses import log_poses
 
         if self.pulley:
             raise InputError("--pulley is for a pose; a log is read with straight cables: leave it")
-        log = read_inca_log(Path(self.what[0]))
-        found = log_poses(
-            log,
-            self.robot.parameters(),
-            self.robot.place(),
-            encoder=self.noise,
-            std=assignments(self.std, "--std"),
-            progress=self.output.tell,
-        )
+        log = inca.read_inca_log(Path(self.what[0]))
+        found = inca.log_poses(
+            log, self.robot.parameters(), self.robot.place(), encoder=self.noise,
+            std=assignments(self.std, "--std"), progress=self.output.tell,
+        )  # fmt: skip
         text = "\n".join([log_text(found), *poses_verdict(found)])
         conclude(
-            self,
-            poses_json(found),
-            text,
+            self, poses_json(found), text, draw=partial(draw_log, found),
             keep=lambda out: write_poses(found, out / "poses.csv"),
-            draw=partial(draw_log, found),
-        )
+        )  # fmt: skip
 
 
 def jacobian_text(cables: Cables) -> str:
@@ -136,7 +119,7 @@ def jacobian_text(cables: Cables) -> str:
     return "Jacobian of the lengths by twist, along O:\n" + table(names, rows)
 
 
-def log_text(found: LogPoses) -> str:
+def log_text(found: inca.LogPoses) -> str:
     """Returns some of the poses as a text table."""
     import numpy as np
 
@@ -148,7 +131,7 @@ def log_text(found: LogPoses) -> str:
 
 
 def draw_pose(
-    pose: np.ndarray, cables: Cables, geometry: Geometry, said: list[str], out: Path
+    pose: np.ndarray, cables: Cables, geometry: inca.Geometry, said: list[str], out: Path
 ) -> None:
     """Write the figure and the one-file report of a pose into a folder."""
     from inca_mj.report.poses import cables_section
@@ -156,7 +139,7 @@ def draw_pose(
     draw_report(out, "A pose and its cables", said, [cables_section(pose, cables, geometry)])
 
 
-def draw_log(found: LogPoses, out: Path) -> None:
+def draw_log(found: inca.LogPoses, out: Path) -> None:
     """Write the figure and the one-file report of a log into a folder."""
     from inca_mj.report.poses import poses_section, poses_verdict
 

@@ -10,15 +10,17 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import tyro
 
+import inca_mj as inca
 from identification.commands.common import Output, conclude, draw_report, output_field, table
 from identification.commands.linearize import save_systems
+from identification.errors import InputError, unknown_name
+from identification.files import check_file
 from inca_mj.commands.common import Robot, do_not_draw, robot_field
 
 if TYPE_CHECKING:
     import numpy as np
 
     from identification.linear.gridded import GriddedSystem
-    from inca_mj.linear.linearization import LinearModel
 
 MOST = 200  # points of one axis of a grid
 
@@ -77,8 +79,6 @@ class Linearize:
 
     def _refuse_unclear(self) -> None:
         """Refuse options that make no sense, before anything heavy is imported."""
-        from identification.errors import InputError
-        from identification.files import check_file
         from identification.linear.system import sampling_time_of
         from inca_mj.robot.parameters import pose_values
 
@@ -101,31 +101,27 @@ class Linearize:
         if self.log is not None:
             check_file(self.log)
 
-    def _models(self) -> tuple[tuple[LinearModel, ...], list[str], float]:
+    def _models(self) -> tuple[tuple[inca.LinearModel, ...], list[str], float]:
         """Returns the models, the names of their operating points, and the rate [Hz]."""
-        from inca_mj.linear.linearization import linearize
-        from inca_mj.twin.logs import read_inca_log
-        from inca_mj.twin.twin import build_twin
-        from inca_mj.workflows.linearization import linearize_log
+        from inca_mj.workflows.comparison import linearize_log
 
         parameters, place = self.robot.parameters(), self.robot.place()
         if self.log is None:
-            model = linearize(build_twin(parameters, place), self.pose or None)
+            model = inca.linearize(inca.build_twin(parameters, place), self.pose or None)
             label = f"held at pose {', '.join(f'{v:g}' for v in self.pose)}"
             return (model,), [label if self.pose else "at rest at its start"], self.rate or 100.0
-        log = read_inca_log(self.log)
+        log = inca.read_inca_log(self.log)
         models = linearize_log(log, self.time, parameters, place, self.robot.step)
         labels = [f"at {m.time:g} s of {log.name}" for m in models]
         return models, labels, self.rate or 1 / log.sampling_time
 
-    def _grid(self, model: LinearModel, rate: float) -> tuple[GriddedSystem, Any, Any]:
+    def _grid(self, model: inca.LinearModel, rate: float) -> tuple[GriddedSystem, Any, Any]:
         """Returns the gridded model, its errors off the grid, and a run beside the twin."""
         from inca_mj.linear.accuracy import interpolation_errors, random_points, run_error
-        from inca_mj.linear.linearization import linearize_grid
         from inca_mj.twin.logs import POSE
 
         axes = grid_axes(self.grid or ())
-        grid = linearize_grid(model.robot, axes, self.interpolation)
+        grid = inca.linearize_grid(model.robot, axes, self.interpolation)
         point = random_points(grid, 1, seed=1)[0]
         if self.pose:
             point = {n: v for n, v in zip(POSE, self.pose, strict=True) if n in axes}
@@ -134,7 +130,9 @@ class Linearize:
         return grid, errors, (run_error(model.robot, grid, point, rate=rate),)
 
 
-def keep(models: Sequence[LinearModel], rate: float, grid: GriddedSystem | None, out: Path) -> None:
+def keep(
+    models: Sequence[inca.LinearModel], rate: float, grid: GriddedSystem | None, out: Path
+) -> None:
     """Write the systems for Python and MATLAB into a folder."""
     from identification.linear.export import FORMATS
 
@@ -145,7 +143,7 @@ def keep(models: Sequence[LinearModel], rate: float, grid: GriddedSystem | None,
 
 
 def draw(
-    models: Sequence[LinearModel],
+    models: Sequence[inca.LinearModel],
     labels: Sequence[str],
     rate: float,
     said: Sequence[str],
@@ -166,7 +164,6 @@ def grid_axes(words: Sequence[str]) -> dict[str, np.ndarray]:
     """
     import numpy as np
 
-    from identification.errors import InputError, unknown_name
     from inca_mj.robot.parameters import POSE
 
     axes: dict[str, np.ndarray] = {}

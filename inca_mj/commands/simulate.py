@@ -9,15 +9,14 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import tyro
 
+import inca_mj as inca
 from identification.commands.common import Output, conclude, draw_report, output_field, table
 from identification.commands.places import refuse_place
+from identification.errors import InputError
 from inca_mj.commands.common import SavedRobot, do_not_draw, keep_run
 
 if TYPE_CHECKING:
     import numpy as np
-
-    from inca_mj.twin.run import Run
-    from inca_mj.twin.twin import Twin
 
 
 USUAL_PLACE = Path("out/simulate")
@@ -64,13 +63,11 @@ class Simulate:
     def run(self) -> int:
         """Simulate, write, say."""
         do_not_draw()
-        from inca_mj.twin.run import simulate
-
         now = self._resolved()
         refuse_place(now)
         currents, sampling_time, hold = now._currents()
         robot = now._twin(sampling_time)
-        result = simulate(robot, currents, sampling_time, hold_kind=hold)
+        result = inca.simulate(robot, currents, sampling_time, hold_kind=hold)
         summary = {
             "samples": len(result.time),
             "seconds_simulated": float(result.time[-1]),
@@ -91,20 +88,16 @@ class Simulate:
         return 0
 
     def _resolved(self) -> Simulate:
-        """Returns the command with the settings of its figure, or with the usual ones.
-
-        Raises:
-            InputError: there is no such figure, or options are given that would make another.
-        """
-        from identification.errors import InputError
-        from inca_mj.thesis.results import figure_settings
-
+        """Returns the command with the settings of its figure, or with the usual ones."""
         output = replace(self.output, out=self.output.out or USUAL_PLACE)
         if self.figure is None:
             robot = replace(self.robot, set=self.robot.set or "trial")
+            seconds = 10.0 if self.duration is None else self.duration
             return replace(
-                self, input=self._input(), duration=self._seconds(), robot=robot, output=output
+                self, input=self.input or "step", duration=seconds, robot=robot, output=output
             )
+        from inca_mj.thesis.results import figure_settings  # slow to import
+
         needs = figure_settings(self.figure)
         for name, given, right in (
             ("--input", self.input, needs.input),
@@ -121,19 +114,12 @@ class Simulate:
         robot = replace(self.robot, set=needs.set)
         return replace(self, input=needs.input, duration=needs.duration, robot=robot, output=output)
 
-    def _twin(self, sampling_time: float) -> Twin:
-        """Returns the robot, with the force on it.
-
-        Raises:
-            InputError: a point is given without a force, or as `SavedRobot.twin` and `with_force`.
-        """
-        from identification.errors import InputError
-        from inca_mj.workflows.pulled import with_force
-
+    def _twin(self, sampling_time: float) -> inca.Twin:
+        """Returns the robot, with the force on it."""
         if self.force is None and any(self.force_at):
             raise InputError("--force-at says where a force acts; give the force with --force")
         robot = self.robot.twin(sampling_time)
-        return robot if self.force is None else with_force(robot, self.force, self.force_at)
+        return robot if self.force is None else inca.with_force(robot, self.force, self.force_at)
 
     def _notes(self) -> str:
         said = f"input {self.input}, seed {self.seed}"
@@ -143,41 +129,28 @@ class Simulate:
             said += f", force {self.force} N at {self.force_at} m"
         return said
 
-    def _input(self) -> str:
-        return self.input or "step"
-
-    def _seconds(self) -> float:
-        return 10.0 if self.duration is None else self.duration
-
     def _currents(self) -> tuple[np.ndarray, float, str]:
-        from identification.errors import InputError
         from inca_mj.robot.inputs import INPUTS, make_input, sampling_time_of
-        from inca_mj.twin.logs import read_inca_log
 
-        given = self._input()
+        given, seconds = str(self.input), float(self.duration or 0.0)
         if given in INPUTS:
             sampling_time = sampling_time_of(self.rate)
-            currents = make_input(given, self._seconds(), sampling_time, seed=self.seed)
+            currents = make_input(given, seconds, sampling_time, seed=self.seed)
             return currents, sampling_time, "zoh"
         if not Path(given).suffix:
             raise InputError(f"unknown input {given!r}; known: {', '.join(INPUTS)}, or a log file")
-        log = read_inca_log(given)
+        log = inca.read_inca_log(given)
         return log.inputs, log.sampling_time, log.hold
 
 
-def _text(result: Run) -> str:
-    from inca_mj.workflows.remarks import remarks
+def _text(result: inca.Run) -> str:
+    from inca_mj.workflows.limits import remarks
 
+    T = result.tension
+    columns = zip(result.motor_angle[-1], T.min(axis=0), T.max(axis=0), strict=True)
     rows = [
-        (str(k + 1), f"{angle:z.3f}", f"{low:z.2f}", f"{high:z.2f}")
-        for k, (angle, low, high) in enumerate(
-            zip(
-                result.motor_angle[-1],
-                result.tension.min(axis=0),
-                result.tension.max(axis=0),
-                strict=True,
-            )
-        )
+        (str(k), f"{angle:z.3f}", f"{low:z.2f}", f"{high:z.2f}")
+        for k, (angle, low, high) in enumerate(columns, 1)
     ]
     place = ", ".join(f"{x:z.4f}" for x in result.position[-1])
     return (
@@ -187,7 +160,7 @@ def _text(result: Run) -> str:
     )
 
 
-def draw(result: Run, notes: str, out: Path) -> None:
+def draw(result: inca.Run, notes: str, out: Path) -> None:
     """Write figures and the report into a folder."""
     from inca_mj.report.sections import model_section, run_section
 

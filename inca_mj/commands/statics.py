@@ -5,15 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import Annotated, Literal
 
 import tyro
 
+import inca_mj as inca
 from identification.commands.common import Output, conclude, draw_report, note, output_field, table
 from inca_mj.commands.common import Values, cannot_draw, do_not_draw, values_field
-
-if TYPE_CHECKING:
-    from inca_mj.workflows.statics import StaticAnalysis
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -64,21 +62,18 @@ class Statics:
         import numpy as np
 
         from inca_mj.report.statics import statics_json, statics_verdict
-        from inca_mj.statics.workspace import DriveLimits
-        from inca_mj.twin.logs import read_inca_log
-        from inca_mj.workflows.statics import analyse_statics
 
-        found = analyse_statics(
+        found = inca.analyse_statics(
             self.robot.parameters(),
             self.robot.place(),
             None if self.pose is None else np.array(self.pose),
             load=np.array([*self.force_on_handle, *self.torque_on_handle]),
-            limits=DriveLimits(
+            limits=inca.DriveLimits(
                 current=self.current, taut=self.taut, force=self.force, torque=self.torque
             ),
             kind=None if self.workspace == "none" else self.workspace,
             cells=self.cells,
-            log=None if self.log is None else read_inca_log(self.log),
+            log=None if self.log is None else inca.read_inca_log(self.log),
             rho=self.rho,
             seed=self.seed,
         )
@@ -90,32 +85,24 @@ class Statics:
         return 0
 
 
-def summary(found: StaticAnalysis) -> str:
+def summary(found: inca.StaticAnalysis) -> str:
     """Returns tensions and currents of the cables at the pose."""
     held = found.held
-    return table(
-        ("cable", "low [N]", "high [N]", "tension [N]", "current [A]"),
-        [
-            (str(k + 1), f"{held.low[k]:.2f}", f"{held.high[k]:.2f}", f"{held.within[k]:.3f}",
-             f"{held.current[k]:z.3f}")
-            for k in range(len(held.within))
-        ],
-    )  # fmt: skip
+    columns = zip(held.low, held.high, held.within, held.current, strict=True)
+    rows = [
+        (str(k), f"{low:.2f}", f"{high:.2f}", f"{T:.3f}", f"{i:z.3f}")
+        for k, (low, high, T, i) in enumerate(columns, 1)
+    ]
+    return table(("cable", "low [N]", "high [N]", "tension [N]", "current [A]"), rows)
 
 
-def draw(command: Statics, found: StaticAnalysis, picture: bool, out: Path) -> None:
+def draw(command: Statics, found: inca.StaticAnalysis, picture: bool, out: Path) -> None:
     """Write the figures, the picture of the workspace, and the report into a folder."""
     from inca_mj.report.statics import statics_sections, statics_verdict
 
     draw_report(out, "Statics of the robot", statics_verdict(found), statics_sections(found))
     if picture and found.workspace is not None and found.workspace.inside.any():
-        from inca_mj.rendering.workspace_picture import workspace_picture
-
-        workspace_picture(
-            found.workspace,
-            out / "workspace.png",
-            command.robot.parameters(),
-            command.robot.place(),
-            pose=found.pose,
-            tension=found.held.within,
-        )
+        inca.workspace_picture(
+            found.workspace, out / "workspace.png", command.robot.parameters(),
+            command.robot.place(), pose=found.pose, tension=found.held.within,
+        )  # fmt: skip

@@ -10,12 +10,13 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import tyro
 
+import inca_mj as inca
 from identification.commands.common import Output, assignments, conclude, draw_report
+from identification.errors import InputError, unknown_name
 from inca_mj.commands.common import Robot, do_not_draw, keep_run, robot_field
 
 if TYPE_CHECKING:
     from identification.effects.effect import Effect
-    from inca_mj.workflows.tracking import Tracking
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -55,26 +56,20 @@ class Track:
     def run(self) -> int:
         """Track, write, say."""
         do_not_draw()
-        from inca_mj.control.controller import CONTROL_TIMESTEP, Gains
-        from inca_mj.control.paths import Circle
-        from inca_mj.twin.saved import load_twin
-        from inca_mj.workflows.tracking import track
-
         effects, values = effects_of(self.effect)
-        robot = self.robot.twin(CONTROL_TIMESTEP, effects).with_values(values)
-        model = self.robot.twin(CONTROL_TIMESTEP) if self.model is None else load_twin(self.model)
-        x, y, z = map(float, robot.start.pose[:3])
-        circle = Circle(centre=(x, y, z), radius=self.radius, rate=self.rate, plane=self.plane)
-        result = track(
-            robot,
-            model,
-            circle,
-            duration=self.duration,
-            gains=Gains(bandwidth=self.bandwidth),
-            knows_pose=self.knows_pose,
-            noise=self.noise,
-            seed=self.seed,
+        robot = self.robot.twin(inca.CONTROL_TIMESTEP, effects).with_values(values)
+        model = (
+            self.robot.twin(inca.CONTROL_TIMESTEP)
+            if self.model is None
+            else inca.load_twin(self.model)
         )
+        x, y, z = map(float, robot.start.pose[:3])
+        circle = inca.Circle(centre=(x, y, z), radius=self.radius, rate=self.rate, plane=self.plane)
+        result = inca.track(
+            robot, model, circle, duration=self.duration,
+            gains=inca.Gains(bandwidth=self.bandwidth), knows_pose=self.knows_pose,
+            noise=self.noise, seed=self.seed,
+        )  # fmt: skip
         text = _text(result)
         if self.output.out is not None:
             files = "log.csv, run.npz and model.xml are in"
@@ -92,11 +87,9 @@ def effects_of(words: Sequence[str]) -> tuple[tuple[Effect, ...], dict[str, floa
     Raises:
         InputError: a word is malformed, given twice, or names no effect or parameter of one.
     """
-    from identification.errors import InputError, unknown_name
-    from inca_mj.effects.catalogue import CATALOGUE
     from inca_mj.effects.values import records
 
-    known = {effect.name: effect for effect in CATALOGUE}
+    known = {effect.name: effect for effect in inca.CATALOGUE}
     values: dict[str, float] = {}
     given = assignments(words, "--effect", "load_dependent_friction.mu=0.05")
     for word, value in given.items():
@@ -112,12 +105,12 @@ def effects_of(words: Sequence[str]) -> tuple[tuple[Effect, ...], dict[str, floa
             raise InputError(f"--effect gives {full} twice; give it once")
         values[full] = value
     named = {name.partition(".")[0] for name in values}
-    return tuple(e for e in CATALOGUE if e.name in named), values
+    return tuple(e for e in inca.CATALOGUE if e.name in named), values
 
 
-def summary(result: Tracking) -> dict[str, object]:
+def summary(result: inca.Tracking) -> dict[str, object]:
     """Returns what the command says in JSON."""
-    from inca_mj.workflows.remarks import remarks
+    from inca_mj.workflows.limits import remarks
 
     run = result.run
     return {
@@ -136,8 +129,8 @@ def summary(result: Tracking) -> dict[str, object]:
     }
 
 
-def _text(result: Tracking) -> str:
-    from inca_mj.workflows.remarks import remarks
+def _text(result: inca.Tracking) -> str:
+    from inca_mj.workflows.limits import remarks
 
     run = result.run
     return (
@@ -150,7 +143,7 @@ def _text(result: Tracking) -> str:
     )
 
 
-def draw(result: Tracking, out: Path) -> None:
+def draw(result: inca.Tracking, out: Path) -> None:
     """Write figures and the report into a folder."""
     from inca_mj.report.sections import model_section, run_section, tracking_section
 

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import tyro
 
+import inca_mj as inca
+from identification.errors import InputError
 from inca_mj.commands.common import SavedRobot, do_not_draw, saved_robot_field
-
-if TYPE_CHECKING:
-    from inca_mj.twin.run import Run
 
 
 @dataclass(frozen=True)
@@ -34,13 +33,7 @@ class View:
     def run(self) -> int:
         """Show it until the window is closed."""
         do_not_draw()  # the viewer has an OpenGL of its own
-        from identification.errors import InputError
-        from inca_mj.rendering.interactive import (
-            refuse_speed,
-            require_screen,
-            view_model,
-            view_run,
-        )
+        from inca_mj.rendering.interactive import refuse_speed, require_screen, view_model, view_run
 
         if self.plain and self.source is not None:
             raise InputError("--plain shows a model and no run; leave out --plain, or the file")
@@ -49,23 +42,16 @@ class View:
         if self.source is not None:
             view_run(self._run(self.source), speed=self.speed)
         elif self.plain:
-            from inca_mj.twin.plain import build_plain
-
-            view_model(build_plain(self.robot.parameters(), self.robot.place()).compile())
+            view_model(inca.build_plain(self.robot.parameters(), self.robot.place()).compile())
         else:
             view_model(self.robot.twin(1e-2).model)
         return 0
 
-    def _run(self, source: Path) -> Run:
-        """Returns the run to play.
-
-        Raises:
-            InputError: the file is neither a run nor a log.
-        """
+    def _run(self, source: Path) -> inca.Run:
+        """Returns the run to play."""
         from inca_mj.commands.compare import compare_with
         from inca_mj.twin.logs import UNJUDGED, read_inca_log
-        from inca_mj.twin.run import load_run
 
         if source.suffix == ".npz":
-            return load_run(source)
+            return inca.load_run(source)
         return compare_with(self.robot, read_inca_log(source, UNJUDGED), UNJUDGED).run

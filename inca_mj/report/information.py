@@ -12,8 +12,7 @@ from identification.report.page import Section, Table
 from identification.report.untold_words import unresolved_words, untold
 
 if TYPE_CHECKING:
-    from inca_mj.workflows.bench import Tried
-    from inca_mj.workflows.excitation import Design
+    from inca_mj.workflows.excitation import Design, Tried
 
 WEAK = 0.5  # a value with a larger relative std says little
 

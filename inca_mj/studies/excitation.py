@@ -36,7 +36,7 @@ class ExcitationSettings:
     budget: int = setting("evaluations of the search for a designed input, 1 or more", 20)
 
     def __post_init__(self) -> None:
-        from inca_mj.workflows.bench import standard_inputs
+        from inca_mj.workflows.recipes import standard_inputs
 
         known = [DESIGNED, *(name for name, _ in standard_inputs(2))]
         if self.input not in known:
@@ -57,10 +57,10 @@ def excitation(settings: ExcitationSettings, seed: Seed) -> dict[str, Any]:
     from inca_mj.robot.parameters import parameter_set
     from inca_mj.twin.run import simulate
     from inca_mj.twin.twin import build_twin
-    from inca_mj.workflows.bench import SAMPLING, Bench, standard_inputs
-    from inca_mj.workflows.excitation import excite
+    from inca_mj.workflows.excitation import Bench, excite
     from inca_mj.workflows.identification import UNKNOWN
     from inca_mj.workflows.limits import Limits
+    from inca_mj.workflows.recipes import SAMPLING, standard_inputs
 
     factors = 1 + settings.spread * seed.generator().uniform(-1, 1, len(VARIED))
     nominal = parameter_set("trial").values()

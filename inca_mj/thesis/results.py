@@ -26,8 +26,7 @@ from inca_mj.twin.logs import UNJUDGED, run_to_log
 from inca_mj.twin.run import Run, simulate
 from inca_mj.twin.twin import Twin, build_twin
 from inca_mj.workflows.comparison import Comparison, compare_twin
-from inca_mj.workflows.identification import Identification
-from inca_mj.workflows.procedure import identify_as_thesis
+from inca_mj.workflows.identification import Identification, identify_as_thesis
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ import numpy as np
 from identification import InputError, Log, read_log
 from identification.logs.cures import unit_lines
 from identification.logs.noise import noise_floor
-from identification.robot.trust import TRUST
+from identification.refusals.trust import TRUST
 from inca_mj.robot.geometry import DRIVES
 from inca_mj.robot.parameters import POSE as POSE
 from inca_mj.twin.run import Run

@@ -23,12 +23,12 @@ from identification.logs.joined import join_logs, rows_of
 from identification.model.own import own_name, values_of_record, with_own
 from identification.model.parameter import RECORD, ParameterSet
 from inca_mj.effects.change import DEVIANTS
+from inca_mj.refusals.wiring import refuse_miswired
 from inca_mj.robot.geometry import INCA, Geometry
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.robot.spread import POINT, displaced, with_spread
 from inca_mj.twin.logs import POSE
 from inca_mj.twin.twin import Twin, build_twin
-from inca_mj.twin.wiring import refuse_miswired
 from inca_mj.workflows.comparison import timestep_for
 from inca_mj.workflows.spread import NONE, Spread, spread_of
 
@@ -199,13 +199,7 @@ def _refuse_split(log: Log) -> None:
 
 
 def nominal_model(plant: Twin, spread: Spread, records: int = 1) -> NominalModel:
-    """Returns the nominal model of a search: a robot, its known values, and own poses of records.
-
-    Args:
-        plant: the robot with its deviations (`with_spread`) and own poses (`with_own`).
-        spread: what is known of its drives and points.
-        records: how many records there are.
-    """
+    """Returns the nominal model of a search: a robot, its known values, poses of records."""
     from identification.discovery.nominal_model import NominalModel
 
     known = dict(spread.known)

@@ -1,23 +1,26 @@
-"""A log compared with the twin's prediction: fit in % and rms of each motor angle."""
+"""The twin under the currents of a log: compared with what was measured, or linearised along it."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import ceil
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from identification import Log, fit_percent, rms
 from identification.model.parameter import ParameterSet
 from identification.quantities import finite_or_none
+from inca_mj.refusals.wiring import refuse_miswired
 from inca_mj.robot.geometry import INCA, Geometry
 from inca_mj.robot.parameters import TIMESTEP, parameter_set, refuse_step
 from inca_mj.twin.logs import POSE, UNJUDGED, pose_of
 from inca_mj.twin.run import Run, simulate
 from inca_mj.twin.twin import Twin, build_twin, rebuild
-from inca_mj.twin.wiring import refuse_miswired
+
+if TYPE_CHECKING:
+    from inca_mj.linear.linearization import LinearModel
 
 
 @dataclass(frozen=True)
@@ -100,6 +103,27 @@ def compare_twin(
     )  # fmt: skip
 
 
+def linearize_log(
+    log: Log,
+    times: Sequence[float],
+    parameters: ParameterSet,
+    geometry: Geometry,
+    timestep: float = TIMESTEP,
+) -> tuple[LinearModel, ...]:
+    """Linearises the twin along its free run under a log, from the log's pose where it has one.
+
+    Raises:
+        InputError: a time [s] is outside the log, a cable is slack there, or the start has no
+            pretension.
+        DivergenceError: the simulation left the finite numbers.
+    """
+    from inca_mj.linear.linearization import linearize_along
+
+    step = timestep_for(log.sampling_time, timestep)
+    robot = build_twin(start_of(log, parameters), geometry, timestep=step)
+    return linearize_along(robot, log, times)
+
+
 def start_of(log: Log, parameters: ParameterSet) -> ParameterSet:
     """Returns parameters with the start pose of the log, if it has one and they give no other."""
     pose = pose_of(log)
@@ -110,10 +134,6 @@ def start_of(log: Log, parameters: ParameterSet) -> ParameterSet:
 
 
 def timestep_for(sampling_time: float, largest: float = TIMESTEP) -> float:
-    """Returns the largest step that divides the sampling time and is no more than `largest` [s].
-
-    Raises:
-        InputError: `largest` is not between 1e-6 and 0.1 s.
-    """
+    """Returns the largest step up to `largest` that divides the sampling time [s]."""
     refuse_step(largest)
     return sampling_time / ceil(sampling_time / largest - 1e-9)

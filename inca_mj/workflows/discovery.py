@@ -13,12 +13,12 @@ from identification.logs.joined import join_logs, records_of
 from identification.model.own import with_own
 from identification.model.parameter import ParameterSet
 from inca_mj.effects.catalogue import CATALOGUE
+from inca_mj.refusals.wiring import refuse_miswired
 from inca_mj.robot.geometry import INCA, Geometry
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.robot.spread import with_spread
 from inca_mj.twin.logs import POSE
 from inca_mj.twin.twin import build_twin
-from inca_mj.twin.wiring import refuse_miswired
 from inca_mj.workflows.calibration import nominal_model
 from inca_mj.workflows.comparison import timestep_for
 from inca_mj.workflows.spread import Spread, spread_of
@@ -97,7 +97,7 @@ def discover(
     from identification.discovery.search import discover as search
     from identification.discovery.search import refuse_unfit
     from identification.report import discovery_verdict  # noqa: F401  how the result is shown
-    from inca_mj.workflows.look_alikes import told
+    from inca_mj.workflows.discovery_model import told
 
     options, spread = options or DiscoveryOptions(), spread or spread_of("usual")
     refuse_unfit(every, options)

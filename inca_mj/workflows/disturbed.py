@@ -12,12 +12,8 @@ from identification.kalman.estimate import estimate_innovations
 from identification.model.parameter import ParameterSet
 from identification.windows.window_estimate import estimate_windows
 from inca_mj.robot.geometry import INCA, Geometry
-from inca_mj.robot.parameters import TIMESTEP, UNKNOWN
-from inca_mj.twin.logs import POSE
-from inca_mj.twin.twin import build_twin
-from inca_mj.twin.wiring import refuse_miswired
-from inca_mj.workflows.comparison import timestep_for
-from inca_mj.workflows.identification import MECHANICS, Identification
+from inca_mj.robot.parameters import POSE, TIMESTEP, UNKNOWN
+from inca_mj.workflows.identification import MECHANICS, Identification, nominal_plant
 
 FIRST = 4  # windows of the free run that gives the starting values of the search
 
@@ -64,19 +60,17 @@ def identify_windows(
             f"windows cannot find {', '.join(free)} alone: each has a start of its own; name a"
             f" parameter of the robot too, such as {', '.join(UNKNOWN)}"
         )
-    timestep = timestep_for(log.sampling_time, timestep)
-    plant = build_twin(parameters, geometry, timestep=timestep, visual=False)
-    refuse_miswired(log, plant, trust)
+    plant = nominal_plant(log, parameters, geometry, timestep, trust)
     fitted = log.part("estimation")
     names = tuple(dict.fromkeys((*(free or MECHANICS), *POSE)))
     time, end = fitted.time, float(fitted.time[0]) + FIRST * length
     early = fitted.between(float(time[0]), end) if end < time[-1] else fitted
     near = estimate(plant, early, names, progress=progress)
     if near.status == "stopped":
-        return Identification(log=log, fits=(assess(near, log),), best=0)
+        return Identification(log=log, fits=(assess(near, log),))
     found = estimate_windows(plant, fitted, names, length, near.values, progress=progress)
     fit = assess(estimate(plant, fitted, POSE, found.values, progress=progress), log)
-    return Identification(log=log, fits=(fit,), best=0, windows=found)
+    return Identification(log=log, fits=(fit,), windows=found)
 
 
 def identify_innovations(
@@ -104,9 +98,7 @@ def identify_innovations(
         InputError: for the reasons of `identify`.
         DivergenceError: the nominal values cannot be simulated.
     """
-    timestep = timestep_for(log.sampling_time, timestep)
-    plant = build_twin(parameters, geometry, timestep=timestep, visual=False)
-    refuse_miswired(log, plant, trust)
+    plant = nominal_plant(log, parameters, geometry, timestep, trust)
     names = tuple(free) or (*MECHANICS, *POSE)
     found = estimate_innovations(plant, log, names, progress=progress)
-    return Identification(log=log, fits=(found.fit,), best=0, innovations=found)
+    return Identification(log=log, fits=(found.fit,), innovations=found)

@@ -15,21 +15,42 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from identification.errors import InputError, refuse_negative
-from identification.estimation.information import determinable
+from identification.errors import DivergenceError, InputError, refuse_negative
+from identification.estimation.experiment import Experiment
+from identification.estimation.information import Information, determinable
 from identification.progress import counted
 from inca_mj.robot.parameters import UNKNOWN
-from inca_mj.twin.run import simulate
+from inca_mj.twin.logs import ANGLES
+from inca_mj.twin.run import Run, simulate
 from inca_mj.twin.twin import Twin, build_twin
-from inca_mj.workflows.bench import SAMPLING, Bench, Tried, standard_inputs
-from inca_mj.workflows.limits import Limits
-from inca_mj.workflows.recipes import Recipe, changed, draw
-from inca_mj.workflows.sensitivity import DURATION, NOISE
+from inca_mj.workflows.limits import Extent, Limits, extent
+from inca_mj.workflows.recipes import SAMPLING, Recipe, changed, draw, standard_inputs
+from inca_mj.workflows.sensitivity import DURATION, NOISE, robot_information
 
+SCALES = (1.0, 0.7, 0.5, 0.35, 0.2)  # tried on a swing that breaks a limit
 MOVES = ((0.3, 0.1), (0.1, 0.1), (0.1, 0.3), (0.03, 0.5))  # size of a change, share of numbers
 TRIES = 20  # simulations without information, per evaluation of the information
 
 Progress = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Tried:
+    """An input, its simulation, and the information that it gives.
+
+    Attributes:
+        name: in words.
+        run: the simulated run.
+        extent: how far currents, tensions and pose went.
+        found: information on the parameters, where the start pose is unknown.
+        allowed: whether it keeps the limits.
+    """
+
+    name: str
+    run: Run
+    extent: Extent
+    found: Information
+    allowed: bool
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -127,14 +148,52 @@ def excite(
         )
     best = bench.attempt(best.name, best.run, resolved=True)
     return Design(
-        best=best,
-        prbs=thesis,
-        standard=tried,
-        held=held,
-        limits=limits,
-        settings=settings,
+        best=best, prbs=thesis, standard=tried, held=held, limits=limits, settings=settings,
         evaluations=budget,
-    )
+    )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Bench:
+    """The twin, the noise, the parameters and the limits with which inputs are tried.
+
+    Attributes:
+        robot: the twin at its nominal values.
+        sigma: std of the noise on each angle [rad].
+        names: the parameters of interest; the start pose is unknown too.
+        limits: what an input may do.
+    """
+
+    robot: Twin
+    sigma: float
+    names: tuple[str, ...]
+    limits: Limits
+
+    def attempt(self, name: str, run: Run, resolved: bool = False) -> Tried:
+        """Returns the information that a run gives, from 2 p simulations.
+
+        Twice as many estimate the errors of the sensitivities (`resolved`).
+        """
+        sampling = float(run.time[1] - run.time[0])
+        trial = Experiment(
+            plant=self.robot, inputs=run.currents, sampling_time=sampling, outputs=ANGLES,
+            sigma=self.sigma,
+        )  # fmt: skip
+        far = extent(run)
+        found = robot_information(trial, self.names, resolved)
+        return Tried(name, run, far, found, far.within(self.limits))
+
+    def fitted(self, recipe: Recipe, n: int) -> tuple[Recipe, Run] | None:
+        """Returns the recipe with the largest tried swing that keeps the limits, and its run."""
+        for scale in SCALES:
+            smaller = replace(recipe, scale=scale)
+            try:
+                run = simulate(self.robot, smaller.currents(n, SAMPLING, self.limits), SAMPLING)
+            except DivergenceError:
+                continue
+            if extent(run).within(self.limits):
+                return smaller, run
+        return None
 
 
 def _search(bench: Bench, n: int, budget: int, seed: int) -> Iterator[tuple[Recipe, Tried]]:

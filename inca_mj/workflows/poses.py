@@ -131,14 +131,10 @@ def pose_at_rest(
     both = np.sqrt(noise**2 + spread**2)[0]
     d_0, _ = no_load_at_rest(measured.angles, robot, found.tension)
     return RestingPose(
-        pose=found.pose[0],
-        std=both[:6],
-        noise_std=noise[0, :6],
-        tension=found.tension[0],
-        tension_std=both[6:],
-        no_load_length=d_0[0],
+        pose=found.pose[0], std=both[:6], noise_std=noise[0, :6], tension=found.tension[0],
+        tension_std=both[6:], no_load_length=d_0[0],
         residual=found.residual[0, :DRIVES] * weights.length,
-    )
+    )  # fmt: skip
 
 
 def log_poses(
@@ -180,20 +176,11 @@ def log_poses(
     spread = _by_parameters(values, geometry, known, measured, along.weights, path, found)
     both = np.sqrt(noise**2 + spread**2)
     return LogPoses(
-        log=log,
-        pose=found.pose,
-        std=both[:, :6],
-        noise_std=noise[:, :6],
-        tension=found.tension,
-        tension_std=both[:, 6:],
-        taut=found.taut,
-        encoder=σ,
-        encoder_length=robot.R * σ,
-        length_error=along.std.length,
-        tension_error=along.std.tension,
-        force_error=along.std.force,
+        log=log, pose=found.pose, std=both[:, :6], noise_std=noise[:, :6], tension=found.tension,
+        tension_std=both[:, 6:], taut=found.taut, encoder=σ, encoder_length=robot.R * σ,
+        length_error=along.std.length, tension_error=along.std.tension, force_error=along.std.force,
         measured=pose_of(log),
-    )
+    )  # fmt: skip
 
 
 def _robot(values: Mapping[str, float], geometry: Geometry) -> Robot:
@@ -231,11 +218,7 @@ def _by_parameters(
 
 
 def _known(parameters: ParameterSet, std: Mapping[str, float]) -> Mapping[str, float]:
-    """Returns the std that are given, each checked.
-
-    Raises:
-        InputError: a name is unknown, or a std is negative or not finite.
-    """
+    """Returns the std that are above zero, or refuses an unknown name or no std."""
     names = [p.name for p in with_spread(parameters)]
     for name, value in std.items():
         if name not in names:

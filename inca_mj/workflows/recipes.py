@@ -16,9 +16,10 @@ from typing import Literal
 import numpy as np
 
 from inca_mj.robot.geometry import DRIVES
-from inca_mj.robot.inputs import prbs
+from inca_mj.robot.inputs import multisine, prbs, step
 from inca_mj.workflows.limits import Limits
 
+SAMPLING = 0.01  # of the robot [s]
 TONES = 16
 # The lowest tone of a multisine is below the corner frequency, and the highest above it [Hz].
 SLOWEST, CORNER, FASTEST = 0.2, 3.0, 45.0
@@ -108,3 +109,18 @@ def changed(recipe: Recipe, rng: np.random.Generator, size: float, share: float 
     numbers[:own] = numbers[:own].clip(0.0, 1.0)
     numbers[own:] %= 1.0
     return replace(recipe, numbers=numbers, scale=1.0)
+
+
+def standard_inputs(n: int) -> list[tuple[str, np.ndarray]]:
+    """Returns inputs that people try, the thesis' PRBS first: names and currents (n, 8) [A]."""
+    levels = [(0.5, 1.0, 0.25), (0.5, 1.0, 0.1), (0.5, 1.0, 0.05), (0.25, 1.25, 0.1), (0, 2, 0.1)]
+    return [
+        *(
+            (f"PRBS {a:g}-{b:g} A, {bit:g} s", prbs(n, SAMPLING, low=a, high=b, bit_time=bit))
+            for a, b, bit in levels
+        ),
+        ("multisine 0.5-1 A, to 5 Hz", multisine(n, SAMPLING)),
+        ("multisine 0-2 A, 0.1-40 Hz",
+         multisine(n, SAMPLING, mean=1.0, amplitude=1.0, band=(0.1, 40.0))),
+        ("step 2 A in motor 1", step(n)),
+    ]  # fmt: skip

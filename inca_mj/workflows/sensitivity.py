@@ -31,14 +31,7 @@ def planned_experiment(
 ) -> Experiment:
     """Returns the experiment of the twin under the currents of a log, or under the thesis' PRBS.
 
-    Args:
-        log: the log whose currents are used; the thesis' PRBS when None.
-        parameters: the twin's values; the thesis' Table 3.2 when None.
-        geometry: anchors of the cables.
-        noise: std of the noise on each angle [rad]; when None, what is seen in the log, or that of
-            an encoder.
-        duration: of the PRBS [s]; a log has its own.
-        timestep: largest step of the integrator [s].
+    The noise [rad] is what is seen in the log, or that of an encoder, where none is given.
 
     Raises:
         InputError: the noise, the duration or the step is not admitted, or the start has no
@@ -52,13 +45,9 @@ def planned_experiment(
         sigma = float(np.sqrt(np.mean(noise_floor(log.outputs) ** 2)))
     robot = build_twin(parameters, geometry, timestep=timestep_for(sampling_time, timestep))
     return Experiment(
-        plant=robot,
-        inputs=currents,
-        sampling_time=sampling_time,
-        outputs=ANGLES,
-        sigma=sigma if noise is None else noise,
-        hold=hold,
-    )
+        plant=robot, inputs=currents, sampling_time=sampling_time, outputs=ANGLES,
+        sigma=sigma if noise is None else noise, hold=hold,
+    )  # fmt: skip
 
 
 def sensitivity(
@@ -98,11 +87,7 @@ def robot_information(
 ) -> Information:
     """Returns what an experiment would say of some parameters; the start pose is unknown too.
 
-    Args:
-        trial: an experiment with the twin.
-        names: the parameters of interest.
-        resolved: whether the errors of the sensitivities are estimated; this takes twice as many
-            simulations.
+    Twice as many simulations estimate the errors of the sensitivities (`resolved`).
 
     Raises:
         InputError: a name is unknown or named twice, or has no effect on any output.

@@ -196,13 +196,9 @@ def _held(robot: Robot, at: Cables, load: np.ndarray, limits: DriveLimits) -> He
     T = distribute(at.W, w, low, high)
     springs = pull(robot, at.lengths).tension  # a current adds K_t i/R, and the drum does not turn
     return Held(
-        low=low,
-        high=high,
-        nearest=nearest(at.W, w),
-        minimum_norm=nearest(at.W, w, 0.0),
-        within=T,
+        low=low, high=high, nearest=nearest(at.W, w), minimum_norm=nearest(at.W, w, 0.0), within=T,
         current=_current(robot, at.lengths, T, springs),
-    )
+    )  # fmt: skip
 
 
 def _current(robot: Robot, d: np.ndarray, T: np.ndarray, springs: np.ndarray) -> np.ndarray:
@@ -217,11 +213,7 @@ def _current(robot: Robot, d: np.ndarray, T: np.ndarray, springs: np.ndarray) ->
 
 
 def _reachable(pose: np.ndarray, geometry: Geometry) -> np.ndarray:
-    """Returns the pose, if it is one and lies inside the frame.
-
-    Raises:
-        InputError: it is not six finite numbers, or lies outside the box of the exit points.
-    """
+    """Returns the pose, or refuses what is no pose inside the frame."""
     pose = np.asarray(pose, float)
     if pose.shape != (6,) or not np.isfinite(pose).all():
         raise InputError(

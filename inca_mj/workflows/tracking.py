@@ -141,11 +141,7 @@ def track(
     run = simulate(robot, done.currents, CONTROL_TIMESTEP)
     asked = np.array([path.at(float(t)).position for t in run.time])
     return Tracking(
-        run=replace(run, asked=asked),
-        model=model,
-        path=path,
-        seen=done.seen,
-        counted=counted,
+        run=replace(run, asked=asked), model=model, path=path, seen=done.seen, counted=counted
     )
 
 

@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from inca_mj.twin import agreement, other_currents, wiring
+from inca_mj.refusals import agreement, currents, wiring
 from inca_mj.twin.twin import Twin
 
 
@@ -37,6 +37,6 @@ def each_run_once() -> Iterator[None]:
         return np.copy(known[key])
 
     with pytest.MonkeyPatch.context() as patch:
-        for module in (wiring, other_currents):
+        for module in (wiring, currents):
             patch.setattr(module, "angles_under", angles)
         yield

@@ -14,7 +14,7 @@ from identification.commands.cli import EXAMPLES as ROBOT_EXAMPLES
 from identification.commands.cli import Command as RobotCommand
 from identification.commands.program import metered
 from identification.progress import stage
-from identification.robot.trust import TRUST
+from identification.refusals.trust import TRUST
 from inca_mj.cli import EXAMPLES, Command
 from inca_mj.cli import main as inca
 

@@ -119,6 +119,8 @@ def test_bad_input_of_inca_is_one_sentence(capsys, tmp_path, arguments, words):
         (("--time", "1"), "none is given"),
         (("--input", "push=1"), "unknown actuator 'push'"),
         (("--input", "force=1"), "does not rest"),
+        (("--input", "force=0", "force=1"), "gives force twice, 0 and 1; give it once"),
+        (("--input", "force"), "NAME=VALUE"),
     ],
 )
 def test_bad_input_of_any_robot_is_one_sentence(capsys, folder, arguments, words):

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from identification import InputError, Log
+from inca_mj.refusals.wiring import refuse_miswired
 from inca_mj.robot.inputs import make_input
 from inca_mj.twin.logs import JUDGED, read_inca_log, run_to_log
 from inca_mj.twin.run import simulate
 from inca_mj.twin.twin import build_twin
-from inca_mj.twin.wiring import refuse_miswired
 
 LOG = Path(__file__).parents[2] / "examples" / "log.csv"  # an effect is missing from its model
 pytestmark = pytest.mark.usefixtures("each_run_once")

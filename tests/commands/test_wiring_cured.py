@@ -10,12 +10,12 @@ from advice import advised
 
 from identification import InputError, write_log
 from inca_mj.cli import main
+from inca_mj.refusals.agreement import follow, places_of, some, unreached_share
+from inca_mj.refusals.wiring import refuse_miswired
 from inca_mj.robot.inputs import make_input
-from inca_mj.twin.agreement import follow, places_of, some, unreached_share
 from inca_mj.twin.logs import JUDGED, read_inca_log, run_to_log
 from inca_mj.twin.run import simulate
 from inca_mj.twin.twin import build_twin
-from inca_mj.twin.wiring import refuse_miswired
 from inca_mj.workflows.comparison import compare, compare_twin
 
 LOG = read_inca_log(Path(__file__).parents[2] / "examples" / "log.csv").between(0.0, 4.0)

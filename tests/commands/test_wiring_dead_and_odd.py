@@ -11,12 +11,12 @@ import pytest
 from advice import advised
 
 from identification import InputError, write_log
-from inca_mj.twin.agreement import some
-from inca_mj.twin.bounds import WiringBounds
+from inca_mj.refusals.agreement import some
+from inca_mj.refusals.bounds import WiringBounds
+from inca_mj.refusals.scales import odd_angle
+from inca_mj.refusals.wiring import refuse_miswired
 from inca_mj.twin.logs import read_inca_log
-from inca_mj.twin.odd_angle import odd_angle
 from inca_mj.twin.twin import build_twin
-from inca_mj.twin.wiring import refuse_miswired
 
 LOG = read_inca_log(Path(__file__).parents[2] / "examples" / "log.csv").between(0.0, 4.0)
 

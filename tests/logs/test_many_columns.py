@@ -6,14 +6,15 @@ import numpy as np
 import pytest
 
 from identification.logs.log import Log
-from identification.logs.readings import (
+from identification.progress import watched
+from identification.refusals.columns import (
     MOST_PAIRS,
+    Doubt,
     column_pairs,
     input_exchanges,
-    misread,
     output_exchanges,
 )
-from identification.progress import watched
+from identification.refusals.readings import misread
 
 SAMPLES = 20
 
@@ -31,9 +32,8 @@ def log_of(columns):
 
 def exchanges(columns):
     log = log_of(columns)
-    names = {n: n for n in (*log.input_names, *log.output_names)}
-    bad = np.ones(columns, bool)
-    return [[*kind(log, bad, names)] for kind in (input_exchanges, output_exchanges)]
+    doubt = Doubt.of(log, {n: n for n in (*log.input_names, *log.output_names)})
+    return [[*kind(doubt)] for kind in (input_exchanges, output_exchanges)]
 
 
 @pytest.mark.parametrize("columns", [2, 7, 12])

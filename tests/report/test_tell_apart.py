@@ -6,7 +6,7 @@ import pytest
 from fake_discovery import LATE, MISMATCH, STRIBECK, found
 
 from identification.report.discovery_verdict import discovery_verdict
-from inca_mj.workflows.look_alikes import Contrast, _distance, sentence, tell_apart, told
+from inca_mj.workflows.discovery_model import Contrast, _distance, sentence, tell_apart, told
 
 
 @pytest.fixture(scope="module")
@@ -42,7 +42,7 @@ def test_the_advice_names_the_best_input_and_stands_in_the_verdict(monkeypatch) 
         contrasts.append(tell_apart(*arguments))
         return contrasts[-1]
 
-    monkeypatch.setattr("inca_mj.workflows.look_alikes.tell_apart", spy)
+    monkeypatch.setattr("inca_mj.workflows.discovery_model.tell_apart", spy)
     advised = told(outcome)
     (contrast,) = contrasts
     assert contrast is not None

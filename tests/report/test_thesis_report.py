@@ -14,7 +14,7 @@ from inca_mj.thesis.prints import FITS, TABLES
 from inca_mj.thesis.report import numbered, thesis_json, thesis_sections, thesis_verdict
 from inca_mj.thesis.results import FIGURES, repeat_thesis
 from inca_mj.thesis.trials import TRIALS
-from inca_mj.workflows.procedure import STEP_1, STEP_2
+from inca_mj.workflows.identification import STEP_1, STEP_2
 
 TEXT = Path(__file__).parents[3] / "shared" / "000_2b9c4e89379102f7.txt"
 EVERY = [

@@ -11,10 +11,10 @@ from tracked_cases import MOTION as MOTION_MISTAKES
 
 from identification import InputError, Log, write_log
 from identification.logs.units import UNITS
-from identification.robot.balance import unbalanced_share
+from identification.refusals.balance import unbalanced_share
+from identification.refusals.forces import tendon_forces
+from identification.refusals.wiring import refuse_miswired
 from identification.robot.robot import read_robot_log
-from identification.robot.tendon_forces import tendon_forces
-from identification.robot.wiring import refuse_miswired
 
 HEAD = '<mujoco><compiler autolimits="true"/><option timestep="0.0025" integrator="RK4"{}/>'
 WINCHES = (

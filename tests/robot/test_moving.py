@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 import scipy.optimize
 
-from identification.robot.bounded import solve_bounded
-from identification.robot.moving import follow_bodies, inertial_force, point_force, weights
+from identification.refusals.balance import solve_bounded
+from identification.refusals.forces import follow_bodies, inertial_force, point_force, weights
 
 ARM = """
 <mujoco>

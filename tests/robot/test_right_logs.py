@@ -20,9 +20,10 @@ from tracked_cases import (
 )
 
 from identification import InputError, Log
-from identification.robot.same_units import different_units
-from identification.robot.scale import rescaled
-from identification.robot.wiring import refuse_miswired
+from identification.refusals.by_forces import rescaled
+from identification.refusals.columns import Doubt
+from identification.refusals.same_units import different_units
+from identification.refusals.wiring import refuse_miswired
 
 UR10E = Path(__file__).parents[3] / "shared" / "data" / "ur10e" / "ur10e.xml"
 
@@ -127,7 +128,7 @@ def test_a_right_log_of_a_coarse_encoder_or_a_late_torque_passes(world, late, st
     u = np.roll(log.inputs, late, axis=0)
     read = replace(log, outputs=y, inputs=u, units=dict.fromkeys(log.output_names, "rad"))
     same = {n: n for n in (*log.input_names, *log.output_names)}
-    assert rescaled(mujoco.MjModel.from_xml_string(ARM), read, same) is None
+    assert rescaled(mujoco.MjModel.from_xml_string(ARM), Doubt.of(read, same)) is None
 
 
 def moved(samples=400, step=0.01, seed=0):

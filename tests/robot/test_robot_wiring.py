@@ -11,12 +11,13 @@ from identification import Log, write_log
 from identification.__main__ import main
 from identification.errors import InputError
 from identification.logs.units import UNITS
-from identification.robot import wiring
-from identification.robot.balance import unbalanced_share
+from identification.refusals import judge
+from identification.refusals.balance import unbalanced_share
+from identification.refusals.by_forces import NEEDED, rescaled
+from identification.refusals.columns import Doubt
+from identification.refusals.wiring import refuse_miswired
 from identification.robot.file import read_robot_file
 from identification.robot.robot import read_robot_log, robot_of
-from identification.robot.scale import NEEDED, rescaled
-from identification.robot.wiring import refuse_miswired
 
 RNG = np.random.default_rng(5)
 
@@ -218,7 +219,8 @@ def test_noise_is_no_missing_force_of_a_long_chain(joints, mass, stiffness):
     log = measured(model, 600, 0.5, 5e-4)
     left = unbalanced_share(model, log)
     assert left is None or left.max() < NEEDED
-    assert rescaled(model, log, {n: n for n in (*log.input_names, *log.output_names)}) is None
+    same = {n: n for n in (*log.input_names, *log.output_names)}
+    assert rescaled(model, Doubt.of(log, same)) is None
 
 
 def test_a_short_chain_keeps_its_balance_in_any_unit():
@@ -231,14 +233,14 @@ def test_a_short_chain_keeps_its_balance_in_any_unit():
 
 @pytest.mark.parametrize("still", [0, 500])
 def test_of_a_long_log_a_beginning_that_moves_is_judged(tmp_path, monkeypatch, still):
-    monkeypatch.setattr(wiring, "MOST_SAMPLES", 200)
-    seen, plain = set(), wiring.first_error
+    monkeypatch.setattr(judge, "MOST_SAMPLES", 200)
+    seen, plain = set(), judge.first_error
 
     def counted(plant, log, *others):
         seen.add(len(log))
         return plain(plant, log, *others)
 
-    monkeypatch.setattr(wiring, "first_error", counted)
+    monkeypatch.setattr(judge, "first_error", counted)
     text = chain_of(2, 0.3, 2.0)
     right = measured(mujoco.MjModel.from_xml_string(text), 1000, 0.5, 1e-3, still)
     own, log = robot(tmp_path, text, right, "joint/j0.damping")

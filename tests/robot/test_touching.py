@@ -18,7 +18,7 @@ from touching_cases import (
 
 from identification import InputError, read_robot
 from identification.__main__ import main
-from identification.robot.touch_words import FAR_BETTER
+from identification.refusals.touching import FAR_BETTER
 
 HORIZONS = pytest.mark.parametrize("more", ["horizon = 0.3\n", ""], ids=["horizon", "free run"])
 

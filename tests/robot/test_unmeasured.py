@@ -6,7 +6,7 @@ from robot_cases import refused
 from touching_cases import make_robot, simulated
 
 from identification import InputError, read_robot
-from identification.robot.unmeasured import refuse_unmeasured
+from identification.refusals.unmeasured import refuse_unmeasured
 
 LEG = """<mujoco>
 <option timestep="0.002" integrator="RK4"/>

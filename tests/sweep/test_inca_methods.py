@@ -135,9 +135,10 @@ def test_labels_are_read(tmp_path, refusal):
 def test_an_excitation_is_the_information_of_its_robot():
     from inca_mj.twin.run import simulate
     from inca_mj.twin.twin import build_twin
-    from inca_mj.workflows.bench import SAMPLING, Bench, standard_inputs
+    from inca_mj.workflows.excitation import Bench
     from inca_mj.workflows.identification import UNKNOWN
     from inca_mj.workflows.limits import Limits
+    from inca_mj.workflows.recipes import SAMPLING, standard_inputs
 
     method = load_method(METHODS["excitation"])
     name, currents = standard_inputs(51)[6]

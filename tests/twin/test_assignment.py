@@ -5,7 +5,7 @@ from itertools import permutations
 import numpy as np
 import pytest
 
-from inca_mj.twin.agreement import assigned
+from inca_mj.refusals.agreement import assigned
 
 
 @pytest.mark.parametrize("seed", range(8))

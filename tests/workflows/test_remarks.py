@@ -5,8 +5,8 @@ import numpy as np
 from inca_mj.robot.inputs import make_input
 from inca_mj.twin.run import simulate
 from inca_mj.twin.twin import build_twin
+from inca_mj.workflows.limits import remarks
 from inca_mj.workflows.pulled import with_force
-from inca_mj.workflows.remarks import remarks
 
 
 def test_a_usual_run_has_no_remarks():

@@ -19,8 +19,8 @@ import numpy as np
 from identification.logs.log import Log
 from identification.logs.units import UNITS
 from identification.model.predictor import output_columns
-from identification.robot.scale import wanted_units
 
+SERVO = {"qpos": ("m", "rad"), "qvel": ("m/s", "rad/s")}  # of a wanted motion: slide, hinge
 PIECES = 20  # of a log
 CERTAIN = 0.95  # share of the variance that the line explains
 NEAR = 1.25  # factor from 1 that b may be once the unit is right; rpm is 1.5 from 1/2π
@@ -47,13 +47,7 @@ class Pair:
 
 
 def different_units(model: mujoco.MjModel, log: Log, column: Mapping[str, str]) -> str | None:
-    """Returns which column has another unit than it says, and the cure; None where none has.
-
-    Args:
-        model: with the log's actuators and sensors.
-        log: as it is read.
-        column: what an output or input is called in the log's file.
-    """
+    """Returns which column has another unit than it says, and the cure; None where none has."""
     for pair in _pairs(model, log):
         b = pair.slope
         if np.isnan(b) or 1 / pair.free < b < pair.free:
@@ -67,6 +61,22 @@ def different_units(model: mujoco.MjModel, log: Log, column: Mapping[str, str]) 
                         f' says; write {column[name]} = "{word}" under [units] of the log\'s TOML'
                     )
     return None
+
+
+def wanted_units(model: mujoco.MjModel, log: Log) -> dict[str, str]:
+    """Returns SI units of the inputs that drives compare with their joint's own motion, by name."""
+    found = {}
+    for i, name in enumerate(log.input_names):
+        gain, bias = float(model.actuator_gainprm[i, 0]), model.actuator_biasprm[i]
+        is_joint = model.actuator_trntype[i] == int(mujoco.mjtTrn.mjTRN_JOINT)
+        is_affine = model.actuator_biastype[i] == int(mujoco.mjtBias.mjBIAS_AFFINE)
+        if not (is_joint and is_affine and gain > 0):
+            continue
+        kind = int(model.jnt_type[model.actuator_trnid[i, 0]])
+        place = (int(mujoco.mjtJoint.mjJNT_SLIDE), int(mujoco.mjtJoint.mjJNT_HINGE))
+        if kind in place and -gain in (bias[1], bias[2]):
+            found[name] = SERVO["qpos" if bias[1] == -gain else "qvel"][place.index(kind)]
+    return found
 
 
 def _pairs(model: mujoco.MjModel, log: Log) -> Iterator[Pair]:

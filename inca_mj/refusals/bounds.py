@@ -16,8 +16,8 @@ class WiringBounds:
     """Bounds beyond which a log's angles and currents are believed to be others than it says.
 
     Every field has its unit, reason and source in its metadata (`dataclasses.fields`). γ is the
-    share of the motion that the twin does not explain (`inca_mj.twin.other_currents`), κ the one
-    that belongs to no pose of the platform (`inca_mj.twin.agreement`), ε_k the γ of angle k.
+    share of motion that the twin does not explain (`inca_mj.refusals.currents`), κ the one
+    that belongs to no pose of the platform (`inca_mj.refusals.agreement`), ε_k the γ of angle k.
     """
 
     # What a right log may be.

@@ -19,7 +19,7 @@ from identification.errors import InputError
 from identification.files import MODEL, read_bytes
 from identification.logs.log import Log
 from identification.model.predictor import output_columns
-from identification.robot.file import RobotFile
+from identification.refusals.trust import RobotFile
 
 _SLIDE = int(mujoco.mjtJoint.mjJNT_SLIDE)
 _WORDS = {int(mujoco.mjtJoint.mjJNT_FREE): "free", int(mujoco.mjtJoint.mjJNT_BALL): "ball",

@@ -1,12 +1,14 @@
-"""Forces on the joints by bodies that move as a log says, all samples at once.
+"""Forces on the joints by bodies and tendons that move as a log says, all samples at once.
 
     F = m J_cᵀ a_c + J_ωᵀ (I α + ω × I ω)                       of a body by itself
     F = J(p)ᵀ a(p),    J(p) = J_c - [r]× J_ω,    r = R p        of 1 kg at a point p of it
     a(p) = a_c + α × r + ω × (ω × r)
     F = J(p)ᵀ e                                                 of 1 N along an axis e of the world
+    F = J_tᵀ L̇,   J_tᵀ sign L̇,   J_tᵀ k (L - L_0)               of a tendon with damping 1, friction
+                                                                1, and its spring
 
 c: centre of mass, ω, α: angular velocity and acceleration, J_c, J_ω: Jacobians, I: inertia in the
-axes of the world, R: axes of the body.
+axes of the world, R: axes of the body; L: length of a tendon, J_t: its derivatives by the joints.
 """
 
 from __future__ import annotations
@@ -17,6 +19,13 @@ from dataclasses import dataclass
 
 import mujoco
 import numpy as np
+
+from identification.engine import quiet
+
+PASSIVE = (  # parts of MuJoCo's step that a model may leave out, and that are needed here
+    mujoco.mjtDisableBit.mjDSBL_SPRING,
+    mujoco.mjtDisableBit.mjDSBL_DAMPER,
+)
 
 
 @dataclass(frozen=True)
@@ -45,15 +54,7 @@ class MovingBody:
 def follow_bodies(
     model: mujoco.MjModel, q: np.ndarray, v: np.ndarray, a: np.ndarray, bodies: Sequence[int]
 ) -> dict[int, MovingBody]:
-    """Returns some bodies of a robot of hinges and slides along a motion.
-
-    Args:
-        model: of the robot.
-        q: positions, shape (n, nv) [rad or m].
-        v: velocities, shape (n, nv).
-        a: accelerations, shape (n, nv).
-        bodies: their indices.
-    """
+    """Returns bodies of a robot of hinges and slides along a motion q, v, a of shape (n, nv)."""
     free = copy.copy(model)
     free.opt.gravity[:] = 0.0
     data, n, nv = mujoco.MjData(free), len(q), model.nv
@@ -82,13 +83,7 @@ def follow_bodies(
 
 
 def inertial_force(body: MovingBody, mass: float, inertia: np.ndarray) -> np.ndarray:
-    """Returns the forces that move a body, shape (n, nv).
-
-    Args:
-        body: along the motion.
-        mass: [kg].
-        inertia: about its own axes, shape (3,) [kg m^2].
-    """
+    """Returns the forces (n, nv) that move a body with a mass [kg] and inertias (3,) [kg m^2]."""
     In = body.R_i @ (inertia[:, None] * np.swapaxes(body.R_i, 1, 2))
     turned, twisted = (np.einsum("kij,kj->ki", In, x) for x in (body.ω, body.α))
     torque = twisted + np.cross(body.ω, turned)
@@ -96,26 +91,47 @@ def inertial_force(body: MovingBody, mass: float, inertia: np.ndarray) -> np.nda
 
 
 def point_force(body: MovingBody, p: np.ndarray) -> np.ndarray:
-    """Returns the forces that move 1 kg at a point of a body, shape (n, nv).
-
-    Args:
-        body: along the motion.
-        p: from the centre of mass, in the body's axes, shape (3,) [m].
-    """
+    """Returns the forces (n, nv) that move 1 kg at p [m] from the centre of mass, in body axes."""
     r = body.R @ p
     a = body.a_c + np.cross(body.α, r) + np.cross(body.ω, np.cross(body.ω, r))
     return _on_joints(_jacobian(body, r), a)
 
 
 def weights(body: MovingBody, p: np.ndarray) -> tuple[np.ndarray, ...]:
-    """Returns the forces of 1 N along each axis of the world at a point, three of shape (n, nv).
-
-    Args:
-        body: along the motion.
-        p: from the centre of mass, in the axes of the inertia, shape (3,) [m].
-    """
+    """Returns the forces (n, nv) of 1 N along each axis of the world at p [m] in inertia axes."""
     J = _jacobian(body, body.R_i @ p)
     return J[:, 0], J[:, 1], J[:, 2]
+
+
+@quiet()
+def tendon_forces(
+    model: mujoco.MjModel, q: np.ndarray, v: np.ndarray
+) -> tuple[list[np.ndarray], list[np.ndarray]]:
+    """Computes the forces of tendons on the joints of a robot at q, v of shape (n, nv).
+
+    Returns:
+        Forces of each tendon's damping and friction of one, and those of its spring where it has
+        one, each of shape (n, nv).
+    """
+    alone, data = copy.copy(model), mujoco.MjData(model)
+    alone.opt.disableflags &= ~sum(int(bit) for bit in PASSIVE)
+    alone.dof_damping[:], alone.jnt_stiffness[:] = 0.0, 0.0
+    resisting, springs = [], []
+    for i in range(model.ntendon):
+        stiffness = float(model.tendon_stiffness[i])
+        alone.tendon_damping[:], alone.tendon_stiffness[:] = 0.0, 0.0
+        alone.tendon_damping[i], alone.tendon_stiffness[i] = 1.0, stiffness
+        damped, held, rate = np.zeros_like(v), np.zeros_like(v), np.zeros(len(v))
+        for k in range(len(q)):
+            data.qpos, data.qvel = q[k], v[k]
+            mujoco.mj_fwdPosition(alone, data)
+            mujoco.mj_fwdVelocity(alone, data)
+            damped[k], held[k] = -data.qfrc_damper, -data.qfrc_spring
+            rate[k] = abs(data.ten_velocity[i])
+        moves = np.where(rate > 0, rate, 1.0)[:, None]
+        resisting += [damped, damped / moves]
+        springs += [held] if stiffness else []
+    return resisting, springs
 
 
 def _jacobian(body: MovingBody, r: np.ndarray) -> np.ndarray:

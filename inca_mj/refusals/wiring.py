@@ -1,20 +1,17 @@
 """Is a log wired as the robot is? Its first motion beside the nominal twin's.
 
-    ε_k = 1 - ⟨y_k, ŷ_k⟩ / (‖y_k‖ ‖ŷ_k‖),    s_k = ⟨y_k, ŷ_k⟩ / ‖ŷ_k‖²
-
 ŷ is a free run under the logged currents until two seconds after the twin begins to move; ε is what
-`identification.logs.readings` takes, here without the scale s, which is judged by itself. A twin
-that lacks something is off by a few percent: ε <= 0.11 and 0.77 <= s <= 1.2 over 89 simulated logs
-of 25 effects; an anchor that is 0.1 m off makes even ε = 1.5. Where the twin does not move, nothing
-is said. A log is believed to be wired in another way only if all its angles, read in that way, are
-as near to the twin as those of a right log. Currents are judged by all angles together
-(`inca_mj.twin.other_currents`).
+`identification.refusals.readings` takes, here without the scale s, which is judged by itself. A
+twin that lacks something is off by a few percent: ε <= 0.11 and 0.77 <= s <= 1.2 over 89 simulated
+logs of 25 effects; an anchor that is 0.1 m off makes even ε = 1.5. Where the twin does not move,
+nothing is said. A log is believed to be wired in another way only if all its angles, read in that
+way, are as near to the twin as those of a right log. Currents are judged by all angles together
+(`inca_mj.refusals.currents`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
@@ -22,17 +19,15 @@ from identification import Log, Predictor
 from identification.errors import DivergenceError, InputError
 from identification.logs.frozen import refuse_frozen
 from identification.logs.names import listed
-from identification.logs.readings import Reading
-from identification.robot.trust import trusted
-from inca_mj.twin.agreement import angles_under, some, unreached_share
-from inca_mj.twin.bounds import BOUNDS
-from inca_mj.twin.dead_current import dead_current
+from identification.refusals.readings import Reading
+from identification.refusals.trust import trusted
+from inca_mj.refusals.agreement import angles_under, some, unreached_share
+from inca_mj.refusals.angles import apart, other_angles, with_outputs
+from inca_mj.refusals.bounds import BOUNDS
+from inca_mj.refusals.currents import other_currents, renamed_drives
+from inca_mj.refusals.dead_current import dead_current
+from inca_mj.refusals.scales import other_unit, scaled_angle, scaled_current
 from inca_mj.twin.logs import JUDGED, overruled_by
-from inca_mj.twin.other_currents import apart, other_currents
-from inca_mj.twin.other_unit import other_unit
-from inca_mj.twin.other_wiring import other_wiring
-from inca_mj.twin.renamed_drives import renamed_drives
-from inca_mj.twin.scaled_column import scaled_angle, scaled_current
 from inca_mj.twin.twin import Twin
 
 LONGEST = 10.0  # [s] in which motion must begin
@@ -67,8 +62,9 @@ def refuse_miswired(log: Log, plant: Twin, trust: Sequence[str] = ()) -> None:
         raise InputError(f"log {log.name!r}: {_standing(part, moves)}{overruled_by('sensors')}")
     if not moves.any():
         return
-    every, longer = bool(moves.all()), _longer(log, part)
-    part, predicted = _with_outputs(part, moves), predicted[:, moves]
+    every = bool(moves.all())
+    longer = log.between(float(part.time[0]), float(part.time[-1]) + BEGINNING)  # cannot drift away
+    part, predicted = with_outputs(part, moves), predicted[:, moves]
     dead = dead_current(plant, part, predicted) if every else None
     if dead is not None and {*dead[1]} - overruled:
         raise InputError(f"log {log.name!r}: {dead[0]}{overruled_by(*dead[1])}{ADVICE}")
@@ -81,24 +77,23 @@ def refuse_miswired(log: Log, plant: Twin, trust: Sequence[str] = ()) -> None:
     if "units" not in overruled:
         unit = other_unit(read, predicted, "wiring" in overruled or wiring is not None)
         if unit is None and every and wiring is None:
-            unit = _scaled(plant, part, longer, predicted)
-    wrong: dict[tuple[str, ...], str] = {}
-    if wiring is not None:
-        wrong[("wiring",)] = f"the twin {wiring[1]}"
-    if unit is not None:
-        wrong[unit[1]] = unit[0]
+            scaled = scaled_angle(plant, part, predicted)
+            scaled = scaled or scaled_current(plant, part, longer, predicted)
+            unit = None if scaled is None else (scaled, ("units",))
+    wrong: list[tuple[str, tuple[str, ...]]] = []
+    wrong += [] if wiring is None else [(f"the twin {wiring[1]}", ("wiring",))]
+    wrong += [] if unit is None else [unit]
     if wrong:
-        words = dict.fromkeys(word for words in wrong for word in words)
-        raise InputError(
-            f"log {log.name!r}: {'; so read, '.join(wrong.values())}{overruled_by(*words)}{ADVICE}"
-        )
+        said = "; so read, ".join(sentence for sentence, _ in wrong)
+        words = dict.fromkeys(word for _, words in wrong for word in words)
+        raise InputError(f"log {log.name!r}: {said}{overruled_by(*words)}{ADVICE}")
 
 
 def _other_wiring(
     plant: Twin, part: Log, predicted: np.ndarray, longer: Log | None
 ) -> tuple[Reading, str] | None:
     """Returns another wiring of the angles or of the currents, whichever is nearer to the twin."""
-    angles = other_wiring(part, predicted)
+    angles = other_angles(part, predicted)
     if angles is not None and longer is not None and _tears(plant, part, angles[0].log):
         angles = None
     left = np.inf if angles is None else apart(angles[0].log, predicted)
@@ -119,19 +114,6 @@ def _tears(plant: Twin, part: Log, other: Log) -> bool:
     return bool(new > BOUNDS.as_near * own)
 
 
-def _scaled(
-    plant: Twin, part: Log, longer: Log, predicted: np.ndarray
-) -> tuple[str, tuple[str, ...]] | None:
-    """Returns what tells that one column is far too small or too large, and what this judges."""
-    said = scaled_angle(plant, part, predicted) or scaled_current(plant, part, longer, predicted)
-    return None if said is None else (said, ("units",))
-
-
-def _longer(log: Log, part: Log) -> Log:
-    """Returns the first motion and what follows it, for what cannot drift away."""
-    return log.between(float(part.time[0]), float(part.time[-1]) + BEGINNING)
-
-
 def _moving(part: Log, predicted: np.ndarray) -> np.ndarray:
     """Returns which angles of a log move, where all of the twin's do, shape (8,)."""
     y = part.outputs - part.outputs[0]
@@ -144,12 +126,6 @@ def _standing(part: Log, moves: np.ndarray) -> str:
         return "nothing moves in the log though the currents would move the robot"
     names = listed(n for n, moving in zip(part.output_names, moves, strict=True) if not moving)
     return f"{names}: stands still though its motor turns; look for a dead encoder"
-
-
-def _with_outputs(part: Log, kept: np.ndarray) -> Log:
-    """Returns a log with the outputs that a mask keeps: what stands still has no sign or scale."""
-    names = tuple(n for n, keep in zip(part.output_names, kept, strict=True) if keep)
-    return replace(part, outputs=part.outputs[:, kept], output_names=names, units={}, extras={})
 
 
 def _first_motion(log: Log, plant: Twin) -> tuple[Log, np.ndarray] | None:

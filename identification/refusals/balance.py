@@ -7,7 +7,15 @@
 b are the model's bodies and rotors, p points of the outermost bodies that may carry a payload. Each
 γ is the weight of a body along an axis, or of what it carries: gravity may be missing, turned or
 too much. So η is what no payload, gravity, friction or mass explains; only a wrong unit, sign or
-order of columns does. The motion is smoothed by ψ (`identification.robot.smoothing`).
+order of columns does. The motion is smoothed by ψ (`identification.refusals.smoothing`).
+
+    min ‖A x - b‖²,  low ≤ x ≤ high                A = Q R,  Qᵀ b = c:  min ‖R x - c‖², R square
+    R_f z + R_b y = c,  z without bounds  ->  min ‖P (R_b y - c)‖² over y,   P = I - R_f R_f⁺
+
+Of a long chain of bodies many columns are nearly sums of others. Unknowns that hardly change what
+is left are then huge without their bounds, where a solver of bounds begins, and it does not come
+back. So they are held by a weak pull to zero. Unknowns without bounds follow from the others, so
+that the solver, whose steps take the square of its columns, is spared them.
 """
 
 from __future__ import annotations
@@ -20,10 +28,14 @@ import numpy as np
 from identification.engine import quiet
 from identification.logs.log import Log
 from identification.model.predictor import output_columns
-from identification.robot.bounded import solve_bounded
-from identification.robot.moving import follow_bodies, inertial_force, point_force, weights
-from identification.robot.smoothing import Smooth, is_hidden, smoothed, widths
-from identification.robot.tendon_forces import tendon_forces
+from identification.refusals.forces import (
+    follow_bodies,
+    inertial_force,
+    point_force,
+    tendon_forces,
+    weights,
+)
+from identification.refusals.smoothing import Smooth, is_hidden, smoothed, widths
 
 FACTOR = 4.0  # that a mass, an inertia or a stiffness may be off; more is a matter of units
 PAYLOAD = 1.0  # largest, of the mass of all that moves
@@ -32,6 +44,9 @@ PAYLOAD = 1.0  # largest, of the mass of all that moves
 ROWS, MOST_EQUATIONS = 300, 6000
 FAR = (1.0, 1 / 3)  # of the robot's size, that a payload's points are away from its body
 SCALAR = (int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE))
+# Share of the largest diagonal of R below which a column is a sum of the others, to rounding.
+DEPENDENT = 1e-10
+PULL = 1e-4  # of an unknown, that it adds to what is left; columns are of a size of one, or more
 
 
 @dataclass(frozen=True)
@@ -74,8 +89,8 @@ def unbalanced_share(
     motion, force = found
     A, low, high = _columns(model, motion, freedom)
     size = force.std(axis=0)
-    own = A[:, :, : int(np.sum(low > 0))].sum(axis=2)  # of the model's own masses
-    size = np.where(size > 0, size, np.sqrt(np.mean(own**2, axis=0)))  # joints without a drive
+    masses = A[:, :, : int(np.sum(low > 0))].sum(axis=2)  # of the model's own masses
+    size = np.where(size > 0, size, np.sqrt(np.mean(masses**2, axis=0)))  # joints without a drive
     size = np.where(size > 0, size, 1.0)
     flat = (A / size[None, :, None]).reshape(-1, A.shape[2])
     norm = np.linalg.norm(flat, axis=0)
@@ -95,11 +110,7 @@ def _shortest(
 ) -> tuple[Smooth, np.ndarray] | None:
     """Returns the motion through the shortest ψ that noise does not hide, and the drives' forces.
 
-    Args:
-        model: of the robot.
-        log: as it is read.
-        q: the measured positions, shape (n, nv).
-        wider: times as long as it need be, that ψ is.
+    Of positions q (n, nv); ψ is then made some times wider.
     """
     rows = min(ROWS, MOST_EQUATIONS // model.nv)
     for w in widths(q, log.sampling_time, wider):
@@ -171,3 +182,40 @@ def _size(model: mujoco.MjModel, moving: list[int]) -> float:
     centres = data.xipos[moving]
     from_axes = np.linalg.norm(centres - data.xpos[moving], axis=1).max(initial=0.0)
     return float(max(np.ptp(centres, axis=0).max(initial=0.0), from_axes)) or 0.1
+
+
+def solve_bounded(A: np.ndarray, b: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    """Computes the unknowns (n,) within bounds, infinite for none, that leave least of b (m,)."""
+    from scipy.linalg import qr  # slow to import
+    from scipy.optimize import lsq_linear
+
+    R, c = _triangle(A, b)
+    is_free = np.isinf(low) & np.isinf(high)
+    bounded = ~is_free
+    Q, T, order = qr(R[:, is_free], pivoting=True)
+    size = np.abs(np.diag(T))
+    rank = int(np.sum(size > DEPENDENT * size.max(initial=0.0)))
+    turned, goal = Q.T @ R[:, bounded], Q.T @ c
+    x = np.zeros(A.shape[1])
+    if bounded.any():
+        n = turned.shape[1]
+        pulled = np.vstack([turned[rank:], PULL * np.eye(n)])
+        small, rest = _triangle(pulled, np.append(goal[rank:], np.zeros(n)))
+        x[bounded] = lsq_linear(small, rest, (low[bounded], high[bounded])).x
+    z = np.zeros(int(is_free.sum()))
+    if rank:
+        from scipy.linalg import solve_triangular
+
+        z[order[:rank]] = solve_triangular(
+            T[:rank, :rank], goal[:rank] - turned[:rank] @ x[bounded]
+        )
+    x[is_free] = z
+    return x
+
+
+def _triangle(A: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Returns R and Qᵀ b of A = Q R, or A and b where they have no more rows than columns."""
+    if len(A) <= A.shape[1]:
+        return A, b
+    both: np.ndarray = np.linalg.qr(np.column_stack([A, b]), mode="r")  # type: ignore[assignment]
+    return both[:, :-1], both[:, -1]

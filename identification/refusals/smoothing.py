@@ -46,10 +46,7 @@ class Smooth:
 def widths(q: np.ndarray, h: float, wider: int = 1) -> Iterator[int]:
     """Yields half the lengths of ψ, in samples, whose accelerations are not those of noise.
 
-    Args:
-        q: measured positions, shape (n, nv).
-        h: sampling time [s].
-        wider: times as long as that, that ψ will be; it must fit into the log all the same.
+    Of positions q (n, nv) every h [s]; ψ must fit into the log also when it is made wider.
     """
     noise = noise_floor(q)
     for w in WIDTHS:
@@ -61,14 +58,7 @@ def widths(q: np.ndarray, h: float, wider: int = 1) -> Iterator[int]:
 
 
 def smoothed(q: np.ndarray, log: Log, w: int, rows: int) -> Smooth:
-    """Returns the motion and the inputs through ψ.
-
-    Args:
-        q: measured positions, shape (n, nv).
-        log: its inputs, their hold and its sampling time.
-        w: half the length of ψ, in samples.
-        rows: samples that are kept, about.
-    """
+    """Returns positions q (n, nv) and the inputs through ψ of half the length w, at some rows."""
     u = log.inputs
     held = (np.vstack([u[:1], u[:-1]]) + u) / 2 if log.hold == "zoh" else u
     psi, slope, bend = _kernels(w, log.sampling_time)
@@ -81,18 +71,10 @@ def smoothed(q: np.ndarray, log: Log, w: int, rows: int) -> Smooth:
 def is_hidden(
     model: mujoco.MjModel, motion: Smooth, q: np.ndarray, w: int, h: float, driven: np.ndarray
 ) -> bool:
-    """Returns whether noise hides the forces that move the masses.
+    """Returns whether noise of the positions q (n, nv) hides the forces that move the masses.
 
     They are compared with the forces M a themselves, and not with those of the drives, so that the
     unit of the positions does not matter. Where no drive acts, they may all cancel.
-
-    Args:
-        model: of a robot of hinges and slides.
-        motion: of `smoothed`.
-        q: measured positions, shape (n, nv).
-        w: half the length of ψ, in samples.
-        h: sampling time [s].
-        driven: true where a drive acts, shape (nv,).
     """
     noise = noise_floor(q) * np.linalg.norm(_kernels(w, h)[2])
     data, M = mujoco.MjData(model), np.zeros((model.nv, model.nv))

@@ -1,7 +1,7 @@
 """A logged current that stands still though the motor had another one.
 
 The twin is simulated with the logged currents of all drives but one, whose motor follows the
-measured angle by feedback (`inca_mj.twin.agreement`). If the current of that drive alone is
+measured angle by feedback (`inca_mj.refusals.agreement`). If the current of that drive alone is
 wrong, the other seven angles are as those of a right log now:
 
     γ_others <= γ/10,    ε_j <= 0.2 for every other angle j
@@ -12,7 +12,7 @@ left 0.36 of γ or more; where a current was logged as zero, it left 0.026 in th
 currents may stand still, and others may have the other sign: feedback of all motors tells which.
 
 One angle may be turned or scaled beside them. The cables tell so without a current
-(`inca_mj.twin.odd_angle`), and the currents are judged with the angle mended.
+(`inca_mj.refusals.scales`), and the currents are judged with the angle mended.
 """
 
 from __future__ import annotations
@@ -25,10 +25,11 @@ import numpy as np
 from identification import Log
 from identification.logs.cures import how_to_turn
 from identification.logs.names import listed
-from inca_mj.twin.agreement import SETTLED, follow, shares_of, some
-from inca_mj.twin.bounds import BOUNDS
-from inca_mj.twin.odd_angle import is_turned, mended_angle, odd_angle, odd_words
-from inca_mj.twin.other_currents import apart, is_right, likely_units
+from inca_mj.refusals.agreement import SETTLED, follow, shares_of, some
+from inca_mj.refusals.angles import apart, is_right, with_outputs
+from inca_mj.refusals.bounds import BOUNDS
+from inca_mj.refusals.currents import likely_units
+from inca_mj.refusals.scales import is_turned, mended_angle, odd_angle, odd_words
 from inca_mj.twin.twin import Twin
 
 
@@ -71,23 +72,12 @@ def dead_current(
 def _missing(
     plant: Twin, log: Log, dead: list[int], signs: np.ndarray, own: float
 ) -> np.ndarray | None:
-    """Returns the currents that drives had, shape (n, drives) [A]; None if others do not fit.
-
-    Args:
-        plant: the twin.
-        log: n samples of angles that are believed.
-        dead: drives whose currents may be missing.
-        signs: of all currents, shape (8,).
-        own: γ of the log under its currents.
-    """
+    """Returns the currents that drives had, shape (n, drives) [A]; None if others do not fit."""
     followed = follow(plant, replace(log, inputs=log.inputs * signs), dead)
     if followed is None:
         return None
-    angles, names = np.delete(followed[1], dead, axis=1), log.output_names
-    others = replace(
-        log, outputs=np.delete(log.outputs, dead, axis=1), units={}, extras={},
-        output_names=tuple(n for k, n in enumerate(names) if k not in dead),
-    )  # fmt: skip
+    kept = ~np.isin(np.arange(log.outputs.shape[1]), dead)
+    others, angles = with_outputs(log, kept), followed[1][:, kept]
     if apart(others, angles) >= BOUNDS.nearer * own or not is_right(others, angles):
         return None
     currents: np.ndarray = followed[0][SETTLED:, dead]
@@ -96,30 +86,20 @@ def _missing(
 
 def _likely(plant: Twin, log: Log, still: list[int]) -> Iterator[tuple[list[int], np.ndarray]]:
     """Yields drives whose currents may be missing, with the signs of all currents, shape (8,)."""
+    groups = [*([k] for k in still), *([still] if 1 < len(still) <= BOUNDS.max_dead else [])]
     right = np.ones(log.inputs.shape[1])
-    yield from (([k], right) for k in still)
-    if 1 < len(still) <= BOUNDS.max_dead:
-        yield still, right
+    yield from ((dead, right) for dead in groups)
     followed = follow(plant, log)
     if followed is None:
         return
     signs = np.where(np.diag(shares_of(log, followed[0])) < 0, -1.0, 1.0)
     signs[still] = 1.0
     if (signs < 0).any():
-        yield from (([k], signs) for k in still)
-        if 1 < len(still) <= BOUNDS.max_dead:
-            yield still, signs
+        yield from ((dead, signs) for dead in groups)
 
 
 def _said(part: Log, dead: list[int], currents: np.ndarray, signs: np.ndarray) -> str:
-    """Returns what tells that currents are dead, and the cure, in words.
-
-    Args:
-        part: the first motion.
-        dead: drives whose currents were not logged.
-        currents: those that they had, shape (n, number of these) [A].
-        signs: of all currents, shape (8,).
-    """
+    """Returns what tells that currents are dead, and the cure, in words."""
     names = [part.input_names[k] for k in dead]
     stand = "stands" if len(dead) == 1 else "stand"
     level = ", ".join(f"{part.inputs[0, k]:.3g}" for k in dead)

@@ -1,7 +1,7 @@
 """How a log agrees with the twin: its currents with its angles, and its angles with one another.
 
 **Which currents make the twin follow a log?** They tell which logged current belongs to which
-drive. This is a proposal; the verdict is a free run (`inca_mj.twin.other_currents`).
+drive. This is a proposal; the verdict is a free run (`inca_mj.refusals.currents`).
 
     i_k = K_p (y_k - φ_k) + K_d (ẏ_k - ω_k),    K_p = J Ω²/K_t,    K_d = 2 J Ω/K_t          [A]
     i_k ≈ Σ_m W_km (F u_m) + c_k,               F = (2 Ω s + Ω²)/(s + Ω)² = 2 L - L²,
@@ -63,15 +63,9 @@ def angles_under(plant: Twin, log: Log, currents: np.ndarray) -> np.ndarray:
     held = [reach(each).reshape(each.shape) for each in hold(currents, every, log.hold)]
     last = [each[-1:] for each in held]  # rollout takes an input more than it makes steps
     states = rollout(
-        plant.model,
-        start,
-        np.concatenate([held, last], axis=1),
-        timestep,
-        numbers=numbers,
-        record=predictor.recorded,
-        time=log.begun,
-        keeps_diverged=True,
-    )
+        plant.model, start, np.concatenate([held, last], axis=1), timestep, numbers=numbers,
+        record=predictor.recorded, time=log.begun, keeps_diverged=True,
+    )  # fmt: skip
     return predictor.outputs(none, {name: part[:, ::every] for name, part in states.items()})
 
 
@@ -111,29 +105,20 @@ def follow(
 
 
 def places_of(log: Log, currents: np.ndarray) -> np.ndarray:
-    """Returns which logged current each drive had, and its sign, as a signed permutation (8, 8).
-
-    Args:
-        log: n samples.
-        currents: of all drives under which the twin follows it, shape (n - 1, 8) [A].
-
-    Returns:
-        Entry k, m is 1 or -1 where column m is the current of drive k with this sign, and else 0.
-    """
+    """Returns which logged current each drive had, and its sign, as a signed permutation (8, 8)."""
     W = shares_of(log, currents)
-    k, m = np.arange(len(W)), assigned(np.abs(W))
-    places = np.zeros_like(W)
-    places[k, m] = np.where(W[k, m] < 0, -1.0, 1.0)
+    return signed(W, assigned(np.abs(W)))
+
+
+def signed(W: np.ndarray, columns: np.ndarray) -> np.ndarray:
+    """Returns a signed permutation: entry k, m is 1 or -1, the sign of W_km, if columns_k is m."""
+    places, k = np.zeros_like(W), np.arange(len(W))
+    places[k, columns] = np.where(W[k, columns] < 0, -1.0, 1.0)
     return places
 
 
 def shares_of(log: Log, currents: np.ndarray) -> np.ndarray:
-    """Returns W: the share of each logged current in that of each drive, (8, 8), without unit.
-
-    Args:
-        log: n samples.
-        currents: of all drives under which the twin follows it, shape (n - 1, 8) [A].
-    """
+    """Returns W (8, 8): the share of each logged current in that (n - 1, 8) of each drive [A]."""
     once = _low_pass(log.inputs, log.sampling_time)
     smoothed = (2 * once - _low_pass(once, log.sampling_time))[1:]
     regressors = np.column_stack([smoothed, np.ones(len(smoothed))])[SETTLED:]
@@ -142,14 +127,7 @@ def shares_of(log: Log, currents: np.ndarray) -> np.ndarray:
 
 
 def assigned(likeness: np.ndarray) -> np.ndarray:
-    """Returns the columns of all rows for which the likenesses add up to most, shape (n,).
-
-    Args:
-        likeness: of each row and column, shape (n, n).
-
-    Raises:
-        ValueError: an entry is no number.
-    """
+    """Returns one column for each row, shape (n,), so that likenesses (n, n) add up to most."""
     first = likeness.argmax(axis=1)
     if np.isfinite(likeness).all() and len({*first.tolist()}) == len(first):
         return first  # no row can do better
@@ -167,15 +145,7 @@ def _low_pass(signals: np.ndarray, sampling_time: float) -> np.ndarray:
 
 
 def unreached_share(plant: Twin, angles: np.ndarray) -> np.ndarray:
-    """Returns κ of several logs, without unit; inf where no search ends.
-
-    Args:
-        plant: the twin, with its geometry and the pose where all angles are zero.
-        angles: from the first sample on, shape (m, n, 8) [rad].
-
-    Returns:
-        Shape (m,).
-    """
+    """Returns κ (m,) of m logs of angles (m, n, 8) [rad]; inf where no search ends."""
     wanted = -plant.parameters.values()["R"] * angles
     start = np.array(plant.start.pose, float)
     shape = angles.shape[:2]
@@ -197,15 +167,10 @@ def unreached_share(plant: Twin, angles: np.ndarray) -> np.ndarray:
 
 
 def likely_orders(plant: Twin, angles: np.ndarray, most: int) -> np.ndarray:
-    """Returns the orders of the angles that have least κ near the pose at rest, shape (most, 8).
+    """Returns the orders of angles (n, 8) that have least κ near the pose at rest, shape (most, 8).
 
     All 40320 orders are compared, with the slopes of the cables' lengths at rest; column k of the
     angles in an order is that of drive order[k].
-
-    Args:
-        plant: the twin.
-        angles: from the first sample on, shape (n, 8) [rad].
-        most: orders that are returned.
     """
     start = np.array(plant.start.pose, float)
     L = jacobian(cables_at(start[:3], rotation(*start[3:]), plant.geometry))

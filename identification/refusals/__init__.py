@@ -1,0 +1,1 @@
+"""Checks of a log against its robot: units, signs, places, contacts, joints without a sensor."""

@@ -1,0 +1,145 @@
+"""What the forces of the drives say of a log and of other readings of it, without a simulation.
+
+    η(y) > 1      however light, friction, gravity, payload and springs may be, more is left of the
+                  balance of forces than the drives gave
+
+The balance is that of `identification.refusals.balance`, where masses may be off by a factor of
+four, and with springs, which the model may lack too. A smaller motion needs less force for its
+masses, and all else that it needs is free in the balance. So only a motion that is too large for
+the forces has η > 1: where inertia needs all of them, a model that is more than eight times too
+heavy would be needed for as much. Such a log is refused where another unit leaves far less. A
+motion that is rougher than its noise (the steps of an encoder) has false accelerations: ψ is made
+wider too, and the smallest η counts. A payload that the model lacks bars nothing.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import chain
+
+import mujoco
+import numpy as np
+
+from identification.logs.log import Log
+from identification.quantities import held
+from identification.refusals.balance import Freedom, unbalanced_share
+from identification.refusals.columns import Doubt, factor_readings, turned_units, unit_readings
+from identification.refusals.readings import EXPLAINED, NEARER, UNEXPLAINED, Reading
+from identification.refusals.turned_inputs import with_turned_ranges
+
+FREEDOM = Freedom(has_springs=True)
+WIDER = (1, 2, 4)  # times ψ; a fourfold one has 32 times less noise in its accelerations
+DIGITS = 6  # of a change; a factor of 1000 and the unit mrad are the same one
+NEEDED = 1.0  # η of a motion that the drives cannot have made
+
+
+@dataclass(frozen=True)
+class Balance:
+    """The balance of forces of a log as it is read, which other readings are compared with."""
+
+    model: mujoco.MjModel
+    log: Log
+
+    @cached_property
+    def own(self) -> np.ndarray | None:
+        """η of each output, shape (ny,)."""
+        return unbalanced_share(self.model, self.log)
+
+    @property
+    def contradicts(self) -> bool:
+        """Whether forces do not explain the log as it is read, or say nothing of it."""
+        return self.own is None or bool((self.own > UNEXPLAINED).any())
+
+    @property
+    def excludes(self) -> bool:
+        """Whether forces cannot be those of the log as it is read, whatever the model lacks."""
+        return self.own is not None and bool((self.own > NEEDED).any())
+
+    def confirms(self, reading: Reading, left: np.ndarray) -> bool:
+        """Returns whether forces speak for a reading that leaves ε (ny,)."""
+        k = list(reading.columns)
+        if self.own is None:
+            return bool((left[k] < UNEXPLAINED).all())
+        other = self._of(reading)
+        # Together, because a joint without a drive looks the same from both sides.
+        return other is not None and bool(other[k].sum() < NEARER * self.own[k].sum())
+
+    def decides(self, reading: Reading) -> str | None:
+        """Says how much less of the forces is unexplained by a reading; None where not far less."""
+        left = None if self.own is None else self._of(reading)
+        if self.own is None or left is None or (left > UNEXPLAINED).any():
+            return None
+        if left.sum() > NEARER * self.own.sum():
+            return None
+        times = held(float(self.own.sum() / max(left.sum(), np.finfo(float).tiny)))
+        return (
+            f"leaves {times} times as much of the drives' forces unexplained as it would"
+            f" {reading.said}, whatever payload, gravity and friction it has; {reading.cure}"
+        )
+
+    def _of(self, reading: Reading) -> np.ndarray | None:
+        return unbalanced_share(with_turned_ranges(self.model, self.log, reading.log), reading.log)
+
+
+def rescaled(
+    model: mujoco.MjModel, doubt: Doubt, signs: bool = True, alone: bool = True
+) -> tuple[Reading, str] | None:
+    """Returns the unit in which the forces of the drives explain a motion that they else cannot.
+
+    A unit with a sign that is turned counts where it leaves less than a fifth of the unit alone.
+
+    Args:
+        model: with the log's actuators and sensors.
+        doubt: the log, all of whose outputs are in doubt.
+        signs: whether a sign may be turned besides.
+        alone: whether one column of several of a kind may be in another unit.
+
+    Returns:
+        Of the units that explain it the one that changes least, if none leaves a fifth of it, and
+        in words what it explains; None where the motion can be as it is read.
+    """
+    log = doubt.log
+    own = _least_share(model, log)
+    if own is None or own.max() <= NEEDED:
+        return None
+    both = turned_units(doubt) if signs else ()
+    found: list[tuple[Reading, np.ndarray]] = []
+    for reading in chain(factor_readings(doubt), unit_readings(doubt, alone=alone), both):
+        left = unbalanced_share(model, reading.log, FREEDOM)
+        if left is not None and left.max() <= EXPLAINED and left.sum() <= NEARER * own.sum():
+            found.append((reading, left))
+    if not found:
+        return None
+    least = min(left.sum() for _, left in found)
+    near = [(r, left) for r, left in found if NEARER * left.sum() <= least]
+    # Rounded, so that of two readings that are the same the first one counts.
+    reading, left = min(near, key=lambda each: round(_change(each[0].log, log), DIGITS))
+    times = held(float(np.sqrt(own.max())))
+    return reading, (
+        f"needs forces {times} times those of the drives for this motion, whatever"
+        f" payload and friction it has, and explains {100 * (1 - left.max()):.0f} % of them"
+        f" {reading.said}; {reading.cure} (where the outputs are right, the inputs are in a larger"
+        " unit: write that of the inputs)"
+    )
+
+
+def _change(other: Log, log: Log) -> float:
+    """Returns how far another reading is from a log: Σ |ln factor| over its columns."""
+    pairs = (other.outputs, log.outputs), (other.inputs, log.inputs)
+    sizes = [[np.abs(x).max(axis=0) for x in pair] for pair in pairs]
+    return sum(float(np.abs(np.log(a[b > 0] / b[b > 0])).sum()) for a, b in sizes)
+
+
+def _least_share(model: mujoco.MjModel, log: Log) -> np.ndarray | None:
+    """Returns η of each output (ny,), of the ψ that leaves least; None where it cannot be had."""
+    best: np.ndarray | None = None
+    for wider in WIDER:
+        left = unbalanced_share(model, log, replace(FREEDOM, wider=wider))
+        if left is None:
+            return best
+        if best is None or left.max() < best.max():
+            best = left
+        if best.max() <= NEEDED:
+            return best
+    return best

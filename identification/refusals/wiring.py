@@ -1,0 +1,127 @@
+"""Is a log wired as its robot's model is? What is judged, and what is never held against a log.
+
+A model that lacks a payload, has gravity where there is none, or a friction three times too small,
+explains a right log badly too, and may explain a wrong reading better by chance: one that makes the
+motion larger makes every error of the model smaller beside it. So a log is refused only where the
+balance of forces says the same (`identification.refusals.balance`): no payload, gravity, friction
+or mass lets the log be explained as it is read nearly as well as otherwise. Where that balance
+cannot be had, the other reading must explain nearly all. Two mistakes in one log, a sign and a
+unit, an exchange or another sign, are looked for where no reading with one of them is far better,
+and only where the balance does not explain the log as it is read. These are many, so that a few
+windows of each are simulated first, and none of a log with very many columns. A motion that is too
+large for the forces of the drives is refused without any simulation.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import partial
+from itertools import chain
+
+import numpy as np
+
+from identification.errors import InputError
+from identification.logs.log import Log
+from identification.refusals.by_forces import Balance, rescaled
+from identification.refusals.columns import (
+    Doubt,
+    Readings,
+    factor_readings,
+    input_readings,
+    output_readings,
+    turned_exchanges,
+    turned_units,
+    two_turns,
+    unit_readings,
+)
+from identification.refusals.judge import Judge, beginning, lengths_of
+from identification.refusals.readings import NEARER, SAME, UNEXPLAINED, Reading, misread
+from identification.refusals.same_units import different_units, wanted_units
+from identification.refusals.trust import Robot
+from identification.refusals.turned_inputs import all_inputs_turned
+
+# Inputs and outputs of a log in which two mistakes are looked for: exchanges with another sign grow
+# as the third power of the columns, and for 50 joints would be simulated for half a day.
+MOST_COLUMNS = 32
+
+
+def refuse_miswired(robot: Robot, log: Log) -> None:
+    """Refuse a log that other units, signs or places of its columns would explain far better.
+
+    Args:
+        robot: with the values that its file gives, and what it trusts.
+        log: of the robot.
+
+    Raises:
+        InputError: there is such a reading.
+    """
+    file, plant = robot.file, robot.plant_of(log)
+    wanted = wanted_units(plant.model, log)
+    column = {n: file.columns.get(n, n) for n in (*log.output_names, *log.input_names)}
+    units, wiring = ("units" not in file.trust), ("wiring" not in file.trust)
+    is_small = len(column) <= MOST_COLUMNS
+    log = beginning(log)
+    every = Doubt.of(log, column)
+    together = partial(all_inputs_turned, model=plant.model, file=file)
+    in_units = partial(unit_readings, wanted=wanted)
+    balance, lengths = Balance(plant.model, log), lengths_of(robot, log)
+    if units and (cure := different_units(plant.model, log, column)):
+        raise InputError(f'log {log.name!r}: {cure}, or write trust = ["units"] into {file.path}')
+    is_explained = is_nearer = False
+    for judge in (Judge(plant, length, log) for length in lengths):
+        if (own := judge.own) is None:
+            continue
+        bad = own > UNEXPLAINED
+        if not bad.any():
+            is_explained = True
+            continue
+        doubt = replace(every, bad=bad)
+        kinds: list[Readings] = [factor_readings, in_units] * units
+        kinds += [partial(_of_outputs, judge), input_readings] * wiring
+        kinds += [together] * (wiring and len(log.input_names) > 1)
+        readings = chain(*(kind(doubt) for kind in kinds))
+        found = misread(log, own, readings, judge.if_far_better, balance.confirms)
+        if found is None and wiring and is_small and balance.contradicts:
+            two = [turned_units(doubt, wanted)] * units
+            if judge.length == lengths[0]:  # an exchange is seen in all windows, and these are many
+                two += [two_turns(doubt), turned_exchanges(doubt)]
+            near = judge.promising(chain(*two))
+            found = misread(log, own, near, judge.if_far_better, balance.confirms)
+        if wiring:
+            turns = (judge.left(reading.log) for reading in together(doubt))
+            is_nearer |= any(e is not None and (e[bad] < NEARER * own[bad]).all() for e in turns)
+        if found is not None:
+            raise _refusal(robot, log, *found)
+    if wiring and not is_explained and (is_nearer or balance.excludes):
+        for reading in together(every):
+            if said := balance.decides(reading):
+                raise _refusal(robot, log, reading, said)
+    # The gain of a drive that wants a position is a guess, and its force with it.
+    if units and not (is_explained or wanted):
+        found = rescaled(plant.model, every, wiring and is_small, is_small)
+        if found is not None:
+            raise _refusal(robot, log, *found)
+
+
+def _of_outputs(judge: Judge, doubt: Doubt) -> Iterator[Reading]:
+    """Yields other signs and places of outputs, and says where inputs may be turned as well.
+
+    All outputs turned look as all inputs turned where nothing, such as gravity, has a direction of
+    its own. Whether it has is seen by trying both.
+    """
+    is_mirrored, log = False, doubt.log
+    if doubt.bad.all() and log.inputs.any():
+        one = judge.left(replace(log, outputs=-log.outputs))
+        other = judge.left(replace(log, inputs=-log.inputs))
+        is_mirrored = one is not None and other is not None and np.allclose(one, other, rtol=SAME)
+    yield from output_readings(doubt, is_mirrored)
+
+
+def _refusal(robot: Robot, log: Log, reading: Reading, said: str) -> InputError:
+    file = robot.file
+    words = ", ".join(f'"{kind}"' for kind in reading.kinds)
+    return InputError(
+        f"log {log.name!r}: the model of {file.model} {said}, or give values nearer to the"
+        f" robot's, or write trust = [{words}] into {file.path}"
+    )
