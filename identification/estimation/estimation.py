@@ -26,13 +26,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from identification.errors import InputError, refuse_kind
-from identification.estimation.priors import Priors
+from identification.estimation.priors import Priors, free_parameters
 from identification.estimation.search import Options as Options
 from identification.estimation.search import Search, Status
 from identification.logs.by_unit import by_unit, of_outputs
 from identification.logs.log import Log
 from identification.logs.noise import noise_floor
-from identification.model.coordinates import Coordinates, coordinates
+from identification.model.coordinates import Coordinates
 from identification.model.predictor import Plant, Predictor
 from identification.pool import one_blas_thread
 from identification.progress import Progress
@@ -117,15 +117,13 @@ def estimate(
         )
     began = time.perf_counter()
     options = options or Options()
-    for name in (*names, *(start or {}), *options.priors):
+    for name in options.priors:
         plant.parameters[name]
-    own = {**plant.parameters.values(), **(start or {})}
-    first = np.array([own[name] for name in names])
-    space = coordinates(plant.parameters, names, first)
+    predictor, space, first = free_parameters(plant, log, names, start or {})
     sigma = of_outputs(by_unit(noise_floor(log.outputs), log), log)
     sigma = np.where(sigma > 0, sigma, 1.0)
     search = Search(
-        Predictor(plant, log, tuple(names), dict(start or {})),
+        predictor,
         space,
         space.encode(first),
         np.eye(log.outputs.shape[1]) / sigma if whitener is None else whitener,
@@ -135,7 +133,7 @@ def estimate(
     search.refuse_idle()
     status = search.run()
     return Estimate(
-        predictor=search.predictor,
+        predictor=predictor,
         space=space,
         start=first,
         q=search.best,

@@ -1,7 +1,7 @@
 """The Levenberg-Marquardt method, for every search that linearises its criterion by itself.
 
     δ(μ) = argmin ‖r - F δ‖² + μ ‖D δ‖²,      D: norms of the columns of F
-    if ‖r(q ⊕ δ)‖² < ‖r(q)‖²:  q ← q ⊕ δ, F anew, μ ← μ / lowered
+    if ‖r(q ⊕ δ)‖² < ‖r(q)‖²:  q ← q ⊕ δ, F anew, μ ← μ / 10
     else:                        μ ← raised μ
 
 A criterion knows q, r and F, computes its step within the bounds, and evaluates its cost after a
@@ -25,6 +25,7 @@ import numpy as np
 KEPT_GAIN = 0.5
 # Relative error of slopes: a step of Gauss and Newton then misses a hundredth of what it can gain.
 SLOPE_ERROR = 0.1
+LOWERED = 10.0  # divisor of μ after a step that was accepted (Marquardt 1963)
 
 Step = TypeVar("Step")
 Cost = float | np.ndarray  # of one criterion, or of W independent ones, shape (W,)
@@ -65,23 +66,20 @@ class Damping:
     """The rule by which the damping μ changes from step to step.
 
     Attributes:
-        first: μ of the first step.
+        first: μ of the first step; where it is 0, steps are undamped until one is rejected.
         raised: factor of μ after a step that was rejected.
-        lowered: divisor of μ after a step that was accepted.
         least: smallest positive μ.
-        floor: the value of μ instead of one below `least`: `least` itself, or 0 for undamped steps.
     """
 
     first: float
     raised: float
-    lowered: float
     least: float
-    floor: float
 
     def next(self, μ: np.ndarray, taken: np.ndarray) -> np.ndarray:
         """Returns μ of the next step, elementwise, from the last μ and whether it was accepted."""
-        low, high = μ / self.lowered, np.maximum(self.raised * μ, self.least)
-        return np.where(taken, np.where(low < self.least, self.floor, low), high)
+        low, high = μ / LOWERED, np.maximum(self.raised * μ, self.least)
+        floor = self.least if self.first else 0.0
+        return np.where(taken, np.where(low < self.least, floor, low), high)
 
 
 @dataclass(frozen=True, kw_only=True)

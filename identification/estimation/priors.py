@@ -26,7 +26,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from identification.model.coordinates import NOTHING, Coordinates
+from identification.logs.log import Log
+from identification.model.coordinates import NOTHING, Coordinates, coordinates
+from identification.model.predictor import Plant, Predictor
 
 MAX_EM_ROUNDS = 200  # each costs one inverse of FᵀF
 EM_TOLERANCE = 1e-3  # relative change of every s below which EM ends
@@ -88,6 +90,22 @@ class Priors:
     def only(self, names: Sequence[str]) -> Priors:
         """Returns the prior of the parameters that have one of these names."""
         return self.taken(np.array([k for k, n in enumerate(self.names) if n in names], int))
+
+
+def free_parameters(
+    plant: Plant, log: Log, names: Sequence[str], start: Mapping[str, float]
+) -> tuple[Predictor, Coordinates, np.ndarray]:
+    """Returns the predictor, the coordinates and the starting values (p,) of named parameters.
+
+    Raises:
+        InputError: a name is unknown, or a start is out of bounds.
+    """
+    for name in (*names, *start):
+        plant.parameters[name]
+    values = {**plant.parameters.values(), **start}
+    first = np.array([values[name] for name in names])
+    space = coordinates(plant.parameters, names, first)
+    return Predictor(plant, log, tuple(names), dict(start)), space, first
 
 
 def estimate_scatter(

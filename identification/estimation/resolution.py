@@ -27,7 +27,9 @@ from identification.model.coordinates import Coordinates
 from identification.model.predictor import Predictor
 from identification.model.sensitivity import ROUND_OFF, STEP, two_sensitivities
 
-RESOLVED_STEPS = (STEP, 100 * STEP)  # of q: differences at both tell what the data resolve
+# Of a second step of differences to the first, for what a simulation is too rough to tell.
+LONG_STEP_RATIO = 100
+RESOLVED_STEPS = (STEP, LONG_STEP_RATIO * STEP)
 
 # at a step h: sensitivities at h and at 2 h, whitened, each of shape (n, p)
 AtTwoSteps = Callable[[float], tuple[np.ndarray, np.ndarray]]

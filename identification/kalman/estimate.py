@@ -20,18 +20,17 @@ from identification.errors import InputError
 from identification.estimation.estimation import Estimate
 from identification.estimation.fit import Fit, assess, combinations_of
 from identification.estimation.information import information_of
-from identification.estimation.priors import Priors
+from identification.estimation.priors import Priors, free_parameters
 from identification.estimation.residuals import residual_tests
 from identification.estimation.resolution import resolve
 from identification.estimation.search import Options, Status
 from identification.kalman.noise_fit import NoiseLevel
-from identification.kalman.noise_model import Noise, build_whitener
+from identification.kalman.noise_model import Noise, Whitener, build_whitener
 from identification.kalman.options import KalmanOptions
 from identification.kalman.point import Point, evaluate_point, extend_point
 from identification.kalman.refit import Refit, conclude, descend
 from identification.logs.log import Log
-from identification.model.coordinates import coordinates
-from identification.model.predictor import Plant, Predictor
+from identification.model.predictor import Plant
 from identification.model.sensitivity import refuse_without_effect, without_effect
 from identification.pool import one_blas_thread
 from identification.progress import Progress
@@ -105,12 +104,9 @@ def estimate_innovations(
         raise InputError(
             f"the log has {len(part)} samples to fit; innovations need at least {MIN_SAMPLES}"
         )
-    for name in (*names, *(start or {}), *weights.priors):
+    for name in weights.priors:
         plant.parameters[name]
-    own = {**plant.parameters.values(), **(start or {})}
-    first = np.array([own[name] for name in names])
-    space = coordinates(plant.parameters, names, first)
-    predictor = Predictor(plant, part, tuple(names), dict(start or {}))
+    predictor, space, first = free_parameters(plant, part, names, start or {})
     known = Priors.of(space, space.encode(first), weights.priors)
     held = replace(known, weight=np.maximum(known.weight, RIDGE_WEIGHT))
     begun = evaluate_point(predictor, space, known.mean)
@@ -135,10 +131,11 @@ def estimate_innovations(
         seconds=0.0,
     )
     fit = assess(ends, log)
-    if status == "stopped":  # nobody waits for std, nor for unseen data
-        E = _fitted_innovations(end)
-    else:
-        fit, E = _of_innovations(end, fit), compute_innovations(end, log)
+    with one_blas_thread():
+        filter_ = build_whitener(end.point.linear, end.level.noise, part.sampling_time)
+        E = filter_(end.point.e)
+    if status != "stopped":  # else nobody waits for std, nor for unseen data
+        fit, E = _of_innovations(end, fit, filter_, E), compute_innovations(end, log)
     fit = replace(fit, estimate=replace(ends, seconds=time.perf_counter() - began))
     return InnovationsFit(fit, end.level, E, len(part))
 
@@ -170,20 +167,10 @@ def compute_innovations(end: Refit, whole: Log) -> np.ndarray:
         return filter_(there.e)
 
 
-def _fitted_innovations(end: Refit) -> np.ndarray:
-    """Returns innovations of the fitted samples by the known linearisation, shape (n, ny)."""
-    point = end.point
-    with one_blas_thread():
-        filter_ = build_whitener(point.linear, end.level.noise, point.log.sampling_time)
-        return filter_(point.e)
-
-
-def _of_innovations(end: Refit, fit: Fit) -> Fit:
-    """Returns the fit with the uncertainty and the tests of the innovations."""
+def _of_innovations(end: Refit, fit: Fit, filter_: Whitener, E: np.ndarray) -> Fit:
+    """Returns the fit with the uncertainty and the tests of the innovations E (n, ny)."""
     point, σ = end.point, end.level.sigma
     with one_blas_thread():
-        filter_ = build_whitener(point.linear, end.level.noise, point.log.sampling_time)
-        E = filter_(point.e)
         resolved = resolve(
             point.predictor, point.space, point.q,
             lambda J: filter_(J).reshape(point.e.size, -1) / σ,

@@ -17,7 +17,7 @@ from threading import Lock
 import numpy as np
 
 from identification.kalman.linear import LinearPlant
-from identification.kalman.noise_model import Noise, Whitened, Whitener, augment, keep, whiten
+from identification.kalman.noise_model import Noise, Whitened, augment, keep, whiten
 from identification.kalman.recursion import propagate
 from identification.pool import one_blas_thread, run_parts, split
 
@@ -59,26 +59,21 @@ def compute_unit_ratio(plant: LinearPlant, sampling_time: float, time: float) ->
     return float(1 / np.sqrt(moved.mean()))
 
 
-def evaluate_noise(
-    filter_: Whitener, noise: Noise, e: np.ndarray, J: np.ndarray, prior: np.ndarray
-) -> NoiseLevel:
-    """Returns the likelihood of a residual (N, ny) under a noise, the parameters adjusted to it."""
-    E, F = filter_(e).ravel(), filter_(J).reshape(e.size, -1)
-    return _level(E, F, F.T @ F, noise, prior, filter_.log_determinant)
+def evaluate_noise(white: Whitened, e: np.ndarray, prior: np.ndarray) -> NoiseLevel:
+    """Returns the likelihood of a residual e (N, ny), the parameters adjusted to the noise.
 
-
-def _level(
-    E: np.ndarray, F: np.ndarray, H: np.ndarray, noise: Noise, prior: np.ndarray,
-    log_determinant: float,
-) -> NoiseLevel:  # fmt: skip
-    """Returns the likelihood of whitened residuals E and sensitivities F, H = FᵀF."""
+    Args:
+        white: the noise, and the sensitivities under it.
+        e: shape (N, ny).
+        prior: 1/std of each parameter's prior, shape (p,).
+    """
+    E, F = white.filter(e).ravel(), white.F
     sigma, b = np.sqrt(E @ E / E.size), F.T @ E
     for _ in range(2):  # the weight of the prior depends on σ
-        c = _solve(H + np.diag((prior * sigma) ** 2), b)
+        c = _solve(white.H + np.diag((prior * sigma) ** 2), b)
         sigma = np.sqrt(np.sum((E - F @ c) ** 2) / E.size)
-    return NoiseLevel(
-        noise, float(sigma), float(-0.5 * (2 * E.size * np.log(sigma) + log_determinant))
-    )
+    log_likelihood = -0.5 * (2 * E.size * np.log(sigma) + white.filter.log_determinant)
+    return NoiseLevel(white.noise, float(sigma), float(log_likelihood))
 
 
 def _solve(H: np.ndarray, b: np.ndarray) -> np.ndarray:
@@ -118,8 +113,7 @@ def fit_noise(
 
         def at(noise: Noise) -> NoiseLevel:
             white = whiten(plant, J, noise, sampling_time)
-            E, log_determinant = white.filter(e).ravel(), white.filter.log_determinant
-            level = _level(E, white.F, white.H, noise, prior, log_determinant)
+            level = evaluate_noise(white, e, prior)
             if level.input_std <= largest or fine:
                 likeliest.update(level, white)
             return level

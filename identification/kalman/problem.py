@@ -20,7 +20,7 @@ from scipy.linalg import solve_triangular
 from scipy.optimize import lsq_linear
 
 from identification.errors import DivergenceError, InputError
-from identification.estimation.levenberg_marquardt import KEPT_GAIN, Cost, Criterion
+from identification.estimation.levenberg_marquardt import KEPT_GAIN, SLOPE_ERROR, Cost, Criterion
 from identification.estimation.priors import Priors, estimate_scatter
 from identification.kalman.noise_fit import NoiseLevel, fit_noise
 from identification.kalman.noise_model import Whitener, keep, whiten
@@ -34,9 +34,6 @@ BEND_STEP = 0.1  # h: the share of the step at which the second derivative is ta
 MAX_CONDITION = 1e5
 # Relative change of the parameters after which columns and linearisation may still hold.
 SHORT_CHANGE = 0.02
-# Relative change of the parameters after which columns of small ones still hold: columns that are a
-# tenth off cost a Gauss-Newton step a hundredth of its gain, which is quadratic about the optimum.
-SIMILAR_CHANGE = 0.1
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -165,7 +162,8 @@ class Problem(Criterion[np.ndarray]):
         run = self.run_at(q)
         new = shift_point(point, q, run) if is_short else None
         if new is None:
-            near = point if change < SIMILAR_CHANGE else None
+            # Columns of small parameters change by about as much as the others do.
+            near = point if change < SLOPE_ERROR else None
             new = evaluate_point(point.predictor, point.space, q, near, point.small, run)
         level = estimate_noise(new, self.priors, self.level, largest=self.largest)
         return linearise_criterion(new, level, self.priors, self.largest)

@@ -32,7 +32,7 @@ END_FALL = 0.01
 # The same of the first part of a search, which only comes near: within a third.
 APPROACH_END_FALL = 0.1
 # Gauss-Newton steps until one fails; the columns of the rows are scaled to length 1
-DAMPING = Damping(first=0.0, raised=10.0, lowered=10.0, least=1e-4, floor=0.0)
+DAMPING = Damping(first=0.0, raised=10.0, least=1e-4)
 MAX_ATTEMPTS = 6  # at a step, each damped ten times as much as the one before
 MAX_BORROWED_ATTEMPTS = 2  # where columns are borrowed, which are then computed anew
 # While the noise is only roughly known, a step makes progress if it brings the rms of the

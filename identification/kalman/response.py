@@ -29,8 +29,7 @@ from identification.pool import run_parts, split, threads
 MAX_SERIES_NORM = 2.8  # 2.8^25/26! is below the rounding of doubles
 GROUP = 5  # powers of X that are kept: a series of 25 terms is summed in groups of as many
 SERIES = np.array([1 / factorial(k + 1) for k in range(GROUP**2)]).reshape(GROUP, GROUP)
-MATRICES_PER_CALL = 64  # so that the threads end together
-COLUMNS_PER_RECURSION = 64  # at most, so that all threads have some
+PER_CALL = 64  # matrices or columns at most, so that the threads end together
 
 
 def transitions(
@@ -49,7 +48,7 @@ def transitions(
         arrays = (F[some], duration[some], D, SERIES, A[some], Γ[some])
         call(_exponentials, (some.stop - some.start, nx, forced), arrays)
 
-    run_parts(part, split(len(F), MATRICES_PER_CALL))
+    run_parts(part, split(len(F), PER_CALL))
     return A, Γ
 
 
@@ -73,7 +72,7 @@ def respond(
     out = np.empty((m, L // every + 1, len(wanted)))
     A, Γ, first, g = (np.ascontiguousarray(a, float) for a in (A, Γ, first, g))
     workers = threads()
-    width = max(1, min(COLUMNS_PER_RECURSION, -(-m // workers)))
+    width = max(1, min(PER_CALL, -(-m // workers)))
     chunks = [slice(k, min(k + width, m)) for k in range(0, m, width)]
 
     def part(k: int) -> None:

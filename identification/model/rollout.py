@@ -52,6 +52,17 @@ class State:
     qvel: np.ndarray
     act: np.ndarray
 
+    def rows(self, keep: np.ndarray) -> State:
+        """Returns some of the rows, by mask or by index."""
+        return State(self.qpos[keep], self.qvel[keep], self.act[keep])
+
+    @classmethod
+    def stacked(cls, each: Sequence[State]) -> State:
+        """Returns the rows of several, one after the other."""
+        return cls(
+            *(np.concatenate(x) for x in zip(*((s.qpos, s.qvel, s.act) for s in each), strict=True))
+        )
+
 
 def substeps(sampling_time: float, timestep: float) -> int:
     """Returns how many simulation steps a sample has."""

@@ -28,7 +28,7 @@ from identification.quantities import alike
 from identification.windows.shooting import Tangent
 
 # Of the squared norms of the columns of X and S.
-DAMPING = Damping(first=1e-3, raised=5.0, lowered=10.0, least=1e-9, floor=1e-9)
+DAMPING = Damping(first=1e-3, raised=5.0, least=1e-9)
 # Sum of squares of a column, in units of the errors' scale, below which no window feels it.
 COLUMN_ROUNDING = 1e-20
 STD_BLOCKS = 40  # of windows, over all records: their scatter gives the std

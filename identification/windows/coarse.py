@@ -48,39 +48,47 @@ def with_longest_steps(
         q: the parameters of each, shape (p,).
         d: moves of the states of its windows, shape (W, nx).
     """
-
-    def differs(n: int) -> bool:
-        outputs = _outputs(n, parts, q, d)
-        pairs = zip(parts, exact, outputs, strict=True)
-        return _exceeds([y_n - y for y, y_n in zip(exact, outputs, strict=True)],
-                        [part.cut.outputs - y for part, y, _ in pairs], OUTPUT_ERROR)  # fmt: skip
-
     plant = parts[0].predictor.plant
     if not isinstance(plant, JointPlant):
         return [*parts]
-    exact = _outputs(1, parts, q, d)
-    longer = replace(plant, steps=_most(_steps(parts), differs))
-    return [_of(part, longer) for part in parts]
+
+    def outputs(n: int) -> list[np.ndarray]:
+        each = zip(_of(parts, replace(plant, steps=n)), q, d, strict=True)
+        return [part.outputs(one[None], [move])[0] for part, one, move in each]
+
+    exact = outputs(1)
+    unexplained = _norms([part.cut.outputs - y for part, y in zip(parts, exact, strict=True)])
+
+    def differs(n: int) -> bool:
+        errors = [y_n - y for y, y_n in zip(exact, outputs(n), strict=True)]
+        return bool(np.any(_norms(errors) > OUTPUT_ERROR * unexplained))
+
+    return _of(parts, replace(plant, steps=_most(_steps(parts), differs)))
 
 
 def with_longest_slope_steps(
     parts: Sequence[Shooting], q: Sequence[np.ndarray], d: Sequence[np.ndarray]
 ) -> list[Shooting]:
     """Returns the windows with the longest steps that change slopes by less than ε_S."""
-
-    def differs(n: int) -> bool:
-        coarse = [_columns(n, *at) for at in few]
-        return any(_exceeds([S_n - S], [S], SLOPE_ERROR)
-                   for S, S_n in zip(exact, coarse, strict=True))  # fmt: skip
-
     plant = parts[0].predictor.plant
     if not isinstance(plant, JointPlant):
         return [*parts]
-    few = [_some(*at, len(parts)) for at in zip(parts, q, d, strict=True)]
-    exact = [_columns(plant.steps, *at) for at in few]
+    count = max(2, COMPARED_WINDOWS // len(parts))
+    some = [np.unique(np.linspace(0, len(move) - 1, count).astype(int)) for move in d]
+    few = [part.rows(at) for part, at in zip(parts, some, strict=True)]
+
+    def slopes(n: int) -> list[np.ndarray]:
+        each = zip(_of(few, replace(plant, slope_steps=n)), q, d, some, strict=True)
+        return [_columns(part, one, move[at]) for part, one, move, at in each]
+
+    exact = slopes(plant.steps)
+
+    def differs(n: int) -> bool:
+        pairs = zip(exact, slopes(n), strict=True)
+        return any(np.any(_norms([S_n - S]) > SLOPE_ERROR * _norms([S])) for S, S_n in pairs)
+
     each = (n for n in _steps(parts) if n % plant.steps == 0)
-    slower = replace(plant, slope_steps=max(plant.steps, _most(each, differs)))
-    return [_of(part, slower) for part in parts]
+    return _of(parts, replace(plant, slope_steps=max(plant.steps, _most(each, differs))))
 
 
 def _steps(parts: Sequence[Shooting]) -> Iterator[int]:
@@ -104,45 +112,19 @@ def _most(each: Iterator[int], differs: Callable[[int], bool]) -> int:
     return best
 
 
-def _exceeds(errors: Sequence[np.ndarray], of: Sequence[np.ndarray], share: float) -> bool:
-    """Returns whether the norm of errors exceeds a share of that of `of` in any last column."""
-    return bool(np.any(_norms(errors) > share * _norms(of)))
-
-
 def _norms(each: Sequence[np.ndarray]) -> np.ndarray:
     """Returns the norm of each column (last axis) over all rows of some arrays."""
     rows = np.concatenate([x.reshape(-1, x.shape[-1]) for x in each])
     return np.asarray(np.linalg.norm(rows, axis=0))
 
 
-def _outputs(
-    steps: int, parts: Sequence[Shooting], q: Sequence[np.ndarray], d: Sequence[np.ndarray]
-) -> list[np.ndarray]:
-    """Returns outputs of windows, shape (W, L, ny) a record, with longer steps."""
-    plant = parts[0].predictor.plant
-    if isinstance(plant, JointPlant):
-        parts = [_of(part, replace(plant, steps=steps)) for part in parts]
-    return [part.outputs(one[None], [move])[0] for part, one, move in zip(parts, q, d, strict=True)]
+def _of(parts: Sequence[Shooting], plant: JointPlant) -> list[Shooting]:
+    """Returns the windows of each record under another plant, which all share."""
+    return [replace(part, predictor=replace(part.predictor, plant=plant)) for part in parts]
 
 
-def _of(part: Shooting, plant: JointPlant) -> Shooting:
-    return replace(part, predictor=replace(part.predictor, plant=plant))
-
-
-def _some(
-    part: Shooting, q: np.ndarray, d: np.ndarray, records: int
-) -> tuple[Shooting, np.ndarray, np.ndarray]:
-    """Returns a few windows of one record of so many."""
-    few = max(2, COMPARED_WINDOWS // records)
-    at = np.unique(np.linspace(0, len(d) - 1, few).astype(int))
-    return part.rows(at), q, d[at]
-
-
-def _columns(steps: int, part: Shooting, q: np.ndarray, d: np.ndarray) -> np.ndarray:
+def _columns(part: Shooting, q: np.ndarray, d: np.ndarray) -> np.ndarray:
     """Returns slopes of states and parameters, shape (W m, nx + p)."""
-    plant = part.predictor.plant
-    if isinstance(plant, JointPlant):
-        part = _of(part, replace(plant, slope_steps=steps))
     t = tangent(part, q, d)
     X = (t.U * t.s[:, None]) @ t.Vt * t.size[:, None]
     S = np.concatenate([X, t.S], axis=2)

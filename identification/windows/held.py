@@ -10,7 +10,7 @@ once, and windows of several records may be simulated in one batch
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import mujoco
@@ -120,7 +120,7 @@ class HeldWindows:
         some = replace(
             self, whole=whole, at=at, record=self.record[keep], times=self.times[keep],
             outputs=self.outputs[keep], weight=self.weight[keep],
-            first=State(*(getattr(self.first, f.name)[keep] for f in fields(State))),
+            first=self.first.rows(keep),
         )  # fmt: skip
         if np.all(np.diff(at) > 0):
             return some
@@ -199,14 +199,11 @@ class HeldWindows:
     def _simulated(self, prepared: Prepared, moves: Sequence[np.ndarray]) -> np.ndarray:
         """Returns outputs of k moves of the states, shape (k, W, L, ny)."""
         W, k = len(self.record), len(moves)
-        starts = [moved(self.model, self.first, d) for d in moves]
-        begun = State(*(np.concatenate([getattr(s, f.name) for s in starts])
-                        for f in fields(State)))  # fmt: skip
+        begun = State.stacked([moved(self.model, self.first, d) for d in moves])
         parts = [(p, np.tile(own, k)) for p, own in self._different]
         for predictor, own in parts if with_states(self.predictors[0].plant) else ():
-            rows = State(*(getattr(begun, f.name)[own] for f in fields(State)))
-            for f in fields(State):
-                getattr(begun, f.name)[own] = getattr(predictor.begun(NO_VALUES, rows), f.name)
+            first = predictor.begun(NO_VALUES, begun.rows(own))
+            begun.qpos[own], begun.qvel[own], begun.act[own] = first.qpos, first.qvel, first.act
         at, times = np.arange(W) if self.at is None else self.at, np.tile(self.times, k)
         simulated = np.concatenate([at + j * len(prepared.controls) for j in range(k)])
         run = prepared.simulations.run(
@@ -277,15 +274,13 @@ def _together(each: Sequence[HeldWindows]) -> HeldWindows:
     """Returns the windows of several records that are alike, one record after the other."""
     columns = zip(*([column for _, column in h.numbers] for h in each), strict=True)
     slots = [slot for slot, _ in each[0].numbers]
-    first = State(
-        *(np.concatenate([getattr(h.first, f.name) for h in each]) for f in fields(State))
-    )
 
     def rows(name: str) -> np.ndarray:
         return np.concatenate([getattr(h, name) for h in each])
 
     return replace(
-        each[0], predictors=tuple(h.predictors[0] for h in each), first=first,
+        each[0], predictors=tuple(h.predictors[0] for h in each),
+        first=State.stacked([h.first for h in each]),
         record=np.repeat(np.arange(len(each)), [len(h.record) for h in each]),
         numbers=tuple((s, np.concatenate(c)) for s, c in zip(slots, columns, strict=True)),
         times=rows("times"), inputs=rows("inputs"), outputs=rows("outputs"), weight=rows("weight"),

@@ -25,6 +25,8 @@ import mujoco
 import numpy as np
 
 from identification.errors import DivergenceError
+from identification.logs.log import Log
+from identification.logs.noise import noise_floor
 from identification.model.coordinates import Coordinates
 from identification.model.lean import one_evaluation
 from identification.model.predictor import Plant, Predictor
@@ -109,19 +111,18 @@ class Shooting:
         self, model: mujoco.MjModel, q: np.ndarray, moves: Sequence[np.ndarray]
     ) -> np.ndarray:
         predictor, W = self.predictor, len(self.cut.starts)
-        _, numbers = predictor.settings(self.space.decode(q))
-        starts = [self.states(d) for d in moves]
-        rows = (np.concatenate([getattr(s, f) for s in starts]) for f in ("qpos", "qvel", "act"))
-        begun = predictor.begun(self.space.decode(q), State(*rows))
-        inputs, every, hold_kind = self.held_inputs(self.space.decode(q))
+        values = self.space.decode(q)
+        begun = predictor.begun(values, State.stacked([self.states(d) for d in moves]))
+        inputs, every, hold_kind = self.held_inputs(values)
         inputs, every = slower(inputs, every, predictor.plant.model, model)
+        _, numbers = predictor.settings(values)
         run = rollout(
             model, begun, inputs, predictor.log.sampling_time / every,
             numbers=[(slot, np.repeat(column, W)) for slot, column in numbers],
             record=predictor.recorded, hold_kind=hold_kind, time=np.tile(self.times, len(q)),
         )  # fmt: skip
         run = {field: states[:, ::every] for field, states in run.items()}
-        y = predictor.outputs(self.space.decode(q), run, np.tile(self.times, len(q)))
+        y = predictor.outputs(values, run, np.tile(self.times, len(q)))
         return y.reshape(len(q), W, *y.shape[1:])
 
     def held_inputs(self, values: np.ndarray) -> tuple[np.ndarray, int, str]:
@@ -254,6 +255,12 @@ def along_states(t: Tangent, moves: np.ndarray) -> np.ndarray:
     """Returns X Δd of each window, shape (W, m)."""
     along = t.s * np.einsum("wkx,wx->wk", t.Vt, moves * t.size)
     return np.einsum("wmk,wk->wm", t.U, along)
+
+
+def noise_whitener(log: Log) -> np.ndarray:
+    """Returns C = I/σ, shape (ny, ny), where σ is the rms of the noise floor of all outputs."""
+    sigma = float(np.sqrt(np.mean(noise_floor(log.outputs) ** 2))) or 1.0
+    return np.eye(log.outputs.shape[1]) / sigma
 
 
 def rough(plant: Plant) -> mujoco.MjModel:

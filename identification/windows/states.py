@@ -28,7 +28,7 @@ from identification.windows.shooting import Tangent, along_states
 # Relative to the squared norms of the columns of X. It begins at one part in ten thousand: a
 # direction that the outputs feel by a tenth of the others loses one per cent a step, and a window
 # in which a joint sticks, which takes no step before its damping is about one, is soon there.
-DAMPING = Damping(first=1e-4, raised=10.0, lowered=10.0, least=1e-4, floor=1e-4)
+DAMPING = Damping(first=1e-4, raised=10.0, least=1e-4)
 MAX_STATE_DAMPING = 1e2  # beyond it a window's state no longer moves
 MAX_STATE_STEPS = 20  # of the search of a window's state
 # Of the mean of the sums of squares: a window that changes by less is finished.

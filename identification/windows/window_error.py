@@ -16,12 +16,11 @@ import numpy as np
 
 from identification.errors import InputError
 from identification.logs.log import Log
-from identification.logs.noise import noise_floor
 from identification.model.coordinates import NOTHING
 from identification.model.predictor import Plant, Predictor
 from identification.windows.held import held_records
 from identification.windows.settling import settle
-from identification.windows.shooting import Shooting
+from identification.windows.shooting import Shooting, noise_whitener
 from identification.windows.windows import Windows, first_states, some, spread, windows
 
 
@@ -68,9 +67,8 @@ def _fixed(
     """Returns a model's windows without free parameters, and zero changes of states (W, nx)."""
     none = np.zeros(0)
     predictor = Predictor(plant, log, (), dict(values or {}))
-    sigma = float(np.sqrt(np.mean(noise_floor(log.outputs) ** 2))) or 1.0
     believed = first_states(predictor, none, cut)
-    shooting = Shooting(predictor, NOTHING, cut, believed, np.eye(log.outputs.shape[1]) / sigma)
+    shooting = Shooting(predictor, NOTHING, cut, believed, noise_whitener(log))
     return shooting, np.zeros((len(cut.starts), 2 * plant.model.nv + plant.model.na))
 
 

@@ -22,24 +22,23 @@ from identification.estimation.levenberg_marquardt import (
     Damping,
     levenberg_marquardt,
 )
-from identification.estimation.resolution import resolve_columns, round_off
+from identification.estimation.priors import free_parameters
+from identification.estimation.resolution import LONG_STEP_RATIO, resolve_columns, round_off
 from identification.estimation.search import ROUGH_TOLERANCE
 from identification.logs.log import Log
-from identification.logs.noise import noise_floor
-from identification.model.coordinates import coordinates
-from identification.model.predictor import Plant, Predictor
+from identification.model.predictor import Plant
 from identification.model.rollout import State
 from identification.model.sensitivity import FORWARD_STEP, refuse_without_effect
 from identification.pool import one_blas_thread
 from identification.progress import Progress, stage
-from identification.windows.shooting import Shooting, Tangent, tangent
+from identification.windows.shooting import Shooting, Tangent, noise_whitener, tangent
 from identification.windows.windows import apart, first_states, windows
 
 # Relative to the squared norms of the columns of X and S.
-DAMPING = Damping(first=1e-2, raised=5.0, lowered=10.0, least=1e-12, floor=1e-12)
+DAMPING = Damping(first=1e-2, raised=5.0, least=1e-12)
 MAX_SEARCH_DAMPING = 1e8  # beyond it no step is long enough to matter, and the search has ended
 BELIEF_ROUNDS = 3  # the states' belief follows the values that were found with the last one
-STD_STEPS = (FORWARD_STEP, 100 * FORWARD_STEP)  # of the differences that the std rest on
+STD_STEPS = (FORWARD_STEP, LONG_STEP_RATIO * FORWARD_STEP)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -108,14 +107,8 @@ def estimate_windows(
     """
     began = time.perf_counter()
     cut = windows(log, length)
-    for name in (*names, *(start or {})):
-        plant.parameters[name]
-    own = {**plant.parameters.values(), **(start or {})}
-    first = np.array([own[name] for name in names])
-    space = coordinates(plant.parameters, names, first)
-    predictor = Predictor(plant, log, tuple(names), dict(start or {}))
-    sigma = float(np.sqrt(np.mean(noise_floor(log.outputs) ** 2))) or 1.0
-    C = np.eye(log.outputs.shape[1]) / sigma
+    predictor, space, first = free_parameters(plant, log, names, start or {})
+    C = noise_whitener(log)
     q, tangents = space.encode(first), 0
     begun = first_states(predictor, first, cut).states
     for k in range(1, BELIEF_ROUNDS + 1):

@@ -106,8 +106,7 @@ class FirstStates:
 
     def rows(self, keep: np.ndarray) -> FirstStates:
         """Returns the prior of some of the windows, by mask or by index."""
-        s = self.states
-        return FirstStates(State(s.qpos[keep], s.qvel[keep], s.act[keep]), self.weight)
+        return FirstStates(self.states.rows(keep), self.weight)
 
 
 def first_states(predictor: Predictor, values: np.ndarray, cut: Windows) -> FirstStates:
@@ -123,9 +122,7 @@ def first_states(predictor: Predictor, values: np.ndarray, cut: Windows) -> Firs
         return extended(predictor, values, cut, first_states(plain, values, cut))
     measured = _measured(model, log)
     if measured is not None:
-        at = cut.starts
-        begun = State(measured.qpos[at], measured.qvel[at], measured.act[at])
-        return FirstStates(begun, 1 / _motion(model, measured))
+        return FirstStates(measured.rows(cut.starts), 1 / _motion(model, measured))
     start, numbers = predictor.settings(values)
     fields = ("qpos", "qvel", "act")
     try:

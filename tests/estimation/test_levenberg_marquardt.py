@@ -8,8 +8,8 @@ import pytest
 
 from identification.estimation.levenberg_marquardt import Damping, levenberg_marquardt
 
-PLAIN = Damping(first=0.0, raised=10.0, lowered=10.0, least=1e-4, floor=0.0)
-CAREFUL = Damping(first=1e-2, raised=5.0, lowered=10.0, least=1e-12, floor=1e-12)
+PLAIN = Damping(first=0.0, raised=10.0, least=1e-4)
+CAREFUL = Damping(first=1e-2, raised=5.0, least=1e-12)
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from identification.kalman.noise_fit import (
     evaluate_noise,
     fit_noise,
 )
-from identification.kalman.noise_model import Noise, build_whitener
+from identification.kalman.noise_model import Noise, whiten
 
 SIGMA = 2e-3
 TIME = START_CORRELATION_TIME
@@ -54,7 +54,7 @@ def test_the_correlation_time_is_told_from_others():
         true, prior = Noise(400.0, time), np.zeros(0)
         found = fit_noise(plant, e, J, prior, STEP)
         assert time / 5 < found.noise.time < 5 * time
-        at_truth = evaluate_noise(build_whitener(plant, true, STEP), true, e, J, prior)
+        at_truth = evaluate_noise(whiten(plant, J, true, STEP), e, prior)
         assert found.log_likelihood > at_truth.log_likelihood - 0.5  # as likely as the truth
 
 
@@ -77,7 +77,7 @@ def test_no_more_error_of_the_inputs_is_taken_for_granted_than_is_believed(share
     free = fit_noise(plant, e, J, prior, STEP, fine=False)
     held = fit_noise(plant, e, J, prior, STEP, fine=False, largest=share * free.input_std)
     unit = Noise(compute_unit_ratio(plant, STEP, TIME), TIME)
-    tried = [evaluate_noise(build_whitener(plant, n, STEP), n, e, J, prior)
+    tried = [evaluate_noise(whiten(plant, J, n, STEP), e, prior)
              for n in map(unit.scaled, FIRST_LEVELS)]  # fmt: skip
     believed = [t.log_likelihood for t in tried if t.input_std <= share * free.input_std]
     assert held.input_std <= share * free.input_std
@@ -100,7 +100,7 @@ def test_its_level_is_no_less_likely_than_the_truth():
     J = rng.standard_normal((150, 1, 2))
     for e in drawn(plant, truth, rng, 5):
         found = fit_noise(plant, e, J, np.zeros(2), STEP)
-        true = evaluate_noise(build_whitener(plant, truth, STEP), truth, e, J, np.zeros(2))
+        true = evaluate_noise(whiten(plant, J, truth, STEP), e, np.zeros(2))
         assert found.log_likelihood > true.log_likelihood - 1.5
 
 
@@ -112,7 +112,7 @@ def test_the_likelihood_is_the_dense_gaussian_with_the_parameters_at_their_best(
     iV = np.linalg.inv(V)
     rest = e.ravel() - F @ np.linalg.solve(F.T @ iV @ F, F.T @ iV @ e.ravel())
     squares = rest @ iV @ rest
-    found = evaluate_noise(build_whitener(plant, noise, STEP), noise, e, J, np.zeros(3))
+    found = evaluate_noise(whiten(plant, J, noise, STEP), e, np.zeros(3))
     assert found.sigma == pytest.approx(np.sqrt(squares / 80), rel=1e-9)
     dense = -0.5 * (80 * np.log(squares / 80) + np.linalg.slogdet(V)[1])
     assert found.log_likelihood == pytest.approx(dense, rel=1e-9)
@@ -125,9 +125,9 @@ def test_what_no_output_feels_and_no_prior_holds_changes_nothing(useless):
     plant, noise = linear_plant(rng), Noise(0.5, 0.1)
     e, J = rng.standard_normal((40, 2)), rng.standard_normal((40, 2, 3))
     more = np.zeros((40, 2, 1)) if useless == "unfelt" else J[..., :1]
-    filter_ = build_whitener(plant, noise, STEP)
-    one = evaluate_noise(filter_, noise, e, J, np.zeros(3))
-    other = evaluate_noise(filter_, noise, e, np.concatenate([J, more], axis=2), np.zeros(4))
+    both = np.concatenate([J, more], axis=2)
+    one = evaluate_noise(whiten(plant, J, noise, STEP), e, np.zeros(3))
+    other = evaluate_noise(whiten(plant, both, noise, STEP), e, np.zeros(4))
     assert other.log_likelihood == pytest.approx(one.log_likelihood, rel=1e-9)
 
 

@@ -9,7 +9,7 @@ from discovery_cases import STEP, linear_plant, point_of
 from identification.estimation.priors import Priors
 from identification.kalman import problem as module
 from identification.kalman.noise_fit import NoiseLevel, evaluate_noise, fit_noise
-from identification.kalman.noise_model import Noise, build_whitener, whiten
+from identification.kalman.noise_model import Noise, Whitened, build_whitener, whiten
 from identification.kalman.problem import linearise_criterion
 
 
@@ -24,8 +24,9 @@ def test_the_noise_that_is_found_has_been_whitened_with(fine, monkeypatch):
     plant, e, J = case()
     prior = np.array([0.0, 1.0, 2.0])
     level = fit_noise(plant, e, J, prior, STEP, fine=fine)
-    fresh = evaluate_noise(build_whitener(plant, level.noise, STEP), level.noise, e, J, prior)
-    assert level == fresh
+    filter_ = build_whitener(plant, level.noise, STEP)
+    fresh = Whitened(plant, J, level.noise, filter_, filter_(J).reshape(80, 3))
+    assert level == evaluate_noise(fresh, e, prior)
     found = whiten(plant, J, level.noise, STEP)
     assert found is whiten(plant, J, level.noise, STEP)
     np.testing.assert_array_equal(found.F, found.filter(J).reshape(80, 3))
