@@ -19,8 +19,7 @@ from time import perf_counter, process_time
 import numpy as np
 
 from identification.linear.gridded import gridded
-from identification.linear.minimal import minimal
-from identification.linear.modes import modes
+from identification.linear.modes import minimal, modes
 from identification.linear.operating_points import State, at_rest
 from identification.report.style import save_png
 from inca_mj.linear.accuracy import (

@@ -62,8 +62,8 @@ _PUBLIC = {
     "along_log": "linear.operating_points",
     "operating_points": "robot.linearization",
     "linearize": "linear.linearization",
-    "minimal": "linear.minimal",
-    "Minimal": "linear.minimal",
+    "minimal": "linear.modes",
+    "Minimal": "linear.modes",
     "modes": "linear.modes",
     "Mode": "linear.modes",
     "save_system": "linear.export",
@@ -170,9 +170,9 @@ if TYPE_CHECKING:  # the same list, for type checkers and editors
     from identification.linear.gridded import gridded as gridded
     from identification.linear.gridded import load_grid as load_grid
     from identification.linear.linearization import linearize as linearize
-    from identification.linear.minimal import Minimal as Minimal
-    from identification.linear.minimal import minimal as minimal
+    from identification.linear.modes import Minimal as Minimal
     from identification.linear.modes import Mode as Mode
+    from identification.linear.modes import minimal as minimal
     from identification.linear.modes import modes as modes
     from identification.linear.operating_points import OperatingPoints as OperatingPoints
     from identification.linear.operating_points import along_log as along_log

@@ -37,7 +37,7 @@ _PUBLIC = {
     "linearize_along": "linear.linearization",
     "linearize_grid": "linear.linearization",
     "LinearModel": "linear.linearization",
-    "held_at": "linear.held",
+    "held_at": "linear.linearization",
     "interpolation_errors": "linear.accuracy",
     "InterpolationError": "linear.accuracy",
     "run_error": "linear.accuracy",
@@ -126,8 +126,8 @@ if TYPE_CHECKING:  # the same list, for type checkers and editors
     from inca_mj.linear.accuracy import RunError as RunError
     from inca_mj.linear.accuracy import interpolation_errors as interpolation_errors
     from inca_mj.linear.accuracy import run_error as run_error
-    from inca_mj.linear.held import held_at as held_at
     from inca_mj.linear.linearization import LinearModel as LinearModel
+    from inca_mj.linear.linearization import held_at as held_at
     from inca_mj.linear.linearization import linearize as linearize
     from inca_mj.linear.linearization import linearize_along as linearize_along
     from inca_mj.linear.linearization import linearize_grid as linearize_grid

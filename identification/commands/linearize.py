@@ -80,7 +80,7 @@ class Linearize:
 
 def said(system: LinearSystem, label: str) -> str:
     """Returns the modes of a system as a text table, and a sentence on its minimal realisation."""
-    from identification.linear.minimal import minimal
+    from identification.linear.modes import minimal
     from identification.report.linear_sections import HEAD, minimal_sentence, mode_rows
 
     sizes = f"{len(system.states)} states, {len(system.inputs)} inputs, {len(system.outputs)}"
@@ -108,7 +108,7 @@ def draw(
 def save_systems(systems: Sequence[LinearSystem], rate: float | None, out: Path) -> None:
     """Write each continuous system, its minimal and its discrete form (at a rate in [Hz])."""
     from identification.linear.export import FORMATS, save_system
-    from identification.linear.minimal import minimal
+    from identification.linear.modes import minimal
 
     for k, system in enumerate(systems, 1):
         forms = {"system": system, "minimal": minimal(system).system}

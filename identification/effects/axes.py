@@ -112,11 +112,7 @@ def axes(model: mujoco.MjModel, log: Log, trust: Sequence[str] = ()) -> tuple[Ax
 
 
 def reach(each: Sequence[Sequence[Axis]]) -> tuple[Axis, ...]:
-    """Returns the joints of several logs, each with the largest force, speed and way of all.
-
-    Args:
-        each: the joints that each log shows.
-    """
+    """Returns the joints of several logs, each with the largest force, speed and way of all."""
     found: dict[str, Axis] = {}
     for axis in (axis for known in each for axis in known):
         old = found.get(axis.joint, axis)

@@ -48,11 +48,7 @@ def mass_mismatch(s, p):  # type: ignore[no-untyped-def]
 
 @cache
 def displaced(axes: str) -> Any:
-    """Returns the law of a centre of mass that is displaced along some axes of the body's frame.
-
-    Args:
-        axes: of "xyz", one for each size.
-    """
+    """Returns the law of a centre of mass that is displaced along some axes of the body's frame."""
     ix, iy, iz = (axes.find(a) for a in "xyz")
 
     @njit
@@ -89,9 +85,6 @@ def body_effects(spec: mujoco.MjSpec) -> tuple[Effect, ...]:
 
     A size of which no body's motion says anything is left out: a displacement of the centre of mass
     along the axis about which the robot turns, an inertia of what only slides.
-
-    Args:
-        spec: of the robot, which is not changed.
     """
     model = movable(spec)
     bodies = moving_bodies(model)

@@ -33,20 +33,7 @@ def body_numbers(
     model: mujoco.MjModel, effects: Sequence[Effect], bodies: Sequence[MovingBody],
     names: Sequence[str], values: Values, own: Numbers, n: int,
 ) -> Numbers:  # fmt: skip
-    """Returns the entries of mjModel that effects of bodies change.
-
-    Args:
-        model: without these effects.
-        effects: a set; those that act on other things are passed over.
-        bodies: that may have effects.
-        names: the parameters that differ from the plant's own.
-        values: of all parameters, one or n of each.
-        own: entries that the robot's own parameters change.
-        n: how many value sets.
-
-    Raises:
-        InputError: no such body is possible.
-    """
+    """Returns the entries of mjModel that effects of bodies change."""
     acting = [e for e in effects if HOOK in e.hooks]
     out: list[tuple[Slot, np.ndarray]] = []
     for body in bodies:
@@ -162,10 +149,6 @@ def changed(
         c: centre of mass before [m].
         I_c: inertia before [kg m²].
         added: by effects, shape (10,).
-
-    Raises:
-        InputError: no such body is possible: its mass or a moment of inertia would not be
-            positive, or one moment would exceed the sum of the others.
     """
     xx, yy, zz, xy, xz, yz = added[4:]
     more = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])

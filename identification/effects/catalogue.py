@@ -27,14 +27,7 @@ _OF_JOINTS = (
 def all_effects(
     spec: mujoco.MjSpec, axes: Sequence[Axis], log: Log, turns: Sequence[float] = TURNS
 ) -> tuple[Effect, ...]:
-    """Returns every candidate of a robot.
-
-    Args:
-        spec: of the robot, which is not changed.
-        axes: its joints whose effects are sought.
-        log: names its sensors, and its inputs say what is plausible of them.
-        turns: see `joint_effects`.
-    """
+    """Returns every candidate of a robot."""
     own = spec.copy().compile()
     return (
         *joint_effects(axes, turns),

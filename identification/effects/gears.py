@@ -2,11 +2,26 @@
 
 row of a joint = (…, where θ and p stand, side, c, ε, J, ζ, c of friction, key, TAG)
 armature - J                     the motor's inertia is moved from the joint, not added to it
+
+As a window knows them (s and w stay small where a gear becomes stiff):
+
+    motor   s, w       δ = c s + ε s/(|s| + s_0),  dδ/dt = c w             [N m, N m/s or N, N/s]
+    grip    p          the force of the friction                                     [N m or N]
+
+As MuJoCo integrates them: θ = q + δ, ω = v + dδ/dt, and p. Where the encoder sits on the motor's
+side, what is measured is θ, so that q = θ - δ. Sizes of zero leave q and v as they are, to the bit.
+
+Where windows begin, a gear that does not swing carries what moves the link:
+
+    s̄ = f_u - J dv/dt          p̄ = the force of friction          w̄ = 0
+
+The states of windows are free about that: s and p by their own rms, w by a change of s by its rms
+within a sample.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
@@ -16,18 +31,16 @@ import numpy as np
 from identification.effects.axes import Axis
 from identification.effects.effect import Effect
 from identification.effects.joint_states import (
-    WIDTH,
     GearNumbers,
     JointState,
-    begun,
-    first_states_of,
+    felt_inertias,
     gear_numbers,
+    mobilities,
     places_of,
-    shown,
+    refuse_greedy,
 )
 from identification.effects.values import Values
-from identification.engine import quiet
-from identification.errors import DivergenceError, InputError
+from identification.errors import InputError
 from identification.logs.names import listed
 from identification.model.paths import Slot
 from identification.model.predictor import Numbers
@@ -35,55 +48,9 @@ from identification.model.rollout import State
 from identification.native.gear import GEARS, GRIP, MOTOR, SIDE
 from identification.native.joint_callback import LAST
 
-POSES = 8  # random ones, behind the model's own
-
-
-@quiet()
-def mobilities(model: mujoco.MjModel, joints: Sequence[str]) -> np.ndarray:
-    """Returns A among some joints in several poses, shape (`POSES`, g, g) [1/kg or 1/(kg m²)]."""
-    data, rng = mujoco.MjData(model), np.random.default_rng(0)
-    dofs = [int(model.joint(joint).dofadr[0]) for joint in joints]
-    units, columns = np.zeros((len(dofs), model.nv)), np.zeros((len(dofs), model.nv))
-    units[range(len(dofs)), dofs] = 1.0
-    out = np.empty((POSES, len(dofs), len(dofs)))
-    for pose in out:
-        mujoco.mj_forward(model, data)
-        if dofs:
-            mujoco.mj_solveM(model, data, columns, units)
-        pose[:] = columns[:, dofs]
-        mujoco.mj_integratePos(model, data.qpos, rng.normal(0, 1, model.nv), 1.0)
-    return out
-
-
-def felt_inertias(A: np.ndarray) -> np.ndarray:
-    """Returns I of each joint, shape (g,) [kg m² or kg], from A of `mobilities`."""
-    return np.asarray(1 / np.max(np.diagonal(A, axis1=1, axis2=2), axis=0))
-
-
-def refuse_greedy(J: np.ndarray, A: np.ndarray, joints: Sequence[str]) -> None:
-    """Refuse motors that leave less than nothing to the links.
-
-    Args:
-        J: inertias of the motors that move by themselves, else 0, in n value sets, shape (n, g).
-        A: of `mobilities`.
-        joints: their names.
-
-    Raises:
-        DivergenceError: a value set has such motors.
-    """
-    J = J[np.count_nonzero(J, axis=1) > 1]
-    if not len(J):
-        return
-    root = np.sqrt(J)[:, None]
-    share = np.linalg.eigvalsh(root[..., None] * A * root[..., None, :])[..., -1]
-    if np.any(share >= 1):
-        raise DivergenceError(
-            f"the motors of {listed(joints)} would have more inertia than the robot has; take a"
-            " smaller share rho"
-        )
-
-
 _WHERE = {"motor": MOTOR, "grip": GRIP}
+CERTAIN = 0.02  # s_0, of the largest force of the drives: with more, teeth are sure to touch
+LEAST = 1e-3  # of the largest force of the drives: the smallest std of a force
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,7 +84,7 @@ class Gears:
 
     @cached_property
     def mobilities(self) -> np.ndarray:
-        """M⁻¹ among these joints in several poses; see `motor_shares`."""
+        """M⁻¹ among these joints in several poses; see `mobilities`."""
         return mobilities(self.spec.copy().compile() if self.joints else self.model, [*self.joints])
 
     @cached_property
@@ -169,16 +136,7 @@ class Gears:
         return out
 
     def armatures(self, values: Values, n: int, own: Numbers) -> Numbers:
-        """Returns armatures without the motors that move by themselves.
-
-        Args:
-            values: of all parameters, one or n of each.
-            n: how many value sets.
-            own: entries of the model that other parameters change.
-
-        Raises:
-            DivergenceError: the motors have more inertia than the robot.
-        """
+        """Returns armatures without the motors that move by themselves."""
         out: list[tuple[Slot, np.ndarray]] = []
         each = {joint: self.of(joint, values, n) for joint in self.joints}
         if len(each) > 1:
@@ -198,11 +156,7 @@ class Gears:
     def refuse_stateless(
         self, needed: Mapping[str, Sequence[JointState]], names: Sequence[str], values: np.ndarray
     ) -> None:
-        """Refuse sizes of effects whose states the plant does not have.
-
-        Raises:
-            InputError: there is one that is not zero.
-        """
+        """Refuse sizes of effects whose states the plant does not have."""
         lacking = [
             name for k, name in enumerate(names)
             if not {*needed.get(name, ())} <= {*self.states} and np.any(values[:, k])
@@ -214,51 +168,70 @@ class Gears:
             )
 
     def begun(self, values: Values, n: int, known: State) -> State:
-        """Returns states as MuJoCo integrates them; see `identification.effects.joint_states`."""
+        """Returns states as MuJoCo integrates them, from states as windows know them (m rows)."""
         if not self.states:
             return known
-        return begun(self.model, self.states, self._repeated(values, n, len(known.qpos)),
-                     self.joints, known)  # fmt: skip
+        qpos, qvel, act = np.array(known.qpos), np.array(known.qvel), np.array(known.act)
+        for g, at, q, v, axis in self._motors(values, n, len(qpos)):
+            s, w = act[:, at].copy(), act[:, at + 1].copy()
+            delta = g.c * s + g.gap * s / (abs(s) + CERTAIN * axis.force)
+            rate = (g.c + g.gap / (abs(s) + axis.force)) * w
+            qpos[:, q] -= g.side * delta
+            qvel[:, v] -= g.side * rate
+            act[:, at], act[:, at + 1] = qpos[:, q] + delta, qvel[:, v] + rate
+        return State(qpos, qvel, act)
 
     def shown(
         self, values: Values, n: int, run: Mapping[str, np.ndarray]
     ) -> Mapping[str, np.ndarray]:
-        """Returns positions and rates as encoders see them."""
+        """Returns positions and rates as encoders see them: the motor's where they sit there.
+
+        `run` has qpos, qvel and act of m simulations, shape (m, samples, size).
+        """
         if not self.states:
             return run
-        each = self._repeated(values, n, len(run["qpos"]))
-        return shown(self.model, self.states, each, run)
+        qpos, qvel, act = np.array(run["qpos"]), np.array(run["qvel"]), run["act"]
+        for g, at, q, v, _ in self._motors(values, n, len(qpos)):
+            rows = np.flatnonzero(g.is_geared & (g.side > 0))
+            qpos[rows, :, q], qvel[rows, :, v] = act[rows, :, at], act[rows, :, at + 1]
+        return {**run, "qpos": qpos, "qvel": qvel}
 
     def first_states(
         self, values: Values, loads: tuple[np.ndarray, np.ndarray, np.ndarray], sampling_time: float
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Returns the states where windows begin, and how far off they may be."""
-        gears = {joint: self.of(joint, values, 1) for joint in self.joints}
-        forces = {joint: axis.force for joint, axis in self.joints.items()}
-        return first_states_of(self.states, self.model, gears, forces, loads, sampling_time)
+        """Returns states where windows begin, shape (W, na), and how far off they may be, (na,).
 
-    def _repeated(self, values: Values, n: int, m: int) -> dict[str, GearNumbers]:
-        """Returns each joint's gear numbers for m simulations, m/n of each value set."""
-        out = {}
-        for joint in self.joints:
-            g = self.of(joint, values, n)
-            each = {name: np.repeat(x, m // n) for name, x in vars(g).items()}
-            out[joint] = GearNumbers(**each)
-        return out
+        `loads` are those of `first_loads`; `sampling_time` [s].
+        """
+        drives, friction, rates = loads
+        columns, far = [], []
+        for state in self.states:
+            dof = int(self.model.joint(state.joint).dofadr[0])
+            least = LEAST * self.joints[state.joint].force
+            if state.kind == "grip":
+                columns.append(friction[:, dof])
+                far.append(max(least, _rms(columns[-1])))
+                continue
+            s = drives[:, dof] - self.of(state.joint, values, 1).J[0] * rates[:, dof]
+            columns += [s, np.zeros(len(s))]
+            far += [max(least, _rms(s)), max(least, _rms(s)) / sampling_time]
+        return np.stack(columns, axis=1), np.array(far)
+
+    def _motors(
+        self, values: Values, n: int, m: int
+    ) -> Iterator[tuple[GearNumbers, int, int, int, Axis]]:
+        """Yields of each motor its gear in m simulations, and where θ, q and v stand; its joint.
+
+        Each value set has m/n neighbouring simulations.
+        """
+        for state, at in zip(self.states, places_of(self.model, self.states), strict=True):
+            if state.kind != "motor":
+                continue
+            each = vars(self.of(state.joint, values, n)).items()
+            g = GearNumbers(**{name: np.repeat(x, m // n) for name, x in each})
+            joint = self.model.joint(state.joint)
+            yield g, at, int(joint.qposadr[0]), int(joint.dofadr[0]), self.joints[state.joint]
 
 
-def needed_states(effects: Sequence[Effect]) -> dict[str, tuple[JointState, ...]]:
-    """Returns the states that each size of an effect needs, by its name."""
-    out: dict[str, tuple[JointState, ...]] = {}
-    for effect in effects:
-        kind = effect.state
-        if kind not in WIDTH:
-            continue
-        single = [suffix[1:] for suffix in effect.places.values() if suffix]
-        for where, suffix in effect.places.items():
-            at = [suffix[1:]] if suffix else single
-            for size in effect.sizes:
-                out[effect.parameter(size.name, where)] = tuple(
-                    JointState("motor" if kind == "motor" else "grip", joint) for joint in at
-                )
-    return out
+def _rms(x: np.ndarray) -> float:
+    return float(np.sqrt(np.mean(x**2)))

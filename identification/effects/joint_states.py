@@ -1,36 +1,148 @@
-"""Joints with states of their own: where the states stand, and what effects make of them.
+"""Joints with states of their own: their numbers, their loads, and what motors may have of inertia.
 
-As a window knows them (s and w stay small where a gear becomes stiff):
+    motor   θ, ω       of the motor behind a gear
+    grip    p          the force of a friction that gives                            [N m or N]
 
-    motor   s, w       δ = c s + ε clip(s/s_0, -1, 1),  dδ/dt = c w        [N m, N m/s or N, N/s]
-    grip    p          the force of the friction                                     [N m or N]
+The inertia that drives feel, and how much of it their motors may have:
 
-As MuJoCo integrates them: θ = q + δ, ω = v + dδ/dt, and p. Where the encoder sits on the motor's
-side, what is measured is θ, so that q = θ - δ. Sizes of zero leave q and v as they are, to the bit.
+    I_j = min 1/A_jj,   A = M⁻¹                      over several poses, of the model's file
+    λ_max(√J A √J) < 1                               in each of them, J: of all motors at once
+
+The links of a robot keep M - J. For one motor that is positive where J < I; several may together
+ask for more than there is.
 """
 
 from __future__ import annotations
 
 import copy
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
 import mujoco
 import numpy as np
 
-from identification.effects.axes import Axis
 from identification.effects.effect import Effect
 from identification.effects.rows import JointLayout
 from identification.effects.values import Values, numbers_at
 from identification.engine import quiet
+from identification.errors import DivergenceError
+from identification.logs.names import listed
 from identification.model.paths import write
 from identification.model.predictor import Numbers
 from identification.model.rollout import UNLOGGED, State
 from identification.native.gear import Gear
 from identification.native.joint_callback import FIRST, TAG
 
-LEAST = 1e-3  # of the largest force of the drives: the smallest std of a force
+WIDTH = {"motor": 2, "grip": 1}  # activations
+POSES = 8  # random ones, behind the model's own
+
+
+@dataclass(frozen=True)
+class JointState:
+    """A state of a joint.
+
+    Attributes:
+        kind: "motor", θ and ω behind a gear; or "grip", p of a friction that gives.
+        joint: its name.
+    """
+
+    kind: Literal["motor", "grip"]
+    joint: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class GearNumbers:
+    """The numbers of a joint's gear in n value sets, shape (n,) each; see `state_effects`."""
+
+    c: np.ndarray
+    gap: np.ndarray
+    J: np.ndarray
+    zeta: np.ndarray
+    side: np.ndarray
+    slip: np.ndarray
+
+    @property
+    def columns(self) -> tuple[np.ndarray, ...]:
+        """The columns in the order of a joint's row, from `SIDE` on."""
+        return self.side, self.c, self.gap, self.J, self.zeta, self.slip
+
+    @property
+    def is_geared(self) -> np.ndarray:
+        """Whether the motor moves by itself, shape (n,)."""
+        return (self.c != 0) | (self.gap != 0)
+
+
+def with_actuators(spec: mujoco.MjSpec, states: Sequence[JointState]) -> mujoco.MjSpec:
+    """Returns the model with an actuator for each state, of no gain and a control of zero."""
+    spec = spec.copy()
+    for state in states:
+        spec.add_actuator(
+            name=f"{UNLOGGED}{state.kind} {state.joint}", target=state.joint,
+            trntype=mujoco.mjtTrn.mjTRN_JOINT, dyntype=mujoco.mjtDyn.mjDYN_USER,
+            actdim=WIDTH[state.kind], gaintype=mujoco.mjtGain.mjGAIN_FIXED, gainprm=[0.0] * 10,
+            biastype=mujoco.mjtBias.mjBIAS_USER, biasprm=[TAG, *[0.0] * 9],
+            gear=[1.0, 0, 0, 0, 0, 0],
+        )  # fmt: skip
+    return spec
+
+
+def places_of(model: mujoco.MjModel, states: Sequence[JointState]) -> list[int]:
+    """Returns the index of each state's first activation."""
+    return [int(model.actuator(f"{UNLOGGED}{s.kind} {s.joint}").actadr[0]) for s in states]
+
+
+def gear_numbers(
+    effects: Sequence[Effect], joint: str, inertia: float, values: Values, n: int
+) -> GearNumbers:
+    """Returns the numbers of a joint's gear; of two effects that tell J, ζ and side, the larger."""
+    series, slip = np.zeros((5, n)), np.zeros(n)
+    for effect in (e for e in effects if e.state):
+        numbers = [_each(x, n) for x in numbers_at(effect, joint, values)]
+        (law,) = effect.hooks.values()
+        told = law.py_func(Gear(inertia), tuple(numbers))  # type: ignore[attr-defined]
+        if effect.state == "grip":
+            slip = slip + told
+            continue
+        here, told = numbers[0] != 0, np.array([_each(x, n) for x in told])
+        series[:2] += told[:2]
+        for k in (2, 3, 4):
+            series[k] = np.maximum(series[k], np.where(here, told[k], 0.0))
+    c, gap, J, zeta, side = series
+    return GearNumbers(c=c, gap=gap, J=J, zeta=zeta, side=side, slip=slip)
+
+
+def _each(x: float | np.ndarray, n: int) -> np.ndarray:
+    """Returns one number or n of them as n numbers, shape (n,)."""
+    x = np.asarray(x)
+    return x if x.shape == (n,) else np.full(n, x)  # numpy's broadcast_to takes ten times as long
+
+
+def fitting(start: State | None, model: mujoco.MjModel) -> State | None:
+    """Returns a start with a model's number of activations: the last are left out, or zero."""
+    if start is None:
+        return None
+    act = np.zeros(model.na)
+    given = np.ravel(start.act)[: model.na]
+    act[: len(given)] = given
+    return State(start.qpos, start.qvel, act)
+
+
+def needed_states(effects: Sequence[Effect]) -> dict[str, tuple[JointState, ...]]:
+    """Returns the states that each size of an effect needs, by its name."""
+    out: dict[str, tuple[JointState, ...]] = {}
+    for effect in effects:
+        kind = effect.state
+        if kind not in WIDTH:
+            continue
+        single = [suffix[1:] for suffix in effect.places.values() if suffix]
+        for where, suffix in effect.places.items():
+            at = [suffix[1:]] if suffix else single
+            for size in effect.sizes:
+                out[effect.parameter(size.name, where)] = tuple(
+                    JointState("motor" if kind == "motor" else "grip", joint) for joint in at
+                )
+    return out
 
 
 @quiet()
@@ -72,201 +184,43 @@ def first_loads(
     return out[0], out[1], out[2]
 
 
-def first_states_of(
-    states: Sequence[JointState], model: mujoco.MjModel, gears: dict[str, GearNumbers],
-    forces: dict[str, float], loads: tuple[np.ndarray, np.ndarray, np.ndarray],
-    sampling_time: float,
-) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
-    """Returns the states where windows begin, shape (W, na), and how far off they may be, (na,).
+@quiet()
+def mobilities(model: mujoco.MjModel, joints: Sequence[str]) -> np.ndarray:
+    """Returns A among some joints in several poses, shape (`POSES`, g, g) [1/kg or 1/(kg m²)]."""
+    data, rng = mujoco.MjData(model), np.random.default_rng(0)
+    dofs = [int(model.joint(joint).dofadr[0]) for joint in joints]
+    units, columns = np.zeros((len(dofs), model.nv)), np.zeros((len(dofs), model.nv))
+    units[range(len(dofs)), dofs] = 1.0
+    out = np.empty((POSES, len(dofs), len(dofs)))
+    for pose in out:
+        mujoco.mj_forward(model, data)
+        if dofs:
+            mujoco.mj_solveM(model, data, columns, units)
+        pose[:] = columns[:, dofs]
+        mujoco.mj_integratePos(model, data.qpos, rng.normal(0, 1, model.nv), 1.0)
+    return out
+
+
+def felt_inertias(A: np.ndarray) -> np.ndarray:
+    """Returns I of each joint, shape (g,) [kg m² or kg], from A of `mobilities`."""
+    return np.asarray(1 / np.max(np.diagonal(A, axis1=1, axis2=2), axis=0))
+
+
+def refuse_greedy(J: np.ndarray, A: np.ndarray, joints: Sequence[str]) -> None:
+    """Refuse motors that leave less than nothing to the links.
 
     Args:
-        states: in the order of their activations.
-        model: of the plant.
-        gears: what effects make of their joints, one value each.
-        forces: largest force of the drives of their joints [N m or N].
-        loads: of `first_loads`.
-        sampling_time: [s].
+        J: inertias of the motors that move by themselves, else 0, in n value sets, shape (n, g).
+        A: of `mobilities`.
+        joints: their names.
     """
-    drives, friction, rates = loads
-    columns, far = [], []
-    for state in states:
-        dof = int(model.joint(state.joint).dofadr[0])
-        least = LEAST * forces[state.joint]
-        if state.kind == "grip":
-            p = friction[:, dof]
-            columns.append(p)
-            far.append(max(least, _rms(p)))
-            continue
-        s = drives[:, dof] - gears[state.joint].J[0] * rates[:, dof]
-        columns += [s, np.zeros(len(s))]
-        far += [max(least, _rms(s)), max(least, _rms(s)) / sampling_time]
-    return np.stack(columns, axis=1), np.array(far)
-
-
-def _rms(x: np.ndarray) -> float:
-    return float(np.sqrt(np.mean(x**2)))
-
-
-WIDTH = {"motor": 2, "grip": 1}  # activations
-CERTAIN = 0.02  # s_0, of the largest force of the drives: with more, teeth are sure to touch
-
-
-@dataclass(frozen=True)
-class JointState:
-    """A state of a joint.
-
-    Attributes:
-        kind: "motor", θ and ω behind a gear; or "grip", p of a friction that gives.
-        joint: its name.
-    """
-
-    kind: Literal["motor", "grip"]
-    joint: str
-
-
-@dataclass(frozen=True, kw_only=True)
-class GearNumbers:
-    """The numbers of a joint's gear in n value sets, shape (n,) each; see `state_laws`."""
-
-    c: np.ndarray
-    gap: np.ndarray
-    J: np.ndarray
-    zeta: np.ndarray
-    side: np.ndarray
-    slip: np.ndarray
-
-    @property
-    def columns(self) -> tuple[np.ndarray, ...]:
-        """The columns in the order of a joint's row, from `SIDE` on."""
-        return self.side, self.c, self.gap, self.J, self.zeta, self.slip
-
-    @property
-    def is_geared(self) -> np.ndarray:
-        """Whether the motor moves by itself, shape (n,)."""
-        return (self.c != 0) | (self.gap != 0)
-
-
-def with_actuators(spec: mujoco.MjSpec, states: Sequence[JointState]) -> mujoco.MjSpec:
-    """Returns the model with an actuator for each state, of no gain and a control of zero.
-
-    Args:
-        spec: the model, which is not changed.
-        states: which.
-    """
-    spec = spec.copy()
-    for state in states:
-        spec.add_actuator(
-            name=f"{UNLOGGED}{state.kind} {state.joint}", target=state.joint,
-            trntype=mujoco.mjtTrn.mjTRN_JOINT, dyntype=mujoco.mjtDyn.mjDYN_USER,
-            actdim=WIDTH[state.kind], gaintype=mujoco.mjtGain.mjGAIN_FIXED, gainprm=[0.0] * 10,
-            biastype=mujoco.mjtBias.mjBIAS_USER, biasprm=[TAG, *[0.0] * 9],
-            gear=[1.0, 0, 0, 0, 0, 0],
-        )  # fmt: skip
-    return spec
-
-
-def places_of(model: mujoco.MjModel, states: Sequence[JointState]) -> list[int]:
-    """Returns the index of each state's first activation."""
-    return [int(model.actuator(f"{UNLOGGED}{s.kind} {s.joint}").actadr[0]) for s in states]
-
-
-def gear_numbers(
-    effects: Sequence[Effect], joint: str, inertia: float, values: Values, n: int
-) -> GearNumbers:
-    """Returns the numbers of a joint's gear; of two effects that tell J, ζ and side, the larger.
-
-    Args:
-        effects: a set; those without states are passed over.
-        joint: its name.
-        inertia: I, that its drive feels.
-        values: of all parameters, one or n of each.
-        n: how many value sets.
-    """
-    series, slip = np.zeros((5, n)), np.zeros(n)
-    for effect in (e for e in effects if e.state):
-        numbers = [_each(x, n) for x in numbers_at(effect, joint, values)]
-        (law,) = effect.hooks.values()
-        told = law.py_func(Gear(inertia), tuple(numbers))  # type: ignore[attr-defined]
-        if effect.state == "grip":
-            slip = slip + told
-            continue
-        here, told = numbers[0] != 0, np.array([_each(x, n) for x in told])
-        series[:2] += told[:2]
-        for k in (2, 3, 4):
-            series[k] = np.maximum(series[k], np.where(here, told[k], 0.0))
-    c, gap, J, zeta, side = series
-    return GearNumbers(c=c, gap=gap, J=J, zeta=zeta, side=side, slip=slip)
-
-
-def _each(x: float | np.ndarray, n: int) -> np.ndarray:
-    """Returns one number or n of them as n numbers, shape (n,)."""
-    x = np.asarray(x)
-    return x if x.shape == (n,) else np.full(n, x)  # numpy's broadcast_to takes ten times as long
-
-
-def deflected(g: GearNumbers, s: np.ndarray, axis: Axis) -> np.ndarray:
-    """Returns the deflection δ of a gear that passes on s."""
-    return g.c * s + g.gap * s / (abs(s) + CERTAIN * axis.force)
-
-
-def begun(
-    model: mujoco.MjModel, states: Sequence[JointState], gears: Mapping[str, GearNumbers],
-    axes: Mapping[str, Axis], known: State,
-) -> State:  # fmt: skip
-    """Returns states as MuJoCo integrates them, from states as windows know them.
-
-    Args:
-        model: with the states.
-        states: of its joints.
-        gears: of their joints, a number for each row of the states.
-        axes: their joints.
-        known: m rows.
-    """
-    qpos, qvel, act = np.array(known.qpos), np.array(known.qvel), np.array(known.act)
-    for state, at in zip(states, places_of(model, states), strict=True):
-        if state.kind != "motor":
-            continue
-        g, (q, v) = gears[state.joint], _columns(model, state.joint)
-        delta = deflected(g, act[:, at], axes[state.joint])
-        rate = (g.c + g.gap / (abs(act[:, at]) + axes[state.joint].force)) * act[:, at + 1]
-        qpos[:, q] -= g.side * delta
-        qvel[:, v] -= g.side * rate
-        act[:, at], act[:, at + 1] = qpos[:, q] + delta, qvel[:, v] + rate
-    return State(qpos, qvel, act)
-
-
-def shown(
-    model: mujoco.MjModel, states: Sequence[JointState], gears: Mapping[str, GearNumbers],
-    run: Mapping[str, np.ndarray],
-) -> Mapping[str, np.ndarray]:  # fmt: skip
-    """Returns positions and rates as encoders see them: those of the motor where they sit there.
-
-    Args:
-        model: with the states.
-        states: of its joints.
-        gears: of their joints, a number for each simulation.
-        run: qpos, qvel and act of m simulations, shape (m, samples, size).
-    """
-    qpos, qvel = np.array(run["qpos"]), np.array(run["qvel"])
-    for state, at in zip(states, places_of(model, states), strict=True):
-        if state.kind != "motor":
-            continue
-        g, (q, v) = gears[state.joint], _columns(model, state.joint)
-        rows = np.flatnonzero(g.is_geared & (g.side > 0))
-        qpos[rows, :, q], qvel[rows, :, v] = run["act"][rows, :, at], run["act"][rows, :, at + 1]
-    return {**run, "qpos": qpos, "qvel": qvel}
-
-
-def fitting(start: State | None, model: mujoco.MjModel) -> State | None:
-    """Returns a start with a model's number of activations: the last are left out, or zero."""
-    if start is None:
-        return None
-    act = np.zeros(model.na)
-    given = np.ravel(start.act)[: model.na]
-    act[: len(given)] = given
-    return State(start.qpos, start.qvel, act)
-
-
-def _columns(model: mujoco.MjModel, joint: str) -> tuple[int, int]:
-    j = model.joint(joint)
-    return int(j.qposadr[0]), int(j.dofadr[0])
+    J = J[np.count_nonzero(J, axis=1) > 1]
+    if not len(J):
+        return
+    root = np.sqrt(J)[:, None]
+    share = np.linalg.eigvalsh(root[..., None] * A * root[..., None, :])[..., -1]
+    if np.any(share >= 1):
+        raise DivergenceError(
+            f"the motors of {listed(joints)} would have more inertia than the robot has; take a"
+            " smaller share rho"
+        )

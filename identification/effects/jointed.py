@@ -24,8 +24,14 @@ from identification.effects import values as effect_values
 from identification.effects.axes import Axis
 from identification.effects.body import body_numbers
 from identification.effects.effect import Effect
-from identification.effects.gears import Gears, needed_states
-from identification.effects.joint_states import JointState, first_loads, fitting, with_actuators
+from identification.effects.gears import Gears
+from identification.effects.joint_states import (
+    JointState,
+    first_loads,
+    fitting,
+    needed_states,
+    with_actuators,
+)
 from identification.effects.moving_bodies import MovingBody, moving_bodies
 from identification.effects.rows import JointLayout, changed_rows, with_rows
 from identification.engine import derive

@@ -44,9 +44,6 @@ def movable(spec: mujoco.MjSpec) -> mujoco.MjModel:
 
     MuJoCo simplifies a body whose inertial frame is its own frame; here it may not, and computes
     the same numbers the longer way.
-
-    Args:
-        spec: the model, which is not changed.
     """
     spec = spec.copy()
     for body in spec.bodies:

@@ -14,23 +14,13 @@ SIDES = {"before": -1, "behind": 1}  # last word of the curve's name, and where 
 
 
 def joints_of(candidate: Candidate) -> list[str]:
-    """Returns the names of the joints on which an effect with sizes at single joints acts.
-
-    Args:
-        candidate: an effect at one joint, or at several with sizes of its own at each.
-    """
+    """Returns the names of the joints on which an effect with sizes at single joints acts."""
     at_each = [size.name.partition("@")[2] for size in candidate.effect.sizes]
     return [*dict.fromkeys(filter(None, at_each))] or [candidate.where.removeprefix("joint ")]
 
 
 def neighbour(word: str, joint: str, plant: Plant) -> str:
-    """Returns the name of the joint that a curve reads beside its own; "" where it reads none.
-
-    Args:
-        word: the last word of the curve's name, such as "before" or "position".
-        joint: on which the curve acts.
-        plant: the robot.
-    """
+    """Returns the name of the joint that a curve reads beside its own; "" where it reads none."""
     side = SIDES.get(word.rpartition("_")[2], 0)
     if not side or not isinstance(plant, JointPlant):
         return ""
@@ -42,10 +32,6 @@ def phrase_there(candidate: Candidate, plant: Plant) -> str:
     """Returns the words of an effect, in which a neighbouring joint has its name.
 
     An effect at several joints reads another neighbour at each: its words then name none.
-
-    Args:
-        candidate: an effect at its place.
-        plant: the robot.
     """
     effect, joints = candidate.effect, joints_of(candidate)
     said = effect.phrase or effect.name.replace("_", " ")
@@ -79,14 +65,7 @@ def effect_of(name: str) -> str:
 def unknown_effect(
     what: str, name: str, effects: Sequence[Effect], likely: str | None = None
 ) -> InputError:
-    """Returns the error of an unknown effect; it lists the good names and explains `slide_`.
-
-    Args:
-        what: the name is of.
-        name: the unknown one.
-        effects: the good ones.
-        likely: what was meant, where that is known.
-    """
+    """Returns the error of an unknown effect; it lists the good names and explains `slide_`."""
     names = [e.name for e in effects]
     note = about_names(name, names)
     said = str(unknown_name(what, name, names, likely or nearest(effect_of(name), names)))
@@ -140,12 +119,7 @@ def unknown_number(name: str, effects: Sequence[Effect], is_free: bool = True) -
 
 
 def damping_of(name: str, effects: Sequence[Effect]) -> str | None:
-    """Returns the path of a joint's damping in the model, where a name means that; else None.
-
-    Args:
-        name: such as `viscous_friction.d@slide`, which is the name of no effect.
-        effects: the known ones.
-    """
+    """Returns the path of a joint's damping in the model, where a name means that; else None."""
     if effect_of(name).removeprefix(SLIDE) not in DAMPING:
         return None
     joints = dict.fromkeys(where.removeprefix("joint ") for e in effects for where in e.places

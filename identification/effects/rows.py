@@ -1,9 +1,10 @@
-"""An MJCF model whose joints carry the numbers of their effects as user data.
+"""An MJCF model whose joints carry the numbers of their effects as user data, and their law.
 
     user data of a joint = (what the file gave it, T, what it reaches, parameters, key, TAG)
 
 The row stands at the end, so that a model's own user data stay where they were; its layout is that
-of `identification.native.joint_callback`.
+of `identification.native.joint_callback`. Effects of inputs and sensors have no row: they act
+before the model and behind it. Those of bodies change the bodies' own numbers.
 """
 
 from __future__ import annotations
@@ -54,6 +55,9 @@ from identification.native.joint_states import callbacks as state_callbacks
 from identification.native.joint_states import width as state_width
 from identification.native.reading import SENSOR
 
+_LONGEST = 200  # of MuJoCo's words in a message
+_HELD = {int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE)}
+
 
 @dataclass(frozen=True)
 class JointLayout:
@@ -98,13 +102,7 @@ class JointLayout:
         return any(hooks & effect.hooks.keys() for effect in self.effects)
 
     def install(self) -> None:
-        """Install the law in this process; does nothing when it is installed already.
-
-        Raises:
-            InputError: another library holds MuJoCo's callback, or a function of an effect is not
-                what its hook takes.
-            RuntimeError: MuJoCo's structs are not laid out as declared.
-        """
+        """Install the law in this process; does nothing when it is installed already."""
         install(_law(self.key, self.on_joints, self.has_states))
 
 
@@ -117,10 +115,6 @@ def _law(key: float, terms: tuple[Term, ...], has_states: bool) -> Law:
         fields=STATE_FIELDS if has_states else FIELDS,
         check=lambda: refuse_unfit_functions(JOINT, terms),
     )
-
-
-_LONGEST = 200  # of MuJoCo's words in a message
-_HELD = {int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE)}
 
 
 def read_model(source: str | Path | mujoco.MjSpec) -> mujoco.MjSpec:
@@ -157,16 +151,7 @@ def read_model(source: str | Path | mujoco.MjSpec) -> mujoco.MjSpec:
 
 
 def with_rows(spec: mujoco.MjSpec, axes: Sequence[Axis], layout: JointLayout) -> mujoco.MjModel:
-    """Returns the compiled model with a row of effects on some joints, all their numbers zero.
-
-    Args:
-        spec: the model, which is not changed.
-        axes: the joints.
-        layout: the effects.
-
-    Raises:
-        InputError: the model has no such hinge or slide joint.
-    """
+    """Returns the compiled model with a row of effects on some joints, all their numbers zero."""
     own, spec = spec.copy().compile(), spec.copy()
     joints = {joint.name: joint for joint in spec.joints if int(joint.type) in _HELD}
     for axis in axes:
@@ -185,16 +170,7 @@ def changed_rows(
     model: mujoco.MjModel, layout: JointLayout, joints: Sequence[str], names: Sequence[str],
     values: Values, n: int,
 ) -> list[tuple[Slot, np.ndarray]]:  # fmt: skip
-    """Returns entries of joints' rows that some parameters of effects change, in n value sets.
-
-    Args:
-        model: of `with_rows`.
-        layout: of its effects.
-        joints: names of the joints.
-        names: the parameters.
-        values: of all parameters, one or n of each.
-        n: how many value sets.
-    """
+    """Returns entries of joints' rows that some parameters of effects change, in n value sets."""
     first = int(model.nuser_jnt) - layout.entries + FIRST
     return [
         (Slot("jnt_user", (int(model.joint(joint).id),), first + column),

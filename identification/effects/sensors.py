@@ -73,11 +73,6 @@ def sensor_effects(
     Lag, offset and eccentricity are those of positions. Where a robot has hinges and slides, the
     names of the effects of slides' sensors begin with `slide_`, but for what has no unit. A single
     output has no lag: it has no other that it could be late against.
-
-    Args:
-        model: with the sensors.
-        outputs: names of the sensors.
-        axes: the joints; sensors of others are passed over.
     """
     known = {a.joint: a for a in axes}
     joints = {n: known[j] for n in outputs if (j := measured_joint(model, n)) in known}

@@ -1,6 +1,9 @@
-"""Values of effects at the things they act on.
+"""Parameters of a set of effects: their places in rows, and their values at things.
 
-a thing gets    size(all) + size@thing          shapes are the same for all
+    row of a thing = (…, parameters of effect 1, parameters of effect 2, …)
+    a thing gets    size(all) + size@thing          shapes are the same for all
+
+Sizes come first, shapes follow. The key of a set says which compiled law its rows are made for.
 """
 
 from __future__ import annotations
@@ -16,20 +19,18 @@ from identification.native.element import Element, Term
 from identification.native.input_filter import INPUT, input_filter
 from identification.native.reading import SENSOR, sensor_filter
 
+Values = Mapping[str, float | np.ndarray]  # by name of the parameter, one or n of each
+
 
 def terms_of(
-    effects: Sequence[Effect], element: Element, *, first: int = 0, own: str = ""
+    effects: Sequence[Effect], element: Element, *, first: int = 0, state_hook: str = ""
 ) -> tuple[Term, ...]:
     """Returns the effects of one element, and where in its row their parameters stand.
 
-    Args:
-        effects: a set; those that act on other elements are passed over.
-        element: what they act on.
-        first: column of the first parameter.
-        own: the hook that an effect with a state of its own has, "" where none can have one.
+    Columns are counted from `first`; effects with `state_hook` have a state of their own.
     """
     out: list[Term] = []
-    column, states = first, _states(effects, own)
+    column, states = first, _states(effects, state_hook)
     for effect in effects:
         if not _acts_on(effect, element):
             continue
@@ -47,34 +48,21 @@ def terms_of(
     return tuple(out)
 
 
-def _states(effects: Sequence[Effect], own: str) -> dict[str, int]:
+def _states(effects: Sequence[Effect], hook: str) -> dict[str, int]:
     """Returns the number of each effect's state, counted from 1, by the effect's name."""
     numbers: dict[object, int] = {}
-    having = [e for e in effects if own in e.hooks]
-    keys = {e.name: e.hooks[own] if e.shares else e.name for e in having}
+    having = [e for e in effects if hook in e.hooks]
+    keys = {e.name: e.hooks[hook] if e.shares else e.name for e in having}
     return {name: numbers.setdefault(key, len(numbers) + 1) for name, key in keys.items()}
 
 
 def key_of(effects: Sequence[Effect], of: str = "") -> float:
-    """Returns the number that tells a set of effects from others.
-
-    Args:
-        effects: the set.
-        of: what they act on, where sets of other things may bear the same names.
-    """
+    """Returns the number that tells a set of effects from others, `of` what they act on."""
     return float(crc32((of + repr([(e.name, e.names, e.law) for e in effects])).encode()))
 
 
 def refuse_misplaced(effects: Sequence[Effect], elements: Sequence[Element]) -> None:
-    """Refuse effects that a robot cannot have.
-
-    Args:
-        effects: the set.
-        elements: what a robot has that effects may act on.
-
-    Raises:
-        InputError: two effects have one name, or the hooks of one are not those of one element.
-    """
+    """Refuse effects that a robot cannot have."""
     names = [e.name for e in effects]
     twice = sorted({n for n in names if names.count(n) > 1})
     if twice:
@@ -96,17 +84,8 @@ def _acts_on(effect: Effect, element: Element) -> bool:
     return bool(effect.hooks) and effect.hooks.keys() <= {hook.name for hook in element.hooks}
 
 
-Values = Mapping[str, float | np.ndarray]  # by name of the parameter, one or n of each
-
-
 def merged(own: Mapping[str, float], names: Sequence[str], values: np.ndarray) -> Values:
-    """Returns the values of all parameters, of which some differ from the plant's own.
-
-    Args:
-        own: values of all parameters.
-        names: parameters that differ, p of them.
-        values: theirs in n value sets, shape (n, p).
-    """
+    """Returns a plant's own values of all parameters with others of p, shape (n, p)."""
     return {**own, **dict(zip(names, values.T, strict=True))}
 
 
@@ -154,16 +133,7 @@ def changed_columns(
     effects: Sequence[Effect], terms: Sequence[Term], thing: str, names: Sequence[str],
     values: Values,
 ) -> Iterator[tuple[int, float | np.ndarray]]:  # fmt: skip
-    """Yields the entries of a thing's row that some parameters change: column, and its values.
-
-
-    Args:
-        effects: the set.
-        terms: the effects that have numbers in such rows.
-        thing: name of the thing.
-        names: the parameters.
-        values: of all parameters.
-    """
+    """Yields the entries of a thing's row that some parameters change: column, and its values."""
     by_name, touched = {e.name: e for e in effects}, set(names)
     for term in terms:
         effect = by_name[term.effect]
@@ -190,21 +160,15 @@ def changed_inputs(
 
     Returns:
         `held` itself where no such effect is there, else shape (n, steps, nu).
-
-    Raises:
-        InputError: a function of an effect cannot be compiled.
     """
-    acting = [e for e in effects if "input" in e.hooks]
-    if not any(is_present(e, things, values) for e in acting):
+    acting, where = _acting(effects, "input", things, values)
+    if not where:
         return held
     run = input_filter(terms_of(acting, INPUT))
     out = np.repeat(held[None], n, axis=0)
     signals = np.empty((1 + len(acting), len(held)))
-    for i, thing in enumerate(things):
-        if not any(is_present(e, [thing], values) for e in acting):
-            continue
-        rows = table_at(acting, thing, values, n)
-        for k, row in enumerate(rows):
+    for i in where:
+        for k, row in enumerate(table_at(acting, things[i], values, n)):
             signals[0] = held[:, i]
             run(signals.ctypes.data, len(held), timestep, begun, row.ctypes.data)
             out[k, :, i] = signals[-1]
@@ -226,24 +190,28 @@ def changed_outputs(
 
     Returns:
         y itself where no such effect is there, else shape (m, samples, ny).
-
-    Raises:
-        InputError: a function of an effect cannot be compiled.
     """
     y = np.asarray(readings[0])
-    acting = [e for e in effects if "reading" in e.hooks]
-    if not any(is_present(e, things, values) for e in acting):
+    acting, where = _acting(effects, "reading", things, values)
+    if not where:
         return y
     run, y = sensor_filter(terms_of(acting, SENSOR)), y.copy()
     signals = np.empty((len(y) // n, 5, y.shape[1]))
     first, apart = signals.ctypes.data, signals.strides[0]
-    for i, thing in enumerate(things):
-        if not any(is_present(e, [thing], values) for e in acting):
-            continue
-        for k, row in enumerate(table_at(acting, thing, values, n)):
+    for i in where:
+        for k, row in enumerate(table_at(acting, things[i], values, n)):
             own = slice(k * len(signals), (k + 1) * len(signals))
             signals[:, :4] = np.moveaxis(readings[:, own, :, i], 0, 1)
             for one in range(len(signals)):  # an effect may read earlier samples of the same row
                 run(first + one * apart, y.shape[1], row.ctypes.data)
             y[own, :, i] = signals[:, 4]
     return y
+
+
+def _acting(
+    effects: Sequence[Effect], hook: str, things: Sequence[str], values: Values
+) -> tuple[list[Effect], list[int]]:
+    """Returns the effects with a hook, and the indices of the things at which one is present."""
+    acting = [e for e in effects if hook in e.hooks]
+    present = [any(is_present(e, [thing], values) for e in acting) for thing in things]
+    return acting, [i for i, is_there in enumerate(present) if is_there]

@@ -68,9 +68,6 @@ def differences(
     Returns:
         With respect to the state, shape (L, results, nx), nx = 2 nv + na, and to the inputs, shape
         (L, results, nu), for L intervals or points.
-
-    Raises:
-        DivergenceError: the results are not finite.
     """
     h, nx = scheme.step, 2 * at.model.nv + at.model.na
     if scheme.is_central:

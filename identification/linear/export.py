@@ -73,15 +73,7 @@ def load_system(path: str | Path) -> LinearSystem:
 
 
 def names_in(content: Mapping[str, np.ndarray], path: str | Path) -> dict[str, Any]:
-    """Returns the names of states, inputs and outputs in a file.
-
-    Args:
-        content: of the file.
-        path: of it, for messages.
-
-    Raises:
-        InputError: they are no rows of text.
-    """
+    """Returns the names of states, inputs and outputs in a file."""
     for name in NAMES:
         if content[name].ndim != 1 or content[name].dtype.kind != "U":
             raise InputError(f"{path} is damaged: {name} is no row of names; write it again")
@@ -89,15 +81,7 @@ def names_in(content: Mapping[str, np.ndarray], path: str | Path) -> dict[str, A
 
 
 def write_arrays(path: str | Path, content: Mapping[str, Any]) -> Path:
-    """Write arrays and tuples of names as .npz or .mat, whole or not at all; returns the path.
-
-    Args:
-        path: where to write; its end is the format.
-        content: by name of variable.
-
-    Raises:
-        InputError: the name ends otherwise, or the file cannot be written.
-    """
+    """Write arrays and tuples of names as .npz or .mat, whole or not at all; returns the path."""
     path = Path(path)
     if path.suffix not in FORMATS:
         raise InputError(f"{path.name} does not end in {' or '.join(FORMATS)}; name it so")
@@ -118,16 +102,7 @@ def write_arrays(path: str | Path, content: Mapping[str, Any]) -> Path:
 
 
 def read_arrays(path: str | Path, names: tuple[str, ...], what: str) -> dict[str, np.ndarray]:
-    """Read variables of an .npz.
-
-    Args:
-        path: of the file.
-        names: of the variables that it must have.
-        what: kind of file that is wanted, for messages.
-
-    Raises:
-        InputError: there is no such file, it is damaged, or a variable is missing.
-    """
+    """Read variables of an .npz."""
     arrays = read_archive(Path(path), what)
     if missing := [name for name in names if name not in arrays]:
         raise InputError(

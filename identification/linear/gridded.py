@@ -221,9 +221,6 @@ def check_axis(name: str, points: np.ndarray, fewest: int) -> None:
         name: of the scheduling variable.
         points: shape (n,), in its unit.
         fewest: points that are needed.
-
-    Raises:
-        InputError: they do not rise, are too few, or are no numbers.
     """
     points = np.asarray(points, float)
     if points.ndim != 1 or not np.isfinite(points).all() or not (np.diff(points) > 0).all():

@@ -1,4 +1,4 @@
-"""The linear model of a MuJoCo plant at operating points.
+"""The linear model of a MuJoCo plant at operating points, with names.
 
     A = ∂f/∂x,  B = ∂f/∂u,  C = ∂y/∂x,  D = ∂y/∂u        central differences, f by MuJoCo
 
@@ -6,21 +6,30 @@ x = (position in tangent space, velocity, activation), y = what the model's sens
 law has a kink (a joint limit, a contact, dry friction that holds), the differences tell the slope
 across it, over a distance of 1e-6. Effects that act on inputs before the model, and on readings
 behind it, are no part of it.
+
+A state is called `JOINT.position`, `JOINT.rate` or `ACTUATOR.activation`; the axes of a ball or a
+free joint follow as `JOINT.position_x` … and `JOINT.turn_x` …, where a turn is a small rotation
+about an axis of the body. Sensors of several numbers are counted: `SENSOR_1` … .
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
+import mujoco
 import numpy as np
 
-from identification.linear.derivatives import CENTRAL, differences, position_rows
-from identification.linear.names import input_names, output_places, state_names
+from identification.errors import InputError, unknown_name
+from identification.linear.derivatives import BALL, CENTRAL, FREE, differences, position_rows
 from identification.linear.operating_points import OperatingPoints
 from identification.linear.points import Points
 from identification.linear.system import LinearSystem
 
 RESULTS = ("qacc", "act_dot", "sensordata")
+_MOVED = tuple(f"position_{axis}" for axis in "xyz")
+_TURNED = tuple(f"turn_{axis}" for axis in "xyz")
+_VELOCITY = tuple(f"velocity_{axis}" for axis in "xyz")
+_TURNING = tuple(f"rate_{axis}" for axis in "xyz")
 
 
 def linearize(points: OperatingPoints, outputs: Sequence[str] = ()) -> tuple[LinearSystem, ...]:
@@ -31,7 +40,7 @@ def linearize(points: OperatingPoints, outputs: Sequence[str] = ()) -> tuple[Lin
         outputs: names of sensors; all of the model's when empty.
 
     Returns:
-        M systems, whose states are `identification.linear.names.state_names`.
+        M systems, whose states are `identification.linear.linearization.state_names`.
 
     Raises:
         InputError: an output is no sensor of the model.
@@ -67,3 +76,52 @@ def _positions(points: OperatingPoints) -> np.ndarray:
         place, size = int(model.jnt_qposadr[joint]), {6: 3, 3: 0, 1: 1}[len(of_joint)]
         out[:, dof : dof + size] = points.qpos[:, place : place + size]
     return out
+
+
+def state_names(model: mujoco.MjModel) -> tuple[str, ...]:
+    """Returns names of position (nv), velocity (nv) and activations (na), in this order."""
+    return (*_of_joints(model, 0), *_of_joints(model, 1), *_of_activations(model))
+
+
+def input_names(model: mujoco.MjModel) -> tuple[str, ...]:
+    """Returns names of the actuators that have an input, in the order of the controls."""
+    named = (model.actuator(i) for i in range(len(model.actuator_trntype)))
+    return tuple(a.name or f"actuator {a.id}" for a in named)[: model.nu]
+
+
+def _of_joints(model: mujoco.MjModel, order: int) -> Iterator[str]:
+    for joint, kind in enumerate(model.jnt_type):
+        name = model.joint(joint).name or f"joint {joint}"
+        free = ((*_MOVED, *_TURNED), (*_VELOCITY, *_TURNING))[order]
+        parts = {FREE: free, BALL: (_TURNED, _TURNING)[order]}
+        for part in parts.get(int(kind), (("position",), ("rate",))[order]):
+            yield f"{name}.{part}"
+
+
+def _of_activations(model: mujoco.MjModel) -> Iterator[str]:
+    for i, size in enumerate(model.actuator_actnum):
+        name = model.actuator(i).name or f"actuator {i}"
+        for k in range(int(size)):
+            yield f"{name}.activation" + (f"_{k + 1}" if size > 1 else "")
+
+
+def output_places(
+    model: mujoco.MjModel, outputs: Sequence[str]
+) -> tuple[tuple[str, ...], np.ndarray]:
+    """Returns names of single outputs, and where each stands among the numbers of the sensors.
+
+    Returns:
+        ny names, and places of shape (ny,), whole numbers.
+    """
+    sensors = {model.sensor(i).name or f"sensor {i}": i for i in range(model.nsensor)}
+    if not sensors:
+        raise InputError("the model has no sensors, so it has no outputs; give it a jointpos")
+    names: list[str] = []
+    places: list[int] = []
+    for name in outputs or sensors:
+        if name not in sensors:
+            raise unknown_name("sensor", name, sensors)
+        first, size = int(model.sensor_adr[sensors[name]]), int(model.sensor_dim[sensors[name]])
+        names += [name] if size == 1 else [f"{name}_{k + 1}" for k in range(size)]
+        places += range(first, first + size)
+    return tuple(names), np.array(places, int)

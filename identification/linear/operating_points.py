@@ -139,9 +139,6 @@ def samples_at(time: np.ndarray, wanted: Sequence[float]) -> np.ndarray:
     Args:
         time: of the samples, shape (N,) [s].
         wanted: times [s].
-
-    Raises:
-        InputError: a time is not a number within the log.
     """
     first, last = float(time[0]), float(time[-1])
     half = (last - first) / (len(time) - 1) / 2

@@ -107,14 +107,8 @@ class Points:
     def rates(self, **changed: np.ndarray) -> np.ndarray:
         """Returns the results, by default accelerations and rates of activations.
 
-        Args:
-            changed: values of `qpos`, `qvel`, `act` or `ctrl` that differ from the states' own.
-
         Returns:
             Shape (M, nv + na).
-
-        Raises:
-            DivergenceError: they are not finite.
         """
         (one,) = self.each([Change(changed)])
         return one
@@ -124,16 +118,8 @@ class Points:
     ) -> Iterator[np.ndarray]:
         """Yields the results of changes, in their order.
 
-        Args:
-            changes: of the model and its states.
-            intervals: L intervals, where averages of the increments over the unchanged model are
-                asked for, and not the results themselves.
-
         Yields:
             Shape (M, nv + na), or (L, nv + na), of each course of a change one.
-
-        Raises:
-            DivergenceError: they are not finite.
         """
         changes = iter(changes)
         together = max(1, min(TOGETHER, MEMORY // int(self._base.models[0].nbuffer)))

@@ -185,9 +185,6 @@ def sampling_time_of(rate: float) -> float:
 
     Args:
         rate: [Hz].
-
-    Raises:
-        InputError: it is not above zero, or above 1 MHz.
     """
     if not 0 < rate <= FASTEST:
         raise InputError(

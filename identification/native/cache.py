@@ -53,14 +53,9 @@ _ENGINES: list[Any] = []  # they own the code that bare pointers in MuJoCo lead 
 
 
 def compile_once(function: Callable[..., Any], signature: Any) -> Any:
-    """Returns a callback as a ctypes function: loaded from the cache, or compiled and kept there.
+    """Returns a callback as a ctypes function: loaded from the cache, or compiled and kept.
 
-    Args:
-        function: what is compiled; it must not raise, and a division by zero gives inf or NaN.
-        signature: its numba signature.
-
-    Raises:
-        numba.errors.NumbaError: it cannot be compiled.
+    The function must not raise; a division by zero in it gives inf or NaN.
     """
     if not enabled():
         return compile_callback(function, signature)[0]

@@ -21,11 +21,7 @@ LARGEST = 64 * 2**20  # bytes of all entries together; the law with all effects 
 
 
 def folder() -> Path:
-    """Returns the folder of this user's cache.
-
-    Raises:
-        OSError: the user has no home.
-    """
+    """Returns the folder of this user's cache."""
     base = os.environ.get("XDG_CACHE_HOME", "")
     if not os.path.isabs(base):  # the standard says to ignore what is not
         home = os.path.expanduser("~")
@@ -36,11 +32,7 @@ def folder() -> Path:
 
 
 def read(name: str) -> bytes:
-    """Returns the content of an entry.
-
-    Raises:
-        OSError: there is none, or it is not safe to use.
-    """
+    """Returns the content of an entry."""
     with _opened() as inside:
         flags = os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC
         with os.fdopen(os.open(name, flags, dir_fd=inside), "rb") as file:
@@ -55,11 +47,7 @@ def read(name: str) -> bytes:
 
 
 def write(name: str, content: bytes) -> None:
-    """Write an entry, whole or not at all, in the place of whatever bears its name.
-
-    Raises:
-        OSError: the folder cannot be made or written, or is not safe to use.
-    """
+    """Write an entry, whole or not at all, in the place of whatever bears its name."""
     os.makedirs(folder(), mode=0o700, exist_ok=True)
     with _opened() as inside:
         draft = f"{name}.{uuid4().hex}"

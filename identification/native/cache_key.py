@@ -49,16 +49,7 @@ class UnknownDependency(Exception):
 
 
 def key_of(function: Any, signature: Any) -> str:
-    """Returns the key of a callback, 64 hexadecimal digits.
-
-    Args:
-        function: the Python function that is compiled.
-        signature: its numba signature.
-
-    Raises:
-        UnknownDependency: the function reaches something that is neither a compiled function nor a
-            constant, such as a plain Python function, which numba knows how to replace by others.
-    """
+    """Returns the key of a callback, 64 hexadecimal digits."""
     digest = hashlib.sha256()
     for part in (*machine(), str(signature), *_function(function, {})):
         digest.update(f"{len(part)} {part}\n".encode())

@@ -35,11 +35,6 @@ def is_absent(p, sizes):  # type: ignore[no-untyped-def]
 def total(element: Element, terms: Sequence[Term], hook: str) -> Function:
     """Returns the compiled sum of a hook over a set of effects.
 
-    Args:
-        element: what the effects act on.
-        terms: the effects.
-        hook: name of the hook.
-
     Returns:
         (s, row, states) -> one number or a tuple of them: s is the element's state, row the
         address of the effects' parameters, states the address of the states of their own.
@@ -111,11 +106,6 @@ def _leaf(function: Function, term: Term, element: Element) -> Function:
 
 def rates(element: Element, terms: Sequence[Term], hook: str = "rate") -> Function:
     """Returns the compiled rates of the effects' own states.
-
-    Args:
-        element: what the effects act on.
-        terms: the effects.
-        hook: name of the hook that returns ẋ.
 
     Returns:
         (s, row, states, out): writes the rate of the state at `states + 8 k` to `out + 8 k`.

@@ -19,15 +19,7 @@ _LONGEST = 160  # of numba's words in a message
 
 
 def refuse_unfit_functions(element: Element, terms: Iterable[Term]) -> None:
-    """Refuse a function that cannot be compiled for its hook or returns something else.
-
-    Args:
-        element: what the effects act on.
-        terms: the effects.
-
-    Raises:
-        InputError: there is such a function; the first is named.
-    """
+    """Refuse a function that cannot be compiled for its hook or returns something else."""
     for term in terms:
         for name, function in term.functions:
             _refuse_unfit(element, element.hook(name), term, function)

@@ -88,12 +88,6 @@ def evaluate(
 ) -> np.ndarray:
     """Evaluate each case at each point, as `mj_forward` does.
 
-    Args:
-        base: what the cases change.
-        cases: n of them.
-        results: fields of mjData that hold doubles, r of them in all.
-        intervals: L intervals, where averages of the increments are asked for.
-
     Returns:
         Shape (n, points, r); or (Σ k, L, r), how far each case is from the base, averaged with each
         of its courses.

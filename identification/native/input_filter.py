@@ -99,18 +99,12 @@ def _link(rest: Function, term: Term, place: int) -> Function:
 def input_filter(terms: Sequence[Term]) -> Any:
     """Returns the compiled effects of an input.
 
-    Args:
-        terms: the effects, in the order in which the input passes them.
-
     Returns:
         (signals, steps, step, begun, row): a ctypes function. `signals` is the address of an array
         of shape (effects + 1, steps), the first row being the input; what each effect makes of the
         row above it is written to the next, so that the last row is what the model is given.
         `step` is their length [s], `begun` the time of the first of them in the
         record [s], `row` the address of the effects' parameters.
-
-    Raises:
-        InputError: a function of an effect cannot be compiled.
     """
 
     @internal

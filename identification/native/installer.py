@@ -73,13 +73,7 @@ class Law:
 
 
 def install(law: Law) -> None:
-    """Install a law in this process; does nothing when it is installed already.
-
-    Raises:
-        InputError: another library has installed a MuJoCo callback of its own, or a function of an
-            effect cannot be compiled.
-        RuntimeError: MuJoCo's structs are not laid out as declared.
-    """
+    """Install a law in this process; does nothing when it is installed already."""
     with _ENTERING:
         for kind in KINDS & law.functions.keys():
             refuse_foreign(kind)

@@ -102,15 +102,7 @@ def _hold_together(m, d, stop, room, n):  # type: ignore[no-untyped-def]
 
 
 def passive_force(terms: Sequence[Term], key: float, entries: int, felt: Function) -> Function:
-    """Returns the passive force of a set of joint effects, to be compiled.
-
-    Args:
-        terms: the effects, their columns counted from the first parameter of a row.
-        key: of the set.
-        entries: of a joint's row.
-        felt: (m, d, j, row, end) -> state of joint j, inertia that it feels beside the model's,
-            compliance of its friction, and the force of that spring.
-    """
+    """Returns the passive force of a set of joint effects, to be compiled."""
     force, friction = total(JOINT, terms, "force"), total(JOINT, terms, "friction")
 
     @inlined

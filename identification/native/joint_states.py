@@ -188,12 +188,7 @@ def width(terms: Sequence[Term]) -> int:
 
 
 def callbacks(terms: Sequence[Term], key: float) -> dict[str, Function]:
-    """Returns the callbacks of a set of joint effects in a plant with states, to be compiled.
-
-    Args:
-        terms: the effects without states, their columns counted from the first parameter of a row.
-        key: of the set.
-    """
+    """Returns the callbacks of a set of joint effects in a plant with states, to be compiled."""
     friction, entries = total(JOINT, terms, "friction"), width(terms)
 
     @inlined

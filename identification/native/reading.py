@@ -91,16 +91,10 @@ def lagged_position(s, tau):  # type: ignore[no-untyped-def]
 def sensor_filter(terms: Sequence[Term]) -> Any:
     """Returns the compiled effects of a sensor.
 
-    Args:
-        terms: the effects.
-
     Returns:
         (signals, samples, row): a ctypes function. `signals` is the address of an array of shape
         (5, samples): y, q, v, time, and y', which is written. `row` is the address of the effects'
         parameters.
-
-    Raises:
-        InputError: a function of an effect cannot be compiled.
     """
     reading = total(SENSOR, terms, "reading")
 

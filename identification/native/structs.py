@@ -102,9 +102,6 @@ def check(model: mujoco.MjModel, data: mujoco.MjData) -> set[str]:
 
     Returns:
         The names of the fields that agreed.
-
-    Raises:
-        RuntimeError: a field lies elsewhere; compiled callbacks would read foreign memory.
     """
     agreed: set[str] = set()
     for struct, live in (("mjModel", model), ("mjData", data)):
@@ -155,11 +152,7 @@ def _shown() -> set[str]:
 
 
 def require(fields: Iterable[str]) -> None:
-    """Make sure that every field that callbacks touch lies where they look for it.
-
-    Raises:
-        RuntimeError: it does not, or live objects do not show it.
-    """
+    """Make sure that every field that callbacks touch lies where they look for it."""
     unseen = set(fields) - _shown()
     if unseen:
         raise RuntimeError(

@@ -6,8 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from identification.linear.minimal import minimal
-from identification.linear.modes import Mode, modes
+from identification.linear.modes import Mode, minimal, modes
 from identification.linear.system import LinearSystem
 
 LEADING = 3  # states that a mode is described by

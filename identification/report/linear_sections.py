@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from identification.linear.minimal import Minimal, minimal
-from identification.linear.modes import Mode, modes
+from identification.linear.modes import Minimal, Mode, minimal, modes
 from identification.linear.system import LinearSystem
 from identification.report.linear_figures import eigenvalue_figure, response_figure
 from identification.report.linear_json import leading

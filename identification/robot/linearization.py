@@ -13,7 +13,7 @@ import mujoco
 import numpy as np
 
 from identification.errors import InputError, unknown_name
-from identification.linear.names import input_names
+from identification.linear.linearization import input_names
 from identification.linear.operating_points import OperatingPoints, along_log, at_rest
 from identification.logs.log import Log
 from identification.model.numbers import with_numbers

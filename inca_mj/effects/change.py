@@ -45,49 +45,42 @@ PROBE = 0.1  # of the largest plausible size: a cable that is 3 % softer moves a
 
 @njit
 def cable_elasticity(s, c):  # type: ignore[no-untyped-def]
-    """ΔT = c λ ε [N]."""
     return c * s.lambda_ * s.strain
 
 
 @njit
 def cable_damping(s, c):  # type: ignore[no-untyped-def]
-    """ΔT = c b (ḋ - ḋ₀) [N]."""
     return c * s.b * s.strain_rate * s.d_0
 
 
 @njit
 def drum_spring(s, c):  # type: ignore[no-untyped-def]
-    """Δτ = -c k_s R_s² φ [N m]; the spring never pushes."""
+    # the spring never pushes
     return s.R_s * max(-s.F_s, -c * s.k_s * s.R_s * s.phi)
 
 
 @njit
 def viscous_friction(s, c):  # type: ignore[no-untyped-def]
-    """Δτ = -c b_v ω [N m]."""
     return -c * s.b_v * s.omega
 
 
 @njit
 def friction(s, c):  # type: ignore[no-untyped-def]
-    """Δτ = -c b_c tanh(β ω) [N m]."""
     return -c * s.b_c * tanh(s.beta * s.omega)
 
 
 @njit
 def drum_radius(s, c):  # type: ignore[no-untyped-def]
-    """ΔR = c R [m]."""
     return c * s.R
 
 
 @njit
 def torque_constant(s, c):  # type: ignore[no-untyped-def]
-    """Δi = c i [A]."""
     return c * s.i
 
 
 @njit
 def heat_rate(s, p):  # type: ignore[no-untyped-def]
-    """ẋ = i² [s at 1 A]."""
     return s.i * s.i
 
 

@@ -124,7 +124,7 @@ class Layout:
     @cached_property
     def on_drives(self) -> tuple[Term, ...]:
         """The effects with parameters in `actuator_user`."""
-        return terms_of(self.effects, DRIVE, first=FIRST, own="rate")
+        return terms_of(self.effects, DRIVE, first=FIRST, state_hook="rate")
 
     @cached_property
     def on_platform(self) -> tuple[Term, ...]:

@@ -50,14 +50,7 @@ def present(effect: Effect, values: Mapping[str, float]) -> bool:
 def numbers(
     layout: Layout, names: Sequence[str], every: Values, model: mujoco.MjModel
 ) -> Iterator[tuple[Slot, float | np.ndarray]]:
-    """Yields entries in the rows of drives and platform that some parameters of effects change.
-
-    Args:
-        layout: the effects and their columns.
-        names: the parameters.
-        every: values of all parameters, one or n of each.
-        model: with the names of the robot.
-    """
+    """Yields entries in the rows of drives and platform that some parameters of effects change."""
     for i, thing in enumerate(THINGS):
         for column, new in effect_values.changed_columns(
             layout.effects, layout.on_drives, thing, names, every

@@ -22,8 +22,7 @@ from identification.linear.gridded import GriddedSystem
 from identification.linear.modes import modes
 from identification.linear.system import LinearSystem
 from identification.model.rollout import State
-from inca_mj.linear.held import held_at
-from inca_mj.linear.linearization import linearize
+from inca_mj.linear.linearization import held_at, linearize
 from inca_mj.robot.inputs import prbs, sampling_time_of
 from inca_mj.twin.logs import POSE
 from inca_mj.twin.run import simulate
@@ -103,13 +102,7 @@ def interpolation_errors(
 
 
 def random_points(grid: GriddedSystem, points: int, seed: int) -> list[dict[str, float]]:
-    """Returns random points within a grid.
-
-    Args:
-        grid: the grid.
-        points: how many.
-        seed: of the generator.
-    """
+    """Returns random points within a grid."""
     rng = np.random.default_rng(seed)
     low, high = (np.array([axis[k] for axis in grid.axes.values()]) for k in (0, -1))
     rows = rng.uniform(low, high, (points, len(low)))

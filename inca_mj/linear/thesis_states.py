@@ -9,6 +9,16 @@
 
 The order is that of the reference (`inca_mj.reference.layout`), whose equations the tests compare.
 States of effects follow behind.
+
+In these states the pull of a cable is the small difference of two large effects, those of d and of
+d₀: where their entries are interpolated one by one, the differences are wrong, and with them the
+slow modes. With the tension of each cable in the place of its no-load length,
+
+    τ = λ (d - d₀)/d₀                                               the elastic part of T (2.31)
+    δτ = (λ/d₀) ∂d/∂z δz - (λ d/d₀²) δd₀
+
+the entries are of moderate size and what belongs together stays so: φ̇ = ω_m and ṗ = R v make the
+eight zero eigenvalues exact at every point. So grids use these states.
 """
 
 from __future__ import annotations
@@ -22,6 +32,8 @@ from identification.linear.operating_points import OperatingPoints
 from identification.linear.system import LinearSystem
 from inca_mj.kinematics.rotations import euler, rotation
 from inca_mj.robot.geometry import DRIVES
+from inca_mj.robot.spread import at_drives
+from inca_mj.twin.twin import Twin
 
 
 def _each(name: str) -> tuple[str, ...]:
@@ -34,6 +46,7 @@ STATES = (
 )  # fmt: skip
 UNITS = (*["m"] * 3, *["m/s"] * 3, *["rad"] * 3, *["rad/s"] * 3,
          *["rad"] * DRIVES, *["rad/s"] * DRIVES, *["m"] * DRIVES)  # fmt: skip
+TENSIONS = _each("tension")
 LEAST_COSINE = 1e-3  # of pitch, below which Euler angles turn too fast
 
 # Where each quantity is in δx and in δz.
@@ -46,19 +59,27 @@ _ANGLES, _SPEEDS, NO_LOAD = slice(12, 20), slice(20, 28), slice(28, 36)
 def to_thesis(
     systems: tuple[LinearSystem, ...], points: OperatingPoints, own: int = 0
 ) -> tuple[LinearSystem, ...]:
-    """Returns the linear systems in the thesis' states.
-
-    Args:
-        systems: M systems in MuJoCo's tangent space.
-        points: their operating points.
-        own: states that effects have at each drive.
-
-    Raises:
-        InputError: the platform is pitched by 90°, where its Euler angles are singular.
-    """
+    """Returns the linear systems in the thesis' states."""
     names = (*STATES, *(f"effect_{i}_{k}" for k in range(1, DRIVES + 1) for i in range(1, own + 1)))
     return tuple(
         _one(system, points.qpos[k], own, names) for k, system in enumerate(systems)
+    )  # fmt: skip
+
+
+def to_tension(system: LinearSystem, lengths: LinearSystem, robot: Twin) -> LinearSystem:
+    """Returns a system at rest with tensions for no-load lengths."""
+    λ = at_drives("lambda", robot.parameters.values())
+    d, d_0 = lengths.y, system.x[NO_LOAD]
+    S = np.eye(len(system.x))
+    S[NO_LOAD] = (λ / d_0)[:, None] * lengths.C
+    S[NO_LOAD, NO_LOAD] -= np.diag(λ * d / d_0**2)
+    back = np.linalg.inv(S)
+    x = system.x.copy()
+    x[NO_LOAD] = λ * (d - d_0) / d_0
+    names = (*STATES[: NO_LOAD.start], *TENSIONS, *system.states[NO_LOAD.stop :])
+    return replace(
+        system, A=S @ system.A @ back, B=S @ system.B, C=system.C @ back, states=names, x=x,
+        rate=S @ system.rate,
     )  # fmt: skip
 
 

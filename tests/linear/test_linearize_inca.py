@@ -7,11 +7,9 @@ import numpy as np
 import pytest
 
 from identification import InputError, Log, State
-from identification.linear.minimal import minimal
-from identification.linear.modes import modes
+from identification.linear.modes import minimal, modes
 from inca_mj.linear.accuracy import interpolation_errors, run_error
-from inca_mj.linear.held import held_at
-from inca_mj.linear.linearization import linearize, linearize_along, linearize_grid
+from inca_mj.linear.linearization import held_at, linearize, linearize_along, linearize_grid
 from inca_mj.linear.thesis_states import STATES
 from inca_mj.reference import derivative, pack
 from inca_mj.reference import layout as at

@@ -5,7 +5,7 @@ import pytest
 from linear_cases import padded, random_system, system
 
 from identification import InputError
-from identification.linear.minimal import minimal
+from identification.linear.modes import minimal
 
 F = np.geomspace(1e-3, 10, 30)
 
