@@ -22,57 +22,6 @@ import numpy as np
 from identification.errors import InputError
 from identification.model.parameter import Parameter
 
-
-def effect_parameters(effect: Effect) -> tuple[Parameter, ...]:
-    """Returns records of `effect.size` + suffix at all places of an effect, and `effect.shape`."""
-    sizes = [
-        _size(effect.parameter(size.name, where), size)
-        for size in effect.sizes
-        for where in effect.places
-    ]
-    return (*sizes, *(_shape(f"{effect.name}.{shape.name}", shape) for shape in effect.shapes))
-
-
-def _size(name: str, size: Size) -> Parameter:
-    lower = -size.farthest if size.sign <= 0 else 0.0
-    upper = size.farthest if size.sign >= 0 else 0.0
-    return Parameter(
-        name=name,
-        value=0.0,
-        unit=size.unit,
-        where="effect",
-        lower=lower,
-        upper=upper,
-        symbol=size.name,
-        about=size.about,
-        scale=size.probe,
-    )
-
-
-def _shape(name: str, shape: Shape) -> Parameter:
-    return Parameter(
-        name=name,
-        value=shape.at_first,
-        unit=shape.unit,
-        where="effect",
-        lower=shape.lower,
-        upper=shape.upper,
-        symbol=shape.name,
-        about=shape.about,
-    )
-
-
-def places(kind: str, names: tuple[str, ...]) -> dict[str, str]:
-    """Returns the places of an effect, in words, with the suffix of their parameters' names.
-
-    Args:
-        kind: of the things, e.g. "joint".
-        names: of the things; where there are several, the effect may act on all alike, or on one.
-    """
-    each = {f"{kind} {name}": f"@{name}" for name in names}
-    return each if len(names) < 2 else {f"all {kind}s": "", **each}
-
-
 Sign = Literal[-1, 0, 1]
 FARTHEST = 5.0  # of the largest plausible size
 STATES = {"series": "motor", "slip": "grip"}  # hook, and the state of a joint that it needs
@@ -144,12 +93,6 @@ class Shape:
     def at_first(self) -> float:
         """Its value in a model that does not have the effect: the usual one, or one of the grid."""
         return self.grid[len(self.grid) // 2] if self.usual is None else self.usual
-
-
-# Of an input that comes late: its first value times this had been there before the log. It was
-# mostly nothing or that value; whatever else it was costs one more number and no second search.
-BEFORE = Shape("before", "", (0.0, 1.0), -2.0, 2.0, usual=0.0, of_log=True,
-               about="share of the first value that had been there before the log")  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -335,3 +278,36 @@ class Candidate:
     def fixed(self) -> dict[str, float]:
         """Values of the plant's shape parameters."""
         return {self.effect.parameter(n, self.where): v for n, v in self.shape.items()}
+
+
+def effect_parameters(effect: Effect) -> tuple[Parameter, ...]:
+    """Returns records of `effect.size` + suffix at all places of an effect, and `effect.shape`."""
+    sizes = (
+        Parameter(
+            name=effect.parameter(size.name, where), value=0.0, unit=size.unit, where="effect",
+            lower=-size.farthest if size.sign <= 0 else 0.0,
+            upper=size.farthest if size.sign >= 0 else 0.0,
+            symbol=size.name, about=size.about, scale=size.probe,
+        )
+        for size in effect.sizes for where in effect.places
+    )  # fmt: skip
+    shapes = (
+        Parameter(
+            name=f"{effect.name}.{shape.name}", value=shape.at_first, unit=shape.unit,
+            where="effect", lower=shape.lower, upper=shape.upper, symbol=shape.name,
+            about=shape.about,
+        )
+        for shape in effect.shapes
+    )  # fmt: skip
+    return (*sizes, *shapes)
+
+
+def places(kind: str, names: tuple[str, ...]) -> dict[str, str]:
+    """Returns the places of an effect, in words, with the suffix of their parameters' names.
+
+    Args:
+        kind: of the things, e.g. "joint".
+        names: of the things; where there are several, the effect may act on all alike, or on one.
+    """
+    each = {f"{kind} {name}": f"@{name}" for name in names}
+    return each if len(names) < 2 else {f"all {kind}s": "", **each}

@@ -22,11 +22,15 @@ from math import exp, floor
 import numpy as np
 from numba import njit
 
-from identification.effects.effect import BEFORE, Effect, Shape, Size, places
+from identification.effects.effect import Effect, Shape, Size, places
 from identification.errors import InputError
 from identification.logs.log import Log
 from identification.native.input_filter import past, shifted
 
+# Of an input that comes late: its first value times this had been there before the log. It was
+# mostly nothing or that value; whatever else it was costs one more number and no second search.
+BEFORE = Shape("before", "", (0.0, 1.0), -2.0, 2.0, usual=0.0, of_log=True,
+               about="share of the first value that had been there before the log")  # fmt: skip
 SHIFT = 0.08  # largest shift of a record's clocks against each other, four cycles of 50 Hz [s]
 SHIFTS = (1.0, 5.0, 20.0, -5.0, -20.0)  # of 2 ms, to try: a shift past a wave's half is not linear
 LIMITS = (0.5, 0.6, 0.7, 0.8, 0.9, 0.97)  # to try, of the largest input

@@ -19,7 +19,7 @@ import mujoco
 import numpy as np
 
 from identification.effects.axes import Axis
-from identification.effects.body import BODY
+from identification.effects.bodies import BODY
 from identification.effects.effect import Effect
 from identification.effects.moving_bodies import movable
 from identification.effects.values import (

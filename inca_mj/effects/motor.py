@@ -34,7 +34,8 @@ from math import cos, exp, sin, tanh
 from numba import njit
 
 from identification.effects import sensors
-from identification.effects.effect import BEFORE, Effect, Shape, Size
+from identification.effects.effect import Effect, Shape, Size
+from identification.effects.inputs import BEFORE
 from identification.effects.inputs import DELAY as DELAYED
 from identification.effects.inputs import LAG as LAGGED
 from inca_mj.effects.change import LASTS, TIMES

@@ -6,8 +6,7 @@ import pytest
 from joint_cases import ARM, MASS, SLIDER, arm, arm_log, run, slider, slider_log, steps
 
 from identification import InputError
-from identification.effects.bodies import body_effects, displaced
-from identification.effects.body import frame_inertia, principal
+from identification.effects.bodies import body_effects, displaced, frame_inertia, principal
 from identification.effects.effect import Effect, Size
 from identification.effects.joint_plant import joint_plant
 from identification.effects.moving_bodies import moving_bodies
