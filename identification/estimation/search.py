@@ -89,30 +89,34 @@ class Options:
                 raise InputError(f"the prior of {name} has std {std:g}; give a positive one")
 
 
+@dataclass
 class Search:
-    """One search: what `least_squares` calls, and the best point it has seen."""
+    """One search: what `least_squares` calls, and the best point it has seen.
 
-    def __init__(
-        self,
-        predictor: Predictor,
-        space: Coordinates,
-        q: np.ndarray,
-        whitener: np.ndarray,
-        options: Options,
-        progress: Progress | None,
-    ) -> None:
-        self.predictor, self.space, self.options, self.progress = (
-            predictor,
-            space,
-            options,
-            progress,
-        )
-        self.best = q
-        self.whitener = whitener
-        self.weight = relative_weight(predictor.log.outputs, options.relative_noise)
-        self.priors = Priors.of(space, q, options.priors)
-        self.evaluations = self.jacobians = 0
-        self._last = np.full_like(q, np.nan), np.empty((0, 0))  # a point and its ŷ
+    Attributes:
+        predictor: the plant, the log and the names of the free parameters.
+        space: their coordinates.
+        best: the point at which it begins, then the best one, shape (p,).
+        whitener: C, shape (ny, ny).
+        options: how to search.
+        progress: is told one line per accepted step.
+        evaluations: how often the outputs were simulated.
+        jacobians: how often the sensitivities were computed.
+    """
+
+    predictor: Predictor
+    space: Coordinates
+    best: np.ndarray
+    whitener: np.ndarray
+    options: Options
+    progress: Progress | None
+    evaluations: int = 0
+    jacobians: int = 0
+
+    def __post_init__(self) -> None:
+        self.weight = relative_weight(self.predictor.log.outputs, self.options.relative_noise)
+        self.priors = Priors.of(self.space, self.best, self.options.priors)
+        self._last = np.full_like(self.best, np.nan), np.empty((0, 0))  # a point and its ŷ
 
     def refuse_idle(self) -> None:
         """Refuse parameters without effect; the first horizon is tried before the whole log."""

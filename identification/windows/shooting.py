@@ -25,8 +25,6 @@ import mujoco
 import numpy as np
 
 from identification.errors import DivergenceError
-from identification.logs.log import Log
-from identification.logs.noise import noise_floor
 from identification.model.coordinates import Coordinates
 from identification.model.lean import one_evaluation
 from identification.model.predictor import Plant, Predictor
@@ -255,12 +253,6 @@ def along_states(t: Tangent, moves: np.ndarray) -> np.ndarray:
     """Returns X Δd of each window, shape (W, m)."""
     along = t.s * np.einsum("wkx,wx->wk", t.Vt, moves * t.size)
     return np.einsum("wmk,wk->wm", t.U, along)
-
-
-def noise_whitener(log: Log) -> np.ndarray:
-    """Returns C = I/σ, shape (ny, ny), where σ is the rms of the noise floor of all outputs."""
-    sigma = float(np.sqrt(np.mean(noise_floor(log.outputs) ** 2))) or 1.0
-    return np.eye(log.outputs.shape[1]) / sigma
 
 
 def rough(plant: Plant) -> mujoco.MjModel:

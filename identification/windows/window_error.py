@@ -20,8 +20,15 @@ from identification.model.coordinates import NOTHING
 from identification.model.predictor import Plant, Predictor
 from identification.windows.held import held_records
 from identification.windows.settling import settle
-from identification.windows.shooting import Shooting, noise_whitener
-from identification.windows.windows import Windows, first_states, some, spread, windows
+from identification.windows.shooting import Shooting
+from identification.windows.windows import (
+    Windows,
+    first_states,
+    noise_whitener,
+    some,
+    spread,
+    windows,
+)
 
 
 def window_error(

@@ -31,8 +31,8 @@ from identification.model.rollout import State
 from identification.model.sensitivity import FORWARD_STEP, refuse_without_effect
 from identification.pool import one_blas_thread
 from identification.progress import Progress, stage
-from identification.windows.shooting import Shooting, Tangent, noise_whitener, tangent
-from identification.windows.windows import apart, first_states, windows
+from identification.windows.shooting import Shooting, Tangent, tangent
+from identification.windows.windows import apart, first_states, noise_whitener, windows
 
 # Relative to the squared norms of the columns of X and S.
 DAMPING = Damping(first=1e-2, raised=5.0, least=1e-12)

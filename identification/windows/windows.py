@@ -23,6 +23,7 @@ import numpy as np
 
 from identification.errors import DivergenceError, InputError
 from identification.logs.log import Log
+from identification.logs.noise import noise_floor
 from identification.model.predictor import Predictor, output_columns, with_states
 from identification.model.rollout import State, rollout
 
@@ -75,6 +76,12 @@ def windows(log: Log, length: float) -> Windows:
         )
     rows = starts[:, None] + np.arange(samples)
     return Windows(log.inputs[rows], log.outputs[rows], starts)
+
+
+def noise_whitener(log: Log) -> np.ndarray:
+    """Returns C = I/σ, shape (ny, ny), where σ is the rms of the noise floor of all outputs."""
+    sigma = float(np.sqrt(np.mean(noise_floor(log.outputs) ** 2))) or 1.0
+    return np.eye(log.outputs.shape[1]) / sigma
 
 
 def spread(cut: Windows, most: int) -> Windows:
