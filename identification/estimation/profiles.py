@@ -1,10 +1,11 @@
 """The profile of one parameter: the smallest criterion at each of its values.
 
-    V_p(c) = min over the others of V(q | q_j = c)
-    95 %:  V_p(c) - V_p(q̂_j) < 3.84 s_j²,    s_j² = cov(q̂)_jj / (A⁻¹)_jj       (Kent 1982)
+    V_p(c) = min over the others of V(q | q_j = c),    V = Σ ρ((C W ε)²)
+    95 %:  V_p(c) - V_p(q̂_j) < 3.84 s_j²,    s_j² = c cov(q̂)_jj / (A⁻¹)_jj       (Kent 1982)
 
-3.84 is the 95 % point of χ² with one degree of freedom (Venzon and Moolgavkar 1988). cov is the
-covariance of `identification.estimation.fit`, and A = Σ SᵀS. For white noise s_j² =
+3.84 is the 95 % point of χ² with one degree of freedom (Venzon and Moolgavkar 1988). cov and c are
+those of `identification.estimation.uncertainty`, ρ is the loss of the search, W are the weights of
+relative noise, and A = Σ SᵀS: the curvature of V is c A. For white noise and least squares s_j² =
 V(q̂)/(n ny - p); for a coloured residual it is larger. Where V is a parabola this is the interval
 q̂ ± 1.96 std; where it is not, the profile is right and the std is not. If the profile stays below
 the line on one side, or cannot be simulated there, the log does not determine the parameter, and
@@ -23,6 +24,7 @@ from identification.errors import DivergenceError, InputError
 from identification.estimation.estimation import Estimate
 from identification.estimation.estimation import estimate as search
 from identification.estimation.fit import Fit
+from identification.estimation.uncertainty import LOSSES, influence
 from identification.progress import stage
 
 PROFILE_LEVEL = chi2_level(0.05, 1)  # 3.84
@@ -110,7 +112,8 @@ def _scale(fit: Fit, j: int, bottom: float) -> float:
     known, alone = _std_q(fit, j), float(fit.found.std[j])
     freedom = max(1, fit.residual.size - len(fit.std))
     both = np.isfinite(known) and np.isfinite(alone) and known > 0
-    return max((known / alone) ** 2 if both else bottom / freedom, np.finfo(float).tiny)
+    curvature = influence(_weighed(fit.estimate, fit.residual), fit.estimate.options.loss)[1]
+    return max(curvature * (known / alone) ** 2 if both else bottom / freedom, np.finfo(float).tiny)
 
 
 def _spread(fit: Fit, j: int, points: int) -> np.ndarray:
@@ -140,10 +143,16 @@ def _refit(
 
 
 def _cost(estimate: Estimate, values: dict[str, float]) -> float:
-    """Returns V of the estimate's criterion, with the same covariance."""
+    """Returns V of the estimate's criterion, with the same covariance, weights and loss."""
     row = np.array([[values[n] for n in estimate.space.names]])
     error = estimate.predictor.log.outputs - estimate.predictor.predict(row)[0]
-    return float(np.sum((error @ estimate.whitener.T) ** 2))
+    loss = LOSSES[estimate.options.loss].value
+    return float(np.sum(loss(_weighed(estimate, error) ** 2)))
+
+
+def _weighed(estimate: Estimate, error: np.ndarray) -> np.ndarray:
+    """Returns C W ε, shape (n, ny), of errors ε in the outputs' units."""
+    return (estimate.weight * error) @ estimate.whitener.T
 
 
 def _crossing(values: np.ndarray, rise: np.ndarray, best: float, side: int) -> float:
