@@ -102,7 +102,7 @@ Case = tuple[int, Callable[[], Any]]  # what it counts, and its search
 
 def with_candidates(count: int) -> Case:
     """A search of the shipped log among about so many candidates."""
-    from identification.discovery.scoring.sensitivities import list_common, list_single
+    from identification.discovery.candidates import list_common, list_single
     from inca_mj import CATALOGUE, read_inca_log
     from inca_mj.workflows.discovery import discover
     from inca_mj.workflows.spread import spread_of

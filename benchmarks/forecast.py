@@ -75,9 +75,9 @@ def main() -> int:
 
 def measured(joints: int, samples: int, spread: str) -> dict[str, object]:
     """Forecast and measurement of one search."""
-    from identification.discovery import search
-    from identification.discovery.forecast import Forecast
-    from identification.discovery.task import DiscoveryTask
+    from identification.innovations import discovery as search
+    from identification.innovations.forecast import Forecast
+    from identification.innovations.task import DiscoveryTask
 
     run: Callable[[], Any] = chain(joints, samples) if joints else twin(samples, spread)
     told: list[tuple[Forecast, float, float]] = []

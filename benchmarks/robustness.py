@@ -108,7 +108,7 @@ def forecast(record: Sequence[Row]) -> list[str]:
     """What searches said that they would take, and what they took."""
     said = [
         "## Forecast of memory and time", "",
-        "What `discover` says before it begins (`identification/discovery/forecast.py`), and what"
+        "What `discover` says before it begins (`identification/innovations/forecast.py`), and what"
         " it then took, on logs of the twin",
         "and of chains of bodies, in which nothing is missing. Memory is beside that of the"
         " program, time is that of the processor.", "",

@@ -105,7 +105,7 @@ _PUBLIC = {
     "read_options": "discovery.options",
     "Finding": "discovery.findings.finding",
     "FindingKind": "discovery.findings.finding",
-    "collect_final_values": "discovery.final_values",
+    "collect_final_values": "discovery.result",
     # words and figures
     "fit_verdict": "report.fit_verdict",
     "fit_to_json": "report.fit_json",
@@ -120,13 +120,13 @@ _PUBLIC = {
 __all__ = list(_PUBLIC)
 
 if TYPE_CHECKING:  # the same list, for type checkers and editors
-    from identification.discovery.final_values import collect_final_values as collect_final_values
     from identification.discovery.findings.finding import Finding as Finding
     from identification.discovery.findings.finding import FindingKind as FindingKind
     from identification.discovery.nominal_model import NominalModel as NominalModel
     from identification.discovery.options import DiscoveryOptions as DiscoveryOptions
     from identification.discovery.options import read_options as read_options
     from identification.discovery.result import Discovery as Discovery
+    from identification.discovery.result import collect_final_values as collect_final_values
     from identification.effects.axes import Axis as Axis
     from identification.effects.axes import axes as axes
     from identification.effects.catalogue import joint_effects as joint_effects

@@ -122,6 +122,30 @@ class OfCandidate:
         return self.candidate.where
 
 
+class Scored(Protocol):
+    """A candidate with what it would explain, before it is fitted."""
+
+    @property
+    def candidate(self) -> Candidate:
+        """Effect, place and shapes."""
+
+    @property
+    def size(self) -> np.ndarray:
+        """Its likeliest sizes, shape (m,), in their units."""
+
+    @property
+    def std(self) -> np.ndarray:
+        """Their std, shape (m,)."""
+
+    @property
+    def explains(self) -> float:
+        """How much it would explain, in the measure of `Discovery.scored_by`."""
+
+    @property
+    def p_value(self) -> float:
+        """Chance of as much by luck."""
+
+
 @dataclass(frozen=True)
 class Rival(OfCandidate):
     """Another effect that may explain the same data.

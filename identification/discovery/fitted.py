@@ -18,6 +18,7 @@ TOLD_SHIFT = 1.0  # std of a value: a smaller one is within what the std tells
 # Of the error of the fitted windows: below it a fifth of the mean square comes from the steps, and
 # is nothing that is missing.
 TOLD_ERROR = 0.9
+BOUND_TOLERANCE = 1e-6  # relative: a value this near to a bound lies on it
 
 
 @dataclass(frozen=True)

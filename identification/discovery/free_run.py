@@ -14,8 +14,11 @@ import numpy as np
 
 from identification.discovery.effect_results import RecordError
 from identification.discovery.findings.finding import Finding
-from identification.discovery.findings.location import locate_error
-from identification.discovery.missing_forces import MissingForce, estimate_missing_forces
+from identification.discovery.missing_forces import (
+    MissingForce,
+    estimate_missing_forces,
+    locate_error,
+)
 from identification.kalman.refit import Refit
 from identification.logs.by_unit import rms_by_unit
 from identification.logs.joined import records_of, rows_of

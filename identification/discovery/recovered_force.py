@@ -10,7 +10,7 @@ the data another curve than the law's, the points f̂_j would leave the law for 
 The other parameters stay as the final fit has them: a curve of the rate could take over what
 viscous and Coulomb friction do, and nothing would tell how much of it. The band about the law holds
 what is not known of the law's own parameters, and the bars of the points the noise alone.
-`identification.discovery.recovery` recovers the forces of a free run, and
+`identification.innovations.recovery` recovers the forces of a free run, and
 `identification.prediction.recovery` those of windows.
 """
 

@@ -5,7 +5,7 @@
     share   = (times²(before) - times²(after))/(times²(before) - 1)      of a free run
 
 σ is the sensors' noise, d what unlogged errors of the inputs do to a free run. A search along a
-free run (`identification.discovery.search`) knows d, one over a horizon
+free run (`identification.innovations.discovery`) knows d, one over a horizon
 (`identification.prediction.discovery`) the horizon, the shifts of records in time and those that
 repeat others. What a search does not know is None or empty.
 """
@@ -16,7 +16,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import hypot, isfinite
-from typing import Literal, Protocol
+from typing import Literal
 
 import numpy as np
 
@@ -29,6 +29,7 @@ from identification.discovery.effect_results import (
     RecordError,
     RejectedEffect,
     Rival,
+    Scored,
     Unlogged,
 )
 from identification.discovery.findings.finding import Finding
@@ -38,29 +39,13 @@ from identification.discovery.free_run import FreeRun
 from identification.discovery.missing_forces import MissingForce
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.recovered_force import RecoveredForce
-from identification.effects.effect import Candidate
+from identification.effects.effect import Candidate, Effect
 from identification.logs.by_unit import output_units, relative
 from identification.logs.record import Record
 from identification.shown import Shown
 
 Recover = Callable[[Candidate, Sequence[Rival]], RecoveredForce | None]
 Verdict = Literal["named", "nothing missing", "unknown effect", "unlisted effect"]
-
-
-class Scored(Protocol):
-    """A candidate with what it would explain, before it is fitted."""
-
-    @property
-    def candidate(self) -> Candidate:
-        """Effect, place and shapes."""
-
-    @property
-    def explains(self) -> float:
-        """How much it would explain, in the measure of `Discovery.scored_by`."""
-
-    @property
-    def p_value(self) -> float:
-        """Chance of as much by luck."""
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
@@ -225,3 +210,20 @@ def closed_share(found: Discovery) -> float | None:
         of = [found.errors_of(gap) for gap in (found.after, found.before)]
         return min(1.0, max(0.0, 1 - relative(*of) ** 2)) if found.before.rms > 0 else None
     return min(1.0, max(0.0, (before - after) / (before - 1))) if before > 1 else None
+
+
+def collect_final_values(found: Discovery) -> dict[str, float]:
+    """Returns the values of all parameters of the final fit by name, named effects included."""
+    return {**found.final.plant.parameters.values(), **found.final.values}
+
+
+def keep_of_robot(values: Mapping[str, float], effects: Sequence[Effect]) -> dict[str, float]:
+    """Returns the values of a robot that hold in every log.
+
+    Args:
+        values: values by name.
+        effects: the effects that the robot may have; shapes that tell something of one log (what
+            an input did before its first sample) are left out.
+    """
+    of_log = {f"{e.name}.{s.name}" for e in effects for s in e.shapes if s.of_log}
+    return {name: value for name, value in values.items() if name not in of_log}

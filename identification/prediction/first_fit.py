@@ -13,8 +13,8 @@ from functools import partial
 import numpy as np
 
 from identification.discovery.attempts import attempt
+from identification.discovery.candidates import iterate_shapes
 from identification.discovery.nominal_model import SHAPE_STD, nonzero
-from identification.discovery.scoring.sensitivities import iterate_shapes
 from identification.effects.effect import Candidate
 from identification.errors import InputError
 from identification.estimation.priors import Priors

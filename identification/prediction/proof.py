@@ -6,7 +6,7 @@ from typing import Literal
 
 import numpy as np
 
-from identification.discovery.final_values import BOUND_TOLERANCE
+from identification.discovery.fitted import BOUND_TOLERANCE
 from identification.discovery.options import DiscoveryOptions
 from identification.prediction.model import WindowModel
 from identification.prediction.unseen import Prediction

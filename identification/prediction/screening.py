@@ -12,9 +12,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from identification.discovery.attempts import tell_lost
+from identification.discovery.candidates import list_common, list_single
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.passes import uses
-from identification.discovery.scoring.sensitivities import list_common, list_single
 from identification.effects.effect import Candidate, Effect
 from identification.prediction.contenders import is_plausible, is_significant
 from identification.prediction.fit import WindowFit

@@ -14,7 +14,7 @@ from functools import partial
 import numpy as np
 
 from identification.chances import mean_above_zero
-from identification.discovery.attempts import attempt
+from identification.discovery.attempts import attempt, listed_once
 from identification.discovery.effect_results import (
     Gap,
     NamedEffect,
@@ -23,7 +23,6 @@ from identification.discovery.effect_results import (
     Rival,
 )
 from identification.discovery.findings.finding import FindingKind
-from identification.discovery.once import listed_once
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.result import Discovery, Verdict
 from identification.effects.effect import Candidate

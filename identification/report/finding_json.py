@@ -63,7 +63,7 @@ def _oversized_to_json(evidence: OversizedEffect) -> dict[str, Any]:
                      "limit": evidence.limits.get(s.name)}
             for s, value, std in sizes
         },
-        "gain": score.gain,
+        "gain": score.explains,
     }  # fmt: skip
 
 

@@ -149,7 +149,7 @@ def _oversized_effect(e: evidence.OversizedEffect) -> str:
     )
     return (
         f"{describe_effect(e.score.candidate)}, would explain more than what is named (gain"
-        f" {e.score.gain:z.4g}), but only at {said}"
+        f" {e.score.explains:z.4g}), but only at {said}"
     )
 
 

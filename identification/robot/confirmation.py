@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from identification.discovery.final_values import collect_final_values, keep_of_robot
-from identification.discovery.result import Discovery
+from identification.discovery.result import Discovery, collect_final_values, keep_of_robot
 from identification.errors import InputError, refuse_kind
 from identification.prediction.model import predict_fitted
 from identification.prediction.record_errors import record_errors

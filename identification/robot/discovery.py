@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import overload
 
-from identification.discovery import search
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.result import Discovery
 from identification.effects.effect import Effect
 from identification.errors import InputError, refuse_kind
+from identification.innovations import discovery as search
 from identification.logs.log import Log
 from identification.prediction.discovery import discover_records
 from identification.report import discovery_verdict  # noqa: F401  how the result is shown

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from identification.discovery.final_values import keep_of_robot
+from identification.discovery.result import keep_of_robot
 from identification.effects.joint_group import SLIDE
 from identification.files import write_text
 from identification.robot.parameters import KNOWN, Free, effect_sizes

@@ -58,7 +58,7 @@ def null_score(settings: NullSettings, seed: Seed) -> dict[str, Any]:
         DivergenceError: a simulation left the finite numbers.
     """
     from identification.discovery.options import DiscoveryOptions
-    from identification.discovery.scoring.scores import score
+    from identification.innovations.scoring.scores import score
     from identification.kalman.noise_fit import fit_noise
     from inca_mj.studies.scoring import named
 

@@ -43,14 +43,11 @@ def fit_nominal(log: Log, spread: str, *, settled: bool) -> tuple[Any, Any, Sequ
         InputError: the log is too short.
         DivergenceError: the nominal model cannot be simulated.
     """
-    from identification.discovery.nominal_model import fit_with_effects
+    from identification.discovery.candidates import list_common, list_single
     from identification.discovery.options import DiscoveryOptions
-    from identification.discovery.scoring.scores import score
-    from identification.discovery.scoring.sensitivities import (
-        compute_sensitivities,
-        list_common,
-        list_single,
-    )
+    from identification.innovations.fit import fit_with_effects
+    from identification.innovations.scoring.scores import score
+    from identification.innovations.scoring.sensitivities import compute_sensitivities
     from inca_mj.effects.catalogue import CATALOGUE
 
     options = DiscoveryOptions()
@@ -67,7 +64,7 @@ def fit_nominal(log: Log, spread: str, *, settled: bool) -> tuple[Any, Any, Sequ
 def named(scores: Sequence[Any]) -> list[str]:
     """Returns the candidates that are beyond chance and plausible, as "effect, place" each."""
     from identification.discovery.options import DiscoveryOptions
-    from identification.discovery.scoring.significance import select_significant
+    from identification.innovations.scoring.significance import select_significant
 
     chosen = select_significant(scores, DiscoveryOptions())
     return [f"{s.candidate.effect.name}, {s.candidate.where}" for s in chosen]

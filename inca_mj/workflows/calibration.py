@@ -144,8 +144,8 @@ def calibrate(
     for log in (*logs, *confirm):
         refuse_miswired(log, plant, trust)
 
-    from identification.discovery.nominal_model import fit_with_effects  # slow to import
     from identification.discovery.options import DiscoveryOptions
+    from identification.innovations.fit import fit_with_effects
 
     def fit(model: NominalModel, start: Mapping[str, float], near: Refit | None = None) -> Refit:
         return fit_with_effects(

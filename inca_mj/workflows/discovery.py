@@ -94,8 +94,8 @@ def discover(
         refuse_miswired(one, plain, trust)
 
     # These imports are slow, so they come after the checks that may refuse the log.
-    from identification.discovery.search import discover as search
-    from identification.discovery.search import refuse_unfit
+    from identification.innovations.discovery import discover as search
+    from identification.innovations.discovery import refuse_unfit
     from identification.report import discovery_verdict  # noqa: F401  how the result is shown
     from inca_mj.workflows.discovery_model import told
 

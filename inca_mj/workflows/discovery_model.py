@@ -15,12 +15,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from identification.discovery.effect_results import NamedEffect
-from identification.discovery.final_values import collect_final_values
 from identification.discovery.free_run import FreeRun
-from identification.discovery.result import Discovery
-from identification.discovery.scoring.sensitivities import compute_sensitivities
+from identification.discovery.result import Discovery, collect_final_values
 from identification.effects.effect import Candidate
 from identification.errors import DivergenceError, InputError
+from identification.innovations.scoring.sensitivities import compute_sensitivities
 from identification.kalman.point import Point, evaluate_point
 from identification.kalman.refit import Refit
 from identification.logs.joined import records_of

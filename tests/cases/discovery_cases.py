@@ -11,12 +11,12 @@ import numpy as np
 from identification import Log, Parameter, ParameterSet
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
-from identification.discovery.scoring.scores import score
-from identification.discovery.scoring.sensitivities import Sensitivity
-from identification.discovery.state import InnovationSearch, first_state, next_state
-from identification.discovery.task import DiscoveryTask
 from identification.effects.effect import Candidate, Effect, Size
 from identification.estimation.priors import Priors
+from identification.innovations.scoring.scores import score
+from identification.innovations.scoring.sensitivities import Sensitivity
+from identification.innovations.state import InnovationSearch, first_state, next_state
+from identification.innovations.task import DiscoveryTask
 from identification.kalman.linear import LinearPlant
 from identification.kalman.point import Point
 from identification.kalman.refit import Refit

@@ -22,11 +22,11 @@ from identification.discovery.findings.finding import Finding, FindingKind
 from identification.discovery.free_run import FreeRun
 from identification.discovery.missing_forces import MissingForce
 from identification.discovery.options import DiscoveryOptions
-from identification.discovery.recovery import recover_force
 from identification.discovery.result import Discovery
-from identification.discovery.scoring.scores import Score
 from identification.effects.effect import Candidate
 from identification.estimation.priors import Priors
+from identification.innovations.recovery import recover_force
+from identification.innovations.scoring.scores import Score
 from identification.kalman.linear import linearise
 from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.noise_model import Noise

@@ -16,7 +16,7 @@ for words in json.loads(sys.argv[1]):
 sys.stderr.write(json.dumps(sorted(sys.modules)))
 """
 SLOW = ("matplotlib", "scipy.stats", "scipy.optimize", "scipy.interpolate", "jinja2")
-SEARCH = "identification.discovery.search"
+SEARCH = "identification.innovations.discovery"
 
 
 COMMANDS = (

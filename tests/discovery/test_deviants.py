@@ -19,10 +19,10 @@ from discovery_cases import (
 )
 
 from identification import Log, Parameter, ParameterSet
-from identification.discovery.deviants import accept_deviants, find_deviants
-from identification.discovery.fitted_model import fit_model
 from identification.discovery.nominal_model import NominalModel
-from identification.discovery.task import DiscoveryTask
+from identification.innovations.deviants import accept_deviants, find_deviants
+from identification.innovations.fitted_model import fit_model
+from identification.innovations.task import DiscoveryTask
 from identification.model.plant import ModelPlant
 from identification.model.predictor import Predictor
 

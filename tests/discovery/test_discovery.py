@@ -19,8 +19,8 @@ from discovery_cases import (
 
 from identification import InputError
 from identification.discovery.findings.finding import FindingKind
-from identification.discovery.search import discover
-from identification.discovery.verdict import conclude
+from identification.innovations.discovery import discover
+from identification.innovations.verdict import conclude
 
 OFFSET = {"offset.f": -0.8}
 

@@ -13,7 +13,7 @@ import pytest
 from discovery_cases import EFFECTS, disturbed, searched, stepped, task
 from failing_cases import ERRORS, HOWS, Failing
 
-from identification.discovery import attempts, fitted_model, state
+from identification.discovery import attempts
 from identification.discovery.attempts import (
     Failed,
     attempt,
@@ -21,11 +21,11 @@ from identification.discovery.attempts import (
     collected,
     tell_lost,
 )
-from identification.discovery.selection import forward_selection
-from identification.discovery.state import first_state, next_state
-from identification.discovery.verdict import conclude
 from identification.effects.effect import Candidate
 from identification.errors import DivergenceError, InputError
+from identification.innovations import fitted_model, forward_selection, state
+from identification.innovations.state import first_state, next_state
+from identification.innovations.verdict import conclude
 from identification.report.discovery_json import discovery_to_json
 from identification.report.discovery_sections import FAILED
 from identification.report.discovery_text import discovery_text
@@ -34,7 +34,7 @@ TRUTH = {"offset.f": -0.8, "rubbing.c": 1.0}
 KEY = ("rubbing", "joint")
 ENGINES = [
     path
-    for folder in ("discovery", "prediction")
+    for folder in ("discovery", "innovations", "prediction")
     for path in Path(attempts.__file__).parents[1].joinpath(folder).rglob("*.py")
 ]
 # Steps of a search for values within one model, and files: no candidate is judged there.

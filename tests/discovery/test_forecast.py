@@ -8,13 +8,13 @@ import pytest
 from joint_cases import ARM, DAMPING, arm_log, joint_plant, run, slider, slider_log, steps
 
 from identification import InputError
-from identification.discovery import forecast as module
-from identification.discovery.forecast import Forecast, forecast, refuse_large
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
-from identification.discovery.search import discover
-from identification.discovery.state import first_state
-from identification.discovery.task import DiscoveryTask
+from identification.innovations import forecast as module
+from identification.innovations.discovery import discover
+from identification.innovations.forecast import Forecast, forecast, refuse_large
+from identification.innovations.state import first_state
+from identification.innovations.task import DiscoveryTask
 
 FREE = ("mass", "damping")
 

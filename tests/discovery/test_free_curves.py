@@ -19,12 +19,12 @@ from discovery_cases import (
 from scipy.integrate import solve_ivp
 
 from identification import Log
-from identification.discovery.fitted_model import fit_model
-from identification.discovery.free_curves import _respond, find_curves, list_curves
-from identification.discovery.replacement import replace_effect
-from identification.discovery.search import discover
 from identification.effects.curves import NODES
 from identification.effects.effect import Candidate
+from identification.innovations.discovery import discover
+from identification.innovations.fitted_model import fit_model
+from identification.innovations.free_curves import _respond, find_curves, list_curves
+from identification.innovations.replacement import replace_effect
 from identification.kalman.linear import LinearPlant
 from identification.model.predictor import Predictor
 from identification.report.discovery_json import discovery_to_json

@@ -19,13 +19,17 @@ from discovery_cases import (
 from scipy.stats import f, ncf
 
 from identification import InputError, Parameter
-from identification.discovery.findings.doubts import find_oversized_effect
-from identification.discovery.scoring.detectability import DETECTION_NONCENTRALITY, list_detectable
-from identification.discovery.scoring.hidden import list_hidden
-from identification.discovery.scoring.scores import Score
-from identification.discovery.scoring.significance import find_oversized, select_significant
-from identification.discovery.search import discover
 from identification.effects.effect import Candidate, Effect, Size
+from identification.innovations.discovery import discover
+from identification.innovations.findings import find_oversized_effect
+from identification.innovations.scoring.scores import Score
+from identification.innovations.scoring.significance import (
+    DETECTION_NONCENTRALITY,
+    find_oversized,
+    list_detectable,
+    list_hidden,
+    select_significant,
+)
 from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.noise_model import Noise
 from identification.report.finding_words import describe_finding

@@ -20,7 +20,12 @@ from discovery_cases import response as dense
 
 from identification import Log, Parameter, ParameterSet
 from identification.discovery.findings.finding import FindingKind
-from identification.discovery.findings.input_error import (
+from identification.discovery.nominal_model import NominalModel
+from identification.effects.effect import Effect, Size
+from identification.estimation.residuals import innovation_tests
+from identification.innovations.discovery import discover
+from identification.innovations.fitted_model import fit_model
+from identification.innovations.input_error import (
     ERROR_KNOTS,
     draw_curves,
     find_input_error,
@@ -29,12 +34,7 @@ from identification.discovery.findings.input_error import (
     separate_inputs,
     simulate_response,
 )
-from identification.discovery.fitted_model import fit_model
-from identification.discovery.nominal_model import NominalModel
-from identification.discovery.search import discover
-from identification.discovery.selection.shapes import is_structured
-from identification.effects.effect import Effect, Size
-from identification.estimation.residuals import innovation_tests
+from identification.innovations.shapes import is_structured
 from identification.kalman.noise_model import Noise, build_whitener
 from identification.model.plant import ModelPlant
 from identification.model.predictor import Predictor

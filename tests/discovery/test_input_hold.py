@@ -9,10 +9,10 @@ from joint_cases import DAMPING, MASS, SLIDER, run, slider_log
 from scipy.signal import lfilter
 
 from identification.discovery.findings.finding import FindingKind
-from identification.discovery.findings.input_hold import find_input_hold
-from identification.discovery.fitted_model import fit_model
 from identification.discovery.nominal_model import NominalModel
 from identification.effects.joint_plant import joint_plant
+from identification.innovations.fitted_model import fit_model
+from identification.innovations.input_error import find_input_hold
 
 NOISE = 2e-5  # std of the sensor [m]
 

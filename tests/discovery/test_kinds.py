@@ -6,12 +6,12 @@ import pytest
 from discovery_cases import EFFECTS, SENSOR, record, slider, task, wander
 
 from identification.discovery.effect_results import Proof
-from identification.discovery.fitted_model import AcceptedEffect, fit_model
-from identification.discovery.replacement import replace_effect
-from identification.discovery.scoring.sensitivities import Sensitivity, compute_sensitivities
-from identification.discovery.selection import kinds
-from identification.discovery.selection.kinds import improve_kinds, improve_rivals
 from identification.effects.effect import Candidate, Effect, Shape
+from identification.innovations import kinds
+from identification.innovations.fitted_model import AcceptedEffect, fit_model
+from identification.innovations.kinds import improve_kinds, improve_rivals
+from identification.innovations.replacement import replace_effect
+from identification.innovations.scoring.sensitivities import Sensitivity, compute_sensitivities
 
 ROBOT = {"mass": 2.2, "damping": 2.7, "x0": 0.01, "v0": 0.02}
 K = 5.0

@@ -15,10 +15,10 @@ from discovery_cases import (
     slider,
 )
 
-from identification.discovery.findings.location import locate_error
-from identification.discovery.missing_forces import estimate_missing_forces
-from identification.discovery.nominal_model import NominalModel, fit_with_effects
+from identification.discovery.missing_forces import estimate_missing_forces, locate_error
+from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
+from identification.innovations.fit import fit_with_effects
 from identification.kalman.noise_model import Noise, smooth
 from identification.report.finding_words import describe_finding
 from inca_mj.effects.motor import DELAY

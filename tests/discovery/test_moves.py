@@ -7,10 +7,10 @@ from types import SimpleNamespace
 
 import pytest
 
-from identification.discovery import state as innovations
 from identification.discovery.moves import Move, SearchState, asked_anew, next_state
 from identification.discovery.passes import PASSES, uses
 from identification.errors import InputError
+from identification.innovations import state as innovations
 from identification.prediction import state as windows
 
 ROOT = Path(__file__).parents[2]

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from discovery_cases import OPTIONS, record, slider, wander
 
-from identification.discovery.scoring.outliers import (
+from identification.effects.effect import Candidate, Effect, Shape, Size
+from identification.effects.sensors import encoder_jump
+from identification.innovations.scoring.outliers import (
     MAX_JUMPS,
     find_outlier_times,
     list_at_outliers,
 )
-from identification.effects.effect import Candidate, Effect, Shape, Size
-from identification.effects.sensors import encoder_jump
 from identification.logs.joined import join_logs
 
 T_S = Shape("t_s", "s", (1.0, 2.0), 0.1, 9.0, about="", step=0.1)

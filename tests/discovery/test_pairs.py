@@ -5,11 +5,11 @@ from dataclasses import replace
 import pytest
 from discovery_cases import EFFECTS, OPTIONS, disturbed, nominal_model
 
-from identification.discovery.fitted_model import is_confirmed
-from identification.discovery.proof import prove
-from identification.discovery.search import discover
-from identification.discovery.selection.forward_selection import Selection, select_effect
-from identification.discovery.selection.pairs import find_pair
+from identification.innovations.discovery import discover
+from identification.innovations.fitted_model import is_confirmed
+from identification.innovations.forward_selection import Selection, select_effect
+from identification.innovations.pairs import find_pair
+from identification.innovations.proof import prove
 
 OFFSET, RUBBING = {"offset.f": -0.8}, {"rubbing.c": 1.0}
 
@@ -29,8 +29,8 @@ def test_a_search_goes_on_from_what_is_not_proven_alone(monkeypatch, sizes):
         pairs.append(find_pair(*arguments))
         return pairs[-1]
 
-    monkeypatch.setattr("identification.discovery.state.select_effect", doubtful)
-    monkeypatch.setattr("identification.discovery.state.find_pair", spy)
+    monkeypatch.setattr("identification.innovations.state.select_effect", doubtful)
+    monkeypatch.setattr("identification.innovations.state.find_pair", spy)
     answer = discover(nominal_model(), disturbed(**sizes), EFFECTS)
     hidden = {name.partition(".")[0] for name in sizes} if len(sizes) == 2 else set()
     assert {n.candidate.effect.name for n in answer.named} == hidden
@@ -52,16 +52,16 @@ def test_what_the_fitted_samples_want_and_the_free_run_confirms_begins_a_pair(
             return proof
         return replace(proof, gain=-100.0, t=-1.6, chance=0.94, fall=fall, above=fall)
 
-    monkeypatch.setattr("identification.discovery.selection.forward_selection.prove", astray)
+    monkeypatch.setattr("identification.innovations.forward_selection.prove", astray)
     # The log is short.
-    monkeypatch.setattr("identification.discovery.fitted_model.NEEDED_BIC_RATIO", 1.0)
+    monkeypatch.setattr("identification.innovations.fitted_model.NEEDED_BIC_RATIO", 1.0)
     answer = discover(nominal_model(), disturbed(**OFFSET, **RUBBING), EFFECTS)
     assert {n.candidate.effect.name for n in answer.named} == hidden
     assert hidden or answer.verdict == "unknown effect"
 
 
 SIZES = {"offset.f": -0.8, "rubbing.c": 1.0}
-SELECTION = "identification.discovery.selection.forward_selection"
+SELECTION = "identification.innovations.forward_selection"
 
 
 def names_where_the_second_moves_nothing(monkeypatch, times=10.0, structure=()):
@@ -83,7 +83,7 @@ def names_where_the_second_moves_nothing(monkeypatch, times=10.0, structure=()):
 
     monkeypatch.setattr(f"{SELECTION}.prove", still)
     monkeypatch.setattr(f"{SELECTION}.find_structure", left)
-    monkeypatch.setattr("identification.discovery.fitted_model.NEEDED_BIC_RATIO", times)
+    monkeypatch.setattr("identification.innovations.fitted_model.NEEDED_BIC_RATIO", times)
     answer = discover(nominal_model(), disturbed(**SIZES), EFFECTS)
     return {n.candidate.effect.name for n in answer.named}
 

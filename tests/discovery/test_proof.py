@@ -11,9 +11,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.stats import t as student
 
-from identification.discovery.fitted_model import fit_model
-from identification.discovery.proof import allowed_chance, flip_chance, prove
 from identification.effects.effect import Candidate
+from identification.innovations.fitted_model import fit_model
+from identification.innovations.proof import allowed_chance, flip_chance, prove
 from identification.logs.joined import join_logs
 
 SPRING = Candidate(EFFECTS[0], "joint", {})

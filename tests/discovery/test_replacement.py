@@ -22,12 +22,12 @@ from discovery_cases import (
 from scipy.linalg import lstsq
 
 from identification import Parameter, ParameterSet
-from identification.discovery.fitted_model import fit_model
-from identification.discovery.nominal_model import NominalModel, fit_with_effects
-from identification.discovery.replacement import replace_effect
-from identification.discovery.retuning import PRIOR_WIDENING, retune
-from identification.discovery.scoring.sensitivities import compute_sensitivities
+from identification.discovery.nominal_model import NominalModel
 from identification.effects.effect import Candidate, Effect, Size
+from identification.innovations.fit import fit_with_effects
+from identification.innovations.fitted_model import fit_model
+from identification.innovations.replacement import PRIOR_WIDENING, replace_effect, retune
+from identification.innovations.scoring.sensitivities import compute_sensitivities
 from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.noise_model import Noise
 from identification.model.plant import ModelPlant

@@ -19,9 +19,9 @@ from discovery_cases import (
 )
 
 from identification.discovery.findings.finding import FindingKind
-from identification.discovery.findings.robot_change import find_onset, find_robot_change
-from identification.discovery.fitted_model import fit_model
-from identification.discovery.search import discover
+from identification.innovations.discovery import discover
+from identification.innovations.findings import find_onset, find_robot_change
+from identification.innovations.fitted_model import fit_model
 
 N = 800
 

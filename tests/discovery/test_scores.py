@@ -5,7 +5,7 @@ import pytest
 from discovery_cases import covariance, linear_plant, point_of, scored, sensitivity
 from scipy.stats import chi2, kstest
 
-from identification.discovery.scoring.scores import RATIO_FACTORS
+from identification.innovations.scoring.scores import RATIO_FACTORS
 from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.noise_model import Noise
 

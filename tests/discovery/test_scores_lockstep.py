@@ -13,8 +13,8 @@ from discovery_cases import (
 from scipy.stats import chi2
 from scipy.stats import f as f_distribution
 
-from identification.discovery.scoring import scores as module
-from identification.discovery.scoring.scores import MIN_SCORE_SAMPLES, RATIO_FACTORS
+from identification.innovations.scoring import scores as module
+from identification.innovations.scoring.scores import MIN_SCORE_SAMPLES, RATIO_FACTORS
 from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.noise_model import Noise, build_whitener
 

@@ -8,10 +8,10 @@ import pytest
 from discovery_cases import EFFECTS, FREE, KNOWN, OPTIONS, RECORDS, nominal_model, record, slider
 from discovery_cases import task as task_of
 
-from identification.discovery.fitted_model import fit_model
 from identification.discovery.nominal_model import NominalModel
-from identification.discovery.search import discover
 from identification.effects.effect import Candidate
+from identification.innovations.discovery import discover
+from identification.innovations.fitted_model import fit_model
 from identification.logs.joined import join_logs
 from identification.model.own import own_name, with_own
 from identification.model.parameter import ParameterSet

@@ -9,10 +9,11 @@ from discovery_cases import OPTIONS
 from effect_cases import full
 
 from identification import Log, Predictor
-from identification.discovery.scoring.sensitivities import compute_sensitivities, list_between
-from identification.discovery.selection import shapes
-from identification.discovery.selection.shapes import improve_shape
+from identification.discovery.candidates import list_between
 from identification.effects.effect import Candidate, Effect, Shape, Size
+from identification.innovations import shapes
+from identification.innovations.scoring.sensitivities import compute_sensitivities
+from identification.innovations.shapes import improve_shape
 from identification.kalman.point import evaluate_point
 from identification.model.coordinates import coordinates
 from inca_mj.effects.catalogue import CATALOGUE

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from identification.discovery.options import DiscoveryOptions
-from identification.discovery.selection import forward_selection
 from identification.effects.effect import Candidate, Effect, Shape, Size
+from identification.innovations import forward_selection
 
 JUMP = Effect(
     "jump", "", (Size("c", "", 1.0, 0.1, about=""),),

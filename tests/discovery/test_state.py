@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from discovery_cases import EFFECTS, OPTIONS, searched
 
-from identification.discovery.fitted_model import fit_model
-from identification.discovery.scoring.sensitivities import compute_sensitivities
-from identification.discovery.selection.pruning import exchange
-from identification.discovery.state import next_state
+from identification.innovations.fitted_model import fit_model
+from identification.innovations.pruning import exchange
+from identification.innovations.scoring.sensitivities import compute_sensitivities
+from identification.innovations.state import next_state
 
 
 def names(state):

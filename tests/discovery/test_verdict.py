@@ -8,10 +8,10 @@ from discovery_cases import OPTIONS
 from fake_discovery import LATE, REJECTED
 from finding_cases import EVIDENCE_OF, FINDINGS
 
-from identification.discovery import verdict as verdicts
+from identification.discovery.attempts import listed_once
 from identification.discovery.findings.finding import Finding, FindingKind
-from identification.discovery.once import listed_once
-from identification.discovery.verdict import decide
+from identification.innovations import verdict as verdicts
+from identification.innovations.verdict import decide
 
 NAMED = (SimpleNamespace(),)
 ENOUGH, LITTLE = OPTIONS.min_explained_share + 0.1, OPTIONS.min_explained_share

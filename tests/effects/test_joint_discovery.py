@@ -10,9 +10,9 @@ from joint_cases import DAMPING, MASS, SLIDER, run, slider_log, steps
 
 from identification import Parameter
 from identification.discovery.nominal_model import NominalModel
-from identification.discovery.search import discover
 from identification.effects.axes import Axis
 from identification.effects.joint_plant import candidates, joint_plant
+from identification.innovations.discovery import discover
 
 ROOT = Path(__file__).parents[2]
 NOISE = 1e-3  # std of the sensor [m]

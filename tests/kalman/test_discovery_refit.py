@@ -9,9 +9,9 @@ from discovery_cases import EFFECTS, FREE, OPTIONS, nominal_model, record, slide
 
 from identification import Parameter
 from identification.discovery import nominal_model as nominal_model_file
-from identification.discovery.nominal_model import _inside, fit_with_effects
 from identification.effects.effect import Candidate
 from identification.estimation.priors import Priors
+from identification.innovations.fit import _inside, fit_with_effects
 from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.noise_model import Noise
 from identification.kalman.problem import estimate_noise, linearise_criterion

@@ -7,7 +7,7 @@ import pytest
 from discovery_cases import OPTIONS, nominal_model, record, slider, wander
 from test_extend_point import log, plant
 
-from identification.discovery.nominal_model import fit_with_effects
+from identification.innovations.fit import fit_with_effects
 from identification.kalman import trajectory as run_file
 from identification.kalman.trajectory import Run
 from identification.logs.joined import join_logs

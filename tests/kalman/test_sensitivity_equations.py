@@ -9,12 +9,9 @@ from effect_cases import full
 from estimation_plants import SLIDER_PARAMETERS, slider
 
 from identification import Log, Parameter, ParameterSet, Predictor
-from identification.discovery.scoring.sensitivities import (
-    compute_beside,
-    compute_sensitivities,
-    list_common,
-)
+from identification.discovery.candidates import list_common
 from identification.effects.effect import Candidate
+from identification.innovations.scoring.sensitivities import compute_beside, compute_sensitivities
 from identification.kalman.linear import linearise_records, state_derivatives
 from identification.kalman.point import do_equations_hold, evaluate_point, shift_point
 from identification.kalman.sensitivity_equations import can_solve, solve_sensitivities

@@ -7,8 +7,8 @@ from functools import cache
 import pytest
 from records_cases import FREE, HORIZON, nominal_model, pendulum, record, records
 
+from identification.discovery.candidates import list_common
 from identification.discovery.options import DiscoveryOptions
-from identification.discovery.scoring.sensitivities import list_common
 from identification.effects.joint_plant import candidates
 from identification.prediction.discovery import discover_records
 from identification.prediction.exchange import exchanged, is_contradicted

@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 from records_cases import nominal_model, records
 
-from identification.discovery.scoring.sensitivities import list_common
+from identification.discovery.candidates import list_common
 from identification.effects.joint_plant import candidates
 from identification.prediction.fit import solve
 from identification.prediction.nominal_fit import fit_nominal

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from state_cases import BACKLASH, COULOMB, ELASTIC, F_C, PRESLIDING, Truth, measured, pendulum
 
+from identification.discovery.candidates import list_common
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
-from identification.discovery.scoring.sensitivities import list_common
 from identification.effects.joint_plant import candidates
 from identification.effects.joint_states import JointState
 from identification.prediction.discovery import discover_records

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from records_cases import FREE, pendulum, record
 
-from identification.discovery.scoring.sensitivities import list_common
+from identification.discovery.candidates import list_common
 from identification.effects.joint_plant import candidates
 from identification.model.predictor import Predictor
 from identification.prediction.twins import LEVEL, TWINS, find_twin

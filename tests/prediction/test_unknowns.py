@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from records_cases import FREE, nominal_model, pendulum, record, records
 
+from identification.discovery.candidates import list_common
 from identification.discovery.options import DiscoveryOptions
-from identification.discovery.scoring.sensitivities import list_common
 from identification.effects.joint_plant import candidates
 from identification.estimation.priors import Priors
 from identification.model.coordinates import Coordinates

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from records_cases import FREE, HORIZON, nominal_model, pendulum, record, records
 
-from identification.discovery.scoring.sensitivities import list_common
+from identification.discovery.candidates import list_common
 from identification.effects.joint_plant import candidates
 from identification.prediction import point
 from identification.prediction.extension import with_effect

@@ -9,8 +9,8 @@ from joint_cases import steps
 from robot_cases import refused, run
 
 from identification import InputError, Log, ParameterSet, Predictor, read_robot, write_log
-from identification.discovery.nominal_model import fit_with_effects
 from identification.discovery.options import DiscoveryOptions
+from identification.innovations.fit import fit_with_effects
 from identification.model.plant import ModelPlant
 from identification.robot.file import read_robot_file
 

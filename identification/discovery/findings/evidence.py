@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from identification.discovery.effect_results import RejectedEffect
-from identification.discovery.scoring.scores import Score
+from identification.discovery.effect_results import RejectedEffect, Scored
 
 
 @dataclass(frozen=True)
@@ -214,5 +213,5 @@ class OversizedEffect:
         limits: the largest size that is believed, by name of each size that exceeds it.
     """
 
-    score: Score
+    score: Scored
     limits: Mapping[str, float]

@@ -17,10 +17,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from identification.chances import chi2_level
+from identification.discovery.candidates import list_between
 from identification.discovery.effect_results import RejectedEffect
-from identification.discovery.findings.input_error import find_input_error
-from identification.discovery.findings.structure import find_structure
-from identification.discovery.fitted_model import (
+from identification.discovery.options import DiscoveryOptions
+from identification.discovery.passes import uses
+from identification.effects.effect import Candidate
+from identification.innovations.findings import find_structure
+from identification.innovations.fitted_model import (
     AcceptedEffect,
     FittedModel,
     collect_parameters,
@@ -31,22 +34,19 @@ from identification.discovery.fitted_model import (
     score_candidates,
     try_fit,
 )
-from identification.discovery.options import DiscoveryOptions
-from identification.discovery.passes import uses
-from identification.discovery.proof import prove
-from identification.discovery.scoring.outliers import list_at_outliers
-from identification.discovery.scoring.scores import Score
-from identification.discovery.scoring.sensitivities import compute_sensitivities, list_between
-from identification.discovery.scoring.significance import (
+from identification.innovations.input_error import find_input_error
+from identification.innovations.kinds import improve_rivals
+from identification.innovations.proof import prove
+from identification.innovations.scoring.outliers import list_at_outliers
+from identification.innovations.scoring.scores import Score
+from identification.innovations.scoring.sensitivities import compute_sensitivities
+from identification.innovations.scoring.significance import (
     is_plausible,
     select_plausible,
     select_significant,
 )
-from identification.discovery.selection.anew import begin_anew
-from identification.discovery.selection.kinds import improve_rivals
-from identification.discovery.selection.shapes import improve_shape
-from identification.discovery.task import DiscoveryTask
-from identification.effects.effect import Candidate
+from identification.innovations.shapes import begin_anew, improve_shape
+from identification.innovations.task import DiscoveryTask
 from identification.progress import Progress, counted
 
 

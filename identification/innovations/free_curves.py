@@ -17,11 +17,11 @@ import numpy as np
 
 from identification.discovery.missing_forces import list_actuated_joints
 from identification.discovery.options import DiscoveryOptions
-from identification.discovery.scoring.scores import score
-from identification.discovery.scoring.sensitivities import Sensitivity
-from identification.discovery.scoring.significance import correct_p_value
 from identification.effects.curves import NODES
 from identification.effects.effect import CURVE, Candidate, Effect, Size
+from identification.innovations.scoring.scores import score
+from identification.innovations.scoring.sensitivities import Sensitivity
+from identification.innovations.scoring.significance import correct_p_value
 from identification.kalman.linear import Linearisation, linearise_records
 from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.refit import Refit

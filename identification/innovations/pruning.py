@@ -14,7 +14,8 @@ from functools import partial
 import numpy as np
 
 from identification.discovery.attempts import attempt
-from identification.discovery.fitted_model import (
+from identification.effects.effect import Candidate
+from identification.innovations.fitted_model import (
     NEEDED_BIC_RATIO,
     ROUGH_FIT_STEPS,
     AcceptedEffect,
@@ -23,12 +24,11 @@ from identification.discovery.fitted_model import (
     score_candidates,
     try_fit,
 )
-from identification.discovery.proof import prove
-from identification.discovery.retuning import retune
-from identification.discovery.scoring.sensitivities import Sensitivity
-from identification.discovery.scoring.significance import select_plausible
-from identification.discovery.task import DiscoveryTask
-from identification.effects.effect import Candidate
+from identification.innovations.proof import prove
+from identification.innovations.replacement import retune
+from identification.innovations.scoring.sensitivities import Sensitivity
+from identification.innovations.scoring.significance import select_plausible
+from identification.innovations.task import DiscoveryTask
 
 
 def eliminate(

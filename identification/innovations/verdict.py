@@ -9,28 +9,32 @@ from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 
-from identification.discovery.confidence import name_effects
+from identification.discovery.attempts import listed_once
 from identification.discovery.effect_results import NamedEffect, RejectedEffect, Unlogged
-from identification.discovery.final_values import list_at_bound
-from identification.discovery.findings.doubts import find_doubtful_effect, find_oversized_effect
 from identification.discovery.findings.finding import Finding, FindingKind
-from identification.discovery.findings.input_error import find_input_error
-from identification.discovery.findings.input_hold import find_input_hold
-from identification.discovery.findings.robot_change import find_robot_change
-from identification.discovery.findings.structure import find_structure
-from identification.discovery.fitted_model import FittedModel, is_proven, score_candidates
 from identification.discovery.free_run import FreeRun
-from identification.discovery.once import listed_once
 from identification.discovery.options import DiscoveryOptions
-from identification.discovery.proof import prove
-from identification.discovery.recovery import recover_force
 from identification.discovery.result import Discovery, Verdict, closed_share
-from identification.discovery.scoring.detectability import list_detectable
-from identification.discovery.scoring.hidden import list_hidden
-from identification.discovery.scoring.scores import Score
-from identification.discovery.scoring.sensitivities import compute_sensitivities
-from identification.discovery.scoring.significance import correct_p_value
-from identification.discovery.state import InnovationSearch
+from identification.innovations.confidence import name_effects
+from identification.innovations.findings import (
+    find_doubtful_effect,
+    find_oversized_effect,
+    find_robot_change,
+    find_structure,
+)
+from identification.innovations.fit import list_at_bound
+from identification.innovations.fitted_model import FittedModel, is_proven, score_candidates
+from identification.innovations.input_error import find_input_error, find_input_hold
+from identification.innovations.proof import prove
+from identification.innovations.recovery import recover_force
+from identification.innovations.scoring.scores import Score
+from identification.innovations.scoring.sensitivities import compute_sensitivities
+from identification.innovations.scoring.significance import (
+    correct_p_value,
+    list_detectable,
+    list_hidden,
+)
+from identification.innovations.state import InnovationSearch
 from identification.kalman.refit import Refit
 from identification.logs.by_unit import by_unit
 

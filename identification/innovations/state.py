@@ -11,29 +11,25 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from identification.discovery.attempts import collected, tell_lost
-from identification.discovery.deviants import accept_deviants, within_bounds
-from identification.discovery.fitted_model import (
+from identification.discovery.candidates import list_common, list_single
+from identification.discovery.moves import Move, SearchState, Watch, asked_anew
+from identification.discovery.moves import next_state as next_of
+from identification.discovery.passes import uses
+from identification.innovations.deviants import accept_deviants, within_bounds
+from identification.innovations.fitted_model import (
     AcceptedEffect,
     FittedModel,
     fit_model,
     has_candidate,
     score_candidates,
 )
-from identification.discovery.moves import Move, SearchState, Watch, asked_anew
-from identification.discovery.moves import next_state as next_of
-from identification.discovery.passes import uses
-from identification.discovery.scoring.scores import Score
-from identification.discovery.scoring.sensitivities import (
-    Sensitivity,
-    compute_sensitivities,
-    list_common,
-    list_single,
-)
-from identification.discovery.selection.forward_selection import select_effect
-from identification.discovery.selection.kinds import improve_kinds
-from identification.discovery.selection.pairs import find_pair
-from identification.discovery.selection.pruning import eliminate, exchange
-from identification.discovery.task import DiscoveryTask
+from identification.innovations.forward_selection import select_effect
+from identification.innovations.kinds import improve_kinds
+from identification.innovations.pairs import find_pair
+from identification.innovations.pruning import eliminate, exchange
+from identification.innovations.scoring.scores import Score
+from identification.innovations.scoring.sensitivities import Sensitivity, compute_sensitivities
+from identification.innovations.task import DiscoveryTask
 from identification.model.sensitivity import refuse_without_effect
 from identification.progress import Progress
 from identification.quantities import held

@@ -23,7 +23,9 @@ from dataclasses import replace
 import numpy as np
 
 from identification.discovery.effect_results import Proof
-from identification.discovery.fitted_model import (
+from identification.discovery.nominal_model import NominalModel
+from identification.effects.effect import Candidate
+from identification.innovations.fitted_model import (
     NEEDED_BIC_RATIO,
     ROUGH_FIT_STEPS,
     AcceptedEffect,
@@ -31,10 +33,8 @@ from identification.discovery.fitted_model import (
     is_confirmed,
     try_fit,
 )
-from identification.discovery.nominal_model import NominalModel
-from identification.discovery.proof import prove
-from identification.discovery.task import DiscoveryTask
-from identification.effects.effect import Candidate
+from identification.innovations.proof import prove
+from identification.innovations.task import DiscoveryTask
 from identification.progress import Progress
 
 

@@ -13,17 +13,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from identification.discovery.fitted_model import (
+from identification.innovations.fitted_model import (
     AcceptedEffect,
     FittedModel,
     is_confirmed,
     score_candidates,
     try_fit,
 )
-from identification.discovery.proof import prove
-from identification.discovery.scoring.sensitivities import Sensitivity
-from identification.discovery.selection.forward_selection import select_effect
-from identification.discovery.task import DiscoveryTask
+from identification.innovations.forward_selection import select_effect
+from identification.innovations.proof import prove
+from identification.innovations.scoring.sensitivities import Sensitivity
+from identification.innovations.task import DiscoveryTask
 from identification.progress import Progress
 
 

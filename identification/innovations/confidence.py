@@ -21,15 +21,14 @@ import numpy as np
 
 from identification.discovery.attempts import attempt
 from identification.discovery.effect_results import NamedEffect, Outside, Rival
-from identification.discovery.fitted_model import AcceptedEffect, FittedModel, collect_parameters
-from identification.discovery.free_curves import Curve, find_curves
 from identification.discovery.options import DiscoveryOptions
-from identification.discovery.replacement import replace_effect
-from identification.discovery.retuning import retune
-from identification.discovery.scoring.sensitivities import Sensitivity
-from identification.discovery.task import DiscoveryTask
 from identification.effects.curves import NODES
 from identification.effects.effect import CURVE, Candidate
+from identification.innovations.fitted_model import AcceptedEffect, FittedModel, collect_parameters
+from identification.innovations.free_curves import Curve, find_curves
+from identification.innovations.replacement import replace_effect, retune
+from identification.innovations.scoring.sensitivities import Sensitivity
+from identification.innovations.task import DiscoveryTask
 from identification.kalman.noise_model import build_whitener
 from identification.pool import one_blas_thread
 

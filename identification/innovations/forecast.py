@@ -28,14 +28,11 @@ from pathlib import Path
 
 import numpy as np
 
-from identification.discovery.scoring.sensitivities import (
-    MAX_BATCH_COLUMNS,
-    list_common,
-    list_single,
-)
-from identification.discovery.task import DiscoveryTask
+from identification.discovery.candidates import list_common, list_single
 from identification.errors import InputError
 from identification.files import read_text
+from identification.innovations.scoring.sensitivities import MAX_BATCH_COLUMNS
+from identification.innovations.task import DiscoveryTask
 from identification.kalman.trajectory import FINE_POINTS, INTERVALS
 from identification.logs.joined import rows_of
 from identification.model.predictor import Predictor

@@ -16,20 +16,49 @@ therefore curves of the output are tried for each direction too.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache, partial
 
 import numpy as np
 
 from identification.discovery.attempts import attempt
-from identification.discovery.findings.evidence import StructuredInputError
+from identification.discovery.findings.evidence import InputHold, StructuredInputError
 from identification.discovery.findings.finding import Finding, FindingKind
 from identification.discovery.options import DiscoveryOptions
-from identification.discovery.proof import flip_chance
-from identification.discovery.validation import Validation
+from identification.innovations.proof import Validation, flip_chance
 from identification.kalman.noise_model import Whitener
-from identification.kalman.point import evaluate_sensitivities
+from identification.kalman.point import evaluate_point, evaluate_sensitivities
+from identification.kalman.problem import estimate_noise
+from identification.kalman.refit import Refit
 from identification.pool import one_blas_thread
+
+HOLDS = ("foh", "zoh")  # straight lines, steps
+# Of the inputs' error: the other hold is reported where it leaves less than this.
+OTHER_HOLD_SHARE = 0.5
+
+
+def find_input_hold(fit: Refit) -> tuple[Finding, ...]:
+    """Returns the other hold of the inputs if it makes their error far smaller; else nothing.
+
+    Args:
+        fit: the nominal model, fitted.
+    """
+    point = fit.point
+    if not point.log.inputs.any():  # of a free swing, which no hold changes
+        return ()
+    other = HOLDS[1 - HOLDS.index(point.log.hold)]
+    predictor = replace(point.predictor, log=replace(point.log, hold=other))
+    evaluate = partial(evaluate_point, predictor, point.space, point.q, point, point.small)
+    there = attempt(None, evaluate)
+    if there is None:
+        return ()
+    level = estimate_noise(there, fit.priors, fit.level)
+    if level.input_std >= OTHER_HOLD_SHARE * fit.level.input_std:
+        return ()
+    unit = point.log.units.get(point.log.input_names[0], "")
+    evidence = InputHold(other, unit, level.input_std, fit.level.input_std)
+    return (Finding(FindingKind.INPUT_HOLD, evidence),)
+
 
 ERROR_KNOTS = 12  # of the curves over input, output and rate that an error of the inputs may follow
 

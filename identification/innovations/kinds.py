@@ -21,20 +21,20 @@ from itertools import product
 import numpy as np
 
 from identification.discovery.attempts import attempt
-from identification.discovery.fitted_model import (
+from identification.effects.effect import Candidate
+from identification.innovations.fitted_model import (
     ROUGH_FIT_STEPS,
     AcceptedEffect,
     FittedModel,
     score_candidates,
     try_fit,
 )
-from identification.discovery.replacement import replace_effect
-from identification.discovery.scoring.scores import Score
-from identification.discovery.scoring.sensitivities import Sensitivity, compute_beside
-from identification.discovery.scoring.significance import gain_of_whole, is_plausible
-from identification.discovery.selection.shapes import is_structured
-from identification.discovery.task import DiscoveryTask
-from identification.effects.effect import Candidate
+from identification.innovations.replacement import replace_effect
+from identification.innovations.scoring.scores import Score
+from identification.innovations.scoring.sensitivities import Sensitivity, compute_beside
+from identification.innovations.scoring.significance import gain_of_whole, is_plausible
+from identification.innovations.shapes import is_structured
+from identification.innovations.task import DiscoveryTask
 from identification.kalman.point import Point
 
 

@@ -1,17 +1,13 @@
-"""Could the nominal model's parameters explain what an effect explains, if less were known of them?
+"""The loss of a fit where something else stands in an effect's place, to first order.
 
-    loss = min_δ C(q̂ + δ | η = 0) - min_δ C(q̂ + δ),      C: the criterion with wider priors
+    loss = min_δ,c C(q̂ + δ, c | η = 0) - min_δ C(q̂ + δ)
 
-about the final fit, linearised. A log that shows one kind of motion only may tell an effect from a
-wrong parameter by nothing but the prior of that parameter. A name that rests on a prior says so.
-
-An effect that says "this part deviates from its kind by more than parts do" is a statement about a
-prior. The deviations of that kind keep theirs: with wider ones such a part would be ordinary.
+C is the criterion about the fit, η the sizes of the effect, and c those of what replaces it.
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.optimize import lsq_linear
@@ -19,8 +15,10 @@ from scipy.optimize import lsq_linear
 from identification.discovery.effect_results import Retuned
 from identification.discovery.nominal_model import NominalModel
 from identification.effects.effect import Candidate
+from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.problem import linearise_criterion
 from identification.kalman.refit import Refit
+from identification.pool import one_blas_thread
 
 # Factor by which the prior std of the nominal model's parameters are larger where these may explain
 # what an effect does.
@@ -69,3 +67,57 @@ def _minimise(
     bounds = (lower * scale - 1e-12, upper * scale + 1e-12)
     move = lsq_linear(R, Q.T @ target, bounds).x / scale
     return move, float(np.sum((target - rows @ move) ** 2))
+
+
+@dataclass(frozen=True)
+class Replacement:
+    """Something else in the place of an effect.
+
+    Attributes:
+        loss: of twice the log likelihood; below zero where it explains more.
+        share: gain of the effect as a share of its gain.
+        size: its most likely sizes, shape (m,).
+    """
+
+    loss: float
+    share: float
+    size: np.ndarray
+
+
+def replace_effect(
+    fit: Refit, candidate: Candidate, S: np.ndarray, level: NoiseLevel
+) -> Replacement:
+    """Replace an effect of a fit by something of which the sensitivities are known.
+
+    Args:
+        fit: the fit with the effect.
+        candidate: the effect.
+        S: sensitivities of the outputs to what replaces it, shape (N, ny, m).
+        level: the noise.
+
+    Returns:
+        An infinite loss for an effect whose size is not estimated (a limit): it cannot be taken out
+        by setting the size to zero.
+    """
+    point, names = fit.point, np.array(fit.point.space.names)
+    mine = np.isin(names, candidate.free)
+    m = S.shape[2]
+    if not mine.any():
+        return Replacement(np.inf, np.inf, np.zeros(m))
+    with one_blas_thread():
+        problem = linearise_criterion(point, level, fit.priors)
+        W = problem.filter(S).reshape(point.e.size, m) / level.sigma
+    added = np.vstack([W, np.zeros((len(names), m))])
+    others = problem.rows[:, ~np.isin(names, candidate.estimated)]
+    target = problem.target + problem.rows[:, mine] @ point.q[mine]
+    neither = _least(others, target)[0]
+    other, move = _least(np.hstack([others, added]), target)
+    law = _least(problem.rows, problem.target)[0]
+    return Replacement(other - law, (neither - law) / max(neither - other, 1e-300), move[-m:])
+
+
+def _least(rows: np.ndarray, target: np.ndarray) -> tuple[float, np.ndarray]:
+    """Returns the minimum of ‖target - rows move‖², and the move."""
+    scale = np.linalg.norm(rows, axis=0) + 1e-300
+    move = np.linalg.lstsq(rows / scale, target, rcond=1e-12)[0] / scale
+    return float(np.sum((target - rows @ move) ** 2)), move

@@ -31,14 +31,15 @@ import numpy as np
 
 from identification.chances import chi2_above
 from identification.discovery.options import DiscoveryOptions
-from identification.discovery.scoring.blocks import (
+from identification.effects.effect import Candidate
+from identification.innovations.scoring.projection import (
+    Products,
+    Projection,
     compute_block_p_values,
     is_one_sided,
     is_refused,
 )
-from identification.discovery.scoring.projection import Products, Projection
-from identification.discovery.scoring.sensitivities import Sensitivity
-from identification.effects.effect import Candidate
+from identification.innovations.scoring.sensitivities import Sensitivity
 from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.refit import Refit
 from identification.pool import one_blas_thread, run_parts, split

@@ -9,14 +9,13 @@ import numpy as np
 
 from identification.discovery.attempts import attempt, refuse_infinite
 from identification.discovery.effect_results import Proof
-from identification.discovery.nominal_model import MAX_FIT_STEPS, fit_with_effects
 from identification.discovery.options import DiscoveryOptions
-from identification.discovery.proof import allowed_chance
-from identification.discovery.scoring.scores import Score, score
-from identification.discovery.scoring.sensitivities import Sensitivity
-from identification.discovery.task import DiscoveryTask
-from identification.discovery.validation import Validation, validate
 from identification.effects.effect import Candidate
+from identification.innovations.fit import MAX_FIT_STEPS, fit_with_effects
+from identification.innovations.proof import Validation, allowed_chance, validate
+from identification.innovations.scoring.scores import Score, score
+from identification.innovations.scoring.sensitivities import Sensitivity
+from identification.innovations.task import DiscoveryTask
 from identification.kalman.refit import Refit
 
 ROUGH_FIT_STEPS = 5  # steps of a fit that only says how far a model is from the data

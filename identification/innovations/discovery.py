@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from identification.discovery.forecast import forecast, refuse_large
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.result import Discovery
-from identification.discovery.state import first_state, next_state
-from identification.discovery.task import DiscoveryTask
-from identification.discovery.verdict import conclude
 from identification.effects.effect import Effect
 from identification.errors import InputError
+from identification.innovations.forecast import forecast, refuse_large
+from identification.innovations.state import first_state, next_state
+from identification.innovations.task import DiscoveryTask
+from identification.innovations.verdict import conclude
 from identification.logs.joined import records_of, rows_of
 from identification.logs.log import Log
 from identification.pool import one_blas_thread

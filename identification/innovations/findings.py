@@ -1,0 +1,191 @@
+"""Structure that a fitted model leaves unexplained on the fitted samples, beyond chance.
+
+The innovations of the fitted samples are tested; those of the unseen samples contain the error of
+the parameters as well, which is not random.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+
+import numpy as np
+
+from identification.chances import mean_above_other
+from identification.discovery.attempts import attempt
+from identification.discovery.effect_results import RejectedEffect
+from identification.discovery.findings.evidence import (
+    CorrelatedInnovations,
+    DoubtfulEffect,
+    LargeInputError,
+    NoisyOutput,
+    OversizedEffect,
+    ParametersAtLimit,
+    RobotChange,
+    SpectralLine,
+)
+from identification.discovery.findings.finding import Finding, FindingKind
+from identification.discovery.options import DiscoveryOptions
+from identification.estimation.residuals import innovation_tests
+from identification.innovations.fitted_model import (
+    FittedModel,
+    is_far_likelier,
+    is_relevant,
+    list_parameters_at_limit,
+)
+from identification.innovations.proof import Validation
+from identification.innovations.scoring.scores import Score
+from identification.innovations.scoring.significance import find_oversized
+from identification.kalman.point import evaluate_sensitivities
+from identification.pool import one_blas_thread
+
+
+def find_doubtful_effect(
+    rejected: Sequence[RejectedEffect], samples: int, options: DiscoveryOptions
+) -> tuple[Finding, ...]:
+    """Returns the best effect that fitted samples want and that would matter, but is not proven.
+
+    Of an effect that makes the unseen samples less likely there is no doubt: it is not there. Only
+    where the fitted samples want it far more than BIC asks does a doubt remain.
+
+    Args:
+        rejected: effects that were refitted and not accepted, the best first.
+        samples: that were fitted.
+        options: which effects would matter.
+    """
+    wanted = [
+        r for r in rejected
+        if is_relevant(r.proof, options)
+        and (r.bic_gain > 0 < r.proof.gain or is_far_likelier(r.candidate, r.bic_gain, samples))
+    ]  # fmt: skip
+    return tuple(Finding(FindingKind.DOUBTFUL_EFFECT, DoubtfulEffect(r)) for r in wanted[:1])
+
+
+def find_oversized_effect(
+    scores: Sequence[Score], named: Sequence[str], options: DiscoveryOptions
+) -> tuple[Finding, ...]:
+    """Returns the candidate that explains more than all named effects, at a size beyond belief.
+
+    Args:
+        scores: of all candidates on the nominal fit.
+        named: names of the named effects.
+        options: which sizes are believed.
+    """
+    score = find_oversized(scores, named, options)
+    if score is None:
+        return ()
+    limits = {
+        s.name: options.size_factor * s.largest
+        for s, value in zip(score.candidate.effect.sizes, score.size, strict=True)
+        if abs(value) > options.size_factor * s.largest
+    }
+    return (Finding(FindingKind.OVERSIZED_EFFECT, OversizedEffect(score, limits)),)
+
+
+def find_robot_change(validation: Validation, options: DiscoveryOptions) -> tuple[Finding, ...]:
+    """Returns a change of the robot if unseen innovations are larger beyond chance; else nothing.
+
+    Args:
+        validation: the prediction of the whole log by a fitted model.
+        options: what is beyond chance, and large enough to matter.
+    """
+    seen, E = validation.seen, validation.innovations
+    fitted, blocks = E[seen], options.proof_blocks
+    if not _is_larger(fitted, E[~seen], options):
+        return ()
+    # A small change of a parameter may make the simulation diverge.
+    explained = attempt(None, partial(_explain, validation))
+    remaining = E if explained is None else E - explained
+    unseen = remaining[~seen]
+    if not _is_larger(fitted, unseen, options):
+        return ()
+    ratio = _power(unseen).mean() / _power(fitted).mean()
+    onset = find_onset(_power(fitted), _power(unseen), blocks)
+    time = validation.log.time[~seen][onset]
+    evidence = RobotChange(float(np.sqrt(ratio)), float(time))
+    return (Finding(FindingKind.ROBOT_CHANGE, evidence),)
+
+
+def find_onset(fitted: np.ndarray, unseen: np.ndarray, blocks: int) -> int:
+    """Returns the index of the unseen sample from which on the power differs most from before.
+
+    Args:
+        fitted: power of each fitted sample, shape (n,).
+        unseen: power of each unseen sample, shape (m,).
+        blocks: number of blocks, to whose starts the index is rounded.
+    """
+    ends = np.array_split(np.arange(len(unseen)), blocks)
+    a, b = np.log(_means(fitted, blocks)), np.log(_means(unseen, blocks))
+
+    def difference(k: int) -> float:
+        before, after = np.concatenate([a, b[:k]]), b[k:]
+        n, m = len(before), len(after)
+        return float((after.mean() - before.mean()) * np.sqrt(n * m / (n + m)))
+
+    return int(ends[max(range(blocks), key=difference)][0])
+
+
+def _means(power: np.ndarray, blocks: int) -> np.ndarray:
+    return np.array([part.mean() for part in np.array_split(power, blocks)])
+
+
+def _power(E: np.ndarray) -> np.ndarray:
+    return np.asarray(np.mean(E**2, axis=1))
+
+
+def _is_larger(fitted: np.ndarray, unseen: np.ndarray, options: DiscoveryOptions) -> bool:
+    """Returns whether unseen innovations are larger, beyond chance and by enough to matter."""
+    a, b = (_means(_power(E), options.proof_blocks) for E in (fitted, unseen))
+    # The logarithm keeps a few blocks with large errors from looking like scatter only.
+    p = mean_above_other(np.log(b), np.log(a))
+    matters = b.mean() > (1 + options.min_structure_share) * a.mean()
+    return bool(p < options.structure_level and matters)
+
+
+def _explain(validation: Validation) -> np.ndarray:
+    """Returns the part of innovations that a small parameter change explains, shape (N, ny)."""
+    fit = validation.refit
+    with one_blas_thread():
+        J = evaluate_sensitivities(fit.point, validation.log)
+        F = validation.filter(J).reshape(validation.e.size, -1) / fit.level.sigma
+        rows = np.vstack([F, fit.priors.rows])
+        target = np.concatenate([validation.innovations.ravel(), fit.priors.against(fit.point.q)])
+        scale = np.linalg.norm(rows, axis=0) + 1e-300
+        move = np.linalg.lstsq(rows / scale, target, rcond=1e-12)[0] / scale
+    return np.asarray((F @ move).reshape(validation.e.shape))
+
+
+def find_structure(model: FittedModel, options: DiscoveryOptions) -> tuple[Finding, ...]:
+    """Returns what a model does not explain on the fitted samples; empty when it explains all.
+
+    Args:
+        model: the fitted model.
+        options: what counts as beyond chance, and as an error of the inputs that is no noise.
+    """
+    log = model.refit.point.log
+    white = innovation_tests(model.innovations, log.sampling_time)
+    out = []
+    if white.p_line < options.structure_level:
+        line = SpectralLine(log.output_names[white.channel], white.frequency, white.p_line)
+        out.append(Finding(FindingKind.SPECTRAL_LINE, line))
+    if white.p_louder < options.structure_level:
+        noisy = NoisyOutput(log.output_names[white.loudest], white.p_louder)
+        out.append(Finding(FindingKind.NOISY_OUTPUT, noisy))
+    if white.is_correlated(options.structure_level, options.min_structure_share):
+        correlated = CorrelatedInnovations(white.predictable, white.p_correlation)
+        out.append(Finding(FindingKind.CORRELATED_INNOVATIONS, correlated))
+    if names := list_parameters_at_limit(model):
+        out.append(Finding(FindingKind.PARAMETERS_AT_LIMIT, ParametersAtLimit(names)))
+    if model.refit.relative_input_error > options.allowed_input_error:
+        out.append(Finding(FindingKind.LARGE_INPUT_ERROR, _input_error(model)))
+    return tuple(out)
+
+
+def _input_error(model: FittedModel) -> LargeInputError:
+    log, level = model.refit.point.log, model.refit.level
+    return LargeInputError(
+        unit=log.units.get(log.input_names[0], ""),
+        rms=level.input_std,
+        share=model.refit.relative_input_error,
+        correlation_time=level.noise.time,
+    )
