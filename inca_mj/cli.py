@@ -13,11 +13,10 @@ from identification.commands.common import import_without_graphics, say, say_jso
 from identification.commands.program import run_program
 from identification.commands.sweep import SweepCommand
 from inca_mj.commands.calibrate import Calibrate
-from inca_mj.commands.compare import Compare
-from inca_mj.commands.crosscheck import Crosscheck
+from inca_mj.commands.compare import Compare, Crosscheck
 from inca_mj.commands.discover import Demo, Discover
 from inca_mj.commands.experiment import Excite, Sensitivity
-from inca_mj.commands.film import Film
+from inca_mj.commands.film import Film, View
 from inca_mj.commands.identify import Identify
 from inca_mj.commands.kinematics import Kinematics
 from inca_mj.commands.linearize import Linearize
@@ -26,7 +25,6 @@ from inca_mj.commands.statics import Statics
 from inca_mj.commands.thesis import Thesis
 from inca_mj.commands.track import Track
 from inca_mj.commands.trials import Trials
-from inca_mj.commands.view import View
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""inca compare LOG: measured against simulated."""
+"""inca compare LOG, inca crosscheck: the twin beside a measured log, and beside the reference."""
 
 from __future__ import annotations
 
@@ -20,10 +20,18 @@ from identification.commands.common import (
     output_field,
     table,
 )
-from inca_mj.commands.common import SavedRobot, Trust, do_not_draw, saved_robot_field
+from inca_mj.commands.common import (
+    SavedRobot,
+    Trust,
+    Values,
+    do_not_draw,
+    saved_robot_field,
+    values_field,
+)
 
 if TYPE_CHECKING:
     from identification import Log
+    from inca_mj.verification import CrossCheck
 
 
 @dataclass(frozen=True)
@@ -98,3 +106,61 @@ def draw(result: inca.Comparison, out: Path) -> None:
     sections = [compare_section(result), model_section(result.run.twin)]
     title = f"{result.log.name}: measured against simulated"
     draw_report(out, title, compare_verdict(result), sections, data=[result.log.name])
+
+
+@dataclass(frozen=True)
+class Crosscheck:
+    """Compare the MuJoCo twin with the reference ODE; exit 1 when they disagree.
+
+    Examples:
+        inca crosscheck
+        inca crosscheck --set simulation --duration 5 --states 1000
+    """
+
+    duration: float = 10.0
+    """Length of each run [s]."""
+    states: int = 10_000
+    """Random states at which accelerations are compared."""
+    robot: Annotated[Values, tyro.conf.OmitArgPrefixes] = values_field
+    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
+
+    def run(self) -> int:
+        """Check, say, keep; 0 when they agree, 1 when not."""
+        do_not_draw()
+        from inca_mj.verification import crosscheck
+
+        result = crosscheck(
+            self.robot.parameters(),
+            self.robot.place(),
+            duration=self.duration,
+            states=self.states,
+            progress=self.output.tell,
+        )
+        conclude(self, result.to_json(), crosscheck_table(result), partial(keep_crosscheck, result))
+        return 0 if result.passed else 1
+
+
+def crosscheck_table(result: CrossCheck) -> str:
+    """Returns the cross-check as a text table and its verdict."""
+    head = ("case", "step [ms]", "angle [rad]", "position [m]", "tension [N]")
+    rows = [
+        (
+            str(row["case"]),
+            f"{1e3 * row['step']:g}",
+            *(_error(row[f"max_{what}_error"]) for what in ("angle", "position", "tension")),
+        )
+        for row in result.rows
+    ]
+    return table(head, rows) + "\n" + "\n".join(result.sentences)
+
+
+def keep_crosscheck(result: CrossCheck, out: Path) -> None:
+    """Write the figure and the one-file report into a folder."""
+    from inca_mj.report.sections import crosscheck_section
+
+    title, sections = "The twin against the reference", [crosscheck_section(result)]
+    draw_report(out, title, result.sentences, sections, good=result.passed)
+
+
+def _error(value: float | None) -> str:
+    return "diverged" if value is None else f"{value:.2e}"

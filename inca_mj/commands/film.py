@@ -1,4 +1,4 @@
-"""inca film LOG|RUN: a film of the robot, or of two side by side, drawn without a screen."""
+"""inca film|view LOG|RUN: the robot in a film, drawn without a screen, or in a viewer."""
 
 from __future__ import annotations
 
@@ -12,12 +12,13 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import tyro
 
+import inca_mj as inca
 from identification.commands.common import Output, say, say_json, write_result
 from identification.errors import GraphicsError, InputError
 from identification.files import check_file
 from identification.folders import whole_folder
 from identification.progress import duration
-from inca_mj.commands.common import SavedRobot, cannot_draw, saved_robot_field
+from inca_mj.commands.common import SavedRobot, cannot_draw, do_not_draw, saved_robot_field
 
 if TYPE_CHECKING:
     from inca_mj.rendering.scene import Scene
@@ -128,6 +129,50 @@ class Film:
             log = log.between(float("-inf"), float(log.time[0]) + self.seconds)
         self.output.tell(f"simulating {log.duration:g} s of {source}")
         return make_scene(compare_with(self.robot, log, UNJUDGED), self.seconds)
+
+
+@dataclass(frozen=True)
+class View:
+    """Open the interactive viewer: pull at the platform and give currents, or play a log or a run.
+
+    Examples:
+        inca view
+        inca view examples/log.csv --speed 0.5
+    """
+
+    source: Annotated[Path | None, tyro.conf.Positional, tyro.conf.arg(metavar="LOG|RUN")] = None
+    """A run (.npz) to play, or a log under whose currents the twin is played."""
+    plain: bool = False
+    """Show models/inca6d_plain.xml, the approximation that needs MuJoCo only."""
+    speed: float = 1.0
+    """Seconds of the run in a second; 0.25 is slow motion."""
+    robot: Annotated[SavedRobot, tyro.conf.OmitArgPrefixes] = saved_robot_field
+
+    def run(self) -> int:
+        """Show it until the window is closed."""
+        do_not_draw()  # the viewer has an OpenGL of its own
+        from inca_mj.rendering.interactive import refuse_speed, require_screen, view_model, view_run
+
+        if self.plain and self.source is not None:
+            raise InputError("--plain shows a model and no run; leave out --plain, or the file")
+        refuse_speed(self.speed)
+        require_screen()  # before anything is simulated
+        if self.source is not None:
+            view_run(self._run(self.source), speed=self.speed)
+        elif self.plain:
+            view_model(inca.build_plain(self.robot.parameters(), self.robot.place()).compile())
+        else:
+            view_model(self.robot.twin(1e-2).model)
+        return 0
+
+    def _run(self, source: Path) -> inca.Run:
+        """Returns the run to play."""
+        from inca_mj.commands.compare import compare_with
+        from inca_mj.twin.logs import UNJUDGED, read_inca_log
+
+        if source.suffix == ".npz":
+            return inca.load_run(source)
+        return compare_with(self.robot, read_inca_log(source, UNJUDGED), UNJUDGED).run
 
 
 @dataclass
