@@ -91,8 +91,8 @@ def information(
     """
     every = (*names, *nuisance)
     parameters = experiment.plant.parameters
-    own = {**parameters.values(), **experiment.fixed}
-    start = np.array([parameters[n].value if n not in own else own[n] for n in every])
+    values = {**parameters.values(), **experiment.fixed}
+    start = np.array([parameters[n].value if n not in values else values[n] for n in every])
     space = coordinates(parameters, every, start)
     log = experiment.log()
     if log.outputs.size < len(every):

@@ -84,8 +84,8 @@ def estimate_from(
     """
     if n < 1:
         raise InputError(f"{n} starts; give one or more")
-    own = {**plant.parameters.values(), **(start or {})}
-    first = np.array([own[plant.parameters[name].name] for name in names])
+    known = {**plant.parameters.values(), **(start or {})}
+    first = np.array([known[plant.parameters[name].name] for name in names])
     space = coordinates(plant.parameters, names, first)
     values = _around(space, first, n, spread, seed)
     floor = by_unit(noise_floor(log.outputs), log)
@@ -93,9 +93,9 @@ def estimate_from(
     costs: list[float] = []
     rms: list[float] = []
     for k, row in counted(enumerate(values), "starts", len(values)):
-        begin = {**(start or {}), **dict(zip(names, row.tolist(), strict=True))}
+        begins_at = {**(start or {}), **dict(zip(names, row.tolist(), strict=True))}
         try:
-            found = estimate(plant, log, names, begin, options, progress)
+            found = estimate(plant, log, names, begins_at, options, progress)
             error = _error(found)
         except InputError:
             if k == 0:

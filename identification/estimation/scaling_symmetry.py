@@ -183,10 +183,10 @@ def _parallel(
     size = np.linalg.norm(root, axis=0)
     while True:
         share = np.linalg.lstsq(root[:, chosen], root[:, j], rcond=None)[0]
-        left = root[:, j] - root[:, chosen] @ share
-        if chosen and np.linalg.norm(left) <= errors[j] + np.abs(share) @ errors[chosen]:
+        rest = root[:, j] - root[:, chosen] @ share
+        if chosen and np.linalg.norm(rest) <= errors[j] + np.abs(share) @ errors[chosen]:
             break
-        along = {k: abs(root[:, k] @ left) / size[k] for k in free if size[k] > 0}
+        along = {k: abs(root[:, k] @ rest) / size[k] for k in free if size[k] > 0}
         if not along:
             return None
         chosen.append(max(along, key=lambda k: along[k]))

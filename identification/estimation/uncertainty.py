@@ -83,8 +83,8 @@ def bounded(correlation: np.ndarray) -> np.ndarray:
     """Returns a correlation without its rounding: within ±1, and 1 of a parameter with itself."""
     # What no record determines has no variance and keeps its zero.
     inside = np.clip(correlation, -1.0, 1.0)
-    own = np.diag(inside)
-    np.fill_diagonal(inside, np.where(np.isclose(own, 1.0), 1.0, own))
+    diagonal = np.diag(inside)
+    np.fill_diagonal(inside, np.where(np.isclose(diagonal, 1.0), 1.0, diagonal))
     return inside
 
 

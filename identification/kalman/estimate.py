@@ -109,11 +109,11 @@ def estimate_innovations(
     predictor, space, first = free_parameters(plant, part, names, start or {})
     known = Priors.of(space, space.encode(first), weights.priors)
     held = replace(known, weight=np.maximum(known.weight, RIDGE_WEIGHT))
-    begun = evaluate_point(predictor, space, known.mean)
-    if without_effect(begun.J, part.outputs).any():
-        refuse_without_effect(begun.J, space.names, part)
-    seen = [(begun, NoiseLevel(Noise(0.0, 1.0), 1.0, 0.0))]
-    points = descend(begun, held, options or KalmanOptions(), steps=steps)
+    first_point = evaluate_point(predictor, space, known.mean)
+    if without_effect(first_point.J, part.outputs).any():
+        refuse_without_effect(first_point.J, space.names, part)
+    seen = [(first_point, NoiseLevel(Noise(0.0, 1.0), 1.0, 0.0))]
+    points = descend(first_point, held, options or KalmanOptions(), steps=steps)
     status = _search(points, seen, progress)
     taken = max(0, len(seen) - 2)
     end = conclude(*seen[-1], held, taken)
@@ -161,10 +161,10 @@ def _search(
 
 def compute_innovations(end: Refit, whole: Log) -> np.ndarray:
     """Returns the innovations over a log whose beginning was fitted, shape (N, ny)."""
-    there = extend_point(end.point, whole)
+    longer = extend_point(end.point, whole)
     with one_blas_thread():
-        filter_ = build_whitener(there.linear, end.level.noise, whole.sampling_time)
-        return filter_(there.e)
+        filter_ = build_whitener(longer.linear, end.level.noise, whole.sampling_time)
+        return filter_(longer.e)
 
 
 def _of_innovations(end: Refit, fit: Fit, filter_: Whitener, E: np.ndarray) -> Fit:

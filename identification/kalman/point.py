@@ -147,8 +147,8 @@ def extend_point(point: Point, whole: Log) -> Point:
     for (number, log), (record, _), along in zip(
         records_of(whole), run.predictor.records(), run.along, strict=True
     ):
-        begun, plant = known.get(number, (None, None))
-        if plant is None or begun != log.begun:
+        start, plant = known.get(number, (None, None))
+        if plant is None or start != log.begun:
             plant = linearise_along(record, along).at_samples()
         else:
             plant = extend(plant, record, along)
@@ -167,8 +167,8 @@ def _known_plants(point: Point) -> dict[int, tuple[float, LinearPlant]]:
     """Returns the start [s] and linearisation of each record of a point's log, by its number."""
     out, done, linear = {}, 0, point.linear
     for number, log in records_of(point.log):
-        own = slice(done, done + len(log) - 1)
-        out[number] = log.begun, replace(linear, A=linear.A[own], B=linear.B[own])
+        rows = slice(done, done + len(log) - 1)
+        out[number] = log.begun, replace(linear, A=linear.A[rows], B=linear.B[rows])
         done += len(log)
     return out
 
@@ -235,8 +235,8 @@ def _solve(
     moves: np.ndarray, size: np.ndarray,
 ) -> np.ndarray:  # fmt: skip
     """Solves the sensitivity equations for m moves (m, p) of q, of some sizes, (N, ny, m)."""
-    there = space.decode(q + moves)
-    return solve_sensitivities(predictor, records, space.decode(q), there, size)
+    changed = space.decode(q + moves)
+    return solve_sensitivities(predictor, records, space.decode(q), changed, size)
 
 
 def _along(columns: np.ndarray, asked: np.ndarray) -> np.ndarray:

@@ -102,11 +102,11 @@ class Problem(Criterion[np.ndarray]):
         curve = 2 / BEND_STEP**2 * (ahead - self.target + BEND_STEP * self.rows @ move)
         return move + self._least(curve / 2, μ, move)
 
-    def _least(self, target: np.ndarray, μ: Cost, begun: np.ndarray) -> np.ndarray:
-        """Returns the damped δ that minimises ‖target - F δ‖ within bounds left after `begun`."""
+    def _least(self, target: np.ndarray, μ: Cost, taken: np.ndarray) -> np.ndarray:
+        """Returns the damped δ that minimises ‖target - F δ‖, within bounds after `taken`."""
         point, size = self.point, np.where(self.point.space.logarithmic, MAX_LOG_STEP, np.inf)
-        lower = np.minimum(np.maximum(point.space.lower - point.q, -size) - begun, 0.0)
-        upper = np.maximum(np.minimum(point.space.upper - point.q, size) - begun, 0.0)
+        lower = np.minimum(np.maximum(point.space.lower - point.q, -size) - taken, 0.0)
+        upper = np.maximum(np.minimum(point.space.upper - point.q, size) - taken, 0.0)
         scale, R, Q = self._factor
         if Q is None:
             along = solve_triangular(R, self.rows.T @ target / scale, trans=1)
@@ -150,8 +150,8 @@ class Problem(Criterion[np.ndarray]):
 
     def cost_after(self, move: np.ndarray) -> float:
         """Returns the criterion after a step; infinite where the plant cannot be simulated."""
-        there = self.residual(self.point.q + move)
-        return np.inf if there is None else float(there @ there)
+        after = self.residual(self.point.q + move)
+        return np.inf if after is None else float(after @ after)
 
     def moved(self, move: np.ndarray, taken: np.ndarray) -> Problem:
         """Returns the criterion about the point after a step, with the noise of that point."""

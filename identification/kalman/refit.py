@@ -103,8 +103,8 @@ class Refit:
     @property
     def unlearned(self) -> dict[str, float]:
         """Std of each free parameter over the std that was known before; 0 where none was."""
-        left = (self.std * self.priors.weight).tolist()
-        return dict(zip(self.point.space.names, left, strict=True))
+        shares = (self.std * self.priors.weight).tolist()
+        return dict(zip(self.point.space.names, shares, strict=True))
 
     @property
     def finer(self) -> None:

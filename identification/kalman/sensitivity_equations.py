@@ -88,9 +88,9 @@ def _of_record(
         start, numbers = predictor.settings(rows)
         g, known = _forcing(predictor, linear, rows, numbers, some)
         here = predictor.log.begun
-        begun = np.array([float(course(np.array([here]))[0]) for of in some for course in of])
+        factors = np.array([float(course(np.array([here]))[0]) for of in some for course in of])
         which = np.repeat(np.arange(len(moved)), counts[moved])
-        first = _first(linear, start, len(change))[which] * begun[:, None]
+        first = _first(linear, start, len(change))[which] * factors[:, None]
         size = change[which]
         g /= size[:, None, None]
         first /= size[:, None]
@@ -211,10 +211,10 @@ def _outputs(
         if _are_perfect(predictor, row, here):
             out[k] = y[k]
             continue
-        there = here.copy()
-        for reading, δ in zip(there, (y, q, v), strict=False):  # the time does not change
+        changed = here.copy()
+        for reading, δ in zip(changed, (y, q, v), strict=False):  # the time does not change
             reading += δ[k] * change[k]
-        out[k] = (predictor.said(row, there) - nominal)[0] / change[k]
+        out[k] = (predictor.said(row, changed) - nominal)[0] / change[k]
     return out
 
 
@@ -227,6 +227,6 @@ def _are_perfect(predictor: Predictor, rows: np.ndarray, here: np.ndarray) -> bo
 def _indices(predictor: Predictor) -> list[list[int]]:
     """Returns tangent-state indices of each sensor's reading, and its joint's position and rate."""
     model, sensors = predictor.plant.model, predictor.log.output_names
-    own = [tangent_index(model, *at) for at in output_columns(model, sensors)]
+    read = [tangent_index(model, *at) for at in output_columns(model, sensors)]
     dofs = [int(model.jnt_dofadr[model.sensor(name).objid[0]]) for name in sensors]
-    return [own, dofs, [model.nv + dof for dof in dofs]]
+    return [read, dofs, [model.nv + dof for dof in dofs]]

@@ -204,8 +204,8 @@ def divided(
 
 def _divide(every: int, parts: int, samples: int) -> np.ndarray:
     """Returns the steps at which the parts of all samples begin, and at which the last one ends."""
-    own = np.round(np.linspace(0, every, min(every, parts) + 1)).astype(int)
-    begins = every * np.arange(samples - 1)[:, None] + own[:-1]
+    cuts = np.round(np.linspace(0, every, min(every, parts) + 1)).astype(int)
+    begins = every * np.arange(samples - 1)[:, None] + cuts[:-1]
     return np.append(begins.ravel(), every * (samples - 1))
 
 

@@ -164,8 +164,8 @@ class HeldWindows:
         return decomposed(r, X, np.zeros((*r.shape, 0)))
 
     def _joined(self, y: np.ndarray, d: np.ndarray) -> np.ndarray:
-        left = (self.outputs - y) @ self.whitener.T
-        return np.hstack([left.reshape(len(d), -1), -d * self.weight])
+        error = (self.outputs - y) @ self.whitener.T
+        return np.hstack([error.reshape(len(d), -1), -d * self.weight])
 
     @cached_property
     def for_residuals(self) -> Prepared:
@@ -199,22 +199,23 @@ class HeldWindows:
     def _simulated(self, prepared: Prepared, moves: Sequence[np.ndarray]) -> np.ndarray:
         """Returns outputs of k moves of the states, shape (k, W, L, ny)."""
         W, k = len(self.record), len(moves)
-        begun = State.stacked([moved(self.model, self.first, d) for d in moves])
-        parts = [(p, np.tile(own, k)) for p, own in self._different]
-        for predictor, own in parts if with_states(self.predictors[0].plant) else ():
-            first = predictor.begun(NO_VALUES, begun.rows(own))
-            begun.qpos[own], begun.qvel[own], begun.act[own] = first.qpos, first.qvel, first.act
+        starts = State.stacked([moved(self.model, self.first, d) for d in moves])
+        parts = [(p, np.tile(rows, k)) for p, rows in self._different]
+        for predictor, rows in parts if with_states(self.predictors[0].plant) else ():
+            first = predictor.begun(NO_VALUES, starts.rows(rows))
+            for field in ("qpos", "qvel", "act"):
+                getattr(starts, field)[rows] = getattr(first, field)
         at, times = np.arange(W) if self.at is None else self.at, np.tile(self.times, k)
         simulated = np.concatenate([at + j * len(prepared.controls) for j in range(k)])
         run = prepared.simulations.run(
-            begun, np.tile(prepared.controls[at], (k, 1, 1)), prepared.every,
+            starts, np.tile(prepared.controls[at], (k, 1, 1)), prepared.every,
             self.predictors[0].recorded, times, simulated, keeps_diverged=True,
         )  # fmt: skip
         y = np.empty((k * W, *self.outputs.shape[1:]))
-        for predictor, own in parts:
-            if own.any():
-                mine = {f: x[own] for f, x in run.items()}
-                y[own] = predictor.outputs(NO_VALUES, mine, times[own])
+        for predictor, rows in parts:
+            if rows.any():
+                states = {f: x[rows] for f, x in run.items()}
+                y[rows] = predictor.outputs(NO_VALUES, states, times[rows])
         return y.reshape(k, W, *y.shape[1:])
 
 

@@ -81,14 +81,14 @@ class Starts:
     squares: np.ndarray
 
 
-def best_starts(own: Starts, others: Sequence[Starts]) -> tuple[np.ndarray, np.ndarray]:
+def best_starts(starts: Starts, others: Sequence[Starts]) -> tuple[np.ndarray, np.ndarray]:
     """Returns each window's start by the model with the least error, and whether it is another's.
 
     Other models may have more states or fewer: the first ones are the same. The start is a change
     of the initial states, shape (W, nx), the second a mask, shape (W,).
     """
-    best = np.argmin([own.squares, *(o.squares for o in others)], axis=0)
-    d = np.array(own.d)
+    best = np.argmin([starts.squares, *(o.squares for o in others)], axis=0)
+    d = np.array(starts.d)
     for k, other in enumerate(others):
         n, rows = min(d.shape[1], other.d.shape[1]), best == k + 1
         d[rows, :n] = other.d[rows, :n]

@@ -87,8 +87,8 @@ class Shooting:
 
     def joined(self, y: np.ndarray, d: np.ndarray) -> np.ndarray:
         """Returns r, shape (W, L ny + nx), of outputs (W, L, ny) and d (W, nx)."""
-        left = (self.cut.outputs - y) @ self.whitener.T
-        return np.hstack([left.reshape(len(d), -1), -d * self.first.weight])
+        error = (self.cut.outputs - y) @ self.whitener.T
+        return np.hstack([error.reshape(len(d), -1), -d * self.first.weight])
 
     def outputs(
         self, q: np.ndarray, moves: Sequence[np.ndarray], is_rough: bool = False
