@@ -145,20 +145,12 @@ def run_loop(
     robot: Twin, controller: Controller, duration: float, *, knows_pose: bool = False,
     noise: float = 0.0, seed: int = 0,
 ) -> Controlled:  # fmt: skip
-    """Drive a robot by a controller, from the robot's start on.
+    """Drives a robot by a controller, from the robot's start on, for a duration [s].
 
-    Args:
-        robot: the robot, with the effects that it truly has.
-        controller: sees the motor angles, as the robot's encoders tell them.
-        duration: of the run [s].
-        knows_pose: whether the controller is told the true pose too.
-        noise: std of the encoders' noise [rad].
-        seed: of the noise.
-
-    Raises:
-        InputError: the model's step does not divide the controller's period, the noise is negative
-            or no number, or the controller finds no pose.
-        DivergenceError: the robot left the finite numbers.
+    The robot has the effects that it truly has. The controller sees its encoders, with white noise
+    of a std [rad], and the true pose if it `knows_pose`. Raises InputError if the model's step does
+    not divide the controller's period, the noise is negative or no number, or the controller finds
+    no pose; DivergenceError if the robot leaves the finite numbers.
     """
     if not (np.isfinite(noise) and noise >= 0):
         raise InputError(f"a noise of {noise:g} rad; give 0 or more")

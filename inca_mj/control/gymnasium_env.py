@@ -53,15 +53,7 @@ class GymnasiumEnv(gymnasium.Env[Any, np.ndarray]):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
-        """Begin an episode.
-
-        Args:
-            seed: of this and the following episodes; they go on as they are when None.
-            options: there are none.
-
-        Returns:
-            What is observed, arrays by name, and an empty record.
-        """
+        """Begins an episode; a seed is that of this and all following ones. It has no options."""
         super().reset(seed=seed)
         if seed is not None:
             self.wrapped.task.random = np.random.default_rng(seed)
@@ -70,17 +62,9 @@ class GymnasiumEnv(gymnasium.Env[Any, np.ndarray]):
     def step(
         self, action: np.ndarray
     ) -> tuple[dict[str, np.ndarray], float, bool, bool, dict[str, Any]]:
-        """Give the motors their currents for one control step.
+        """Gives the motors currents (8,) [A] for a step; episodes are truncated, never terminated.
 
-        Args:
-            action: shape (8,) [A].
-
-        Returns:
-            What is observed, the reward, never terminated, truncated at the time limit, and an
-            empty record.
-
-        Raises:
-            PhysicsError: a current is not a finite number.
+        Raises PhysicsError if a current is not a finite number.
         """
         step = self.wrapped.step(action)
         return dict(step.observation), float(step.reward), False, step.last(), {}

@@ -104,14 +104,10 @@ class Inverse:
     def needed(
         self, motion: Motion, more: np.ndarray, angle: np.ndarray, time: float = 0.0
     ) -> Needed:
-        """Returns what an upright motion needs, at measured motor angles.
+        """Returns what an upright motion needs at measured motor angles (8,) [rad] and a time [s].
 
-        Args:
-            motion: of the platform.
-            more: acceleration that is asked beside that of the motion, linear in O and angular,
-                shape (6,) [m/s², rad/s²].
-            angle: φ, shape (8,) [rad].
-            time: of the record, of which the law may ask [s].
+        `more` is asked beside the acceleration of the motion, linear in O and angular, shape (6,)
+        [m/s², rad/s²].
         """
         data, model = self._data, self.robot.model
         v = np.concatenate([motion.velocity, np.zeros(3)])

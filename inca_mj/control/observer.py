@@ -68,16 +68,10 @@ class Observer:
         self._qpos = np.concatenate([begin.pose[:3], quaternion(*begin.pose[3:])])
 
     def seen(self, angle: np.ndarray, acceleration: np.ndarray, time: float = 0.0) -> Pose:
-        """Returns the pose after the motors have turned to new angles.
+        """Returns the pose after the motors have turned to new angles (8,) [rad], at a time [s].
 
-        Args:
-            angle: φ as measured, shape (8,) [rad].
-            acceleration: that the platform is asked to have, linear in O and angular, shape (6,)
-                [m/s², rad/s²].
-            time: of the record [s].
-
-        Raises:
-            InputError: no pose of the platform belongs to these angles.
+        `acceleration` is asked of the platform, linear in O and angular, shape (6,) [m/s², rad/s²].
+        Raises InputError if no pose belongs to these angles.
         """
         self._data.time = time
         self._wind(np.asarray(angle, float))

@@ -23,6 +23,7 @@ from inca_mj.control.inverse import HIGHEST_CURRENT, LOWEST_CURRENT
 from inca_mj.control.paths import Circle, Motion, Path, Point
 from inca_mj.robot import law
 from inca_mj.robot.geometry import DRIVES
+from inca_mj.robot.parameters import POSE
 from inca_mj.twin.mjcf import build
 from inca_mj.twin.statics import Start, start
 from inca_mj.twin.twin import Twin, start_state
@@ -33,7 +34,6 @@ with warnings.catch_warnings():
     from dm_control import mujoco as dm_mujoco
 
 TARGET = "target"
-START = ("x", "y", "z", "roll", "pitch", "yaw")
 START_SPREAD = np.array([0.02] * 3 + [0.05] * 3)  # half-width of the start poses [m, rad]
 HAND = (0.5, 2.0)  # least and largest force of the hand [N]; 2 A could hold 8 N
 REACH = np.array([0.2, 0.2, 0.2])  # half-width of the box of targets [m]; all of them can be held
@@ -72,7 +72,7 @@ class Handle(control.Task):
         """Put the robot at rest near its nominal start, with the pretension for its pose."""
         own = self.robot.parameters
         shift = self.random.uniform(-self.spread, self.spread)
-        values = {n: own[n].value + s for n, s in zip(START, shift, strict=True)}
+        values = {n: own[n].value + s for n, s in zip(POSE, shift, strict=True)}
         self.begin = start(own.with_values(values), self.robot.geometry, self.robot.layout)
         physics.begin(self.begin)
         self.path = self.draw_path(self.begin.pose[:3])
@@ -90,10 +90,9 @@ class Handle(control.Task):
         )
 
     def before_step(self, action: Any, physics: Physics) -> None:
-        """Give the motors their currents; the amplifiers limit them to their range.
+        """Gives the motors their currents, within the range of the amplifiers.
 
-        Raises:
-            PhysicsError: a current is not a finite number; the state is left as it was.
+        Raises PhysicsError if a current is not a finite number; the state is left as it was.
         """
         currents = np.asarray(action, float)
         if not np.isfinite(currents).all():
@@ -197,21 +196,13 @@ class Physics(dm_mujoco.Physics):
     rest: Start | None = None
 
     def reset(self, keyframe_id: int | None = None) -> None:
-        """Put the robot to rest at its start, where it can be stepped at once.
-
-        Args:
-            keyframe_id: another keyframe of the model.
-        """
+        """Puts the robot to rest at its start, where it can be stepped, or to a keyframe."""
         if self.rest is not None:
             self.model.actuator_user[:, law.T_0] = self.rest.balance
         super().reset(int(self.model.key("start").id) if keyframe_id is None else keyframe_id)
 
     def copy(self, share_model: bool = False) -> Physics:
-        """Returns a copy with the same state and rest.
-
-        Args:
-            share_model: whether both have one model.
-        """
+        """Returns a copy with the same state and rest, and the same model if it is shared."""
         other = super().copy(share_model)
         other.rest = self.rest
         return other

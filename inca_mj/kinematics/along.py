@@ -32,14 +32,20 @@ import numpy as np
 from scipy.signal import savgol_coeffs, savgol_filter
 
 from identification.errors import InputError
-from inca_mj.kinematics.balance import DRUMS, LENGTHS, PLATFORM, Balance, NoLoad, Weights, balance
-from inca_mj.kinematics.cables import cables_at
-from inca_mj.kinematics.elastic import (
+from inca_mj.kinematics.balance import (
+    DRUMS,
+    LENGTHS,
+    PLATFORM,
+    Balance,
     Measured,
+    NoLoad,
+    Weights,
+    balance,
     drum_tension,
     no_load_along,
     no_load_at_rest,
 )
+from inca_mj.kinematics.cables import cables_at
 from inca_mj.kinematics.forward import find
 from inca_mj.kinematics.rotations import rotation
 from inca_mj.robot.elastic import Robot
@@ -95,21 +101,10 @@ class Along:
 def measure(
     angles: Array, currents: Array, sampling_time: float, hold: str = "zoh"
 ) -> tuple[Measured, int]:
-    """Returns the angles and currents of a log, with the rates that the angles show.
+    """Returns a log with the rates that its angles show, and how many of them are extrapolated.
 
-    Before its first sample the robot rests with all angles zero and no currents.
-
-    Args:
-        angles: φ, shape (N, 8) [rad].
-        currents: i, shape (N, 8) [A].
-        sampling_time: between samples [s].
-        hold: "zoh" or "foh", the currents between samples.
-
-    Returns:
-        The record, and how many samples at its end have rates that are extrapolated.
-
-    Raises:
-        InputError: there are fewer than five samples.
+    Before its first sample the robot rests with all angles zero and no currents. Angles [rad] and
+    currents [A] have shape (N, 8); `hold` is "zoh" or "foh". Raises InputError below five samples.
     """
     if len(angles) < FEWEST:
         raise InputError(
@@ -137,14 +132,8 @@ def measure(
 def poses_along(robot: Robot, measured: Measured, encoder: Array, ends: int) -> Along:
     """Returns poses and tensions at each sample of a log that begins at rest with all angles zero.
 
-    Args:
-        robot: its numbers.
-        measured: from `measure`.
-        encoder: std of each angle, shape (8,) [rad].
-        ends: samples at the end of which the drums' balance is not used.
-
-    Raises:
-        InputError: at a sample no pose has such cable lengths.
+    `encoder` is the std of each angle, shape (8,) [rad]; the balance of the drums is not used at
+    the last `ends` samples. Raises InputError where no pose has such cable lengths.
     """
     used = np.arange(len(measured.angles)) < len(measured.angles) - ends
     σ = FIRST
@@ -193,11 +182,7 @@ def _rigid(robot: Robot, measured: Measured, σ: Array) -> tuple[Array, Array, A
 
 
 def _refuse_unreached(missed: Array, samples: Array) -> None:
-    """Refuse lengths that no pose has; their errors have shape (n, 8) [m].
-
-    Raises:
-        InputError: an error is larger than `FAR`.
-    """
+    """Refuses lengths that no pose has, by their errors (n, 8) [m]."""
     n, k = np.unravel_index(np.abs(missed).argmax(), missed.shape)
     if abs(missed[n, k]) > FAR:
         raise InputError(
@@ -226,18 +211,9 @@ def components(
     no_load: NoLoad,
     begin: tuple[Array, Array, Array],
 ) -> Components:
-    """Returns the std that the residuals show.
+    """Returns the std that the residuals show; the search begins at σ and at poses and tensions.
 
-    Args:
-        robot: its numbers.
-        measured: angles and currents of some samples, N.
-        encoder: std of each angle, shape (8,) [rad].
-        σ: where to begin.
-        no_load: d₀ and ∂d₀/∂T for a robot and tensions.
-        begin: positions (N, 3) [m], rotations (N, 3, 3) and tensions (N, 8) [N] to begin at.
-
-    Raises:
-        InputError: no pose agrees with a sample.
+    The arguments are those of `balance`. Raises InputError where no pose agrees with a sample.
     """
     floor = (robot.R * encoder).mean()
     found = _estimated(robot, measured, encoder, replace(σ, length=max(σ.length, floor)), no_load,

@@ -1,5 +1,27 @@
 """Pose and tensions that agree best with motor angles and currents: weighted least squares.
 
+What angles φ and currents i say of a robot with elastic cables:
+
+    d₀ = d₀(0) - ∫ R dφ/(1 + ε)                           what the rollers have wound  (thesis 2.30)
+    d = d₀ (1 + T/λ),   ε = T/λ                           the cable at rest     (2.24, 2.25, 2.32)
+    R T = K_t i + R_s F_s - b_v ω - b_c tanh(β ω) - J ω̇   balance of a drum, corrected  (2.39, 2.40)
+    F_s = max(0, (R/R_s) T(0) - k_s R_s φ)                drum spring, corrected            (2.41)
+    W T = w + m (v̇, …)                                    balance of the platform     (2.33 - 2.36)
+
+(2.30) is dd₀ = -R dφ d₀/d, and d₀/d = 1/(1 + ε): the roller winds the cable as strained as it is.
+So d₀ depends on the path, but only weakly, because ε is about 2e-4 to 5e-4. For one measurement,
+of which the path is not known, the strain is taken as the mean of both ends:
+
+    d₀ ≈ d₀(0) - R φ/(1 + (ε(0) + ε)/2)
+
+The error is R |φ| times the difference between that mean and the true mean of ε along the path, so
+at most half the spread of ε on the way: 0.1 mm for 0.9 m of cable. Along a log the path is known,
+and the integral is computed by the trapezoidal rule from sample to sample.
+
+At rest a drum may be held by its dry friction anywhere within ±b_c: the tension that its balance
+gives has the std b_c/(√3 R). The tanh of (2.39) has no such rest; the twin creeps until no friction
+is left.
+
 Fourteen unknowns, the pose and eight tensions T, and twenty-two statements, each with a std:
 
     (d(pose) - d₀ (1 + T/λ))/σ_d      8   length of the elastic cable; σ_d = R σ_φ by the encoder
@@ -9,10 +31,9 @@ Fourteen unknowns, the pose and eight tensions T, and twenty-two statements, eac
     δ = -(JᵀJ)⁻¹ Jᵀ r,   cov = (JᵀJ)⁻¹          steps of Gauss and Newton; N measurements at once
 
 ∂(W T)/∂(v, ω) = -Σ T_i ∂L_iᵀ: the geometric stiffness, whose columns are -L̇ᵀ T for unit twists.
-The leverage J (JᵀJ)⁻¹ Jᵀ of a statement says how much of its error the unknowns take; what is
-left, one minus that, is its redundancy (eight of twenty-two in all).
-
-A slack cable has no tension and says nothing of the pose: its length counts not, and T is 0.
+The leverage J (JᵀJ)⁻¹ Jᵀ of a statement says how much of its error the unknowns take; what is left,
+one minus that, is its redundancy (eight of twenty-two in all). A slack cable has no tension and
+says nothing of the pose: its length counts not, and T is 0.
 """
 
 from __future__ import annotations
@@ -24,18 +45,35 @@ import numpy as np
 
 from identification.errors import InputError
 from inca_mj.kinematics.cables import cables_at
-from inca_mj.kinematics.elastic import Measured, drum_tension
 from inca_mj.kinematics.jacobians import jacobian, jacobian_rate
 from inca_mj.kinematics.rotations import euler_of, pose_rate_matrix, turn
 from inca_mj.robot.elastic import Robot
 
 Array = np.ndarray
-NoLoad = Callable[[Robot, Array], tuple[Array, Array]]
-
 STEPS = 40
 CLOSE = 1e-9  # largest last step [m, rad]
 SLACK = 1e-3  # std of T = 0 in a slack cable [N]
 LENGTHS, DRUMS, PLATFORM = slice(0, 8), slice(8, 16), slice(16, 22)
+NoLoad = Callable[[Robot, Array], tuple[Array, Array]]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Measured:
+    """Measurements at N instants, a row each.
+
+    Attributes:
+        angles: φ, shape (N, 8) [rad].
+        currents: i, shape (N, 8) [A].
+        rates: ω, shape (N, 8) [rad/s].
+        rate_changes: ω̇, shape (N, 8) [rad/s^2].
+        rate_noise: std of ω̇ that noise of the angles makes, over their std [1/s^2].
+    """
+
+    angles: Array
+    currents: Array
+    rates: Array
+    rate_changes: Array
+    rate_noise: float = 0.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -118,15 +156,9 @@ def balance(
 ) -> Balance:
     """Returns the most likely poses and tensions.
 
-    Args:
-        robot: its numbers.
-        measured: angles and currents.
-        weights: std of the statements.
-        no_load: d₀ and ∂d₀/∂T for a robot and tensions.
-        begin: positions (N, 3) [m], rotations (N, 3, 3) and tensions (N, 8) [N] to begin at.
-
-    Raises:
-        InputError: the search does not end, or a pose on the way cannot be.
+    `no_load` gives d₀ and ∂d₀/∂T for a robot and tensions; `begin` are positions (N, 3) [m],
+    rotations (N, 3, 3) and tensions (N, 8) [N]. Raises InputError if the search does not end, or a
+    pose on the way cannot be.
     """
     position, R, T = begin
     taut = np.ones_like(T, dtype=bool)
@@ -152,19 +184,7 @@ def statements(
     at: tuple[Array, Array, Array],
     taut: Array,
 ) -> tuple[Array, Array]:
-    """Returns residuals, shape (N, 22), and their derivatives by twist and T, shape (N, 22, 14).
-
-    Args:
-        robot: its numbers.
-        measured: angles and currents.
-        weights: std of the statements.
-        no_load: d₀ and ∂d₀/∂T for a robot and tensions.
-        at: positions (N, 3) [m], rotations (N, 3, 3) and tensions (N, 8) [N].
-        taut: False where a cable is slack, shape (N, 8), bool.
-
-    Raises:
-        InputError: a cable has no length.
-    """
+    """Returns residuals (N, 22) and their derivatives by twist and T (N, 22, 14), see `balance`."""
     position, R, T = at
     there = cables_at(position, R, robot.geometry)
     L, stretch = jacobian(there), 1 + T / robot.lambda_
@@ -213,3 +233,32 @@ def _search(
         f"no pose agrees with the motor angles at sample {int(last.argmax())}; check the geometry,"
         " the pose at the start and the sign of the motor angles (positive winds in)"
     )
+
+
+def drum_tension(robot: Robot, measured: Measured) -> Array:
+    """Returns T that balances each drum, shape (N, 8) [N] (thesis 2.39 - 2.41, corrected)."""
+    R, R_s, φ, ω = robot.R, robot.R_s, measured.angles, measured.rates
+    F_s = np.maximum(0, R / R_s * robot.tension - robot.k_s * R_s * φ)
+    friction = robot.b_v * ω + robot.b_c * np.tanh(robot.beta * ω)
+    return (
+        robot.K_t * measured.currents + R_s * F_s - friction - robot.J * measured.rate_changes
+    ) / R
+
+
+def no_load_at_rest(angles: Array, robot: Robot, T: Array) -> tuple[Array, Array]:
+    """Returns d₀ (N, 8) [m] and ∂d₀/∂T [m/N] of measurements (thesis 2.30, mean strain).
+
+    Angles come first, so that they can be bound.
+    """
+    stretch = 1 + (robot.tension + T) / (2 * robot.lambda_)
+    wound = robot.R * angles / stretch
+    return robot.no_load - wound, wound / stretch / (2 * robot.lambda_)
+
+
+def no_load_along(robot: Robot, angles: Array, T: Array) -> Array:
+    """Returns d₀ (N, 8) [m] along a log that begins at rest, all angles zero (thesis 2.30)."""
+    taken = 1 - 1 / (1 + T / robot.lambda_)  # ε/(1 + ε): the part of R dφ that is strain
+    first = (1 - 1 / (1 + (robot.tension + T[0]) / (2 * robot.lambda_))) * angles[0]
+    steps = np.diff(angles, axis=0) * (taken[1:] + taken[:-1]) / 2
+    strained = np.concatenate([first[None], first + np.cumsum(steps, axis=0)])
+    return robot.no_load - robot.R * (angles - strained)

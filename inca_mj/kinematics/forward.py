@@ -117,21 +117,10 @@ def find(
     pulleys: Pulleys | None = None,
     tolerance: float = 1e-10,
 ) -> tuple[Array, Array, float]:
-    """Returns the result of the search of `pose_from_lengths` alone.
+    """Returns position (3,) [m], rotation (3, 3) and the largest part of the last step [m, rad].
 
-    Args:
-        lengths: measured cable lengths, shape (8,) [m].
-        geometry: exit points and connectors.
-        begin: position (3,) [m] and rotation (3, 3) to begin at.
-        σ: std of the lengths, shape (8,) [m].
-        pulleys: at the exit points.
-        tolerance: largest last step [m, rad].
-
-    Returns:
-        Position (3,) [m], rotation (3, 3), and the largest part of the last step [m, rad].
-
-    Raises:
-        InputError: the search passes a pose where a cable has no length.
+    This is the search of `pose_from_lengths` alone, from a position and a rotation; σ is the std of
+    the lengths, shape (8,) [m].
     """
     position, R = begin
     away = np.abs(lengths - cables_at(position, R, geometry, pulleys).lengths).max()

@@ -88,14 +88,7 @@ def jacobian_rate(cables: Cables, twist: Array) -> Array:
 
 
 def singular_values(cables: Cables) -> Array:
-    """Returns the singular values of L with ω times ρ, the largest first.
-
-    Args:
-        cables: of a pose, from `inverse`.
-
-    Returns:
-        Shape (..., 6), without unit.
-    """
+    """Returns the singular values of L with ω times ρ, largest first, (..., 6), without unit."""
     ρ = np.linalg.norm(cables.arms, axis=-1).mean(-1)[..., None, None]
     L = jacobian(cables)
     return np.linalg.svd(np.concatenate([L[..., :3], L[..., 3:] / ρ], -1), compute_uv=False)

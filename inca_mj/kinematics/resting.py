@@ -12,8 +12,16 @@ import numpy as np
 
 from identification.errors import InputError
 from inca_mj.kinematics.along import FIRST, ROUNDS, STILL, TOLD
-from inca_mj.kinematics.balance import LENGTHS, Balance, NoLoad, Weights, balance
-from inca_mj.kinematics.elastic import Measured, drum_tension, no_load_at_rest
+from inca_mj.kinematics.balance import (
+    LENGTHS,
+    Balance,
+    Measured,
+    NoLoad,
+    Weights,
+    balance,
+    drum_tension,
+    no_load_at_rest,
+)
 from inca_mj.kinematics.forward import REACH, find
 from inca_mj.kinematics.rotations import rotation
 from inca_mj.robot.elastic import Robot
@@ -27,15 +35,7 @@ LEAST = 1e-3  # a drum without friction is in exact balance [N]
 
 
 def at_rest(angles: Array, currents: Array) -> Measured:
-    """Returns one measurement at rest.
-
-    Args:
-        angles: φ, shape (8,) [rad].
-        currents: i, shape (8,) [A].
-
-    Raises:
-        InputError: these are not eight finite numbers each.
-    """
+    """Returns a measurement at rest of finite angles (8,) [rad] and currents (8,) [A]."""
     rows = {}
     for name, values, unit in (("angles", angles, "rad"), ("currents", currents, "A")):
         row = np.asarray(values, float)
@@ -59,17 +59,10 @@ def rest_weights(robot: Robot, encoder: float, length: float = 0.0) -> Weights:
 def rest_pose(
     robot: Robot, measured: Measured, encoder: float = ENCODER
 ) -> tuple[Balance, Weights]:
-    """Returns the pose and tensions of a robot at rest, and the std of the statements.
+    """Returns pose and tensions at rest of a measurement by `at_rest`, and the std of statements.
 
     Where the lengths disagree by more than the encoders explain, their std is what they show.
-
-    Args:
-        robot: its numbers.
-        measured: from `at_rest`.
-        encoder: std of each angle [rad].
-
-    Raises:
-        InputError: no pose has such cable lengths, or a cable is slack there.
+    Raises InputError if no pose has such cable lengths, or a cable is slack there.
     """
     φ, σ = measured.angles, robot.R * encoder
     balanced = drum_tension(robot, measured)

@@ -15,6 +15,8 @@ are kept."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 
 from identification.errors import InputError
@@ -42,7 +44,7 @@ def rotation(roll: float | Array, pitch: float | Array, yaw: float | Array) -> A
         (sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr),
         (-sp, cp * sr, cp * cr),
     )
-    return np.stack([np.stack(row, -1) for row in rows], -2)
+    return _matrix(rows)
 
 
 def pose_rotation(pose: Array) -> Array:
@@ -94,7 +96,7 @@ def cross_matrix(vectors: Array) -> Array:
     x, y, z = np.moveaxis(np.asarray(vectors, float), -1, 0)
     o = np.zeros_like(x)
     rows = ((o, -z, y), (z, o, -x), (-y, x, o))
-    return np.stack([np.stack(row, -1) for row in rows], -2)
+    return _matrix(rows)
 
 
 def turn(vectors: Array) -> Array:
@@ -120,7 +122,7 @@ def body_rate_matrix(pose: Array) -> Array:
     sr, cr, sp, cp = np.sin(roll), np.cos(roll), np.sin(pitch), np.cos(pitch)
     o, one = np.zeros_like(roll), np.ones_like(roll)
     rows = ((one, o, -sp), (o, cr, sr * cp), (o, -sr, cr * cp))
-    return np.stack([np.stack(row, -1) for row in rows], -2)
+    return _matrix(rows)
 
 
 def euler_rate_matrix(pose: Array) -> Array:
@@ -144,7 +146,7 @@ def euler_rate_matrix(pose: Array) -> Array:
         )
     o, one = np.zeros_like(roll), np.ones_like(roll)
     rows = ((one, sr * sp / cp, cr * sp / cp), (o, cr, -sr), (o, sr / cp, cr / cp))
-    return np.stack([np.stack(row, -1) for row in rows], -2)
+    return _matrix(rows)
 
 
 def pose_rate_matrix(pose: Array) -> Array:
@@ -164,3 +166,8 @@ def pose_rate_matrix(pose: Array) -> Array:
     E[..., :3, :3] = np.eye(3)
     E[..., 3:, 3:] = euler_rate_matrix(pose) @ np.swapaxes(R, -1, -2)
     return E
+
+
+def _matrix(rows: Iterable[Iterable[Array]]) -> Array:
+    """Returns matrices of entries, each of shape (...), shape (..., rows, columns)."""
+    return np.stack([np.stack([*row], -1) for row in rows], -2)

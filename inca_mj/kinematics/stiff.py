@@ -26,19 +26,10 @@ LOST = 1.0  # by which exchanged or turned angles still miss no length, in a fra
 def poses_with_stiff_cables(
     angles: np.ndarray, R: float | np.ndarray, start: np.ndarray, geometry: Geometry
 ) -> np.ndarray:
-    """Returns platform poses from motor angles, each sample starting from the last.
+    """Returns poses (N, 6) [m, rad] from motor angles (N, 8) [rad], which are zero at `start`.
 
-    Args:
-        angles: motor angles φ, positive winds in, shape (N, 8) [rad].
-        R: radius of the rollers, of all or of each, shape (8,) [m].
-        start: the pose where φ = 0: x, y, z [m], roll, pitch, yaw [rad], shape (6,).
-        geometry: exit points and connectors.
-
-    Returns:
-        x, y, z [m], roll, pitch, yaw [rad], shape (N, 6).
-
-    Raises:
-        InputError: no pose has nearly such cable lengths.
+    R is the radius of all rollers or of each [m]. Raises InputError if no pose has nearly such
+    cable lengths.
     """
     position, turned = np.array(start[:3], float), rotation(*start[3:])
     lengths = cables_at(position, turned, geometry).lengths - R * np.asarray(angles)
@@ -70,16 +61,9 @@ def _searched(
 def _settle(
     lengths: np.ndarray, positions: np.ndarray, rotations: np.ndarray, geometry: Geometry
 ) -> list[int]:
-    """Take the steps of `find` for all samples at once, in place, none of them halved.
+    """Takes unhalved steps of `find` for all samples at once; returns those they do not end.
 
-    Args:
-        lengths: of the cables, shape (N, 8) [m].
-        positions: where each sample begins, and then ends, shape (N, 3) [m].
-        rotations: the same, shape (N, 3, 3).
-        geometry: exit points and connectors.
-
-    Returns:
-        The samples that such steps do not bring to an end; they keep where they began.
+    Positions (N, 3) [m] and rotations (N, 3, 3) change in place where a search ends.
     """
     rows = np.arange(len(lengths))
     at, turned = positions.copy(), rotations.copy()
@@ -108,12 +92,7 @@ def _settle(
 
 
 def _refuse_lost(missed: np.ndarray, sample: int) -> None:
-    """Refuse angles of which the nearest pose misses lengths by more than a log's errors do.
-
-    Args:
-        missed: lengths of that pose minus those of the angles, shape (8,) [m].
-        sample: of the log.
-    """
+    """Refuses angles whose nearest pose misses lengths (8,) [m] by more than a log's errors do."""
     worst = int(np.abs(missed).argmax())
     if abs(missed[worst]) > LOST:
         raise InputError(

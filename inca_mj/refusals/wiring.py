@@ -38,16 +38,11 @@ ADVICE = ", with which `inca compare` shows the log beside the twin"
 
 
 def refuse_miswired(log: Log, plant: Twin, trust: Sequence[str] = ()) -> None:
-    """Refuse a log whose angles or currents cannot be those of the drives they are named after.
+    """Refuses a log whose angles or currents cannot be those of the drives they are named after.
 
-    Args:
-        log: of the robot.
-        plant: its nominal twin.
-        trust: judgements that the user overrules, words of `JUDGED`.
-
-    Raises:
-        InputError: an encoder is dead, frozen, reversed, swapped with another or in another unit,
-            currents are reversed, swapped or were not logged, or a word is unknown.
+    It is compared with the nominal twin. `trust` are words of `JUDGED`, judgements that the user
+    overrules. Raises InputError if an encoder is dead, frozen, reversed, swapped or in another
+    unit, currents are reversed, swapped or were not logged, or a word is unknown.
     """
     overruled = {*trusted(trust, "given as trust", JUDGED)}
     if "sensors" not in overruled:

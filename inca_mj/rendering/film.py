@@ -159,11 +159,7 @@ def stills(
 
 
 def common_time(scenes: Sequence[Scene]) -> tuple[float, float]:
-    """Begin and end of the time that all scenes have [s].
-
-    Raises:
-        InputError: they have none.
-    """
+    """Returns begin and end of the time that all scenes have [s]; refuses scenes that have none."""
     spans = [(float(s.run.time[0]), float(s.run.time[-1])) for s in scenes]
     begin, end = max(a for a, _ in spans), min(b for _, b in spans)
     if not begin < end:
@@ -193,15 +189,9 @@ def _in_turn(begin: Callable[[float], Begun], times: Iterable[float]) -> Iterato
 def encoder(
     path: Path, size: tuple[int, int], fps: float
 ) -> Iterator[Callable[[np.ndarray | None], None]]:
-    """Yields a function that takes frames (height, width, 3); the file is complete after the block.
+    """Yields a function that takes frames (height, width, 3); the mp4 is complete after the block.
 
-    Args:
-        path: of the mp4 file.
-        size: width and height, even numbers [px].
-        fps: frames per second.
-
-    Raises:
-        InputError: ffmpeg is missing or fails.
+    `size` is width and height, even numbers [px]. Raises InputError if ffmpeg is missing or fails.
     """
     import imageio_ffmpeg
 

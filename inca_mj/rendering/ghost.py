@@ -33,14 +33,9 @@ _EACH = (1, 2, 5)
 def ghost_positions(robot: Twin, angles: np.ndarray, poses: np.ndarray | None) -> np.ndarray:
     """Returns MuJoCo positions of the measured robot, shape (N, 15) [m, -, rad].
 
-    Args:
-        robot: the twin.
-        angles: measured motor angles, shape (N, 8) [rad].
-        poses: measured poses x, y, z [m], roll, pitch, yaw [rad], shape (N, 6); from the angles
-            when None.
-
-    Raises:
-        InputError: a shape is wrong, a number is not finite, or no pose has such cable lengths.
+    Angles (N, 8) [rad] and poses (N, 6) [m, rad] are measured; poses follow from the angles when
+    None. Raises InputError if a shape is wrong, a number is not finite, or no pose has such cable
+    lengths.
     """
     angles = _table(angles, "measured motor angles", DRIVES)
     if poses is None:
@@ -56,29 +51,17 @@ def ghost_positions(robot: Twin, angles: np.ndarray, poses: np.ndarray | None) -
 def ghost_difference(
     robot: Twin, simulated: np.ndarray, ghost: np.ndarray, is_pose_measured: bool
 ) -> Difference:
-    """Returns a simulated robot beside the measured one.
+    """Returns a simulated robot beside the measured one; both are positions (N, 15) [m, -, rad].
 
-    Args:
-        robot: the twin.
-        simulated: MuJoCo positions of the simulated robot, shape (N, 15) [m, -, rad].
-        ghost: of the measured one, shape (N, 15).
-        is_pose_measured: whether the pose of the ghost was measured; else it follows from the
-            angles for cables that do not stretch, and that of the simulated robot is taken so too.
+    If the pose of the ghost was not measured, it follows from the angles for cables that do not
+    stretch, and that of the simulated robot is taken so too.
     """
     own = simulated if is_pose_measured else ghost_positions(robot, simulated[:, 7:], None)
     return Difference(simulated, own, ghost)
 
 
 def ghost_errors(off: Difference) -> tuple[np.ndarray, np.ndarray]:
-    """Returns how far a simulated robot is from the measured one, sample by sample.
-
-    Args:
-        off: both robots.
-
-    Returns:
-        The distance of the platform, shape (N,) [m], and the rms of the eight motor angles' errors,
-        shape (N,) [rad].
-    """
+    """Returns distances of the platforms (N,) [m] and rms errors of the motor angles (N,) [rad]."""
     distance = np.linalg.norm(off.moved, axis=1)
     turned = np.sqrt(np.mean((off.simulated[:, 7:] - off.measured[:, 7:]) ** 2, axis=1))
     return distance, turned

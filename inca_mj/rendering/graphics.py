@@ -55,12 +55,12 @@ def choose_backend() -> str:
         return backend
     if backend not in (*_WINDOW, *_LIBRARIES):
         raise GraphicsError(f"MUJOCO_GL={backend} is no OpenGL backend; set egl, osmesa or glfw")
-    if not backend and not _display():
+    if not backend and not display():
         backend = os.environ["MUJOCO_GL"] = "egl"
     if backend in _LIBRARIES:
         for names in _LIBRARIES[backend]:
             _require(*names)
-    elif not _display():
+    elif not display():
         raise GraphicsError(f"MUJOCO_GL={backend} needs a display and there is none; set egl")
     if "mujoco" in sys.modules and backend in _LIBRARIES:
         _rebind(backend)
@@ -69,11 +69,7 @@ def choose_backend() -> str:
 
 @contextmanager
 def renderer(model: mujoco.MjModel, width: int, height: int) -> Iterator[mujoco.Renderer]:
-    """Yields an offscreen renderer of width x height pixels, freed when the block ends.
-
-    Raises:
-        GraphicsError: no OpenGL context can be made here.
-    """
+    """Yields an offscreen renderer of that many pixels; raises GraphicsError without OpenGL."""
     choose_backend()
     if _failed:
         raise GraphicsError(_failed[0])
@@ -99,11 +95,7 @@ def renderer(model: mujoco.MjModel, width: int, height: int) -> Iterator[mujoco.
 
 
 def draws_in_any_thread() -> bool:
-    """Returns whether OpenGL draws without a window; windows belong to the main thread.
-
-    Raises:
-        GraphicsError: nothing can be drawn here.
-    """
+    """Returns whether OpenGL draws without a window; windows belong to the main thread."""
     return choose_backend() in _LIBRARIES
 
 
@@ -112,9 +104,6 @@ def drawing_thread() -> Iterator[Executor]:
     """Yields a thread in which a renderer may live: one of its own where OpenGL needs no window.
 
     Windows belong to the main thread (GLFW), so that what would draw in them draws here at once.
-
-    Raises:
-        GraphicsError: nothing can be drawn here.
     """
     if not draws_in_any_thread():
         yield _ThisThread()
@@ -135,8 +124,9 @@ class _ThisThread(Executor):
         return done
 
 
-def _display() -> bool:
-    return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
+def display() -> str:
+    """Returns the name of the screen; "" where there is none."""
+    return os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY") or ""
 
 
 def _require(*names: str) -> None:

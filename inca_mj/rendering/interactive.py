@@ -6,7 +6,6 @@ that would hang or warn; `inca_mj.rendering.film` draws without a screen.
 
 from __future__ import annotations
 
-import os
 import sys
 import time
 import warnings
@@ -17,6 +16,7 @@ import mujoco
 import numpy as np
 
 from identification.errors import GraphicsError, InputError
+from inca_mj.rendering.graphics import display
 from inca_mj.twin.run import Run
 
 _FRAME = 1 / 60  # [s]
@@ -24,12 +24,8 @@ _INSTEAD = "inca film draws without a screen"
 
 
 def require_screen() -> None:
-    """Refuse to open a window where there is no screen.
-
-    Raises:
-        GraphicsError: there is none, or it cannot be opened.
-    """
-    named = os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
+    """Refuses, with a GraphicsError, to open a window where there is no screen."""
+    named = display()
     if sys.platform.startswith("linux") and not named:
         raise GraphicsError(
             "no screen for the viewer: neither DISPLAY nor WAYLAND_DISPLAY is set; start it on a"
@@ -45,11 +41,7 @@ def require_screen() -> None:
 
 
 def view_model(model: mujoco.MjModel) -> None:
-    """Simulate a model in the viewer until its window is closed; it begins at its reset.
-
-    Raises:
-        GraphicsError: there is no screen.
-    """
+    """Simulates a model in the viewer from its reset until its window is closed."""
     require_screen()
     import mujoco.viewer
 
@@ -57,15 +49,10 @@ def view_model(model: mujoco.MjModel) -> None:
 
 
 def view_run(run: Run, *, speed: float = 1.0) -> None:
-    """Play a run in the viewer, again and again, until its window is closed.
+    """Plays a run in the viewer again and again until its window is closed.
 
-    Args:
-        run: what the twin did.
-        speed: seconds of the run in a second.
-
-    Raises:
-        InputError: the speed is not a positive number.
-        GraphicsError: there is no screen, or this Python may not open a window on it.
+    `speed` is seconds of the run in a second. Raises InputError if it is not positive, and
+    GraphicsError if there is no screen or this Python may not open a window on it.
     """
     refuse_speed(speed)
     require_screen()
@@ -82,11 +69,7 @@ def view_run(run: Run, *, speed: float = 1.0) -> None:
 
 
 def refuse_speed(speed: float) -> None:
-    """Refuse a speed at which nothing can be played.
-
-    Raises:
-        InputError: the speed is not a positive number.
-    """
+    """Refuses a speed that is not a positive number."""
     if not 0 < speed < np.inf:
         raise InputError(f"a speed of {speed:g} is not a positive number; give one such as 0.25")
 
@@ -99,15 +82,9 @@ def play(
     clock: Callable[[], float] = time.monotonic,
     sleep: Callable[[float], None] = time.sleep,
 ) -> None:
-    """Put the states of a run into a window, in time with a clock, until the window is closed.
+    """Puts the states of a run into a window, in time with a clock [s], until the window is closed.
 
-    Args:
-        run: what the twin did.
-        data: what the window shows.
-        window: has `is_running`, `lock` and `sync`, as the handle of `mujoco.viewer`.
-        speed: seconds of the run in a second of the clock.
-        clock: tells the time [s].
-        sleep: waits so many seconds.
+    The window has `is_running`, `lock` and `sync`, as the handle of `mujoco.viewer`.
     """
     begun, length = clock(), float(run.time[-1] - run.time[0])
     while window.is_running():

@@ -75,15 +75,7 @@ MEASURED_ROBOT = Entry("measured robot", ())
 
 
 def draw_mark(pen: ImageDraw.ImageDraw, entry: Entry, left: int, y: int, em: int) -> None:
-    """Draw the mark of an entry.
-
-    Args:
-        pen: of the picture.
-        entry: which.
-        left: edge of the mark [px].
-        y: its middle [px].
-        em: size of letters [px].
-    """
+    """Draws the mark of an entry: its left edge, its middle, and the size of letters [px]."""
     width, half = int(1.2 * em), max(1, int(entry.half * em))
     corner, parts = min(half, em // 4), len(entry.colours)
     if parts == 1:

@@ -42,13 +42,9 @@ class Outline:
 def outline_of(
     model: mujoco.MjModel, data: mujoco.MjData, eye: Eye, size: tuple[int, int]
 ) -> Outline:
-    """Returns the outline of a robot that was placed.
+    """Returns the outline of a robot that was placed, in a picture of width and height [px].
 
-    Args:
-        model: with bodies of spheres and capsules; drums, which are cylinders, stay where they are.
-        data: its positions, tendons included.
-        eye: the camera.
-        size: width and height of the picture [px].
+    Bodies are spheres and capsules; drums, which are cylinders, stay where they are.
     """
     shapes = []
     for i in np.flatnonzero(model.body_weldid[model.geom_bodyid] != 0).tolist():
@@ -67,14 +63,7 @@ def outline_of(
 
 
 def draw_outline(picture: np.ndarray, outline: Outline, colour: str, width: float) -> np.ndarray:
-    """Returns the picture with the outline over it, shape (height, width, 3) of bytes.
-
-    Args:
-        picture: shape (height, width, 3) of bytes.
-        outline: what to draw.
-        colour: "#rrggbb".
-        width: of its lines [px].
-    """
+    """Returns a picture (height, width, 3) of bytes with the outline over it; width [px]."""
     image = Image.fromarray(picture)
     pen, thick = ImageDraw.Draw(image, "RGBA"), max(1, round(width / 2))
     for corners in outline.cables:

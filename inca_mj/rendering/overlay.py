@@ -44,12 +44,7 @@ class Eye:
     fovy: float
 
     def pixels(self, points: np.ndarray, size: tuple[int, int]) -> np.ndarray:
-        """Returns pixels of points in O, shape (M, 3) -> (M, 2); NaN for those not before the eye.
-
-        Args:
-            points: shape (M, 3) [m].
-            size: width and height of the picture [px].
-        """
+        """Returns pixels (M, 2) of points (M, 3) [m] in O; NaN if they are not before the eye."""
         x, y, z = ((np.asarray(points) - self.place) @ self.axes).T
         f = size[1] / (2 * tan(self.fovy / 2))
         depth = np.where(z < -_NEAR, -z, np.nan)
@@ -127,20 +122,15 @@ class Trace:
 
     def distance(self, at: float) -> float:
         """Returns the distance from what is asked at a time [s], linear between samples [m]."""
-        return float(np.linalg.norm(_between(self.time, self.error, at)))
+        return float(np.linalg.norm(between(self.time, self.error, at)))
 
     def lines(self, at: float, thickness: float) -> tuple[Line, ...]:
-        """Returns the trace of the last seconds, the whole path, and a line from trace to target.
-
-        Args:
-            at: the time [s].
-            thickness: of the path; the trace is thicker [px].
-        """
+        """Returns the trace of the last seconds, the path, and a line from trace to target."""
         step = max(1, round(_FINE / (self.time[1] - self.time[0])), ceil(len(self.time) / _MOST))
         corners = np.union1d(np.arange(0, len(self.time), step), [len(self.time) - 1])
         times = self.time[corners]
         shown = corners[(times >= at - LAST) & (times < at)]
-        asked, error = _between(self.time, self.asked, at), _between(self.time, self.error, at)
+        asked, error = between(self.time, self.asked, at), between(self.time, self.error, at)
         end = asked + self.magnify * error
         trace = np.vstack([self.asked[shown] + self.magnify * self.error[shown], end])
         return (
@@ -158,5 +148,11 @@ def trace_of(run: Run, magnify: float = MAGNIFY) -> Trace | None:
     return Trace(run.time, run.asked, run.position - run.asked, magnify)
 
 
-def _between(time: np.ndarray, values: np.ndarray, at: float) -> np.ndarray:
-    return np.array([np.interp(at, time, column) for column in values.T])
+def between(time: np.ndarray, values: np.ndarray, at: float) -> np.ndarray:
+    """Returns values (N, m) interpolated linearly at a time; drawing norms quaternions."""
+    k = int(np.clip(np.searchsorted(time, at, "right") - 1, 0, len(time) - 2))
+    part = (at - time[k]) / (time[k + 1] - time[k])
+    first, last = values[k], values[k + 1].copy()
+    if values.shape[1] == 15 and first[3:7] @ last[3:7] < 0:
+        last[3:7] *= -1  # the same rotation, the short way round
+    return (1 - part) * first + part * last

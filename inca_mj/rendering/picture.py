@@ -142,14 +142,7 @@ class Lettering:
 
     def write(self, frame: np.ndarray, time: float, distance: float | None = None,
               off: np.ndarray | None = None) -> None:  # fmt: skip
-        """Letter a frame in place.
-
-        Args:
-            frame: shape (h, w, 3) of bytes.
-            time: [s].
-            distance: of the platform from the path that was asked [m].
-            off: of the simulated robot from the measured one: the platform [m], the motors [rad].
-        """
+        """Letters a frame in place: time [s], distance from the path [m], errors [m, rad]."""
         frame[self._rows] = (self._ink + frame[self._rows] * self._see) // 255
         self._say(frame, self._clock, f"t = {time:z.2f} s", 1.15)
         if off is not None:
@@ -225,14 +218,7 @@ class Panel:
 
     def __init__(self, time: np.ndarray, simulated: np.ndarray, measured: np.ndarray | None,
                  size: tuple[int, int]) -> None:  # fmt: skip
-        """Draw the plots.
-
-        Args:
-            time: sample times, shape (N,) [s].
-            simulated: motor angles, shape (N, 8) [rad].
-            measured: motor angles, shape (N, 8) [rad]; not drawn when None.
-            size: width and height [px].
-        """
+        """Draws motor angles (N, 8) [rad] over times (N,) [s]; size is width and height [px]."""
         dpi = size[0] / _INCHES
         figure = Figure((_INCHES, size[1] / dpi), dpi=dpi)
         canvas = FigureCanvasAgg(figure)

@@ -68,16 +68,11 @@ Source = Scene | Run | Comparison | Log | str | Path
 
 
 def make_scene(source: Source, seconds: float | None = None) -> Scene:
-    """Returns the scene of a log, a run, a comparison, or of a file that holds a log or a run.
+    """Returns the scene of a log, a run, a comparison or a file, or of its first seconds.
 
-    Args:
-        source: a log is laid over the twin's prediction with the thesis' Table 3.2; `compare` it
-            first for other values.
-        seconds: only so many from the start; all of it when None.
-
-    Raises:
-        InputError: the file is neither a log nor a run, or `seconds` leaves less than two samples.
-        DivergenceError: the twin cannot be simulated under the log's currents.
+    A log is laid over the twin's prediction with the thesis' Table 3.2; `compare` it first for
+    other values. Raises InputError if the file is neither a log nor a run, or less than two samples
+    are left, and DivergenceError if the twin cannot be simulated.
     """
     refuse_seconds(seconds)
     if isinstance(source, str | Path):

@@ -19,7 +19,7 @@ from inca_mj.rendering.ghost import (
     ghost_positions,
 )
 from inca_mj.rendering.legend import TensionScale, tension_scale
-from inca_mj.rendering.overlay import Trace, trace_of
+from inca_mj.rendering.overlay import Trace, between, trace_of
 from inca_mj.rendering.picture import BACKGROUND, Box, Layout, Lettering, Panel, layout, paste
 from inca_mj.rendering.scene import Scene
 from inca_mj.rendering.view import View, view
@@ -69,12 +69,8 @@ def stage(scenes: Sequence[Scene], look: Look) -> Iterator[Callable[[float], Beg
 
     All views of a frame are drawn side by side, and the next frame may begin before one is had.
     Pictures of two scenes stand side by side, with one scale of the tensions, and their close views
-    draw the difference from the measured robot larger, by one factor.
-
-    Raises:
-        InputError: there are other numbers of titles and scenes, the frame is too narrow for two,
-            or the camera is unknown.
-        GraphicsError: no OpenGL context can be made here.
+    draw the difference from the measured robot larger, by one factor. Raises InputError if titles
+    or camera do not fit or the frame is too narrow, and GraphicsError without OpenGL.
     """
     refuse_titles(look.titles, len(scenes))
     width, height = look.size
@@ -122,14 +118,14 @@ class _Stage:
     def begin(self, time: float) -> Begun:
         """Begin the picture at a time [s]; the result waits for it and puts it together."""
         run = self.run
-        qpos = _between(run.time, run.qpos, time)
-        ghost = None if self.ghost is None else _between(run.time, self.ghost, time)
-        colours = self.scale(_between(run.time, run.tension, time))
+        qpos = between(run.time, run.qpos, time)
+        ghost = None if self.ghost is None else between(run.time, self.ghost, time)
+        colours = self.scale(between(run.time, run.tension, time))
         thickness = max(1.0, len(self.canvas) / _THIN)
         lines = () if self.trace is None else self.trace.lines(time, thickness)
         drawn = [(self.boxes.scene, self.scene.begin(qpos, colours, ghost, lines))]
         if self.handle is not None and self.boxes.handle is not None:
-            near = None if self.near is None else _between(run.time, self.near, time)
+            near = None if self.near is None else between(run.time, self.near, time)
             drawn.append((self.boxes.handle, self.handle.begin(qpos, colours, near, lines)))
         return lambda: self._frame(time, drawn)
 
@@ -140,7 +136,7 @@ class _Stage:
             paste(frame, box, picture.result())
         if self.panel is not None and self.boxes.plots is not None:
             paste(frame, self.boxes.plots, self.panel.at(time))
-        off = None if self.errors is None else _between(self.run.time, self.errors, time)
+        off = None if self.errors is None else between(self.run.time, self.errors, time)
         distance = None if self.trace is None else self.trace.distance(time)
         self.lettering.write(frame, time, distance, off)
         return frame
@@ -194,13 +190,3 @@ def _difference(shown: Scene) -> Difference | None:
     robot = shown.run.twin
     ghost = ghost_positions(robot, shown.angles, shown.pose)
     return ghost_difference(robot, shown.run.qpos, ghost, shown.pose is not None)
-
-
-def _between(time: np.ndarray, values: np.ndarray, at: float) -> np.ndarray:
-    """Returns values (N, m) interpolated linearly at a time; drawing norms quaternions."""
-    k = int(np.clip(np.searchsorted(time, at, "right") - 1, 0, len(time) - 2))
-    part = (at - time[k]) / (time[k + 1] - time[k])
-    first, last = values[k], values[k + 1].copy()
-    if values.shape[1] == 15 and first[3:7] @ last[3:7] < 0:
-        last[3:7] *= -1  # the same rotation, the short way round
-    return (1 - part) * first + part * last

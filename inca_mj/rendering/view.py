@@ -50,39 +50,19 @@ class View:
     thread: Executor
 
     def begin(
-        self,
-        qpos: np.ndarray,
-        colours: np.ndarray,
-        ghost: np.ndarray | None,
+        self, qpos: np.ndarray, colours: np.ndarray, ghost: np.ndarray | None = None,
         lines: Sequence[Line] = (),
-    ) -> Future[np.ndarray]:
-        """Begin to draw a picture, in the thread of the view; the arguments are those of `draw`."""
+    ) -> Future[np.ndarray]:  # fmt: skip
+        """Begins a picture of positions (15,) with colours of the cables (8, 4) in [0..1].
+
+        The result waits for the picture, shape (height, width, 3) of bytes. The measured robot,
+        positions (15,), is drawn as an outline. Lines are drawn over the picture, so that the
+        platform does not hide where it should be.
+        """
         return self.thread.submit(self._draw, qpos, colours, ghost, lines)
 
-    def draw(
-        self,
-        qpos: np.ndarray,
-        colours: np.ndarray,
-        ghost: np.ndarray | None,
-        lines: Sequence[Line] = (),
-    ) -> np.ndarray:
-        """Returns the picture, shape (height, width, 3) of bytes.
-
-        Args:
-            qpos: positions of the simulated robot, shape (15,) [m, -, rad].
-            colours: of its cables, shape (8, 4) [0..1].
-            ghost: positions of the measured robot, shape (15,), which is drawn as an outline over
-                it; not drawn when None.
-            lines: drawn over the picture, so that the platform does not hide where it should be.
-        """
-        return self.begin(qpos, colours, ghost, lines).result()
-
     def _draw(
-        self,
-        qpos: np.ndarray,
-        colours: np.ndarray,
-        ghost: np.ndarray | None,
-        lines: Sequence[Line],
+        self, qpos: np.ndarray, colours: np.ndarray, ghost: np.ndarray | None, lines: Sequence[Line]
     ) -> np.ndarray:
         self.model.tendon_rgba[:] = colours
         _place(self.model, self.robot, qpos)
@@ -116,12 +96,7 @@ class View:
 def view(
     model: mujoco.MjModel, camera: str, width: int, height: int, *, cable: float
 ) -> Iterator[View]:
-    """Open a view of width x height pixels; `cable` is the radius cables are drawn with [m].
-
-    Raises:
-        InputError: the camera is unknown.
-        GraphicsError: no OpenGL context can be made here.
-    """
+    """Opens a view of width x height pixels; `cable` is the radius cables are drawn with [m]."""
     if camera not in CAMERAS:
         raise unknown_name("camera", camera, CAMERAS)
     own = copy.copy(model)

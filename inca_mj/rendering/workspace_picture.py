@@ -89,7 +89,7 @@ def workspace_picture(
     grey = np.tile([0.35, 0.36, 0.40, 1.0], (model.ntendon, 1))
     colours = grey if tension is None else tension_scale(tension)(tension)
     with view(model, camera, *size, cable=_CABLE) as seen:
-        picture = seen.draw(qpos, colours, None)
+        picture = seen.begin(qpos, colours).result()
     image = Image.fromarray(picture)
     _letter(image, found, geometry.assumed)
     path = Path(path)
@@ -123,15 +123,10 @@ def _letter(image: Image.Image, found: Workspace, assumed: bool) -> None:
 def surface(
     axes: tuple[np.ndarray, np.ndarray, np.ndarray], margin: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Returns vertices and triangles of the surface where a margin is zero.
+    """Returns vertices (V, 3) [m] and triangles (F, 3) of the surface where a margin is zero.
 
-    Args:
-        axes: coordinates of the grid along x, y and z, evenly spaced [m].
-        margin: at its points, positive inside, shape (X, Y, Z), any unit.
-
-    Returns:
-        Vertices, shape (V, 3) [m], and the vertices of each triangle, seen from outside against the
-        clock, shape (F, 3) of whole numbers. Both are empty where no point is inside.
+    The margin (X, Y, Z) is positive inside; the axes of the grid are evenly spaced [m]. Triangles
+    are seen from outside against the clock. Both are empty where no point is inside.
     """
     if not (margin > 0).any():
         return np.empty((0, 3)), np.empty((0, 3), int)

@@ -74,14 +74,7 @@ class Robot:
 def robot_of(
     values: Mapping[str, float], geometry: Geometry, tension: np.ndarray, no_load: np.ndarray
 ) -> Robot:
-    """Returns the robot of plain values by name.
-
-    Args:
-        values: of all parameters, those of single drives and points included, in SI units.
-        geometry: anchors before the displacements among the values.
-        tension: T(0), shape (8,) [N].
-        no_load: d₀(0), shape (8,) [m].
-    """
+    """Returns the robot of plain values by name in SI units, with T(0) [N] and d₀(0) [m]."""
     each = ("R", "R_s", "k_s", "K_t", "J", "b_v", "b_c", "beta")
     return Robot(
         geometry=displaced(geometry, values),

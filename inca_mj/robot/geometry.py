@@ -109,16 +109,7 @@ INCA = Geometry(
 
 
 def geometry_of(record: Mapping[str, Any]) -> Geometry:
-    """Returns the geometry of a record that was read from JSON, where rows are lists.
-
-    Args:
-        record: the fields of a `Geometry` by name.
-
-    Raises:
-        InputError: the numbers make no geometry.
-        KeyError: exits or connectors are missing.
-        TypeError: there is a field that a geometry does not have, or a row is none.
-    """
+    """Returns the geometry of a record from JSON; KeyError or TypeError where it is damaged."""
     rows = {name: tuple(map(tuple, record[name])) for name in ("exits", "connectors")}
     return Geometry(**{**record, **rows})
 

@@ -46,14 +46,7 @@ def make_input(
 
 
 def sampling_time_of(rate: float) -> float:
-    """Returns the sampling time of a rate [s].
-
-    Args:
-        rate: [Hz].
-
-    Raises:
-        InputError: it is none at which this robot is sampled.
-    """
+    """Returns the sampling time [s] of a rate [Hz]; refuses one at which no robot is sampled."""
     if not SLOWEST <= rate <= FASTEST:
         raise InputError(
             f"a rate of {rate:g} Hz is not between {SLOWEST:g} and {FASTEST:g} Hz; give one that is"

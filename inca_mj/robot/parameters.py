@@ -121,14 +121,7 @@ def _trial() -> ParameterSet:
 
 
 def pose_values(pose: Sequence[float]) -> Mapping[str, float]:
-    """Returns a pose by the names of the robot's parameters.
-
-    Args:
-        pose: x, y, z [m], roll, pitch, yaw [rad].
-
-    Raises:
-        InputError: it is not six finite numbers.
-    """
+    """Returns a pose of six finite numbers by the names of the robot's parameters."""
     try:
         numbers = [float(number) for number in pose]
     except (TypeError, ValueError):
@@ -141,13 +134,6 @@ def pose_values(pose: Sequence[float]) -> Mapping[str, float]:
 
 
 def refuse_step(step: float) -> None:
-    """Refuse a largest step with which no simulation makes sense.
-
-    Args:
-        step: [s].
-
-    Raises:
-        InputError: it is not between 1e-6 and 0.1 s.
-    """
+    """Refuses a largest step [s] with which no simulation makes sense."""
     if not 1e-6 <= step <= 0.1:
         raise InputError(f"a step of {step:g} s is not between 1e-6 and 0.1 s; try {TIMESTEP:g}")

@@ -60,23 +60,13 @@ def with_spread(parameters: ParameterSet) -> ParameterSet:
 
 
 def at_drives(name: str, values: Mapping[str, float]) -> np.ndarray:
-    """Returns a parameter at each drive, shape (8,), in its unit.
-
-    Args:
-        name: of the common value.
-        values: of all parameters; a deviation that is not among them is zero.
-    """
+    """Returns a parameter at each drive, (8,), in its unit; unknown deviations are zero."""
     own = [values.get(f"{name}@{k}", 0.0) for k in range(1, DRIVES + 1)]
     return values[name] * (1 + np.array(own))
 
 
 def displaced(geometry: Geometry, values: Mapping[str, float]) -> Geometry:
-    """Returns the geometry with its points where the displacements put them; itself without any.
-
-    Args:
-        geometry: the nominal points.
-        values: of all parameters; a displacement that is not among them is zero.
-    """
+    """Returns the geometry with its points where the displacements put them; itself without any."""
     moves = {point: _moves(point, values) for point in POINTS}
     if not any(move.any() for move in moves.values()):
         return geometry

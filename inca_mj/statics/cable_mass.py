@@ -78,16 +78,9 @@ def line_errors(
     rho: Sequence[float] = RHO,
     tension: Sequence[float] = TENSION,
 ) -> tuple[LineError, ...]:
-    """Returns the table over masses, tensions and poses.
+    """Returns the errors over masses `rho` [kg/m], tensions at the connectors [N] and poses (N, 6).
 
-    Args:
-        robot: its numbers.
-        poses: x, y, z [m], roll, pitch, yaw [rad], shape (N, 6).
-        rho: masses per length [kg/m].
-        tension: of every cable at its connector [N].
-
-    Raises:
-        InputError: a cable has no length at a pose, or cannot hang with so little tension.
+    Raises InputError if a cable has no length at a pose, or cannot hang with so little tension.
     """
     return tuple(
         _line_error(robot, pose, mass, T)

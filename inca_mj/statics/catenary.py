@@ -74,28 +74,18 @@ class Catenary:
         return np.hypot(self.H, self.V - self.rho * GRAVITY * np.asarray(s, float))
 
     def points(self, count: int = 51) -> np.ndarray:
-        """Returns the curve from the exit point to the connector, shape (count, 3) [m].
-
-        Args:
-            count: how many points.
-        """
+        """Returns the curve from the exit point to the connector, shape (count, 3) [m]."""
         s = np.linspace(0, self.no_load, count)
         X, Z = _curve(s, self.H, self.V, self.rho * GRAVITY, self.lambda_)
         upper, lower = (self.exit, self.connector)[:: 1 if self.from_exit else -1]
-        across = lower[:2] - upper[:2]
-        span = float(np.linalg.norm(across))
-        along = across / span if span > 0 else across
+        along = _direction(lower[:2] - upper[:2])
         curve = np.column_stack([upper[:2] + X[:, None] * along, upper[2] - Z])
         return curve if self.from_exit else curve[::-1]
 
     def force_on_connector(self) -> np.ndarray:
         """Returns the force of the cable on the platform, in O, shape (3,) [N]."""
-        across = self.exit[:2] - self.connector[:2]
-        span = float(np.linalg.norm(across))
-        along = across / span if span > 0 else across
-        end = (
-            self.V - self.rho * GRAVITY * self.no_load
-        )  # vertical force in the cable at its lower end
+        along = _direction(self.exit[:2] - self.connector[:2])
+        end = self.V - self.rho * GRAVITY * self.no_load  # vertical force at the lower end
         up = end if self.from_exit else -self.V
         return np.array([*(self.H * along), up])
 
@@ -151,17 +141,9 @@ def hang(
 def pulled(
     exit: np.ndarray, connector: np.ndarray, tension: float, rho: float, lambda_: float
 ) -> Catenary:
-    """Returns the cable that has a given tension at the connector; of two, the taut one.
+    """Returns the cable with a given tension at the connector [N]; of two, the taut one.
 
-    Args:
-        exit: A, shape (3,) [m].
-        connector: B, shape (3,) [m].
-        tension: at the connector [N].
-        rho: mass per unstrained length [kg/m].
-        lambda_: elastic modulus λ = E S [N].
-
-    Raises:
-        InputError: a number is not possible, or no taut cable has so little tension.
+    Raises InputError if a number is not possible, or no taut cable has so little tension.
     """
     A, B = _checked(exit, connector, tension, rho, lambda_)
     d, h = float(np.linalg.norm(B - A)), _span(A, B)
@@ -186,11 +168,7 @@ def pulled(
 def _ends(
     A: np.ndarray, B: np.ndarray, H: float, rho: float, lambda_: float
 ) -> tuple[float, float]:
-    """Returns V and d₀ of the cable with horizontal tension H between two points.
-
-    The cable that cannot stretch begins the search: d₀² = v² + (2 a sinh(h/2a))² with a = H/w, and
-    V = (w/2) (v coth(h/2a) + d₀).
-    """
+    """Returns V and d₀ of the cable with horizontal tension H between two points."""
     h, v, w = _span(A, B), float(abs(A[2] - B[2])), rho * GRAVITY
     x = w * h / (2 * H)
     if x > STEEPEST:
@@ -207,6 +185,12 @@ def _ends(
 
     y = root(wrong, [V / T, 1 / (1 + T / lambda_)], method="hybr", options={"xtol": 1e-15}).x
     return float(y[0] * T), float(y[1] * d_0)
+
+
+def _direction(v: np.ndarray) -> np.ndarray:
+    """Returns v over its length; zero where it has none."""
+    length = float(np.linalg.norm(v))
+    return v / length if length > 0 else v
 
 
 def _span(A: np.ndarray, B: np.ndarray) -> float:
@@ -230,37 +214,17 @@ def _checked(
 
 
 def sag(d: float, tension: float, rho: float) -> float:
-    """Returns the sag of a taut cable below the middle of its chord, ρ g d²/(8 T) [m].
-
-    Args:
-        d: length of the chord [m].
-        tension: at the middle [N].
-        rho: mass per length [kg/m].
-    """
+    """Returns the sag below the middle of a chord d of a taut cable, ρ g d²/(8 T) [m]."""
     return rho * GRAVITY * d**2 / (8 * tension)
 
 
 def sag_length(d: float, span: float, tension: float, rho: float) -> float:
-    """Returns by how much the parabola is longer than its chord, (ρ g ℓ)² d/(24 T²) [m].
-
-    Args:
-        d: length of the chord [m].
-        span: its horizontal length ℓ [m].
-        tension: at the middle [N].
-        rho: mass per length [kg/m].
-    """
+    """Returns by how much the parabola is longer than its chord, (ρ g ℓ)² d/(24 T²) [m]."""
     return (rho * GRAVITY * span) ** 2 * d / (24 * tension**2)
 
 
 def ernst_modulus(span: float, tension: float, rho: float, lambda_: float) -> float:
-    """Returns Ernst's equivalent modulus λ/(1 + (ρ g ℓ)² λ/(12 T³)) [N].
-
-    Args:
-        span: horizontal length ℓ [m].
-        tension: of the cable [N].
-        rho: mass per length [kg/m].
-        lambda_: elastic modulus λ = E S [N].
-    """
+    """Returns Ernst's equivalent modulus λ/(1 + (ρ g ℓ)² λ/(12 T³)) [N]; ℓ: horizontal span [m]."""
     return lambda_ / (1 + (rho * GRAVITY * span) ** 2 * lambda_ / (12 * tension**3))
 
 

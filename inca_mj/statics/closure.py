@@ -78,11 +78,7 @@ class Closure:
 
 
 def closure(W: np.ndarray) -> Closure:
-    """Returns the rank and closure of a wrench matrix, by a linear program.
-
-    Args:
-        W: wrench of the cables on the platform per tension, shape (6, n) [-, m].
-    """
+    """Returns rank and closure of a wrench matrix W, shape (6, n) [-, m], by a linear program."""
     s = np.linalg.svd(W, compute_uv=False)
     n, rank = W.shape[1], int((s > RANK * s[0]).sum())
     condition = float(s[0] / s[-1]) if rank == len(W) else float("inf")
@@ -104,15 +100,7 @@ def closure(W: np.ndarray) -> Closure:
 
 
 def require_closure(found: Closure, pose: np.ndarray) -> None:
-    """Refuse a pose without closure.
-
-    Args:
-        found: what the cables span there.
-        pose: x, y, z [m], roll, pitch, yaw [rad], shape (6,).
-
-    Raises:
-        InputError: the rank is below 6, or it is 6 and the cables do not pull against each other.
-    """
+    """Refuses a pose whose rank is below 6, or whose cables do not pull against each other."""
     at = np.round(pose, 4).tolist()
     if found.rank < 6:
         raise InputError(
@@ -128,17 +116,10 @@ def require_closure(found: Closure, pose: np.ndarray) -> None:
 
 
 def split(W: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Returns pseudo-inverses, null spaces and ranks of many wrench matrices, by Wᵀ = Q [L; 0].
+    """Returns W⁺ (N, 8, 6), null spaces (N, 8, 2) and whether the rank is 6, by Wᵀ = Q [L; 0].
 
-    Column k of Wᵀ lies in the span of those before it exactly if L_kk = 0, so the diagonal of L
-    says whether the rank is 6.
-
-    Args:
-        W: shape (N, 6, 8) [-, m].
-
-    Returns:
-        W⁺, shape (N, 8, 6), NaN below rank 6; an orthonormal basis of the null space, shape
-        (N, 8, 2), which is a part of it below rank 6; whether the rank is 6, shape (N,).
+    Below rank 6, W⁺ is NaN and the basis a part of the null space. Column k of Wᵀ lies in the span
+    of those before it exactly if L_kk = 0, so the diagonal of L says whether the rank is 6.
     """
     Q, L = np.linalg.qr(np.swapaxes(W, 1, 2), mode="complete")
     L = L[:, :6]
@@ -150,14 +131,10 @@ def split(W: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def gap_margin(N: np.ndarray, full: np.ndarray) -> np.ndarray:
-    """Returns by how much the free sector of the null space exceeds a half plane [rad], shape (N,).
+    """Returns by how much the free sector of null spaces exceeds a half plane, shape (N,) [rad].
 
-    Positive where there is closure. It goes through zero continuously where the rank is 6, so the
-    border of the workspace can be interpolated.
-
-    Args:
-        N: bases of the null spaces, shape (N, 8, 2), without unit.
-        full: whether the rank is 6, shape (N,) of bool; else there is no closure, margin −π.
+    Positive where there is closure; −π below rank 6. It goes through zero continuously where the
+    rank is 6, so the border of the workspace can be interpolated.
     """
     angle = np.sort(np.arctan2(N[..., 1], N[..., 0]), axis=1)
     gap = np.diff(angle, axis=1, append=angle[:, :1] + 2 * np.pi).max(axis=1)
@@ -169,20 +146,12 @@ def wrench_margin(
     plus: np.ndarray, N: np.ndarray, full: np.ndarray, low: np.ndarray, high: np.ndarray,
     load: np.ndarray, force: float = 0.0, torque: float = 0.0,
 ) -> np.ndarray:  # fmt: skip
-    """Returns how far the worst wrench of a set is inside what cables can exert [N], shape (N,).
+    """Returns how far the worst wrench of a set is inside what cables can exert, shape (N,) [N].
 
-    Positive: all wrenches of the set are feasible; the number is a tension, because |y| = 1.
-    Negative: some wrench of the set is not. −∞ where the rank is below 6.
-
-    Args:
-        plus: pseudo-inverses of the wrench matrices, shape (N, 8, 6) [-, 1/m].
-        N: bases of their null spaces, shape (N, 8, 2), without unit.
-        full: whether the rank is 6, shape (N,) of bool.
-        low: smallest tensions, shape (8,) or (N, 8) [N].
-        high: largest tensions, shape (8,) or (N, 8) [N].
-        load: wrench in the middle of the set, in O, shape (6,) [N, N m].
-        force: largest additional force, in any direction [N].
-        torque: largest additional torque, about any axis [N m].
+    Positive: all wrenches of the set are feasible; the number is a tension, because y has norm 1.
+    Negative: some wrench is not. −∞ below rank 6. The first three arguments are those of `split`;
+    the tension limits have shape (8,) or (N, 8) [N]. The set is `load` (6,) in O [N, N m], with any
+    additional force [N] and torque [N m] up to these sizes.
     """
     low, high = (np.broadcast_to(limit, (len(N), DRIVES)) for limit in (low, high))
     margin = np.full(len(N), -np.inf)

@@ -141,14 +141,6 @@ def _size(left: np.ndarray) -> float:
 
 
 def moved(pose: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """Returns a pose after a small displacement and turn in O.
-
-    Args:
-        pose: x, y, z [m], roll, pitch, yaw [rad], shape (6,).
-        x: displacement [m] and rotation vector [rad], shape (6,).
-
-    Returns:
-        The pose, shape (6,) [m, rad].
-    """
+    """Returns a pose (6,) after a small displacement [m] and rotation vector [rad] in O, (6,)."""
     turned = Rotation.from_rotvec(x[3:]) * Rotation.from_matrix(pose_rotation(pose))
     return np.concatenate([pose[:3] + x[:3], turned.as_euler("ZYX")[::-1]])

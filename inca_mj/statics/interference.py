@@ -25,14 +25,7 @@ PARALLEL = 1e-12
 
 
 def segment_distance(p: np.ndarray, u: np.ndarray, q: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """Returns distances of segments p + t u and q + t' v, 0 ≤ t, t' ≤ 1, shape (...,) [m].
-
-    Args:
-        p: begin of the first segment, shape (..., 3) [m].
-        u: from its begin to its end, shape (..., 3) [m].
-        q: begin of the second segment, shape (..., 3) [m].
-        v: from its begin to its end, shape (..., 3) [m].
-    """
+    """Returns distances [m] of segments p + t u and q + t' v, 0 ≤ t, t' ≤ 1, (..., 3) -> (...,)."""
     w = q - p
     uu, vv, uv = _dot(u, u), _dot(v, v), _dot(u, v)
     det = uu * vv - uv**2
@@ -49,13 +42,7 @@ def segment_distance(p: np.ndarray, u: np.ndarray, q: np.ndarray, v: np.ndarray)
 
 
 def point_distance(x: np.ndarray, p: np.ndarray, u: np.ndarray) -> np.ndarray:
-    """Returns distances of points x from segments p + t u, shape (...,) [m].
-
-    Args:
-        x: points, shape (..., 3) [m].
-        p: begin of the segment, shape (..., 3) [m].
-        u: from its begin to its end, shape (..., 3) [m].
-    """
+    """Returns distances [m] of points x from segments p + t u, (..., 3) -> (...,)."""
     t = np.clip(_dot(x - p, u) / _dot(u, u), 0.0, 1.0)
     return np.linalg.norm(x - p - t[..., None] * u, axis=-1)
 
@@ -96,6 +83,9 @@ def interference(poses: np.ndarray, geometry: Geometry) -> Interference:
     Args:
         poses: x, y, z [m], roll, pitch, yaw [rad], shape (N, 6).
         geometry: anchors of the cables; the platform is that of `inca_mj.robot.geometry`.
+
+    Raises:
+        InputError: a pose is not six finite numbers, or a cable has no length there.
     """
     poses = np.atleast_2d(np.asarray(poses, float))
     at = inverse(poses, geometry)

@@ -75,13 +75,7 @@ class Pull:
 
 
 def pull(robot: Robot, d: np.ndarray, current: float | np.ndarray = 0.0) -> Pull:
-    """Returns tensions at given cable lengths, with constant currents and drums in balance.
-
-    Args:
-        robot: its numbers.
-        d: cable lengths, shape (..., 8) [m].
-        current: of the motors, one number or shape (8,) [A].
-    """
+    """Returns the pull at cable lengths d (..., 8) [m], with constant currents, one or (8,) [A]."""
     λ, κ, R = robot.lambda_, robot.drum, robot.R
     motor = np.maximum(0.0, robot.K_t * current / R)
     B = robot.tension + robot.K_t * current / R

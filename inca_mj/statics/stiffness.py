@@ -37,24 +37,13 @@ SMALL = 0.15  # a part of an eigenvector that is smaller than this is not told
 
 
 def stiffness(at: Cables, tension: np.ndarray, k: np.ndarray) -> np.ndarray:
-    """Returns K, shape (..., 6, 6) [N/m, N, N m/rad].
-
-    Args:
-        at: the cables.
-        tension: of the cables, shape (..., 8) [N].
-        k: stiffness of each along itself, shape (..., 8) [N/m].
-    """
+    """Returns K (..., 6, 6) [N/m, N, N m/rad] of cables with stiffness k along themselves [N/m]."""
     elastic = np.einsum("...ka,...k,...kb->...ab", at.L, k, at.L)
     return elastic + geometric_stiffness(at, tension)
 
 
 def geometric_stiffness(at: Cables, tension: np.ndarray) -> np.ndarray:
-    """Returns the part of K that tensions make by turning the cables, shape (..., 6, 6).
-
-    Args:
-        at: the cables.
-        tension: of the cables, shape (..., 8) [N].
-    """
+    """Returns the part of K that tensions (..., 8) [N] make by turning the cables, (..., 6, 6)."""
     s, r, eye = at.directions, cross_matrix(at.arms), np.eye(3)
     A = np.concatenate([np.broadcast_to(eye, r.shape), -r], axis=-1)  # (..., 8, 3, 6)
     P = eye - s[..., :, None] * s[..., None, :]
@@ -66,32 +55,17 @@ def geometric_stiffness(at: Cables, tension: np.ndarray) -> np.ndarray:
 
 
 def mass_matrix(robot: Robot, pose: np.ndarray) -> np.ndarray:
-    """Returns M of the platform in O about its centre of mass, shape (6, 6) [kg, kg m^2].
-
-    Args:
-        robot: its numbers.
-        pose: x, y, z [m], roll, pitch, yaw [rad], shape (6,).
-    """
+    """Returns M of the platform in O about its centre of mass, shape (6, 6) [kg, kg m^2]."""
     M, R = robot.m * np.eye(6), pose_rotation(pose)
     M[3:, 3:] = R @ np.diag(robot.I) @ R.T
     return M
 
 
 def with_drums(robot: Robot, at: Cables, tension: np.ndarray, no_load: np.ndarray) -> np.ndarray:
-    """Returns stiffness of platform and drums together, in the coordinates (δp, δθ, φ_1 … φ_8).
+    """Returns the stiffness (14, 14) of platform and drums in (δp, δθ, φ_1 … φ_8), in SI units.
 
-    A turn φ of a drum stretches its cable by R φ, and its spring by R_s φ:
-
-        K = [Jᵀ k J + K_T, Jᵀ k R; R k J, R² k + κ R],   k = λ/d₀,  K_T the geometric part
-
-    Args:
-        robot: its numbers.
-        at: the cables.
-        tension: of the cables, shape (8,) [N].
-        no_load: d₀ of the cables, shape (8,) [m].
-
-    Returns:
-        Shape (14, 14) [N/m, N, N m/rad].
+    A turn φ of a drum stretches its cable by R φ, and its spring by R_s φ. With k = λ/d₀ and K_T
+    the geometric part: K = [Jᵀ k J + K_T, Jᵀ k R; R k J, R² k + κ R].
     """
     k = robot.lambda_ / no_load
     upper = at.L.T * (k * robot.R)
@@ -117,11 +91,8 @@ class Axes:
 def principal(K: np.ndarray) -> tuple[Axes, Axes]:
     """Returns stiffness against forces (the platform may turn) and against torques (it may move).
 
-    Args:
-        K: stiffness at an equilibrium, shape (6, 6) [N/m, N, N m/rad].
-
-    Raises:
-        InputError: the platform is held in no way along some direction.
+    K (6, 6) is that of an equilibrium. Raises InputError if the platform is not held along some
+    direction.
     """
     K = (K + K.T) / 2
     pp, pt, tt = K[:3, :3], K[:3, 3:], K[3:, 3:]
@@ -153,26 +124,19 @@ class Modes:
 
 
 def modes(K: np.ndarray, M: np.ndarray, count: int = 6) -> Modes:
-    """Returns the slowest modes of K x = ω² M x; the platform's coordinates are the first six.
-
-    Args:
-        K: stiffness, shape (n, n) [N/m, N, N m/rad].
-        M: masses, shape (n, n) [kg, kg m^2].
-        count: how many.
-    """
+    """Returns the slowest modes of K x = ω² M x; the platform has the first six coordinates."""
     ω2, x = eigh((K + K.T) / 2, M)
-    frequency = np.sqrt(np.where(ω2 > 0, ω2, np.nan)) / (2 * np.pi)
     rows = x.T[:count]
-    return Modes(frequency[:count], rows, tuple(mode_words(row[:6], M[:6, :6]) for row in rows))
+    return Modes(hertz(ω2[:count]), rows, tuple(mode_words(row[:6], M[:6, :6]) for row in rows))
+
+
+def hertz(ω2: np.ndarray) -> np.ndarray:
+    """Returns frequencies [Hz] of ω² [rad²/s²]; NaN where that is not positive."""
+    return np.sqrt(np.where(ω2 > 0, ω2, np.nan)) / (2 * np.pi)
 
 
 def mode_words(x: np.ndarray, M: np.ndarray) -> str:
-    """Returns a mode of the platform in words, by its share in the kinetic energy.
-
-    Args:
-        x: displacement and turn, shape (6,), in the units of M.
-        M: mass matrix of the platform, shape (6, 6) [kg, kg m^2].
-    """
+    """Returns a mode x (6,) of the platform in words, by its share in the kinetic energy."""
     moving, turning = x[:3] @ M[:3, :3] @ x[:3], x[3:] @ M[3:, 3:] @ x[3:]
     share = moving / (moving + turning)
     if share > 1 - SMALL**2:
@@ -184,11 +148,7 @@ def mode_words(x: np.ndarray, M: np.ndarray) -> str:
 
 
 def axis_words(v: np.ndarray) -> str:
-    """Returns a direction in words: "z", or "x (0.8) and y (0.6)".
-
-    Args:
-        v: shape (3,), any unit.
-    """
+    """Returns a direction (3,) in words: "z", or "x (0.8) and y (0.6)"."""
     v = v / np.linalg.norm(v)
     order = [i for i in np.argsort(-np.abs(v), kind="stable") if abs(v[i]) > SMALL]
     if len(order) == 1:

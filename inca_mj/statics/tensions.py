@@ -35,20 +35,11 @@ BALANCED = 1e-8  # largest relative error of W T = w and of the limits
 
 
 def nearest(W: np.ndarray, w: np.ndarray, t_0: float | np.ndarray = PRETENSION) -> np.ndarray:
-    """Returns tensions of a wrench that are nearest to t₀, without limits: T = t₀ + W⁺ (w − W t₀).
+    """Returns tensions of a wrench nearest to t₀, without limits: T = t₀ + W⁺ (w − W t₀), (n,) [N].
 
-    Some of them may be negative, which no cable can do; `distribute` keeps limits.
-
-    Args:
-        W: wrench of the cables on the platform per tension, shape (6, n) [-, m].
-        w: wrench that the cables shall exert, force then torque, shape (6,) [N, N m].
-        t_0: tensions to stay near to, one number or shape (n,) [N]; 0 gives the minimum norm.
-
-    Returns:
-        Tensions, shape (n,) [N].
-
-    Raises:
-        InputError: a shape is wrong, a number is not finite, or the cables cannot exert w.
+    Arguments are those of `distribute`; t₀ = 0 gives the minimum norm. Some tensions may be
+    negative, which no cable can do. Raises InputError if a shape is wrong, a number is not finite,
+    or the cables cannot exert w.
     """
     W, w, t_0 = _checked(W, w, t_0)
     return _split(W, w, t_0)[0]

@@ -33,33 +33,19 @@ from inca_mj.kinematics.cables import Cables
 from inca_mj.kinematics.rotations import cross_matrix
 from inca_mj.robot.elastic import Robot
 from inca_mj.robot.parameters import GRAVITY
-from inca_mj.statics.stiffness import mass_matrix, stiffness
+from inca_mj.statics.stiffness import hertz, mass_matrix, stiffness
 
 SINES = 12
 STRAIGHT = 1e-9  # Λ² below which sag changes no digit that counts
 
 
 def string_frequencies(d: float, tension: float, rho: float, count: int = 3) -> np.ndarray:
-    """Returns the frequencies f_n of a taut string with ends at rest, shape (count,) [Hz].
-
-    Args:
-        d: length [m].
-        tension: of the string [N].
-        rho: mass per length [kg/m].
-        count: how many.
-    """
+    """Returns f_n of a taut string of length d [m] with ends at rest, shape (count,) [Hz]."""
     return np.arange(1, count + 1) * np.sqrt(tension / rho) / (2 * d)
 
 
 def irvine_parameter(span: float, tension: float, rho: float, lambda_: float) -> float:
-    """Returns Irvine's Λ² = (ρ g ℓ/T)² λ/T: what sag stretches against what tension straightens.
-
-    Args:
-        span: horizontal length ℓ of the chord [m].
-        tension: of the cable [N].
-        rho: mass per length [kg/m].
-        lambda_: elastic modulus λ = E S [N].
-    """
+    """Returns Irvine's Λ² = (ρ g ℓ/T)² λ/T: what sag stretches against what tension straightens."""
     return (rho * GRAVITY * span / tension) ** 2 * lambda_ / tension
 
 
@@ -68,13 +54,6 @@ def in_plane_frequency(d: float, span: float, tension: float, rho: float, lambda
 
     Without sag it is that of the string, c/(2 d), and 2.86 times as much for a cable that sags and
     cannot stretch.
-
-    Args:
-        d: length of the chord [m].
-        span: its horizontal length ℓ [m].
-        tension: of the cable [N].
-        rho: mass per length [kg/m].
-        lambda_: elastic modulus λ = E S [N].
     """
     Λ2 = irvine_parameter(span, tension, rho, lambda_)
     if Λ2 < STRAIGHT:
@@ -112,16 +91,7 @@ class Coupled:
 def coupled_modes(
     robot: Robot, pose: np.ndarray, at: Cables, tension: np.ndarray, rho: float, sines: int = SINES
 ) -> Coupled:
-    """Returns the modes of platform and cables together.
-
-    Args:
-        robot: its numbers.
-        pose: x, y, z [m], roll, pitch, yaw [rad], shape (6,).
-        at: the cables there.
-        tension: of the cables, shape (8,) [N].
-        rho: mass of the cables per length [kg/m].
-        sines: how many for each cable and direction.
-    """
+    """Returns modes of platform and cables of mass rho [kg/m], with as many sines each way."""
     d_0 = robot.lambda_ * at.lengths / (robot.lambda_ + tension)
     K, M = stiffness(at, tension, robot.lambda_ / d_0), mass_matrix(robot, pose)
     K = (K + K.T) / 2
@@ -145,9 +115,9 @@ def coupled_modes(
     rows = list(zip(at.lengths, tension, strict=True))
     span = np.hypot(at.directions[:, 0], at.directions[:, 1]) * at.lengths
     return Coupled(
-        massless=_hertz(eigh(K, M, eigvals_only=True)),
-        added=_hertz(eigh(K, heavier, eigvals_only=True)),
-        coupled=_hertz(ω2[most]),
+        massless=hertz(eigh(K, M, eigvals_only=True)),
+        added=hertz(eigh(K, heavier, eigvals_only=True)),
+        coupled=hertz(ω2[most]),
         share=share[most],
         cables=np.array([string_frequencies(d, T, rho, 1)[0] for d, T in rows]),
         in_plane=np.array(
@@ -162,7 +132,3 @@ def coupled_modes(
 def _across(s: np.ndarray) -> np.ndarray:
     """Returns two unit vectors that are perpendicular to s and to each other, shape (2, 3)."""
     return np.linalg.svd(s[None])[2][1:]
-
-
-def _hertz(ω2: np.ndarray) -> np.ndarray:
-    return np.sqrt(np.where(ω2 > 0, ω2, np.nan)) / (2 * np.pi)

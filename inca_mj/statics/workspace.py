@@ -74,32 +74,13 @@ class DriveLimits:
 def tension_limits(
     robot: Robot, d: np.ndarray, limits: DriveLimits
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Returns the smallest and largest tensions at rest with cables of given lengths.
-
-    Args:
-        robot: its numbers.
-        d: cable lengths, shape (..., 8) [m].
-        limits: of the currents, and the tension that keeps a cable taut.
-
-    Returns:
-        Two arrays of shape (..., 8) [N].
-    """
+    """Returns smallest and largest tensions at rest [N] at cable lengths [m], all (..., 8)."""
     low, high = (pull(robot, d, current).tension for current in limits.current)
     return np.maximum(low, limits.taut), high
 
 
 def margin(kind: Kind, robot: Robot, poses: np.ndarray, limits: DriveLimits) -> np.ndarray:
-    """Returns how far poses are inside a workspace, shape (N,): [rad] for closure, else [N].
-
-    Args:
-        kind: "closure", "feasible" or "static".
-        robot: its numbers.
-        poses: x, y, z [m], roll, pitch, yaw [rad], shape (N, 6).
-        limits: of the drives, and what the platform shall bear.
-
-    Raises:
-        InputError: the kind is unknown.
-    """
+    """Returns how far poses (N, 6) are inside a workspace, (N,): [rad] for closure, else [N]."""
     if kind not in KINDS:
         raise unknown_name("workspace", kind, KINDS)
     at = inverse(poses, robot.geometry)

@@ -137,6 +137,15 @@ def _look(eye: list[float], target: list[float]) -> list[float]:
 
 NEEDS_LAW = "inca6d_needs_the_law_of_inca_mj"  # the model's name, the title of MuJoCo's viewer
 PLAIN = "inca6d_plain"
+# The text `read_me` of a model that needs the law; MJCF keeps it in one line.
+SHORT_LAW_NOTE = (
+    "The cables pull only with the law of inca_mj (in Python: inca_mj.build_twin()). In MuJoCo"
+    " alone the platform falls; inca6d_plain.xml is the approximation that needs MuJoCo only."
+)
+SHORT_PLAIN_NOTE = (
+    "The INCA 6D linearised about its start, for MuJoCo alone; the twin itself is inca6d.xml"
+    " with the law of inca_mj."
+)
 _LAW = """
   INCA 6D, the twin. Parameter set {set}; geometry: {source}.
 
@@ -183,22 +192,6 @@ def law_notes(parameters: ParameterSet, geometry: Geometry) -> str:
 def plain_notes(parameters: ParameterSet, geometry: Geometry) -> str:
     """Returns the comment of a model file that needs MuJoCo only."""
     return _filled(_PLAIN, parameters, geometry)
-
-
-def short_law_note() -> str:
-    """Returns the text `read_me` of a model that needs the law; MJCF keeps it in one line."""
-    return (
-        "The cables pull only with the law of inca_mj (in Python: inca_mj.build_twin()). In MuJoCo"
-        " alone the platform falls; inca6d_plain.xml is the approximation that needs MuJoCo only."
-    )
-
-
-def short_plain_note() -> str:
-    """Returns the text `read_me` of the model that needs MuJoCo only."""
-    return (
-        "The INCA 6D linearised about its start, for MuJoCo alone; the twin itself is inca6d.xml"
-        " with the law of inca_mj."
-    )
 
 
 def _filled(text: str, parameters: ParameterSet, geometry: Geometry) -> str:

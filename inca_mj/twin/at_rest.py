@@ -79,13 +79,10 @@ class Change:
 def change_at_rest(
     values: Mapping[str, float], pose: np.ndarray, geometry: Geometry, layout: Layout
 ) -> Change | None:
-    """Returns the change by the effects present in `values`, at a pose; None without a change.
+    """Returns the change by effects present in `values`; None if nothing changes.
 
-    Args:
-        values: of all parameters, in SI units.
-        pose: pose of the centre of mass.
-        geometry: the geometry, with the connectors relative to the centre of mass.
-        layout: the effects, and whether the start is settled.
+    `geometry` has its connectors relative to the centre of mass, whose pose is given. All values
+    are in SI units.
     """
     there = [e for e in layout.effects if _touches(e, layout.settled) and present(e, values)]
     if not there:
@@ -123,11 +120,7 @@ def change_at_rest(
 
 
 def _evaluate(effect: Effect, hook: str, s: Drive | Platform, p: np.ndarray) -> Any:
-    """Returns what a hook of an effect adds; NaN where its law has no value.
-
-    The law is called a few times for each start, as a function of Python: to compile it by itself
-    would take a process a thousand times as long.
-    """
+    """Returns what a hook of an effect adds; NaN where its law has no value."""
     law: Any = effect.hooks[hook]
     try:
         return law.py_func(s, tuple(p.tolist()))
@@ -137,13 +130,7 @@ def _evaluate(effect: Effect, hook: str, s: Drive | Platform, p: np.ndarray) -> 
 
 
 def own_states(values: Mapping[str, float], strain: np.ndarray, layout: Layout) -> np.ndarray:
-    """Returns the effects' own states at the start, shape (8, states).
-
-    Args:
-        values: of all parameters, in SI units.
-        strain: ε(0) of each cable, shape (8,).
-        layout: the effects.
-    """
+    """Returns the states of the effects at the start, shape (8, states), at strains ε(0)."""
     by_name = {effect.name: effect for effect in layout.effects}
     out = np.zeros((DRIVES, layout.states - 1))
     for term in layout.on_drives:

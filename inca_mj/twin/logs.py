@@ -86,12 +86,7 @@ def read_inca_log(path: str | Path, trust: Sequence[str] | None = None) -> Log:
 
 
 def _how_to_begin_at_zero(first: float, noise: float) -> str:
-    """Returns the cure for a log that does not begin at zero angles: another unit or beginning.
-
-    Args:
-        first: the angle at its first sample, as it is read [rad].
-        noise: std of that angle's noise, as it is read [rad].
-    """
+    """Returns the cure for a log with this first angle and std of noise [rad]."""
     if abs(first) > NOISE * noise:
         return "cut it where the robot rests and subtract its angles"
     return (

@@ -23,18 +23,19 @@ from inca_mj.effects.values import about_centre, drive_values
 from inca_mj.kinematics.rotations import quaternion
 from inca_mj.robot import law
 from inca_mj.robot.geometry import DRIVES, Geometry
-from inca_mj.robot.parameters import GRAVITY, TIMESTEP
+from inca_mj.robot.parameters import GRAVITY, POSE, TIMESTEP
 from inca_mj.robot.spread import EACH_DRIVE, at_drives, displaced
 from inca_mj.twin.appearance import (
     NEEDS_LAW,
+    SHORT_LAW_NOTE,
     dress_drum,
     dress_platform,
     dress_world,
     law_notes,
-    short_law_note,
 )
 from inca_mj.twin.statics import activations, start
 
+Points = tuple[tuple[float, float, float], ...]  # rows of a geometry [m]
 ROTOR = 2e-15  # inertia MuJoCo demands of the drum's body beside the armature [kg m^2]
 
 
@@ -51,12 +52,9 @@ def build(
     Raises:
         InputError: the start pose admits no pretension (see `inca_mj.twin.statics.pretension`).
     """
-    spec = mujoco.MjSpec()
-    spec.modelname, spec.comment = NEEDS_LAW, law_notes(parameters, geometry)
-    spec.add_text(name="read_me", data=short_law_note())
+    spec = empty_model(NEEDS_LAW, law_notes(parameters, geometry), SHORT_LAW_NOTE, geometry)
     layout = layout or Layout()
     _settings(spec, layout)
-    dress_world(spec, geometry)
     _platform(spec, parameters, geometry, layout)
     for k in range(1, DRIVES + 1):
         _drive(spec, k, parameters, geometry, layout)
@@ -65,16 +63,25 @@ def build(
     return spec
 
 
-def _settings(spec: mujoco.MjSpec, layout: Layout) -> None:
+def empty_model(name: str, notes: str, short_note: str, geometry: Geometry) -> mujoco.MjSpec:
+    """Returns a model with what it says of itself, the usual settings and the look of the room."""
+    spec = mujoco.MjSpec()
+    spec.modelname, spec.comment = name, notes
+    spec.add_text(name="read_me", data=short_note)
     spec.compiler.degree = False
     spec.compiler.inertiafromgeom = mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_FALSE
-    spec.option.timestep = TIMESTEP
-    spec.option.gravity = [0, 0, -GRAVITY]
-    # Every other integrator adds inertia to custom forces or leaves out a part of them.
+    spec.option.timestep, spec.option.gravity = TIMESTEP, [0, 0, -GRAVITY]
+    # Every other integrator adds inertia to custom forces or leaves out a part of them, and errs in
+    # the damping of tendons.
     spec.option.integrator = mujoco.mjtIntegrator.mjINT_RK4
-    spec.option.disableflags = (
-        mujoco.mjtDisableBit.mjDSBL_CONTACT
-        | mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
+    spec.option.disableflags = mujoco.mjtDisableBit.mjDSBL_CONTACT
+    dress_world(spec, geometry)
+    return spec
+
+
+def _settings(spec: mujoco.MjSpec, layout: Layout) -> None:
+    spec.option.disableflags |= (
+        mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
         | mujoco.mjtDisableBit.mjDSBL_AUTORESET  # a divergence must be reported, and not restarted
     )
     spec.nuser_actuator = layout.actuator_columns
@@ -83,20 +90,32 @@ def _settings(spec: mujoco.MjSpec, layout: Layout) -> None:
     spec.nuser_sensor = 1
 
 
+def add_platform(
+    spec: mujoco.MjSpec, values: Mapping[str, float], geometry: Geometry, connectors: Points
+) -> Any:
+    """Adds the platform at its start pose, with a site at each connector (8 rows of 3) [m].
+
+    Raises:
+        InputError: no body has such principal inertias.
+    """
+    check_inertia(values)
+    x, y, z, *angles = (values[name] for name in POSE)
+    body = spec.worldbody.add_body(name="platform", pos=[x, y, z], quat=quaternion(*angles))
+    body.add_freejoint(name="platform")
+    weigh(body, values["m"], [values["I_x"], values["I_y"], values["I_z"]])
+    body.add_site(name="platform", pos=[0, 0, 0], size=[0.004, 0.004, 0.004])
+    for k, connector in enumerate(connectors, 1):
+        body.add_site(name=f"connector_{k}", pos=connector, size=[0.006, 0.006, 0.006])
+    dress_platform(body, geometry)
+    return body
+
+
 def _platform(
     spec: mujoco.MjSpec, parameters: ParameterSet, geometry: Geometry, layout: Layout
 ) -> None:
     p = parameters.values()
-    check_inertia(p)
-    body = spec.worldbody.add_body(name="platform", pos=[p["x"], p["y"], p["z"]])
-    body.quat = quaternion(p["roll"], p["pitch"], p["yaw"])
-    body.add_freejoint(name="platform")
-    weigh(body, p["m"], [p["I_x"], p["I_y"], p["I_z"]])
-    body.add_site(name="platform", pos=[0, 0, 0], size=[0.004, 0.004, 0.004])
-    placed = displaced(geometry, p)
-    for k, connector in enumerate(about_centre(placed, layout.effects, p).connectors, 1):
-        body.add_site(name=f"connector_{k}", pos=connector, size=[0.006, 0.006, 0.006])
-    dress_platform(body, geometry)
+    placed = about_centre(displaced(geometry, p), layout.effects, p)
+    body = add_platform(spec, p, geometry, placed.connectors)
     by_name = {effect.name: effect for effect in layout.effects}
     body.userdata = np.concatenate(
         [np.zeros(0), *(drive_values(by_name[t.effect], p)[:, 0] for t in layout.on_platform)]
@@ -104,11 +123,7 @@ def _platform(
 
 
 def check_inertia(values: Mapping[str, float]) -> None:
-    """Refuse principal inertias that no body can have, where one exceeds the sum of the others.
-
-    Raises:
-        InputError: one exceeds the sum of the other two.
-    """
+    """Refuses principal inertias of which one exceeds the sum of the other two."""
     I = {name: values[name] for name in ("I_x", "I_y", "I_z")}
     largest = max(I, key=I.__getitem__)
     rest = sum(I.values()) - I[largest]
@@ -199,13 +214,20 @@ def _sensors(spec: mujoco.MjSpec) -> None:
                 added.dim, added.userdata = 1, [shown]
                 added.needstage = mujoco.mjtStage.mjSTAGE_VEL
                 added.datatype = mujoco.mjtDataType.mjDATATYPE_REAL
+    add_pose_sensors(spec)
     for name, kind in (
-        ("position", sensor.mjSENS_FRAMEPOS),
-        ("orientation", sensor.mjSENS_FRAMEQUAT),
         ("velocity", sensor.mjSENS_FRAMELINVEL),
         ("angular_velocity", sensor.mjSENS_FRAMEANGVEL),
     ):
         spec.add_sensor(name=name, type=kind, objtype=of.mjOBJ_SITE, objname="platform")
+
+
+def add_pose_sensors(spec: mujoco.MjSpec) -> None:
+    """Adds sensors of position and orientation of the platform."""
+    sensor, site = mujoco.mjtSensor, mujoco.mjtObj.mjOBJ_SITE
+    kinds = {"position": sensor.mjSENS_FRAMEPOS, "orientation": sensor.mjSENS_FRAMEQUAT}
+    for name, kind in kinds.items():
+        spec.add_sensor(name=name, type=kind, objtype=site, objname="platform")
 
 
 def _keyframe(

@@ -43,9 +43,24 @@ from identification.native.table import SHARE, is_compiled
 from inca_mj.effects.hooks import DRIVE, PLATFORM, Drive, Layout
 from inca_mj.robot import law
 from inca_mj.twin import drives
-from inca_mj.twin.drives import FIELDS, D, M, cable, double, drive, integer, word
+from inca_mj.twin.drives import (
+    FIELDS,
+    D,
+    M,
+    cable,
+    dof,
+    double,
+    drawn_line,
+    drive,
+    found_line,
+    integer,
+    platform,
+    push,
+    velocity,
+    word,
+    wrench,
+)
 from inca_mj.twin.numbers import owners
-from inca_mj.twin.platform import dof, drawn_line, found_line, platform, push, velocity, wrench
 
 _USER = int(mujoco.mjtSensor.mjSENS_USER)
 _ACTUATOR = int(mujoco.mjtObj.mjOBJ_ACTUATOR)
@@ -60,15 +75,10 @@ Winding: Any = namedtuple("Winding", "drive d_0_dot R gx gy gz")
 
 
 def install(layout: Layout | None = None) -> None:
-    """Install the law in this process; does nothing when it is installed already.
+    """Installs the law with the effects of a layout in this process, once.
 
-    Args:
-        layout: the candidate effects to compile into it; none when None.
-
-    Raises:
-        InputError: another library has installed MuJoCo callbacks of its own, or a function of an
-            effect is not what its hook takes.
-        RuntimeError: MuJoCo's structs are not laid out as declared.
+    Raises InputError if another library has installed callbacks or a function does not fit its
+    hook, and RuntimeError if MuJoCo's structs are not laid out as declared.
     """
     layout = layout or Layout()
     installer.install(_law(layout.key, layout.on_drives, layout.on_platform))
@@ -100,13 +110,7 @@ def _law(key: float, on_drives: tuple[Term, ...], on_platform: tuple[Term, ...])
 def callbacks(
     key: float, on_drives: Sequence[Term], on_platform: Sequence[Term]
 ) -> dict[str, Function]:
-    """Returns the four callbacks of the law with some candidate effects, before compilation.
-
-    Args:
-        key: key of the set, which its drives carry; zero for a set without effects.
-        on_drives: the effects of the drives, their columns counted in `actuator_user`.
-        on_platform: the effects of the platform, their columns counted in `body_user`.
-    """
+    """Returns the callbacks of the law with terms of effects, to be compiled; key 0 without any."""
     added_current, added_radius, added_path, added_tension, added_torque, added_force = (
         total(DRIVE, on_drives, hook)
         for hook in ("current", "radius", "path", "tension", "torque", "force")

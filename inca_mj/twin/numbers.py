@@ -34,16 +34,9 @@ def model_numbers(
     model: mujoco.MjModel, parameters: ParameterSet, geometry: Geometry, layout: Layout,
     names: Sequence[str], every: Values, n: int,
 ) -> Numbers:  # fmt: skip
-    """Returns the entries of the model that some parameters change.
+    """Returns the entries of the model that the named parameters change, for n value sets.
 
-    Args:
-        model: with the names of the robot.
-        parameters: of the robot.
-        geometry: its nominal points.
-        layout: its effects and their columns.
-        names: the parameters that change.
-        every: values of all parameters, one or n of each.
-        n: how many value sets.
+    `every` holds the values of all parameters, one or n of each.
     """
     changed = [
         *_in_paths(model, parameters, names, every),
@@ -101,12 +94,7 @@ def _connectors(
 
 
 def owners(model: mujoco.MjModel, key: float) -> dict[tuple[str, int], int]:
-    """Returns which numbers of a model a drive of a law alone reads, by array and row.
-
-    Args:
-        model: any model; one that is no twin, or has another set of effects, has none of these.
-        key: of the set.
-    """
+    """Returns the drive that alone reads a number of a model, by (array, row)."""
     out: dict[tuple[str, int], int] = {}
     if model.nuser_actuator < law.ACTUATOR_COLUMNS or model.nuser_tendon < law.TENDON_COLUMNS:
         return out

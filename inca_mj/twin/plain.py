@@ -28,19 +28,11 @@ import numpy as np
 
 from identification.model.export import write_xml
 from identification.model.parameter import ParameterSet
-from inca_mj.kinematics.rotations import quaternion
 from inca_mj.robot.geometry import DRIVES, INCA, Geometry
-from inca_mj.robot.parameters import GRAVITY, TIMESTEP, parameter_set
+from inca_mj.robot.parameters import parameter_set
 from inca_mj.robot.spread import EACH_DRIVE, at_drives, displaced
-from inca_mj.twin.appearance import (
-    MOTOR,
-    PLAIN,
-    dress_platform,
-    dress_world,
-    plain_notes,
-    short_plain_note,
-)
-from inca_mj.twin.mjcf import check_inertia, weigh
+from inca_mj.twin.appearance import MOTOR, PLAIN, SHORT_PLAIN_NOTE, plain_notes
+from inca_mj.twin.mjcf import add_platform, add_pose_sensors, empty_model, weigh
 from inca_mj.twin.statics import Start, start
 
 IMPEDANCE = 1e-4  # δ, the least that MuJoCo admits: the inertia errs by as much
@@ -59,16 +51,9 @@ def build_plain(parameters: ParameterSet | None = None, geometry: Geometry = INC
     """
     parameters = parameters or parameter_set()
     begin = start(parameters, geometry)
-    spec = mujoco.MjSpec()
-    spec.modelname, spec.comment = PLAIN, plain_notes(parameters, geometry)
-    spec.add_text(name="read_me", data=short_plain_note())
-    spec.compiler.degree = False
-    spec.compiler.inertiafromgeom = mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_FALSE
-    spec.option.timestep, spec.option.gravity = TIMESTEP, [0, 0, -GRAVITY]
-    spec.option.integrator = mujoco.mjtIntegrator.mjINT_RK4  # the others err in tendons' damping
-    spec.option.disableflags = mujoco.mjtDisableBit.mjDSBL_CONTACT
-    dress_world(spec, geometry)
-    _platform(spec, parameters, geometry, begin)
+    spec = empty_model(PLAIN, plain_notes(parameters, geometry), SHORT_PLAIN_NOTE, geometry)
+    values = parameters.values()
+    add_platform(spec, values, geometry, displaced(geometry, values).connectors)
     for k in range(1, DRIVES + 1):
         _drive(spec, k, parameters, geometry, begin)
     _sensors(spec)
@@ -84,21 +69,6 @@ def save_plain(
         InputError: the start pose admits no pretension, or the file cannot be written.
     """
     return write_xml(build_plain(parameters, geometry), path)
-
-
-def _platform(
-    spec: mujoco.MjSpec, parameters: ParameterSet, geometry: Geometry, begin: Start
-) -> None:
-    p = parameters.values()
-    check_inertia(p)
-    body = spec.worldbody.add_body(name="platform", pos=begin.pose[:3])
-    body.quat = quaternion(*begin.pose[3:])
-    body.add_freejoint(name="platform")
-    weigh(body, p["m"], [p["I_x"], p["I_y"], p["I_z"]])
-    body.add_site(name="platform", pos=[0, 0, 0], size=[0.004, 0.004, 0.004])
-    for k, connector in enumerate(displaced(geometry, p).connectors, 1):
-        body.add_site(name=f"connector_{k}", pos=connector, size=[0.006, 0.006, 0.006])
-    dress_platform(body, geometry)
 
 
 def _drive(
@@ -166,8 +136,4 @@ def _sensors(spec: mujoco.MjSpec) -> None:
             spec.add_sensor(
                 name=f"{name}_{k}", type=kind, objtype=of.mjOBJ_TENDON, objname=f"motor_{k}"
             )
-    for name, kind in (
-        ("position", sensor.mjSENS_FRAMEPOS),
-        ("orientation", sensor.mjSENS_FRAMEQUAT),
-    ):
-        spec.add_sensor(name=name, type=kind, objtype=of.mjOBJ_SITE, objname="platform")
+    add_pose_sensors(spec)

@@ -100,11 +100,7 @@ class Run:
 
 
 def rows_of(time: np.ndarray, start: float, end: float) -> slice:
-    """Returns the samples from `start` to `end` [s], both included.
-
-    Raises:
-        InputError: they are fewer than two.
-    """
+    """Returns the samples from `start` to `end` [s], both included; refuses fewer than two."""
     rows = slice(
         int(np.searchsorted(time, start, side="left")),
         int(np.searchsorted(time, end, side="right")),
@@ -231,12 +227,7 @@ def _arrays(run: Run) -> dict[str, Any]:
 
 
 def _refuse_damaged(arrays: Mapping[str, np.ndarray], path: Path) -> None:
-    """Refuse arrays that no simulation gives.
-
-    Raises:
-        InputError: one has another shape than N samples, or holds what is not a finite number; or
-            the times are not evenly apart, or last more than a day.
-    """
+    """Refuses arrays that no simulation gives: another shape, what is not finite, uneven times."""
     n = len(np.atleast_1d(arrays["time"]))
     for name, array in arrays.items():
         shape = (n, _WIDTHS[name]) if name in _WIDTHS else (n,)

@@ -63,17 +63,10 @@ def twin_to_record(robot: Twin) -> dict[str, Any]:
 
 
 def twin_from_record(record: Mapping[str, Any], effects: Sequence[Effect], source: Path) -> Twin:
-    """Build the twin that a record describes.
+    """Builds the twin of a record by `twin_to_record`; `source` is where it was read, for messages.
 
-    Args:
-        record: made by `twin_to_record`.
-        effects: the effects that the twin may have.
-        source: the file or folder that the record was read from, for messages.
-
-    Raises:
-        InputError: an effect is not among `effects` or has another law in them, or a value is out
-            of bounds.
-        KeyError, TypeError, ValueError: the record is damaged.
+    Raises InputError if an effect is not among `effects` or has another law there, or a value is
+    out of bounds; KeyError, TypeError or ValueError if the record is damaged.
     """
     wanted: list[dict[str, Any]] = record["effects"]
     own, settled = _known(wanted, effects, source), record["settled"]
@@ -172,11 +165,7 @@ def _parameters(name: str, values: dict[str, float], effects: Sequence[Effect]) 
 
 
 def _same(model: mujoco.MjModel, path: Path) -> None:
-    """Refuse a model.xml that was edited after it was saved, or that belongs to another twin.
-
-    Raises:
-        InputError: the file was edited, belongs to another twin, or cannot be read.
-    """
+    """Refuses a model.xml that was edited after it was saved, or belongs to another twin."""
     if not path.is_file():
         raise InputError(f"no {path}; save the twin again")
     try:

@@ -23,7 +23,7 @@ from inca_mj.kinematics.cables import cables_at
 from inca_mj.kinematics.jacobians import length_jacobian
 from inca_mj.kinematics.rotations import rotation
 from inca_mj.robot.geometry import Geometry
-from inca_mj.robot.parameters import GRAVITY, PRETENSION
+from inca_mj.robot.parameters import GRAVITY, POSE, PRETENSION
 from inca_mj.robot.spread import at_drives, displaced
 from inca_mj.twin.at_rest import Change, change_at_rest, own_states
 
@@ -55,16 +55,10 @@ class Start:
 def pretension(
     pose: np.ndarray, geometry: Geometry, m: float, change: Change | None = None
 ) -> np.ndarray:
-    """Returns tensions T(0), shape (8,) [N], nearest to 4 N, that hold a platform of mass m [kg].
+    """Returns T(0) nearest to 4 N that hold a platform of mass m [kg] at a pose, shape (8,) [N].
 
-    Args:
-        pose: x, y, z [m], roll, pitch, yaw [rad], shape (6,).
-        geometry: anchors of the cables.
-        m: mass of the platform [kg].
-        change: how candidate effects change the cables' paths and the load.
-
-    Raises:
-        InputError: a cable would have to push, or the cables cannot hold the platform.
+    `change` says how effects change the paths of the cables and the load. Raises InputError if a
+    cable has no length or would have to push, or the cables cannot hold the platform.
     """
     R = rotation(*pose[3:])
     d = np.linalg.norm(pose[:3] + geometry.B @ R.T - geometry.A, axis=1)
@@ -95,11 +89,7 @@ def pretension(
 
 
 def start(parameters: ParameterSet, geometry: Geometry, layout: Layout = NO_EFFECTS) -> Start:
-    """Returns the start implied by parameters and geometry: T(0), d₀(0) from pose, m and λ.
-
-    Raises:
-        InputError: for the reasons of `pretension`.
-    """
+    """Returns the start implied by parameters and geometry; refuses as `pretension` does."""
     return start_from(parameters.values(), geometry, layout)
 
 
@@ -107,7 +97,7 @@ def start_from(
     values: Mapping[str, float], geometry: Geometry, layout: Layout = NO_EFFECTS
 ) -> Start:
     """Returns `start` from plain values by name, in SI units, with changes by candidate effects."""
-    pose = np.array([values[name] for name in ("x", "y", "z", "roll", "pitch", "yaw")])
+    pose = np.array([values[name] for name in POSE])
     placed, λ = displaced(geometry, values), at_drives("lambda", values)
     moved = about_centre(placed, layout.effects, values)
     change = change_at_rest(values, pose, moved, layout)
@@ -133,20 +123,10 @@ def starts_from(
     own: Mapping[str, float], names: Sequence[str], values: np.ndarray, geometry: Geometry,
     layout: Layout = NO_EFFECTS,
 ) -> list[Start]:  # fmt: skip
-    """Returns `start_from` for n value sets.
+    """Returns `start_from` for n value sets: `values` (n, p) of the named parameters, else `own`.
 
     Sets that agree with the first in all values that its start was made of share that start: most
     columns of a Jacobian move a parameter that no start asks for.
-
-    Args:
-        own: values of all parameters.
-        names: parameters that differ from them.
-        values: theirs, shape (n, p).
-        geometry: anchors of the cables.
-        layout: the candidate effects.
-
-    Raises:
-        InputError: for the reasons of `pretension`.
     """
     asked = _Asked({**own, **dict(zip(names, values[0], strict=True))})
     first = start_from(asked, geometry, layout)

@@ -181,15 +181,9 @@ def build_twin(
 def rebuild(
     robot: Twin, *, timestep: float | None = None, effects: Sequence[Effect] | None = None
 ) -> Twin:
-    """Returns a twin with another step or other effects, its values kept.
+    """Returns a twin with another step [s] or other effects; its values stay.
 
-    Args:
-        robot: the twin.
-        timestep: of the RK4 integrator [s]; the robot's own when None.
-        effects: effects of its law, those of the robot among them; the robot's own when None.
-
-    Raises:
-        InputError: two effects have one name, or the start has no pretension.
+    Raises InputError if two effects have one name or the start has no pretension.
     """
     return build_twin(
         robot.parameters,

@@ -21,8 +21,14 @@ from identification import InputError, Log, noise_floor
 from identification.errors import unknown_name
 from identification.model.parameter import ParameterSet
 from inca_mj.kinematics.along import measure, no_load_path, poses_along
-from inca_mj.kinematics.balance import Balance, NoLoad, Weights, statements
-from inca_mj.kinematics.elastic import Measured, no_load_at_rest
+from inca_mj.kinematics.balance import (
+    Balance,
+    Measured,
+    NoLoad,
+    Weights,
+    no_load_at_rest,
+    statements,
+)
 from inca_mj.kinematics.resting import ENCODER, at_rest, rest_pose
 from inca_mj.robot.elastic import Robot, robot_of
 from inca_mj.robot.geometry import DRIVES, INCA, Geometry

@@ -9,7 +9,7 @@ from kinematics_cases import measured_angles, moving_run, settled_run
 from identification.errors import InputError
 from inca_mj import log_poses, parameter_set, pose_at_rest, run_to_log
 from inca_mj.kinematics.along import measure
-from inca_mj.kinematics.elastic import (
+from inca_mj.kinematics.balance import (
     drum_tension,
     no_load_along,
     no_load_at_rest,

@@ -73,7 +73,7 @@ def test_cables_have_the_colour_of_their_tension(pulled_run):
     tension[3] = 0.0
     colours = scale(tension)
     with view(pulled_run.twin.model, "front", 64, 48, cable=0.006) as seen:
-        seen.draw(pulled_run.qpos[40], colours, pulled_run.qpos[0])
+        seen.begin(pulled_run.qpos[40], colours, pulled_run.qpos[0]).result()
         geoms = seen.draws.scene.geoms[: seen.draws.scene.ngeom]
         cables = [g for g in geoms if g.objtype == 18]
         assert len(cables) == 8
@@ -85,8 +85,8 @@ def test_the_measured_robot_is_an_outline_that_hides_nothing(pulled_run):
     apart[0] += 0.02
     with view(pulled_run.twin.model, "handle", 320, 240, cable=0.002) as seen:
         colours = np.ones((8, 4))
-        alone = seen.draw(pulled_run.qpos[40], colours, None).astype(int)
-        both = seen.draw(pulled_run.qpos[40], colours, apart).astype(int)
+        alone = seen.begin(pulled_run.qpos[40], colours).result().astype(int)
+        both = seen.begin(pulled_run.qpos[40], colours, apart).result().astype(int)
     changed = np.abs(both - alone).max(axis=2) > 30
     # It is a line: some of the picture changes, and nearly all of the orange handle is still seen.
     assert 0.002 < changed.mean() < 0.1

@@ -74,7 +74,7 @@ def test_a_point_is_drawn_where_mujoco_draws_a_ball(short_run, camera):
     qpos, white = short_run.qpos[60], np.ones((8, 4))
     point = qpos[:3] + [0.02, 0.03, 0.06]
     with view(short_run.twin.model, camera, 200, 150, cable=0.001) as seen:
-        without = seen.draw(qpos, white, None).astype(int)
+        without = seen.begin(qpos, white).result().astype(int)
         scene = seen.draws.scene
         ball = scene.geoms[scene.ngeom]
         mujoco.mjv_initGeom(
