@@ -40,7 +40,7 @@ from identification.linear.system import LinearSystem
 from identification.logs.log import Log
 from identification.model.predictor import Predictor
 from inca_mj.linear.thesis_states import TENSIONS, to_tension, to_thesis
-from inca_mj.robot.geometry import DRIVES
+from inca_mj.robot.geometry import DRIVES, each_drive
 from inca_mj.robot.parameters import pose_values
 from inca_mj.robot.spread import at_drives
 from inca_mj.twin.logs import ANGLES, POSE
@@ -49,7 +49,7 @@ from inca_mj.twin.twin import Twin, build_twin, start_state
 
 MOTORS, FIRST_ANGLE = slice(6, 6 + DRIVES), 7  # in qvel and qacc; in qpos
 STILL = 1e-6  # [m/s², rad/s²]; pretension is exact to 1e-9 N on 1e-4 kg m²
-LENGTHS = tuple(f"length_{k}" for k in range(1, DRIVES + 1))
+LENGTHS = each_drive("length")
 SPEEDS = slice(20, 28)
 LARGEST_GRID = 20_000  # points: two minutes and 1 GB
 

@@ -30,23 +30,18 @@ import numpy as np
 from identification.errors import InputError
 from identification.linear.operating_points import OperatingPoints
 from identification.linear.system import LinearSystem
-from inca_mj.kinematics.rotations import euler, rotation
-from inca_mj.robot.geometry import DRIVES
+from inca_mj.kinematics.rotations import cross_matrix, euler, rotation
+from inca_mj.robot.geometry import DRIVES, each_drive
 from inca_mj.robot.spread import at_drives
 from inca_mj.twin.twin import Twin
 
-
-def _each(name: str) -> tuple[str, ...]:
-    return tuple(f"{name}_{k}" for k in range(1, DRIVES + 1))
-
-
 STATES = (
     "x", "y", "z", "vx_body", "vy_body", "vz_body", "roll", "pitch", "yaw", "wx", "wy", "wz",
-    *_each("angle"), *_each("rate"), *_each("no_load_length"),
+    *each_drive("angle"), *each_drive("rate"), *each_drive("no_load_length"),
 )  # fmt: skip
 UNITS = (*["m"] * 3, *["m/s"] * 3, *["rad"] * 3, *["rad/s"] * 3,
          *["rad"] * DRIVES, *["rad/s"] * DRIVES, *["m"] * DRIVES)  # fmt: skip
-TENSIONS = _each("tension")
+TENSIONS = each_drive("tension")
 LEAST_COSINE = 1e-3  # of pitch, below which Euler angles turn too fast
 
 # Where each quantity is in δx and in δz.
@@ -97,11 +92,6 @@ def _euler_rates_change(e: np.ndarray, ė: np.ndarray) -> np.ndarray:
     return np.asarray(by_roll * ė[0] + by_pitch * ė[1])
 
 
-def _cross(a: np.ndarray) -> np.ndarray:
-    """Returns the matrix of b -> a × b."""
-    return np.array([[0, -a[2], a[1]], [a[2], 0, -a[0]], [-a[1], a[0], 0]])
-
-
 def _one(system: LinearSystem, qpos: np.ndarray, own: int, names: tuple[str, ...]) -> LinearSystem:
     e = euler(qpos[3:7])
     if np.cos(e[1]) < LEAST_COSINE:
@@ -116,11 +106,11 @@ def _one(system: LinearSystem, qpos: np.ndarray, own: int, names: tuple[str, ...
     n = len(system.x)
     T, Ṫ = np.zeros((n, n)), np.zeros((n, n))
     T[POSITION, POSITION] = np.eye(3)
-    T[_V_BODY, _V], T[_V_BODY, _TURN] = Rᵀ, _cross(v_B)
+    T[_V_BODY, _V], T[_V_BODY, _TURN] = Rᵀ, cross_matrix(v_B)
     T[EULER, _TURN], T[_RATES, _OMEGA] = J, np.eye(3)
     T[_ANGLES, _ANGLE] = T[_SPEEDS, _SPEED] = np.eye(DRIVES)
     T[np.arange(_ACT, n), _ACT + _activations(own)] = 1
-    Ṫ[_V_BODY, _V], Ṫ[_V_BODY, _TURN] = -_cross(ω) @ Rᵀ, _cross(v̇_B)
+    Ṫ[_V_BODY, _V], Ṫ[_V_BODY, _TURN] = -cross_matrix(ω) @ Rᵀ, cross_matrix(v̇_B)
     Ṫ[EULER, _TURN] = _euler_rates_change(e, J @ ω)
     back = np.linalg.inv(T)
     x, rate = T @ system.x, T @ system.rate

@@ -108,6 +108,11 @@ INCA = Geometry(
 )
 
 
+def each_drive(name: str) -> tuple[str, ...]:
+    """Returns the names of a quantity at each drive, such as tension_1 to tension_8."""
+    return tuple(f"{name}_{k}" for k in range(1, DRIVES + 1))
+
+
 def geometry_of(record: Mapping[str, Any]) -> Geometry:
     """Returns the geometry of a record from JSON; KeyError or TypeError where it is damaged."""
     rows = {name: tuple(map(tuple, record[name])) for name in ("exits", "connectors")}

@@ -42,6 +42,7 @@ D = offsets(
     " site_xpos xpos xmat",
 )
 FIELDS = frozenset((*M._fields, *D._fields))  # everything the callbacks touch
+
 # The cable k of a drive.
 #   body: on which its connector is; length [m] of its path, rate [m/s] of that
 #   x, y, z: connector minus exit point; rx, ry, rz: from the frame of the body to it; in O [m]

@@ -11,7 +11,7 @@ from identification import InputError, Log, read_log
 from identification.logs.cures import unit_lines
 from identification.logs.noise import noise_floor
 from identification.refusals.trust import TRUST
-from inca_mj.robot.geometry import DRIVES
+from inca_mj.robot.geometry import each_drive
 from inca_mj.robot.parameters import POSE as POSE
 from inca_mj.twin.run import Run
 
@@ -25,13 +25,15 @@ def overruled_by(*words: str) -> str:
     return f"; if you know that {known}, write --trust {' '.join(words)}"
 
 
-def _each(name: str) -> tuple[str, ...]:
-    return tuple(f"{name}_{k}" for k in range(1, DRIVES + 1))
-
-
-CURRENTS, ANGLES = _each("current"), _each("angle")
+CURRENTS, ANGLES = each_drive("current"), each_drive("angle")
 VELOCITY = ("vx", "vy", "vz", "wx", "wy", "wz")  # v in O, body rates
-OPTIONAL = (*POSE, *_each("tension"), *VELOCITY, *_each("rate"), *_each("no_load_length"))
+OPTIONAL = (
+    *POSE,
+    *each_drive("tension"),
+    *VELOCITY,
+    *each_drive("rate"),
+    *each_drive("no_load_length"),
+)
 
 UNITS = {
     "current": "A", "angle": "rad", "rate": "rad/s", "tension": "N", "no_load_length": "m",
@@ -113,10 +115,10 @@ def run_to_log(run: Run, name: str = "run", notes: str = "") -> Log:
     """
     extras = {
         **dict(zip(POSE, np.hstack([run.position, run.angles]).T, strict=True)),
-        **dict(zip(_each("tension"), run.tension.T, strict=True)),
+        **dict(zip(each_drive("tension"), run.tension.T, strict=True)),
         **dict(zip(VELOCITY, run.qvel[:, :6].T, strict=True)),
-        **dict(zip(_each("rate"), run.motor_rate.T, strict=True)),
-        **dict(zip(_each("no_load_length"), run.act.T, strict=True)),
+        **dict(zip(each_drive("rate"), run.motor_rate.T, strict=True)),
+        **dict(zip(each_drive("no_load_length"), run.act.T, strict=True)),
     }
     columns = (*CURRENTS, *ANGLES, *extras)
     units = {column: UNITS[column.rstrip("_12345678")] for column in columns}
