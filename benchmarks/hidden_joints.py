@@ -58,7 +58,7 @@ def answer(toml: Path, a: Path, b: Path, way: str, without: tuple[str, ...] = ()
 
     from identification import DiscoveryOptions, discover, fit, read_robot
     from identification.prediction.discovery import discover_records
-    from identification.robot.record_error import compare_values
+    from identification.robot.confirmation import compare_values
 
     robot = read_robot(toml, a, confirm=[b])
     options = DiscoveryOptions(without=without)

@@ -142,7 +142,7 @@ def write_robot(folder: Path) -> None:
     from joint_cases import SLIDER
     from robot_cases import TOML, simulated
 
-    from identification.logs.write import write_log
+    from identification.logs.csv_files import write_log
 
     (folder / "slider.xml").write_text(SLIDER)
     (folder / "robot.toml").write_text(TOML)

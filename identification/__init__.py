@@ -17,9 +17,9 @@ _PUBLIC = {
     "Log": "logs.log",
     "halves": "logs.log",
     "read_log": "logs.read",
-    "write_log": "logs.write",
+    "write_log": "logs.csv_files",
     "decimate": "logs.decimation",
-    "on_a_grid": "logs.irregular",
+    "on_a_grid": "logs.resampling",
     "noise_floor": "logs.noise",
     # a robot of a TOML file
     "read_robot": "robot.reading",
@@ -178,13 +178,13 @@ if TYPE_CHECKING:  # the same list, for type checkers and editors
     from identification.linear.operating_points import along_log as along_log
     from identification.linear.operating_points import at_rest as at_rest
     from identification.linear.system import LinearSystem as LinearSystem
+    from identification.logs.csv_files import write_log as write_log
     from identification.logs.decimation import decimate as decimate
-    from identification.logs.irregular import on_a_grid as on_a_grid
     from identification.logs.log import Log as Log
     from identification.logs.log import halves as halves
     from identification.logs.noise import noise_floor as noise_floor
     from identification.logs.read import read_log as read_log
-    from identification.logs.write import write_log as write_log
+    from identification.logs.resampling import on_a_grid as on_a_grid
     from identification.model.coordinates import Coordinates as Coordinates
     from identification.model.coordinates import coordinates as coordinates
     from identification.model.parameter import Parameter as Parameter

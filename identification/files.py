@@ -8,7 +8,7 @@ import json
 import os
 import stat
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from difflib import get_close_matches
 from hashlib import file_digest
@@ -256,3 +256,20 @@ def _missing(path: Path) -> str:
     near = get_close_matches(path.name, others, n=3, cutoff=_ALIKE)
     hint = f"did you mean {' or '.join(near)}?" if near else "check its name and folder"
     return f"no such file: {path}; {hint}"
+
+
+def toml_value(value: object) -> str:
+    """Returns a text, a number, a list or a table as TOML in one line."""
+    if isinstance(value, str):  # escapes of JSON are valid in TOML, which also wants DEL escaped
+        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+    if isinstance(value, list | tuple):
+        return f"[{', '.join(map(toml_value, value))}]"
+    if isinstance(value, dict):
+        return f"{{{', '.join(f'{toml_value(k)} = {toml_value(v)}' for k, v in value.items())}}}"
+    return repr(value).lower() if isinstance(value, bool) else repr(value)
+
+
+def toml_table(title: str, table: Mapping[str, object]) -> list[str]:
+    """Returns the lines of a table of TOML, with an empty one before them; none of an empty one."""
+    lines = [f"{toml_value(key)} = {toml_value(value)}" for key, value in table.items()]
+    return ["", f"[{title}]", *lines] if lines else []

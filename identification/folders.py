@@ -73,17 +73,11 @@ def refuse_foreign(folder: Path) -> None:
 
 @dataclass
 class Draft:
-    """Results that are put together before they are saved.
+    """Results that are put together before they are saved."""
 
-    Attributes:
-        folder: where files are written; hidden.
-        place: where they are saved.
-        taken: names of files of others that were in the way, so that `place` is another folder.
-    """
-
-    folder: Path
-    place: Path
-    taken: tuple[str, ...] = ()
+    folder: Path  # where files are written; hidden
+    place: Path  # where they are saved
+    taken: tuple[str, ...] = ()  # files of others in the way, so `place` is another folder
 
     def save(self) -> None:
         """Save what the draft holds so far; more may be added to it and saved again."""

@@ -32,17 +32,11 @@ MADE = ".made.json"
 
 @dataclass(frozen=True)
 class Content:
-    """The names in a folder, without that of its record.
+    """The names in a folder, without that of its record."""
 
-    Attributes:
-        made: files that the program made there and nobody changed.
-        others: all other files, hidden ones among them.
-        folders: folders, hidden ones among them.
-    """
-
-    made: frozenset[str] = frozenset()
-    others: frozenset[str] = frozenset()
-    folders: frozenset[str] = frozenset()
+    made: frozenset[str] = frozenset()  # files that the program made there and nobody changed
+    others: frozenset[str] = frozenset()  # all other files, hidden ones among them
+    folders: frozenset[str] = frozenset()  # folders, hidden ones among them
 
     @property
     def foreign(self) -> list[str]:

@@ -35,9 +35,9 @@ def threads() -> int:
     """
     if hasattr(_here, "given_up"):
         return 1
-    own = os.sched_getaffinity(0) if hasattr(os, "sched_getaffinity") else ()
+    allowed = os.sched_getaffinity(0) if hasattr(os, "sched_getaffinity") else ()
     said = os.environ.get("INCA_MJ_THREADS", "")
-    most = len(own) or os.cpu_count() or 1
+    most = len(allowed) or os.cpu_count() or 1
     return min(most, int(said)) if said.isdigit() and int(said) else most
 
 

@@ -122,7 +122,7 @@ class Discover(OnRobot):
         from identification.robot.confirmation import confirm
         from identification.robot.discovery import discover
         from identification.robot.reading import doubtful
-        from identification.robot.repetition import find_repetitions
+        from identification.robot.record_error import find_repetitions
         from identification.robot.write import write_robot
 
         found = discover(robot, progress=self.output.tell, options=options)

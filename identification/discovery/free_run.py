@@ -19,11 +19,10 @@ from identification.discovery.missing_forces import (
     estimate_missing_forces,
     locate_error,
 )
+from identification.estimation.metrics import rms_by_unit
 from identification.kalman.refit import Refit
-from identification.logs.by_unit import rms_by_unit
-from identification.logs.joined import records_of, rows_of
+from identification.logs.joined import Record, records_of, rows_of
 from identification.logs.log import Log, halves
-from identification.logs.record import Record
 
 
 @dataclass(frozen=True, eq=False)

@@ -40,8 +40,8 @@ from identification.discovery.missing_forces import MissingForce
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.recovered_force import RecoveredForce
 from identification.effects.effect import Candidate, Effect
-from identification.logs.by_unit import output_units, relative
-from identification.logs.record import Record
+from identification.estimation.metrics import output_units, relative
+from identification.logs.joined import Record
 from identification.shown import Shown
 
 Recover = Callable[[Candidate, Sequence[Rival]], RecoveredForce | None]

@@ -18,10 +18,10 @@ import numpy as np
 
 from identification.engine import quiet
 from identification.errors import InputError
-from identification.logs.frozen import refuse_frozen
 from identification.logs.log import Log
 from identification.logs.names import listed
 from identification.logs.noise import noise_floor
+from identification.logs.plausible import refuse_frozen
 from identification.model.hostile import HUGE
 from identification.model.predictor import output_columns
 from identification.model.rollout import UNLOGGED, logged_inputs

@@ -32,8 +32,7 @@ from identification.effects.values import (
 from identification.errors import InputError, unknown_name
 from identification.files import MODEL, read_bytes
 from identification.logs.names import quoted
-from identification.model.hostile import refuse_hostile, refuse_numbers
-from identification.model.large import refuse_endless
+from identification.model.hostile import refuse_endless, refuse_hostile, refuse_numbers
 from identification.model.paths import Slot
 from identification.native.element import Term, refuse_unfit_functions
 from identification.native.gear import FIELDS as STATE_FIELDS

@@ -26,10 +26,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from identification.errors import InputError, refuse_kind
+from identification.estimation.metrics import by_unit, of_outputs
 from identification.estimation.priors import Priors, free_parameters
 from identification.estimation.search import Options as Options
 from identification.estimation.search import Search, Status
-from identification.logs.by_unit import by_unit, of_outputs
 from identification.logs.log import Log
 from identification.logs.noise import noise_floor
 from identification.model.coordinates import Coordinates

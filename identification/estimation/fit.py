@@ -14,12 +14,11 @@ from identification.errors import DivergenceError
 from identification.estimation.estimation import Estimate
 from identification.estimation.identifiability import Identifiability, identifiability
 from identification.estimation.information import Information, information_of
-from identification.estimation.metrics import fit_percent, loss, rms
+from identification.estimation.metrics import by_unit, fit_percent, loss, rms, rms_by_unit
 from identification.estimation.residuals import ResidualTests, residual_tests
 from identification.estimation.resolution import nothing_resolved, resolve
 from identification.estimation.scaling_symmetry import Combination
 from identification.estimation.uncertainty import bounded, influence, sandwich, step_shift
-from identification.logs.by_unit import by_unit, rms_by_unit
 from identification.logs.log import Log
 from identification.logs.noise import noise_floor
 from identification.model.predictor import Predictor

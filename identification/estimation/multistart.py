@@ -21,8 +21,8 @@ import numpy as np
 
 from identification.errors import DivergenceError, InputError
 from identification.estimation.estimation import Estimate, Options, estimate
+from identification.estimation.metrics import by_unit, relative, rms_by_unit
 from identification.estimation.uncertainty import LOSSES
-from identification.logs.by_unit import by_unit, relative, rms_by_unit
 from identification.logs.log import Log
 from identification.logs.noise import noise_floor, relative_weight, whitener_of
 from identification.model.coordinates import Coordinates, coordinates

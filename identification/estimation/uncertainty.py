@@ -30,7 +30,7 @@ from identification.errors import DivergenceError, InputError, unknown_name
 from identification.estimation.estimation import Estimate
 from identification.estimation.identifiability import Identifiability
 from identification.estimation.residuals import correlation_time
-from identification.model.finer import finer
+from identification.model.protocol import finer
 
 
 class Loss(NamedTuple):

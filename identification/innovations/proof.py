@@ -24,12 +24,11 @@ import numpy as np
 from identification.chances import student_above
 from identification.discovery.effect_results import Gap, Proof
 from identification.discovery.options import DiscoveryOptions
-from identification.estimation.metrics import fit_percent
+from identification.estimation.metrics import fit_percent, rms_by_unit
 from identification.kalman.noise_model import Whitener, build_whitener
 from identification.kalman.point import extend_point
 from identification.kalman.recursion import propagate
 from identification.kalman.refit import Refit
-from identification.logs.by_unit import rms_by_unit
 from identification.logs.joined import records_of, rows_of
 from identification.logs.log import Log
 from identification.pool import one_blas_thread

@@ -23,8 +23,8 @@ from identification.effects.effect import Candidate
 from identification.kalman.noise_model import build_whitener
 from identification.kalman.refit import Refit
 from identification.kalman.trajectory import COARSE_POINTS, Trajectory, average_inputs, follow
-from identification.model.numbers import with_numbers
 from identification.model.predictor import Predictor
+from identification.model.protocol import with_numbers
 from identification.model.rollout import hold, substeps, without_sensors
 from identification.pool import one_blas_thread
 

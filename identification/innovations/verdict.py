@@ -15,6 +15,7 @@ from identification.discovery.findings.finding import Finding, FindingKind
 from identification.discovery.free_run import FreeRun
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.result import Discovery, Verdict, closed_share
+from identification.estimation.metrics import by_unit
 from identification.innovations.confidence import name_effects
 from identification.innovations.findings import (
     find_doubtful_effect,
@@ -36,7 +37,6 @@ from identification.innovations.scoring.significance import (
 )
 from identification.innovations.state import InnovationSearch
 from identification.kalman.refit import Refit
-from identification.logs.by_unit import by_unit
 
 # With these findings a model is not believed, and nothing is named that leaves anything.
 DISBELIEVED = (FindingKind.PARAMETERS_AT_LIMIT, FindingKind.OVERSIZED_EFFECT)

@@ -23,9 +23,8 @@ from identification.kalman.linear import Linearisation, tangent_index
 from identification.kalman.response import respond
 from identification.kalman.trajectory import average_inputs
 from identification.linear.points import Change, Points
-from identification.model.numbers import Entries, list_differences
 from identification.model.predictor import Predictor, output_columns
-from identification.model.protocol import Numbers, with_states
+from identification.model.protocol import Entries, Numbers, list_differences, with_states
 from identification.model.rollout import State, hold, substeps
 
 Courses = Sequence[Callable[[np.ndarray], np.ndarray]]  # from times [s] to factors

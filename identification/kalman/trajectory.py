@@ -16,9 +16,8 @@ from functools import cached_property, partial
 import mujoco
 import numpy as np
 
-from identification.model.numbers import with_numbers
 from identification.model.predictor import Predictor
-from identification.model.protocol import with_states
+from identification.model.protocol import with_numbers, with_states
 from identification.model.rollout import hold, rollout, substeps, without_sensors
 from identification.native.forward import Intervals
 from identification.pool import run_parts

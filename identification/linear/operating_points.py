@@ -19,8 +19,8 @@ import numpy as np
 from identification.errors import DivergenceError, InputError
 from identification.linear.derivatives import CENTRAL, differences
 from identification.linear.points import Points
-from identification.model.numbers import with_numbers
 from identification.model.predictor import Predictor
+from identification.model.protocol import with_numbers
 from identification.model.rollout import State, rollout, substeps
 
 AT_REST = 1e-9  # of the largest acceleration that the terms of the law could give alone

@@ -17,8 +17,8 @@ import numpy as np
 
 from identification.engine import quiet, untimed
 from identification.errors import DivergenceError
-from identification.model.numbers import with_entries
 from identification.model.paths import Slot
+from identification.model.protocol import with_entries
 from identification.model.rollout import UNDERIVED, threads
 from identification.native.forward import RATES, STATE, Base, Case, Intervals, evaluate
 from identification.native.installer import owners_of

@@ -19,12 +19,17 @@ from dataclasses import replace
 import numpy as np
 
 from identification.errors import InputError
-from identification.logs.declared_step import missing_rows, missing_sentence, refuse_wrong_step
-from identification.logs.fitting_steps import EXACT, Stamps, fits, judged
-from identification.logs.sampling import JITTER, MIN_ROWS, FloatArray, grid
-from identification.logs.shared_stamps import moves_on, shared
+from identification.logs.fitting_steps import EXACT, Missing, Stamps, fits, judged, missing_rows
+from identification.logs.sampling import (
+    JITTER,
+    MIN_ROWS,
+    FloatArray,
+    check_time,
+    grid,
+    sampling_time,
+)
 from identification.logs.sidecar import Sidecar
-from identification.logs.stamps import WHOLE
+from identification.logs.stamps import WHOLE, moves_on, shared
 from identification.logs.table import Table
 
 MEANT_EXACT = 1e-2  # the same where the user says that rows with one stamp are meant
@@ -57,11 +62,22 @@ def evened_stamps(
 def refuse_contradicted(
     table: Table, outputs: Sequence[str], sidecar: Sidecar, trusted: bool = False
 ) -> None:
-    """Refuse a declared sampling time where the stamps prove another one."""
-    if sidecar.sampling_time is not None:
-        stamps = _stamps(table)
-        proven = _proven_step(table, stamps, outputs, trusted) if stamps else None
-        refuse_wrong_step(table, proven, sidecar, EXACT)
+    """Refuse a declared sampling time where the stamps are even with another one."""
+    declared = sidecar.sampling_time
+    # Where most rows have empty cells, each channel has steps of its own.
+    if declared is None or np.isnan(table.data).any(axis=1).mean() >= 0.5:
+        return
+    stamps = _stamps(table)
+    proven = _proven_step(table, stamps, outputs, trusted) if stamps else None
+    step = proven or _even_step(table)
+    if not step or abs(declared - step) <= EXACT * step:  # such as that of two clocks
+        return
+    thin = " (a log is thinned by every = ... in the robot's file)" if declared > step else ""
+    raise InputError(
+        f"{sidecar.file_of('sampling_time')} says sampling_time = {declared:.6g}, and the stamps of"
+        f" {table.path} are even with a step of {step:.6g} s; correct sampling_time or leave it"
+        f" out{thin}"
+    )
 
 
 def _stamps(table: Table) -> Stamps | None:
@@ -137,6 +153,15 @@ def _roundest(low: float, high: float) -> float:
     return middle
 
 
+def _even_step(table: Table) -> float | None:
+    """Returns the step [s] of stamps that are even by themselves, else None."""
+    try:
+        check_time(table["time"], table.place)
+    except InputError:
+        return None
+    return sampling_time(table["time"])
+
+
 def _refuse_irregular(
     table: Table, stamps: Stamps, outputs: Sequence[str], sidecar: Sidecar, trusted: bool
 ) -> None:
@@ -164,7 +189,7 @@ def _refuse_irregular(
         f"{n_lost} rows have the stamp of the row before them and other values",
         f"{n_odd} steps are not the usual one",
     ]
-    told = " and ".join(t for t, n in zip(odd_ones, (n_lost, n_odd), strict=True) if n)
+    which_rows = " and ".join(t for t, n in zip(odd_ones, (n_lost, n_odd), strict=True) if n)
     which = "no sampling time fits all rows"
     cure = "write sampling_time = ... [s] into {file} if the rows are even"
     if declared:
@@ -178,7 +203,7 @@ def _refuse_irregular(
     raise InputError(
         f"{table.place(row)} and the row after it have the stamps {shown} s: stamps of log"
         f" {table.path.stem!r} are multiples of {stamps.tick:.6g} s, too coarse for rows"
-        f" that come every {stamps.mean:.4g} s, where {told}, and {which};"
+        f" that come every {stamps.mean:.4g} s, where {which_rows}, and {which};"
         f" {cure.format(file=sidecar.file_of('sampling_time'))}, or record stamps with more digits"
     )
 
@@ -191,4 +216,17 @@ def _refuse_missing(table: Table, stamps: Stamps, sidecar: Sidecar, declared: fl
             is_sure = stamps.steps is None and len(places) <= FEW
             cure = "save the rows before and behind as two logs"
             cure += "" if is_sure else ", or correct sampling_time if no rows are missing"
-            raise InputError(f"{missing_sentence(table, places, sidecar)}; {cure}")
+            raise InputError(f"{_missing_sentence(table, places, sidecar)}; {cure}")
+
+
+def _missing_sentence(table: Table, places: Sequence[Missing], sidecar: Sidecar) -> str:
+    """Returns words that tell where rows are missing, and how many."""
+    row, time = places[0].row, table["time"]
+    rest = len(places) - 1
+    more = f", and in {rest} more place{'s' * (rest > 1)}" if rest else ""
+    rows = "1 row is" if places[0].count == 1 else f"{places[0].count} rows are"
+    return (
+        f"{table.place(row - 1)}: about {rows} missing behind it: sampling_time ="
+        f" {sidecar.sampling_time:.6g} in {sidecar.file_of('sampling_time')} fits the rows up to"
+        f" {time[row - 1]:.9g} s and those from {time[row]:.9g} s on, but not both at once{more}"
+    )

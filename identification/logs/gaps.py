@@ -17,8 +17,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from identification.errors import InputError
-from identification.logs.frozen import stands_still
 from identification.logs.noise import noise_floor
+from identification.logs.plausible import stands_still
 from identification.logs.sampling import FloatArray
 
 ALLOWED = 0.01  # of a channel's motion, that the bridge of a gap may err by
@@ -44,17 +44,11 @@ class Channel:
 
 @dataclass(frozen=True)
 class Gap:
-    """A gap over which what is made up may be wrong.
+    """A gap over which what is made up may be wrong."""
 
-    Attributes:
-        begin: the last stamp before it [s].
-        end: the first stamp behind it [s].
-        why: what is missing, and how far a bridge of it errs, in words.
-    """
-
-    begin: float
-    end: float
-    why: str
+    begin: float  # the last stamp before it [s]
+    end: float  # the first stamp behind it [s]
+    why: str  # what is missing, and how far a bridge of it errs, in words
 
 
 def find_gaps(log: str, c: Channel, y: FloatArray, h: float) -> Iterator[Gap]:

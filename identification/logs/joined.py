@@ -1,21 +1,54 @@
-"""Records of one robot, one after the other in one log.
+"""Records of one robot: one after the other in one log, and whether they are different records.
 
 A simulation begins anew with each record, and so does a Kalman predictor. The time of the joined
 log counts on through all records, so that a part of it is the end of one record and the beginning
 of the next.
+
+Sensors' noise never repeats, so that as many samples in a row that are equal to the bit were
+measured once. A log says little beside others if a mere replay of them explains its share R:
+
+    R = 1 - Σ_blocks min_s Σ_t ‖z(t) - z_f(t - s)‖² / Σ_blocks Σ_t ‖z(t)‖²      about block means
+
+z are the inputs and outputs of a log, each divided by its std there, and z_f those of other logs,
+without the mean of a block, because an axis that integrates drifts; twice the variance of the noise
+is taken off the error. Each quarter of the log stands beside the most alike piece of the others.
+Where R is above 0.95 a replay leaves as little as a model that is said to explain a log.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Literal
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from identification.errors import InputError, unknown_name
 from identification.logs.log import Log, halves
-from identification.logs.overlap import refuse_different
+from identification.logs.noise import noise_floor
 from identification.logs.sampling import grid, rows_between
+
+REPLAYED = 0.95  # R above which a log says little beside the others
+BLOCKS = 4
+ROW = 20  # samples
+MOVING = 10  # of them, at least, that differ from one another: robots at rest are all alike
+Role = Literal["fit", "confirm"]
+
+
+@dataclass(frozen=True)
+class Record:
+    """A log and what it is used for.
+
+    Attributes:
+        log: what was measured.
+        role: "fit" or "confirm".
+        values: values of the plant's parameters that hold for this record alone, by name.
+    """
+
+    log: Log
+    role: Role
+    values: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -70,6 +103,13 @@ def join_logs(logs: Sequence[Log], name: str = "") -> Log:
     return _joined(logs, numbers, name or " + ".join(log.name for log in logs), 0.0)
 
 
+def records_of(log: Log) -> tuple[tuple[int, Log], ...]:
+    """Returns the records of a log with their numbers; a log that was not joined is number 1."""
+    if isinstance(log, JoinedLog):
+        return tuple(zip(log.numbers, log.records, strict=True))
+    return ((1, log),)
+
+
 def rows_of(log: Log, name: str) -> np.ndarray:
     """Returns which samples of a log, or of joined records, belong to a split, shape (N,)."""
     out = []
@@ -81,6 +121,94 @@ def rows_of(log: Log, name: str) -> np.ndarray:
             inside[first:last] = True
         out.append(inside)
     return np.concatenate(out)
+
+
+def refuse_different(logs: Sequence[Log]) -> None:
+    """Refuse logs that are not different records of one robot."""
+    first = logs[0]
+    for k, log in enumerate(logs):
+        if any(_is_same(log, other) for other in logs[:k]):
+            raise InputError(
+                f"log {log.name!r} is given twice; a record counts once, and confirms nothing when"
+                " it was fitted: leave one of them out"
+            )
+        for what in ("input_names", "output_names", "hold"):
+            names, expected = getattr(log, what), getattr(first, what)
+            if names != expected:
+                raise InputError(
+                    f"log {log.name!r} has the {what.replace('_', ' ')} {names} where"
+                    f" {first.name!r} has {expected}; give records of one robot and one set of"
+                    " columns"
+                )
+        for other in logs[:k]:
+            if share_samples(log, other):
+                raise InputError(
+                    f"logs {log.name!r} and {other.name!r} hold the same samples; what was fitted"
+                    " confirms nothing, and what is given twice counts twice: give parts that do"
+                    " not overlap"
+                )
+
+
+def share_samples(a: Log, b: Log) -> bool:
+    """Returns whether some samples in a row stand in both logs, to the bit."""
+    rows = [np.hstack([log.inputs, log.outputs]) for log in (a, b)]
+    if min(map(len, rows)) < ROW:
+        return False
+    _, names = np.unique(np.concatenate(rows), axis=0, return_inverse=True)
+    names = names.ravel()
+    first, second = (_stretches(n) for n in np.split(names, [len(rows[0])]))
+    return bool(np.isin(first, second).any())
+
+
+def replayed_share(fitted: Sequence[Log], log: Log) -> float:
+    """Returns R of a log, no unit; 0 where nothing varies or no fitted piece is long enough."""
+    z = np.hstack([log.inputs, log.outputs])
+    scale = z.std(axis=0)
+    kept = scale > 0
+    if not kept.any():
+        return 0.0
+    size = len(log) // BLOCKS
+    middle = z[:, kept].mean(axis=0)
+    noise = 2 * float(np.sum((noise_floor(z[:, kept]) / scale[kept]) ** 2))
+    pieces = [(np.hstack([f.inputs, f.outputs])[:, kept] - middle) / scale[kept]
+              for f in fitted if len(f) >= size > 0]  # fmt: skip
+    if not pieces:
+        return 0.0
+    z = (z[:, kept] - middle) / scale[kept]
+    error = total = 0.0
+    for k in range(BLOCKS):
+        block = z[k * size : (k + 1) * size]
+        block = block - block.mean(axis=0)
+        total += float(np.sum(block**2))
+        error += max(0.0, min(_least(block, piece) for piece in pieces) - size * noise)
+    return 1 - error / total if total > 0 else 0.0
+
+
+def _least(block: np.ndarray, piece: np.ndarray) -> float:
+    """Returns min_s Σ ‖block - piece_s‖² over all places s in a piece, each about its own mean."""
+    from scipy.signal import fftconvolve  # slow to import
+
+    size = len(block)
+    pairs = zip(piece.T, block.T, strict=True)
+    across = np.sum([fftconvolve(p, b[::-1], "valid") for p, b in pairs], axis=0)
+    sums, power = (
+        np.concatenate([np.zeros((1, x.shape[1])), np.cumsum(x, axis=0)]) for x in (piece, piece**2)
+    )
+    sums, power = sums[size:] - sums[:-size], power[size:] - power[:-size]
+    around = np.sum(power - sums**2 / size, axis=1)
+    return float(np.min(around - 2 * across) + np.sum(block**2))
+
+
+def _stretches(names: np.ndarray) -> np.ndarray:
+    """Returns samples in a row by their names, one entry a stretch, those at rest left out."""
+    each = np.ascontiguousarray(sliding_window_view(names, ROW))
+    different = (np.diff(np.sort(each, axis=1), axis=1) != 0).sum(axis=1) + 1
+    return each[different >= MOVING].view(f"V{ROW * each.itemsize}").ravel()
+
+
+def _is_same(a: Log, b: Log) -> bool:
+    """Returns whether two logs are one record, to the bit."""
+    return a is b or (np.array_equal(a.inputs, b.inputs) and np.array_equal(a.outputs, b.outputs))
 
 
 def _joined(records: Sequence[Log], numbers: Sequence[int], name: str, start: float) -> JoinedLog:
@@ -98,13 +226,6 @@ def _joined(records: Sequence[Log], numbers: Sequence[int], name: str, start: fl
         records=tuple(records),
         numbers=tuple(numbers),
     )
-
-
-def records_of(log: Log) -> tuple[tuple[int, Log], ...]:
-    """Returns the records of a log with their numbers; a log that was not joined is number 1."""
-    if isinstance(log, JoinedLog):
-        return tuple(zip(log.numbers, log.records, strict=True))
-    return ((1, log),)
 
 
 def _refuse_unlike(first: Log, log: Log) -> None:

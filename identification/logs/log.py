@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from math import isnan
 from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 
 from identification.errors import InputError, unknown_name
-from identification.logs.log_checks import HOLDS, check_array, check_splits
 from identification.logs.names import check_column_names
 from identification.logs.sampling import (
     MIN_ROWS,
@@ -22,6 +22,7 @@ from identification.logs.sampling import (
 )
 from identification.logs.units import check_si
 
+HOLDS = ("zoh", "foh")
 Splits = Mapping[str, tuple[float, float]]
 
 
@@ -190,6 +191,53 @@ def halves(log: Log) -> Splits:
     start, end = float(log.time[0]), float(log.time[-1]) + step
     middle = float(log.time[len(log) // 2])
     return {"estimation": (start, middle), "validation": (middle, end)}
+
+
+def check_array(log: str, what: str, array: FloatArray, shape: tuple[int, ...]) -> None:
+    """Refuse an array of another shape, or with a number that is not finite.
+
+    Args:
+        log: name of the log.
+        what: name of the array.
+        array: the numbers, in any shape.
+        shape: the shape that it should have.
+    """
+    if array.shape != shape:
+        raise InputError(
+            f"log {log!r}: {what} has shape {array.shape} and should have {shape}; "
+            "give one row for each sample and one column for each name"
+        )
+    bad = np.argwhere(~np.isfinite(array))
+    if bad.size:
+        raise InputError(
+            f"log {log!r}: {what}{bad[0].tolist()} is {array[tuple(bad[0])]}; "
+            "a log holds finite numbers only"
+        )
+
+
+def check_splits(log: str, time: FloatArray, splits: Mapping[str, tuple[float, float]]) -> None:
+    """Refuse a named part that is empty, and parts for estimation and validation that overlap.
+
+    Args:
+        log: name of the log.
+        time: its time stamps, shape (n,) [s].
+        splits: its named parts [start, end) [s].
+    """
+    span = f"[{time[0]:g}, {time[-1]:g}] s"
+    for name, (start, end) in splits.items():
+        first, last = rows_between(time, start, end)
+        if isnan(start) or isnan(end) or last - first < MIN_ROWS:
+            raise InputError(
+                f"split {name!r} = [{start:g}, {end:g}) s of log {log!r} holds fewer than "
+                f"{MIN_ROWS} samples; choose a part of {span}"
+            )
+    if {"estimation", "validation"} <= set(splits):
+        (a, b), (c, d) = (rows_between(time, *splits[n]) for n in ("estimation", "validation"))
+        if max(a, c) < min(b, d):
+            raise InputError(
+                f"splits 'estimation' and 'validation' of log {log!r} overlap; keep the data "
+                "that confirm a model apart from those that made it"
+            )
 
 
 def _frozen(values: FloatArray) -> FloatArray:

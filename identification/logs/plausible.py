@@ -1,8 +1,17 @@
-"""Numbers that are too large are most often numbers in another unit.
+"""What no right log holds: numbers that are too large, and sensors that freeze.
 
-A limit of the size finds milliamperes that were taken for amperes. A limit of the speed finds
-degrees that were taken for radians, even when the angles are small: the speed too is 57 times too
-large.
+Numbers that are too large are most often numbers in another unit. A limit of the size finds
+milliamperes that were taken for amperes. A limit of the speed finds degrees that were taken for
+radians, even when the angles are small: the speed too is 57 times too large.
+
+A sensor is frozen where an output repeats one value while its joint is still driven. The output of
+a joint at rest repeats one value too, but then its inputs have changed. An encoder whose steps are
+too coarse for a slow motion also repeats values, but it does not stop suddenly.
+
+A sensor that wakes up again jumps to where its joint has gone meanwhile. A joint that rested, stuck
+by friction or at an end stop, or moved by less than a step of its encoder, begins to move from
+where it was, and no faster than elsewhere in the log. So a position that does not jump is never
+told as one that froze for a while, such as that of a joint that is back when its sensor wakes up.
 """
 
 from __future__ import annotations
@@ -13,12 +22,20 @@ from pathlib import Path
 import numpy as np
 
 from identification.errors import InputError
-from identification.logs.conversion import HUGE
 from identification.logs.cures import lines_of, toml_key
+from identification.logs.log import Log
 from identification.logs.names import group, lookup
-from identification.logs.table import Table
+from identification.logs.table import HUGE, Table
 from identification.logs.units import to_si, units_that_fit
 
+FEWEST = 50  # a frozen output repeats at least so many samples
+SHARE = 0.2  # and at least this share of the log
+AS_BEFORE = 0.5  # of the std before; a signal that still varies by as much counts as moving
+ROUNDED = 1e-6  # of its width, below which a difference is rounding and no step of an encoder
+FEW = 0.1  # of the differences may be smaller than a step
+SPAN = 2  # samples that a jump takes: one where it is measured, two where it is put on a grid
+BEYOND = 2.0  # times the farthest motion in as many samples elsewhere, from which a jump is none
+STEPS = 3  # that the encoder crosses in the `FEWEST` samples before it freezes
 TURN = 0.1  # of a turn: a jump of a wrapped angle differs from a whole turn by less
 
 
@@ -80,6 +97,128 @@ def check_plausible(
                     )
                     + overrule
                 )
+
+
+def stands_still(y: np.ndarray) -> bool:
+    """Returns whether a channel, shape (n,), moves by no more than `STEPS` steps of its encoder."""
+    width, steps = np.ptp(y), np.abs(np.diff(y))
+    moves = steps[steps > ROUNDED * width]
+    if not moves.size:
+        return bool(width == 0)
+    # A few steps are smaller where a gap was bridged.
+    return bool(width <= STEPS * np.quantile(moves, FEW))
+
+
+def still_sentence(log: Log) -> str | None:
+    """Tells of outputs that stand still in all of a log; None where there is none.
+
+    It is no refusal: a joint may be braked, or its friction may hold it against its drive.
+    """
+    still = []
+    for name, y in zip(log.output_names, log.outputs.T, strict=True):
+        if stands_still(y):
+            within = f" (within {width:.2g})" if (width := float(np.ptp(y))) else ""
+            still.append(
+                f"{name} is {np.median(y):.4g} {log.units.get(name, '')}".rstrip() + within
+            )
+    if not still:
+        return None
+    one = len(still) == 1
+    return (
+        f"In all of log {log.name!r} {' and '.join(still)}: {'a joint' if one else 'joints'} that"
+        f" stood still, or {'a dead sensor' if one else 'dead sensors'}. What is dead belongs out"
+        " of the outputs of the robot's file."
+    )
+
+
+def refuse_frozen(
+    log: Log,
+    output: int,
+    inputs: np.ndarray,
+    others: np.ndarray,
+    overrule: str = "",
+    is_rate: bool = False,
+) -> None:
+    """Refuse an output that froze, for a while or to the end.
+
+    Args:
+        log: what was measured.
+        output: column of the output.
+        inputs: everything that drives its joint, shape (n, k); the joint counts as driven where all
+            of these vary as before.
+        others: other outputs of its joint, shape (n, m); the joint counts as moving where one of
+            these varies as before.
+        overrule: how a user may overrule this, for the message.
+        is_rate: whether the output is a rate, which may jump: it is judged at the end only.
+    """
+    y = log.outputs[:, output]
+    if not is_rate:
+        _refuse_stuck(log, output, inputs, others, overrule)
+    moved = np.flatnonzero(np.diff(y))
+    first = int(moved[-1]) + 1 if moved.size else 0
+    if first == 0 or len(y) - first < max(FEWEST, SHARE * len(y)):
+        return
+    step = np.abs(np.diff(y))[moved].min()
+    abrupt = np.ptp(y[max(0, first - FEWEST) : first]) > STEPS * step
+    driven, seen = _goes_on(inputs, first), _goes_on(others, first)
+    if abrupt and ((driven.size and driven.all()) or seen.any()):
+        raise InputError(
+            f"{log.output_names[output]} of log {log.name!r} repeats {y[first]:g} from"
+            f" {log.time[first]:.6g} s to the end while its joint is driven on: a frozen sensor;"
+            f" delete the log's rows from there on, or record again{overrule}"
+        )
+
+
+def _refuse_stuck(
+    log: Log, output: int, inputs: np.ndarray, others: np.ndarray, overrule: str
+) -> None:
+    """Refuse a position that repeats one value for a while and then jumps; see `refuse_frozen`."""
+    y = log.outputs[:, output]
+    stops = _stops(y)
+    if not stops:
+        return
+    far = np.abs(y[SPAN:] - y[:-SPAN])
+    # Spans that hold a part of a wake-up tell nothing of the joint's speed.
+    wakes = np.unique([end + k for _, end in stops for k in range(-SPAN, SPAN - 1)])
+    moved = float(np.delete(far, wakes).max(initial=0.0))
+    steps = np.abs(np.diff(y))
+    encoder = float(steps[steps > ROUNDED * np.ptp(y)].min())
+    for first, end in stops:
+        jump = float(far[end - 1])
+        if jump <= max(BEYOND * moved, STEPS * encoder) or moved == 0:
+            continue
+        part = np.zeros(len(y), dtype=bool)
+        part[first:end] = True
+        driven, seen = (_varies(signals, part) for signals in (inputs, others))
+        if (driven.size and driven.all()) or seen.any():
+            raise InputError(
+                f"{log.output_names[output]} of log {log.name!r} repeats {y[first]:g} from"
+                f" {log.time[first]:.6g} s to {log.time[end - 1]:.6g} s while its joint is driven"
+                f" on, and then jumps by {jump:.3g} where it moves by {moved:.2g} at most in as"
+                " many samples: a sensor that was stuck; save the rows before it and behind it as"
+                f" two logs, or record again{overrule}"
+            )
+
+
+def _stops(y: np.ndarray) -> list[tuple[int, int]]:
+    """Returns where a channel repeats a value: the first sample of each stop and the one behind.
+
+    Stops at the beginning and at the end are left out: nothing stands before, or behind, them.
+    """
+    moves = np.flatnonzero(np.abs(np.diff(y)) > ROUNDED * np.ptp(y)) + 1
+    pairs = zip(moves[:-1].tolist(), moves[1:].tolist(), strict=True)
+    return [(a, b) for a, b in pairs if b - a >= FEWEST and b + SPAN < len(y)]
+
+
+def _goes_on(signals: np.ndarray, first: int) -> np.ndarray:
+    """Returns which signals vary after a sample as much as before it, shape (k,)."""
+    return _varies(signals, np.arange(len(signals)) >= first)
+
+
+def _varies(signals: np.ndarray, part: np.ndarray) -> np.ndarray:
+    """Returns which signals vary in a part of the samples as much as in the others, shape (k,)."""
+    within, without = signals[part].std(axis=0), signals[~part].std(axis=0)
+    return np.asarray((within > 0) & (within >= AS_BEFORE * without))
 
 
 def _wrapped(unit: str, jump: float) -> str:

@@ -13,20 +13,29 @@ import numpy as np
 from identification.errors import InputError
 from identification.files import read_bytes, readable
 from identification.logs.coarse import evened_stamps, refuse_contradicted
-from identification.logs.conversion import conversions, converted
-from identification.logs.interleaved import refuse_interleaved
+from identification.logs.csv_files import parse_csv
 from identification.logs.log import Log
 from identification.logs.names import check_column_names, check_keys, lookup
 from identification.logs.plausible import check_plausible, check_possible
-from identification.logs.publishers import refuse_second_publisher, refuse_two_inputs
-from identification.logs.read_csv import parse_csv
+from identification.logs.publishers import (
+    refuse_interleaved,
+    refuse_second_publisher,
+    refuse_two_inputs,
+)
 from identification.logs.read_mat import parse_mat
 from identification.logs.resampling import Even, even_out
 from identification.logs.sampling import FloatArray, check_time, grid
-from identification.logs.shared_stamps import without_repeated
 from identification.logs.sidecar import Sidecar, read_sidecar
-from identification.logs.stamps import wanted_columns, with_time
-from identification.logs.table import Table, check_columns, check_finite, check_stamps, renamed
+from identification.logs.stamps import wanted_columns, with_time, without_repeated
+from identification.logs.table import (
+    Table,
+    check_columns,
+    check_finite,
+    check_stamps,
+    conversions,
+    converted,
+    renamed,
+)
 from identification.logs.units import check_si
 
 

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import io
 import subprocess
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 
+from identification.child import MATRIX, REFUSED, run_child
 from identification.errors import InputError
-from identification.logs import mat_child
 from identification.logs.names import listed
 from identification.logs.sampling import FloatArray, grid
 from identification.logs.table import Table
@@ -63,22 +62,19 @@ def parse_mat(
 def _loaded(raw: bytes, path: Path) -> dict[str, np.ndarray | None]:
     """Reads the variables by name in another process; None for one that is no full real matrix."""
     try:
-        done = subprocess.run(
-            [sys.executable, "-I", mat_child.__file__], input=raw, capture_output=True,
-            timeout=SECONDS, check=False,
-        )  # fmt: skip
+        done = run_child("matlab", raw, SECONDS)
     except subprocess.TimeoutExpired:
         raise InputError(
             f"{path} is not read within {SECONDS:g} s; save it again with save(..., '-v7')"
         ) from None
-    if done.returncode == mat_child.NEWER:
+    if done.returncode == REFUSED:
         raise InputError(f"{path} is a MATLAB 7.3 (HDF5) file; save it again with save(..., '-v7')")
     if done.returncode:
         raise InputError(
             f"{path} cannot be read as a MATLAB file; save it again with save(..., '-v7')"
         )
     with np.load(io.BytesIO(done.stdout)) as arrays:
-        return {n[1:]: arrays[n] if n.startswith(mat_child.MATRIX) else None for n in arrays}
+        return {n[1:]: arrays[n] if n.startswith(MATRIX) else None for n in arrays}
 
 
 def _numeric(value: np.ndarray | None, name: str, path: Path) -> FloatArray:

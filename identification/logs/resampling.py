@@ -6,7 +6,8 @@
           hold "foh": the straight line between the nearest samples, at t_k
 
 Each channel has the rows in which it is finite; of equal stamps the last row counts. What stands
-in a gap is made up; `identification.logs.gaps` says where this does harm.
+in a gap is made up; `identification.logs.gaps` says where this does harm. `on_a_grid` does less: it
+draws a straight line between the samples of a channel, and refuses a gap that is too wide for it.
 """
 
 from __future__ import annotations
@@ -28,19 +29,12 @@ ROUND = 0.02  # of the rate, by which it may be rounded: any rate near the sampl
 
 @dataclass(frozen=True)
 class Even:
-    """Channels on an even grid.
+    """Channels on an even grid."""
 
-    Attributes:
-        time: stamps of the grid, shape (n,) [s].
-        channels: by name, shape (n,), each in a unit of its own.
-        sentence: what was done.
-        gaps: where nothing was measured, and what was made up may be wrong: begin and end [s].
-    """
-
-    time: FloatArray
-    channels: Mapping[str, FloatArray]
-    sentence: str
-    gaps: tuple[tuple[float, float], ...]
+    time: FloatArray  # stamps of the grid, shape (n,) [s]
+    channels: Mapping[str, FloatArray]  # by name, shape (n,), each in a unit of its own
+    sentence: str  # what was done
+    gaps: tuple[tuple[float, float], ...]  # begin and end of where samples may be wrong [s]
 
 
 def even_out(
@@ -67,11 +61,11 @@ def even_out(
         raise InputError(
             f"time of log {name!r} goes back after {at:.9g} s; sort its rows, or cut the log there"
         )
-    own = [_samples(name, key, time, values) for key, values in channels.items()]
+    sampled = [_samples(name, key, time, values) for key, values in channels.items()]
     # An input that is held may come as seldom as it changes.
-    timed = [c for c in own if c.name not in inputs or hold == "foh"] or own
+    timed = [c for c in sampled if c.name not in inputs or hold == "foh"] or sampled
     h = step or _round(max(float(np.median(np.diff(c.time))) for c in timed))
-    begin, end = max(c.time[0] for c in own), min(c.time[-1] for c in timed)
+    begin, end = max(c.time[0] for c in sampled), min(c.time[-1] for c in timed)
     steps = float(end - begin) / float(h)
     if steps > MOST_PER_ROW * len(time):
         raise InputError(
@@ -88,10 +82,10 @@ def even_out(
     t = grid(begin, h, n)
     out = {c.name: _held(c, t, h) if c.name in inputs and hold == "zoh" else
            np.interp(t, c.time, c.values) if c.name in inputs else
-           _smooth(c, t) for c in own}  # fmt: skip
+           _smooth(c, t) for c in sampled}  # fmt: skip
     # An input that usually comes with every sample was not held where it did not come.
     names = {c.name for c in timed}
-    steady = [c for c in own if c.name not in names and np.median(np.diff(c.time)) < 1.5 * h]
+    steady = [c for c in sampled if c.name not in names and np.median(np.diff(c.time)) < 1.5 * h]
     gaps = [gap for c in timed for gap in find_gaps(name, c, out[c.name], h)]
     gaps += [gap for c in steady for gap in find_pauses(name, c, n, h)]
     gaps += [gap for c in steady for gap in find_lost_rows(c, time)]
@@ -99,6 +93,53 @@ def even_out(
     said = _sentence(name, why, [*timed, *steady], t, h) + _shared_sentence(time, channels)
     said += _gaps_sentence(gaps)
     return Even(t, out, said, tuple(dict.fromkeys((gap.begin, gap.end) for gap in gaps)))
+
+
+def on_a_grid(
+    time: FloatArray,
+    channels: Mapping[str, FloatArray],
+    step: float,
+    widest: float,
+) -> tuple[FloatArray, dict[str, FloatArray]]:
+    """Interpolate every channel, from the time when all have begun to the time when one ends.
+
+    Args:
+        time: time stamps, shape (n,) [s]; rows with equal stamps are adjacent.
+        channels: by name, shape (n,), each in a unit of its own; NaN where nothing arrived.
+        step: step of the grid [s].
+        widest: largest gap between two samples of a channel that is interpolated [s].
+
+    Returns:
+        Time of the grid from zero, shape (m,) [s], and the channels on it.
+
+    Raises:
+        InputError: a channel has fewer than two samples or too wide a gap, or nothing is left.
+    """
+    if not (step > 0 and np.isfinite(step)):
+        raise InputError(f"a grid needs a positive step, not {step:g} s")
+    seen = {name: np.isfinite(x) & np.isfinite(time) for name, x in channels.items()}
+    for name, rows in seen.items():
+        if rows.sum() < 2:
+            raise InputError(f"channel {name!r} has {rows.sum()} samples; leave it out")
+    order = np.argsort(time, kind="stable")
+    begin = max(float(time[rows].min()) for rows in seen.values())
+    end = min(float(time[rows].max()) for rows in seen.values())
+    if end - begin < 2 * step:
+        raise InputError("no three steps in which every channel was measured; leave one out")
+    t = grid(begin, step, int((end - begin) / step + 1e-9) + 1)
+    out = {}
+    for name, x in channels.items():
+        at = order[seen[name][order]]
+        inside = (time[at] >= begin) & (time[at] <= end)
+        gaps = np.diff(time[at][inside])
+        if len(gaps) and gaps.max() > widest:
+            k = int(gaps.argmax())
+            raise InputError(
+                f"channel {name!r} has no sample for {gaps[k]:.3g} s from"
+                f" {time[at][inside][k]:.6g} s, more than {widest:g} s; cut the log there"
+            )
+        out[name] = np.interp(t, time[at], x[at])
+    return t - begin, out
 
 
 def _samples(log: str, name: str, time: FloatArray, values: FloatArray) -> Channel:

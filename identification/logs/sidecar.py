@@ -29,15 +29,12 @@ from typing import Any
 
 from identification.errors import InputError, unknown_name
 from identification.files import read_toml
-from identification.logs.log_checks import HOLDS
+from identification.logs.log import HOLDS
 
 
 @dataclass(frozen=True, kw_only=True)
 class Sidecar:
-    """The content of a sidecar; every key may be left out, and the file too.
-
-    `elsewhere` are the keys that another file gives, with its path.
-    """
+    """The content of a sidecar; every key may be left out, and the file too."""
 
     path: Path
     sampling_time: float | None = None
@@ -50,7 +47,7 @@ class Sidecar:
     factors: Mapping[str, float] = field(default_factory=dict)
     splits: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     values: Mapping[str, float] = field(default_factory=dict)
-    elsewhere: Mapping[str, Path] = field(default_factory=dict)
+    elsewhere: Mapping[str, Path] = field(default_factory=dict)  # files of keys that it lacks
 
     def file_of(self, key: str) -> Path:
         """Returns the file that gives a key: that beside the log, or another, such as a robot's."""
@@ -72,8 +69,8 @@ def read_sidecar(
         if not isinstance(inner, dict):
             raise InputError(f"log in {path} must be a table; correct it there")
         values |= _values(inner, f"[log] of {path}") | _values(content, str(path))
-        own = {**inner, **content}
-        elsewhere = {key: file for key, file in elsewhere.items() if key not in own}
+        given_here = {**inner, **content}
+        elsewhere = {key: file for key, file in elsewhere.items() if key not in given_here}
     return Sidecar(path=path, elsewhere=elsewhere, **values)
 
 
@@ -81,101 +78,74 @@ def _values(content: Mapping[str, Any], where: str) -> dict[str, Any]:
     """Returns the values of the keys of a file, checked; a list of columns is a header."""
     values = {}
     for key, value in content.items():
-        if key in _TABLES and not (key == "columns" and isinstance(value, list)):
-            values[key] = _table(key, value, where)
-        elif key in _KEYS or key in _TABLES:
-            name, (kind, convert) = ("header", _HEADER) if key in _TABLES else (key, _KEYS[key])
-            values[name] = _converted(value, convert, f"{key} in {where}", kind)
+        if key == "columns" and isinstance(value, list):
+            values["header"] = _checked(value, f"{key} in {where}", _is_names, _COLUMNS)
+        elif key in _TABLES:
+            of_table, is_good, of_entry = _TABLES[key]
+            _checked(value, f"{key} in {where}", _is_table, of_table)
+            values[key] = {
+                name: _checked(entry, f"{name} under {key} in {where}", is_good, of_entry)
+                for name, entry in value.items()
+            }
+        elif key in _KEYS:
+            values[key] = _checked(value, f"{key} in {where}", *_KEYS[key])
         else:
             raise unknown_name(f"key in {where}:", key, (*_KEYS, *_TABLES))
     return values
 
 
-def _table(key: str, value: object, where: str) -> dict[str, Any]:
-    """Returns a table with each of its entries converted."""
-    example, kind, convert = _TABLES[key]
-    if not isinstance(value, dict):
-        raise InputError(f"{key} in {where} must be {example}; correct it there")
-    return {
-        name: _converted(entry, convert, f"{name} under {key} in {where}", kind)
-        for name, entry in value.items()
-    }
+def _checked(value: Any, what: str, is_good: Callable[[Any], bool], kind: str) -> Any:
+    """Returns a value with floats and tuples in the place of numbers and lists, if it is good."""
+    if not is_good(value):
+        raise InputError(f"{what} must be {kind}; correct it there")
+    if isinstance(value, list):
+        return tuple(float(v) if _is_number(v) else v for v in value)
+    return float(value) if _is_number(value) else value
 
 
-def _converted(value: object, convert: Callable[[object], Any], what: str, kind: str) -> Any:
-    try:
-        return convert(value)
-    except (TypeError, OverflowError) as error:
-        raise InputError(f"{what} must be {kind}; correct it there") from error
+def _is_text(value: Any) -> bool:
+    return isinstance(value, str)
 
 
-def _text(value: object) -> str:
-    if not isinstance(value, str):
-        raise TypeError
-    return value
+def _is_table(value: Any) -> bool:
+    return isinstance(value, dict)
 
 
-def _hold(value: object) -> str:
-    if value not in HOLDS:
-        raise TypeError
-    return _text(value)
+def _is_names(value: Any) -> bool:
+    return isinstance(value, list) and all(map(_is_text, value))
 
 
-def _number(value: object) -> float:
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or isnan(value):
-        raise TypeError
-    return float(value)
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and not isnan(value)
 
 
-def _step(value: object) -> float:
-    step = _number(value)
-    if not (isfinite(step) and step > 0):
-        raise TypeError
-    return step
+def _is_finite(value: Any) -> bool:
+    return _is_number(value) and isfinite(value)
 
 
-def _names(value: object) -> tuple[str, ...]:
-    if not isinstance(value, list):
-        raise TypeError
-    return tuple(_text(v) for v in value)
-
-
-def _finite(value: object) -> float:
-    number = _number(value)
-    if not isfinite(number):
-        raise TypeError
-    return number
-
-
-def _factor(value: object) -> float:
-    if not (factor := _finite(value)):
-        raise TypeError
-    return factor
-
-
-def _pair(value: object) -> tuple[float, float]:
-    if not (isinstance(value, list) and len(value) == 2):
-        raise TypeError
-    return _number(value[0]), _number(value[1])
-
-
-_KEYS: dict[str, tuple[str, Callable[[object], Any]]] = {
-    "sampling_time": ("a positive number of seconds", _step),
-    "hold": (" or ".join(f'"{h}"' for h in HOLDS), _hold),
-    "notes": ("text in quotes", _text),
-    "ignore": ('a list of columns, such as ["temperature"]', _names),
+_KEYS: dict[str, tuple[Callable[[Any], bool], str]] = {  # whether it is good, what it must be
+    "sampling_time": (lambda v: _is_finite(v) and v > 0, "a positive number of seconds"),
+    "hold": (lambda v: v in HOLDS, " or ".join(f'"{h}"' for h in HOLDS)),
+    "notes": (_is_text, "text in quotes"),
+    "ignore": (_is_names, 'a list of columns, such as ["temperature"]'),
 }
 _COLUMNS = 'a table of names, such as q1 = "angle_1", or a list of them'
-_HEADER = (_COLUMNS, _names)
-_TABLES: dict[str, tuple[str, str, Callable[[object], Any]]] = {  # with what an entry must be
-    "units": ('a table of units, such as current = "mA"', 'a unit in quotes, such as "mA"', _text),
-    "columns": (_COLUMNS, "a name in quotes", _text),
-    "factors": ("a table of numbers", "a number other than zero, such as -1", _factor),
+# What the table must be, whether an entry is good, and what it must be.
+_TABLES: dict[str, tuple[str, Callable[[Any], bool], str]] = {
+    "units": (
+        'a table of units, such as current = "mA"', _is_text, 'a unit in quotes, such as "mA"'
+    ),
+    "columns": (_COLUMNS, _is_text, "a name in quotes"),
+    "factors": (
+        "a table of numbers", lambda v: _is_finite(v) and v != 0,
+        "a number other than zero, such as -1",
+    ),
     "splits": (
-        "a table of parts in seconds, such as estimation = [0, 10]", "two times, such as [0, 10]",
-        _pair,
+        "a table of parts in seconds, such as estimation = [0, 10]",
+        lambda v: isinstance(v, list) and len(v) == 2 and all(map(_is_number, v)),
+        "two times, such as [0, 10]",
     ),
     "values": (
-        'a table of numbers, such as "body/weight.mass" = 1.0', "a finite number", _finite
+        'a table of numbers, such as "body/weight.mass" = 1.0', _is_finite, "a finite number"
     ),
 }  # fmt: skip

@@ -1,41 +1,53 @@
-"""Named columns of numbers as they stand in a file, before units are converted."""
+"""Named columns of numbers, as they stand in a file and as they are in SI units."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
+from math import inf, isfinite
 from pathlib import Path
 
 import numpy as np
 
-from identification.errors import InputError, repeated, unknown_name
+from identification.errors import InputError, repeated, told_of, unknown_name
 from identification.logs.cures import toml_key
-from identification.logs.names import listed, quoted
+from identification.logs.names import listed, lookup, quoted
 from identification.logs.sampling import FloatArray
 from identification.logs.sidecar import Sidecar
+from identification.logs.units import to_si
+
+HUGE = 1e15  # of any SI unit: no angle, way, force, voltage or current of a robot is so large
 
 
 @dataclass(frozen=True)
 class Table:
     """Columns (n, c) of a file, their names (c), and a function that says where a row stands.
 
-    `left` are the names of columns that nobody asked for; they are not read.
+    `unread` are the names of columns that nobody asked for; they are not read.
     """
 
     path: Path
     names: tuple[str, ...]
     data: FloatArray
     place: Callable[[int], str]
-    left: tuple[str, ...] = ()
+    unread: tuple[str, ...] = ()
 
     @property
     def all_names(self) -> tuple[str, ...]:
         """Names of the columns of the file."""
-        return (*self.names, *self.left)
+        return (*self.names, *self.unread)
 
     def __getitem__(self, name: str) -> FloatArray:
         return self.data[:, self.names.index(name)]
+
+
+class MissingColumnsError(InputError):
+    """A log lacks columns, whose names are its `missing`."""
+
+    def __init__(self, message: object = "", missing: Sequence[str] = ()) -> None:
+        super().__init__(message)
+        self.missing = tuple(missing)
 
 
 def renamed(table: Table, sidecar: Sidecar) -> Table:
@@ -56,14 +68,6 @@ def renamed(table: Table, sidecar: Sidecar) -> Table:
             f"{table.path} has {listed(twice)} more than once; keep one column of each name"
         )
     return replace(table, names=names, data=table.data[:, keep])
-
-
-class MissingColumnsError(InputError):
-    """A log lacks columns, whose names are its `missing`."""
-
-    def __init__(self, message: object = "", missing: Sequence[str] = ()) -> None:
-        super().__init__(message)
-        self.missing = tuple(missing)
 
 
 def check_columns(
@@ -88,7 +92,7 @@ def check_columns(
     if missing and missing[0] == "time":
         raise InputError(_without_time(table, missing, sidecar))
     if missing:
-        close = get_close_matches(missing[0], (*unknown, *table.left), n=1)
+        close = get_close_matches(missing[0], (*unknown, *table.unread), n=1)
         slip = f" (is {missing[0]} its column {quoted(close[0])}?)" if close else ""
         where = sidecar.path if named_in is None else named_in
         raise MissingColumnsError(
@@ -105,9 +109,64 @@ def check_columns(
         )
 
 
+def check_finite(table: Table) -> None:
+    """Refuse a cell that is not a finite number."""
+    _refuse_cells(table, ~np.isfinite(table.data))
+
+
+def check_stamps(table: Table) -> None:
+    """Refuse a stamp of time that is no finite number, and a cell that is infinite."""
+    bad = np.isinf(table.data)
+    bad[:, table.names.index("time")] |= ~np.isfinite(table["time"])
+    _refuse_cells(table, bad)
+
+
+def conversions(
+    table: Table, sidecar: Sidecar, units: Mapping[str, str]
+) -> tuple[dict[str, str], dict[str, float]]:
+    """Returns the SI unit of each column, where known, and the factor from its numbers to SI."""
+    si: dict[str, str] = {}
+    factors: dict[str, float] = {}
+    for name in table.names:
+        expected, given = lookup(units, name), lookup(sidecar.units, name)
+        with told_of(f"units of {name} in {sidecar.file_of('units')}"):
+            unit, factors[name] = to_si(given) if given is not None else (expected, 1.0)
+        if expected and unit != expected:
+            raise InputError(
+                f"{sidecar.file_of('units')} gives {name} in {given}, which measures {unit} and"
+                f" not {expected}; correct it there"
+            )
+        if unit:
+            si[name] = unit
+        factors[name] *= lookup(sidecar.factors, name) or 1.0
+    return si, factors
+
+
+def converted(table: Table, sidecar: Sidecar, factors: Mapping[str, float]) -> Table:
+    """Returns the table in SI units."""
+    # What overflows without a factor is refused with its row.
+    with np.errstate(over="ignore", invalid="ignore"):
+        data = table.data * [factors[name] for name in table.names]
+    for k, name in enumerate(table.names):
+        given = lookup(sidecar.factors, name)
+        largest = _largest(data[:, k]) if isfinite(factors[name]) else inf
+        if given is not None and _largest(table.data[:, k]) <= HUGE < largest:
+            raise InputError(
+                f"the factor {given:g} of {name} under 'factors' in {sidecar.file_of('factors')}"
+                f" makes numbers beyond {HUGE:g}, which no robot has; write what turns its numbers"
+                " into those of the right sign and unit, such as -1"
+            )
+    return replace(table, data=data)
+
+
+def _largest(column: np.ndarray) -> float:
+    """Returns the largest absolute number of a column, shape (n,), whose empty cells are NaN."""
+    return float(np.abs(column).max(initial=0.0, where=~np.isnan(column)))
+
+
 def _without_time(table: Table, missing: Sequence[str], sidecar: Sidecar) -> str:
     """Says what to write where no column is called time, as that of the likely column."""
-    names = [*table.left, *table.names]
+    names = [*table.unread, *table.names]
     likely = [
         *get_close_matches("time", names, n=1),
         *(n for n in names if "time" in n.lower() or "stamp" in n.lower() or n.lower() == "t"),
@@ -124,18 +183,6 @@ def _without_time(table: Table, missing: Sequence[str], sidecar: Sidecar) -> str
 
 def _columns(names: Sequence[str]) -> str:
     return ("column " if len(names) == 1 else "columns ") + listed(names)
-
-
-def check_finite(table: Table) -> None:
-    """Refuse a cell that is not a finite number."""
-    _refuse_cells(table, ~np.isfinite(table.data))
-
-
-def check_stamps(table: Table) -> None:
-    """Refuse a stamp of time that is no finite number, and a cell that is infinite."""
-    bad = np.isinf(table.data)
-    bad[:, table.names.index("time")] |= ~np.isfinite(table["time"])
-    _refuse_cells(table, bad)
 
 
 def _refuse_cells(table: Table, refused: np.ndarray) -> None:

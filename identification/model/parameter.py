@@ -1,15 +1,23 @@
-"""A parameter is one frozen record; a set of them is a frozen mapping from name to record."""
+"""A parameter is one frozen record; a set of them is a frozen mapping from name to record.
+
+Each record of a joined log may have a value of its own, such as its start:
+
+NAME        of the first record
+NAME [k]    of record k
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import re
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import inf, isfinite
 
 from identification.errors import InputError, repeated, unknown_name
-from identification.logs.dimension import refuse_not_si
+from identification.logs.units import refuse_not_si
 
+_OWN = re.compile(r"(?P<name>.+) \[(?P<number>\d+)\]")
 RECORD = "record"  # where a value goes that one record of a joined log has for itself
 DEVIATION = "deviation"  # where one goes that multiplies what another parameter writes
 
@@ -23,8 +31,8 @@ class Parameter:
         value: value in `unit`.
         unit: SI unit, "" when dimensionless.
         where: path in the MuJoCo model (see `identification.model.paths`), "start" for an initial
-            condition, "record" for the value of one record (see `identification.model.own`), or
-            "deviation" for a relative deviation of what another parameter writes to its tie.
+            condition, "record" for the value of one record, or "deviation" for a
+            relative deviation of what another parameter writes to its tie.
         lower: smallest admissible value [unit].
         upper: largest admissible value [unit].
         symbol: letter in the equations; `name` when not given.
@@ -150,3 +158,49 @@ class ParameterSet:
             for p in self
         )
         return replace(self, records=records)
+
+
+def own_name(name: str, number: int) -> str:
+    """Returns the name of a parameter's value in a record, whose number is counted from 1."""
+    return name if number == 1 else f"{name} [{number}]"
+
+
+def with_own(parameters: ParameterSet, names: Sequence[str], records: int) -> ParameterSet:
+    """Returns a robot's parameters with own values of each record, where these are missing yet."""
+    known = {p.name for p in parameters}
+    new = [_own(parameters[name], k) for k in range(2, records + 1) for name in names]
+    return replace(
+        parameters, records=(*parameters.records, *(p for p in new if p.name not in known))
+    )
+
+
+def of_record(names: Sequence[str], number: int) -> dict[str, int]:
+    """Returns the parameters that a record sees, as its plant knows them, and their columns."""
+    seen: dict[str, int] = {}
+    found: dict[str, int] = {}
+    for column, name in enumerate(names):
+        of_one = _OWN.fullmatch(name)
+        if of_one is None:
+            seen[name] = column
+        elif int(of_one["number"]) == number:
+            found[of_one["name"]] = column
+    return {**seen, **found}
+
+
+def values_of_record(values: Mapping[str, float], number: int) -> dict[str, float]:
+    """Returns the values that a record sees, by names as its plant knows them."""
+    names = [*values]
+    return {name: values[names[column]] for name, column in of_record(names, number).items()}
+
+
+def _own(parameter: Parameter, number: int) -> Parameter:
+    """Returns the value of a record, which has its number in its name and in its words."""
+    short, colon, detail = parameter.about.partition(":")
+    return replace(
+        parameter,
+        name=own_name(parameter.name, number),
+        where=RECORD,
+        symbol=parameter.letter,
+        about=f"{short}, record {number}{colon}{detail}" if short else "",
+        ties=(),
+    )

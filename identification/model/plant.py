@@ -1,8 +1,8 @@
 """Any MuJoCo model as a plant: every parameter is a path into the model or into its start.
 
     θ_j -> mjModel entry              where = "joint/slide.damping", "body/cart.mass", …
-    θ_j -> spread of a body's mass     where = "body/link.spread[0]" (identification.model.spread)
-    θ_j -> gain of a servo             where = "actuator/servo.kp" (identification.model.servo)
+    θ_j -> spread of a body's mass     where = "body/link.spread[0]" (identification.model.tied)
+    θ_j -> gain of a servo             where = "actuator/servo.kp" (identification.model.tied)
     θ_j -> entry of x₀                where = "qpos[0]", "qvel[3]", "act[1]"
     c θ_j -> any of these             ties = (("joint/other.damping", c), …)
     (1 + θ_k) times any of these      where = "deviation", ties = (("joint/other.damping", 1),)
@@ -24,13 +24,18 @@ import numpy as np
 
 from identification.engine import derive
 from identification.errors import InputError
-from identification.model.dcmotor import refuse_unread
 from identification.model.parameter import DEVIATION, ParameterSet
 from identification.model.paths import Slot, resolve, write
 from identification.model.predictor import Numbers
 from identification.model.rollout import State
-from identification.model.servo import parts, refuse_half
-from identification.model.spread import refuse_both, spread_place, with_spreads
+from identification.model.tied import (
+    parts,
+    refuse_both,
+    refuse_half,
+    refuse_unread,
+    spread_place,
+    with_spreads,
+)
 
 _START = re.compile(r"(?P<field>qpos|qvel|act)\[(?P<index>\d+)\]")
 
@@ -118,8 +123,8 @@ class ModelPlant:
             place, of_body = start_place(path, self.model), spread_place(path, self.model)
             column = factor * every.get(name, np.full(len(values), self.parameters[name].value))
             if path in self._deviations:
-                own = every.get(self._deviations[path])
-                column = column * (1 + (self._deviation(path) if own is None else own))
+                deviation = every.get(self._deviations[path])
+                column = column * (1 + (self._deviation(path) if deviation is None else deviation))
             if of_body is not None:
                 spread[of_body] = column
             elif place is None:

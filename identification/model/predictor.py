@@ -18,7 +18,7 @@ import numpy as np
 from identification.errors import InputError, unknown_name
 from identification.logs.joined import JoinedLog, records_of
 from identification.logs.log import Log
-from identification.model.own import of_record
+from identification.model.parameter import of_record
 from identification.model.protocol import Numbers as Numbers
 from identification.model.protocol import Plant as Plant
 from identification.model.protocol import with_states as with_states

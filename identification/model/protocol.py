@@ -1,17 +1,21 @@
-"""The protocol of a plant: a model whose parameters can be moved, perhaps with more states."""
+"""The protocol of a plant: a model whose parameters can be moved, and copies with moved numbers."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import copy
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Protocol, runtime_checkable
 
 import mujoco
 import numpy as np
 
+from identification.engine import derive
 from identification.model.parameter import ParameterSet
 from identification.model.paths import Slot
-from identification.model.rollout import State
+from identification.model.rollout import UNDERIVED, State
 
+FINER = 4  # an error that is proportional to the step falls by three quarters
+Entries = Sequence[tuple[Slot, float]]
 Numbers = Sequence[tuple[Slot, np.ndarray]]
 
 
@@ -114,3 +118,46 @@ def with_states(plant: Plant) -> WithStates | None:
     if isinstance(plant, WithStates) and plant.without_states() is not plant:
         return plant
     return None
+
+
+@runtime_checkable
+class Stepped(Protocol):
+    """A plant whose model can be simulated with another step."""
+
+    def with_step(self, factor: float) -> Plant:
+        """Returns the same plant with another step; `factor` is the new step over the old one."""
+
+
+def finer(plant: Plant) -> Plant | None:
+    """Returns the plant with a quarter of its model's own step; None for one that has no other."""
+    return plant.with_step(1 / FINER) if isinstance(plant, Stepped) else None
+
+
+def with_numbers(model: mujoco.MjModel, numbers: Numbers, row: int) -> mujoco.MjModel:
+    """Returns a copy of a model with the numbers of one value set."""
+    return with_entries(model, [(slot, float(values[row])) for slot, values in numbers])
+
+
+def with_entries(model: mujoco.MjModel, entries: Entries) -> mujoco.MjModel:
+    """Returns a copy of a model with other numbers, and with what MuJoCo derives from them."""
+    out = copy.copy(model)
+    for slot, value in entries:
+        getattr(out, slot.field)[slot.index()] = value
+    if any(slot.field not in UNDERIVED for slot, _ in entries):
+        derive(out)
+    return out
+
+
+def list_differences(numbers: Numbers, like: int, rows: Sequence[int]) -> Iterator[Entries]:
+    """Yields the entries in which value sets differ from one of them.
+
+    Yields:
+        Of each value set the entries that differ; a slot of several rows gives one entry each.
+    """
+    every = np.array([values for _, values in numbers]).reshape(len(numbers), -1)
+    for row in rows:
+        yield [
+            (Slot(numbers[k][0].field, (i,), numbers[k][0].column), float(every[k, row]))
+            for k in np.flatnonzero(every[:, row] != every[:, like]).tolist()
+            for i in numbers[k][0].rows
+        ]

@@ -77,8 +77,10 @@ def substeps(sampling_time: float, timestep: float) -> int:
 
 def logged_inputs(model: mujoco.MjModel) -> int:
     """Returns how many inputs a log of a model has: actuators that only carry states have none."""
-    own = (model.actuator(i).name.startswith(UNLOGGED) for i in range(len(model.actuator_trntype)))
-    return int(model.nu) - sum(own)
+    carriers = (
+        model.actuator(i).name.startswith(UNLOGGED) for i in range(len(model.actuator_trntype))
+    )
+    return int(model.nu) - sum(carriers)
 
 
 def hold(inputs: np.ndarray, n: int, kind: str = "zoh") -> np.ndarray:
@@ -145,13 +147,13 @@ def rollout(
     rows = [np.atleast_2d(x) for x in (start.qpos, start.qvel, start.act)]
     n = max([len(r) for r in rows] + [len(values) for _, values in numbers])
     every = substeps(sampling_time, model.opt.timestep)
-    own = inputs[None] if inputs.ndim == 2 else inputs
-    controls = hold(own, every, hold_kind)
-    if before is not None and len(own) == 1:
+    each = inputs[None] if inputs.ndim == 2 else inputs
+    controls = hold(each, every, hold_kind)
+    if before is not None and len(each) == 1:
         controls = before(controls[0])
         controls = controls if controls.ndim == 3 else controls[None]
-    if len(own) not in (1, n):
-        raise InputError(f"{len(own)} input sequences for {n} simulations; give one, or one each")
+    if len(each) not in (1, n):
+        raise InputError(f"{len(each)} input sequences for {n} simulations; give one, or one each")
 
     return simulations(model, n, numbers, nthread).run(
         State(*rows), controls, every, record, time, keeps_diverged=keeps_diverged
@@ -160,17 +162,11 @@ def rollout(
 
 @dataclass(frozen=True)
 class Simulations:
-    """Simulations of one model, each with numbers of its own; see `simulations`.
+    """Simulations of one model, each with numbers of its own; see `simulations`."""
 
-    Attributes:
-        model: the model.
-        batch: runs them; one call at a time.
-        fresh: what each simulation begins with, beside what `run` is told.
-    """
-
-    model: mujoco.MjModel
-    batch: Batch
-    fresh: np.ndarray
+    model: mujoco.MjModel  # the model
+    batch: Batch  # runs them; one call at a time
+    fresh: np.ndarray  # what each simulation begins with, beside what `run` is told
 
     def run(
         self, start: State, controls: np.ndarray, every: int, record: Sequence[str],

@@ -19,7 +19,7 @@ import numpy as np
 
 from identification.errors import InputError
 from identification.estimation.levenberg_marquardt import Damping, levenberg_marquardt
-from identification.logs.by_unit import rms_by_unit
+from identification.estimation.metrics import rms_by_unit
 from identification.model.rollout import State
 from identification.prediction.point import AtPoint, linearised
 from identification.prediction.problem import Problem

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from identification.discovery.effect_results import RecordError
-from identification.logs.by_unit import by_unit
+from identification.estimation.metrics import by_unit
 from identification.logs.log import Log
 from identification.prediction.records import Record
 from identification.prediction.unseen import Unseen

@@ -6,10 +6,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from identification.errors import InputError
+from identification.logs.joined import Record as Record
+from identification.logs.joined import Role, refuse_different
 from identification.logs.log import Log
-from identification.logs.overlap import refuse_different
-from identification.logs.record import Record as Record
-from identification.logs.record import Role
 
 
 def as_records(

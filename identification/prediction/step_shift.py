@@ -18,7 +18,7 @@ import numpy as np
 
 from identification.discovery.attempts import attempt
 from identification.discovery.fitted import StepShift
-from identification.model.finer import finer
+from identification.model.protocol import finer
 from identification.prediction.fit import WindowFit
 
 

@@ -26,8 +26,8 @@ from identification.discovery.findings.finding import FindingKind
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.result import Discovery, Verdict
 from identification.effects.effect import Candidate
+from identification.logs.joined import REPLAYED, replayed_share
 from identification.logs.log import Log
-from identification.logs.replay import REPLAYED, replayed_share
 from identification.prediction.clocks import record_shifts
 from identification.prediction.evidence import compute_confidence
 from identification.prediction.extension import at_own_steps

@@ -15,7 +15,7 @@ import numpy as np
 from identification.discovery.force_along import Stretch
 from identification.kalman.trajectory import COARSE_POINTS, average_inputs, divided
 from identification.model.coordinates import NOTHING
-from identification.model.numbers import with_numbers
+from identification.model.protocol import with_numbers
 from identification.model.rollout import hold, rollout, substeps, without_sensors
 from identification.windows.held import NO_VALUES
 from identification.windows.shooting import Shooting

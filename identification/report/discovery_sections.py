@@ -9,7 +9,7 @@ import numpy as np
 
 from identification.discovery.attempts import Failed
 from identification.discovery.result import Discovery, Scored
-from identification.logs.by_unit import of_outputs
+from identification.estimation.metrics import of_outputs
 from identification.quantities import held
 from identification.report.discovery_figures import (
     GAIN,

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from identification.logs.by_unit import relative
-from identification.model.finer import FINER
+from identification.estimation.metrics import relative
+from identification.model.protocol import FINER
 from identification.quantities import held, quantity
 from identification.report.bound_words import bound_sentences
 from identification.report.error_words import error_words, times_words

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from identification.estimation.identifiability import in_words
-from identification.logs.by_unit import output_units, relative
+from identification.estimation.metrics import output_units, relative
 from identification.prediction.records_fit import RecordsFit
 from identification.report.bound_words import bound_sentences
 from identification.report.fit_verdict import left_by_windows

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from identification.discovery.fitted import TOLD_SHIFT, Fitted
-from identification.model.finer import FINER
+from identification.model.protocol import FINER
 from identification.quantities import held, quantity
 from identification.windows.coarse import OUTPUT_ERROR, steps_of
 

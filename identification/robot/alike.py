@@ -23,8 +23,7 @@ import mujoco
 from identification.errors import InputError, repeated, told_of
 from identification.model.parameter import DEVIATION, Parameter
 from identification.model.plant import start_place
-from identification.model.servo import value_of
-from identification.model.spread import spread_place
+from identification.model.tied import spread_place, value_of
 from identification.robot.file_checks import Kinds, check_table, texts
 
 KNOWN = 0.3  # std of the common value, relative, unless given
@@ -38,23 +37,14 @@ _KEYS: Kinds = {
 
 @dataclass(frozen=True)
 class Alike:
-    """Values that are alike.
+    """Values that are alike."""
 
-    Attributes:
-        name: of the common value.
-        of: the paths into the model.
-        std: of each place's deviation, relative.
-        known: std of the common value, relative.
-        deviates: whether the places deviate at all.
-        where: it is told, key and file, for messages.
-    """
-
-    name: str
-    of: tuple[str, ...]
-    std: float
-    known: float = KNOWN
-    deviates: bool = True
-    where: str = field(default="", compare=False)
+    name: str  # of the common value
+    of: tuple[str, ...]  # the paths into the model
+    std: float  # of each place's deviation, relative
+    known: float = KNOWN  # std of the common value, relative
+    deviates: bool = True  # whether the places deviate at all
+    where: str = field(default="", compare=False)  # it is told, key and file, for messages
 
     @property
     def deviations(self) -> dict[str, str]:

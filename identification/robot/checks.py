@@ -9,8 +9,8 @@ from pathlib import Path
 import mujoco
 
 from identification.errors import InputError
-from identification.logs.frozen import still_sentence
 from identification.logs.log import Log
+from identification.logs.plausible import still_sentence
 from identification.logs.sampling import MIN_ROWS, rows_between
 from identification.logs.sidecar import read_sidecar
 from identification.logs.units import to_si, units_that_fit
@@ -160,18 +160,9 @@ def _left(log: Log, every: int) -> bool:
 def refuse_horizon(file: RobotFile, log: Log, is_whole: bool = False) -> None:
     """Refuse a horizon that does not fit into both parts of a log, or into all of it."""
     parts = [log] if is_whole else [log.part("estimation"), log.part("validation")]
-    most = min(map(len, parts))
-    _refuse(file, log, most, _samples(file, log) <= most)
-
-
-def _samples(file: RobotFile, log: Log) -> int:
-    return round((file.horizon or 0.0) / log.sampling_time)
-
-
-def _refuse(file: RobotFile, log: Log, most: int, fits: bool) -> None:
-    if file.horizon is None or (_samples(file, log) >= MIN_ROWS and fits):
+    most, h = min(map(len, parts)), log.sampling_time
+    if file.horizon is None or MIN_ROWS <= round(file.horizon / h) <= most:
         return
-    h = log.sampling_time
     raise InputError(
         f"horizon in {file.path} is {file.horizon:g} s; in log {log.name!r} it may be"
         f" {MIN_ROWS * h:g} s, of {MIN_ROWS} samples, to {most * h:g} s, to fit into what is unseen"

@@ -2,25 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+
+import numpy as np
 
 from identification.discovery.result import Discovery, collect_final_values, keep_of_robot
+from identification.effects.jointed import JointPlant
 from identification.errors import InputError, refuse_kind
+from identification.estimation.metrics import rms_by_unit
+from identification.logs.log import Log
+from identification.model.predictor import Plant, Predictor
 from identification.prediction.model import predict_fitted
 from identification.prediction.record_errors import record_errors
 from identification.prediction.records import Record
 from identification.prediction.records_fit import RecordsFit
 from identification.prediction.unseen import predict
 from identification.robot.fitting import RobotFit
-from identification.robot.record_error import (
-    AS_WRITTEN,
-    FITTED,
-    Confirmation,
-    compare_unseen,
-    compare_values,
-    of_record,
-)
+from identification.robot.record_error import AS_WRITTEN, FITTED, Confirmation, of_record
 from identification.robot.robot import Robot
+from identification.windows.window_error import window_error
 
 WITHOUT = "without what is named", "with it"
 
@@ -61,6 +61,17 @@ def confirm(robot: Robot, found: RobotFit | Discovery) -> tuple[Confirmation, ..
     return _over_free_run(robot, found.nominal.values, after, WITHOUT)
 
 
+def compare_values(
+    robot: Robot,
+    log: Log,
+    before: Mapping[str, float],
+    after: Mapping[str, float],
+    models: tuple[str, str] = (AS_WRITTEN, FITTED),
+) -> Confirmation:
+    """Compare two sets of values on a record, over the robot's horizon or in a free run."""
+    return _compared(log, [_errors(robot, log, values) for values in (before, after)], models)
+
+
 def _over_free_run(
     robot: Robot,
     before: Mapping[str, float],
@@ -69,7 +80,10 @@ def _over_free_run(
 ) -> tuple[Confirmation, ...]:
     """Compares two sets of values on the records, or on the unseen part of the only log."""
     if not robot.records:
-        return (compare_unseen(robot, before, after, models),)
+        log, part = robot.log, robot.log.part("validation")
+        rows, given = np.isin(log.time, part.time), robot.values_of(log)
+        errors = [_free_run(robot, log, {**values, **given})[rows] for values in (before, after)]
+        return (_compared(part, errors, models),)
     kept = keep_of_robot(after, robot.plant.effects)
     return tuple(compare_values(robot, log, before, kept, models) for log in robot.records)
 
@@ -103,3 +117,30 @@ def _of_discovery(robot: Robot, found: Discovery) -> tuple[Confirmation, ...]:
             )
     each = [errors[log.name] for log in robot.records] or [*errors.values()]
     return tuple(of_record(e, found.unit, WITHOUT) for e in each)
+
+
+def _compared(log: Log, errors: Sequence[np.ndarray], models: tuple[str, str]) -> Confirmation:
+    """Compares two models by their errors (…, ny)."""
+    a, b = (float(np.sqrt(np.mean(e**2))) for e in errors)
+    each = [rms_by_unit(e, log) for e in errors]
+    return Confirmation(log.name, a, b, log.output_unit, models, *each)
+
+
+def _errors(robot: Robot, log: Log, values: Mapping[str, float]) -> np.ndarray:
+    horizon, here = robot.file.horizon, {**values, **robot.values_of(log), **robot.started(log)}
+    if horizon is None:
+        return _free_run(robot, log, here)
+    return window_error(_plant(robot, log, here), log, horizon, here)
+
+
+def _plant(robot: Robot, log: Log, values: Mapping[str, float]) -> Plant:
+    """Returns the plant of a record, with the states that the effects among some values need."""
+    plant = robot.plant_of(log)
+    if not isinstance(plant, JointPlant):
+        return plant
+    return plant.with_states_of(n for n, v in values.items() if v != 0)
+
+
+def _free_run(robot: Robot, log: Log, values: Mapping[str, float]) -> np.ndarray:
+    predictor = Predictor(_plant(robot, log, values), log, (), dict(values))
+    return np.asarray(log.outputs - predictor.predict(np.empty((1, 0)))[0])

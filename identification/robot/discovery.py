@@ -14,8 +14,8 @@ from identification.innovations import discovery as search
 from identification.logs.log import Log
 from identification.prediction.discovery import discover_records
 from identification.report import discovery_verdict  # noqa: F401  how the result is shown
+from identification.robot.blame import told_of_factors
 from identification.robot.checks import refuse_horizon, refuse_unlike
-from identification.robot.diverged import told_of_factors
 from identification.robot.robot import Robot
 
 

@@ -40,7 +40,7 @@ A free name is a key under `parameters`, a path into the model or its start, or 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -49,60 +49,41 @@ from identification.files import is_file, read_toml
 from identification.refusals.trust import trusted
 from identification.robot.alike import Alike, read_alike
 from identification.robot.file_checks import (
+    EFFECTS_KEYS,
+    KEYS,
+    PARAMETER_KEYS,
     check_table,
     numbers,
     read_own,
     read_own_values,
     texts,
 )
-from identification.robot.file_keys import EFFECTS_KEYS, KEYS, PARAMETER_KEYS
 
 LONGEST = 1e6  # [s] of a horizon
 
 
 @dataclass(frozen=True, kw_only=True)
 class RobotFile:
-    """The content of a robot's TOML; the docstring of the module shows every key.
-
-    Attributes:
-        path: path of the file.
-        model: path of the MJCF.
-        free: names of the free parameters.
-        own: those of the free parameters of which each log has a value of its own.
-        outputs: sensors; empty for all joint positions.
-        horizon: length of the windows over which predictions are judged [s]; None for a free run.
-        every: n, where every n-th sample is kept.
-        trust: words of `identification.refusals.trust.TRUST`: judgements that do not refuse a log.
-        start: entries of the initial state by path.
-        log: what the TOML beside a log says, for all logs that do not say it themselves.
-        columns: column of the log by actuator or sensor.
-        fixed: values of effects' parameters that are not free.
-        records: what is known of free parameters, by name.
-        own_values: by log and by name, where the search of a log's own values begins.
-        joints: where effects may act; empty for the measured ones.
-        only: candidates by name; empty for all.
-        turns: periods of a turn to try; empty for the catalogue's.
-        spread: values that are alike; their parameters are free too, behind those that it frees.
-    """
+    """The content of a robot's TOML; the docstring of the module shows every key."""
 
     path: Path
-    model: Path
-    free: tuple[str, ...]
-    own: tuple[str, ...] = ()
-    outputs: tuple[str, ...] = ()
-    horizon: float | None = None
-    every: int = 1
-    trust: tuple[str, ...] = ()
-    start: Mapping[str, float] = field(default_factory=dict)
-    log: Mapping[str, Any] = field(default_factory=dict)
-    columns: Mapping[str, str] = field(default_factory=dict)
-    fixed: Mapping[str, float] = field(default_factory=dict)
-    records: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
-    own_values: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
-    joints: tuple[str, ...] = ()
-    only: tuple[str, ...] = ()
-    turns: tuple[float, ...] = ()
-    spread: tuple[Alike, ...] = ()
+    model: Path  # the MJCF
+    free: tuple[str, ...]  # names of the free parameters
+    own: tuple[str, ...] = ()  # those of which each log has a value of its own
+    outputs: tuple[str, ...] = ()  # sensors; empty for all joint positions
+    horizon: float | None = None  # of the windows that are predicted [s]; None for a free run
+    every: int = 1  # n, where every n-th sample is kept
+    trust: tuple[str, ...] = ()  # words of `TRUST`: judgements that do not refuse a log
+    start: Mapping[str, float] = field(default_factory=dict)  # entries of the state by path
+    log: Mapping[str, Any] = field(default_factory=dict)  # what a log's own TOML may say otherwise
+    columns: Mapping[str, str] = field(default_factory=dict)  # by actuator or sensor
+    fixed: Mapping[str, float] = field(default_factory=dict)  # of effects, by parameter
+    records: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)  # by free parameter
+    own_values: Mapping[str, Mapping[str, float]] = field(default_factory=dict)  # by log, name
+    joints: tuple[str, ...] = ()  # where effects may act; empty for the measured ones
+    only: tuple[str, ...] = ()  # candidates by name; empty for all
+    turns: tuple[float, ...] = ()  # periods of a turn to try; empty for the catalogue's
+    spread: tuple[Alike, ...] = ()  # their parameters are free too, behind those that it frees
 
     @property
     def by_itself(self) -> tuple[str, ...]:
@@ -178,3 +159,27 @@ def read_robot_file(path: str | Path) -> RobotFile:
         turns=numbers(effects.get("turns", []), "effects.turns", path),
         spread=alike,
     )
+
+
+def with_spread(file: RobotFile, word: str) -> RobotFile:
+    """Returns a robot's file with its own spread ("usual"), no deviations ("none"), or another.
+
+    Args:
+        file: of the robot.
+        word: one of these words, or the path of a TOML with tables [spread.NAME].
+
+    Raises:
+        InputError: there is no such file, or it holds anything else.
+    """
+    if word == "usual":
+        return file
+    alike = tuple(replace(a, deviates=False) for a in file.spread)
+    if word != "none":
+        if not is_file(Path(word)):
+            raise InputError(f"no spread {word!r}; give none, usual, or a TOML file")
+        content = read_toml(Path(word))
+        check_table(content, {"spread": KEYS["spread"]}, word)
+        alike = read_alike(content, Path(word), file.by_itself)
+    free = (*file.by_itself, *(n for a in alike for n in a.names))
+    records = {n: r for n, r in file.records.items() if n in free}
+    return replace(file, free=free, records=records, spread=alike)

@@ -1,4 +1,4 @@
-"""Are the values of a robot's TOML of the kinds that its keys take?"""
+"""The keys that the TOML of a robot has, and whether their values are of the right kinds."""
 
 from __future__ import annotations
 
@@ -9,6 +9,33 @@ from typing import Any
 
 from identification.errors import InputError, unknown_name
 
+KEYS: Kinds = {
+    "model": (str, "a path in quotes"),
+    "outputs": (list, "a list of sensors"),
+    "free": (list, "a list of parameters"),
+    "own": (list, "a list of free parameters"),
+    "horizon": ((int, float), "a number of seconds"),
+    "every": (int, "a whole number of samples"),
+    "trust": (list, "a list of words in quotes"),
+    "start": (dict, "a table of numbers"),
+    "log": (dict, "a table"),
+    "columns": (dict, "a table"),
+    "fixed": (dict, "a table of numbers"),
+    "parameters": (dict, "a table of tables"),
+    "own_values": (dict, "a table of tables, one for each log"),
+    "spread": (dict, "a table of tables"),
+    "effects": (dict, "a table"),
+}
+PARAMETER_KEYS: Kinds = {  # of [parameters.NAME]
+    **dict.fromkeys(("path", "unit", "about"), (str, "text in quotes")),
+    **dict.fromkeys(
+        ("value", "prior", "known", "lower", "upper", "scale"), ((int, float), "a number")
+    ),
+}
+EFFECTS_KEYS: Kinds = {  # of [effects]
+    **dict.fromkeys(("joints", "only"), (list, "a list of names")),
+    "turns": (list, "a list of numbers above zero"),
+}
 Kinds = Mapping[str, tuple[type | tuple[type, ...], str]]  # by key: the types, and what they are
 POSITIVE = ("every", "known", "scale", "std")
 TINY, HUGE = 1e-50, 1e50  # of any unit: their squares, and what is divided by these, are numbers
@@ -35,16 +62,16 @@ def check_table(table: Mapping[str, Any], kinds: Kinds, where: str) -> None:
 
 def read_own(content: Mapping[str, Any], path: Path) -> tuple[str, ...]:
     """Returns the names of the free parameters of which each log has a value of its own."""
-    own = texts(content.get("own", []), "own", path)
-    for name in own:
+    names = texts(content.get("own", []), "own", path)
+    for name in names:
         if name not in content["free"]:
             raise unknown_name(f"free parameter under own in {path}:", name, content["free"])
-    if own and "horizon" not in content:
+    if names and "horizon" not in content:
         raise InputError(
             f"own in {path} is for records that are predicted over a horizon; write horizon = 0.2"
             " (in seconds) into it"
         )
-    return own
+    return names
 
 
 def read_own_values(content: Mapping[str, Any], path: Path) -> dict[str, dict[str, float]]:

@@ -1,18 +1,27 @@
-"""A fit of a robot as plain values for JSON, with its verdict in sentences."""
+"""A fit of a robot as plain values for JSON, with its verdict in sentences.
+
+A fit that is proven to predict unseen records worse is told otherwise, and its values are not to be
+used. One that is worse and not proven to be is still no better, and a reader should not have to
+find that out from two numbers. So is one that predicts the outputs of one unit worse: a fit may
+give up the angles to win the slides, which one number over all outputs hides.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import numpy as np
+
+from identification.report.error_words import kind, listed
 from identification.report.fit_json import fit_to_json, records_fit_to_json
 from identification.robot.fitting import RobotFit
-from identification.robot.free_inertias import impossible_sentence
-from identification.robot.no_better import no_better
+from identification.robot.free_swing import impossible_sentence
 from identification.robot.reading import doubtful
-from identification.robot.record_error import Confirmation
-from identification.robot.repetition import find_repetitions
+from identification.robot.record_error import Confirmation, find_repetitions
 
+LEAST = 0.01  # rise of the mean square that is told; the noise of a right fit makes less
+LEAST_OF_UNIT = 0.1  # rise of the mean square of one unit that is told
 FARTHEST = 100.0  # a value that changes by this factor is not believed
 
 
@@ -38,6 +47,65 @@ def robot_fit_to_json(result: RobotFit, confirmed: Sequence[Confirmation] = ()) 
         "findings": [r.finding for r in repeated],
         "remarks": list(result.robot.remarks),
     }  # fmt: skip
+
+
+def no_better(result: RobotFit, confirmed: Sequence[Confirmation]) -> list[str]:
+    """Returns a sentence where the fitted values predict worse and this is not proven, or none."""
+    if result.is_worse or result.stopped or not confirmed:
+        return []
+    if result.found.horizon is not None:
+        before, after = result.found.unseen_rms
+    else:
+        before, after = (_over_all([getattr(c, k) for c in confirmed]) for k in ("before", "after"))
+    rise = (after / before) ** 2 - 1 if before > 0 else 0.0
+    if not rise > LEAST:
+        return worse_unit(confirmed)
+    return [
+        "The fitted values predict what was not fitted worse than the values with which the fit"
+        f" began (mean square {100 * rise:+z.0f} %). This may be chance, but it does not confirm"
+        " the fitted values: fit a longer log, or more logs, before you use them.",
+        *worse_unit(confirmed),
+    ]
+
+
+def worse_unit(confirmed: Sequence[Confirmation]) -> list[str]:
+    """Returns one sentence that names outputs that are predicted worse while others are not."""
+    rises = _rises(confirmed)
+    worse = {unit: rise for unit, rise in rises.items() if rise > LEAST_OF_UNIT}
+    others = {unit: rise for unit, rise in rises.items() if unit not in worse}
+    if not worse or not others:
+        return []
+    return [
+        f"The fitted values predict {_told(worse)} of what was not fitted worse than the values"
+        f" with which the fit began, and not {_told(others)}. This may be chance, or the fit makes"
+        " up in one for an error in the other: fit a longer log, or more logs, before you rely on"
+        f" what it predicts of {listed([kind(unit) for unit in worse])}."
+    ]
+
+
+def _over_all(rms: Sequence[float]) -> float:
+    """Returns the rms over records, each of which counts alike."""
+    return float(np.sqrt(np.mean(np.square(rms))))
+
+
+def _rises(confirmed: Sequence[Confirmation]) -> dict[str, float]:
+    """Returns the rise of the mean square by unit, over records, each of which counts alike."""
+    before, after = (
+        _squares([getattr(c, name) for c in confirmed])
+        for name in ("before_by_unit", "after_by_unit")
+    )
+    return {unit: after[unit] / b - 1 for unit, b in before.items() if b > 0}
+
+
+def _squares(each: Sequence[Mapping[str, float]]) -> dict[str, float]:
+    """Returns sums of squares over records, by unit."""
+    units = dict.fromkeys(unit for errors in each for unit in errors)
+    return {unit: sum(errors.get(unit, 0.0) ** 2 for errors in each) for unit in units}
+
+
+def _told(rises: Mapping[str, float]) -> str:
+    """Returns the outputs with the change of their mean square, in words."""
+    return listed([f"the {kind(u)} (mean square {100 * r:+z.0f} %)" for u, r in rises.items()])
 
 
 def _far(parameters: Mapping[str, Mapping[str, Any]]) -> list[str]:

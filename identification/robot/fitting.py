@@ -16,8 +16,8 @@ from identification.estimation.estimation import estimate
 from identification.estimation.fit import Fit, assess
 from identification.prediction.records_fit import RecordsFit, fit_records
 from identification.quantities import quantity
+from identification.robot.blame import told_of_factors
 from identification.robot.checks import refuse_horizon
-from identification.robot.diverged import told_of_factors
 from identification.robot.record_error import AS_WRITTEN, FITTED, Confirmation, of_record
 from identification.robot.robot import Robot
 
@@ -76,17 +76,17 @@ class RobotFit:
 
     @property
     def converged(self) -> bool:
-        """Whether the search ended by itself."""
+        """Returns whether the search ended by itself."""
         return self.found.converged
 
     @property
     def stopped(self) -> bool:
-        """Whether the user stopped the search of a free run; its best values are kept."""
+        """Returns whether the user stopped the search of a free run; its best values are kept."""
         return self.found.stopped
 
     @property
     def is_worse(self) -> bool:
-        """Whether it predicts unseen records worse than the values with which it began.
+        """Returns whether it predicts unseen records worse than the values with which it began.
 
         Such values are not to be used. Only a fit over a horizon is compared in this way.
         """

@@ -16,10 +16,10 @@ from identification.errors import InputError, unknown_name
 from identification.linear.linearization import input_names
 from identification.linear.operating_points import OperatingPoints, along_log, at_rest
 from identification.logs.log import Log
-from identification.model.numbers import with_numbers
 from identification.model.parameter import Parameter, ParameterSet
 from identification.model.plant import ModelPlant, own_start, start_place
 from identification.model.predictor import Predictor
+from identification.model.protocol import with_numbers
 from identification.model.rollout import State
 from identification.robot.file import RobotFile, read_robot_file
 from identification.robot.model_file import robot_spec

@@ -1,4 +1,4 @@
-"""Values of a robot that hold in one log alone: `[values]` in the TOML beside the log.
+"""Values that hold in one log alone, `[values]` of its TOML, and `fixed` ones of a robot's file.
 
 A weight that is hung on an arm, or the voltage of its supply, is known of each log and differs from
 log to log. Such a value is no free parameter, and a log that does not give it has the model's own.
@@ -12,6 +12,7 @@ import mujoco
 
 from identification.effects.effect import Effect, effect_parameters
 from identification.effects.joint_plant import JointPlant
+from identification.effects.named import damping_of, means_effect, unknown_number
 from identification.errors import InputError, told_of
 from identification.logs.log import Log
 from identification.model.parameter import Parameter
@@ -45,6 +46,26 @@ def value_parameters(
             with told_of(f"{where}, in its TOML or under log.values in {file.path}"):
                 found[name] = free_parameter(file, name, model, effects, log).parameter
     return [*found.values()]
+
+
+def with_fixed(file: RobotFile, plant: JointPlant, effects: Sequence[Effect]) -> JointPlant:
+    """Returns the plant with the values of effects' parameters that are not free."""
+    with told_of(f"fixed in {file.path}"):
+        for name in file.fixed:
+            if name in plant.parameters.values():
+                continue
+            if (path := damping_of(name, effects)) is not None:
+                raise InputError(
+                    f"{name!r} is no number of an effect; it is {path} in {file.model}: write its"
+                    f" value there, or name {path} under free"
+                )
+            if means_effect(name, effects):
+                raise unknown_number(name, effects, is_free=False)
+            raise InputError(
+                f"{name!r} is no number of an effect; write its value into {file.model}, or name"
+                " it under free"
+            )
+        return plant.with_values(file.fixed)
 
 
 def refuse_impossible(plant: JointPlant, logs: Sequence[Log]) -> None:

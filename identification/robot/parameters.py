@@ -18,17 +18,16 @@ from identification.effects.effect import Effect, effect_parameters
 from identification.effects.moving_bodies import Felt
 from identification.effects.named import means_effect, unknown_number
 from identification.errors import InputError, told_of
-from identification.logs.dimension import refuse_other_unit
 from identification.logs.log import Log
+from identification.logs.units import refuse_other_unit
 from identification.model.parameter import Parameter
 from identification.model.paths import Slot, resolve
 from identification.model.plant import own_start, start_place
 from identification.model.predictor import output_columns
-from identification.model.servo import value_of
-from identification.model.spread import spread_place, spreads
+from identification.model.tied import spread_place, spreads, value_of
 from identification.robot.alike import Alike
 from identification.robot.file import RobotFile
-from identification.robot.model_units import refuse_unit, unit_of
+from identification.robot.model_file import refuse_unit, unit_of
 from identification.robot.start import CLEAR, measured_begin
 
 KNOWN = 0.3  # std of the prior unless given: relative if positive, else of the plausible size
@@ -40,17 +39,11 @@ POSITIVE = (
 
 @dataclass(frozen=True)
 class Free:
-    """A free parameter, and what is known of it before the log speaks.
+    """A free parameter, and what is known of it before the log speaks."""
 
-    Attributes:
-        parameter: its value is where the search begins.
-        mean: of the prior, in the parameter's unit.
-        std: of the prior in the coordinates of the search, without unit.
-    """
-
-    parameter: Parameter
-    mean: float
-    std: float
+    parameter: Parameter  # its value is where the search begins
+    mean: float  # of the prior, in the parameter's unit
+    std: float  # of the prior in the coordinates of the search, without unit
 
     @property
     def known(self) -> float:
@@ -59,7 +52,7 @@ class Free:
 
     @property
     def is_relative(self) -> bool:
-        """Whether the parameter stays positive, so that its prior is one of its logarithm."""
+        """Returns whether it stays positive, so that its prior is one of its logarithm."""
         return _is_positive(self.parameter, self.mean)
 
 
@@ -99,14 +92,14 @@ def _free(
     given |= {k: float(said[k]) for k in ("value", "lower", "upper", "scale") if k in said}
     sizes = effect_sizes([e for e in effects if name.startswith(f"{e.name}.")])
     if name in sizes:
-        own, largest = sizes[name]
-        refuse_other_unit(said.get("unit", own.unit), own.unit, "it")
+        size, largest = sizes[name]
+        refuse_other_unit(said.get("unit", size.unit), size.unit, "it")
         if "value" not in given:
             raise InputError(
                 f"{name} is zero in the model: give it a value under"
                 f' [parameters."{name}"], or leave it to the candidates'
             )
-        record, guess = replace(own, **given), KNOWN * largest
+        record, guess = replace(size, **given), KNOWN * largest
     else:
         path = said.get("path", name)
         if any(path == f"{e.name}.{s.name}" for e in effects for s in e.shapes):
@@ -165,9 +158,9 @@ def _in_model(
     fields: dict[str, Any] = {"where": path, "unit": unit_of(model, path)}
     place = start_place(path, model)
     if place is not None:
-        own = float(getattr(own_start(model), place[0])[place[1]])
+        reset = float(getattr(own_start(model), place[0])[place[1]])
         moved = _moved(model, place, log)
-        fields |= {"value": measured_start(model, path, log, own), "scale": moved}
+        fields |= {"value": measured_start(model, path, log, reset), "scale": moved}
         return Parameter(name=name, **{**fields, **given}), moved
     of_body = spread_place(path, model)
     value = (
@@ -195,13 +188,13 @@ def _possible(model: mujoco.MjModel, slot: Slot, alone: bool) -> dict[str, Any]:
     body, k = slot.rows[0], slot.column
     others, inertia = [i for i in range(3) if i != k], model.body_inertia[body]
     a, b = (float(inertia[i]) for i in others)
-    own, label = float(inertia[k]), model.body(body).name
+    value, label = float(inertia[k]), model.body(body).name
     felt = Felt(model).inertias(body)
     in_fluid = bool(model.opt.density or model.opt.viscosity)  # its drag is made of all three
-    if felt[k] and not felt[others].any() and not in_fluid and min(a, b, own) > 0:
-        return {"ties": tuple((f"body/{label}.inertia[{i}]", inertia[i] / own) for i in others)}
+    if felt[k] and not felt[others].any() and not in_fluid and min(a, b, value) > 0:
+        return {"ties": tuple((f"body/{label}.inertia[{i}]", inertia[i] / value) for i in others)}
     # A bound must not be the value itself, as that of a flat body is.
-    low, high = min(abs(a - b), own * (1 - 1e-6)), max(a + b, own * (1 + 1e-6))
+    low, high = min(abs(a - b), value * (1 - 1e-6)), max(a + b, value * (1 + 1e-6))
     return {
         "lower": low, "upper": high,
         "bounded_by": f"the other two inertias of {label} allow {low:.4g} to {high:.4g} kg m^2:"

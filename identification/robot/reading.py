@@ -6,10 +6,14 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
+import mujoco
+import numpy as np
+
 from identification.effects.axes import axes
 from identification.errors import InputError, refuse_kind
-from identification.logs.frozen import still_sentence
 from identification.logs.log import Log
+from identification.logs.plausible import still_sentence
+from identification.quantities import quantity
 from identification.refusals.touching import (
     find_touches,
     is_contradicted,
@@ -19,21 +23,20 @@ from identification.refusals.touching import (
 )
 from identification.refusals.trust import trusted
 from identification.refusals.wiring import refuse_miswired
-from identification.robot.absurd_start import refuse_absurd_start
+from identification.robot.blame import refuse_absurd_start
 from identification.robot.checks import with_judged_gaps
-from identification.robot.clipped import clipped_sentence
-from identification.robot.file import RobotFile, read_robot_file
-from identification.robot.free_inertias import carried_sentence, inertias_sentence
-from identification.robot.free_swing import without_untold
-from identification.robot.other_spread import with_spread
+from identification.robot.file import RobotFile, read_robot_file, with_spread
+from identification.robot.free_swing import carried_sentence, inertias_sentence, without_untold
 from identification.robot.robot import Robot, read_robot_log, robot_of
-from identification.robot.start_words import (
+from identification.robot.start import (
     apart_sentence,
     made_up_sentence,
     start_sentence,
     unused_sentence,
 )
 from identification.robot.step_error import refuse_coarse_steps
+
+LEAST = 0.01  # of an input's rms: less is cut off by the noise of a measured input at its limit
 
 
 def read_robot(
@@ -90,6 +93,29 @@ def read_robot(
     return replace(robot, remarks=_remarks(robot, every))
 
 
+def clipped_sentence(model: mujoco.MjModel, log: Log) -> str | None:
+    """Returns one sentence on the input of which most is cut off; None where none is."""
+    worst, share = "", LEAST
+    for name, u in zip(log.input_names, log.inputs.T, strict=True):
+        actuator = model.actuator(name)
+        if not actuator.ctrllimited[0]:
+            continue
+        low, high = map(float, actuator.ctrlrange)
+        off = u - np.clip(u, low, high)
+        if np.linalg.norm(off) > share * np.linalg.norm(u):
+            share = float(np.linalg.norm(off) / np.linalg.norm(u))
+            unit = log.units.get(name, "")
+            farthest = float(u[np.argmax(np.abs(off))])
+            part = f"{100 * np.mean(off != 0):.0f} %"
+            worst = (
+                f"Of the samples of {name!r} in log {log.name!r}, {part} lie beyond the"
+                f" actuator's ctrlrange {low:g} to {high:g}, such as"
+                f" {quantity(farthest, unit=unit)}, and MuJoCo clips them; widen ctrlrange in the"
+                " model if they reached the robot as they were logged."
+            )  # fmt: skip
+    return worst or None
+
+
 def _refuse_records(records: object, of: str) -> None:
     """Refuse what is neither a path nor a log, nor several of them."""
     what = f"{of} of read_robot takes paths of files or Logs (read_log)"
@@ -118,15 +144,15 @@ def doubtful(robot: Robot) -> list[str]:
 
 def _remarks(robot: Robot, logs: Sequence[Log]) -> tuple[str, ...]:
     """Returns what was taken for granted, a sentence each."""
-    file, own = robot.file, robot.plant.model
+    file, model = robot.file, robot.plant.model
     if file.horizon is None:
-        begun = [of(file, own, log) for log in logs for of in (start_sentence, apart_sentence)]
+        begun = [of(file, model, log) for log in logs for of in (start_sentence, apart_sentence)]
     else:  # each window begins where it was measured
-        begun = [unused_sentence(file, own, robot.log)]
+        begun = [unused_sentence(file, model, robot.log)]
     inertias = (inertias_sentence(file), carried_sentence(robot))
     still = (still_sentence(log) for log in logs)
     resampled = (remark for log in logs for remark in log.remarks)
-    clipped = (clipped_sentence(own, log) for log in logs)
+    clipped = (clipped_sentence(model, log) for log in logs)
     of_logs = (*still, *resampled, *clipped, *begun, robot.touches)
     return tuple(filter(None, (*robot.remarks, *inertias, *of_logs)))
 

@@ -1,21 +1,20 @@
-"""The errors of two models of a robot on a record, both over the same horizon."""
+"""The errors of two models on an unseen record, and whether it only repeats what was fitted.
+
+Unseen data judge a model only where a replay of the fitted data (`identification.logs.joined`)
+fails. A sine, or a motion that is repeated period by period, confirms a model that is wrong
+elsewhere as well as a right one.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-import numpy as np
-
 from identification.discovery.effect_results import RecordError
-from identification.effects.jointed import JointPlant
-from identification.logs.by_unit import rms_by_unit
-from identification.logs.log import Log
-from identification.model.predictor import Plant, Predictor
+from identification.logs.joined import REPLAYED, replayed_share
 from identification.quantities import alike
 from identification.report.error_words import error_words, kind, listed
 from identification.robot.robot import Robot
-from identification.windows.window_error import window_error
 
 AS_WRITTEN, FITTED = "with the values of the robot's file", "with those that were fitted"
 
@@ -65,58 +64,37 @@ def of_record(error: RecordError, unit: str, models: tuple[str, str]) -> Confirm
     return Confirmation(e.name, e.before, e.after, unit, models, e.before_by_unit, e.after_by_unit)
 
 
-def compare_values(
-    robot: Robot,
-    log: Log,
-    before: Mapping[str, float],
-    after: Mapping[str, float],
-    models: tuple[str, str] = (AS_WRITTEN, FITTED),
-) -> Confirmation:
-    """Compare two sets of values on a record, over the robot's horizon or in a free run."""
-    return _compared(log, [_errors(robot, log, values) for values in (before, after)], models)
-
-
-def compare_unseen(
-    robot: Robot,
-    before: Mapping[str, float],
-    after: Mapping[str, float],
-    models: tuple[str, str] = (AS_WRITTEN, FITTED),
-) -> Confirmation:
-    """Compare two sets of values on the unseen part of the robot's log, in a free run of all."""
-    log = robot.log
-    part = log.part("validation")
-    rows, own = np.isin(log.time, part.time), robot.values_of(log)
-    errors = [_free_run(robot, log, {**v, **own})[rows] for v in (before, after)]
-    return _compared(part, errors, models)
-
-
-def _compared(log: Log, errors: Sequence[np.ndarray], models: tuple[str, str]) -> Confirmation:
-    """Compares two models by their errors (…, ny)."""
-    a, b = (float(np.sqrt(np.mean(e**2))) for e in errors)
-    each = [rms_by_unit(e, log) for e in errors]
-    return Confirmation(log.name, a, b, log.output_unit, models, *each)
-
-
 def _change(before: float, after: float) -> str:
     """Returns the change of the mean square in words."""
     return f"{100 * ((after / before) ** 2 - 1) if before else 0.0:+z.0f} %"
 
 
-def _errors(robot: Robot, log: Log, values: Mapping[str, float]) -> np.ndarray:
-    horizon, here = robot.file.horizon, {**values, **robot.values_of(log), **robot.started(log)}
-    if horizon is None:
-        return _free_run(robot, log, here)
-    return window_error(_plant(robot, log, here), log, horizon, here)
+@dataclass(frozen=True)
+class Repetition:
+    """A part of a log, or a record, that repeats what was fitted."""
+
+    log: str  # name of the part or of the record
+    share: float  # R, without unit
+
+    def __str__(self) -> str:
+        return (
+            f"{self.log} repeats what was fitted: a replay of the fitted samples, without any"
+            f" model, explains {100 * self.share:.0f} % of it, so it confirms less; confirm on"
+            " another motion."
+        )
+
+    @property
+    def finding(self) -> dict[str, str | float]:
+        """The repetition as a finding of JSON."""
+        return {"kind": "repeated motion", "log": self.log, "share": self.share}
 
 
-def _plant(robot: Robot, log: Log, values: Mapping[str, float]) -> Plant:
-    """Returns the plant of a record, with the states that the effects among some values need."""
-    plant = robot.plant_of(log)
-    if not isinstance(plant, JointPlant):
-        return plant
-    return plant.with_states_of(n for n, v in values.items() if v != 0)
-
-
-def _free_run(robot: Robot, log: Log, values: Mapping[str, float]) -> np.ndarray:
-    predictor = Predictor(_plant(robot, log, values), log, (), dict(values))
-    return np.asarray(log.outputs - predictor.predict(np.empty((1, 0)))[0])
+def find_repetitions(robot: Robot) -> tuple[Repetition, ...]:
+    """Returns the confirming parts and records of a robot that repeat what is fitted."""
+    fitted = [log.part("estimation") for log in (robot.log, *robot.others)]
+    many = bool(robot.others) or robot.file.horizon is not None
+    whole = many and bool(robot.records)  # then each log is fitted from end to end
+    unseen = [] if whole else [log.part("validation") for log in (robot.log, *robot.others)]
+    pieces = [robot.log, *robot.others] if whole else fitted
+    shares = ((log.name, replayed_share(pieces, log)) for log in (*unseen, *robot.records))
+    return tuple(Repetition(name, share) for name, share in shares if share > REPLAYED)

@@ -33,10 +33,8 @@ from identification.robot.checks import (
     refuse_unnamed,
 )
 from identification.robot.file import RobotFile
-from identification.robot.fixed import with_fixed
-from identification.robot.model_file import robot_spec, with_step
-from identification.robot.model_units import unit_of
-from identification.robot.own_values import refuse_impossible, value_parameters
+from identification.robot.model_file import robot_spec, unit_of, with_step
+from identification.robot.own_values import refuse_impossible, value_parameters, with_fixed
 from identification.robot.parameters import free_parameter, measured_start
 from identification.robot.start import refuse_start, start_of
 
@@ -115,9 +113,9 @@ class Robot:
 
     def values_of(self, log: Log) -> dict[str, float]:
         """Returns the values that logs give, by name: that of this log, or else the model's."""
-        own = self.plant.parameters
+        parameters = self.plant.parameters
         logs = (self.log, *self.others, *self.records, log)
-        return {n: log.values.get(n, own[n].value) for each in logs for n in each.values}
+        return {n: log.values.get(n, parameters[n].value) for each in logs for n in each.values}
 
 
 def read_robot_log(file: RobotFile, path: str | Path) -> Log:
@@ -143,26 +141,26 @@ def read_robot_log(file: RobotFile, path: str | Path) -> Log:
         if name not in (*inputs, *outputs):
             raise unknown_name(f"actuator or sensor under columns in {file.path}:", name,
                                (*inputs, *outputs))  # fmt: skip
-    own = {name: file.columns.get(name, name) for name in (*inputs, *outputs)}
+    column = {name: file.columns.get(name, name) for name in (*inputs, *outputs)}
     try:
         log = read_log(
-            path, [own[n] for n in inputs], [own[n] for n in outputs],
-            units={own[n]: u for n, u in units.items()}, named_in=file.path,
+            path, [column[n] for n in inputs], [column[n] for n in outputs],
+            units={column[n]: u for n, u in units.items()}, named_in=file.path,
             lenient=True, said=file.log, trust_rows="rows" in file.trust,
         )  # fmt: skip
     except MissingColumnsError as error:
-        there = [f'"{n}"' for n in outputs if own[n] not in error.missing]
-        measured = {*error.missing} <= {own[n] for n in outputs}
-        if file.outputs or not (there and measured):
+        logged = [f'"{n}"' for n in outputs if column[n] not in error.missing]
+        measured = {*error.missing} <= {column[n] for n in outputs}
+        if file.outputs or not (logged and measured):
             raise
         raise InputError(
-            f"{error}; or, where these are not measured, write outputs = [{', '.join(there)}] into"
+            f"{error}; or, where these are not measured, write outputs = [{', '.join(logged)}] into"
             f" {file.path}"
         ) from error
     refuse_milliseconds(model, file, log, Path(path))
     refuse_every(file, log)
-    given = {n: u for n in inputs if (u := log.units.get(own[n]))}
-    factors = {n: log.factors[own[n]] for n in own if own[n] in log.factors}
+    given = {n: u for n in inputs if (u := log.units.get(column[n]))}
+    factors = {n: log.factors[column[n]] for n in column if column[n] in log.factors}
     log = replace(log, input_names=inputs, output_names=outputs, units={**units, **given},
                   factors=factors)  # fmt: skip
     return decimate(log, file.every) if file.every > 1 else log

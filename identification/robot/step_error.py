@@ -39,17 +39,11 @@ RK4 = INTEGRATORS.index("RK4")
 
 @dataclass(frozen=True)
 class StepError:
-    """The integration error of one output.
+    """The integration error of one output."""
 
-    Attributes:
-        output: name of the output.
-        error: e, in its unit.
-        noise: std of its noise, in its unit.
-    """
-
-    output: str
-    error: float
-    noise: float
+    output: str  # name of the output
+    error: float  # e, in its unit
+    noise: float  # std of its noise, in its unit
 
 
 def refuse_coarse_steps(robot: Robot) -> None:
@@ -59,9 +53,9 @@ def refuse_coarse_steps(robot: Robot) -> None:
     worst = _worst(robot)
     if worst is not None and _is_small(robot, worst):
         return
-    own, said = robot.file.path, blamed(robot, _is_simulated)
+    path, said = robot.file.path, blamed(robot, _is_simulated)
     if said is not None:
-        raise InputError(f'{said}, or, if it is right, write trust = ["steps"] into {own}')
+        raise InputError(f'{said}, or, if it is right, write trust = ["steps"] into {path}')
     if worst is None:  # the search will say why
         return
     option, unit = robot.plant.model.opt, robot.log.units.get(worst.output, "")

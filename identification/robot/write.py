@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -10,7 +9,7 @@ from pathlib import Path
 
 from identification.discovery.result import keep_of_robot
 from identification.effects.joint_group import SLIDE
-from identification.files import write_text
+from identification.files import toml_table, toml_value, write_text
 from identification.robot.parameters import KNOWN, Free, effect_sizes
 from identification.robot.robot import Robot
 
@@ -49,16 +48,16 @@ def write_robot(
     names = [*file.free, *found]
     lines = [f"# {remark}"] if remark else []
     lines += [
-        f"model = {_text(os.path.relpath(file.model, place))}",
-        f"outputs = {_list(robot.log.output_names)}",
+        f"model = {toml_value(os.path.relpath(file.model, place))}",
+        f"outputs = {toml_value(robot.log.output_names)}",
     ]
     if any(SLIDE in name for name in found):
         lines.append(f"# effects with {SLIDE} in their names act on slides, the others on hinges")
-    lines.append(f"free = {_list([*file.by_itself, *found])}")
-    lines += [f"own = {_list(own)}"] if own else []
+    lines.append(f"free = {toml_value([*file.by_itself, *found])}")
+    lines += [f"own = {toml_value(own)}"] if own else []
     lines += [] if file.horizon is None else [f"horizon = {file.horizon!r}"]
     lines += [f"every = {file.every}"] if file.every > 1 else []
-    lines += [f"trust = {_list(file.trust)}"] if file.trust else []
+    lines += [f"trust = {toml_value(file.trust)}"] if file.trust else []
     tables: dict[str, dict[str, object]] = {
         "start": dict(file.start), "log": dict(file.log), "columns": dict(file.columns),
         "fixed": dict(fixed),
@@ -67,19 +66,18 @@ def write_robot(
         said = {**file.records.get(name, {}), "unit": at[name].unit}
         value = float(values.get(name, at[name].value))
         known = {} if name in alike else _known(robot, name, value)
-        tables[f"parameters.{_text(name)}"] = {**said, "value": value, **known}
+        tables[f"parameters.{toml_value(name)}"] = {**said, "value": value, **known}
     for a in file.spread:
-        tables[f"spread.{_text(a.name)}"] = {"of": list(a.of), "std": a.std, "known": a.known}
+        tables[f"spread.{toml_value(a.name)}"] = {"of": list(a.of), "std": a.std, "known": a.known}
     for record, each in own_values.items():
-        tables[f"own_values.{_text(record)}"] = {n: float(v) for n, v in each.items()}
+        tables[f"own_values.{toml_value(record)}"] = {n: float(v) for n, v in each.items()}
     tables["effects"] = {
         key: list(given)
         for key, given in (("joints", file.joints), ("only", file.only), ("turns", file.turns))
         if given
     }
     for title, table in tables.items():
-        if table:
-            lines += ["", f"[{title}]", *(f"{_text(k)} = {_value(v)}" for k, v in table.items())]
+        lines += toml_table(title, table)
     return write_text(path, "\n".join(lines) + "\n")
 
 
@@ -109,20 +107,3 @@ def _means(names: Sequence[str], own_values: Mapping[str, Mapping[str, float]]) 
     """Returns the mean over records of what each has for itself, by name."""
     each = {n: [own[n] for own in own_values.values() if n in own] for n in names}
     return {n: sum(values) / len(values) for n, values in each.items()}
-
-
-def _text(text: str) -> str:
-    """Returns a basic string of TOML, written as JSON, whose escapes are valid in TOML too."""
-    return json.dumps(text, ensure_ascii=False)
-
-
-def _list(names: tuple[str, ...] | list[str]) -> str:
-    return f"[{', '.join(map(_text, names))}]"
-
-
-def _value(value: object) -> str:
-    if isinstance(value, list):
-        return f"[{', '.join(map(_value, value))}]"
-    if isinstance(value, dict):
-        return f"{{{', '.join(f'{_text(k)} = {_value(v)}' for k, v in value.items())}}}"
-    return _text(value) if isinstance(value, str) else repr(value)

@@ -18,9 +18,9 @@ import numpy as np
 
 from identification.errors import DivergenceError
 from identification.model.coordinates import NOTHING
-from identification.model.numbers import with_numbers
 from identification.model.paths import Slot
 from identification.model.predictor import Predictor, with_states
+from identification.model.protocol import with_numbers
 from identification.model.rollout import Simulations, State, hold, simulations, substeps
 from identification.model.sensitivity import FORWARD_STEP
 from identification.windows.shooting import (

@@ -17,8 +17,8 @@ import numpy as np
 
 from identification import Log, Predictor
 from identification.errors import DivergenceError, InputError
-from identification.logs.frozen import refuse_frozen
 from identification.logs.names import listed
+from identification.logs.plausible import refuse_frozen
 from identification.refusals.readings import Reading
 from identification.refusals.trust import trusted
 from inca_mj.refusals.agreement import angles_under, some, unreached_share

@@ -20,8 +20,13 @@ import numpy as np
 from identification import Log
 from identification.errors import InputError
 from identification.logs.joined import join_logs, rows_of
-from identification.model.own import own_name, values_of_record, with_own
-from identification.model.parameter import RECORD, ParameterSet
+from identification.model.parameter import (
+    RECORD,
+    ParameterSet,
+    own_name,
+    values_of_record,
+    with_own,
+)
 from inca_mj.effects.change import DEVIANTS
 from inca_mj.refusals.wiring import refuse_miswired
 from inca_mj.robot.geometry import INCA, Geometry

@@ -10,8 +10,7 @@ from identification import Log
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Effect
 from identification.logs.joined import join_logs, records_of
-from identification.model.own import with_own
-from identification.model.parameter import ParameterSet
+from identification.model.parameter import ParameterSet, with_own
 from inca_mj.effects.catalogue import CATALOGUE
 from inca_mj.refusals.wiring import refuse_miswired
 from inca_mj.robot.geometry import INCA, Geometry

@@ -8,7 +8,7 @@ import sys
 import pytest
 from robot_cases import TOML, simulated
 
-from identification.logs.write import write_log
+from identification.logs.csv_files import write_log
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="streams of POSIX")
 STRICT = {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0",

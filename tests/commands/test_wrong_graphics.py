@@ -9,7 +9,7 @@ from robot_cases import TOML, simulated
 from sweep_cases import METHOD
 
 from identification.commands.common import import_without_graphics
-from identification.logs.write import write_log
+from identification.logs.csv_files import write_log
 from inca_mj.cli import main
 
 

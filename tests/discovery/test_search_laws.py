@@ -13,8 +13,7 @@ from identification.effects.effect import Candidate
 from identification.innovations.discovery import discover
 from identification.innovations.fitted_model import fit_model
 from identification.logs.joined import join_logs
-from identification.model.own import own_name, with_own
-from identification.model.parameter import ParameterSet
+from identification.model.parameter import ParameterSet, own_name, with_own
 
 HIDDEN = {"mass": 2.2, "damping": 2.7, "spring.k": 5.0}
 STARTS = ("x0", "v0")

@@ -10,7 +10,7 @@ import pytest
 
 from identification import fit, read_robot
 from identification.estimation.uncertainty import step_shift
-from identification.model.finer import FINER, finer
+from identification.model.protocol import FINER, finer
 from identification.report.fit_verdict import fit_verdict
 
 PENDULUM = """<mujoco><option timestep="{step}" integrator="RK4"/><worldbody><body>

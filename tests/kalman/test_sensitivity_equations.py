@@ -19,7 +19,7 @@ from identification.kalman.trajectory import COARSE_POINTS, FINE_POINTS, follow
 from identification.linear.derivatives import shift_position
 from identification.logs.joined import join_logs
 from identification.model.coordinates import coordinates
-from identification.model.own import with_own
+from identification.model.parameter import with_own
 from identification.model.plant import ModelPlant
 from inca_mj.effects.catalogue import CATALOGUE
 from inca_mj.robot.inputs import make_input

@@ -14,7 +14,7 @@ from identification.errors import DivergenceError
 from identification.linear import points as of_points
 from identification.linear.operating_points import OperatingPoints
 from identification.linear.points import Change, Points
-from identification.model.numbers import list_differences, with_entries, with_numbers
+from identification.model.protocol import list_differences, with_entries, with_numbers
 from identification.model.rollout import without_sensors
 from identification.native.forward import Intervals, evaluate
 

@@ -11,8 +11,8 @@ from test_points import drawn, one_by_one
 
 from identification.linear import points as of_points
 from identification.linear.points import Change, Points
-from identification.model.numbers import list_differences
 from identification.model.paths import Slot
+from identification.model.protocol import list_differences
 from identification.model.rollout import without_sensors
 from identification.native.installer import owners_of
 from inca_mj.robot import law

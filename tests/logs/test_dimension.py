@@ -3,8 +3,7 @@
 import pytest
 
 from identification import Parameter
-from identification.logs.dimension import dimension, refuse_not_si, refuse_other_unit
-from identification.logs.units import UNITS
+from identification.logs.units import UNITS, dimension, refuse_not_si, refuse_other_unit
 
 SAME = [
     ("N m s/rad", "N m s"), ("N s/m", "kg/s"), ("kg m^2", "kg m²"), ("N m/A", "V s"),

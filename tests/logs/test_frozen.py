@@ -11,7 +11,7 @@ from stuck_cases import joint_log, stuck
 from identification import InputError, write_log
 from identification.__main__ import main
 from identification.effects.axes import axes
-from identification.logs.frozen import BEYOND, FEWEST, SPAN, refuse_frozen
+from identification.logs.plausible import BEYOND, FEWEST, SPAN, refuse_frozen
 
 FROM = 300  # sample of 400
 NOISE = 1e-4  # [m]

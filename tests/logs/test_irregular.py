@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from identification.logs.irregular import on_a_grid
+from identification.logs.resampling import on_a_grid
 
 
 @given(st.integers(0, 2**31), st.floats(0.01, 0.2))

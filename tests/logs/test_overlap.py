@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from records_cases import record
 
 from identification import InputError
-from identification.logs.overlap import ROW, share_samples
+from identification.logs.joined import ROW, share_samples
 from identification.prediction.records import as_records
 
 

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from identification import Log, write_log
+from identification.files import toml_table, toml_value
 from identification.folders import whole_folder
 
 finite = st.floats(allow_nan=False, allow_infinity=False)
@@ -151,3 +152,16 @@ def test_a_folder_that_cannot_be_made_is_refused(tmp_path, refusal):
             raise AssertionError("never begins")
 
     assert "choose another" in refusal(fill, tmp_path / "file" / "out")
+
+
+def test_what_is_written_as_toml_is_read_as_it_was():
+    odd = {
+        "name": 'a "b" \\ \x7f\n\u20ac',
+        "free": ["a.b", "c"],
+        "on": True,
+        "step": 1e-300,
+        "n": [[0.1, 2]],
+    }
+    assert tomllib.loads(f"x = {toml_value(odd)}")["x"] == odd
+    assert tomllib.loads("\n".join(toml_table("t", odd)))["t"] == odd
+    assert toml_table("t", {}) == []

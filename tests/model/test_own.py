@@ -11,7 +11,7 @@ from identification.kalman.linear import linearise
 from identification.kalman.noise_fit import compute_unit_ratio
 from identification.kalman.noise_model import Noise, build_whitener
 from identification.logs.joined import join_logs
-from identification.model.own import of_record, own_name, values_of_record, with_own
+from identification.model.parameter import of_record, own_name, values_of_record, with_own
 from identification.model.predictor import Predictor
 
 H = 0.02

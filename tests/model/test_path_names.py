@@ -3,8 +3,7 @@
 import mujoco
 import pytest
 
-from identification.model.path_names import KINDS, attributes
-from identification.model.paths import resolve
+from identification.model.paths import KINDS, attributes, resolve
 
 CRANE = mujoco.MjModel.from_xml_string(
     """<mujoco><worldbody>

@@ -9,7 +9,7 @@ from identification import InputError, Parameter, ParameterSet
 from identification.estimation.estimation import estimate
 from identification.model.paths import resolve
 from identification.model.plant import ModelPlant
-from identification.model.servo import parts, value_of
+from identification.model.tied import parts, value_of
 
 ARM = """<mujoco><option timestep="0.002" integrator="implicitfast"/>
   <worldbody><body name="arm"><joint name="q" axis="0 1 0" damping="0.2"/>

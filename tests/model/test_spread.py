@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from identification import ParameterSet
 from identification.model.plant import ModelPlant
-from identification.model.spread import spread_place, spreads
+from identification.model.tied import spread_place, spreads
 
 BODY = mujoco.MjModel.from_xml_string(PENDULUM).body(1).name
 PATHS = [f"body/{BODY}.spread[{k}]" for k in range(3)]

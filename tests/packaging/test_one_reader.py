@@ -18,11 +18,10 @@ LOADERS = ("np", "numpy", "json", "tomllib", "pickle", "yaml")
 OURS = ("read_text", "read_bytes")
 WRITES = frozenset("wxa")
 ALLOWED = {
-    "identification/files.py: open": "the reader",
     "inca_mj/rendering/film.py: open": "a film that the program wrote just now",
     "identification/files.py: fdopen": "the reader",
     "identification/exchange.py: open": "a folder, to lock it",
-    "identification/writing.py: open": "a file or folder, to bring it to the disk",
+    "identification/files.py: open": "the reader; a file or folder, to bring it to the disk",
     "identification/folders.py: copy2": "a file of the draft that the program wrote just now",
     "identification/files.py: load": "the bytes that the reader has read",
     "identification/commands/streams.py: open": "the file that takes everything and holds nothing",
@@ -30,11 +29,11 @@ ALLOWED = {
     "identification/native/cache_folder.py: open": "bounded, and no links or pipes either",
     "identification/native/cache_folder.py: fdopen": "bounded, and no links or pipes either",
     "identification/kept_code.py: read_bytes": "the program's own files",
-    "identification/logs/read_csv.py: loadtxt": "lines that the reader has read",
+    "identification/logs/csv_files.py: loadtxt": "lines that the reader has read",
     "identification/logs/read_mat.py: load": "the bytes that another process wrote",
-    "identification/logs/mat_child.py: loadmat": "the bytes of its input",
+    "identification/child.py: loadmat": "the bytes of its input",
     "identification/effects/rows.py: from_file": "MuJoCo, after the reader has looked",
-    "identification/model/compile_child.py: from_file": "MuJoCo, after the reader has looked",
+    "identification/child.py: from_file": "MuJoCo, after the reader has looked",
     "identification/sweep/parquet.py: read_table": "pyarrow, after the digest was read",
     "identification/sweep/parquet.py: dataset": "pyarrow, after the digest was read",
     "identification/sweep/parquet.py: open": "a folder, to bring it to the disk",

@@ -9,7 +9,7 @@ import pytest
 
 from identification import Log, fit
 from identification.discovery import fitted
-from identification.model.finer import FINER
+from identification.model.protocol import FINER
 from identification.prediction.step_shift import StepShift, step_shift
 from identification.report.records_fit_verdict import records_fit_verdict
 from identification.report.step_words import std_sentence, step_sentences

@@ -3,8 +3,7 @@
 import fake_discovery
 import pytest
 
-from identification.model.own import with_own
-from identification.model.parameter import Parameter, ParameterSet
+from identification.model.parameter import Parameter, ParameterSet, with_own
 from identification.report.discovery_json import discovery_to_json
 from identification.report.discovery_tables import parameters_section
 from identification.report.parameter_words import (

@@ -10,7 +10,7 @@ from robot_cases import TOML
 from touching_cases import simulated
 
 from identification import InputError, Log, fit, read_robot, write_log
-from identification.robot.model_units import unit_of
+from identification.robot.model_file import unit_of
 
 MESH = '<{0}><geometry><mesh filename="package://none/{1}.stl"/></geometry></{0}>'
 URDF = f"""<?xml version="1.0"?><robot name="two">

@@ -17,7 +17,7 @@ from identification.estimation.identifiability import identifiability
 from identification.report.fit_verdict import fit_verdict
 from identification.report.records_fit_verdict import records_fit_verdict
 from identification.report.untold_words import weak_sentences
-from identification.robot.free_inertias import impossible_sentence
+from identification.robot.free_swing import impossible_sentence
 
 DOUBLE = """<mujoco model="double"><option timestep="0.005" integrator="RK4"/>
 <worldbody><body name="upper" pos="0 0 2"><joint name="a" axis="0 1 0" damping="{a}"/>

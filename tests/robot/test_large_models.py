@@ -10,11 +10,12 @@ from joint_cases import SLIDER
 from robot_cases import TOML, simulated
 
 from identification import InputError, read_robot
+from identification import child as child_process
 from identification.effects.axes import Axis
 from identification.effects.rows import read_model
 from identification.files import is_file
-from identification.logs.write import write_log
-from identification.model import compile_child, large
+from identification.logs.csv_files import write_log
+from identification.model import hostile
 from identification.model.hostile import refuse_hostile
 from identification.sweep.method import reference_of
 
@@ -72,7 +73,7 @@ def test_what_a_model_includes_and_names_counts_too(tmp_path, compiled_by_anothe
     read_model(tmp_path / "arm.xml")
     assert [where for _, where in compiled_by_another] == [f"the model {tmp_path / 'arm.xml'}"]
     with (tmp_path / "box.stl").open("wb") as file:
-        file.truncate(large.BYTES + 1)
+        file.truncate(hostile.BYTES + 1)
     mesh = '<compiler meshdir="."/><asset><mesh name="m" file="box.stl"/></asset><worldbody>'
     assert refuse_hostile(with_part(mesh), "the model", tmp_path).may_be_large
 
@@ -100,14 +101,14 @@ def test_a_model_that_includes_itself_is_refused(tmp_path):
 @pytest.mark.parametrize("child", ENDS)
 def test_a_compilation_without_end_is_refused(tmp_path, monkeypatch, child):
     (tmp_path / "child.py").write_text(child)
-    monkeypatch.setattr(compile_child, "__file__", str(tmp_path / "child.py"))
+    monkeypatch.setattr(child_process, "__file__", str(tmp_path / "child.py"))
     if "sleep" in child:
-        monkeypatch.setattr(large, "_WAITING", 0.05)
+        monkeypatch.setattr(hostile, "_WAITING", 0.05)
     if not ENDS[child]:
-        large.refuse_endless("<mujoco/>", "the model", large.Amount())
+        hostile.refuse_endless("<mujoco/>", "the model", hostile.Amount())
         return
     with pytest.raises(InputError, match=rf"{ENDS[child]}.*lower its counts"):
-        large.refuse_endless("<mujoco/>", "the model", large.Amount())
+        hostile.refuse_endless("<mujoco/>", "the model", hostile.Amount())
     assert is_file(tmp_path / "child.py")
 
 
@@ -125,7 +126,7 @@ def test_user_data_without_end_are_refused_by_their_name(name, count):
 
 
 def test_a_model_too_large_to_be_copied_is_refused(monkeypatch):
-    monkeypatch.setattr("identification.model.large.LARGEST", 2**8)
+    monkeypatch.setattr("identification.model.hostile.LARGEST", 2**8)
     with pytest.raises(InputError, match="MB when it is compiled, more than the 0 MB"):
         read_model(SLIDER)
 

@@ -14,7 +14,7 @@ from robot_cases import run as command
 
 from identification import fit, read_robot, write_log
 from identification.__main__ import main
-from identification.logs.replay import REPLAYED, replayed_share
+from identification.logs.joined import REPLAYED, replayed_share
 from identification.robot.file import read_robot_file
 from identification.robot.fit_json import robot_fit_to_json
 

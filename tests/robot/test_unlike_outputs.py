@@ -11,15 +11,15 @@ from robot_cases import run
 from unlike_cases import MODEL, NOISE, TOML, TRUE, write_robot_and_logs
 
 from identification import InputError, discover, fit, read_robot
-from identification.logs.by_unit import relative
+from identification.estimation.metrics import relative
 from identification.prediction.record_errors import error_unit, errors_by_unit
 from identification.report.discovery_json import discovery_to_json
 from identification.report.discovery_sections import gap_section, where_section
 from identification.report.discovery_text import discovery_text
 from identification.report.fit_verdict import fit_verdict
 from identification.report.vector import svg
+from identification.robot.fit_json import worse_unit
 from identification.robot.record_error import AS_WRITTEN, FITTED, Confirmation
-from identification.robot.worse_unit import worse_unit
 
 PAIR = r"[\d.]+ [mµ]*rad{0} \(angles\) and [\d.]+ [mµ]*m{0} \(slides\)"
 

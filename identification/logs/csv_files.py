@@ -1,25 +1,22 @@
-"""CSV to a table: one header row of names, then one row of numbers for each sample.
-
-A correct file is read by one call of numpy's parser. Only a file that it refuses is read again,
-cell by cell, to say which line is wrong.
-"""
+"""Logs as CSV: read into a table, and written to be read back to the last bit."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
+import os
+from collections.abc import Callable, Collection, Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
 
 from identification.errors import InputError, repeated
-from identification.logs.names import listed, quoted
+from identification.files import toml_table, toml_value, write_text
+from identification.logs.log import Log
+from identification.logs.names import group, listed, quoted
 from identification.logs.sampling import FloatArray
 from identification.logs.stamps import WHOLE, exact_stamps
 from identification.logs.table import Table
 
 _WRONG_SEPARATORS = {";": "semicolons", "\t": "tabs", "|": "bars", " ": "spaces"}
-
-
 SKIP = "skip"  # name of a column without a header that nobody needs
 
 
@@ -66,13 +63,75 @@ def parse_csv(
             f"{path} has a header and no rows under it; record the log again, or export its samples"
         )
     data = _numbers([lines[k] for k in rows], rows, names, path, keep, wanted is not None)
-    left = tuple(n for k, n in enumerate(names) if k not in keep)
+    unread = tuple(n for k, n in enumerate(names) if k not in keep)
     kept = tuple(names[k] for k in keep)
     for k, column in enumerate(keep):
         # Beyond WHOLE a float lost digits that the file has.
         if names[column] in stamps and WHOLE <= np.abs(data[:, k]).max() < np.inf:
             data[:, k] = exact_stamps([lines[row].split(",")[column] for row in rows])
-    return Table(path, kept, data, lambda row: _place(rows[row], path), left)
+    return Table(path, kept, data, lambda row: _place(rows[row], path), unread)
+
+
+def write_log(log: Log, path: str | os.PathLike[str], digits: int | None = None) -> None:
+    """Write a CSV, and a TOML beside it if there is something that a CSV cannot say.
+
+    Each file is written whole or not at all. An old TOML is replaced also when the new log needs
+    none, because it would describe another log.
+
+    Args:
+        log: what to write.
+        path: the `.csv` file; an existing one is replaced.
+        digits: significant digits of the columns; None for as many as are exact. Time is always
+            exact, because rounded stamps would no longer be even.
+
+    Raises:
+        InputError: the name is not `.csv`, the folder is missing, or it cannot be written.
+    """
+    path = Path(path)
+    if path.suffix.lower() != ".csv":
+        raise InputError(f"a log is written as CSV, so {path} must end in .csv; rename it")
+    if digits is not None and digits < 1:
+        raise InputError(f"digits = {digits} leaves nothing of a number; give 1 to 17, or None")
+    sidecar = path.with_suffix(".toml")
+    said = _toml(log)
+    write_text(path, _csv(log, digits))
+    if said or sidecar.exists():
+        write_text(sidecar, said)
+
+
+def _csv(log: Log, digits: int | None) -> str:
+    columns = log.columns
+    form = repr if digits is None else f"{{:.{digits}g}}".format
+    cells = [map(repr, log.time.tolist())]
+    cells += [map(form, column.tolist()) for column in columns.values()]
+    lines = [",".join(("time", *columns)), *map(",".join, zip(*cells, strict=True))]
+    return "\n".join(lines) + "\n"
+
+
+def _toml(log: Log) -> str:
+    lines = []
+    if log.hold != "zoh":
+        lines.append(f"hold = {toml_value(log.hold)}")
+    if log.notes:
+        lines.append(f"notes = {toml_value(log.notes)}")
+    lines += toml_table("units", dict(_grouped(log)))
+    lines += toml_table("splits", log.splits)
+    lines += toml_table("values", {name: float(value) for name, value in log.values.items()})
+    return "\n".join(lines).lstrip() + "\n" if lines else ""
+
+
+def _grouped(log: Log) -> Iterator[tuple[str, str]]:
+    """Yields units by group where all columns of a group have the same unit, else by column."""
+    members: dict[str, list[str]] = {}
+    for name in log.columns:
+        members.setdefault(group(name), []).append(name)
+    for family, names in members.items():
+        words = {log.units.get(name) for name in names}
+        unit = words.pop()
+        if not words and unit:
+            yield family, unit
+        else:
+            yield from ((name, log.units[name]) for name in names if name in log.units)
 
 
 def _given(header: Sequence[str], first: str, path: Path) -> tuple[str, ...]:
