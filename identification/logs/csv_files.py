@@ -72,68 +72,6 @@ def parse_csv(
     return Table(path, kept, data, lambda row: _place(rows[row], path), unread)
 
 
-def write_log(log: Log, path: str | os.PathLike[str], digits: int | None = None) -> None:
-    """Write a CSV, and a TOML beside it if there is something that a CSV cannot say.
-
-    Each file is written whole or not at all. An old TOML is replaced also when the new log needs
-    none, because it would describe another log.
-
-    Args:
-        log: what to write.
-        path: the `.csv` file; an existing one is replaced.
-        digits: significant digits of the columns; None for as many as are exact. Time is always
-            exact, because rounded stamps would no longer be even.
-
-    Raises:
-        InputError: the name is not `.csv`, the folder is missing, or it cannot be written.
-    """
-    path = Path(path)
-    if path.suffix.lower() != ".csv":
-        raise InputError(f"a log is written as CSV, so {path} must end in .csv; rename it")
-    if digits is not None and digits < 1:
-        raise InputError(f"digits = {digits} leaves nothing of a number; give 1 to 17, or None")
-    sidecar = path.with_suffix(".toml")
-    said = _toml(log)
-    write_text(path, _csv(log, digits))
-    if said or sidecar.exists():
-        write_text(sidecar, said)
-
-
-def _csv(log: Log, digits: int | None) -> str:
-    columns = log.columns
-    form = repr if digits is None else f"{{:.{digits}g}}".format
-    cells = [map(repr, log.time.tolist())]
-    cells += [map(form, column.tolist()) for column in columns.values()]
-    lines = [",".join(("time", *columns)), *map(",".join, zip(*cells, strict=True))]
-    return "\n".join(lines) + "\n"
-
-
-def _toml(log: Log) -> str:
-    lines = []
-    if log.hold != "zoh":
-        lines.append(f"hold = {toml_value(log.hold)}")
-    if log.notes:
-        lines.append(f"notes = {toml_value(log.notes)}")
-    lines += toml_table("units", dict(_grouped(log)))
-    lines += toml_table("splits", log.splits)
-    lines += toml_table("values", {name: float(value) for name, value in log.values.items()})
-    return "\n".join(lines).lstrip() + "\n" if lines else ""
-
-
-def _grouped(log: Log) -> Iterator[tuple[str, str]]:
-    """Yields units by group where all columns of a group have the same unit, else by column."""
-    members: dict[str, list[str]] = {}
-    for name in log.columns:
-        members.setdefault(group(name), []).append(name)
-    for family, names in members.items():
-        words = {log.units.get(name) for name in names}
-        unit = words.pop()
-        if not words and unit:
-            yield family, unit
-        else:
-            yield from ((name, log.units[name]) for name in names if name in log.units)
-
-
 def _given(header: Sequence[str], first: str, path: Path) -> tuple[str, ...]:
     """Returns the names that a TOML gives, if the file has as many columns."""
     columns = first.count(",") + 1
@@ -143,10 +81,6 @@ def _given(header: Sequence[str], first: str, path: Path) -> tuple[str, ...]:
             f' name each, and those that are not needed "{SKIP}"'
         )
     return tuple(header)
-
-
-def _place(line: int, path: Path) -> str:
-    return f"line {line + 1} of {path}"
 
 
 def _decoded(raw: bytes, path: Path) -> str:
@@ -224,3 +158,69 @@ def _is_number(cell: str) -> bool:
     except ValueError:
         return False
     return "_" not in cell  # Python reads 1_000 as a number; no instrument writes it
+
+
+def _place(line: int, path: Path) -> str:
+    return f"line {line + 1} of {path}"
+
+
+def write_log(log: Log, path: str | os.PathLike[str], digits: int | None = None) -> None:
+    """Write a CSV, and a TOML beside it if there is something that a CSV cannot say.
+
+    Each file is written whole or not at all. An old TOML is replaced also when the new log needs
+    none, because it would describe another log.
+
+    Args:
+        log: what to write.
+        path: the `.csv` file; an existing one is replaced.
+        digits: significant digits of the columns; None for as many as are exact. Time is always
+            exact, because rounded stamps would no longer be even.
+
+    Raises:
+        InputError: the name is not `.csv`, the folder is missing, or it cannot be written.
+    """
+    path = Path(path)
+    if path.suffix.lower() != ".csv":
+        raise InputError(f"a log is written as CSV, so {path} must end in .csv; rename it")
+    if digits is not None and digits < 1:
+        raise InputError(f"digits = {digits} leaves nothing of a number; give 1 to 17, or None")
+    sidecar = path.with_suffix(".toml")
+    said = _toml(log)
+    write_text(path, _csv(log, digits))
+    if said or sidecar.exists():
+        write_text(sidecar, said)
+
+
+def _csv(log: Log, digits: int | None) -> str:
+    columns = log.columns
+    form = repr if digits is None else f"{{:.{digits}g}}".format
+    cells = [map(repr, log.time.tolist())]
+    cells += [map(form, column.tolist()) for column in columns.values()]
+    lines = [",".join(("time", *columns)), *map(",".join, zip(*cells, strict=True))]
+    return "\n".join(lines) + "\n"
+
+
+def _toml(log: Log) -> str:
+    lines = []
+    if log.hold != "zoh":
+        lines.append(f"hold = {toml_value(log.hold)}")
+    if log.notes:
+        lines.append(f"notes = {toml_value(log.notes)}")
+    lines += toml_table("units", dict(_grouped(log)))
+    lines += toml_table("splits", log.splits)
+    lines += toml_table("values", {name: float(value) for name, value in log.values.items()})
+    return "\n".join(lines).lstrip() + "\n" if lines else ""
+
+
+def _grouped(log: Log) -> Iterator[tuple[str, str]]:
+    """Yields units by group where all columns of a group have the same unit, else by column."""
+    members: dict[str, list[str]] = {}
+    for name in log.columns:
+        members.setdefault(group(name), []).append(name)
+    for family, names in members.items():
+        words = {log.units.get(name) for name in names}
+        unit = words.pop()
+        if not words and unit:
+            yield family, unit
+        else:
+            yield from ((name, log.units[name]) for name in names if name in log.units)

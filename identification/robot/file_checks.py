@@ -9,6 +9,7 @@ from typing import Any
 
 from identification.errors import InputError, unknown_name
 
+Kinds = Mapping[str, tuple[type | tuple[type, ...], str]]  # by key: the types, and what they are
 KEYS: Kinds = {
     "model": (str, "a path in quotes"),
     "outputs": (list, "a list of sensors"),
@@ -36,7 +37,6 @@ EFFECTS_KEYS: Kinds = {  # of [effects]
     **dict.fromkeys(("joints", "only"), (list, "a list of names")),
     "turns": (list, "a list of numbers above zero"),
 }
-Kinds = Mapping[str, tuple[type | tuple[type, ...], str]]  # by key: the types, and what they are
 POSITIVE = ("every", "known", "scale", "std")
 TINY, HUGE = 1e-50, 1e50  # of any unit: their squares, and what is divided by these, are numbers
 
