@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from identification.errors import InputError
-from identification.logs.noise import noise_floor
+from identification.logs.noise import encoder_step, noise_floor
 from identification.logs.plausible import stands_still
 from identification.logs.sampling import FloatArray
 
@@ -65,10 +65,8 @@ def find_gaps(log: str, c: Channel, y: FloatArray, h: float) -> Iterator[Gap]:
     if not wide.size or stands_still(c.values):
         return
     _refuse_longest(log, c, len(y), h)
-    steps = np.abs(np.diff(c.values))
-    encoder = float(steps[steps > 0].min(initial=np.inf)) if steps.any() else 0.0
     noise = float(noise_floor(y[:, None])[0])
-    allowed = max(ALLOWED * float(np.ptp(y)), CLEAR * noise, encoder)
+    allowed = max(ALLOWED * float(np.ptp(y)), CLEAR * noise, encoder_step(c.values))
     errors = {n: _bridging_error(y, n) for n in np.unique(intervals[wide]).tolist()}
     for k in wide.tolist():
         error = errors[int(intervals[k])]

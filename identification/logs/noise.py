@@ -38,6 +38,12 @@ def noise_floor(y: np.ndarray, order: int = ORDER) -> np.ndarray:
     return np.sqrt(kept / share / comb(2 * order, order))
 
 
+def encoder_step(x: np.ndarray) -> float:
+    """Returns the smallest difference of two successive samples that is not zero; 0 without one."""
+    steps = np.abs(np.diff(x))
+    return float(steps[steps > 0].min()) if steps.any() else 0.0
+
+
 def whitener_of(residual: np.ndarray) -> np.ndarray:
     """Returns C with Cᵀ C = Λ⁻¹, Λ the covariance of a residual (n, ny); shape (ny, ny)."""
     covariance = residual.T @ residual / len(residual)

@@ -22,7 +22,7 @@ import numpy as np
 
 from identification.errors import InputError
 from identification.logs.gaps import ALLOWED
-from identification.logs.noise import noise_floor
+from identification.logs.noise import encoder_step, noise_floor
 from identification.logs.plausible import STEPS
 from identification.logs.sampling import FloatArray
 from identification.logs.table import Table
@@ -186,7 +186,7 @@ def _refuse_twice(table: Table, name: str, unit: str, overrule: str, trusted: bo
     # Each publisher's rows by themselves are no rougher than the robot.
     alone = (*ends, x[first], x[last])
     noise = min(float(noise_floor(y[:, None])[0]) for y in alone)
-    encoder = min(map(_encoder, alone))
+    encoder = min(map(encoder_step, alone))
     allowed = max(BEYOND * moved, NOISE * noise, STEPS * encoder, ALLOWED * float(np.ptp(x)))
     bad = same[np.abs(x[same + 1] - x[same]) > allowed]
     if len(bad) > (MOST * len(first) if trusted else 0):
@@ -208,7 +208,7 @@ def _refuse_zeros(table: Table, name: str, zero: np.ndarray, unit: str, overrule
         return
     moved = float(np.abs(np.diff(x[kept])).max())
     usual = float(np.median(np.diff(t[kept])))
-    far = max(BEYOND * moved, STEPS * _encoder(x), ALLOWED * float(np.ptp(x)))
+    far = max(BEYOND * moved, STEPS * encoder_step(x), ALLOWED * float(np.ptp(x)))
     after = np.searchsorted(kept, np.flatnonzero(np.isin(rows, zero)))
     inside = (after > 0) & (after < len(kept))
     between = np.flatnonzero(np.isin(rows, zero))[inside]
@@ -240,12 +240,6 @@ def _zero_rows(table: Table, inputs: Sequence[str], outputs: Sequence[str]) -> n
     cells = np.column_stack([table[name] for name in (*inputs, *outputs)])
     empty = np.isnan(cells)
     return np.asarray((empty | (cells == 0)).all(axis=1) & ~empty[:, len(inputs) :].all(axis=1))
-
-
-def _encoder(x: FloatArray) -> float:
-    """Returns the smallest non-zero difference of two successive samples."""
-    steps = np.abs(np.diff(x))
-    return float(steps[steps > 0].min()) if steps.any() else 0.0
 
 
 def _more(count: int, what: str, rows: np.ndarray | None = None) -> str:
