@@ -1,7 +1,6 @@
 """The benchmark of GPUs, as far as it goes without one."""
 
 import json
-from pathlib import Path
 
 import gpu_speed
 import numpy as np
@@ -44,17 +43,6 @@ def test_motors_without_the_law_turn_as_their_currents_say():
     rate = values["b_v"] / values["J"]
     end = values["K_t"] * worlds.currents[0] / values["b_v"]
     np.testing.assert_allclose(angles, end * (t - (1 - np.exp(-rate * t)) / rate), rtol=1e-9)
-
-
-def test_a_crossing_is_where_the_lines_cross():
-    flat, rising = {1: 100.0, 10: 100.0, 100: 100.0}, {1: 10.0, 10: 100.0, 100: 1000.0}
-    assert page.crossing(flat, rising) in {"about 10", "about 11"}
-    assert page.crossing({w: 2 * t for w, t in rising.items()}, rising) == "never"
-
-
-def test_the_page_is_made_from_the_rows():
-    rows = [json.loads(line) for line in page.ROWS.read_text(encoding="utf-8").splitlines()]
-    assert Path(page.PAGE).read_text(encoding="utf-8") == page.page(rows)
 
 
 def test_a_run_that_lacks_a_simulator_does_not_make_the_page():

@@ -25,6 +25,7 @@ def plant(tmp_path_factory):
 TRUE = {"m": 5.4e-6, "d": 2.3e-4, "g": 1.0, "offset.f_0@slide": 0.0}
 
 
+@pytest.mark.long
 def test_a_null_of_an_exact_model_is_the_log_and_else_its_errors_are_only_mixed(plant):
     robot, own = plant
     linear = oscillator_log(3, 300, k_3=0.0, noise=1e-4)
@@ -39,6 +40,7 @@ def test_a_null_of_an_exact_model_is_the_log_and_else_its_errors_are_only_mixed(
     assert all(np.any(np.all(np.isclose(errors, e, atol=1e-12), axis=(1, 2))) for e in added)
 
 
+@pytest.mark.long
 def test_the_best_model_has_what_was_named_and_its_nulls_are_read(plant, tmp_path):
     robot, own = plant
     values = {**TRUE, "hardening.k_3@slide": 2.0}
@@ -51,6 +53,7 @@ def test_the_best_model_has_what_was_named_and_its_nulls_are_read(plant, tmp_pat
     assert not np.array_equal(null.fit[0].outputs, null_of(best, own, values, 3).fit[0].outputs)
 
 
+@pytest.mark.long
 def test_what_needs_no_discovery_is_measured_again_from_the_kept_values(plant):
     robot, _ = plant
     nominal = {n: {"value": v} for n, v in TRUE.items()}

@@ -10,7 +10,6 @@ from robots import ROBOTS, reader
 from robots.gridded import gridded
 from robots.page import page
 from robots.unseen import MOST, spread
-from robots.words import amount, number
 from robots.written import command, write_files
 
 from identification import read_model, read_robot
@@ -131,15 +130,6 @@ def test_a_long_record_is_predicted_in_parts_that_do_not_overlap():
     ends = [p.time[-1] for p in parts]
     assert all(b.time[0] > a for a, b in zip(ends, parts[1:], strict=False))
     assert parts[-1].time[-1] > 0.97 * log.time[-1]
-
-
-def test_numbers_are_written_in_units_that_suit_them():
-    assert amount(0.0132, "rad") == "13.2 mrad"
-    assert amount(2.4e-5, "m") == "24 µm"
-    assert amount(0.0, "m") == "0 µm"
-    assert amount(0.25, "N m") == "0.25 N m"
-    assert number(None, None, "kg") == ""
-    assert number(0.3165, 0.026, "") == "0.3165 ± 0.026"
 
 
 def test_the_page_tells_of_every_record_and_of_a_refusal(tmp_path):

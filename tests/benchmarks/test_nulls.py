@@ -1,8 +1,5 @@
 """The page of null worlds says what its rows say, and is the one that is kept."""
 
-import json
-from pathlib import Path
-
 import nulls
 import pyarrow as pa
 import pyarrow.parquet as parquet
@@ -37,8 +34,3 @@ def test_a_whole_search_says_how_often_it_was_silent(tmp_path):
     ]
     row = nulls.row_of(sweep(tmp_path / "out", rows))
     assert (row["silent"], row["false_names"]) == (1, 1)
-
-
-def test_the_page_is_made_from_the_rows():
-    rows = [json.loads(line) for line in nulls.ROWS.read_text(encoding="utf-8").splitlines()]
-    assert Path(nulls.PAGE).read_text(encoding="utf-8") == nulls.page(rows)

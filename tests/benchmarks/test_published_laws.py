@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from measured_cases import DATA, with_data
 from robots import bam, double_pendulum
-from robots.inverse_dynamics import Motion, gravity, low_pass, torques
+from robots.inverse_dynamics import Motion, gravity, torques
 from robots.window_starts import best_errors
 
 SPEED = np.linspace(-5, 5, 41)
@@ -116,12 +116,6 @@ def test_the_double_pendulum_moves_by_the_equations_of_its_authors(p):
     assert found == pytest.approx(np.column_stack([tau1, tau2]), rel=1e-9, abs=1e-9)
     held = gravity(double_pendulum.changed(p), Motion(0.01, q, v, a, a))
     assert held == pytest.approx(np.column_stack([G1, G2]), rel=1e-9, abs=1e-9)
-
-
-def test_a_low_pass_keeps_slow_waves_and_delays_nothing():
-    t = 0.002 * np.arange(4000)
-    slow, fast = np.sin(2 * np.pi * 0.5 * t), np.sin(2 * np.pi * 40 * t)
-    assert low_pass(slow + fast, 5.0, 0.002)[500:-500] == pytest.approx(slow[500:-500], abs=2e-3)
 
 
 @with_data

@@ -17,26 +17,6 @@ STOPS = [
 ]
 
 
-def cells(line):
-    return [cell.strip() for cell in line.strip("|").split("|")]
-
-
-def test_cases_of_a_reader_add_up_over_seeds_and_not_over_commits():
-    table = [cells(line) for line in robustness.fuzzed(FUZZ) if line.startswith("|")]
-    assert ["log", "11", "4", "5", "0", "2", "0", "0"] in table
-    assert ["run", "4", "0", "0", "0", "0", "4", "0"] in table
-    assert ["all", "15", "4", "5", "0", "2", "4", "0"] in table
-    assert table.count(["log", "1", "0", "0", "0", "0", "0", "1"]) == 1
-
-
-def test_interrupts_tell_their_codes_and_the_slowest():
-    said = robustness.stopped(STOPS)
-    (line,) = [cells(line) for line in said if line.startswith("| fit")]
-    assert line == ["fit", "2", "1", "1 × 130, 1 × -2", "0.50 s", "0.75 s"]
-    assert "within 0.04 s" in "\n".join(said)
-    assert not any("not right" in line for line in robustness.stopped(STOPS[:1]))
-
-
 def test_the_section_replaces_itself_and_nothing_else(monkeypatch, tmp_path):
     page, results = tmp_path / "page.md", tmp_path / "results"
     results.mkdir()

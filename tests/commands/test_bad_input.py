@@ -86,12 +86,7 @@ def test_bad_logs(kind: str, tmp_path: Path, capsys: pytest.CaptureFixture[str])
 
 @pytest.mark.parametrize(
     ("arguments", "names"),
-    [
-        (("--param", "lamda=1"), "did you mean 'lambda'"),
-        (("--param", "R=-0.0175"), "outside its range"),
-        (("--param", "m"), "NAME=VALUE"),
-        (("--param", "x=1.3"), "move the start towards"),
-    ],
+    [(("--param", "lamda=1"), "did you mean 'lambda'"), (("--param", "m"), "NAME=VALUE")],
 )
 def test_bad_values(
     arguments: tuple[str, ...], names: str, capsys: pytest.CaptureFixture[str]
@@ -108,12 +103,6 @@ def test_a_model_that_diverges(
         capsys, "simulate", "--param", "lambda=5e6", "b=0", "--out", tmp_path / "out"
     )
     assert list(tmp_path.iterdir()) == []  # no folder, no MUJOCO_LOG.TXT
-
-
-def test_a_run_that_is_none(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    path = tmp_path / "run.npz"
-    np.savez(path, something=np.zeros(3))
-    assert "inca simulate" in refused(capsys, "film", path)
 
 
 @pytest.mark.parametrize(
@@ -137,11 +126,7 @@ def test_a_folder_that_cannot_be_made(tmp_path: Path, capsys: pytest.CaptureFixt
 
 @pytest.mark.parametrize(
     ("change", "names"),
-    [
-        (lambda A, B: (1e3 * A, B), "not mm"),
-        (lambda A, B: (A, 0 * B), "one line"),
-        (lambda A, B: (np.vstack([B[:1] + [0, 0, 1.43], A[1:]]), B), "has no length"),
-    ],
+    [(lambda A, B: (1e3 * A, B), "not mm"), (lambda A, B: (A, 0 * B), "one line")],
 )
 def test_bad_geometries(
     change, names: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
@@ -152,10 +137,6 @@ def test_bad_geometries(
     path = tmp_path / "geometry.toml"
     path.write_text(f"exits = {exits.tolist()}\nconnectors = {connectors.tolist()}\n")
     assert names in refused(capsys, "compare", LOG, "--geometry", path)
-
-
-def test_a_step_that_is_none(capsys: pytest.CaptureFixture[str]) -> None:
-    assert "step of 0" in refused(capsys, "compare", LOG, "--step", 0)
 
 
 def test_a_value_given_twice_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
@@ -174,9 +155,3 @@ def test_a_log_in_which_nothing_moves(tmp_path: Path) -> None:
     still = np.zeros((100, 8))
     with pytest.raises(InputError, match="nothing moves in"):
         read_inca_log(written(tmp_path / "still.csv", outputs=still))
-
-
-def test_time_in_milliseconds(tmp_path: Path) -> None:
-    time = 10.0 * np.arange(100)
-    with pytest.raises(InputError, match="is it in milliseconds"):
-        read_inca_log(written(tmp_path / "slow.csv", time=time))

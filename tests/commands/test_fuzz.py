@@ -1,17 +1,13 @@
 """The fuzzer finds what it is to find, makes a case again, and finds nothing here."""
 
 import os
-import random
 import signal
 import time
 
 import campaign
 import pytest
 from campaign import case, run
-from mutation import mutated
 from targets import TARGETS, Target
-
-from identification.errors import InputError
 
 FAST = ("log", "sidecar", "lenient log", "spread", "options")
 posix = pytest.mark.skipif(os.name != "posix", reason="forks")
@@ -24,11 +20,6 @@ def bad(read):
 def traceback(folder):
     if (folder / "x").read_bytes() != b"a = 1\n":
         raise KeyError("a")
-
-
-def cryptic(folder):
-    if (folder / "x").read_bytes() != b"a = 1\n":
-        raise InputError("long " * 1000)
 
 
 def crash(folder):
@@ -55,7 +46,7 @@ def test_a_reader_that_computes_for_ever_is_found(monkeypatch):
 
 
 @posix
-@pytest.mark.parametrize("kind", [traceback, cryptic, crash, hang])
+@pytest.mark.parametrize("kind", [traceback, crash])
 def test_a_bad_reader_is_found(monkeypatch, kind):
     monkeypatch.setitem(TARGETS, "bad", bad(kind))
     monkeypatch.setattr(campaign, "PATIENCE", 0.3)
@@ -77,8 +68,3 @@ def test_a_case_is_its_seed_and_number():
     cases = [case("log", 3, k, right) for k in range(40)]
     assert cases == [case("log", 3, k, right) for k in range(40)]
     assert len({content for _, content in cases}) > 30
-
-
-def test_what_is_changed_can_be_anything():
-    for k in range(300):
-        assert isinstance(mutated(b"", random.Random(k)), bytes)

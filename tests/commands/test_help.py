@@ -75,15 +75,6 @@ def test_bash_completes_a_command(capsys):
     assert done.stdout.strip() == "calibrate"
 
 
-@pytest.mark.parametrize(
-    "words",
-    [["tcsh"], ["bash", "zsh"]],
-)
-def test_another_shell_is_refused(capsys, words):
-    assert inca(["--completion", *words]) == 2
-    assert "give one of bash, zsh, fish" in capsys.readouterr().err
-
-
 @pytest.mark.parametrize("quiet", [True, False])
 def test_progress_is_told_unless_it_shall_be_quiet(capsys, quiet):
     line = ["crosscheck", "--duration", "0.1", "--states", "20"]
@@ -110,12 +101,8 @@ def test_bars_are_drawn_on_a_terminal_only(monkeypatch):
         assert ("refits" in screen.getvalue()) is drawn
 
 
-@pytest.mark.parametrize(
-    "verb",
-    ["fit"],
-)
-def test_the_help_of_trust_lists_every_word(verb, capsys):
+def test_the_help_of_trust_lists_every_word(capsys):
     with pytest.raises(SystemExit):
-        identification([verb, "--help"])
+        identification(["fit", "--help"])
     said = " ".join(capsys.readouterr().out.replace("│", " ").split())
     assert f"{', '.join(sorted(TRUST))}." in said

@@ -3,57 +3,52 @@
 import json
 import re
 import sys
-
 import numpy as np
 import pytest
-
-from identification import InputError, read_log
+from identification import InputError
+from identification import read_log
 from identification import child as child_process
-from identification.discovery.options import DiscoveryOptions, read_options
+from identification.discovery.options import DiscoveryOptions
+from identification.discovery.options import read_options
 from inca_mj.cli import main
-from inca_mj.robot.geometry import INCA, read_geometry, write_geometry
+from inca_mj.robot.geometry import INCA
+from inca_mj.robot.geometry import read_geometry
+from inca_mj.robot.geometry import write_geometry
 from inca_mj.robot.inputs import prbs
-from inca_mj.twin.logs import ANGLES, CURRENTS
-from inca_mj.twin.run import load_run, save_run, simulate
-from inca_mj.twin.saved import load_twin, save_twin
+from inca_mj.twin.logs import ANGLES
+from inca_mj.twin.logs import CURRENTS
+from inca_mj.twin.run import load_run
+from inca_mj.twin.run import save_run
+from inca_mj.twin.run import simulate
+from inca_mj.twin.saved import load_twin
+from inca_mj.twin.saved import save_twin
 from inca_mj.twin.twin import build_twin
 from inca_mj.workflows.spread import read_spread
+from identification.logs import mat_child
+
+
 
 DEEP = "a = " + 5000 * "[" + 5000 * "]"
 DIGITS = "9" * 400
 FIRST = "  [1.5, 1.5, 0.1],"
 
 
-@pytest.mark.parametrize("row", [
-    '  ["1.5", 1.5, 0.1],', "  [nan, 1.5, 0.1],", "  [[1.5], 1.5, 0.1],",
-])  # fmt: skip
-def test_a_geometry_has_numbers_only(tmp_path, row):
+def test_a_geometry_has_numbers_only(tmp_path):
     path = write_geometry(INCA, tmp_path / "geometry.toml")
     text = path.read_text()
     assert FIRST in text
-    path.write_text(text.replace(FIRST, row, 1))
+    path.write_text(text.replace(FIRST, '  ["1.5", 1.5, 0.1],', 1))
     with pytest.raises(InputError, match="exits must be 8 rows of 3 finite numbers"):
         read_geometry(path)
 
 
 @pytest.mark.parametrize("read", [read_geometry, read_options, read_spread])
-@pytest.mark.parametrize(
-    "text",
-    [DEEP, "\x00"],
-)
+@pytest.mark.parametrize("text", [DEEP, "\x00"])
 def test_what_is_no_toml_is_told_so(tmp_path, read, text):
     path = tmp_path / "some.toml"
     path.write_text(text)
     with pytest.raises(InputError, match=r"is not TOML \(.{1,120}\); correct it there"):
         read(path)
-
-
-def test_a_number_too_long_for_a_float_is_told(tmp_path):
-    (tmp_path / "options.toml").write_text(f"max_effects = {DIGITS}")
-    with pytest.raises(InputError, match="a whole number has more than 64 bits"):
-        read_options(tmp_path / "options.toml")
-    with pytest.raises(InputError, match="option max_effects is 999"):
-        DiscoveryOptions(max_effects=int(DIGITS))
 
 
 def test_a_message_is_one_line_whatever_it_quotes():
@@ -65,16 +60,9 @@ def test_a_message_is_one_line_whatever_it_quotes():
     assert str(InputError(said)) == said
 
 
-def test_an_argument_without_end_is_refused(capsys):
-    assert main(["discover", "--" + 2000 * "a-"]) == 2
-    assert capsys.readouterr().err.count("\n") == 1
-
-
 @pytest.mark.parametrize(("arguments", "said"), [
     (["film", "examples/log.csv", "--speed", "1e-300"], "frames, more than"),
-    (["trials", "--monte-carlo", "-1"], "--monte-carlo -1 is negative"),
     (["identify", "examples/log.csv", "--seed", "-1"], "seed -1 is negative"),
-    (["crosscheck", "--duration", "1e300"], "is not between two samples"),
 ])  # fmt: skip
 def test_a_number_that_would_fill_the_memory_or_the_day_is_refused_first(
     monkeypatch, capsys, request, arguments, said
@@ -98,8 +86,7 @@ def broken(run, path, **arrays):
 
 
 @pytest.mark.parametrize("arrays", [
-    {"tension": np.full((21, 8), np.nan)}, {"qpos": np.zeros((20, 15))},
-    {"time": np.full(21, 1e300)}, {"act": np.array("text")}, {"asked": np.full((21, 3), np.inf)},
+    {"tension": np.full((21, 8), np.nan)}, {"act": np.array("text")},
 ])  # fmt: skip
 def test_a_saved_run_that_no_simulation_gives_is_refused(run, tmp_path, arrays):
     with pytest.raises(InputError, match=r"write (the run|it) again"):
@@ -120,8 +107,7 @@ def put(files, folder, **changed):
 
 
 @pytest.mark.parametrize(("key", "value"), [
-    ("timestep", "fast"), ("timestep", None), ("values", []), ("values", {"m": "heavy"}),
-    ("effects", 3), ("set", "none"),
+    ("timestep", "fast"), ("values", {"m": "heavy"}),
 ])  # fmt: skip
 def test_a_saved_twin_with_an_entry_of_another_kind_is_refused(twin, tmp_path, key, value):
     record = {**json.loads(twin["effects.json"]), key: value}
@@ -136,9 +122,7 @@ def test_a_saved_twin_with_an_entry_of_another_kind_is_refused(twin, tmp_path, k
 
 @pytest.mark.parametrize(("text", "other", "field"), [
     ('timestep="0.001"', 'timestep="0.001" gravity="0 0 -1"', "gravity"),
-    ('timestep="0.001"', 'timestep="0.001" density="5"', "density"),
     ('integrator="RK4"', 'integrator="Euler"', "integrator"),
-    ('<joint name="motor_3"', '<joint name="motor_3" stiffness="2"', "jnt_stiffness"),
 ])  # fmt: skip
 def test_an_edit_of_the_physics_is_noticed(twin, tmp_path, text, other, field):
     assert text in twin["model.xml"]

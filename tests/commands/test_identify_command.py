@@ -92,6 +92,7 @@ def test_det_weighs_each_drive_by_its_own_noise(
         assert abs(det[name]["value"] - value) < 5 * det[name]["std"]
 
 
+@pytest.mark.long
 def test_windows_can_be_asked_for(log: Path, capsys: pytest.CaptureFixture[str]) -> None:
     result = say(capsys, log, *FREE, "--windows", "0.25")
     assert result["windows"]["count"] == 2
@@ -103,10 +104,7 @@ def test_windows_can_be_asked_for(log: Path, capsys: pytest.CaptureFixture[str])
     assert "give a length above 0" in refused(capsys, log, "--windows", "nan")
 
 
-@pytest.mark.parametrize(
-    "options",
-    [[], ["--windows", "0.25"]],
-)
+@pytest.mark.parametrize("options", [[], ["--windows", "0.25"]])
 def test_an_interrupt_keeps_the_best_values_and_is_told_by_the_exit_code(
     log: Path,
     monkeypatch: pytest.MonkeyPatch,
@@ -138,16 +136,6 @@ def test_options_that_say_nothing_are_refused_and_what_they_leave_out_is_said(
     assert "profile one of b_v, b_c" in refused(capsys, log, *FREE, "--profile", "J")
     verdict = say(capsys, log, *FREE)["verdict"]
     assert any("start pose is held" in sentence for sentence in verdict)
-
-
-def test_a_folder_that_cannot_be_made_is_refused_before_the_fit(
-    log: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert "is a file; choose another" in refused(capsys, log, "--out", log / "inside")
-    assert "none.csv" in refused(capsys, tmp_path / "none.csv", "--out", tmp_path / "new")
-    assert not (tmp_path / "new").exists()  # bad input leaves nothing behind
-    assert "'lm' knows no robust loss" in refused(capsys, log, "--method", "lm", "--loss", "huber")
-    assert "must grow to 1" in refused(capsys, log, "--horizons", "nan", "1")
 
 
 def test_innovations_tell_the_noise_of_sensors_and_currents(

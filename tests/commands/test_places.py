@@ -42,11 +42,8 @@ def test_a_folder_with_files_of_the_user_is_refused_before_anything_is_done(
     assert {p.name: p.read_text() for p in mine.iterdir()} == {"log.csv": LOG}
 
 
-@pytest.mark.parametrize(
-    "empty",
-    [["--out="]],
-)
-def test_no_folder_at_all_is_refused(capsys, empty):
+def test_no_folder_at_all_is_refused(capsys):
+    empty = ["--out="]
     assert inca(["simulate", *empty]) == 2
     assert "name a folder, such as --out out/run" in capsys.readouterr().err
 
@@ -130,24 +127,16 @@ def test_a_folder_that_a_stopped_command_made_does_not_stay(tmp_path):
         assert not stays or not list(out.iterdir())
 
 
-@pytest.mark.parametrize(
-    "inside",
-    ["/new"],
-)
-@pytest.mark.parametrize("target", ["loop", "nowhere"])
-def test_a_link_that_leads_nowhere_is_no_folder_for_results(tmp_path, capsys, inside, target):
-    (tmp_path / "loop").symlink_to(tmp_path / target)
-    assert inca(["simulate", "--duration", "1", "--out", f"{tmp_path / 'loop'}{inside}"]) == 2
+def test_a_link_that_leads_nowhere_is_no_folder_for_results(tmp_path, capsys):
+    (tmp_path / "loop").symlink_to(tmp_path / "loop")
+    assert inca(["simulate", "--duration", "1", "--out", f"{tmp_path / 'loop'}/new"]) == 2
     said = capsys.readouterr().err
     assert said.count("\n") == 1
     assert "loop is a link that leads nowhere; choose another" in said
 
 
-@pytest.mark.parametrize(
-    "name",
-    [".draft-²-x", ".draft--x"],
-)
-def test_a_draft_of_no_process_is_kept(tmp_path, name):
+def test_a_draft_of_no_process_is_kept(tmp_path):
+    name = ".draft-²-x"
     (tmp_path / name).mkdir()
     made(tmp_path, a="1")
     assert (tmp_path / name).is_dir()

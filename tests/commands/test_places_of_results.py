@@ -58,11 +58,8 @@ def test_a_link_to_a_folder_stays_a_link(tmp_path):
     assert content(tmp_path / "real") == {"a": "2"}
 
 
-@pytest.mark.parametrize(
-    "number",
-    [errno.EXDEV],
-)
-def test_a_file_system_without_the_step_is_filled_file_by_file(tmp_path, monkeypatch, number):
+def test_a_file_system_without_the_step_is_filled_file_by_file(tmp_path, monkeypatch):
+    number = errno.EXDEV
     from identification import folders
 
     out = tmp_path / "out"
@@ -138,14 +135,13 @@ def test_a_folder_that_cannot_be_is_named_before_any_work(
     assert sorted(tmp_path.rglob("*")) == before
 
 
-@pytest.mark.parametrize("call", ["iterdir", "mkdir"])
-def test_a_folder_that_cannot_be_read_or_written_is_named(tmp_path, monkeypatch, call):
+def test_a_folder_that_cannot_be_read_or_written_is_named(tmp_path, monkeypatch):
     def denied(path, *_, **__):
         raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(path))
 
     out = tmp_path / "out"
     out.mkdir()
-    monkeypatch.setattr(Path, call, denied)
+    monkeypatch.setattr(Path, "iterdir", denied)
     with pytest.raises(InputError, match=f"folder {out}: Permission denied; choose another"):
         try_folder(out)
 
@@ -173,13 +169,7 @@ def full(monkeypatch):
     monkeypatch.setattr("identification.commands.common.write_result", refused)
 
 
-@pytest.mark.parametrize(
-    "arguments",
-    [("--json",)],
-    ids=[
-        "json",
-    ],
-)
+@pytest.mark.parametrize("arguments", [("--json",)], ids=["json"])
 def test_the_result_is_said_where_the_disk_is_full(full, tmp_path, capsys, arguments):
     log = tmp_path / "log.csv"
     write_log(read_inca_log(LOG).between(0.0, 1.0), log)

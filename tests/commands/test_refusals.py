@@ -8,7 +8,6 @@ from identification.__main__ import main as identification
 from identification.commands.arguments import gathered
 from identification.commands.cli import Command
 from identification.errors import LISTED, NEAREST, unknown_name
-from identification.native.cache import VARIABLE, enabled
 from inca_mj.cli import Command as IncaCommand
 from inca_mj.cli import main as inca
 
@@ -24,20 +23,12 @@ WRONG = [
     (inca, "film log.csv --still x", "--still is 'x'; give a number"),
     (inca, "film", "LOG|RUN is missing; write inca film LOG|RUN"),
     (inca, "film a.npz b.npz c.npz", "3 logs and runs; a film shows one, or two"),
-    (
-        inca,
-        "film README.md",
-        "README.md is neither a log nor a run; give a log (.csv, .mat)",
-    ),
+    (inca, "film README.md", "README.md is neither a log nor a run; give a log (.csv, .mat)"),
     (inca, "linearize --pose a.csv", "--pose is 'a.csv'; write a log behind --log, as --log a.csv"),
     (inca, "linearize --pose 1 x", "--pose is '1'; give X Y Z ROLL PITCH YAW"),
     (inca, "linearize --grid", "--grid has no axis; give one or more as NAME=LOW:HIGH:POINTS"),
     (inca, "statics --pose 0 0 1", "--pose is '0'; give X Y Z ROLL PITCH YAW"),
-    (
-        inca,
-        "statics --taut 100",
-        "every cable shall keep 100 N, but with the largest current",
-    ),
+    (inca, "statics --taut 100", "every cable shall keep 100 N, but with the largest current"),
     (inca, "kinematics", "no pose and no log is given; write inca kinematics X Y Z ROLL PITCH YAW"),
     (inca, "simulate --figure 2.16 --set trial", "is made with --set simulation, not trial"),
     (inca, "simulate --figure 3.2 --input step", "is made with --input prbs, not step"),
@@ -92,25 +83,10 @@ def test_of_very_many_names_the_nearest_are_listed():
     ("commands", "written", "read"),
     [
     (IncaCommand, "identify a.csv --free A --free B", "identify a.csv --free A B"),
-    (IncaCommand, "identify a.csv --free A B --json --free=C",
-         "identify a.csv --free A B C --json"),
     (IncaCommand, "identify a.csv --param m=1 --seed 3 --param=b=2",
          "identify a.csv --param m=1 b=2 --seed 3"),
-    (Command, "fit r.toml a.csv --confirm b.csv --json --confirm c.csv -- --free",
-         "fit r.toml a.csv --confirm b.csv c.csv --json -- --free"),
     (Command, "fit --help", "fit --help"),
 ],
 )  # fmt: skip
 def test_what_is_repeated_adds_up(commands, written, read):
     assert gathered(commands, written.split()) == read.split()
-
-
-@pytest.mark.parametrize(
-    "word",
-    ["off", "NO "],
-)
-def test_words_that_switch_the_cache_off(monkeypatch, word):
-    monkeypatch.setenv(VARIABLE, word)
-    assert not enabled()
-    monkeypatch.setenv(VARIABLE, "")
-    assert enabled()

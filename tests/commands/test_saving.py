@@ -49,12 +49,8 @@ def test_a_kill_at_any_call_leaves_the_old_results_or_the_new_ones(tmp_path, cas
 
 
 @POSIX
-@pytest.mark.parametrize(
-    "case",
-    ["folders"],
-)
-def test_a_kill_where_no_step_exchanges_folders_is_finished_by_the_next_run(tmp_path, case):
-    found = driven("kill", case, tmp_path)  # which checks what the next run finds
+def test_a_kill_where_no_step_exchanges_folders_is_finished_by_the_next_run(tmp_path):
+    found = driven("kill", "folders", tmp_path)  # which checks what the next run finds
     assert [call for call, _, state in found if state == "part"] == 4 * ["os.rename"]
 
 
@@ -94,11 +90,8 @@ try_folder(Path(sys.argv[1]) / sys.argv[2])
 
 
 @POSIX
-@pytest.mark.parametrize(
-    "name",
-    ["out"],
-)
-def test_a_disk_that_is_only_read_is_named_before_anything_is_done(tmp_path, name):
+def test_a_disk_that_is_only_read_is_named_before_anything_is_done(tmp_path):
+    name = "out"
     line = without_root(sys.executable, "-c", READ_ONLY, str(tmp_path), name)
     done = subprocess.run(line, capture_output=True, text=True, check=False)
     said = done.stderr.splitlines()[-1]
@@ -200,12 +193,9 @@ def test_an_interrupt_in_the_film_costs_the_film_only(tmp_path, capsys, monkeypa
     assert json.loads(said.out)["model"] == str(out / "model.xml")
 
 
-@pytest.mark.parametrize(
-    "fails",
-    ["film"],
-)
-def test_what_cannot_be_drawn_costs_itself_only(tmp_path, capsys, monkeypatch, fails):
+def test_what_cannot_be_drawn_costs_itself_only(tmp_path, capsys, monkeypatch):
     """The film is drawn beside the figures: neither waits for the other without end."""
+    fails = "film"
     out = tmp_path / "out"
 
     def film(found, folder, progress):
@@ -258,13 +248,13 @@ except KeyboardInterrupt:
 """
 
 
+BUSY = "import hashlib; hashlib.pbkdf2_hmac('sha256', b'', b'', 2**31 - 1)"
+
+
 @POSIX
-@pytest.mark.parametrize("busy", [
-    "import hashlib; hashlib.pbkdf2_hmac('sha256', b'', b'', 2**31 - 1)",
-])  # fmt: skip
-def test_the_sentence_is_said_once_whoever_ends_the_program(tmp_path, busy):
+def test_the_sentence_is_said_once_whoever_ends_the_program(tmp_path):
     process = subprocess.Popen(
-        [sys.executable, "-c", WAIT.format(busy)], cwd=tmp_path, stdout=subprocess.PIPE,
+        [sys.executable, "-c", WAIT.format(BUSY)], cwd=tmp_path, stdout=subprocess.PIPE,
         stderr=subprocess.PIPE, text=True,
     )  # fmt: skip
     while process.stdout.readline() != "drawing\n":

@@ -96,10 +96,7 @@ def test_cables_are_watched_along_a_log():
     ("arguments", "sentence"),
     [
         (("--pose", 0, 0, 5, 0, 0, 0), "cannot be reached: z = 5 m lies outside the frame"),
-        (("--pose", 1.2, 1.2, 0.3, 0, 0, 0), "rank 6 without closure"),
         (("--current", 0.0, 0.001, "--pose", 0.2, 0, 1.2, 0, 0, 0), "no tensions between"),
-        (("--current", 2, 1), "give the smaller one first"),
-        (("--cells", 1, "--workspace", "static"), "1 cells along an edge"),
     ],
 )
 def test_what_cannot_be_is_refused_in_one_sentence(capsys, tmp_path, arguments, sentence):
@@ -112,12 +109,8 @@ def test_what_cannot_be_is_refused_in_one_sentence(capsys, tmp_path, arguments, 
     assert not out.exists()
 
 
-@pytest.mark.parametrize(
-    ("layout", "sentence"),
-    [(RADIAL, "rank 5")],
-)
-def test_layouts_without_closure_are_refused(capsys, tmp_path, layout, sentence):
-    path = write_geometry(layout, tmp_path / "layout.toml")
+def test_layouts_without_closure_are_refused(capsys, tmp_path):
+    path = write_geometry(RADIAL, tmp_path / "layout.toml")
     assert run("statics", "--geometry", path) == 2
     said = capsys.readouterr().err
-    assert sentence in said or "cannot exert" in said or "would have to push" in said
+    assert "rank 5" in said or "cannot exert" in said or "would have to push" in said

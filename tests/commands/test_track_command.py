@@ -57,12 +57,8 @@ def test_an_effect_by_its_name_alone_is_its_first_size(monkeypatch, capsys):
     ("words", "sentence"),
     [
         (("--effect", "load_dependant_friction=1"), "did you mean 'load_dependent_friction'"),
-        (("--effect", "load_dependent_friction.eta=1"), "load_dependent_friction.mu"),
         (("--effect", "delay=0.1", "delay.tau=0.2"), "twice"),
-        (("--model", "nowhere"), "inca discover --out DIR writes one"),
-        (("--radius", "-1"), "radius of -1 m"),
         (("--bandwidth", "400"), "beyond 100 rad/s"),
-        (("--radius", "2"), "leaves the room between the exit points"),
     ],
 )
 def test_bad_input_is_refused_in_one_sentence(words, sentence, capsys, tmp_path):

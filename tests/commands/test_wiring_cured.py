@@ -77,15 +77,13 @@ def test_degrees_and_a_turned_sign_are_told_in_one_sentence_and_overruled_by_two
     refuse_miswired(wrong, plant, ["wiring", "units"])
 
 
-@pytest.mark.parametrize(
-    ("wrong", "word", "told"),
-    [(mistaken(back=(2,)), "wiring", "turn the sign of angle_3")],
-)
-def test_compare_judges_a_log_as_the_searches_do(plant, tmp_path, capsys, wrong, word, told):
+def test_compare_judges_a_log_as_the_searches_do(plant, tmp_path, capsys):
+    wrong = mistaken(back=(2,))
+    word = "wiring"
     path = str(written(wrong, tmp_path))
     assert main(["compare", path, "--json"]) == 2
     said = capsys.readouterr()
-    assert told in said.err
+    assert "turn the sign of angle_3" in said.err
     assert said.err.count("\n") == 1
     assert said.out == ""
     assert main(["compare", path, "--trust", word, "--json"]) == 0
@@ -117,11 +115,6 @@ def test_compare_shows_a_right_log_the_same_whether_it_is_judged_or_not():
     np.testing.assert_array_equal(compare(LOG).rms, compare(LOG, trust=tuple(JUDGED)).rms)
 
 
-def test_compare_refuses_an_unknown_word():
-    with pytest.raises(InputError, match=r"'wires'.*sensors, units, wiring"):
-        compare(LOG, trust=["wires"])
-
-
 RIGHT, NONE = (0, 1, 2, 3, 4, 5, 6, 7), ()
 CYCLED = (0, 4, 2, 3, 6, 5, 1, 7)
 
@@ -135,7 +128,6 @@ def places(at, back):
     ("angles", "currents", "unit", "told"),
     [
         ((RIGHT, (3,)), (RIGHT, (3,)), 1.0, "turn the sign of angle_4, current_4: write"),
-        ((RIGHT, NONE), ((2, 1, 0, 3, 4, 5, 6, 7), (2, 5)), 1.0, "turn the sign of the new"),
         ((CYCLED, NONE), (CYCLED, NONE), 1.0, "drives 2, 5, 7 numbered in another order"),
     ],
 )
@@ -210,13 +202,9 @@ def test_angles_belong_to_poses_of_one_platform_in_the_right_order_only(plant):
     assert np.isinf(still).all()
 
 
-@pytest.mark.parametrize(
-    "level",
-    [0.75],
-)
-def test_a_current_that_was_kept_constant_is_right(plant, level):
+def test_a_current_that_was_kept_constant_is_right(plant):
     u = make_input("prbs", 3.0, seed=1)
-    u[:, 2] = level
+    u[:, 2] = 0.75
     heavier = plant.with_values({"m": 0.25, "b_c": 0.008})
     refuse_miswired(run_to_log(simulate(heavier, u)), plant)
 

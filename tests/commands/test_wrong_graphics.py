@@ -39,8 +39,7 @@ def test_a_command_that_draws_nothing_runs(folder):
 
 
 @pytest.mark.parametrize(("given", "own_methods", "left"), [
-    ("bogus", False, "disable"), ("bogus", True, "disable"), ("egl", False, "disable"),
-    ("egl", True, "egl"), ("", True, "disable"),
+    ("bogus", False, "disable"), ("egl", False, "disable"),
 ])  # fmt: skip
 def test_a_method_of_the_user_may_draw(monkeypatch, given, own_methods, left):
     monkeypatch.setenv("MUJOCO_GL", given)

@@ -161,30 +161,6 @@ def test_a_current_that_is_no_number_is_refused_and_does_no_harm(tmp_path, monke
     assert not list(tmp_path.iterdir()), "no MUJOCO_LOG.TXT"
 
 
-def test_an_unknown_task_names_the_known():
-    with pytest.raises(InputError, match=r"did you mean 'hold'.*hold, reach, track"):
-        load_environment("hodl")
-
-
-def test_what_the_robot_cannot_measure_is_observed_only_where_asked():
-    plain, all_of_it = (load("track", 0, privileged=p).reset().observation for p in (False, True))
-    assert set(all_of_it) - set(plain) == {"position", "orientation", "tension"}
-    assert all(np.array_equal(plain[name], all_of_it[name]) for name in plain)
-
-
-def test_the_physics_rests_at_once_after_a_reset_and_after_episodes():
-    env = load("hold", random=0)
-    first = env.physics.copy()
-    env.reset()
-    env.step(np.ones(8))
-    for physics in (first, env.physics):
-        physics.reset()
-        begin = physics.data.qpos.copy()
-        np.testing.assert_allclose(begin[:3], [0, 0, 1.43], atol=1e-12)
-        physics.step(200)
-        np.testing.assert_allclose(physics.data.qpos, begin, atol=1e-9)
-
-
 def test_track_asks_for_a_circle_at_one_radian_a_second():
     env = load("track", random=3)
     env.reset()

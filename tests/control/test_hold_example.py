@@ -9,10 +9,10 @@ pytest.importorskip("dm_control", reason="dm_control runs on neither MuJoCo 4 no
 EXAMPLE = Path(__file__).parents[2] / "examples" / "hold_the_handle.py"
 
 
-@pytest.mark.parametrize(("task", "end"), [("hold", 1e-3), ("reach", 5e-3)])
-def test_the_example_brings_the_handle_to_its_target(task, end):
+def test_the_example_brings_the_handle_to_its_target():
+    task = "hold"
     miss, reward = runpy.run_path(str(EXAMPLE))["hold"](seconds=3.0, seed=4, task=task)
-    assert miss[-1] < end
+    assert miss[-1] < 1e-3
     assert reward[-1] > 0.99
     if task == "hold":
         assert np.max(miss) < 0.01

@@ -66,17 +66,3 @@ def test_both_interfaces_give_the_same_numbers(task):
             assert reward == a.reward
             assert not terminated
             assert done == a.last()
-
-
-def test_a_seed_decides_the_episodes():
-    env = load_gymnasium("reach", seed=3)
-    first = [env.reset()[0]["target"] for _ in range(2)]
-    again = [env.reset(seed=3)[0]["target"], env.reset()[0]["target"]]
-    np.testing.assert_array_equal(first, again)
-    assert not np.array_equal(*first)
-
-
-def test_what_is_observed_is_in_the_space():
-    env = load_gymnasium("track", seed=0, privileged=True)
-    assert env.observation_space.contains(env.reset()[0])
-    assert "tension" in env.observation_space.spaces

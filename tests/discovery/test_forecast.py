@@ -57,11 +57,8 @@ def test_memory_grows_with_the_candidates_and_their_sizes():
     assert 0 < without_fixed(300, without) < without_fixed(300, few) < without_fixed(300, every)
 
 
-@pytest.mark.parametrize(
-    "effects",
-    [None],
-)
-def test_memory_is_linear_in_the_samples(effects):
+def test_memory_is_linear_in_the_samples():
+    effects = None
     assert without_fixed(900, effects) == pytest.approx(3 * without_fixed(300, effects))
     one, other = (forecast(task(n, effects)).fixed for n in (300, 900))
     assert one == other > 0  # code, libraries and copies of the model

@@ -5,17 +5,7 @@ from functools import cache
 import mujoco
 import numpy as np
 import pytest
-from discovery_cases import (
-    OPTIONS,
-    SENSOR,
-    STEP,
-    linear_plant,
-    record,
-    slider,
-    steps,
-    task,
-    wander,
-)
+from discovery_cases import OPTIONS, SENSOR, STEP, linear_plant, record, slider, steps, task, wander
 from discovery_cases import response as dense
 
 from identification import Log, Parameter, ParameterSet
@@ -120,8 +110,8 @@ def test_curves_sum_to_one_and_each_is_of_one_input():
         np.testing.assert_allclose(r[:, i, i].mean(axis=0), 0, atol=1e-12)
 
 
-@pytest.mark.parametrize("seed", [0])
-def test_a_random_error_goes_along_with_nothing(seed):
+def test_a_random_error_goes_along_with_nothing():
+    seed = 0
     error = wander(N, 0.05, 0.1, seed=seed)
     model = fit_model(task(record(slider(mass=2.2, damping=2.7), N, seed, error)), (), {})
     assert model.refit.level.input_std > 0
@@ -131,9 +121,8 @@ def test_a_random_error_goes_along_with_nothing(seed):
     assert not is_structured(model, OPTIONS)
 
 
-@pytest.mark.parametrize("seed", [2])
-def test_crosstalk_is_told_with_its_size_and_the_input_that_feels_it(seed):
-    model = crossed(seed)
+def test_crosstalk_is_told_with_its_size_and_the_input_that_feels_it():
+    model = crossed(2)
     (finding,) = find_input_error(model.validation, OPTIONS)
     assert finding.evidence.regressor == "other inputs"
     assert finding.evidence.input == "g"

@@ -60,14 +60,9 @@ def test_a_file_sets_what_it_names_and_leaves_the_rest(tmp_path):
     ("text", "says"),
     [
         ("min_prof_t = 3.0", "did you mean 'min_proof_t'"),
-        ("min_proof_t = 'three'", "min_proof_t is 'three'; give a number of 0 or more"),
         ("max_effects = 2.5", "give a whole number of 1 or more"),
-        ("significance = 1.5", "give a number from 0 to 1"),
         ("[discovery]\nmax_effects = 1", "unknown option in .*: 'discovery'"),
-        ("min_proof_t = ", "is not TOML"),
-        ('without = ["add_pear"]', "did you mean 'add_pair'"),
         ('without = "add_pair"', "give a list of names of passes"),
-        ("begin_anew = false", r'begin_anew is no option; write without = \["begin_anew"\]'),
     ],
 )
 def test_a_wrong_file_is_refused_in_one_sentence(tmp_path, refusal, text, says):

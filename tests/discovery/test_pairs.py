@@ -88,9 +88,7 @@ def names_where_the_second_moves_nothing(monkeypatch, times=10.0, structure=()):
     return {n.candidate.effect.name for n in answer.named}
 
 
-@pytest.mark.parametrize(
-    ("times", "structure", "count"), [(1.0, (), 2), (1e3, (), 1), (1.0, ("structure",), 1)]
-)
+@pytest.mark.parametrize(("times", "structure", "count"), [(1.0, (), 2), (1e3, (), 1)])
 def test_it_must_be_wanted_far_more_than_bic_asks_and_be_all_that_is_left(
     monkeypatch, times, structure, count
 ):

@@ -79,7 +79,13 @@ LAWS = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", LAWS)
+SLOW = [
+    pytest.param(name, marks=pytest.mark.long)
+    for name in ("load_dependent_friction", "friction_drift")
+]
+
+
+@pytest.mark.parametrize("name", ["stribeck_friction", "hardening", "encoder_scale", *SLOW])
 def test_recovered_points_and_the_band_hold_the_true_law(name):
     true, known, along, resists, law = LAWS[name]
     shape = {"v_s": 0.4, "n": 2.0} if name == "stribeck_friction" else {}

@@ -2,14 +2,7 @@
 
 import numpy as np
 import pytest
-from discovery_cases import (
-    OPTIONS,
-    STEP,
-    linear_plant,
-    point_of,
-    scored,
-    sensitivity,
-)
+from discovery_cases import OPTIONS, STEP, linear_plant, point_of, scored, sensitivity
 from scipy.stats import chi2
 from scipy.stats import f as f_distribution
 
@@ -79,8 +72,7 @@ def slow_score(plant, noise, e, J, s):
 
 @pytest.mark.parametrize("together", [2, 128])
 @pytest.mark.parametrize(
-    ("seed", "ratio", "missing"),
-    [(1, 0.0, 1.0), (3, 0.5, 0.3), (5, 2.0, 10.0)],
+    ("seed", "ratio", "missing"), [(1, 0.0, 1.0), (3, 0.5, 0.3), (5, 2.0, 10.0)]
 )
 def test_every_score_is_that_of_the_slow_way(seed, ratio, missing, together, monkeypatch):
     monkeypatch.setattr(module, "MAX_COLUMNS", together)

@@ -49,7 +49,7 @@ def answer_to_jump(jumped):
     return discover(log, effects=effects, spread=ALIKE)
 
 
-@pytest.mark.long  # test_sharpen tests the times that are scored, test_time_effects their fit
+@pytest.mark.long  # test_sharpen tests the times that are scored, test_sensor_effects their fit
 def test_a_jump_between_the_times_that_are_scored_is_named_with_its_time(answer_to_jump):
     (named,) = answer_to_jump.named
     assert (named.candidate.effect.name, named.candidate.where) == ("encoder_jump", "drive 3")

@@ -57,6 +57,7 @@ def test_the_order_of_candidates_and_one_that_is_not_taken_change_nothing(answer
     same(named(answer), named(discover(nominal_model(), records(1)[0], fewer)), rel=1e-9)
 
 
+@pytest.mark.long
 def test_the_order_of_records_changes_nothing():
     logs = records(2)
     one = named(discover(robot(2), join_logs(logs), EFFECTS))

@@ -42,9 +42,7 @@ def sharpened(monkeypatch):
     return of
 
 
-def test_what_only_the_blocks_refuse_is_scored_between_its_neighbours(
-    sharpened,
-):
+def test_what_only_the_blocks_refuse_is_scored_between_its_neighbours(sharpened):
     assert sharpened(score(1e-30, 0.5)) == [1.5, 2.0, 2.5, 3.0, 3.5]
 
 

@@ -3,14 +3,25 @@
 import mujoco
 import numpy as np
 import pytest
-from joint_cases import ARM, MASS, SLIDER, arm, arm_log, run, slider, slider_log, steps
-
+from joint_cases import ARM
+from joint_cases import SLIDER
+from joint_cases import arm
+from joint_cases import arm_log
+from joint_cases import run
+from joint_cases import slider
+from joint_cases import slider_log
+from joint_cases import steps
 from identification import InputError
-from identification.effects.bodies import body_effects, displaced, frame_inertia, principal
-from identification.effects.effect import Effect, Size
+from identification.effects.bodies import body_effects
+from identification.effects.bodies import displaced
+from identification.effects.bodies import frame_inertia
+from identification.effects.bodies import principal
+from identification.effects.effect import Effect
+from identification.effects.effect import Size
 from identification.effects.joint_plant import joint_plant
 from identification.effects.moving_bodies import moving_bodies
 from identification.model.plant import ModelPlant
+
 
 LOWER = '<inertial pos="0 0 -0.1" mass="0.5" diaginertia="0.01 0.01 0.005"/>'
 LOG = arm_log(steps(100, 2))
@@ -54,15 +65,6 @@ def test_a_payload_is_a_small_heavy_body_at_the_farthest_site():
     assert np.abs(expected - said(ARM)).max() > 0.01
 
 
-def test_without_sites_and_geoms_a_payload_hangs_where_a_uniform_link_ends():
-    known = {b.label: b for b in moving_bodies(arm().model)}
-    assert known["lower"].point == pytest.approx((0, 0, -0.2))
-    geom = LOWER + '<geom size="0.01" pos="0 0.1 0" mass="0"/>'
-    model = mujoco.MjModel.from_xml_string(ARM.replace(LOWER, geom))
-    (lower,) = (b for b in moving_bodies(model) if b.is_last)
-    assert lower.point == pytest.approx((0, 0.1, 0))
-
-
 @pytest.mark.parametrize(
     ("geom", "end"),
     [
@@ -81,20 +83,6 @@ def test_without_sites_a_payload_hangs_at_the_end_of_the_farthest_geom(geom, end
     model = mujoco.MjModel.from_xml_string(ARM.replace(LOWER, body + tip))
     (lower,) = (b for b in moving_bodies(model) if b.is_last)
     assert lower.point == pytest.approx((0, 0, -0.05))
-
-
-def test_a_body_with_a_site_beyond_all_squares_has_its_reach():
-    tip = '<site pos="0 0 -0.05"/>'
-    model = mujoco.MjModel.from_xml_string(ARM.replace(LOWER, LOWER + tip))
-    model.site_pos[:, 1] = 1e200
-    assert max(b.reach for b in moving_bodies(model)) == pytest.approx(1e200)
-
-
-def test_a_body_whose_geom_is_beyond_all_numbers_is_listed():
-    body = LOWER + '<geom type="capsule" size="0.03 0.2" mass="0" quat="1 1 0 0"/>'
-    model = mujoco.MjModel.from_xml_string(ARM.replace(LOWER, body))
-    model.geom_size[:] = np.inf
-    assert [b.label for b in moving_bodies(model)] == ["upper", "lower"]
 
 
 def test_an_inertia_in_axes_of_its_own_is_kept():
@@ -150,25 +138,3 @@ def test_what_cannot_be_felt_is_no_candidate():
     assert [s.name for s in known["com_offset"].sizes] == ["x", "z"]  # they turn about y
     assert known["payload"].places == {"body lower": "@lower"}
     assert known["payload"].sizes[0].sign == 1
-
-
-def test_a_wheel_about_its_own_centre_may_be_out_of_balance():
-    text = SLIDER.replace('name="slide" type="slide" axis="1 0 0"', 'name="slide" axis="0 1 0"')
-    log = slider_log(steps(100))
-    moved = text.replace('pos="0 0 0"', 'pos="0.1 0 0"').replace("0 0 0", "0 0 -9", 1)
-    heavy = text.replace('gravity="0 0 0"', 'gravity="0 0 -9"')
-    plant = joint_plant(heavy, (MASS,), log)
-    expected = run(ModelPlant(mujoco.MjModel.from_xml_string(moved), slider().bare.parameters), log)
-    found = run(plant, log, **{"com_offset.x@cart": 0.1})
-    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-10)
-
-
-def test_an_own_effect_of_a_body_adds_its_ten_numbers():
-    law = displaced("z")
-    own = Effect("hung", "c + d", (Size("d", "m", 0.1, 1e-3),), places={"body lower": "@lower"},
-                 hooks={"inertia": law})  # fmt: skip
-    plant = joint_plant(ARM, (), LOG, effects=(), own_effects=(own,))
-    one = run(plant, LOG, **{"hung.d@lower": -0.05})
-    np.testing.assert_array_equal(one, run(arm(), LOG, **{"com_offset.z@lower": -0.05}))
-    with pytest.raises(InputError, match="unknown parameter"):
-        run(plant, LOG, **{"hung.d@upper": 0.1})

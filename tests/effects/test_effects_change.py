@@ -48,15 +48,6 @@ def test_a_drum_spring_of_another_stiffness_is_one_of_another_radius():
     assert np.abs(theirs - radius).max() < 1e-6 * moved
 
 
-@pytest.mark.parametrize("name", ["viscous_friction", "friction", "cable_damping"])
-def test_a_drift_begins_at_nothing_and_grows(name):
-    """At its half it has grown to half: over short spans it is a mismatch of that size."""
-    names = [f"{name}_drift.alpha@3"]
-    none, drifted = simulate(full(), names, [[0.0], [0.02]], 2.0)
-    early, late = (np.abs(drifted - none)[a:b].max() for a, b in ((0, 20), (100, 200)))
-    assert 0 < early < 0.1 * late
-
-
 @pytest.mark.parametrize("name", [*(n for n in PARAMETERS if n != "drum_radius"), "drum_spring"])
 def test_a_second_at_one_ampere_warms_as_much_as_a_second_passes(name):
     """With currents of ±1 A the two kinds of every drift are the same, one heat for all of them."""
@@ -66,14 +57,6 @@ def test_a_second_at_one_ampere_warms_as_much_as_a_second_passes(name):
     moved = np.abs(aged - none).max()
     assert moved > 1e-8
     assert np.abs(heated - aged).max() < 1e-9 * moved + 1e-13
-
-
-def test_drifts_share_one_heat_and_other_effects_keep_states_of_their_own():
-    states = {term.effect: term.state for term in full().layout.on_drives}
-    heat = {state for name, state in states.items() if name.endswith("_drift")}
-    assert len(heat) == 1
-    assert heat.isdisjoint({states["cable_creep"], 0})
-    assert full().layout.states == 3  # with d_0
 
 
 def test_a_crosstalk_is_a_share_of_the_currents_beside_it():
@@ -124,12 +107,3 @@ def test_a_jump_is_nothing_before_its_time_and_a_mismatch_when_it_comes_first(na
     moved = np.abs(differs - none)[40:].max()
     # What was missed in the first tenth of a second fades, as the drum springs bring it back.
     assert np.abs(first - differs)[40:].max() < moved
-
-
-def test_an_offset_of_a_current_is_that_current():
-    none, ours = simulate(full(), ["current_offset.c@4"], [[0.0], [0.02]], 0.3)
-    _, doubled = simulate(full(), ["current_offset.c@4"], [[0.0], [0.04]], 0.3)
-    assert np.abs(ours - none)[:, 3].max() > 1e-5
-    np.testing.assert_allclose(
-        doubled - none, 2 * (ours - none), atol=0.05 * np.abs(doubled - none).max()
-    )

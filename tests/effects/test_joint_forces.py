@@ -27,7 +27,6 @@ from scipy.optimize import lsq_linear
 from identification import InputError
 from identification.effects.joint_plant import joint_plant
 from identification.model.plant import ModelPlant
-from identification.model.predictor import Predictor
 from identification.native.joint_callback import TAG, Joint
 
 HOOKS = ("force", "friction")
@@ -227,15 +226,6 @@ def slow_friction(M, g, low, high):
     """argmin (f - g)ᵀ M⁻¹ (f - g), -low <= f <= high."""
     L = np.linalg.inv(np.linalg.cholesky(M))
     return lsq_linear(L, L @ g, (-low - 1e-15, high + 1e-15), method="bvls", tol=1e-15).x
-
-
-def test_a_batch_has_sizes_of_its_own_in_each_simulation():
-    plant, log = slider(), slider_log(steps(100))
-    name = "stribeck_friction.f_s@slide"
-    many = Predictor(plant, log, (name,)).predict(np.array([[0.0], [0.3], [0.6]]))
-    for row, size in zip(many, (0.0, 0.3, 0.6), strict=True):
-        np.testing.assert_array_equal(row, run(plant.with_values({name: size}), log))
-    assert not np.array_equal(many[1], many[2])
 
 
 def test_other_models_are_left_alone_and_their_user_data_kept():

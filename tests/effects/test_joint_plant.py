@@ -17,9 +17,10 @@ from joint_cases import (
 )
 
 from identification import InputError, Parameter
-from identification.effects.axes import Axis, axes, reach
-from identification.effects.catalogue import joint_effects
-from identification.effects.joint_plant import candidates, joint_plant
+from identification.effects.axes import Axis
+from identification.effects.catalogue import TURNS, joint_effects
+from identification.effects.joint_group import SLIDE
+from identification.effects.joint_plant import joint_plant
 from identification.native.joint_callback import STEPS
 from identification.windows.window_error import window_error
 from identification.windows.window_estimate import estimate_windows
@@ -40,20 +41,6 @@ def test_common_and_single_sizes_add_up():
     np.testing.assert_array_equal(both, each)
 
 
-def test_what_is_known_is_a_parameter_and_no_candidate():
-    level = Parameter(
-        name="coulomb_friction.f_c@slide", value=0.4, unit="N", where="effect", lower=0.0
-    )
-    plant = joint_plant(SLIDER, (MASS, DAMPING, level), slider_log(steps(400)))
-    names = {e.name for e in candidates(plant, ("mass", "coulomb_friction.f_c@slide"))}
-    assert "coulomb_friction" not in names
-    assert "offset" in names
-    log = slider_log(steps(100))
-    np.testing.assert_array_equal(
-        run(plant, log), run(slider(), log, **{"coulomb_friction.f_c@slide": 0.4})
-    )
-
-
 def test_axes_are_read_off_the_log_and_hinges_apart_from_slides():
     u = 0.5 * np.ones((200, 1))
     t = np.arange(200) * STEP
@@ -68,14 +55,6 @@ def test_axes_are_read_off_the_log_and_hinges_apart_from_slides():
     assert names["slide_offset"].sizes[0].unit == "N"
     assert names["offset"].sizes[0].unit == "N m"
     assert "slide_load_dependent_friction" not in names
-
-
-def test_the_noise_of_a_sensor_does_not_make_a_top_speed():
-    y = 0.2 * np.sin(3 * STEP * np.arange(600))[:, None]
-    noise = 3e-3 * np.random.default_rng(0).standard_normal(y.shape)
-    (axis,) = axes(slider().model, slider_log(np.ones((600, 1)), y + noise))
-    assert np.abs(np.diff(y + noise, axis=0)).max() / STEP > 1.0
-    assert axis.speed == pytest.approx(0.6, rel=0.15)
 
 
 def test_what_cannot_be_is_refused():
@@ -126,28 +105,6 @@ def test_windows_see_what_the_plant_makes_of_its_inputs():
     assert fit.values["mass"] == pytest.approx(2.0, rel=1e-5)
 
 
-def test_the_periods_of_a_motor_that_is_known_are_tried_on_hinges_only():
-    hinge, slide = Axis("h", "hinge", 1.0, 1.0, 13.0), Axis("s", "slide", 1.0, 1.0, 1.0)
-
-    def grids(*given):
-        return {e.name: e.shapes[0].grid for e in joint_effects((hinge, slide), *given)
-                if e.name.endswith("cogging")}  # fmt: skip
-
-    assert grids((7.0, 84.0))["cogging"] == (7.0, 84.0)
-    assert grids((7.0, 84.0))["slide_cogging"] == grids()["slide_cogging"]
-
-
-def test_what_repeats_on_a_slide_is_seen_to_repeat():
-    """A wave with fewer than two periods in the travel is a spring by another name."""
-    travel = 0.3
-    effects = {e.name: e for e in joint_effects((Axis("s", "slide", 1.0, 1.0, travel),))}
-    for name in ("cogging", "periodic_friction"):
-        (shape,) = effects[name].shapes
-        assert shape.lower < shape.grid[0] == pytest.approx(2 * 2 * np.pi / travel)
-        assert np.array(shape.grid) == pytest.approx(shape.grid[0] * np.arange(2, 33) / 2)
-        assert shape.grid[-1] < shape.upper
-
-
 def test_a_window_is_explained_as_well_among_others_where_the_joint_sticks_as_by_itself():
     """Stiff friction forgets the first rate at once; an undamped step from there goes anywhere.
 
@@ -177,24 +134,6 @@ def test_a_friction_that_the_data_do_not_want_goes_to_nothing_and_no_search_fail
     assert fit.std[1] == np.inf
 
 
-def test_what_grows_along_the_way_may_take_its_share_of_the_drive_at_the_end_of_a_swing():
-    axis = Axis("s", "slide", 16.7, 1.0, 0.55)
-    effects = {e.name: e for e in joint_effects((axis,))}
-    A, share = axis.travel / 2, 0.3 * axis.force
-    (k,), (k_3,) = effects["stiffness"].sizes, effects["hardening"].sizes
-    assert k.largest * A == pytest.approx(share)
-    assert k_3.largest * A**3 == pytest.approx(share)
-
-
-def test_several_logs_reach_as_far_as_the_farthest_of_them():
-    def axis(force, speed, travel):
-        return Axis(joint="j", kind="hinge", force=force, speed=speed, travel=travel)
-
-    slow, fast = axis(1.0, 2.0, 3.0), axis(0.5, 4.0, 1.0)
-    assert reach([(slow,), (fast,)]) == (axis(1.0, 4.0, 3.0),)
-    assert reach([(fast,), (slow,)]) == reach([(slow,), (fast,)])
-
-
 def test_a_wave_is_tried_only_where_two_periods_of_it_are_seen():
     def waves(travel):
         known = (Axis(joint="j", kind="hinge", force=1.0, speed=2.0, travel=travel),)
@@ -203,3 +142,22 @@ def test_a_wave_is_tried_only_where_two_periods_of_it_are_seen():
     assert waves(0.1) == ()  # less than two periods of the highest harmonic
     assert min(waves(2 * np.pi)) == 2.0
     assert min(waves(4 * np.pi)) == 1.0
+
+
+HINGE, RAIL = Axis("pivot", "hinge", 1.0, 1.0, 1.0), Axis("rail", "slide", 1.0, 1.0, 1.0)
+BOTH = joint_effects((HINGE, RAIL), TURNS)
+
+
+def test_words_tell_the_kind_where_there_are_both() -> None:
+    for effect in BOTH:
+        kind = "(slides)" if SLIDE in effect.name else "(hinges)"
+        assert effect.phrase.endswith(kind), effect.name
+        assert {*effect.places.values()} == {"@rail" if SLIDE in effect.name else "@pivot"}
+    assert len({e.phrase for e in BOTH}) == len(BOTH)
+
+
+@pytest.mark.parametrize("axis", [HINGE, RAIL])
+def test_nothing_is_added_where_there_is_one_kind(axis: Axis) -> None:
+    for effect in joint_effects((axis,), TURNS):
+        assert SLIDE not in effect.name
+        assert "(" not in effect.phrase

@@ -6,7 +6,6 @@ from joint_cases import run
 from records_cases import record
 from state_cases import (
     F_C,
-    FILE,
     PRESLIDING,
     STEP,
     WHOLE,
@@ -19,8 +18,6 @@ from state_cases import (
 )
 
 from identification import InputError
-from identification.effects.effect import STATES
-from identification.effects.joint_states import JointState
 from identification.effects.state_effects import gear_backlash, joint_elasticity, presliding
 from identification.model.predictor import Predictor
 from identification.model.rollout import State, rollout
@@ -40,14 +37,6 @@ def states_of(plant, values, start, samples, u=0.0, sampling=STEP):
         record=("qpos", "qvel", "act"),
     )  # fmt: skip
     return np.hstack([made["qpos"][0], made["qvel"][0], made["act"][0]])
-
-
-def test_every_effect_with_states_is_in_the_catalogue_and_the_plain_plant_has_no_states():
-    plant = pendulum()
-    assert [e.name for e in plant.effects if e.state] == [*NAMES]
-    assert {hook for e in plant.effects if e.state for hook in e.hooks} == {*STATES}
-    assert plant.model.na == 0
-    assert plant.with_states_of(elastic(0.0)).states == (JointState("motor", "hinge"),)
 
 
 def test_the_laws_are_the_numbers_of_a_gear():
@@ -200,12 +189,3 @@ def test_states_of_windows_are_the_measured_ones_behind_the_encoder():
     run_ = {f: getattr(begun, f)[:, None] for f in ("qpos", "qvel", "act")}
     shown = plant.shown(names, row, run_)
     assert (shown["qpos"].item(), shown["qvel"].item()) == pytest.approx((0.4, 1.0))
-
-
-def test_the_motor_takes_its_share_of_the_inertia_from_the_joint():
-    plant, values = with_values(elastic(0.03)), elastic(0.03)
-    names = (*values, "J")
-    row = np.array([[*values.values(), 3e-3], [0.0, *list(values.values())[1:], 3e-3]])
-    moved_ = {slot.field: v for slot, v in plant.settings(names, row)[1] if "arm" in slot.field}
-    np.testing.assert_allclose(moved_["dof_armature"], [3e-3 - 2e-3, 3e-3], atol=1e-18)
-    assert plant.gears.inertia["hinge"] == pytest.approx(FILE)

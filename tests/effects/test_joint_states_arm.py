@@ -18,7 +18,7 @@ from arm_cases import (
     states_of,
     weighing,
 )
-from chain_cases import WANTED, chain_log, chain_text, with_some
+from chain_cases import chain_log, chain_text, with_some
 from joint_cases import run
 from scipy.linalg import eigh
 
@@ -39,13 +39,7 @@ def state(x):
     return State(q, v, np.stack([theta, omega], axis=1).ravel())
 
 
-def test_effects_with_states_are_candidates_of_arms():
-    states = [e for e in arm_plant().effects if e.state]
-    assert {e.name for e in states} == {*WANTED} - {"coulomb_friction", "stiffness"}
-    assert all(list(e.places.values()) == ["", "@shoulder", "@elbow"] for e in states)
-
-
-@pytest.mark.parametrize("integrator", ["RK4", "Euler", "implicit", "implicitfast"])
+@pytest.mark.parametrize("integrator", ["RK4", "Euler", "implicitfast"])
 @pytest.mark.parametrize("joints", [2, 6, MOST + 1])
 def test_sizes_of_zero_keep_the_arm_without_states_to_the_bit(integrator, joints):
     if joints == 2:
@@ -76,12 +70,11 @@ def test_an_arm_with_elastic_gears_is_that_of_another_integration_with_order_4(c
     assert coarse / fine > 12
 
 
-@pytest.mark.parametrize("integrator", ["Euler", "implicitfast"])
-def test_semi_implicit_steps_converge_too(integrator):
+def test_semi_implicit_steps_converge_too():
     expected = Arm(c=C, J=tuple(inertias(RHO))).moved(LOG.inputs)[:, :2]
     values = elastic(BOTH, RHO)
     coarse, fine = (
-        np.abs(run(arm_plant(h, integrator).with_states_of(values), LOG, **values) - expected).max()
+        np.abs(run(arm_plant(h, "Euler").with_states_of(values), LOG, **values) - expected).max()
         for h in (0.0025, 0.00125)
     )
     assert fine < 0.01
@@ -112,19 +105,6 @@ def test_gaps_of_both_joints_that_close_tend_to_rigid_gears_in_proportion(fricti
     far = apart(1e-5)
     assert 0 < far < 1e-4
     assert apart(1e-7) == pytest.approx(far / 100, rel=0.02)
-
-
-def test_beyond_the_joints_that_hold_together_stiff_gears_tend_to_rigid_ones():
-    log = chain_log(MOST + 1)
-    plain = with_some(chain_text(MOST + 1, "RK4"), log)
-    plant, rigid = plain.with_states_of(["joint_elasticity.c"]), run(plain, log)
-    shapes = {"joint_elasticity.link": 1.0, "joint_elasticity.rho": 0.1}
-    far, near = (
-        np.abs(run(plant, log, **shapes, **{"joint_elasticity.c": c}) - rigid).max()
-        for c in (1e-7, 1e-9)
-    )
-    assert 0 < far < 1e-5
-    assert near == pytest.approx(far / 100, rel=0.02)
 
 
 @pytest.mark.parametrize("mode", range(4))

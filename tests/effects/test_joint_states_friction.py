@@ -54,18 +54,6 @@ def test_friction_that_gives_converges_to_another_integration(gear):
     assert fine < coarse / 10
 
 
-def test_friction_that_gives_less_and_less_tends_to_friction_that_holds():
-    plain = arm_plant(0.002)
-    plant, holds = plain.with_states_of(GRIP), run(plain, LOG, **FRICTION)
-
-    def apart(c):
-        return np.abs(run(plant, LOG, **{**GRIP, "presliding.c": c}) - holds).max()
-
-    far = apart(1e-7)
-    assert 0 < far < 1e-4
-    assert apart(1e-9) == pytest.approx(far / 100, rel=0.1)
-
-
 def test_on_a_slope_both_joints_rest_on_springs_that_friction_is():
     """p carries gravity and the drive, and dp/dq = (1 - p/b)/c where joints go forward."""
     c, p = 0.01, -weighing(BENT)

@@ -6,14 +6,13 @@ import mujoco
 import numpy as np
 import pytest
 from effect_cases import CATALOGUE, bare, full, simulate
-from joint_cases import ARM, DAMPING, MASS, SLIDER, arm, arm_log, run, slider, slider_log, steps
+from joint_cases import DAMPING, MASS, SLIDER, arm, arm_log, reached, run, slider, slider_log, steps
 from numba import njit
+from numpy.testing import assert_allclose
+from scipy.interpolate import CubicSpline
 
-from identification.effects.axes import Axis
 from identification.effects.effect import Effect, Size, places
 from identification.effects.joint_plant import joint_plant
-from identification.logs.log import Log
-from identification.native import table
 from identification.native.installer import uninstall
 from inca_mj.effects.hooks import KEY
 from inca_mj.twin import native
@@ -60,27 +59,6 @@ def test_laws_work_side_by_side_as_each_does_alone():
     assert not np.array_equal(alone["few"], alone["bare"])
 
 
-def test_a_model_keeps_its_law_while_others_are_installed():
-    """No call into Python between two steps is needed: the laws stay where they are."""
-    twin, plant = full().with_values({"cogging.a": 2e-3}), slider()
-
-    def steps_of(model, at=None):
-        data = mujoco.MjData(model)
-        if at is not None:
-            data.qpos[:], data.act[:] = at.qpos, at.act
-        data.ctrl[:] = 0.5
-        mujoco.mj_step(model, data, nstep=50)
-        return np.array(data.qpos)
-
-    run(plant, slider_log(steps(10)))
-    at = twin.state()
-    first = steps_of(twin.model, at), steps_of(plant.model)
-    native.install()
-    run(slider_with(own(lambda s, p: p[0])), slider_log(steps(10)))
-    np.testing.assert_array_equal(steps_of(twin.model, at), first[0])
-    np.testing.assert_array_equal(steps_of(plant.model), first[1])
-
-
 def passive_forces(model):
     """At the model's start."""
     data = mujoco.MjData(model)
@@ -94,10 +72,7 @@ def test_a_set_of_effects_that_is_not_compiled_makes_nan_and_no_other_law():
     twin, plant = full(), slider()
     twin.state()
     run(plant, slider_log(steps(10)))
-    for model, row, key in (
-        (twin.model, "actuator_user", KEY),
-        (plant.model, "jnt_user", -2),
-    ):
+    for model, row, key in ((twin.model, "actuator_user", KEY), (plant.model, "jnt_user", -2)):
         changed = copy.copy(model)
         getattr(changed, row)[0, key] += 1.0
         assert np.isnan(passive_forces(changed)).any()
@@ -112,41 +87,6 @@ def test_of_two_laws_with_one_key_the_newer_counts():
     assert not np.array_equal(one, other)
     np.testing.assert_array_equal(run(old, log, **values), one)
     np.testing.assert_array_equal(run(new, log, **values), other)
-
-
-def test_a_process_holds_so_many_laws_and_says_when_it_is_full(monkeypatch):
-    monkeypatch.setattr(table, "CAPACITY", 0)
-    with pytest.raises(RuntimeError, match="0 sets of effects were compiled; start a new process"):
-        table.enter("sensor", -1.0, 0)
-
-
-def test_what_all_slides_have_no_hinge_has():
-    text = ARM.replace('name="elbow" axis="0 1 0"', 'name="elbow" type="slide" axis="1 0 0"')
-    text = text.replace(
-        "</body></body></worldbody>",
-        """
-      </body></body><body name="cart"><joint name="rail" type="slide" axis="1 0 0" damping="1"/>
-      <inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/></body></worldbody>""",
-    )
-    known = [Axis(n, k, 1.0, 1.0, 1.0) for n, k in
-             (("shoulder", "hinge"), ("elbow", "slide"), ("rail", "slide"))]  # fmt: skip
-    t = 0.01 * np.arange(60)
-    log = Log(
-        time=t,
-        inputs=steps(60, 2),
-        outputs=np.sin(t)[:, None],
-        input_names=("up", "low"),
-        output_names=("a",),
-    )
-    plant = joint_plant(text, (), log, joints=known)
-    names = ("slide_offset.f_0", "offset.f_0@shoulder")
-    _, numbers = plant.settings(names, np.array([[0.3, 0.7]]))
-    rows = np.array(plant.model.jnt_user)
-    for slot, values in numbers:
-        rows[slot.index()] = values[0]
-    changed = rows - plant.model.jnt_user
-    assert sorted(changed[0][changed[0] != 0]) == [0.7]
-    assert [sorted(row[row != 0]) for row in changed[1:]] == [[0.3], [0.3]]
 
 
 def test_a_released_law_is_installed_again_when_it_is_needed():
@@ -168,3 +108,43 @@ def test_releasing_leaves_a_callback_of_another_library(kind):
     assert getattr(mujoco, f"get_mjcb_{kind}")() is foreign
     getattr(mujoco, f"set_mjcb_{kind}")(None)
     native.install()
+
+
+C = (0.1, -0.2, 0.3, -0.25, 0.2, -0.15, 0.1, -0.05)
+OTHER = {"shoulder": "elbow", "elbow": "shoulder"}
+CURVES = [
+    (name, joint)
+    for joint, side in (("shoulder", "behind"), ("elbow", "before"))
+    for name in (f"curve_{side}", f"curve_speed_{side}")
+]
+
+
+def forward(values, q, v):
+    """Passive forces of the arm at positions and velocities, shape (2,)."""
+    model = arm().with_values(values).model
+    data = mujoco.MjData(model)
+    data.qpos[:], data.qvel[:] = q, v
+    mujoco.mj_forward(model, data)
+    return np.array(data.qfrc_passive)
+
+
+@pytest.mark.parametrize(("name", "joint"), CURVES)
+def test_it_is_a_function_of_the_neighbour_alone(name, joint):
+    run(arm(), arm_log(steps(10, 2)))  # the law is compiled
+    (effect,) = (e for e in arm().effects if e.name == name)
+    where = f"joint {joint}"
+    values = {effect.parameter(s.name, where): c for s, c in zip(effect.sizes, C, strict=True)}
+    mine, other = (arm().model.joint(j).id for j in (joint, OTHER[joint]))
+    middle, far, top = reached(arm(), OTHER[joint])[:3]
+    for x in np.linspace(-1.3, 1.3, 27):
+        q, v = np.array([0.2, -0.3]), np.array([0.5, -0.7])
+        if "speed" in name:
+            v[other] = np.sign(x) * x**2 * top
+            drawn = np.interp(x, np.arange(-4, 5) / 4, [*C[3::-1], 0.0, *C[4:]])
+        else:
+            q[other] = middle + x * far
+            drawn = CubicSpline(np.linspace(-1, 1, 8), C, bc_type="natural")(np.clip(x, -1, 1))
+        more = forward(values, q, v) - forward({}, q, v)
+        expected = np.zeros(2)
+        expected[mine] = drawn
+        assert_allclose(more, expected, rtol=0, atol=1e-12)

@@ -4,8 +4,7 @@ from math import cos, exp, sin
 
 import numpy as np
 import pytest
-from effect_cases import CATALOGUE, bare, drive, forward, moving
-from effect_cases import simulate as simulate_inca
+from effect_cases import CATALOGUE
 from joint_cases import DAMPING, MASS, SLIDER, run, slider, slider_log, steps
 from numba import njit
 
@@ -14,12 +13,11 @@ from identification.effects.catalogue import joint_effects
 from identification.effects.effect import Effect, Shape, Size, places
 from identification.effects.inputs import Drive, input_effects
 from identification.effects.joint_plant import joint_plant
-from identification.errors import DivergenceError, InputError
+from identification.errors import InputError
 from inca_mj.effects.hooks import DRIVES_EACH
 from inca_mj.twin.twin import build_twin
 
 AT_SLIDE = places("joint", ("slide",))
-SEVEN = {"a": 2e-3, "b": 1e-3, "c": -3e-4, "d": 2e-4, "e": 1e-4, "v": 2.0, "n": 3.0}
 
 
 @njit
@@ -47,20 +45,6 @@ def named(name, sizes, shapes=(), where=AT_SLIDE, largest=1.0, **hooks):
 
 def slider_with(*own):
     return joint_plant(SLIDER, (MASS, DAMPING), slider_log(steps(400)), effects=(), own_effects=own)
-
-
-def test_an_effect_of_seven_parameters_on_the_drives_is_its_function():
-    own = named("seven", "abcde", "vn", DRIVES_EACH, torque=seven)
-    values = {f"seven.{n}" + "@3" * (n in "abcde"): v for n, v in SEVEN.items()}
-    twin = build_twin(effects=(own,))
-    with_it, at = twin.with_values(values), moving(twin)
-    J = twin.parameters["J"].value
-    change = J * (forward(with_it, at).qacc - forward(twin, at).qacc)[6:]
-    s = drive(phi=at.qpos[9], omega=at.qvel[8])
-    expected = np.zeros(8)
-    expected[2] = seven.py_func(s, tuple(SEVEN.values()))
-    assert change == pytest.approx(expected, rel=1e-6, abs=1e-12)
-    np.testing.assert_array_equal(simulate_inca(twin), simulate_inca(bare()))
 
 
 def test_an_effect_of_seven_parameters_on_a_slider_is_the_sum_of_its_parts():
@@ -170,18 +154,3 @@ def test_a_hook_that_a_robot_has_not_is_refused():
         slider_with(of_a_joint, of_a_joint)
     with pytest.raises(InputError, match="two effects are called 'delay'"):
         build_twin(effects=(*CATALOGUE, *input_effects([Drive("1", 1.0)])))
-
-
-def test_the_load_is_unknown_where_a_drive_has_dynamics():
-    """An effect that reads it makes NaN, which is a divergence and no wrong number."""
-    slow = SLIDER.replace("<general ", '<general dyntype="filter" dynprm="0.1" ')
-    loaded = named("loaded", ["k"], force=njit(lambda s, p: p[0] * s.f_u))
-    log = slider_log(steps(20))
-    for text, known in ((SLIDER, True), (slow, False)):
-        plant = joint_plant(text, (MASS, DAMPING), log, effects=(), own_effects=(loaded,))
-        assert np.isfinite(run(plant, log)).all()
-        if known:
-            assert np.isfinite(run(plant, log, **{"loaded.k@slide": 0.1})).all()
-        else:
-            with pytest.raises(DivergenceError):
-                run(plant, log, **{"loaded.k@slide": 0.1})

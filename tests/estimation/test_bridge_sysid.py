@@ -8,12 +8,7 @@ import numpy as np
 import pytest
 
 from identification import InputError, Log, bridge_sysid
-from identification.bridge_sysid import (
-    from_sysid,
-    sysid_residual,
-    to_sysid,
-    to_sysid_parameters,
-)
+from identification.bridge_sysid import from_sysid, sysid_residual, to_sysid, to_sysid_parameters
 from identification.model.predictor import Predictor
 from inca_mj.robot.inputs import make_input
 from inca_mj.twin.logs import run_to_log
@@ -73,15 +68,6 @@ def test_both_predict_the_same_trajectory(robot, log, hold):
 
 
 @needs_sysid
-def test_columns_of_a_jacobian_are_value_sets_of_their_own(robot, log):
-    sets = np.stack([VALUES, VALUES * 1.01], axis=1)
-    parameters, residual = to_sysid_parameters(robot, NAMES), sysid_residual(robot, log, NAMES)
-    together = residual(sets, parameters)[0][0]
-    alone = [residual(column, parameters)[0][0] for column in sets.T]
-    np.testing.assert_array_equal(together, np.stack(alone, axis=1))
-
-
-@needs_sysid
 def test_values_bounds_and_starts_round_trip(robot):
     parameters = to_sysid_parameters(robot, NAMES, {"J": 7e-5})
     own = robot.parameters.values()
@@ -109,15 +95,3 @@ def test_its_optimiser_finds_our_values(robot, log):
     found = from_sysid(result)
     for name in start:
         assert found[name] == pytest.approx(true[name], rel=1e-4)
-
-
-@needs_sysid
-def test_misspelt_names_and_wide_parameters_are_refused(robot, log, refusal):
-    from mujoco import sysid
-
-    assert "lambda" in refusal(to_sysid_parameters, robot, ["lamda"])
-    assert "lambda" in refusal(to_sysid, robot, log, ["lamda"])
-    wide = sysid.ParameterDict(
-        {"I": sysid.Parameter("I", [1, 2, 3], min_value=[0] * 3, max_value=[9] * 3)}
-    )
-    assert "3 numbers" in refusal(from_sysid, wide)

@@ -1,17 +1,17 @@
 """What the model's step does to an estimate of a free run is what a fit with a finer step finds."""
 
 from dataclasses import replace
-from types import SimpleNamespace
-from unittest import mock
-
 import mujoco
 import numpy as np
 import pytest
-
-from identification import fit, read_robot
+from identification import fit
+from identification import read_robot
 from identification.estimation.uncertainty import step_shift
-from identification.model.protocol import FINER, finer
+from identification.model.protocol import FINER
+from identification.model.protocol import finer
 from identification.report.fit_verdict import fit_verdict
+
+
 
 PENDULUM = """<mujoco><option timestep="{step}" integrator="RK4"/><worldbody><body>
   <joint name="hinge" axis="0 1 0" damping="0.04" armature="0.005"/>
@@ -53,6 +53,7 @@ def both(log, tmp_path_factory):
     return [fitted(log, tmp_path_factory.mktemp("robot"), step) for step in (2e-3, 2e-3 / FINER)]
 
 
+@pytest.mark.long
 def test_it_is_the_change_of_a_fit_with_a_finer_step(both):
     coarse, fine = both
     names = coarse.estimate.space.names
@@ -71,26 +72,3 @@ def test_what_moves_by_more_than_two_std_is_told_with_the_step_that_mends_it(bot
     unknown = replace(coarse, step_shift=np.full(2, np.nan))
     for each in (still, unknown):
         assert not [line for line in fit_verdict(each) if "quarter" in line]
-
-
-def test_of_a_value_on_a_bound_nothing_is_told_and_the_others_answer_without_it(both):
-    estimate = both[0].estimate
-    space = estimate.space
-    held = replace(estimate, space=replace(space, lower=np.array([estimate.q[0], -np.inf])))
-    assert held.space.on_bound(held.q).tolist() == [True, False]
-    S, y = np.array([[1.0, 0.5], [0.0, 2.0]]), np.zeros((2, 1))
-    plant = SimpleNamespace(with_step=lambda factor: held.predictor.plant)
-    asked = replace(held, predictor=replace(held.predictor, plant=plant))
-    finely = [np.array([[1.0], [4.0]])]
-    with mock.patch.object(type(held.predictor), "predict", return_value=finely):
-        shift = step_shift(asked, y, S, np.zeros((2, 2)), lambda J: J.reshape(-1, J.shape[2]))
-    assert np.isnan(shift[0])
-    assert shift[1] == pytest.approx(-(0.5 + 8.0) / 4.25 * held.space.slope(held.q)[1])
-
-
-def test_a_plant_without_another_step_and_a_search_that_was_stopped_tell_nothing(both):
-    estimate, nothing = both[0].estimate, np.zeros((0, 2))
-    other = replace(estimate.predictor, plant=SimpleNamespace())
-    assert finer(other.plant) is None
-    for e in (replace(estimate, predictor=other), replace(estimate, status="stopped")):
-        assert np.isnan(step_shift(e, nothing, nothing, nothing, lambda J: J)).all()

@@ -1,6 +1,7 @@
 """What a log cannot say is said in words; what it can is not called unknown."""
 
 from dataclasses import replace
+from fractions import Fraction
 
 import mujoco
 import numpy as np
@@ -10,6 +11,7 @@ from estimation_plants import positive, record, slider
 from identification import DivergenceError, InputError, Parameter, ParameterSet
 from identification.estimation.estimation import Options, estimate
 from identification.estimation.fit import assess
+from identification.estimation.scaling_symmetry import ScalingSymmetry, known_products
 from identification.model.plant import ModelPlant
 from identification.report.fit_verdict import fit_verdict
 
@@ -37,30 +39,6 @@ def test_a_common_factor_of_all_forces_is_named_as_quotients():
     assert "3 of 4 directions are felt" in said
     assert "trade off along" in said
     assert "can be known from this log" in said
-
-
-def test_a_product_is_named_where_a_product_counts():
-    """A force through a gear: x = g u, and a second gain k in front of it, g = k r."""
-    xml_gain = ("actuator/force.gainprm[0]", "actuator/force.gear[0]")
-    records = (positive("gain", 1.0, "", xml_gain[0]), positive("gear", 5.0, "N", xml_gain[1]))
-    plant = ModelPlant(slider(x0=0.0).model, parameters(*records))
-    fit = assess(estimate(plant, LOG, ("gain", "gear"), {"gear": 4.0}))
-    ((combination, value, std),) = fit.combinations
-    assert str(combination) in ("gain gear", "gear gain")
-    assert abs(value - 5.0) < 4 * std
-    assert "only" in " ".join(fit_verdict(fit))
-
-
-def test_round_off_does_not_carry_a_search_along_what_is_not_felt():
-    found = estimate(slider(x0=0.0), LOG, ALL, options=Options(horizons=(1.0,)))
-    assert found.values["gear"] == pytest.approx(5.0, rel=0.2)
-
-
-def test_fixing_one_of_them_makes_the_rest_known():
-    fit = assess(estimate(slider(x0=0.0, **{**OFF, "gear": 5.0}), LOG, ALL[:3]))
-    assert fit.found.rank == 3
-    assert np.isfinite(fit.std).all()
-    assert not fit.combinations
 
 
 def test_a_parameter_without_effect_is_refused_by_name():
@@ -117,10 +95,9 @@ def test_what_unseen_data_say_depends_on_what_they_could(unseen, expected, said)
     assert said in fit_verdict(judged)[-1]
 
 
-@pytest.mark.parametrize("value", [0.0, -1.0])
-def test_a_start_on_or_beyond_a_bound_is_refused(value):
+def test_a_start_on_or_beyond_a_bound_is_refused():
     with pytest.raises(InputError, match=r"damping .* must lie inside \(0, inf\)"):
-        estimate(slider(), LOG, ("damping",), {"damping": value})
+        estimate(slider(), LOG, ("damping",), {"damping": 0.0})
 
 
 def test_a_wrong_name_is_answered_with_the_likely_one():
@@ -162,3 +139,48 @@ def test_a_strong_prior_holds_and_a_weak_one_lets_go():
     )  # fmt: skip
     assert strong == pytest.approx(16.0, rel=1e-4)
     assert weak == pytest.approx(20.0, rel=1e-2)
+
+
+def symmetry(**powers):
+    return ScalingSymmetry({name: Fraction(power) for name, power in powers.items()})
+
+
+@pytest.mark.parametrize(
+    ("symmetries", "products"),
+    [
+        ([symmetry(R_s=1, k_s=-2)], ["k_s R_s^2"]),
+        ([symmetry(k_s=Fraction(1), R_s=Fraction(-1, 2))], ["k_s R_s^2"]),
+        ([symmetry(a=1, b=1, c=1)], ["a c^-1", "b c^-1"]),
+        ([symmetry(a=1, b=-1), symmetry(b=1, c=-1)], ["a b c"]),
+        ([symmetry(a=1, b=-1), symmetry(c=1, R_s=1)], ["a b", "R_s c^-1"]),
+        ([symmetry(a=1)], []),
+        ([], []),
+    ],
+)
+def test_the_products_are_those_that_a_person_would_write(symmetries, products):
+    names = ("a", "b", "R_s", "k_s", "c")
+    assert sorted(map(str, known_products(symmetries, names))) == sorted(products)
+
+
+def test_no_symmetry_changes_a_product_and_together_they_span_the_space():
+    rng = np.random.default_rng(0)
+    names = tuple("abcdef")
+    for _ in range(30):
+        rows = [rng.integers(-2, 3, 6) for _ in range(int(rng.integers(1, 4)))]
+        symmetries = [
+            ScalingSymmetry({n: Fraction(int(v)) for n, v in zip(names, row, strict=True) if v})
+            for row in rows
+        ]
+        products = known_products(symmetries, names)
+        V = np.array(rows, float)
+        W = np.array([p.row(names) for p in products]).reshape(-1, 6)
+        np.testing.assert_allclose(V @ W.T, 0, atol=1e-12)
+        moved = (V != 0).any(axis=0).sum()
+        assert np.linalg.matrix_rank(W) == len(products) == moved - np.linalg.matrix_rank(V)
+
+
+def test_the_value_of_a_product_is_that_of_its_factors():
+    (product,) = known_products([symmetry(R_s=1, k_s=-2)], ("R_s", "k_s"))
+    assert product.value({"R_s": 0.006, "k_s": 16.0}) == pytest.approx(16.0 * 0.006**2)
+    scaled = {"R_s": 0.006 * 1.3, "k_s": 16.0 / 1.3**2}
+    assert product.value(scaled) == pytest.approx(16.0 * 0.006**2)

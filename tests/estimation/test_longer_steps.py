@@ -10,32 +10,18 @@ from hypothesis import strategies as st
 from records_cases import AXIS, MJCF, PARAMETERS, STEP, record
 
 from identification.effects.joint_plant import joint_plant
-from identification.errors import DivergenceError
 from identification.estimation.levenberg_marquardt import SLOPE_ERROR
 from identification.estimation.priors import Priors
-from identification.model.coordinates import NOTHING, coordinates
+from identification.model.coordinates import coordinates
 from identification.model.predictor import Predictor
 from identification.model.rollout import substeps
-from identification.prediction.extension import at_own_steps, with_fitting_steps
+from identification.prediction.extension import at_own_steps
 from identification.prediction.fit import solve
 from identification.prediction.model import WindowModel, predict_fitted
-from identification.prediction.problem import (
-    Problem,
-    most_windows,
-    no_moves,
-    problem,
-    with_longer_steps,
-)
+from identification.prediction.problem import Problem, no_moves, problem, with_longer_steps
 from identification.prediction.records import Record
 from identification.prediction.unknowns import Unknowns
-from identification.windows import shooting
-from identification.windows.coarse import (
-    OUTPUT_ERROR,
-    own_step,
-    with_longest_slope_steps,
-    with_longest_steps,
-)
-from identification.windows.held import held_windows
+from identification.windows.coarse import OUTPUT_ERROR, with_longest_slope_steps, with_longest_steps
 from identification.windows.shooting import Shooting, slower, tangent
 from identification.windows.windows import first_states, windows
 
@@ -81,11 +67,6 @@ def error(part, steps):
     return np.max(np.linalg.norm(other - exact, axis=0) / np.linalg.norm(exact, axis=0))
 
 
-def test_the_steps_are_longer_the_slower_a_robot_swings():
-    slow, fast = chosen(cut(plant())), chosen(cut(plant(stiffness=900.0)))
-    assert slow > fast
-
-
 def test_the_steps_divide_the_sampling_time_and_keep_the_bound_nearly_everywhere():
     part = cut(plant())
     n = chosen(part)
@@ -121,12 +102,6 @@ def test_a_fit_ends_at_the_same_values_with_fewer_steps_of_simulation():
     np.testing.assert_allclose(values[1], [*TRUTH.values()], rtol=0.05)
 
 
-def test_states_of_joints_take_the_steps_of_the_model():
-    own = replace(plant(), slope_steps=8).with_states_of(["joint_elasticity.c@hinge"])
-    assert own.smooth.opt.timestep == FINE
-    assert replace(plant(), slope_steps=8).smooth.opt.timestep == pytest.approx(8 * FINE)
-
-
 def predicted(part, steps):
     """The windows' outputs where the states are the best of the model's own steps."""
     q, d = np.zeros(2), settled(part)
@@ -156,58 +131,11 @@ def test_simulations_take_the_longest_steps_that_leave_predictions_as_they_are()
     assert all(np.linalg.norm(predicted(part, k) - exact) > OUTPUT_ERROR * left for k in longer[:1])
 
 
-def test_the_better_the_model_the_shorter_the_steps_of_its_simulations():
-    part = cut(plant(stiffness=900.0))
-    exact = predicted(part, 1)
-    near = replace(part, cut=replace(part.cut, outputs=exact + 1e-9))
-    assert steps_of(near, settled(part)) == 1 < steps_of(part)
-
-
-def test_longer_steps_hold_for_predictions_and_slopes_alike_and_change_no_window():
-    own, long = plant(), replace(plant(), steps=4)
-    assert own_step(long) == own_step(own) == FINE
-    assert long.model.opt.timestep == pytest.approx(4 * FINE)
-    assert long.smooth.opt.timestep == pytest.approx(4 * FINE)
-    assert replace(long, slope_steps=8).smooth.opt.timestep == pytest.approx(8 * FINE)
-    with_states = long.with_states_of(["joint_elasticity.c@hinge"])
-    assert with_states.model.opt.timestep == FINE
-    logs = (Record(record(seed=1, samples=400, plant=own), "fit"),)
-    assert most_windows(long, logs, 0.2) == most_windows(own, logs, 0.2)
-
-
 def test_predictions_of_longer_steps_err_by_a_high_order_of_the_step():
     smooth = cut(plant(stiffness=900.0))
     exact = predicted(smooth, 1)
     two, four = (np.linalg.norm(predicted(smooth, k) - exact) for k in (2, 4))
     assert four / two > 4.0  # RK4 gives 17 where no joint sticks
-
-
-def test_where_longer_steps_diverge_the_steps_of_the_model_are_taken(monkeypatch):
-    part = cut(plant())
-    exact = columns(part, np.zeros(2), np.zeros((len(part.cut.starts), 2)), 1)
-    rollout = shooting.rollout
-
-    def stubborn(model, *args, **more):
-        if model.opt.timestep > 1.5 * FINE:
-            raise DivergenceError("too long a step")
-        return rollout(model, *args, **more)
-
-    monkeypatch.setattr(shooting, "rollout", stubborn)
-    again = columns(part, np.zeros(2), np.zeros((len(part.cut.starts), 2)), 8)
-    np.testing.assert_array_equal(again, exact)
-
-
-def test_slopes_of_states_alone_are_those_of_the_tangent():
-    own = replace(plant(), slope_steps=4)
-    part = cut(own)
-    held = replace(
-        part, space=NOTHING,
-        predictor=replace(part.predictor, names=(), fixed={"J": 1.6e-3, "d": 0.024}),
-    )  # fmt: skip
-    d = np.zeros((len(part.cut.starts), 2))
-    windows_ = held_windows(held)
-    t, whole = windows_.slopes(d, windows_.residual(d)), tangent(held, np.zeros(0), d)
-    np.testing.assert_allclose(t.s * t.size, whole.s * whole.size, rtol=1e-9)
 
 
 @given(st.integers(1, 4), st.integers(1, 5), st.sampled_from([1, 2, 4, 8]))
@@ -236,14 +164,7 @@ def rough_model(own, noise, steps):
     return WindowModel((), found, seen, scale), confirm
 
 
-def test_a_model_that_explains_more_takes_the_steps_that_its_own_error_allows():
-    rough, confirm = rough_model(plant(stiffness=900.0), 1e-6, 4)
-    fine = with_fitting_steps(rough, 0.2, confirm)
-    assert fine.plant.steps < 4
-    assert fine.fit.cost < 0.5 * rough.fit.cost
-    assert with_fitting_steps(fine, 0.2, confirm) is fine
-
-
+@pytest.mark.long
 def test_the_last_fit_is_that_of_a_search_with_the_steps_of_the_model():
     own = plant(stiffness=900.0)
     rough, confirm = rough_model(own, 1e-6, 4)

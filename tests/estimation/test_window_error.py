@@ -7,7 +7,6 @@ from estimation_plants import record, slider
 from identification import Log
 from identification.windows.held import held_records, held_windows
 from identification.windows.settling import settle
-from identification.windows.shooting import tangent
 from identification.windows.window_error import _fixed, window_error
 from identification.windows.windows import windows
 
@@ -78,28 +77,9 @@ def test_records_settled_together_end_where_each_ends_alone():
         np.testing.assert_allclose(squares(one), squares(alone), rtol=0.02)
 
 
-def test_slopes_of_another_model_lead_to_the_same_states():
-    """A chord: slopes of a model nearby only say where to look."""
-    shooting, d = fixed(slider(damping=4.0), noisy(), 0.4, None)
-    near, _ = fixed(slider(damping=1.0, mass=2.0), noisy(), 0.4, None)
-    (right,) = settle(held_records([shooting]), [d])
-    (found,) = settle(held_records([shooting]), [d], [tangent(near, np.zeros(0), d)])
-    assert squares(found).sum() == pytest.approx(squares(right).sum(), rel=0.02)
-
-
-def test_a_window_that_diverges_does_not_hold_up_the_others():
-    shooting, d = fixed(slider(), noisy(), 0.4, None)
-    lost = np.array(d)
-    lost[1] = np.nan
-    r = held_windows(shooting).residual(lost)
-    assert np.isnan(r[1]).all()
-    rest = np.delete(np.arange(len(d)), 1)
-    np.testing.assert_array_equal(r[rest], held_windows(shooting).residual(d)[rest])
-
-
-@pytest.mark.parametrize("keep", [[1, 3], [3, 1], [2, 2, 0]])
-def test_some_windows_are_simulated_as_if_they_were_all(keep):
+def test_some_windows_are_simulated_as_if_they_were_all():
     """Of their residuals and slopes; also some of some, and one that is there twice."""
+    keep = [2, 2, 0]
     shooting, d = fixed(slider(), noisy(), 0.4, None)
     whole = held_windows(shooting)
     r, slopes = whole.residual(d), whole.slopes(d, whole.residual(d))

@@ -5,14 +5,20 @@ from dataclasses import replace
 import mujoco
 import numpy as np
 import pytest
-from estimation_plants import SLIDER, STEP, measured, record, slider, steps
+from estimation_plants import SLIDER, measured, record, slider, steps
 
-from identification import InputError, ParameterSet
+from identification import InputError, Log, ParameterSet
 from identification.estimation.estimation import estimate
 from identification.model.plant import ModelPlant
-from identification.windows.shooting import Tangent
+from identification.windows.window_error import joined
 from identification.windows.window_estimate import estimate_windows
-from identification.windows.windows import windows
+from identification.windows.windows import apart, moved, windows
+from inca_mj.robot.inputs import make_input
+from inca_mj.robot.parameters import parameter_set
+from inca_mj.thesis.trials import SMALL
+from inca_mj.twin.logs import POSE, run_to_log
+from inca_mj.twin.run import simulate
+from inca_mj.twin.twin import build_twin
 
 NAMES = ("mass", "damping")
 START = {"mass": 2.4, "damping": 2.3}
@@ -66,23 +72,73 @@ def test_windows_beat_a_free_run_where_unseen_pushes_add_up_in_an_integrator():
     assert short < 0.5 * free, (short, free)
 
 
-def test_what_only_the_start_feels_has_no_place_in_windows():
-    log = record(slider(), ("position",), n=100)
-    assert log.sampling_time == pytest.approx(STEP)
-    with pytest.raises(InputError, match="x0 has no effect"):
-        estimate_windows(slider(), log, ("damping", "x0"), 0.5)
+NOISE = 2e-4  # [rad]
+STEP = 2e-3  # [s] of the log and of the model
+OFF = {"x": 0.002, "y": -0.002, "z": 1.433}  # where the platform begins, and no angle says so
 
 
-def test_a_parameter_that_is_felt_no_more_stays_and_the_others_go_on():
-    """A search may make a friction so small that its slope is zero to the bit."""
-    rng = np.random.default_rng(3)
-    r, S, X = (rng.standard_normal(shape) for shape in ((4, 9), (4, 9, 3), (4, 9, 2)))
-    size = np.linalg.norm(X, axis=1)
-    U, s, Vt = np.linalg.svd(X / size[:, None], full_matrices=False)
-    tangent = Tangent(r=r, S=S, U=U, s=s, Vt=Vt, size=size)
-    S[:, :, 1] = 0.0
-    moved, states = tangent.step(0.1)
-    alone, same = replace(tangent, S=S[:, :, [0, 2]]).step(0.1)
-    assert moved[1] == 0
-    np.testing.assert_allclose(moved[[0, 2]], alone, rtol=1e-12)
-    np.testing.assert_allclose(states, same, rtol=1e-12)
+@pytest.fixture(scope="module")
+def measured_inca():
+    robot = build_twin(parameter_set("trial", OFF), timestep=STEP)
+    log = run_to_log(simulate(robot, make_input("prbs", 0.4, seed=0)), "a short log")
+    noise = NOISE * np.random.default_rng(3).standard_normal(log.outputs.shape)
+    return replace(log, outputs=log.outputs + noise, extras={}, units={})
+
+
+@pytest.mark.long  # test_identify_command has windows that find the truth of two parameters
+def test_windows_find_the_truth_of_the_cable_robot(measured_inca):
+    robot = build_twin(parameter_set("trial"), timestep=STEP)
+    found = estimate_windows(robot, measured_inca, (*SMALL, *POSE), 0.2, SMALL)
+    true = parameter_set("trial", OFF).values()
+    error = np.array([found.values[n] - true[n] for n in SMALL])
+    assert (np.abs(error) < 4.5 * found.std[: len(SMALL)]).all(), error / found.std[: len(SMALL)]
+    relative = error / [true[n] for n in SMALL]
+    assert np.abs(relative).max() < 0.05, relative
+    assert found.rms < 1.1 * NOISE
+    for name in OFF:  # felt through the springs alone
+        assert found.values[name] == pytest.approx(true[name], abs=1e-3)
+
+
+def test_steps_between_states_undo_each_other(measured_inca):
+    model = build_twin().model
+    rng = np.random.default_rng(0)
+    state = build_twin().state()
+    start = type(state)(*(np.tile(getattr(state, f), (3, 1)) for f in ("qpos", "qvel", "act")))
+    step = 0.3 * rng.standard_normal((3, 2 * model.nv + model.na))
+    np.testing.assert_allclose(apart(model, start, moved(model, start, step)), step, atol=1e-12)
+
+
+def record_joined(n, seed, step=0.01, hold="foh"):
+    rng = np.random.default_rng(seed)
+    time = step * np.arange(n)
+    u, y = rng.standard_normal((n, 2)), rng.standard_normal((n, 1))
+    return Log(
+        time=time,
+        inputs=u,
+        outputs=y,
+        input_names=("a", "b"),
+        output_names=("x",),
+        hold=hold,
+        name=f"record {seed}",
+    )
+
+
+def test_windows_of_joined_records_are_those_of_each():
+    logs = [record_joined(n, n) for n in (300, 251, 57)]
+    both, each = windows(joined(logs, 0.2), 0.2), [windows(log, 0.2) for log in logs]
+    np.testing.assert_array_equal(both.outputs, np.concatenate([cut.outputs for cut in each]))
+    np.testing.assert_array_equal(both.inputs, np.concatenate([cut.inputs for cut in each]))
+
+
+@pytest.mark.parametrize(
+    ("second", "said"),
+    [
+        (record_joined(100, 2, step=0.02), "sampling time"),
+        (record_joined(100, 2, hold="zoh"), "hold"),
+        (replace(record_joined(100, 2), output_names=("z",)), "columns"),
+        (record_joined(15, 2), "windows of 0.2 s do not fit"),
+    ],
+)
+def test_records_that_do_not_belong_together_are_refused(second, said):
+    with pytest.raises(InputError, match=said):
+        joined([record_joined(100, 1), second], 0.2)

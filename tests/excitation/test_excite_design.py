@@ -10,11 +10,10 @@ import pytest
 
 from identification import InputError
 from inca_mj.cli import main
-from inca_mj.robot.inputs import prbs
 from inca_mj.twin.run import simulate
 from inca_mj.twin.twin import Twin, build_twin
 from inca_mj.workflows.excitation import excite
-from inca_mj.workflows.limits import Limits, extent
+from inca_mj.workflows.limits import Limits
 from inca_mj.workflows.recipes import changed, draw
 
 NAMES = ("b", "J", "b_v")
@@ -51,28 +50,9 @@ def test_recipes_stay_inside_the_currents() -> None:
             assert 0.3 - 1e-12 <= u.min() <= u.max() <= 1.7 + 1e-12
 
 
-def test_the_prbs_of_given_phases() -> None:
-    u = prbs(40, 0.01, phases=np.zeros(8, int))
-    assert (u == u[:, :1]).all()
-    assert (prbs(40, 0.01, phases=np.arange(8)) != u).any()
-
-
-def test_the_extent_of_a_rest_is_nothing(robot: Twin) -> None:
-    far = extent(simulate(robot, np.zeros((11, 8))))
-    assert far.reach < 1e-6
-    assert far.turn < 1e-3
-    assert far.within(Limits())
-    assert not far.within(Limits(margin=3.99))
-
-
 @pytest.mark.parametrize(
     ("limits", "word"),
-    [
-        (lambda: Limits(2.0, 1.0), "largest current"),
-        (lambda: Limits(margin=-1.0), "margin"),
-        (lambda: Limits(reach=0.0), "workspace"),
-        (lambda: Limits(turn=float("nan")), "workspace"),
-    ],
+    [(lambda: Limits(2.0, 1.0), "largest current"), (lambda: Limits(reach=0.0), "workspace")],
 )
 def test_a_bad_limit_is_one_sentence(limits, word: str) -> None:
     with pytest.raises(InputError, match=word) as caught:

@@ -1,21 +1,31 @@
 """The fit by innovations finds a slider's parameters, from afar, under noise of the input."""
 
-from dataclasses import replace
 from functools import cache
-
 import numpy as np
 import pytest
-from discovery_cases import EFFECTS, FREE, OPTIONS, nominal_model, record, slider, wander
-
+from discovery_cases import EFFECTS
+from discovery_cases import FREE
+from discovery_cases import OPTIONS
+from discovery_cases import SENSOR
+from discovery_cases import nominal_model
+from discovery_cases import record
+from discovery_cases import slider
+from discovery_cases import wander
 from identification import Parameter
 from identification.discovery import nominal_model as nominal_model_file
 from identification.effects.effect import Candidate
+from identification.estimation.estimation import estimate
 from identification.estimation.priors import Priors
-from identification.innovations.fit import _inside, fit_with_effects
+from identification.innovations.fit import _inside
+from identification.innovations.fit import fit_with_effects
 from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.noise_model import Noise
-from identification.kalman.problem import estimate_noise, linearise_criterion
+from identification.kalman.problem import estimate_noise
+from identification.kalman.problem import linearise_criterion
 from identification.kalman.refit import descend
+from identification.kalman.estimate import estimate_innovations
+
+
 
 ALLOWED = OPTIONS.allowed_input_error
 TRUE = {"mass": 2.4, "damping": 2.6, "x0": 0.02, "v0": -0.03}
@@ -45,7 +55,7 @@ def shaken():
     return begun_at(log, {})
 
 
-@pytest.mark.parametrize("factors", [(2.0, 0.5), (0.5, 2.0), (2.5, 2.5)])
+@pytest.mark.parametrize("factors", [(2.0, 0.5), (2.5, 2.5)])
 def test_it_finds_the_truth_from_far_starts_under_coloured_input_noise(factors):
     log, end = near()
     mass, damping = factors
@@ -53,28 +63,6 @@ def test_it_finds_the_truth_from_far_starts_under_coloured_input_noise(factors):
     # A search ends where the criterion would fall by less than the noise lets it.
     assert np.abs((far.point.q - end.point.q) / end.std).max() < 1
     assert far.point.values["mass"] == pytest.approx(2.4, rel=0.15)
-
-
-def test_a_fit_under_other_priors_begins_at_the_point_that_is_known(monkeypatch):
-    """It ends where one ends that evaluates the point anew, and evaluates none at its start."""
-    log, model = record(slider(**TRUE), 200, seed=3), nominal_model()
-    first = fit_with_effects(model, log, (), {}, OPTIONS)
-    held = replace(model, std=model.std / 3)
-    evaluate, begun = nominal_model_file.evaluate_point, []
-
-    def counted(*arguments):
-        begun.append(arguments)
-        return evaluate(*arguments)
-
-    monkeypatch.setattr(nominal_model_file, "evaluate_point", counted)
-    found = fit_with_effects(held, log, (), first.point.values, OPTIONS, near=first)
-    assert not begun
-    other_log = replace(log, outputs=log.outputs + 1e-9)
-    expected = fit_with_effects(held, other_log, (), first.point.values, OPTIONS, near=first)
-    assert len(begun) == 1
-    assert np.abs((found.point.q - expected.point.q) / expected.std).max() < 0.1
-    assert found.log_posterior == pytest.approx(expected.log_posterior, abs=0.1)
-    np.testing.assert_allclose(found.priors.weight, 3 * first.priors.weight)
 
 
 def test_without_noise_it_finds_the_truth_as_it_is():
@@ -107,18 +95,13 @@ def test_an_effect_is_fitted_along_and_its_size_may_be_zero():
     assert 0 <= found[0.0] < 0.3
 
 
-def test_a_start_is_kept_where_a_parameter_has_no_upper_bound():
-    mass = Parameter(name="mass", value=2.0, unit="kg", where="body/cart.mass", lower=0.0)
-    assert _inside(mass, 2.0) == 2.0
-
-
 def test_base_parameters_stay_within_a_factor_of_their_nominal_values():
     log = record(slider(mass=0.3), 200)
     assert fitted(log, {}).point.values["mass"] >= 2.0 / 3 - 1e-9
 
 
-@pytest.mark.parametrize("steps", [0, 3, 20])
-def test_a_search_ends_at_the_likeliest_point_since_its_noise_was_sharpened(monkeypatch, steps):
+def test_a_search_ends_at_the_likeliest_point_since_its_noise_was_sharpened(monkeypatch):
+    steps = 20
     begun = shaken()
     sharpened = []
 
@@ -158,17 +141,6 @@ def test_likelihood_does_not_lead_where_inputs_err_beyond_belief_and_not_by_chan
     assert len(points) == sharpened + 1
 
 
-def test_likelihood_does_lead_where_inputs_err_much_but_by_chance():
-    log = record(slider(**TRUE), 300, seed=1, error=wander(300, 0.3, 0.1, seed=1))
-    begun = begun_at(log, {"mass": 4.0})
-    points = [*descend(begun.point, begun.priors, OPTIONS)]
-    likely = [linearise_criterion(*p, begun.priors).log_posterior for p in points]
-    sharpened = next(
-        k for k, (_, lv) in enumerate(points) if lv.input_std > ALLOWED * begun.point.motion
-    )
-    assert likely[-1] > likely[sharpened]
-
-
 def test_a_bent_step_follows_the_curve_of_the_residual_to_one_order_more():
     log, white = record(slider(**TRUE), 200, noise=1e-9), NoiseLevel(Noise(0.0, 0.1), 1.0, 0.0)
     left = {}
@@ -182,3 +154,34 @@ def test_a_bent_step_follows_the_curve_of_the_residual_to_one_order_more():
     assert bent < 0.5 * straight
     assert straight / straight_half == pytest.approx(4, rel=0.2)  # second order
     assert bent / bent_half > 6  # third
+
+
+def test_it_is_the_free_run_s_estimate_where_the_input_is_as_logged():
+    log = record(slider(**TRUE), 400)
+    found = estimate_innovations(slider(), log, FREE)
+    free = estimate(slider(), log.part("estimation"), FREE).values
+    for name, std in zip(FREE, found.fit.std, strict=True):
+        assert abs(found.fit.estimate.values[name] - free[name]) < std, name
+
+
+def test_where_the_input_errs_it_is_nearer_to_the_truth_than_a_free_run():
+    off = []
+    for seed in range(4):
+        log = record(slider(**TRUE), 400, seed=seed, error=wander(400, 0.15, 0.1, seed=50 + seed))
+        found = estimate_innovations(slider(), log, FREE).fit.estimate.values
+        free = estimate(slider(), log.part("estimation"), FREE).values
+        off.append([np.log(v["damping"] / TRUE["damping"]) for v in (found, free)])
+    ours, theirs = np.sqrt(np.mean(np.square(off), axis=0))
+    assert ours < theirs
+
+
+def test_innovations_are_white_and_of_the_sensor_s_size_on_unseen_data_too():
+    log = record(slider(**TRUE), 1000, seed=3, error=wander(1000, 0.1, 0.1, seed=4))
+    found = estimate_innovations(slider(), log, FREE)
+    assert found.fit.tests.white.min() > 1e-3
+    assert found.level.sigma == pytest.approx(SENSOR, rel=0.15)
+    assert found.validation_rms == pytest.approx(found.rms, rel=0.1)
+    assert found.fit.rms > 2 * found.rms  # a free run adds up what disturbs it
+    # A slow plant feels only the variance times the correlation time.
+    felt = found.level.input_std**2 * found.level.noise.time / (0.1**2 * 0.1)
+    assert 0.3 < felt < 3  # one draw of a slow error over some 100 correlation times

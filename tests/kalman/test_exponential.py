@@ -29,14 +29,6 @@ def test_they_are_the_blocks_of_van_loan(seed, size, scale):
     np.testing.assert_allclose(Γ, exact[:, :size, size:], atol=1e-13 * duration.max())
 
 
-@given(st.integers(0, 2**32 - 1), SIZES, SCALES)
-def test_the_forced_states_are_the_last_columns(seed, size, scale):
-    F, duration = drawn(seed, size, scale)
-    (A, Γ), (same, last) = transitions(F, duration), transitions(F, duration, size // 2)
-    np.testing.assert_allclose(same, A, rtol=1e-14)
-    np.testing.assert_allclose(last, Γ[:, :, size // 2 :], rtol=1e-12, atol=1e-15 * duration.max())
-
-
 @given(st.integers(0, 2**32 - 1), st.integers(1, 3), st.floats(0.1, 30.0))
 def test_oscillations_whose_norm_is_far_above_their_powers(seed, pairs, turns):
     rng = np.random.default_rng(seed)
@@ -64,14 +56,3 @@ def test_the_units_of_the_states_change_nothing(seed, size):
     units = D[:, None] / D
     for other, own in zip(transitions(F * units, duration), transitions(F, duration), strict=True):
         np.testing.assert_allclose(other / units, own, atol=1e-13)
-
-
-def test_an_integrator_counts_the_time():
-    A, Γ = transitions(np.zeros((1, 2, 2)), np.array([0.3]))
-    np.testing.assert_array_equal(A[0], np.eye(2))
-    np.testing.assert_array_equal(Γ[0], 0.3 * np.eye(2))
-
-
-def test_what_is_not_finite_stays_so():
-    A, _ = transitions(np.full((1, 2, 2), np.inf), np.ones(1))
-    assert not np.isfinite(A).any()

@@ -5,15 +5,14 @@ from dataclasses import replace
 import mujoco
 import numpy as np
 import pytest
-from effect_cases import bare, full
+from effect_cases import bare
 from estimation_plants import SLIDER
 
 from identification import Log, ParameterSet, Predictor
-from identification.kalman import linear, sensitivity_equations
+from identification.kalman import linear
 from identification.kalman.linear import input_derivatives, state_derivatives
 from identification.kalman.sensitivity_equations import solve_sensitivities
 from identification.kalman.trajectory import COARSE_POINTS, follow
-from identification.linear.points import Change, Points
 from identification.model.plant import ModelPlant
 from inca_mj.robot.inputs import make_input
 from inca_mj.twin.logs import ANGLES, CURRENTS
@@ -87,37 +86,3 @@ def test_an_input_at_its_limit_has_two_slopes():
     sent = along.inputs[:, 0]
     np.testing.assert_allclose(up, np.where(sent < 1, 2.5, 0), atol=1e-6)  # gear over mass
     np.testing.assert_allclose(down, np.where(sent > -1, 2.5, 0), atol=1e-6)
-
-
-def test_what_moves_no_number_of_the_model_is_not_evaluated(monkeypatch):
-    """Inputs enter by their slopes, the same for all; what acts on readings forces nothing."""
-    plant = full()
-    names = ("current_lag.tau", "current_lag.tau@3", "delay.tau@5", "current_crosstalk.a@2",
-             "encoder_scale.s@2", "encoder_lag.tau")  # fmt: skip
-    predictor = Predictor(plant, log_of(make_input("prbs", 1.0)), names)
-    values = np.array([value(plant, name) for name in names])
-    sizes = np.array([1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1e-3])
-    records = linear.linearise_records(predictor, values)
-    evaluated, each = [], Points.each
-
-    def counted(self, changes, *of):
-        changes = [*changes]
-        evaluated.extend(changes)
-        return each(self, changes, *of)
-
-    monkeypatch.setattr(Points, "each", counted)
-    S = solve_sensitivities(predictor, records, values, values + np.diag(sizes), sizes)
-    assert len([c for c in evaluated if "ctrl" in c.fields]) == 2 * len(CURRENTS)
-    # The crosstalk, and whether it reads a state that no output felt.
-    assert len([c for c in evaluated if c.numbers]) == 3
-
-    def evaluate(linear, δu, courses):
-        along = linear.along
-        moved = Change({"ctrl": along.inputs + δu}, courses=courses)
-        return [one[:, linear.felt[along.model.nv :]]
-                for one in Points(along).each([moved], along.weighted)]  # fmt: skip
-
-    monkeypatch.setattr(sensitivity_equations, "_by_inputs", evaluate)
-    expected = solve_sensitivities(predictor, records, values, values + np.diag(sizes), sizes)
-    assert np.abs(expected).max(axis=(0, 1)).min() > 0
-    np.testing.assert_allclose(S, expected, rtol=0, atol=1e-5 * np.abs(expected).max())

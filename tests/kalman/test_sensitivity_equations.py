@@ -13,10 +13,9 @@ from identification.discovery.candidates import list_common
 from identification.effects.effect import Candidate
 from identification.innovations.scoring.sensitivities import compute_beside, compute_sensitivities
 from identification.kalman.linear import linearise_records, state_derivatives
-from identification.kalman.point import do_equations_hold, evaluate_point, shift_point
+from identification.kalman.point import do_equations_hold, evaluate_point
 from identification.kalman.sensitivity_equations import can_solve, solve_sensitivities
 from identification.kalman.trajectory import COARSE_POINTS, FINE_POINTS, follow
-from identification.linear.derivatives import shift_position
 from identification.logs.joined import join_logs
 from identification.model.coordinates import coordinates
 from identification.model.parameter import with_own
@@ -172,19 +171,6 @@ def test_the_derivatives_are_those_of_mujoco(robot):
         assert missed.max() < 2e-3
 
 
-def test_an_orientation_is_shifted_as_mujoco_shifts_it(robot):
-    model = robot.predictor.plant.model
-    along = follow(robot.predictor, robot.space.decode(robot.q), COARSE_POINTS)
-    qpos = along.states["qpos"][::50]
-    for dof in range(model.nv):
-        expected = qpos.copy()
-        for row in expected:
-            mujoco.mj_integratePos(model, row, np.eye(model.nv)[dof], 1e-5)
-        np.testing.assert_allclose(
-            shift_position(model, qpos, dof, 1e-5), expected, rtol=0, atol=1e-10
-        )
-
-
 USUAL = full().parameters["cable_creep.tau"].value
 
 
@@ -220,13 +206,3 @@ def test_of_another_kind_they_go_along_the_trajectory_with_the_effect():
     aged, heated = compute_beside(point, kinds)
     assert miss(aged.S, point.J[..., 1:] / space.slope(point.q)[1:]).max() < 0.05
     np.testing.assert_allclose(heated.S, 0.09 * aged.S, rtol=0, atol=1e-6 * np.abs(aged.S).max())
-
-
-def test_a_short_step_keeps_the_columns_and_a_long_one_does_not(robot):
-    short = shift_point(robot, robot.q + 1e-3)
-    assert short.J is robot.J
-    predicted = robot.predictor.predict(robot.space.decode(short.q))[0]
-    np.testing.assert_array_equal(short.e, robot.log.outputs - predicted)
-    long = robot.q.copy()
-    long[NAMES.index("b_c")] -= 2
-    assert shift_point(robot, long) is None

@@ -56,11 +56,3 @@ def test_pose_rates_move_the_pose_as_the_twist_says(pose):
 def test_rates_of_angles_are_refused_where_roll_and_yaw_are_one():
     with pytest.raises(InputError, match="pitch of 90 degrees"):
         euler_rate_matrix(np.array([0, 0, 1, 0.3, np.pi / 2, 0]))
-
-
-def test_many_poses_are_done_at_once_as_one_by_one():
-    poses = np.random.default_rng(1).uniform(-0.5, 0.5, (3, 4, 6))
-    for function in (body_rate_matrix, euler_rate_matrix, pose_rate_matrix):
-        together = function(poses)
-        for at in np.ndindex(3, 4):
-            np.testing.assert_array_equal(together[at], function(poses[at]))

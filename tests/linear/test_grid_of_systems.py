@@ -1,6 +1,5 @@
 """A grid of systems, files of systems, and the objects of other packages."""
 
-import sys
 from dataclasses import replace
 
 import numpy as np
@@ -97,29 +96,14 @@ def test_scipy_and_python_control_have_the_same_transfer_function(rate):
     assert (scipy.dt or None) == s.sampling_time
 
 
-def test_without_python_control_the_way_out_is_told(monkeypatch):
-    monkeypatch.setitem(sys.modules, "control", None)
-    with pytest.raises(InputError, match=r"inca-mj\[linear\]"):
-        random_system(0).to_control()
-
-
 @pytest.mark.parametrize(
     ("wrong", "words"),
     [
         (lambda: grid(3).at({"a": 0.0}), "gives no b"),
-        (lambda: grid(3).at({"a": 0.0, "b": 0.0, "c": 0.0}), "'c'.*known: a, b"),
         (lambda: grid(3).at({"a": 1.1, "b": 0.0}), "a = 1.1 is outside the grid"),
-        (lambda: grid(3).at({"a": float("nan"), "b": 0.0}), "outside the grid"),
         (lambda: grid(3, "cubic"), "needs 4 or more"),
-        (lambda: grid(3, "square"), "unknown interpolation 'square'"),
         (lambda: gridded({"a": np.array([1.0, 0.0])}, [random_system(0)] * 2), "that rise"),
-        (lambda: gridded({"a": np.arange(2.0)}, [random_system(0)]), "1 systems came"),
-        (lambda: gridded({"a": np.arange(2.0)}, [random_system(0), random_system(0, 5)]), "same"),
-        (lambda: gridded({"a": np.arange(2.0)}, [random_system(0).discrete(9)] * 2), "continuous"),
-        (lambda: grid(3).simulate(np.zeros(2), np.zeros((3, 1)), 10), "a is no state"),
         (lambda: save_system(random_system(0), "system.csv"), r"\.npz or \.mat"),
-        (lambda: load_system("no/such.npz"), "no such folder"),
-        (lambda: load_grid(__file__), "is no grid"),
     ],
 )
 def test_what_cannot_be_is_refused(wrong, words):

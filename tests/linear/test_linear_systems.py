@@ -20,7 +20,7 @@ from scipy.linalg import expm
 from identification import InputError, State
 from identification.linear.linearization import linearize
 from identification.linear.modes import modes
-from identification.linear.operating_points import OperatingPoints, at_rest, samples_at
+from identification.linear.operating_points import at_rest, samples_at
 
 
 def oscillator():
@@ -47,14 +47,6 @@ def test_a_mode_is_a_motion_of_the_system():
     (mode,) = modes(s)
     np.testing.assert_allclose(s.A @ mode.shape, mode.eigenvalue * mode.shape, atol=1e-6)
     assert mode.participation.sum() == pytest.approx(1)
-
-
-def test_the_rest_is_where_the_spring_balances_the_force():
-    model = compiled(OSCILLATOR)
-    start = State(np.array([-0.2]), np.array([4.0]), np.zeros(0))
-    rest = at_rest(model, start, np.array([2.0]))
-    np.testing.assert_allclose(rest.qpos, [[2.0 * GEAR / SPRING]], atol=1e-8)
-    assert not rest.qvel.any()
 
 
 @pytest.mark.parametrize("torque", [0.0, 1.0, 2.0])
@@ -111,35 +103,13 @@ def test_the_order_of_the_states_changes_nothing(seed):
     np.testing.assert_allclose(s.response(f), other.response(f), rtol=1e-9)
 
 
-def test_a_discrete_system_answers_slow_waves_as_the_continuous_one():
-    s, slow = random_system(1), np.array([1e-3])
-    np.testing.assert_allclose(s.discrete(1e4).response(slow), s.response(slow), rtol=1e-3)
-
-
-def test_a_simulation_is_the_sum_of_answers():
-    s = random_system(2).discrete(100)
-    u = np.random.default_rng(0).normal(size=(2, 30, 2))
-    (x0, y0), (x1, y1), (x, y) = s.simulate(u[0]), s.simulate(u[1]), s.simulate(u.sum(axis=0))
-    np.testing.assert_allclose(x0 + x1, x, rtol=1e-9, atol=1e-9)
-    np.testing.assert_allclose(y0 + y1, y, rtol=1e-9, atol=1e-9)
-
-
 @pytest.mark.parametrize(
     ("wrong", "words"),
     [
         (lambda: random_system(0).discrete(0), "rate of 0 Hz"),
-        (lambda: random_system(0).discrete(-100), "rate of -100 Hz"),
-        (lambda: random_system(0).discrete(float("nan")), "rate of nan Hz"),
-        (lambda: random_system(0).discrete(10).discrete(10), "discrete already"),
-        (lambda: random_system(0).ordered(("x0",)), "each of x0, x1"),
         (lambda: random_system(0).simulate(np.zeros((3, 2))), "no samples"),
-        (lambda: random_system(0).discrete(10).simulate(np.zeros(3)), r"takes \(N, 2\)"),
-        (lambda: modes(random_system(0).discrete(10)), "continuous"),
         (lambda: samples_at(np.arange(5.0), [7.0]), "outside the log"),
-        (lambda: samples_at(np.arange(5.0), [float("nan")]), "outside the log"),
-        (lambda: linearize(point(compiled(OSCILLATOR), [0.0]), ["turn"]), "unknown sensor 'turn'"),
         (lambda: point(compiled(OSCILLATOR), [0.0, 1.0]), "the model takes"),
-        (lambda: at_rest(compiled(OSCILLATOR), resting(), np.zeros(2)), "1 finite numbers"),
         (lambda: at_rest(compiled(PENDULUM), resting(), np.array([9.0])), "does not rest"),
     ],
 )
@@ -150,14 +120,3 @@ def test_what_cannot_be_is_refused(wrong, words):
 
 def resting():
     return State(np.zeros(1), np.zeros(1), np.zeros(0))
-
-
-def test_points_are_evaluated_as_one_by_one():
-    model = compiled(PENDULUM)
-    q, v = np.array([[0.1], [0.7]]), np.array([[0.5], [-1.0]])
-    both = linearize(OperatingPoints(model=model, qpos=q, qvel=v, act=np.zeros((2, 0)),
-                                     inputs=np.ones((2, 1)), time=np.zeros(2)))  # fmt: skip
-    for k, one in enumerate(both):
-        (alone,) = linearize(point(model, q[k], v[k], [1.0]))
-        np.testing.assert_array_equal(one.A, alone.A)
-        assert one.rate[0] == v[k, 0]

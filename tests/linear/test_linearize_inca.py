@@ -1,6 +1,5 @@
 """The linearised robot against the thesis' equations, the nonlinear twin, and itself."""
 
-from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -90,10 +89,6 @@ def test_a_held_robot_rests_in_the_thesis_equations(pose):
     s = linearize(twin(), pose).system
     q = pack(twin().parameters, twin().geometry)
     np.testing.assert_allclose(derivative(s.x, s.u, q), 0, atol=1e-6)
-
-
-def test_at_its_start_it_is_held_without_currents():
-    np.testing.assert_allclose(linearize(twin()).system.u, 0, atol=1e-9)
 
 
 def test_the_friction_has_the_slope_that_is_told():
@@ -187,31 +182,15 @@ def test_without_coulomb_friction_the_scheduled_model_follows_where_the_fixed_on
     assert error.scheduled < error.fixed < 0.1
 
 
-def slack_log():
-    log = prbs_log(0.6)
-    u = np.zeros_like(log.inputs)
-    u[:, 0] = -3.0  # motor 1 pays out
-    return replace(log, inputs=u)
-
-
 @pytest.mark.parametrize(
     ("wrong", "words"),
     [
-        (lambda: linearize(twin(), [0, 0, 1.43]), "six finite numbers"),
-        (lambda: linearize(twin(), [0, 0, float("nan"), 0, 0, 0]), "six finite numbers"),
-        (lambda: linearize(twin(), ["a"] * 6), "six finite numbers"),
-        (lambda: linearize(twin(), [1.2, 1.2, 1.43, 0, 0, 0]), "would have to push"),
-        (lambda: linearize(twin(), [0, 0, 9, 0, 0, 0]), "'z' = 9 m is outside"),
-        (lambda: linearize(twin(), None, ["angle_9"]), "unknown sensor 'angle_9'"),
-        (lambda: linearize_along(twin(), prbs_log(0.5), [2.0]), "outside the log"),
-        (lambda: linearize_along(twin(), slack_log(), [0.5]), "cable 1 is slack at 0.5 s"),
-        (lambda: linearize_grid(twin(), {}), "needs an axis"),
-        (lambda: linearize_grid(twin(), {"w": np.arange(4.0)}), "unknown scheduling variable"),
-        (lambda: linearize_grid(twin(), {"x": np.zeros(4)}), "numbers that rise"),
-        (lambda: linearize_grid(twin(), {"x": np.linspace(-1.3, 1.3, 4)}), "have to push"),
-        (lambda: linearize_grid(twin(), {"x": np.linspace(0, 0.1, 30_000)}), "30000 points"),
-        (lambda: run_error(twin(), grid(twin(), 2), {"x": 1.0, "z": 1.2}), "outside the grid"),
-    ],
+    (lambda: linearize(twin(), [0, 0, 1.43]), "six finite numbers"),
+    (lambda: linearize(twin(), [1.2, 1.2, 1.43, 0, 0, 0]), "would have to push"),
+    (lambda: linearize_along(twin(), prbs_log(0.5), [2.0]), "outside the log"),
+    (lambda: linearize_grid(twin(), {"w": np.arange(4.0)}), "unknown scheduling variable"),
+    (lambda: linearize_grid(twin(), {"x": np.linspace(0, 0.1, 30_000)}), "30000 points"),
+],
 )  # fmt: skip
 def test_what_cannot_be_is_refused(wrong, words):
     with pytest.raises(InputError, match=words):

@@ -9,14 +9,14 @@ import pytest
 from effect_cases import full
 from linear_cases import PENDULUM, compiled
 
-from identification.engine import library, quiet, untimed
+from identification.engine import library, untimed
 from identification.errors import DivergenceError
 from identification.linear import points as of_points
 from identification.linear.operating_points import OperatingPoints
 from identification.linear.points import Change, Points
 from identification.model.protocol import list_differences, with_entries, with_numbers
 from identification.model.rollout import without_sensors
-from identification.native.forward import Intervals, evaluate
+from identification.native.forward import Intervals
 
 LIMITED = """<mujoco><option timestep="0.001"/><worldbody><body>
   <joint name="hinge" axis="0 1 0" range="-0.5 0.5" limited="true" frictionloss="0.05"/>
@@ -27,10 +27,6 @@ FIELDS = {"qpos": "qpos", "qvel": "qvel", "act": "act", "ctrl": "inputs"}
 
 def clock():
     return ctypes.c_void_p.in_dll(library(), "mjcb_time").value
-
-
-def warner():
-    return mujoco.get_mju_user_warning()
 
 
 def drawn(model, qpos, act, count=7, seed=0):
@@ -125,25 +121,6 @@ def test_other_models_and_more_changes_than_are_taken_together(xml):
         np.testing.assert_array_equal(rates, one_by_one(at, change))
 
 
-def test_large_models_are_taken_a_few_at_a_time():
-    model = compiled(PENDULUM)
-    at, seen = drawn(model, [0.1], []), []
-
-    def evaluated(base, cases, *rest, **more):
-        seen.append(len(cases))
-        return evaluate(base, cases, *rest, **more)
-
-    changes = [Change({"ctrl": at.inputs + k}) for k in range(7)]
-    want = list(Points(at).each(changes))
-    with (
-        mock.patch.object(of_points, "MEMORY", 3 * model.nbuffer),
-        mock.patch.object(of_points, "evaluate", evaluated),
-    ):
-        few = list(Points(at).each(changes))
-    assert seen == [3, 3, 1]
-    np.testing.assert_array_equal(few, want)
-
-
 def test_differences_written_into_a_copy_give_the_model_of_a_value_set():
     robot, _ = twin()
     own, names = robot.parameters.values(), ("m", "lambda", "b_c")
@@ -163,25 +140,9 @@ def test_what_is_not_finite_is_refused():
         Points(at).rates(qvel=np.full((7, 1), np.nan))
 
 
-def test_the_engine_takes_no_times_inside_and_takes_them_again_after():
-    model = compiled(PENDULUM)
-    data = mujoco.MjData(model)
-    timer = data.timer[mujoco.mjtTimer.mjTIMER_FORWARD]
-    with untimed(), untimed():
-        mujoco.mj_forward(model, data)
-    assert timer.number == 1
-    assert timer.duration == 0.0
-    mujoco.mj_forward(model, data)
-    assert timer.duration > 0.0
-
-
-def test_no_points_have_no_rates():
-    at = drawn(compiled(PENDULUM), [0.1], [], count=0)
-    assert Points(at).rates().shape == (0, 1)
-
-
-@pytest.mark.parametrize(("switch", "read"), [(untimed, clock), (quiet, warner)])
-def test_switches_that_overlap_are_off_until_the_last_one_ends(switch, read):
+def test_switches_that_overlap_are_off_until_the_last_one_ends():
+    switch = untimed
+    read = clock
     before, first, second = read(), switch(), switch()
     first.__enter__()
     off = read()

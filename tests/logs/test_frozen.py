@@ -1,17 +1,40 @@
 """A sensor that freezes is refused with its time; a joint that rests is not."""
 
 from dataclasses import replace
-
+from itertools import combinations
 import mujoco
 import numpy as np
 import pytest
-from joint_cases import SLIDER, STEP, arm, arm_log, run, slider, slider_log, steps
-from stuck_cases import joint_log, stuck
-
-from identification import InputError, write_log
-from identification.__main__ import main
+from hypothesis import given
+from hypothesis import strategies as st
+from joint_cases import SLIDER
+from joint_cases import STEP
+from joint_cases import arm
+from joint_cases import arm_log
+from joint_cases import run
+from joint_cases import slider
+from joint_cases import slider_log
+from joint_cases import steps
+from records_cases import record
+from stuck_cases import joint_log
+from stuck_cases import stuck
+from identification import InputError
 from identification.effects.axes import axes
-from identification.logs.plausible import BEYOND, FEWEST, SPAN, refuse_frozen
+from identification.logs.plausible import BEYOND
+from identification.logs.plausible import FEWEST
+from identification.logs.plausible import SPAN
+from identification.logs.plausible import refuse_frozen
+from identification.logs.log import Log
+from identification.logs.overlap import ROW
+from identification.logs.overlap import share_samples
+from identification.refusals.columns import MOST_PAIRS
+from identification.refusals.columns import Doubt
+from identification.refusals.columns import column_pairs
+from identification.refusals.columns import input_exchanges
+from identification.refusals.columns import output_exchanges
+from identification.prediction.records import as_records
+
+
 
 FROM = 300  # sample of 400
 NOISE = 1e-4  # [m]
@@ -82,20 +105,6 @@ def test_another_sensor_of_the_joint_or_another_joint():
     axes(arm().model, replace(arm_log(u), outputs=frozen(both, column=1)))
 
 
-@pytest.mark.parametrize("command", ["fit", "discover"])
-def test_the_commands_refuse_in_one_sentence(tmp_path, capsys, command):
-    (tmp_path / "slider.xml").write_text(SLIDER)
-    (tmp_path / "r.toml").write_text('model = "slider.xml"\nfree = ["body/cart.mass"]')
-    u = steps(400)
-    log = slider_log(u, frozen(moved(u)))
-    write_log(replace(log, units={}), tmp_path / "stuck.csv")
-    assert main([command, str(tmp_path / "r.toml"), str(tmp_path / "stuck.csv")]) == 2
-    said = capsys.readouterr().err
-    assert said.count("\n") == 1
-    assert "position of log 'stuck' repeats" in said
-    assert "from 3 s to the end" in said
-
-
 def judged(log):
     refuse_frozen(log, 0, log.inputs, log.outputs[:, 1:])
 
@@ -164,12 +173,77 @@ def test_a_rate_may_jump_and_a_user_may_overrule_it():
     axes(slider().model, log, ("sensors",))
 
 
-def test_a_stuck_sensor_on_another_grid_is_found():
-    # Its log was uneven: the jump is spread over two samples of the grid.
-    u = steps(400)
-    y = moved(u)
-    y[140:260] = y[140]
-    t = np.arange(400)
-    between = np.interp(np.arange(399) + 0.5, t, y[:, 0])[:, None]
-    with pytest.raises(InputError, match="was stuck"):
-        seen(u[:399], between)
+SAMPLES = 20
+
+
+def log_of(columns):
+    rng = np.random.default_rng(columns)
+    return Log(
+        time=0.01 * np.arange(SAMPLES),
+        inputs=rng.standard_normal((SAMPLES, columns)),
+        outputs=rng.standard_normal((SAMPLES, columns)),
+        input_names=tuple(f"u{k}" for k in range(columns)),
+        output_names=tuple(f"y{k}" for k in range(columns)),
+    )
+
+
+def exchanges(columns):
+    log = log_of(columns)
+    doubt = Doubt.of(log, {n: n for n in (*log.input_names, *log.output_names)})
+    return [[*kind(doubt)] for kind in (input_exchanges, output_exchanges)]
+
+
+@pytest.mark.parametrize("columns", [2, 7, 12])
+def test_all_pairs_of_a_usual_robot_are_tried_in_order(columns):
+    assert column_pairs(range(columns)) == [*combinations(range(columns), 2)]
+    assert [len(kind) for kind in exchanges(columns)] == 2 * [columns * (columns - 1) // 2]
+
+
+@pytest.mark.parametrize("columns", [13, 50])
+def test_of_many_columns_the_nearest_are_exchanged(columns):
+    pairs = column_pairs(range(columns))
+    assert [len(kind) for kind in exchanges(columns)] == 2 * [MOST_PAIRS]
+    assert {(k, k + 1) for k in range(columns - 1)} < {*pairs}
+    left_out = {*combinations(range(columns), 2)} - {*pairs}
+    assert max(j - i for i, j in pairs) <= min(j - i for i, j in left_out)
+
+
+def noisy(seed, samples=200, noise=1e-4):
+    log = record(seed, samples=samples)
+    more = noise * np.random.default_rng(100 + seed).standard_normal(log.outputs.shape)
+    return replace(log, outputs=log.outputs + more)
+
+
+def part(log, first, last, name="part"):
+    rows = slice(first, last)
+    return replace(
+        log, time=log.time[rows], inputs=log.inputs[rows], outputs=log.outputs[rows], name=name
+    )  # fmt: skip
+
+
+@given(st.integers(0, 150), st.integers(ROW, 50))
+def test_any_part_of_a_log_shares_its_samples(first, count):
+    log = noisy(1)
+    assert share_samples(log, part(log, first, first + count))
+    assert share_samples(part(log, first, first + count), log)
+
+
+@given(st.integers(0, 100))
+def test_the_same_motion_measured_again_shares_none(seed):
+    again = replace(
+        noisy(1), outputs=noisy(1).outputs + 1e-9 * np.random.default_rng(seed).random((200, 1))
+    )
+    assert not share_samples(noisy(1), again)
+
+
+def test_parts_that_do_not_overlap_share_none_and_few_samples_tell_nothing():
+    log = noisy(1)
+    assert not share_samples(part(log, 0, 100), part(log, 100, 200))
+    assert not share_samples(log, part(log, 0, ROW - 1))
+
+
+def test_a_record_that_confirms_with_a_part_of_what_was_fitted_is_refused():
+    log, other = noisy(1), noisy(2)
+    with pytest.raises(InputError, match="'part' and 'record 1' hold the same samples"):
+        as_records([log, other], [part(log, 20, 120)])
+    assert len(as_records([part(log, 0, 100)], [part(log, 100, 200)])) == 2

@@ -8,15 +8,7 @@ import numpy as np
 import pytest
 
 from identification import InputError, read_log
-from identification.files import (
-    digest,
-    opened,
-    read_archive,
-    read_bytes,
-    read_json,
-    read_text,
-    read_toml,
-)
+from identification.files import read_archive, read_bytes, read_json, read_text, read_toml
 from identification.folders import MADE, list_foreign, whole_folder
 from identification.linear.export import load_system
 from identification.report.media import image_source, video_source
@@ -66,16 +58,14 @@ def test_a_reader_refuses_it(tmp_path, reader, make):
         READERS[reader](tmp_path / "file")
 
 
-@pytest.mark.parametrize("make", [pipe, device])
-def test_a_record_of_a_sweep_that_is_none_is_told(tmp_path, make):
-    make(tmp_path / "part-0-0123456789abcdef.parquet")
+def test_a_record_of_a_sweep_that_is_none_is_told(tmp_path):
+    pipe(tmp_path / "part-0-0123456789abcdef.parquet")
     with pytest.raises(InputError, match="is not a regular file"):
         read_tasks(tmp_path / "part-0-0123456789abcdef.parquet")
 
 
-@pytest.mark.parametrize("make", [pipe, device, sparse])
-def test_labels_that_are_none_are_told(tmp_path, make):
-    make(tmp_path / "labels.json")
+def test_labels_that_are_none_are_told(tmp_path):
+    pipe(tmp_path / "labels.json")
     (tmp_path / "a.csv").touch()
     for call in (
         lambda: axis({"files": "*.csv", "label": {"kind": "null"}}, tmp_path, "grid.log"),
@@ -86,7 +76,7 @@ def test_labels_that_are_none_are_told(tmp_path, make):
 
 
 @pytest.mark.parametrize("name", ["effects.json", "model.xml"])
-@pytest.mark.parametrize("make", [pipe, device, sparse])
+@pytest.mark.parametrize("make", [pipe, sparse])
 def test_a_twin_with_a_file_that_is_none_is_refused(tmp_path, make, name):
     save_twin(build_twin(), tmp_path)
     (tmp_path / name).unlink()
@@ -104,15 +94,6 @@ def test_a_folder_of_results_with_one_is_foreign_or_unknown(tmp_path, make, name
     (tmp_path / "out" / name).unlink()
     make(tmp_path / "out" / name)
     assert list_foreign(tmp_path / "out") == ["result.json"]
-
-
-def test_what_takes_the_place_of_a_file_after_it_was_looked_at_is_not_waited_for(
-    tmp_path, monkeypatch
-):
-    os.mkfifo(tmp_path / "file")
-    monkeypatch.setattr("identification.files.check_file", lambda *_: None)
-    with pytest.raises(InputError, match="is not a regular file"), opened(tmp_path / "file"):
-        pass
 
 
 def test_a_file_that_grows_while_it_is_read_is_bounded(tmp_path, monkeypatch):
@@ -138,15 +119,7 @@ def test_a_name_that_no_file_can_have_is_told(tmp_path, name):
         read_bytes(tmp_path / name)
 
 
-def test_a_digest_is_that_of_the_content(tmp_path):
-    (tmp_path / "a").write_bytes(b"content")
-    (tmp_path / "b").write_bytes(b"content")
-    (tmp_path / "c").write_bytes(b"other")
-    one, same, other = (digest(tmp_path / name) for name in "abc")
-    assert one == same != other
-
-
-@pytest.mark.parametrize("text", ["[" * 200_000 + "]" * 200_000, "{", "\ud800", '{"files": 3}'])
+@pytest.mark.parametrize("text", ["[" * 200_000 + "]" * 200_000, '{"files": 3}'])
 def test_a_list_of_results_that_is_damaged_lists_nothing(tmp_path, text):
     (tmp_path / MADE).write_text(text, errors="surrogatepass")
     (tmp_path / "result.json").write_text(json.dumps({}))

@@ -2,8 +2,12 @@
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from identification import InputError, read_log
+from identification.logs.gaps import Channel, find_lost_rows
+from identification.logs.irregular import on_a_grid
 from identification.logs.resampling import even_out
 
 RNG = np.random.default_rng(4)
@@ -34,23 +38,6 @@ def test_a_held_input_does_the_same_work_on_the_grid():
     stamps = np.append(np.clip(t, found.time[0], end), end)
     work = float(np.sum(u * np.diff(stamps)))
     assert 0.01 * found.channels["u"].sum() == pytest.approx(work, abs=0.01 * np.abs(u).max())
-
-
-def test_an_even_log_is_left_as_it_is():
-    t = 0.01 * np.arange(300)
-    found = even(t, signals(t))
-    for name, x in signals(t).items():
-        np.testing.assert_allclose(found.channels[name], x, atol=1e-12)
-    assert "and 0 of 300 samples" in found.sentence
-
-
-def test_a_slope_that_is_nearly_zero_is_one_that_is_zero():
-    t = 0.01 * np.delete(np.arange(60), 35)
-    x = signals(t)
-    flat = {**x, "y": x["y"] * (t > 0.02)}
-    nearly = {**x, "y": np.where(t == 0.01, 1e-320, flat["y"])}
-    found, wanted = (even(t, each).channels["y"] for each in (nearly, flat))
-    np.testing.assert_allclose(found, wanted, rtol=1e-12, atol=1e-300)
 
 
 def test_drops_repeated_stamps_and_interleaved_channels():
@@ -88,14 +75,6 @@ def test_every_gap_is_told_once_though_two_channels_have_it():
     found = even(t[keep], {n: x[keep] for n, x in both.items()})
     assert found.gaps == (pytest.approx((2.99, 3.03)), pytest.approx((14.99, 15.02)))
     assert "2 gaps are too wide to be bridged (the widest no" in found.sentence
-
-
-def test_a_gap_of_a_joint_that_only_flickers_by_a_step_of_its_encoder_is_bridged():
-    # Most differences are zero, so that the noise floor is zero too.
-    t = 0.01 * np.arange(2000)
-    flicker = 1e-3 * (RNG.random(2000) < 0.02)
-    keep = ~np.isin(np.arange(2000), [700, 701])
-    assert not even(t[keep], {"y": np.sin(t)[keep], "z": 0.3 + flicker[keep]}).gaps
 
 
 def test_time_that_goes_back_and_channels_that_do_not_overlap_are_refused(refusal):
@@ -144,16 +123,122 @@ def test_a_file_without_a_header_is_read_by_a_list_of_columns(csv, refusal, wher
     assert len(read_log(path, ["u"], ["y"], said=said)) == 20
 
 
-def test_an_input_that_stays_away_is_refused_though_the_outputs_go_on(refusal):
-    t = 0.01 * np.arange(1000)
-    u = np.where((t > 3) & (t < 3.6), np.nan, np.sign(np.sin(5 * t)))
-    said = refusal(even_out, "log", t, {"u": u, "q": np.sin(t)}, ["u"], "zoh")
-    assert "no u for 0.6" in said
-
-
 def test_a_pause_of_an_input_that_comes_with_every_sample_is_a_gap():
     t = 0.01 * np.arange(4000)
     u = np.where((t > 3) & (t < 3.3), np.nan, np.sign(np.sin(5 * t)))
     found = even(t, {"u": u, "q": np.sin(t)})
     assert found.gaps == (pytest.approx((3.0, 3.3), abs=1e-6),)
     assert "usually comes with every sample" in found.sentence
+
+
+@given(st.integers(0, 2**31), st.floats(0.01, 0.2))
+def test_straight_lines_are_kept_to_the_last_digits(seed, step):
+    rng = np.random.default_rng(seed)
+    time = np.sort(rng.uniform(0, 10, 400))
+    a, b = 2 * time - 1, 5 - time
+    odd = rng.random(400) < 0.5
+    channels = {"a": np.where(odd, a, np.nan), "b": np.where(odd, np.nan, b)}
+    t, out = on_a_grid(time, channels, step, 10.0)
+    begin = max(time[odd].min(), time[~odd].min())
+    np.testing.assert_allclose(out["a"], 2 * (t + begin) - 1, atol=1e-9)
+    np.testing.assert_allclose(out["b"], 5 - (t + begin), atol=1e-9)
+    np.testing.assert_allclose(np.diff(t), step, rtol=1e-9)
+    assert t[-1] + begin <= min(time[odd].max(), time[~odd].max()) + 1e-9
+
+
+def test_an_even_log_is_left_as_it_is():
+    time = 0.1 * np.arange(50)
+    x = np.sin(time)
+    t, out = on_a_grid(time, {"x": x}, 0.1, 0.15)
+    np.testing.assert_allclose(t, time, atol=1e-12)
+    np.testing.assert_allclose(out["x"], x, atol=1e-12)
+
+
+def test_what_cannot_be_bridged_is_named(refusal):
+    time = np.r_[0:1:0.1, 3:4:0.1]
+    x = np.ones(20)
+    assert "no sample for 2.1 s from 0.9 s" in refusal(on_a_grid, time, {"x": x}, 0.1, 0.5)
+    empty = np.full(20, np.nan)
+    assert "'y' has 0 samples" in refusal(on_a_grid, time, {"x": x, "y": empty}, 0.1, 5.0)
+    late = np.where(time > 3.75, 1.0, np.nan)
+    assert "leave one out" in refusal(on_a_grid, time, {"x": x, "z": late}, 0.1, 5.0)
+    assert "positive step" in refusal(on_a_grid, time, {"x": x}, 0.0, 5.0)
+
+
+H = 0.004
+N = 1200
+
+
+def course(kind, rng):
+    return {
+        "noise": lambda: rng.standard_normal(N),
+        "bang-bang": lambda: rng.choice([-2.0, 2.0], N),
+        "chirp": lambda: np.sin((3 + 2 * H * np.arange(N)) * H * np.arange(N)),
+        "steps": lambda: np.repeat(rng.uniform(-1, 1, N), rng.integers(20, 60, N))[:N],
+        "slow": lambda: np.sin(0.3 * H * np.arange(N)),
+        "zero": lambda: np.zeros(N),
+    }[kind]()
+
+
+def lost(t, u):
+    return find_lost_rows(Channel("u", t, u), t)
+
+
+@pytest.mark.parametrize("n", [5, 20])
+@pytest.mark.parametrize("kind", ["noise", "bang-bang", "chirp"])
+def test_each_lost_row_is_a_gap_where_the_input_changes_all_the_time(kind, n):
+    rng = np.random.default_rng(n)
+    keep = np.arange(N) % n != n - 1
+    t = 1.5 + H * (np.arange(N) + 0.02 * rng.random(N))
+    gaps = lost(t[keep], course(kind, rng)[keep])
+    assert [gap.begin for gap in gaps] == t[np.arange(n - 2, N - 1, n)[: len(gaps)]].tolist()
+    assert len(gaps) == (N - 1) // n
+    assert f"{len(gaps)} of {N - (N % n == 0)} rows are missing where u may have" in gaps[0].why
+
+
+@pytest.mark.parametrize("n", [5, 20])
+def test_of_steps_only_the_rows_are_gaps_in_which_a_step_may_hide(n):
+    u = course("steps", np.random.default_rng(n))
+    t, keep = H * np.arange(N), np.arange(N) % n != n - 1
+    found = {round(gap.begin / H) + 1 for gap in lost(t[keep], u[keep])}
+    gone = np.flatnonzero(~keep)[: -1 if not keep[-1] else None]
+    changed = {int(k) for k in gone if u[k - 1] != u[k + 1]}
+    assert found == (changed if len(changed) > 1e-3 * N else set())
+    assert {int(k) for k in gone if u[k] != u[k - 1]} <= changed
+
+
+@pytest.mark.parametrize("kind", ["slow", "zero"])
+def test_an_input_that_is_the_same_on_both_sides_is_known(kind):
+    u, t = course(kind, np.random.default_rng(1)), H * np.arange(N)
+    keep = np.arange(N) % 7 != 3
+    assert not lost(t[keep], u[keep])
+
+
+@given(
+    seed=st.integers(0, 999),
+    kind=st.sampled_from(["noise", "bang-bang", "chirp", "steps", "zero"]),
+    stamps=st.sampled_from(["even", "jitter", "random", "another rate", "one lost"]),
+    jitter=st.sampled_from([0.0, 1e-3, 0.1, 0.3, 0.45]),
+)
+def test_right_logs_have_no_such_gaps(seed, kind, stamps, jitter):
+    rng = np.random.default_rng(seed)
+    u, t = course(kind, rng), H * np.arange(N)
+    if stamps == "another rate":
+        t[700:] = t[700] + 2 * (t[700:] - t[700])
+    if stamps == "jitter":
+        t = np.sort(t + jitter * H * rng.uniform(-1, 1, N))
+    if stamps == "random":
+        t = np.sort(rng.uniform(0, N * H, N))
+    keep = np.arange(N) != (seed + 1 if stamps == "one lost" else N)
+    assert not lost(t[keep], u[keep])
+
+
+def test_the_grid_has_the_gaps_and_its_sentence_tells_them():
+    rng = np.random.default_rng(5)
+    t, keep = H * np.arange(N), np.arange(N) % 20 != 19
+    channels = {"u": course("noise", rng)[keep], "q": np.sin(t)[keep]}
+    found = even_out("log", t[keep], channels, ["u"], "zoh")
+    assert len(found.gaps) == N // 20 - 1
+    assert "59 gaps are too wide to be bridged" in found.sentence
+    assert "59 of 1199 rows are missing where u may have changed" in found.sentence
+    assert not even_out("log", t[keep], {"q": channels["q"]}, ["u"], "zoh").gaps

@@ -86,15 +86,6 @@ def test_dry_friction_that_only_a_value_set_has_acts_on_it():
     np.testing.assert_allclose(moved, stepped(there, (3.0, -2.0)), rtol=1e-12, atol=1e-12)
 
 
-def test_the_model_of_the_user_stays_as_it_is_and_a_lean_one_is_not_copied():
-    model = compiled()
-    before = int(model.opt.disableflags)
-    one = lean(model)
-    assert one is not model
-    assert lean(one) is one
-    assert int(model.opt.disableflags) == before
-
-
 DAMPED = """<mujoco><option timestep="0.004" integrator="RK4"{option}/>
   <worldbody><body><joint name="a" axis="0 1 0" {joint}/><geom size="0.1" mass="1" pos="0.2 0 0"/>
     <body pos="0.4 0 0"><joint name="b" axis="0 1 0" damping="0.3"/>

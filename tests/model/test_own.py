@@ -1,18 +1,23 @@
 """Values of each record by itself: a joined log is predicted as its records are."""
 
 from dataclasses import replace
-
 import numpy as np
 import pytest
-from estimation_plants import SLIDER_PARAMETERS, slider
-
+from estimation_plants import SLIDER_PARAMETERS
+from estimation_plants import slider
 from identification import Log
 from identification.kalman.linear import linearise
 from identification.kalman.noise_fit import compute_unit_ratio
-from identification.kalman.noise_model import Noise, build_whitener
+from identification.kalman.noise_model import Noise
+from identification.kalman.noise_model import build_whitener
 from identification.logs.joined import join_logs
-from identification.model.parameter import of_record, own_name, values_of_record, with_own
+from identification.model.parameter import of_record
+from identification.model.parameter import own_name
+from identification.model.parameter import values_of_record
+from identification.model.parameter import with_own
 from identification.model.predictor import Predictor
+
+
 
 H = 0.02
 
@@ -29,15 +34,6 @@ PLANT = slider()
 OWN = replace(PLANT, parameters=with_own(SLIDER_PARAMETERS, ("x0", "v0"), 2))
 NAMES = ("mass", "x0", "v0", "x0 [2]", "v0 [2]")
 SETS = np.array([[2.0, 0.1, 0.0, -0.2, 0.3], [2.5, 0.1, 0.0, 0.4, 0.1], [2.0, 0.3, 1.0, -0.2, 0.3]])
-
-
-def test_names_of_records():
-    assert own_name("x", 1) == "x"
-    assert own_name("x", 3) == "x [3]"
-    names = ("m", "x", "x [2]", "x [3]")
-    assert of_record(names, 1) == {"m": 0, "x": 1}
-    assert of_record(names, 3) == {"m": 0, "x": 3}
-    assert values_of_record({"m": 1.0, "x": 2.0, "x [2]": 3.0}, 2) == {"m": 1.0, "x": 3.0}
 
 
 def test_a_joined_log_is_predicted_as_its_records_are():

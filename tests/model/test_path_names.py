@@ -13,43 +13,20 @@ CRANE = mujoco.MjModel.from_xml_string(
       <geom size="0.1" mass="1"/></body></body></worldbody>
   <actuator><motor name="pivot" joint="pivot"/></actuator></mujoco>"""
 )
-UNNAMED = mujoco.MjModel.from_xml_string(
-    """<mujoco><worldbody><body name="jib"><joint name="pivot" axis="0 1 0"/>
-    <geom size="0.1"/></body></worldbody></mujoco>"""
-)
 
 
 @pytest.mark.parametrize(
     ("path", "said"),
     [
         ("joint/pivot.armatur", "unknown attribute of a joint 'armatur'; did you mean 'armature'?"),
-        ("joint/pivot.friction", "did you mean 'frictionloss'? known: actfrcrange, armature, axis"),
-        (
-            "body/jib.diaginertia",
-            "of a body 'diaginertia'; did you mean 'inertia'?",
-        ),
         ("actuator/pivot.geer", "did you mean 'gear'?"),
-        ("geom/box.mass", "; or did you mean 'body/trolley.mass'?"),
         ("joint/pivot.mass", "; or did you mean 'body/jib.mass'?"),
-        ("body/jib.damping", "; or did you mean 'joint/pivot.damping'?"),
-        ("joint/pivot.gear", "; or did you mean 'actuator/pivot.gear'?"),
         ("joint/pivot.kp", "; or did you mean 'actuator/pivot.kp'?"),
-        ("geom/jib.mass", "unknown geom 'jib'; known: box; or did you mean 'body/jib.mass'?"),
-        ("body/pivot.mass", "known: jib, trolley, world; or did you mean 'body/jib.mass'?"),
         ("joint/jib.damping", "known: pivot, rail; or did you mean 'joint/pivot.damping'?"),
-        ("site/jib.pos", "the model has no site; did you mean 'body/jib.pos'?"),
-        ("tendon/cable.range", "the model has no tendon; free a number that"),
     ],
 )
 def test_what_was_meant_is_offered(refusal, path, said):
     assert said in refusal(resolve, CRANE, path)
-
-
-def test_a_kind_of_which_nothing_has_a_name_is_told_so(refusal):
-    said = refusal(resolve, UNNAMED, "geom/jib.mass")
-    assert "unknown geom 'jib': no geom of the model has a name; did you mean 'body/jib.ma" in said
-    said = refusal(resolve, UNNAMED, "geom/ball.friction[0]")
-    assert said.endswith("no geom of the model has a name; give it one to free its friction")
 
 
 def test_every_attribute_that_is_listed_can_be_named():

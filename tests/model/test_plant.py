@@ -49,9 +49,7 @@ def test_the_users_model_is_left_alone():
     ("where", "said"),
     [
         ("joint/slid.damping", "did you mean 'slide'"),
-        ("qpos[1]", "qpos has 1 entries"),
         ("act[0]", "act has 0 entries"),
-        ("nonsense", "is no model path"),
         ("body/cart.mass", "place of its own"),
     ],
 )
@@ -94,9 +92,8 @@ def motor(path, more=""):
 @pytest.mark.parametrize(
     ("path", "term"),
     [
-        ("biasprm[3]", LUGRE), ("biasprm[4]", LUGRE), ("biasprm[5]", LUGRE),
-        ("dynprm[5]", LUGRE), ("dynprm[6]", LUGRE), ("dynprm[0]", INDUCTANCE),
-    ],
+    ("biasprm[3]", LUGRE), ("dynprm[5]", LUGRE),
+],
 )  # fmt: skip
 def test_a_number_of_a_dcmotor_that_nothing_reads_is_refused(refusal, path, term):
     said = refusal(motor, path)

@@ -1,7 +1,7 @@
 """Sensitivities are derivatives, and one batch of them is as good as one at a time."""
 
 import numpy as np
-from estimation_plants import STEP, pendulum, record, slider
+from estimation_plants import STEP, record, slider
 from scipy.linalg import expm
 
 from identification.model.coordinates import coordinates
@@ -37,17 +37,6 @@ def test_the_slider_predicts_and_feels_as_its_equation_says():
         np.testing.assert_allclose(J[:, j], analytic, atol=1e-7 * np.abs(analytic).max() + 1e-9)
 
 
-def test_half_the_step_says_the_same():
-    plant = pendulum()
-    names = tuple(p.name for p in plant.parameters)
-    values = np.array([p.value for p in plant.parameters])
-    log = record(plant, ("q1", "q2"), n=100)
-    space = coordinates(plant.parameters, names, values)
-    predictor, q = Predictor(plant, log, names), space.encode(values)
-    whole, half = (sensitivity(predictor, space, q, step=h) for h in (1e-4, 5e-5))
-    np.testing.assert_allclose(whole, half, atol=1e-6 * np.abs(whole).max())
-
-
 def test_one_batch_equals_one_by_one_to_the_last_bit():
     log = record(slider(), ("position", "rate"), n=100)
     predictor = Predictor(slider(), log, NAMES)
@@ -55,10 +44,3 @@ def test_one_batch_equals_one_by_one_to_the_last_bit():
     together = predictor.predict(sets)
     one_by_one = np.stack([predictor.predict(row[None])[0] for row in sets])
     np.testing.assert_array_equal(together, one_by_one)
-
-
-def test_fewer_samples_are_the_beginning_of_all_samples():
-    predictor = Predictor(slider(), record(slider(), ("position",), n=100), NAMES)
-    np.testing.assert_array_equal(
-        predictor.predict(VALUES, 30)[0], predictor.predict(VALUES)[0][:30]
-    )

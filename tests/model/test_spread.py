@@ -2,13 +2,15 @@
 
 import mujoco
 import numpy as np
-from estimation_plants import PENDULUM, positive
+from estimation_plants import PENDULUM
+from estimation_plants import positive
 from hypothesis import given
 from hypothesis import strategies as st
-
 from identification import ParameterSet
 from identification.model.plant import ModelPlant
-from identification.model.tied import spread_place, spreads
+from identification.model.tied import spread_place
+from identification.model.tied import spreads
+
 
 BODY = mujoco.MjModel.from_xml_string(PENDULUM).body(1).name
 PATHS = [f"body/{BODY}.spread[{k}]" for k in range(3)]
@@ -36,12 +38,3 @@ def test_settings_write_what_a_new_plant_has():
     np.testing.assert_allclose(written[0], [0.02 + 0.07, 0.02 + 0.3])
     np.testing.assert_allclose(written[1], [0.05 + 0.07, 0.2 + 0.3])
     np.testing.assert_allclose(written[2], [0.05 + 0.02, 0.2 + 0.02])
-
-
-def test_a_body_or_axis_that_is_not_there_is_named(refusal):
-    model = mujoco.MjModel.from_xml_string(PENDULUM)
-    assert spread_place("joint/x.damping", model) is None
-    assert "unknown body" in refusal(spread_place, "body/none.spread[0]", model)
-    assert "has an axis" in refusal(spread_place, f"body/{BODY}.spread", model)
-    both = positive("a", 0.1, "", PATHS[0]), positive("b", 0.1, "", f"body/{BODY}.inertia[1]")
-    assert "free the spreads alone" in refusal(plant, *both)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from joint_cases import DAMPING, MASS, SLIDER, run, slider, slider_log, steps
+from joint_cases import DAMPING, MASS, SLIDER, run, slider_log, steps
 from numba import njit
 
 from identification.effects.effect import Effect, Size, places
@@ -52,17 +52,6 @@ def test_it_goes_on_in_a_part_of_a_record():
     moving = plant(State(np.array([0.4]), np.array([0.3]), np.zeros(0)))
     again = slider_log(part.inputs)  # the same inputs, but begun at zero
     assert np.abs(run(moving, part, **DRAG) - run(moving, again, **DRAG)).max() > 0.01
-
-
-def test_a_gain_that_drifts_goes_on_in_a_part_of_a_record():
-    fade, u = {"gain_drift.alpha@force": 0.1}, steps(400, hold=7)
-    log = slider_log(u, run(slider(), slider_log(u), **fade))
-    part = log.part("validation")
-    assert np.abs(window_error(slider(), part, 0.25, fade)).max() < 2e-8
-    assert (
-        np.abs(window_error(slider(), slider_log(part.inputs, part.outputs), 0.25, fade)).max()
-        > 1e-4
-    )
 
 
 def test_a_linearisation_knows_the_time_too():

@@ -1,7 +1,6 @@
 """A callback from the cache is the compiled one; what cannot be trusted is compiled anew."""
 
 import hashlib
-import logging
 import os
 import pickle
 import stat
@@ -12,7 +11,7 @@ import pytest
 from cache_cases import SIGNATURE, power
 from numba.extending import register_jitable
 
-from identification.native import cache, cache_folder
+from identification.native import cache
 from identification.native.cache import compile_once, decode, encode
 
 
@@ -26,14 +25,6 @@ def test_what_is_loaded_is_what_was_compiled(folder, compiler, same_as_python):
     np.testing.assert_array_equal(compiled, loaded)
     assert compiler.count == 1
     assert len(list(folder.iterdir())) == 1
-
-
-def test_each_callback_has_an_entry(folder, compiler, same_as_python):
-    for _ in range(2):
-        same_as_python(compile_once(power, SIGNATURE))
-        same_as_python(compile_once(half, SIGNATURE), half)
-    assert compiler.count == 2
-    assert len(list(folder.iterdir())) == 2
 
 
 def test_what_many_need_at_once_is_compiled_once(folder, compiler, same_as_python):
@@ -234,17 +225,6 @@ def test_a_folder_that_is_only_read(entry, compiler, same_as_python, monkeypatch
     assert list(entry.parent.iterdir()) == [entry]
 
 
-def test_what_is_not_used_is_said_once_to_those_who_ask(folder, caplog, same_as_python):
-    folder.parent.mkdir()
-    folder.touch()
-    with caplog.at_level(logging.DEBUG, logger=cache.__name__):
-        for function in (power, half):
-            same_as_python(compile_once(function, SIGNATURE), function)
-    notes = [r for r in caplog.records if str(folder) in r.getMessage()]
-    assert len(notes) == len({r.getMessage() for r in notes})
-    assert {r.levelno for r in notes} == {logging.DEBUG}
-
-
 def test_the_environment_switches_it_off(entry, compiler, same_as_python, monkeypatch):
     monkeypatch.setenv(cache.VARIABLE, "off")
     same_as_python(compile_once(power, SIGNATURE))
@@ -283,10 +263,3 @@ def test_what_numba_may_exchange_for_other_code_is_compiled_in_memory(
         same_as_python(compile_once(calls_plain, SIGNATURE), calls_plain)
     assert compiler.count == 2
     assert not folder.exists()
-
-
-def test_an_entry_is_never_larger_than_all_may_be(entry, compiler, same_as_python, monkeypatch):
-    monkeypatch.setattr(cache_folder, "LARGEST", 100)
-    same_as_python(compile_once(power, SIGNATURE))
-    assert compiler.count == 1
-    assert not list(entry.parent.iterdir())

@@ -20,22 +20,6 @@ def test_only_the_user_may_enter(folder):
     assert read("entry") == b"content"
 
 
-def test_an_entry_is_replaced(folder):
-    for content in (b"one", b"two"):
-        write("entry", content)
-        assert read("entry") == content
-    assert len(list(folder.iterdir())) == 1
-
-
-def test_a_folder_that_bears_the_name_stays(folder):
-    (folder / "entry" / "kept").mkdir(parents=True)
-    folder.chmod(0o700)
-    with pytest.raises(OSError, match="entry"):
-        write("entry", b"content")
-    assert [p.name for p in folder.iterdir()] == ["entry"]
-    assert (folder / "entry" / "kept").is_dir()
-
-
 def test_what_was_used_longest_ago_goes_first(folder, monkeypatch):
     monkeypatch.setattr(cache_folder, "LARGEST", 35)
     for k, name in enumerate("abc"):

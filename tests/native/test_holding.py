@@ -46,11 +46,6 @@ def test_friction_is_a_bounded_least_squares_problem(seed, n):
     np.testing.assert_allclose(held(M, g, low, high), slow, atol=1e-6 * (1 + np.abs(g).max()))
 
 
-def test_what_is_not_coupled_is_clipped_by_itself():
-    M, g = np.diag([1.0, 2.0, 3.0]), np.array([0.5, -4.0, 2.0])
-    np.testing.assert_allclose(held(M, g, np.ones(3), np.ones(3)), [0.5, -1.0, 1.0], rtol=1e-15)
-
-
 @given(SEEDS, st.integers(1, 6))
 @settings(max_examples=30, deadline=None)
 def test_friction_that_gives_pulls_back_to_its_springs(seed, n):

@@ -10,9 +10,8 @@ from identification import pool
 from identification.pool import each_part, end_if_given_up, run_parts, split, threads
 
 
-@pytest.mark.parametrize("number", ["1", "2"])
-def test_results_come_in_the_order_of_the_parts(number, monkeypatch):
-    monkeypatch.setenv("INCA_MJ_THREADS", number)
+def test_results_come_in_the_order_of_the_parts(monkeypatch):
+    monkeypatch.setenv("INCA_MJ_THREADS", "2")
     assert run_parts(lambda part: part**2, range(20)) == [k**2 for k in range(20)]
 
 
@@ -23,13 +22,6 @@ def test_a_part_may_have_parts_of_its_own():
         return sum(run_parts(lambda part: k * part, range(8)))
 
     assert run_parts(outer, range(8)) == [28 * k for k in range(8)]
-
-
-def test_the_pool_lives_on():
-    if threads() < 2:
-        pytest.skip("one processor has no pool")
-    names = {n for _ in range(5) for n in run_parts(lambda _: threading.get_ident(), range(8))}
-    assert len(names) <= threads()
 
 
 def test_an_error_of_a_part_is_that_of_the_work():
@@ -83,7 +75,7 @@ def test_a_process_that_was_forked_off_has_a_pool_of_its_own():
     assert os.waitpid(child, 0)[1] == 0
 
 
-@pytest.mark.parametrize(("count", "most"), [(0, 5), (1, 5), (5, 5), (6, 5), (100, 9)])
+@pytest.mark.parametrize(("count", "most"), [(0, 5), (5, 5), (100, 9)])
 def test_ranges_cover_all_things_once(count, most):
     parts = split(count, most)
     assert [k for part in parts for k in range(part.start, part.stop)] == list(range(count))

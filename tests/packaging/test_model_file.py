@@ -1,8 +1,6 @@
 import mujoco
 import numpy as np
-import pytest
 
-from identification.errors import InputError
 from inca_mj.files import model_path
 from inca_mj.twin.twin import build_twin
 
@@ -14,8 +12,3 @@ def test_the_model_file_is_the_twin():
         ours, theirs = getattr(built, field), getattr(read, field)
         np.testing.assert_allclose(ours, theirs, rtol=1e-12, err_msg=field)
     assert read.opt.timestep == built.opt.timestep
-
-
-def test_a_missing_model_says_where_it_was_looked_for():
-    with pytest.raises(InputError, match=r"none\.xml is in neither .*models.* install"):
-        model_path("none.xml")

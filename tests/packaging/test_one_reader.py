@@ -82,9 +82,8 @@ def test_every_exception_is_one():
 
 
 @pytest.mark.parametrize(("text", "found"), [
-    ("open('a')", ["open"]), ("open('a', 'w')", []), ("p.open('rb')", ["open"]),
-    ("p.open(mode='x')", []), ("p.read_bytes()", ["read_bytes"]), ("read_bytes(p)", []),
-    ("np.load(p)", ["load"]), ("json.load(p)", ["load"]), ("f(open)", []),
+    ("open('a')", ["open"]), ("open('a', 'w')", []), ("p.read_bytes()", ["read_bytes"]),
+    ("json.load(p)", ["load"]),
 ])  # fmt: skip
 def test_what_counts_as_reading(text, found):
     assert [*reads(ast.parse(text))] == found

@@ -118,11 +118,6 @@ def test_what_is_named_has_its_name_its_place_and_its_rivals(found):
             assert 0 <= rival.confidence <= 1
 
 
-def test_the_elbow_has_a_name():
-    _, result = elbow()
-    assert [n.name for n in result.named] == ["coulomb_friction"]
-
-
 def test_a_result_shows_its_verdict_and_not_its_numbers(found):
     first, *rest = verdict_of(found)
     assert repr(found) == str(found)
@@ -138,13 +133,6 @@ def test_a_result_shows_its_verdict_and_not_its_numbers(found):
     assert len(box) < 20_000
 
 
-def test_the_box_has_the_colour_of_the_verdict():
-    each = {name: of().is_good for name, of in RESULTS.items() if name.startswith("INCA")}
-    assert [*each.values()] == [True, None, True, False]
-    boxes = {RESULTS[name]()._repr_html_().split(";")[0] for name in each}
-    assert len(boxes) == 3
-
-
 def test_words_of_a_verdict_are_escaped_in_the_box():
     class Odd(Shown):
         verdict, unexplained = "named", False
@@ -155,10 +143,6 @@ def test_words_of_a_verdict_are_escaped_in_the_box():
 
     assert "a &lt; b &amp; &lt;script&gt;" in Odd()._repr_html_()
     assert repr(Odd()) == "a < b & <script> in 0.2 s."
-
-
-def test_what_has_no_verdict_is_told_by_its_kind():
-    assert verdict_of(3.0) == ["<float>"]
 
 
 def test_a_robot_and_its_fit_show_themselves_in_a_line():

@@ -7,14 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from identification import (
-    InputError,
-    assess,
-    estimate,
-    fit_verdict,
-    read_robot,
-    window_error,
-)
+from identification import InputError, assess, estimate, fit_verdict, read_robot, window_error
 
 ROOT = Path(__file__).parents[2]
 ELBOW = ROOT / "examples" / "elbow"

@@ -86,6 +86,7 @@ def test_the_wheel_says_what_it_is(wheel):
     assert not any("dm-control" in line for line in needed)
 
 
+@pytest.mark.long
 def test_the_sdist_makes_the_same_wheel(sdist, wheel, tmp_path):
     subprocess.run(["tar", "-xzf", sdist, "-C", tmp_path], check=True)
     (folder,) = tmp_path.iterdir()

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.stats import chi2
 
 from identification.prediction.blocks import MAX_BLOCKS_PER_RECORD, block_gains, count_blocks
+from identification.prediction.problem import MIN_WINDOWS
+from identification.prediction.thinning import THIN, kept
+from identification.prediction.told_std import MIN_FREEDOM, degrees_of_freedom, told_std
 
 lengths = st.lists(st.integers(2, 90), min_size=1, max_size=3)
 
@@ -51,3 +57,60 @@ def test_windows_in_which_nothing_happens_do_not_decide() -> None:
 @pytest.mark.parametrize(("windows", "blocks"), [(1, 1), (3, 1), (10, 5), (40, 20), (999, 20)])
 def test_every_record_has_the_same_blocks_at_most(windows: int, blocks: int) -> None:
     assert count_blocks(windows) == blocks <= MAX_BLOCKS_PER_RECORD
+
+
+@given(st.integers(1, 500))
+def test_one_window_of_three_is_kept_and_never_fewer_than_blocks_need(count):
+    at = kept(count, THIN)
+    assert np.all(np.diff(at) > 0)
+    assert at[0] == 0
+    assert at[-1] < count
+    assert len(at) >= min(count, MIN_WINDOWS)
+    if count >= THIN * MIN_WINDOWS:
+        assert np.all(np.diff(at) == THIN)
+
+
+def fitted(S, weight):
+    """A fit of windows whose sensitivities are S (W, m, p), with a std of one of each value."""
+    free = SimpleNamespace(on_bound=lambda q: np.zeros(len(q), bool))
+    prior = SimpleNamespace(weight=np.asarray(weight, float), space=free)
+    return SimpleNamespace(
+        q=np.zeros(len(weight)),
+        tangents=[
+            SimpleNamespace(projected=(s, None)) for s in (S if isinstance(S, list) else [S])
+        ],
+        problem=SimpleNamespace(prior=prior),
+        std=np.ones(len(weight)),
+    )
+
+
+def test_equal_windows_have_one_degree_less_than_there_are():
+    found = fitted(np.tile(np.eye(2), (7, 1, 1)), [0, 0])
+    assert degrees_of_freedom(found) == pytest.approx([6, 6])
+    assert told_std(found).tolist() == [1, 1]
+
+
+def test_windows_of_records_may_differ_in_length():
+    long, short = np.zeros((4, 5, 2)), np.tile(np.eye(2), (3, 1, 1))
+    long[:, :2] = np.eye(2)  # what else they have tells nothing
+    found = fitted([long, short], [0, 0])
+    assert degrees_of_freedom(found) == pytest.approx([6, 6])
+
+
+def test_one_window_tells_no_std_however_many_others_feel_another_parameter():
+    S = np.zeros((9, 2, 2))
+    S[:, 0, 0] = 1.0
+    S[4, 1, 1] = 1.0
+    found = fitted(S, [0, 0])
+    assert degrees_of_freedom(found) == pytest.approx([8, 0])
+    assert np.isnan(told_std(found)).tolist() == [False, True]
+
+
+def test_a_std_that_is_that_of_the_prior_is_known():
+    found = fitted(1e-3 * np.tile(np.eye(1), (2, 1, 1)), [1.0])
+    assert told_std(found).tolist() == [1]
+
+
+def test_the_fewest_degrees_of_freedom_make_a_std_right_within_a_factor_of_four():
+    low, high = (MIN_FREEDOM / chi2.ppf([0.975, 0.025], MIN_FREEDOM)) ** 0.5
+    assert 1 / 4 < low < high < 4

@@ -10,10 +10,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 from records_cases import HORIZON, nominal_model, records
 
-from identification.prediction import problem
+from identification.estimation.priors import Priors
 from identification.prediction.crossing import at_their_best, crossed
+from identification.prediction.fit import solve
 from identification.prediction.nominal_fit import fit_nominal
+from identification.prediction.problem import best_of, no_moves, problem
 from identification.prediction.records import as_records
+from identification.windows.held import HeldWindows
 from identification.windows.settling import Starts, best_starts, sought_from_others
 
 FAR = 3.0  # a speed, in units of what is believed of it, at which a window is left
@@ -55,13 +58,6 @@ def test_no_window_gets_worse_and_a_fit_that_is_best_everywhere_stays_as_it_is()
         assert np.all(np.sum(mine.r**2, axis=1) <= np.sum(old.r**2, axis=1))
 
 
-def test_the_cost_of_a_crossed_fit_is_that_of_its_windows():
-    _, model = fitted()
-    freed = crossed(stuck(model.fit), [model.fit])
-    r = freed.problem.held(freed.q).residuals(freed.moves)
-    np.testing.assert_allclose(freed.problem.cost_of(freed.q, r), freed.cost, rtol=1e-9)
-
-
 def test_a_crossed_fit_is_linearised_where_its_windows_begin():
     _, model = fitted()
     freed = crossed(stuck(model.fit), [model.fit])
@@ -73,20 +69,6 @@ def test_a_crossed_fit_is_linearised_where_its_windows_begin():
             np.testing.assert_allclose(got, wanted, rtol=1e-9, atol=1e-9)
 
 
-def test_only_windows_that_begin_elsewhere_are_linearised_again(monkeypatch):
-    _, model = fitted()
-    whole, count = problem.tangent, []
-
-    def counted(part, q, d, *rest, **more):
-        count.append(len(d))
-        return whole(part, q, d, *rest, **more)
-
-    bad = stuck(model.fit)
-    monkeypatch.setattr(problem, "tangent", counted)
-    crossed(bad, [model.fit])
-    assert count == [1]
-
-
 def test_parent_and_child_that_are_one_model_are_equal_whichever_is_stuck():
     every, model = fitted()
     confirm = [r for r in every if r.role == "confirm"]
@@ -96,11 +78,6 @@ def test_parent_and_child_that_are_one_model_are_equal_whichever_is_stuck():
         np.testing.assert_allclose(one.fit.cost, other.fit.cost, rtol=2e-3)
         mine, others = (np.concatenate(m.unseen.at_horizon) for m in (one, other))
         np.testing.assert_allclose(mine.mean(), others.mean(), rtol=2e-3)
-
-
-def test_without_children_a_model_stays_as_it_is():
-    every, model = fitted()
-    assert at_their_best(model, [], HORIZON, every) == (model, ())
 
 
 @given(st.integers(0, 1000), st.integers(1, 4), st.integers(1, 3))
@@ -120,9 +97,85 @@ def test_each_window_begins_where_the_model_with_the_least_error_begins_it(seed,
         assert is_better[w] == (best is not own)
 
 
-def test_a_start_that_diverges_is_passed_over():
-    _, model = fitted()
-    held, moves = model.fit.problem.held(model.fit.q), model.fit.moves
-    starts = [(np.full_like(d, np.inf), np.ones(len(d), bool)) for d in moves]
-    for s, d in zip(sought_from_others(held, moves, starts), moves, strict=True):
-        np.testing.assert_array_equal(s.d, d)
+AWAY = 0.5  # of what is believed of a state
+
+
+@cache
+def windows():
+    """The windows of two records, states of which every other one is as measured, and the rest."""
+    logs = records(4)
+    every = [r for r in as_records(logs[:2], logs[2:]) if r.role == "fit"]
+    plant = nominal_model().plant
+    task = problem(plant, every, Priors(), Priors(), HORIZON, {}, np.array([0.01]))
+    measured = no_moves(task)
+    first = [np.arange(len(d))[:, None] % 2 == 0 for d in measured]
+    beside = [AWAY / p.first.weight + d for d, p in zip(measured, task.parts, strict=True)]
+    each = [*zip(first, measured, beside, strict=True)]
+    moves = tuple(np.where(at, d, away) for at, d, away in each)
+    return task.held(np.zeros(0)), moves, tuple(np.where(at, away, d) for at, d, away in each)
+
+
+def squares(residuals):
+    return [np.sum(r**2, axis=1) for r in residuals]
+
+
+def test_each_window_gets_the_state_with_the_smaller_sum_of_squares():
+    held, moves, away = windows()
+    none = [np.full(len(d), -1.0) for d in moves]
+    d, r = best_of(held, moves, away, none)
+    there, beside = squares(held.residuals(moves)), squares(held.residuals(away))
+    assert any((b < a).any() for a, b in zip(there, beside, strict=True))
+    for k in range(len(d)):
+        np.testing.assert_array_equal(squares(r)[k], np.minimum(there[k], beside[k]))
+        np.testing.assert_array_equal(d[k], np.where((beside[k] < there[k])[:, None], away[k],
+                                                     moves[k]))  # fmt: skip
+
+
+NEAR = 0.2  # of what is believed of a state
+
+
+@cache
+def fitted_again():
+    logs = records(4, samples=300)
+    return fit_nominal(nominal_model(), as_records(logs[:2], logs[2:]))
+
+
+def counted(monkeypatch):
+    """How many windows each call of `HeldWindows.residual` simulates."""
+    whole, count = HeldWindows.residual, []
+
+    def residual(self, d):
+        count.append(len(d))
+        return whole(self, d)
+
+    monkeypatch.setattr(HeldWindows, "residual", residual)
+    return count
+
+
+def test_windows_whose_residuals_are_known_are_sought_from_others_without_them(monkeypatch):
+    fit = fitted_again().fit
+    held = fit.problem.held(fit.q)
+    starts = [(d + NEAR, np.arange(len(d)) % 2 == 0) for d in fit.moves]
+    count = counted(monkeypatch)
+    without = sought_from_others(held, fit.moves, starts)
+    simulated = sum(count)
+    count.clear()
+    with_them = sought_from_others(held, fit.moves, starts, [t.r for t in fit.tangents])
+    assert sum(count) == simulated - sum(map(len, fit.moves))
+    for one, other in zip(without, with_them, strict=True):
+        np.testing.assert_array_equal(one.d, other.d)
+        np.testing.assert_array_equal(one.r, other.r)
+
+
+def test_a_fit_whose_first_residuals_are_known_ends_where_it_ends_without_them(monkeypatch):
+    fit = fitted_again().fit
+    q = fit.problem.prior.space.inside(fit.q + 0.1)
+    moves, r = fit.problem.settled(q, fit.moves)
+    count = counted(monkeypatch)
+    one = solve(fit.problem, q, moves)
+    simulated = sum(count)
+    count.clear()
+    other = solve(fit.problem, q, moves, known=r)
+    assert sum(count) == simulated - sum(map(len, moves))
+    np.testing.assert_array_equal(one.q, other.q)
+    assert one.cost == other.cost

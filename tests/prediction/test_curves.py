@@ -1,13 +1,25 @@
 """Curves drawn from the data: a listed law wins over them, and alone they are no name of a law."""
 
-import pytest
-from records_cases import AXIS, nominal_model, pendulum, record
+from dataclasses import replace
+from functools import cache
 
+import numpy as np
+import pytest
+from records_cases import AXIS, FREE, HORIZON, nominal_model, pendulum, record, records
+
+from identification.discovery.effect_results import Rival
 from identification.discovery.options import DiscoveryOptions
+from identification.discovery.scoring.sensitivities import list_common
 from identification.effects.axes import Axis
 from identification.effects.catalogue import joint_effects
 from identification.effects.joint_plant import candidates
 from identification.prediction.discovery import discover_records
+from identification.prediction.extension import with_effect
+from identification.prediction.first_fit import begin
+from identification.prediction.nominal_fit import fit_nominal
+from identification.prediction.records import as_records
+from identification.prediction.recovery import recover_over_horizon
+from identification.prediction.scores import window_scores
 
 CURVES = ("curve_speed", "curve_load", "curve_position")
 NEIGHBOURS = ("curve_before", "curve_behind", "curve_speed_before", "curve_speed_behind")
@@ -52,17 +64,64 @@ def test_curves_bend_either_way_and_act_on_single_joints():
     assert DiscoveryOptions().size_factor >= 1
 
 
-def test_curves_of_slides_are_called_curves_too():
-    mixed = joint_effects((AXIS, Axis("s", "slide", 1.0, 1.0, 1.0)))
-    some = (*CURVES, *NEIGHBOURS)
-    assert {e.name for e in mixed if "curve" in e.name} == {
-        *some, *(c.replace("curve", "curve_slide") for c in some)
-    }  # fmt: skip
-    assert all(e.is_curve for e in mixed if "curve" in e.name)
+TRUE = {
+    "quadratic_friction": ({"quadratic_friction.c@hinge": 0.02}, "rate",
+                           lambda v: -0.02 * v * np.abs(v)),
+    "hardening": ({"hardening.k_3@hinge": 0.3}, "position", lambda q: -0.3 * q**3),
+    "hardening.k_3": ({"hardening.k_3@hinge": 0.03}, "position", lambda q: -0.03 * q**3),
+    "encoder_scale": ({"encoder_scale.s@angle": 0.05, "stiffness.k@hinge": 0.5}, "reading",
+                      lambda y: 0.05 * y),
+}  # fmt: skip
 
 
-@pytest.mark.parametrize("name", CURVES)
-def test_a_curve_of_a_single_joint_keeps_its_place(name):
-    (effect,) = (e for e in pendulum().effects if e.name == name)
-    assert effect.places == {"joint hinge": "@hinge"}
-    assert not {*NEIGHBOURS} & {e.name for e in pendulum().effects}
+@cache
+def fitted(true, name):
+    """A model with an effect, fitted to records of a pendulum that has perhaps another."""
+    values = TRUE[true][0]
+    samples = 500 if true == "hardening.k_3" else 300  # a little of it shows in more of them
+    logs = as_records(*_split(records(4, values, samples=samples)))
+    base = nominal_model()
+    known = {n: v for n, v in values.items() if not n.startswith(true)}
+    parent = fit_nominal(replace(base, plant=base.plant.with_values(known)), logs)
+    effect = next(e for e in candidates(pendulum(), FREE) if e.name == name)
+    (score, *_) = window_scores(parent.fit, list_common([effect]))
+    start = begin(parent, [score])
+    return with_effect(parent, start, HORIZON, logs[2:]), score.candidate
+
+
+def _split(logs):
+    return logs[:2], logs[2:]
+
+
+@pytest.mark.parametrize("name", ["hardening", "encoder_scale"])
+def test_recovered_points_and_the_band_hold_the_true_law(name):
+    model, candidate = fitted(name, name)
+    of = recover_over_horizon(model, candidate)
+    _, along, law = TRUE[name]
+    assert (of.along, of.places) == (along, 1)
+    assert len(of.points.x) >= 5
+    # Base parameters are those of the fit, and a force takes over by how much these are wrong.
+    close = 0.08 * np.abs(of.law.force).max()
+    assert np.abs(of.points.force - law(of.points.x)).max() < close
+    assert np.abs(of.law.force - law(of.law.x)).max() < close
+    off = of.points.force - np.interp(of.points.x, of.law.x, of.law.force)
+    inner = slice(1, -1)  # the ends of a line are means over bins
+    assert np.median(np.abs(off / of.points.std)[inner]) < 3
+
+
+def test_points_leave_a_wrong_law_for_the_true_one():
+    model, candidate = fitted("hardening.k_3", "stiffness")
+    of = recover_over_horizon(model, candidate)
+    truth = TRUE["hardening.k_3"][2](of.points.x)
+    wrong = np.interp(of.points.x, of.law.x, of.law.force) - truth
+    assert np.linalg.norm(of.points.force - truth) < 0.5 * np.linalg.norm(wrong)
+
+
+def test_a_rival_is_drawn_with_the_sizes_of_its_own_fit():
+    model, candidate = fitted("hardening", "hardening")
+    of = Rival(candidate, 0.1, values={"hardening.k_3@hinge": 0.6})
+    found = recover_over_horizon(model, candidate, [of])
+    ((rival, line),) = found.rivals
+    assert rival is candidate
+    size = model.values["hardening.k_3@hinge"]
+    np.testing.assert_allclose(line.force, found.law.force * 0.6 / size, rtol=1e-6, atol=1e-9)

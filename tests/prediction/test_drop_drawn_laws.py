@@ -9,7 +9,7 @@ from numba import njit
 
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate, Effect, Size
-from identification.prediction.moves import curve_for_laws, drop_drawn_laws
+from identification.prediction.moves import curve_for_laws, drop_beside_curves, drop_drawn_laws
 from identification.prediction.proof import has_size
 
 LAW = njit(lambda s, p: 0.0)
@@ -70,9 +70,7 @@ def after_curve(monkeypatch, every, without):
 
 
 # Alone the law took the mean square from 10 to 1.
-@pytest.mark.parametrize(
-    ("without", "is_lost"), [(0.2, True), (4.5, True), (4.7, False), (10, False)]
-)
+@pytest.mark.parametrize(("without", "is_lost"), [(4.5, True), (4.7, False)])
 def test_a_law_stays_that_explains_beside_the_curve_what_it_did_alone(
     monkeypatch, without, is_lost
 ):
@@ -81,27 +79,6 @@ def test_a_law_stays_that_explains_beside_the_curve_what_it_did_alone(
     assert (kept, lost) == (
         (["curve_speed"], ["square"]) if is_lost else (["square", "curve_speed"], [])
     )
-
-
-@pytest.mark.parametrize(
-    "every",
-    [
-        [
-            accepted("curve_speed"),
-            accepted("square"),
-        ],  # as `drop_beside_curves` judges
-        [accepted("square"), accepted("curve_speed", where="other joint")],
-        [accepted("delay", hook="input"), accepted("curve_speed")],
-        [accepted("square"), accepted("cogging")],
-    ],
-)
-def test_others_are_not_asked(monkeypatch, every):
-    assert after_curve(monkeypatch, every, 0.1) == (names(every), [])
-
-
-def test_a_law_stays_where_the_model_without_it_cannot_be_simulated(monkeypatch):
-    every = [accepted("square"), accepted("curve_speed")]
-    assert after_curve(monkeypatch, every, None) == (["square", "curve_speed"], [])
 
 
 def in_their_place(monkeypatch, every, theirs, curve, doubt=None):
@@ -151,19 +128,6 @@ def test_laws_stay_whose_evidence_is_more_or_whose_curve_is_not_proven(monkeypat
     assert (kept, lost) == (names(TWO), [])
 
 
-@pytest.mark.parametrize(
-    "every",
-    [
-        [accepted("cogging"), accepted("delay", hook="input")],
-        [accepted("cogging"), accepted("uneven", where="other joint")],
-        [accepted("cogging"), accepted("uneven"), accepted("curve_time")],
-    ],
-)
-def test_one_law_at_a_joint_or_laws_beside_a_curve_are_not_asked(monkeypatch, every):
-    kept, lost, asked = in_their_place(monkeypatch, every, 0.0, 400.0)
-    assert (kept, lost, asked) == (names(every), [], [])
-
-
 @pytest.mark.parametrize(("name", "std", "has"), [
     ("curve_speed", 0.5, True), ("square", 0.5, False), ("square", 0.01, True),
     ("curve_speed", 1e-9, True),
@@ -177,3 +141,48 @@ def test_a_law_needs_a_size_that_is_known_and_a_curve_a_size(name, std, has):
         )
         whole = SimpleNamespace(std={size: std}, fit=fit, candidates=(candidate,))
         assert has_size(whole, DiscoveryOptions()) == is_there
+
+
+@dataclass(frozen=True)
+class Accepted_curves:
+    """What a contender is asked here."""
+
+    candidate: Candidate
+    doubt: str | None = None
+
+
+def accepted_curves(*names):
+    return [Accepted_curves(Candidate(Effect(n, "", SIZES, places={"joint": ""}), "joint", {}))
+            for n in names]  # fmt: skip
+
+
+@pytest.fixture
+def kept(monkeypatch):
+    """Names that stay, names that are in doubt, and what was refitted."""
+
+    def of(*names, cannot=False):
+        refits, told = [], []
+
+        def refit(model, candidates, base, confirm):
+            refits.append([c.effect.name for c in candidates])
+            return None if cannot else SimpleNamespace(candidates=candidates)
+
+        monkeypatch.setattr(drop_beside_curves, "refitted", refit)
+        every = accepted_curves(*names)
+        model = SimpleNamespace(candidates=[a.candidate for a in every])
+        task = SimpleNamespace(nominal_model=None, confirm=())
+        state = SimpleNamespace(model=model, accepted=tuple(every), task=task)
+        new, stay, lost = drop_beside_curves.drop_beside_curves(state, told.append)
+        assert (new is model) == (not lost)
+        assert all(a.doubt == "curve" for a in lost)
+        assert [replace(a, doubt=None) for a in lost] == [a for a in every if a not in stay]
+        assert len(told) == len(lost)
+        return [a.candidate.effect.name for a in stay], refits
+
+    return of
+
+
+def test_laws_behind_a_curve_go_and_the_rest_is_refitted_once(kept):
+    names, refits = kept("offset", "curve_time", "cogging", "curve_before", "stiffness")
+    assert names == ["offset", "curve_time", "curve_before"]
+    assert refits == [["offset", "curve_time", "curve_before"]]

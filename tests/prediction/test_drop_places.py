@@ -1,5 +1,6 @@
 """An effect that was named at several places keeps those where it does something."""
 
+import json
 from dataclasses import replace
 from functools import cache
 from types import SimpleNamespace
@@ -10,7 +11,7 @@ from arm_cases import LOG, text
 
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
-from identification.effects.effect import Candidate
+from identification.effects.effect import Candidate, Effect, Size
 from identification.effects.joint_plant import candidates, joint_plant
 from identification.model.parameter import Parameter
 from identification.model.predictor import Predictor
@@ -19,10 +20,16 @@ from identification.prediction.first_fit import begin
 from identification.prediction.moves.drop_places import drop_places
 from identification.prediction.nominal_fit import fit_nominal
 from identification.prediction.records import as_records
-from identification.prediction.scores import window_scores
+from identification.prediction.scores import WindowScore, window_scores
 from identification.prediction.selection import Contender
-from identification.prediction.several_places import at_places, at_several, places_of
+from identification.prediction.several_places import at_several, felt_places, places_of
+from identification.prediction.state import first_state
+from identification.prediction.task import RecordsTask
 from identification.prediction.unseen import compare
+from identification.prediction.verdict import conclude
+from identification.report.curve_nodes import curve_nodes
+from identification.report.discovery_json import discovery_to_json
+from identification.report.effect_words import describe_there
 
 PLACES, HORIZON, NOISE = ["joint shoulder", "joint elbow"], 0.2, 3e-4
 SIZES = ("quadratic_friction.c@shoulder", "quadratic_friction.c@elbow")
@@ -90,17 +97,108 @@ def test_a_model_with_the_effect_at_all_its_places_stays_as_it_is():
     assert said == []
 
 
-def test_places_that_stay_have_the_parameters_that_they_had():
-    every = next(e for e in candidates(plant(), ("d",)) if e.name == "quadratic_friction")
-    both = at_several(every, PLACES)
-    for where, name in zip(PLACES, SIZES, strict=True):
-        assert Candidate(at_places(both, [where]), where, {}).sizes == (name,)
-    assert at_places(both, PLACES) == both
+WHERE = {"all joints": "", "joint a": "@a", "joint b": "@b", "joint c": "@c"}
+EFFECT = Effect("friction", "μ |f|", (Size("mu", "", 0.2, 0.002, 1),), places=WHERE)
 
 
-def test_an_effect_at_one_place_is_not_asked():
-    c = SimpleNamespace(where="joint elbow", effect=SimpleNamespace(own=False))
-    claim = SimpleNamespace(candidate=c)
-    task = SimpleNamespace(options=DiscoveryOptions())
-    state = SimpleNamespace(model="model", accepted=[claim], task=task)
-    assert drop_places(state, print) == ("model", (claim,), ())
+def test_its_parameters_are_those_of_the_single_places():
+    several = at_several(EFFECT, ["joint a", "joint c"])
+    (where,) = several.places
+    assert where == "joint a and joint c"
+    assert Candidate(several, where, {}).sizes == ("friction.mu@a", "friction.mu@c")
+    singles = [Candidate(EFFECT, f"joint {x}", {}).sizes[0] for x in "ac"]
+    assert [*Candidate(several, where, {}).sizes] == singles
+
+
+def several(sizes, std, places=("joint a", "joint b", "joint c")):
+    effect = at_several(EFFECT, places)
+    return WindowScore(
+        candidate=Candidate(effect, next(iter(effect.places)), {}), size=np.array(sizes),
+        std=np.array(std), fall=0.2, p_value=1e-6, along=np.zeros(0),
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("sizes", "std", "kept"),
+    [
+        ((0.06, 0.08, 0.05), (0.01, 0.01, 0.01), ["joint a", "joint b", "joint c"]),
+        ((0.06, -0.08, 0.05), (0.01, 0.01, 0.01), ["joint a", "joint c"]),  # a sign
+        ((0.06, 0.08, 0.01), (0.01, 0.01, 0.01), ["joint a", "joint b"]),  # within its std
+        ((0.06, 1.5, 0.05), (0.01, 0.01, 0.01), ["joint a", "joint c"]),  # too large
+        ((-0.06, -0.08, 0.01), (0.01, 0.01, 0.01), []),
+    ],
+)
+def test_places_stay_where_the_size_is_admitted_and_beyond_its_std(sizes, std, kept):
+    places = ["joint a", "joint b", "joint c"]
+    assert felt_places(several(sizes, std), places, EFFECT, DiscoveryOptions()) == kept
+
+
+JOINTS = "shoulder", "elbow"
+BOTH = "joint shoulder and joint elbow"
+TRUTH = {"quadratic_friction.c@shoulder": 0.08, "quadratic_friction.c@elbow": 0.03}
+
+
+def record_several(seed):
+    rng = np.random.default_rng(seed)
+    u = np.repeat(rng.uniform(-1, 1, (10, 2)) * (4.0, 1.5), 20, axis=0)
+    log = replace(LOG, time=0.01 * np.arange(200), inputs=u, outputs=np.zeros((200, 2)))
+    y = Predictor(plant(), log, tuple(TRUTH)).predict(np.array([[*TRUTH.values()]]))[0]
+    return replace(log, outputs=y + NOISE * rng.standard_normal(y.shape), name=f"record {seed}")
+
+
+def effect(name):
+    return next(e for e in candidates(plant(), ("d",)) if e.name == name)
+
+
+def over_both(name):
+    several = at_several(effect(name), [f"joint {joint}" for joint in JOINTS])
+    return Candidate(several, BOTH, {})
+
+
+@cache
+def state_with_a_curve():
+    """A state whose model has a curve of speed at both joints; nothing judged whether it should."""
+    task = RecordsTask(
+        nominal_model=NominalModel(plant(), ("d",), np.array([0.5]), HORIZON), horizon=HORIZON,
+        records=as_records([record_several(1)], [record_several(2), record_several(3)]),
+        effects=(effect("curve_speed"),), options=DiscoveryOptions(),
+    )  # fmt: skip
+    state = first_state(task, lambda line: None)
+    parent = state.model
+    (score,) = window_scores(parent.fit, [over_both("curve_speed")])
+    model = with_effect(parent, begin(parent, [score]), HORIZON, task.confirm)
+    claim = Contender(
+        model=model, prediction=compare(parent.unseen, model.unseen), gains=np.ones(9),
+        numbers=16, criterion=50.0, doubt=None,
+    )  # fmt: skip
+    return replace(
+        state, model=model, accepted=(claim,), moves=(),
+        rejected=(replace(claim, doubt="chance"),),
+    )  # fmt: skip
+
+
+@cache
+def found():
+    return conclude(state_with_a_curve())
+
+
+@pytest.mark.parametrize("name", ["curve_speed", "curve_before"])
+def test_nodes_at_several_joints_are_those_at_each_of_them(name):
+    each = curve_nodes(over_both(name), plant())
+    assert [n.joint for n in each] == [*JOINTS]
+    for n in each:
+        (alone,) = curve_nodes(Candidate(effect(name), f"joint {n.joint}", {}), plant())
+        np.testing.assert_array_equal(n.at, alone.at)
+        assert (n.reads, n.unit, n.depends_on) == (alone.reads, alone.unit, alone.depends_on)
+    assert BOTH in describe_there(over_both(name), plant())
+
+
+def test_the_json_has_the_nodes_by_joint():
+    told = json.loads(json.dumps(discovery_to_json(found())))
+    for curve in (*told["effects"], *told["rejected"]):
+        assert (curve["name"], curve["where"], curve["depends_on"]) == ("unlisted", BOTH, "speed")
+        assert list(curve["joints"]) == [f"joint {joint}" for joint in JOINTS]
+        assert [len(n["nodes"]) for n in curve["joints"].values()] == [8, 8]
+        assert curve["joints"]["joint elbow"]["reads"] == "rate of elbow"
+    assert told["effects"]
+    assert told["rejected"]

@@ -2,22 +2,30 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
+import numpy as np
 import pytest
-from records_cases import FREE, HORIZON, nominal_model, pendulum, record, records
+from records_cases import FREE, HORIZON, NOISE, STEP, nominal_model, pendulum, record, records
 
 from identification.discovery.candidates import list_common
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.joint_plant import candidates
+from identification.model.predictor import Predictor
 from identification.prediction.discovery import discover_records
 from identification.prediction.exchange import exchanged, is_contradicted
 from identification.prediction.extension import with_effect
 from identification.prediction.first_fit import begin
+from identification.prediction.input_error import needed_input_error
+from identification.prediction.model import predict_fitted
 from identification.prediction.nominal_fit import fit_nominal
 from identification.prediction.proof import find_doubt
 from identification.prediction.records import as_records
 from identification.prediction.scores import window_scores
+from identification.prediction.screening import score_all
+from identification.prediction.selection import REFUTED, refit_contenders
+from identification.prediction.unseen import HORIZON as ALONE
 from identification.prediction.unseen import compare
 
 NAME, MU = "transmitted_load_friction", "transmitted_load_friction.mu@hinge"
@@ -83,3 +91,68 @@ def test_what_is_contradicted_is_told_and_not_named():
     assert found.verdict == "unknown effect"
     assert [r.doubt for r in found.rejected] == ["exchange"]
     assert any("contradicted where the records exchange their roles" in line for line in said)
+
+
+MU_LENGTHS = "transmitted_load_friction.mu@hinge"
+
+
+@cache
+def fitted(mu=0.15):
+    """Records with friction under load, and the model without it."""
+    logs = records(4, {MU_LENGTHS: mu}, samples=SAMPLES)
+    every = as_records(logs[:2], logs[2:])
+    return [r for r in every if r.role == "confirm"], fit_nominal(nominal_model(), every)
+
+
+def predicted(model, confirm, **lengths):
+    return predict_fitted(model.plant, confirm, HORIZON, model.scale, model.fit, {}, **lengths)
+
+
+def test_a_length_is_predicted_the_same_alone_and_with_others():
+    confirm, model = fitted()
+    whole, alone = predicted(model, confirm), predicted(model, confirm, lengths=ALONE)
+    assert alone.lengths == ALONE
+    for mine, other in zip(alone.at_horizon, whole.at_horizon, strict=True):
+        np.testing.assert_array_equal(mine, other)
+    rest = predicted(model, confirm, lengths=[n for n in whole.lengths if n not in ALONE])
+    joined = alone.plus(rest)
+    assert joined.lengths == whole.lengths
+    for mine, other in zip(joined.squares, whole.squares, strict=True):
+        np.testing.assert_array_equal(np.concatenate(mine), np.concatenate(other))
+    np.testing.assert_array_equal(joined.fit_percent, whole.fit_percent)
+
+
+@pytest.mark.parametrize("least", [DiscoveryOptions().min_proof_t, 1e3])
+def test_what_the_horizon_refutes_is_predicted_over_no_other_length_and_the_rest_over_all(least):
+    confirm, model = fitted()
+    few = ("transmitted_load_friction", "quadratic_friction", "offset")
+    effects = [e for e in candidates(model.plant, ("J", "d")) if e.name in few]
+    scores = score_all(model, effects, DiscoveryOptions())
+    options = DiscoveryOptions(min_proof_t=least)
+    parent, tried = refit_contenders(model, scores, HORIZON, confirm, options, lambda _: None)
+    assert tried[0].is_proven == (least < 1e3)
+    for c in tried:
+        lengths = ALONE if c.doubt in REFUTED else parent.unseen.lengths
+        assert c.model.unseen.lengths == lengths
+        assert len(c.prediction.falls) == len(lengths)
+
+
+def disturbed(seed, share):
+    """A record whose input errs by a constant over each window, which the log does not have."""
+    log, rng = record(seed, samples=300), np.random.default_rng(100 + seed)
+    length = round(HORIZON / STEP)
+    size = share * np.sqrt(np.mean(log.inputs**2))
+    error = np.repeat(size * rng.standard_normal(len(log) // length + 1), length)[: len(log), None]
+    y = Predictor(pendulum(), replace(log, inputs=log.inputs + error), ()).predict(np.zeros((1, 0)))
+    return replace(log, outputs=y[0] + NOISE * rng.standard_normal(y[0].shape))
+
+
+@pytest.mark.parametrize("share", [0.0, 0.1])
+def test_an_error_of_the_inputs_is_found_as_large_as_it_is(share):
+    logs = [disturbed(k, share) for k in range(1, 4)]
+    found = fit_nominal(nominal_model(), as_records(logs[:2], logs[2:]))
+    error = needed_input_error(found.fit, found.unseen.floor)
+    if share:
+        assert error == pytest.approx(share, rel=0.3)
+    else:
+        assert error < 0.005

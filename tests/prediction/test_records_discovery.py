@@ -4,14 +4,12 @@ import json
 from dataclasses import replace
 from functools import cache
 
-import numpy as np
 import pytest
 from page_text import text_of
 from pendulum_robot import TOML, make_folder, written
 from records_cases import nominal_model, pendulum, record, records
 
 from identification.__main__ import main
-from identification.discovery.effect_results import RejectedEffect
 from identification.discovery.findings.records_evidence import ShiftedRecord
 from identification.effects.joint_plant import candidates
 from identification.errors import InputError
@@ -114,45 +112,6 @@ def test_shifts_of_records_stand_in_the_report(tmp_path):
 
 
 @pytest.mark.usefixtures("undrawn")
-def test_a_small_shift_that_may_be_chance_stands_in_the_json_alone(tmp_path):
-    """Two and a half std, a hundredth of a step: it is nothing to look after."""
-    answer = found()
-    name = answer.records[-1].log.name
-    small = ShiftedRecord(record=name, shift=52e-6, std=20e-6, fall=0.001, chance=0.02)
-    sure, large = replace(small, std=5e-6, chance=1e-6), replace(small, shift=0.02, std=0.008)
-    for shift, is_told in ((small, False), (sure, True), (large, True)):
-        answer = replace(answer, shifts=(shift,))
-        page = text_of(write_discovery_report(answer, tmp_path).read_text())
-        assert ("Shifts in time" in page) is is_told
-        assert ("later or earlier" in discovery_text(answer)) is is_told
-        assert discovery_to_json(answer)["shifts"][0]["shift"] == shift.shift
-
-
-def tried(named):
-    return RejectedEffect(
-        named.candidate, named.parameters, np.nan, named.proof, evidence=named.evidence
-    )
-
-
-def test_each_candidate_is_listed_once_and_in_words(tmp_path):
-    answer = found()
-    again = replace(
-        answer,
-        scores=tuple(s for s in answer.scores for _ in range(3)),
-        rejected=tuple(tried(n) for n in answer.named for _ in range(2)),
-    )
-    said = discovery_text(again)
-    listed = said[said.index("what each effect would explain") :].split("\n\n")[0].splitlines()[1:]
-    assert len(listed) == len({s.candidate.effect.name for s in answer.scores})
-    assert all(" – " in line for line in listed)
-    assert not any(name in line for name in FEW for line in listed if name != "offset")
-    each = said[said.index(", and not believed:") :].split("\n\n")[0].splitlines()[1:]
-    assert len(each) == len({n.candidate.key for n in answer.named})
-    page = write_discovery_report(again, tmp_path).read_text()
-    assert page.count("on unseen ones t = ") == len(each)
-
-
-@pytest.mark.usefixtures("undrawn")
 def test_steps_that_are_longer_than_the_models_are_told(tmp_path):
     answer = found()
     own = answer.nominal.plant
@@ -189,11 +148,6 @@ def test_records_without_an_effect_get_no_name():
     assert "->" not in discovery_text(answer).partition("nothing is named:")[2].split("\n\n")[0]
 
 
-def test_a_law_that_is_not_in_the_list_is_not_called_by_another_name():
-    answer = found(names=("offset",))
-    assert answer.named == ()
-
-
 def clipped_and_not(names):
     """Two records whose torque is clipped and two whose torque is small; the model begins right."""
     hidden = {"saturation.c@drive": 1.0, "saturation.u_max": 0.4}
@@ -212,34 +166,12 @@ def test_what_made_a_fit_worse_than_its_start_is_named_and_told():
     assert "the fitted values predicted unseen data worse than those of the model" in said
 
 
-def test_a_fit_that_is_worse_than_its_start_is_no_start_and_is_told():
-    answer = clipped_and_not(("offset",))
-    assert answer.verdict == "unknown effect"
-    assert answer.named == ()
-    assert answer.nominal.fit.values["J"] == pytest.approx(2e-3, rel=1e-9)
-    said = discovery_text(answer)
-    assert "the fitted values predicted unseen data worse" in said
-    assert "as begun, without effects" in said
-    begun = [r for r in said[said.index("fitted values:") :].splitlines() if r.startswith("  J ")]
-    assert "±" not in begun[0]  # nobody fitted it
-
-
 def test_a_horizon_is_needed(refusal):
     base, logs = replace(nominal_model(), horizon=None), records(2)
     assert "horizon" in refusal(discover_records, base, logs[:1], logs[1:], [])
 
 
 ONLY = '[effects]\nonly = ["transmitted_load_friction", "offset"]\n'
-
-
-def test_the_robots_file_is_never_replaced_by_results(folder, capsys):
-    before = (folder / "robot.toml").read_text()
-    logs = [str(folder / f"log_{k}.csv") for k in range(2)]
-    for command in ("fit", "discover"):
-        arguments = [command, str(folder / "robot.toml"), logs[0], "--confirm", logs[1]]
-        assert main([*arguments, "--out", str(folder)]) == 2
-        assert "is read by this command and lies in" in capsys.readouterr().err
-    assert (folder / "robot.toml").read_text() == before
 
 
 @pytest.fixture
@@ -250,6 +182,7 @@ def folder(tmp_path):
     return tmp_path
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("undrawn")
 def test_the_command_takes_several_logs_and_several_confirm_flags(folder, capsys):
     logs = [str(folder / f"log_{k}.csv") for k in range(4)]

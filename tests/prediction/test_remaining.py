@@ -9,6 +9,7 @@ from identification.discovery.findings.finding import FindingKind
 from identification.discovery.findings.records_evidence import ShiftedRecord
 from identification.discovery.options import DiscoveryOptions
 from identification.prediction import remaining
+from identification.prediction.rivals import CONTRADICTED, OWN_SHARE, find_rivals
 
 OPTIONS = DiscoveryOptions()
 LEAST = 1 + OPTIONS.min_gap_share  # rms over the noise beyond which something is left
@@ -58,11 +59,6 @@ def test_an_output_that_errs_is_told_whatever_the_others_do(monkeypatch, rms, ou
     np.testing.assert_allclose(remaining.output_ratios(unseen), [1.0, rms])
 
 
-def test_an_encoder_that_rests_says_nothing_of_its_noise():
-    unseen = SimpleNamespace(of_outputs=(np.array([[4.0, 1.0]]),), noise=np.array([1.0, 0.0]))
-    assert remaining.output_ratios(unseen).tolist() == [2.0, 0.0]
-
-
 @pytest.mark.parametrize("ratio", [0.9, 1.0, LEAST - 0.01])
 def test_at_the_noise_nothing_is_left_to_explain(monkeypatch, ratio):
     assert kinds(monkeypatch, ratio) == []
@@ -76,11 +72,41 @@ def test_above_the_noise_a_doubt_and_a_shift_are_told(monkeypatch):
     assert left == [doubts[0], FindingKind.REMAINING_ERROR, doubts[1]]
 
 
-def test_an_effect_at_a_place_is_doubted_once(monkeypatch):
-    twice = kinds(monkeypatch, LEAST + 0.01, rejected=(DOUBTFUL, DOUBTFUL))
-    assert twice == [FindingKind.UNPROVEN_EFFECT, FindingKind.SHIFTED_RECORD]
+BEFORE, AFTER = (SimpleNamespace(fit=SimpleNamespace(cost=cost)) for cost in (100.0, 50.0))
 
 
-def test_sensors_without_noise_leave_all_to_be_explained():
-    unseen = SimpleNamespace(at_horizon=(np.array([1e-12]),), floor=0.0)
-    assert remaining.noise_ratio(SimpleNamespace(model=SimpleNamespace(unseen=unseen))) == np.inf
+def law(doubt=None, t=3.0, key=("other", "joint")):
+    return SimpleNamespace(
+        candidate=SimpleNamespace(key=key), doubt=doubt, prediction=SimpleNamespace(t=t)
+    )
+
+
+def scores(fall, key=("other", "joint")):
+    return [SimpleNamespace(candidate=SimpleNamespace(key=key), fall=fall)]
+
+
+def rivals(other, still=0.0):
+    return find_rivals([other], BEFORE, scores(0.4), AFTER, scores(still))
+
+
+@pytest.mark.parametrize("doubt", [None, "chance", "numbers", "little", "size"])
+def test_a_law_that_is_not_proven_is_a_rival_all_the_same(doubt):
+    other = law(doubt)
+    assert rivals(other) == (other,)
+
+
+@pytest.mark.parametrize("doubt", CONTRADICTED)
+def test_a_law_that_windows_or_records_contradict_is_no_rival(doubt):
+    assert rivals(law(doubt)) == ()
+
+
+@pytest.mark.parametrize("t", [0.0, -0.7])
+def test_a_law_that_predicts_unseen_records_no_better_is_no_rival_however_well_it_fits(t):
+    assert rivals(law("chance", t)) == ()
+
+
+def test_what_explains_as_much_beside_the_name_is_missing_too_and_no_rival():
+    other = law()
+    least = OWN_SHARE * 0.4 * BEFORE.fit.cost / AFTER.fit.cost
+    assert rivals(other, 0.9 * least) == (other,)
+    assert rivals(other, 1.1 * least) == ()

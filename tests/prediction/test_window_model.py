@@ -1,6 +1,5 @@
 """Fits over the windows of records, scores and comparisons, against slow obvious ways."""
 
-import re
 from dataclasses import replace
 from functools import cache
 
@@ -58,16 +57,6 @@ def scored(model, *names):
 def test_clean_records_give_the_values_that_made_them():
     assert clean().values["J"] == pytest.approx(2e-3, rel=1e-4)
     assert clean().values["d"] == pytest.approx(0.02, rel=1e-4)
-
-
-def test_progress_says_the_length_of_windows_and_their_error_in_its_unit():
-    logs, lines = records(2), []
-    found = fit_nominal(nominal_model(), as_records(logs[:1], logs[1:]), lines.append)
-    lengths = [line.partition(" s")[0] for line in lines]
-    assert list(dict.fromkeys(lengths)) == [f"windows of {g:g}" for g in (0.05, 0.1, 0.2)]
-    left = np.sqrt(np.mean(np.concatenate(found.fit.errors) ** 2))
-    told = re.fullmatch(r"windows of 0\.2 s, fit 2: error (\S+) µrad rms, step \d+", lines[-1])
-    assert float(told[1]) == pytest.approx(1e6 * left, rel=0.01)
 
 
 def test_slopes_that_are_kept_lead_to_the_same_fit_with_fewer_linearisations(monkeypatch):
@@ -131,22 +120,10 @@ def test_a_score_is_that_of_least_squares_with_columns_by_hand():
     assert score.fall == pytest.approx(size**2 * (S @ S) / (e @ e), rel=1e-6)
 
 
-def test_the_hidden_law_explains_most():
-    best = scored(rubbed(), *effects())[0]
-    assert best.candidate.effect.name == "transmitted_load_friction"
-    assert best.p_value < 1e-6
-
-
-@pytest.mark.parametrize("name", ["transmitted_load_friction", "quadratic_friction", "offset"])
-def test_a_child_never_explains_less_than_its_parent(name):
+def test_a_child_never_explains_less_than_its_parent():
     parent, logs = rubbed(), records(4, LOAD, samples=SAMPLES)
-    (score, *_) = scored(parent, name)
-    child = with_effect(
-        parent,
-        begin(parent, [score]),
-        HORIZON,
-        as_records(logs[:2], logs[2:])[2:],
-    )
+    (score, *_) = scored(parent, "offset")
+    child = with_effect(parent, begin(parent, [score]), HORIZON, as_records(logs[:2], logs[2:])[2:])
     assert child is None or child.fit.cost < parent.fit.cost
 
 

@@ -40,7 +40,7 @@ def test_accelerations_agree_at_random_states():
     assert 0.4 < found.slack < 0.6
 
 
-@pytest.mark.parametrize("name", ["J", "lambda", "m"])
+@pytest.mark.parametrize("name", ["J", "m"])
 def test_a_wrong_number_in_one_model_is_seen(name, monkeypatch):
     from inca_mj.verification import derivatives
 
@@ -115,23 +115,13 @@ def test_the_order_tells_two_terms_apart():
     ("asked", "message"),
     [
         ({"cases": ("prsb",)}, "unknown case 'prsb'; did you mean 'prbs'"),
-        ({"steps": (3e-3,)}, "does not divide"),
         ({"duration": 0.001}, "is not between two samples"),
-        ({"duration": float("nan")}, "is not between two samples"),
-        ({"states": 0}, "give 1 or more"),
     ],
 )
 def test_what_cannot_be_checked_is_refused_at_once(asked, message, monkeypatch):
     monkeypatch.setattr(check, "compare_derivatives", lambda *_: pytest.fail("began"))
     with pytest.raises(InputError, match=message):
         crosscheck(parameter_set(), INCA, **asked)
-
-
-def test_a_diverged_run_and_an_unknown_order_can_be_drawn():
-    from inca_mj.report.sections import crosscheck_section
-
-    rows = (row("prbs", 2e-3, None), row("prbs", 1e-3, 1e-6), row("drop", 2e-3, None))
-    assert crosscheck_section(CrossCheck(GOOD, rows)).figures
 
 
 @pytest.mark.parametrize("what", ["angle", "position", "tension"])

@@ -19,7 +19,6 @@ from reference_cases import (
 
 from inca_mj.reference import derivative, outputs, pack, rest
 from inca_mj.reference import layout as at
-from inca_mj.reference.equations import cables
 from inca_mj.robot.geometry import INCA
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.robot.spread import EACH_DRIVE
@@ -130,12 +129,6 @@ def test_the_equations_commute_with_a_mirror(axis, x, i):
     rate = derivative(mirrored(x, sign, drives), i[drives], q_mirror)
     expected = mirrored(derivative(x, i, q), sign, drives)
     np.testing.assert_allclose(rate, expected, rtol=1e-9, atol=1e-7)
-
-
-@settings(deadline=None)
-@given(states, sets)
-def test_a_cable_never_pushes(x, name):
-    assert cables(x, pack(parameter_set(name), INCA))[0].min() >= 0
 
 
 @settings(deadline=None)

@@ -98,47 +98,19 @@ def test_a_slack_cable_is_no_trouble():
     assert np.isfinite(run.state).all()
 
 
-def test_rounded_sample_times_are_no_trouble():
-    t = np.round(samples(0.1, 300), 6)  # 3.333 and 3.334 ms
-    u = flat_out(t)
-    fixed = simulate_reference(parameter_set(), INCA, t, u, method="rk4", step=1e-3 / 3)
-    np.testing.assert_allclose(
-        fixed.angles, simulate_reference(parameter_set(), INCA, t, u).angles, atol=1e-6
-    )
-
-
-def test_one_sample_is_the_start():
-    run = simulate_reference(parameter_set(), INCA, [0.0], np.zeros((1, 8)))
-    np.testing.assert_array_equal(run.state, [rest(parameter_set(), INCA).state])
-
-
-def test_a_run_cannot_be_changed():
-    run = simulate_reference(parameter_set(), INCA, [0.0], np.zeros((1, 8)))
-    with pytest.raises(ValueError, match="read-only"):
-        run.angles[0, 0] = 1.0
-
-
 def test_a_step_that_is_too_long_diverges_and_says_when():
     t = samples(1.0)
     with pytest.raises(DivergenceError, match=r"at t = .* smaller step"):
         simulate_reference(parameter_set(), INCA, t, flat_out(t), method="rk4", step=0.01)
 
 
-@pytest.mark.parametrize("method", ["adaptive", "rk4"])
-def test_a_pitch_of_90_degrees_is_refused(method):
+def test_a_pitch_of_90_degrees_is_refused():
     t = samples(0.5)
     x = rest(parameter_set(), INCA).state.copy()
     x[at.NO_LOAD] *= 2
     x[at.RATES] = 0, 4, 0
     with pytest.raises(DivergenceError, match=r"pitch reached .*° at t = 0\.[34].* singular"):
-        simulate_reference(parameter_set(), INCA, t, flat_out(t, 0.0), start=x, method=method)
-
-
-def test_an_adaptive_run_that_leaves_the_finite_numbers_says_when():
-    x = rest(parameter_set(), INCA).state.copy()
-    x[at.NO_LOAD] = 1e-300
-    with pytest.raises(DivergenceError, match="left the finite numbers at t = 0"):
-        simulate_reference(parameter_set(), INCA, samples(0.1), np.zeros((11, 8)), start=x)
+        simulate_reference(parameter_set(), INCA, t, flat_out(t, 0.0), start=x, method="adaptive")
 
 
 T = samples(0.1)
@@ -148,14 +120,8 @@ T = samples(0.1)
     ("changes", "message"),
     [
         ({"time": T[::-1]}, "time must be a row of increasing"),
-        ({"currents": np.zeros((11, 7))}, r"shape \(11, 8\).*\(11, 7\)"),
-        ({"currents": np.full((11, 8), np.nan)}, "currents must be finite"),
         ({"start": np.zeros(35)}, "start must be 36 finite numbers"),
-        ({"method": "euler"}, "unknown method 'euler'; known: adaptive, rk4"),
-        ({"step": 1e-3}, "step is for method 'rk4'"),
         ({"method": "rk4", "step": 0.003}, "does not divide .* 0.0025 s does"),
-        ({"method": "rk4", "step": 0.02}, "does not divide .* 0.01 s does"),
-        ({"method": "rk4", "step": -1.0}, "step must be a positive number"),
     ],
 )
 def test_bad_input_is_refused_with_a_cure(changes, message):

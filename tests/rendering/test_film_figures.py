@@ -1,12 +1,18 @@
+import re
+from html.parser import HTMLParser
 from xml.etree import ElementTree
 
 import numpy as np
 import pytest
 from PIL import Image
 
+from identification.errors import InputError
+from identification.report import media
 from identification.report.compare_figure import compare_figure
+from identification.report.page import Section, Table, write_report
 from identification.report.style import save_png
 from identification.report.vector import svg
+from inca_mj.rendering.legend import SLACK, tension_scale
 from inca_mj.report.figures import crosscheck_figure, simulation_figures
 
 
@@ -26,8 +32,8 @@ def test_the_currents_and_the_four_figures_of_the_thesis(short_run):
         assert axes.get_ylabel().endswith("]")
 
 
-@pytest.mark.parametrize("channels", [1, 3, 8])
-def test_compare_shows_every_output_with_its_fit_and_residual(channels):
+def test_compare_shows_every_output_with_its_fit_and_residual():
+    channels = 8
     time = np.linspace(0, 1, 20)
     measured = np.sin(np.outer(time, np.arange(1, channels + 1)))
     fit = np.linspace(90, 99, channels)
@@ -67,3 +73,77 @@ def test_png_and_svg(tmp_path, short_run):
     text = svg(figure)
     assert ElementTree.fromstring(text).tag.endswith("svg")
     assert text == svg(figure)
+
+
+def test_colour_follows_tension_and_slack_is_grey():
+    scale = tension_scale(np.array([[0.0, 3.2, 9.7]]))
+    assert (scale.low, scale.high) == (3.0, 10.0)
+    colours = scale(np.array([-1.0, 0.0, 3.2, 6.0, 9.7]))
+    np.testing.assert_array_equal(colours[:2], [SLACK, SLACK])
+    lightness = colours[2:, :3] @ [0.2126, 0.7152, 0.0722]
+    assert (np.diff(lightness) > 0.05).all()
+
+
+def test_every_run_has_a_scale():
+    for tension in (np.zeros((3, 8)), np.full((3, 8), 4.0)):
+        scale = tension_scale(tension)
+        assert scale.high > scale.low
+        assert np.isfinite(scale(tension[0])).all()
+
+
+@pytest.fixture(scope="module")
+def pictures(short_run):
+    return tuple(simulation_figures(short_run).items())
+
+
+@pytest.fixture
+def page(tmp_path, pictures):
+    movie = tmp_path / "run.mp4"
+    movie.write_bytes(b"not a film")
+    sections = [
+        Section("Motion", "First.\n\nSecond.", pictures, video=movie),
+        Section("Values", table=Table(("name", "value"), (("b_c", 0.0051234567), ("k_s", None)))),
+        Section("Motion again", figures=pictures),
+    ]
+    path = write_report(
+        tmp_path / "report.html",
+        "A <report>",
+        ["All & well."],
+        sections,
+        good=True,
+        footer="seed 1",
+    )
+    return path.read_text(encoding="utf-8")
+
+
+def test_a_report_is_well_formed_and_its_names_are_unique(page):
+    root = ElementTree.fromstring(page.replace("<!DOCTYPE html>", ""))
+    names = [element.get("id") for element in root.iter() if element.get("id")]
+    assert len(names) == len(set(names))
+    used = set(re.findall(r'(?:url\(|href=")#([^)"]+)', page))
+    assert used <= set(names)
+    HTMLParser().feed(page)
+
+
+def test_the_verdict_comes_first_and_text_is_escaped(page):
+    assert "A &lt;report&gt;" in page
+    assert page.index("All &amp; well.") < page.index("First.")
+    assert page.count("<svg") == 10
+    assert "data:video/mp4;base64," in page
+    assert '<td class="number">0.0051235</td>' in page
+    assert page.index("seed 1") > page.index("Motion again")
+
+
+def test_a_figure_of_many_points_becomes_pixels(tmp_path, pictures, monkeypatch):
+    monkeypatch.setattr(media, "_LARGEST_SVG", 100)
+    path = write_report(tmp_path / "r.html", "t", [], [Section("s", figures=pictures[:1])])
+    assert '<img src="data:image/png;base64,' in path.read_text()
+
+
+def test_what_cannot_be_shown_is_refused(tmp_path):
+    with pytest.raises(InputError, match="row of 1 cells"):
+        Table(("a", "b"), ((1,),))
+    missing = Section("film", video=tmp_path / "missing.mp4")
+    with pytest.raises(InputError, match=r"no such file: .*missing\.mp4"):
+        write_report(tmp_path / "r.html", "t", [], [missing])
+    assert list(tmp_path.iterdir()) == []

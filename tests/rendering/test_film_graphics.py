@@ -64,8 +64,7 @@ def test_a_display_or_a_set_variable_is_respected(headless):
 
 
 @pytest.mark.parametrize(
-    ("value", "says"),
-    [("nonsense", "no OpenGL backend"), ("off", "unset it"), ("glfw", "needs a display")],
+    ("value", "says"), [("nonsense", "no OpenGL backend"), ("glfw", "needs a display")]
 )
 def test_values_that_cannot_draw_are_refused(headless, value, says):
     headless.setenv("MUJOCO_GL", value)
@@ -73,11 +72,10 @@ def test_values_that_cannot_draw_are_refused(headless, value, says):
         graphics.choose_backend()
 
 
-@pytest.mark.parametrize(("backend", "library"), [("egl", "EGL"), ("osmesa", "OSMesa")])
-def test_a_missing_library_is_named_with_the_fix(monkeypatch, backend, library):
-    monkeypatch.setenv("MUJOCO_GL", backend)
+def test_a_missing_library_is_named_with_the_fix(monkeypatch):
+    monkeypatch.setenv("MUJOCO_GL", "egl")
     monkeypatch.setattr("ctypes.util.find_library", lambda name: None)
-    with pytest.raises(GraphicsError, match=f"lib{library} is missing.*apt-get install libegl1"):
+    with pytest.raises(GraphicsError, match=r"libEGL is missing.*apt-get install libegl1"):
         graphics.choose_backend()
 
 

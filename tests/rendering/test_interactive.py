@@ -6,9 +6,9 @@ import mujoco
 import numpy as np
 import pytest
 
-from identification.errors import GraphicsError, InputError
+from identification.errors import InputError
 from inca_mj.cli import main
-from inca_mj.rendering.interactive import play, require_screen, view_run
+from inca_mj.rendering.interactive import play, view_run
 
 
 class Window:
@@ -60,20 +60,7 @@ def test_without_a_screen_it_says_so_in_one_sentence(no_screen, capsys):
         assert "inca film draws without a screen" in line
 
 
-def test_a_screen_that_is_not_there_is_refused(monkeypatch):
-    monkeypatch.setattr("sys.platform", "linux")
-    monkeypatch.setenv("DISPLAY", ":987654")
-    monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
-    with pytest.raises(GraphicsError, match="cannot be opened"):
-        require_screen()
-
-
 def test_a_speed_of_nothing_is_refused(short_run):
     for speed in (0.0, -1.0, float("nan"), float("inf")):
         with pytest.raises(InputError, match="not a positive number"):
             view_run(short_run, speed=speed)
-
-
-def test_plain_shows_a_model_and_no_run(no_screen, capsys):
-    assert main(["view", "examples/log.csv", "--plain"]) == 2
-    assert "--plain shows a model and no run" in capsys.readouterr().err

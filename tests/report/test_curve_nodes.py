@@ -5,7 +5,6 @@ import pytest
 from joint_cases import arm, reached, seen, share, slider
 
 from identification.effects.effect import Candidate
-from identification.model.plant import ModelPlant
 from identification.report.curve_nodes import curve_nodes, nodes_sentence
 from identification.report.effect_words import describe_there
 
@@ -50,8 +49,6 @@ def test_a_curve_has_its_sizes_at_its_nodes(plant, effect, where):
     ("name", "where", "said"),
     [
         ("curve_before", "joint elbow", "of the position of shoulder, the joint before it, joint"),
-        ("curve_behind", "joint shoulder", "of the position of elbow, the joint behind it, joint"),
-        ("curve_speed_before", "joint elbow", "of the speed of shoulder, the joint before it,"),
         ("curve_position", "joint elbow", "curve of position, joint elbow"),
     ],
 )
@@ -59,15 +56,3 @@ def test_a_neighbour_is_called_by_its_name(name, where, said):
     plant = arm()
     (effect,) = (e for e in plant.effects if e.name == name)
     assert said in describe_there(Candidate(effect, where, {}), plant)
-
-
-def test_every_kind_of_curve_is_among_them():
-    assert {e.name.removeprefix("curve_") for _, e, _ in CASES} == {*FIELD}
-
-
-def test_a_robot_without_effects_on_joints_has_no_curves():
-    (effect, *_) = (e for e in arm().effects if e.is_curve)
-    bare = arm().bare
-    assert isinstance(bare, ModelPlant)
-    with pytest.raises(TypeError, match="ModelPlant has no curves"):
-        curve_nodes(Candidate(effect, "joint elbow", {}), bare)

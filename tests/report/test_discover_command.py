@@ -119,13 +119,6 @@ def test_options_of_a_file_are_passed_on_and_bad_ones_refused(
     assert "max_effects is 'two'; give a whole number of 1 or more" in said.err
 
 
-def test_bad_input_is_one_sentence(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert run("discover", tmp_path / "none.csv") == 2
-    said = capsys.readouterr()
-    assert said.out == ""
-    assert said.err.count("\n") == 1
-
-
 @pytest.mark.usefixtures("undrawn")
 def test_the_demo_opens_with_the_verdict_and_ends_with_the_report(
     path: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]

@@ -164,16 +164,6 @@ def test_on_a_telephone_bars_are_read_and_values_seen_without_moving_anything(tm
     assert found["name"] >= 8 * 16
 
 
-def test_letters_of_every_figure_can_be_read_on_a_telephone(tmp_path):
-    for inches in (5.0, 7.0, 9.0):
-        figure = Figure((inches, 3.0))
-        figure.subplots().plot([0, 1, 2])
-        table = Table(("a", "b"), (("x", "1 m"),))
-        parts = [Section("s", figures=(("A line", figure),), table=table)]
-        found = measured(write_report(tmp_path / f"{inches}.html", "t", [], parts))
-        assert min(found["letters"]) > 8, inches
-
-
 def test_a_folded_table_is_one_line_on_paper_and_an_unfolded_one_is_printed(tmp_path):
     rows = tuple((f"row {k}", float(k)) for k in range(20 * LONG))
     page = write_report(tmp_path / "r.html", "t", [], [Section("s", table=Table(("a", "b"), rows))])

@@ -60,8 +60,7 @@ def short_log(tmp_path_factory):
 
 
 @pytest.mark.parametrize(
-    "arguments",
-    [("compare",), ("identify", "--free", "b_v", "--profile", "b_v", "--starts", "1")],
+    "arguments", [("compare",), ("identify", "--free", "b_v", "--profile", "b_v", "--starts", "1")]
 )
 def test_the_page_knows_every_key(arguments, capsys, short_log):
     command, *options = arguments

@@ -1,10 +1,20 @@
 """What a log would have shown: every effect once, with its place, and the hardest to see first."""
 
+from dataclasses import replace
+
+import fake_discovery
 import numpy as np
 import pytest
+from fake_discovery import fit
 
 from identification.discovery.effect_results import Detectable
 from identification.effects.effect import Candidate, Effect, Size
+from identification.model.own import with_own
+from identification.report.discovery_json import discovery_to_json
+from identification.report.discovery_tables import parameters_section
+from identification.report.fitted_values import FEW as FEW_PARTS
+from identification.report.fitted_values import shown_values, unknown_shares
+from identification.report.parameter_words import describe_parameter, parameter_words, words_of
 from identification.report.shown_words import (
     FEW,
     LISTED,
@@ -13,6 +23,8 @@ from identification.report.shown_words import (
     shown_rows,
     shown_sentences,
 )
+from inca_mj.robot.parameters import parameter_set
+from inca_mj.robot.spread import with_spread
 
 
 def effect(name: str, *sizes: Size) -> Candidate:
@@ -56,23 +68,73 @@ def test_the_table_has_every_effect_and_the_paragraph_what_matters() -> None:
     assert shown_sentences(MANY).startswith("Hardest to see: law 59")
 
 
-def test_an_effect_of_two_sizes_has_one_line() -> None:
-    sizes = Size("a", "rad", 0.1, 1e-3), Size("b", "rad", 0.1, 1e-3)
-    c = effect("disc", *sizes)
-    pair = [Detectable(c, "a", 0.01, "rad"), Detectable(c, "b", np.inf, "rad")]
-    (row,) = shown_rows(pair)
-    assert row[1] == "a 10 mrad; b at no plausible size"
-    (_, line, _) = shown_lines(pair)
-    assert line == "  disc, joint hip: a from 10 mrad on (plausible up to 0.100 rad)"
+COMMON = ("R", "K_t", "stribeck_friction.f_s", "torque_constant_mismatch.delta@3")
 
 
-@pytest.mark.parametrize("smallest", [1e-3, np.inf])
-def test_a_size_without_a_largest_one(smallest: float) -> None:
-    c = effect("drift", Size("d", "N", np.inf, 0.01))
-    (shown,) = shown_effects([Detectable(c, "d", smallest, "N")])
-    assert shown.is_seen == np.isfinite(smallest)
+def rows(names):
+    return [[name, "0 %"] for name in names]
 
 
-def test_nothing_is_said_of_nothing() -> None:
-    assert shown_lines([]) == []
-    assert shown_sentences([]) == ""
+def test_the_worst_known_are_shown_and_their_number_is_told():
+    parts = [f"K_t@{k}" for k in range(1, 9)] + [f"exit_x@{k}" for k in range(1, 9)]
+    rng = np.random.default_rng(0)
+    shares = dict(zip(parts, rng.permutation(np.linspace(0.1, 0.9, 16)).tolist(), strict=True))
+    shown, said = shown_values(rows((*COMMON, *parts)), shares)
+    names = [row[0] for row in shown]
+    assert names[: len(COMMON)] == [*COMMON]
+    left_out = {*parts} - {*names}
+    assert len(left_out) == len(parts) - FEW_PARTS
+    assert min(shares[n] for n in names[len(COMMON) :]) > max(shares[n] for n in left_out)
+    assert "Of 16 deviations" in said
+    assert "report" in said
+
+
+def test_what_a_log_does_not_tell_has_the_std_that_was_known_before():
+    found = fit({"b_v": 2e-4, "x": 0.0})
+    space = replace(found.point.space, names=("K_t@3", "stribeck_friction.delta@3"))
+    point = replace(found.point, space=space)
+    priors = replace(found.priors, weight=np.array([50.0, 1.0]))
+    left = unknown_shares(replace(found, point=point, std=np.array([0.02, 0.1]), priors=priors))
+    assert left == {"K_t@3": pytest.approx(1.0)}
+
+
+EVERY = with_spread(parameter_set())
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("lambda", "cable elasticity λ"),
+        ("lambda@5", "cable elasticity λ, drive 5"),
+        ("K_t@3", "torque constant K_t, drive 3"),
+        ("I_x", "platform inertia I_x"),
+        ("exit_x@2", "exit point A, cable 2, along x"),
+    ],
+)
+def test_a_parameter_is_said_in_words_with_its_letter_and_its_place(name, said):
+    assert describe_parameter(EVERY[name]) == said
+
+
+def test_words_tell_all_parameters_of_the_robot_apart_and_none_is_a_raw_name():
+    words = parameter_words(EVERY)
+    assert len({*words.values()}) == len(words) > 100
+    assert not [w for w in words.values() if "@" in w or w in words]
+
+
+def test_values_of_single_records_are_told_apart():
+    own = with_own(EVERY, ("x", "yaw"), 3)
+    words = parameter_words(own)
+    assert words["x [2]"] == "start position x, record 2"
+    assert words["yaw [3]"] == "start yaw ψ_p, record 3"
+    assert len({*words.values()}) == len(words)
+
+
+def test_tables_have_the_words_and_json_has_the_names():
+    found = fake_discovery.found()
+    words = words_of(found)
+    first = [row[0] for row in parameters_section(found).table.rows]
+    assert first[0] == "viscous friction b_v"
+    assert "f_s, friction – Stribeck peak, all drives" in first
+    assert "v_s, friction – Stribeck peak" in first
+    assert {*first} <= {*words.values()}
+    assert discovery_to_json(found)["effects"][0]["retuned"]["parameter"] == "m"

@@ -12,7 +12,7 @@ from identification.report.page import write_report
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.thesis.prints import FITS, TABLES
 from inca_mj.thesis.report import numbered, thesis_json, thesis_sections, thesis_verdict
-from inca_mj.thesis.results import FIGURES, repeat_thesis
+from inca_mj.thesis.results import repeat_thesis
 from inca_mj.thesis.trials import TRIALS
 from inca_mj.workflows.identification import STEP_1, STEP_2
 
@@ -128,12 +128,6 @@ def test_the_parameter_sets_are_the_printed_tables(number, name):
         elif not symbol.startswith("["):
             unit = 1e-3 if "(mm)" in row[0] else 1.0
             assert values[symbol] == pytest.approx(float(printed) * unit, rel=1e-12)
-
-
-def test_a_figure_needs_what_the_thesis_says():
-    assert (FIGURES["2.16"].input, FIGURES["2.16"].set) == ("step", "simulation")
-    for number in ("3.2", "3.3"):
-        assert (FIGURES[number].input, FIGURES[number].set) == ("prbs", "trial")
 
 
 def rows(number):

@@ -3,18 +3,14 @@
 from dataclasses import replace
 from math import hypot
 
-import numpy as np
 import pytest
 from fake_discovery import DRIVE_3, NOISE, REJECTED, SLOW, found
 
-from identification.logs.joined import join_logs
 from identification.report.discovery_json import discovery_to_json
-from identification.report.discovery_tables import parameters_section
 from identification.report.discovery_text import discovery_text
 from identification.report.discovery_verdict import discovery_verdict
 from identification.report.effect_words import describe_effect
 from identification.report.finding_words import describe_finding, sentence
-from identification.report.named_words import diff_line
 
 
 def test_a_named_effect_is_said_with_size_place_confidence_and_proof() -> None:
@@ -85,31 +81,11 @@ def test_two_effects_are_two_sentences() -> None:
     assert said[1].startswith("Missing too is one of these")
 
 
-def test_the_table_says_what_was_held_and_has_no_column_of_names_where_there_are_none() -> None:
-    named, none = parameters_section(found()), parameters_section(found("unknown effect"))
-    assert "platform inertia I_x or platform inertia I_y or platform inertia I_z" in named.text
-    assert "b_v" not in named.text
-    assert len(named.table.columns) == len(none.table.columns) + 1 == 4
-    assert all(len(row) == 3 for row in none.table.rows)
-
-
 def test_nothing_missing_says_what_would_have_been_seen() -> None:
     (said,) = discovery_verdict(found("nothing missing"))
     assert said.startswith("Nothing is missing: ")
     assert "Stribeck peak, all drives, f_s 200 µN m" in said
     assert "No plausible size would show in it of these: motor – current comes late." in said
-
-
-def test_nothing_missing_says_which_unlogged_errors_it_rests_on() -> None:
-    (said,) = discovery_verdict(replace(found("nothing missing"), disturbance_rms=0.5))
-    assert "The sensors alone make " in said
-    assert "If they are surely known better, something is missing." in said
-
-
-def test_a_proof_says_what_of_the_noise_the_sensors_make() -> None:
-    assert "of which sensors" not in " ".join(discovery_verdict(found()))
-    said = " ".join(discovery_verdict(replace(found(), disturbance_rms=2e-3)))
-    assert "the noise is 2.1 mrad, of which sensors make 0.50 mrad and unlogged errors" in said
 
 
 def test_an_unknown_effect_is_not_named() -> None:
@@ -142,34 +118,3 @@ def test_what_was_tried_and_not_believed_is_told_with_its_size_and_why() -> None
     assert "not believed" not in said
     (line,) = [x for x in said.splitlines() if x.startswith("error on unseen data:")]
     assert "times the noise" in line  # one number is neither before nor after
-
-
-def test_where_nothing_was_tried_beside_a_name_the_next_is_told_and_why_not() -> None:
-    text = discovery_text(replace(found(), rejected=(), next_best=(found().remaining[0], 1e-6)))
-    told = text[text.index("next beside what is named, and not refitted:") :]
-    assert told.splitlines()[1].startswith(
-        "  friction – Coulomb part differs at one drive, drive 3: gain 70, beyond"
-    )
-
-
-def test_a_diff_line_reads_as_one() -> None:
-    (named,) = found().named
-    assert diff_line(found(), named).startswith(
-        "+ friction – Stribeck peak, all drives: f_s = 4.12 ± 0.21"
-    )
-
-
-def test_a_short_record_that_confirms_is_told_as_such() -> None:
-    """Whatever part of it tells where it begins: half of 3 s, a tenth of 20 s."""
-    one = found()
-    log, h = one.run.log, one.run.log.sampling_time
-    begin, middle, end = float(log.time[0]), float(log.time[len(log) // 2]), float(log.time[-1]) + h
-    whole = replace(log, name="a", splits={"estimation": (begin, end)})
-    begun = replace(log, name="b", splits={"estimation": (begin, middle)})
-    plain = replace(log, name="c", splits={})
-    for records, roles in (([whole, begun], ["fit", "confirm"]), ([begun, plain], ["fit", "fit"])):
-        joined = join_logs([replace(r, outputs=r.outputs + k) for k, r in enumerate(records)])
-        twice = np.concatenate([one.run.after] * 2)
-        both = replace(one.run, log=joined, before=twice, after=twice)
-        assert [error.role for error in both.errors] == roles
-        assert [np.isnan(error.before) for error in both.errors] == [r != roles[1] for r in roles]

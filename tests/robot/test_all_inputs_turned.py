@@ -76,12 +76,8 @@ def refused(own, log):
     return str(caught.value)
 
 
-@pytest.mark.parametrize(
-    ("mass", "horizon"),
-    [(5.0, "horizon = 0.3")],
-)
-def test_winches_that_push_are_refused_whatever_hangs_from_them(tmp_path, mass, horizon):
-    said = refused(*robot(tmp_path, winches(1, 2.5), hung(mass, gears=(1, 2.5)), horizon))
+def test_winches_that_push_are_refused_whatever_hangs_from_them(tmp_path):
+    said = refused(*robot(tmp_path, winches(1, 2.5), hung(5.0, gears=(1, 2.5)), "horizon = 0.3"))
     assert "with the other sign of all inputs" in said
     assert 'write gear="-1" for T1, gear="-2.5" for T2 into' in said
     assert "pushes its ends apart where it is positive" in said
@@ -99,12 +95,8 @@ def test_where_ranges_allow_it_the_log_may_be_turned_and_that_mends_it(tmp_path)
     refuse_miswired(replace(own, file=replace(own.file, trust=("wiring",))), log)
 
 
-@pytest.mark.parametrize(
-    ("mass", "speed"),
-    [(12.0, 1.0)],
-)
-def test_winches_that_pull_are_not_refused_whatever_hangs_from_them(tmp_path, mass, speed):
-    refuse_miswired(*robot(tmp_path, winches(), hung(mass, speed), "horizon = 0.3"))
+def test_winches_that_pull_are_not_refused_whatever_hangs_from_them(tmp_path):
+    refuse_miswired(*robot(tmp_path, winches(), hung(12.0, 1.0), "horizon = 0.3"))
 
 
 def test_one_winch_that_pushes_is_told_by_its_name(tmp_path):
@@ -112,13 +104,10 @@ def test_one_winch_that_pushes_is_told_by_its_name(tmp_path):
     assert "turn the sign of T2" in said
 
 
-@pytest.mark.parametrize(
-    ("xml", "world"),
-    [(ARM, nothing)],
-)
-def test_all_motors_of_joints_turned_are_told(tmp_path, xml, world):
+def test_all_motors_of_joints_turned_are_told(tmp_path):
+    xml = ARM
     truth = mujoco.MjModel.from_xml_string(xml)
-    world(truth)
+    nothing(truth)
     log = tracked(truth, MOTION[xml])
     own, read = robot(tmp_path, xml, replace(log, inputs=-log.inputs), "horizon = 0.2")
     said = refused(own, read)
@@ -134,11 +123,8 @@ def test_all_outputs_turned_are_told_and_not_taken_for_inputs_where_gravity_tell
     assert "or of" not in said
 
 
-@pytest.mark.parametrize(
-    "turned",
-    ["outputs"],
-)
-def test_without_gravity_both_are_told_because_none_can_tell_them_apart(tmp_path, turned):
+def test_without_gravity_both_are_told_because_none_can_tell_them_apart(tmp_path):
+    turned = "outputs"
     log = tracked(mujoco.MjModel.from_xml_string(WEIGHTLESS), MOTION[WEIGHTLESS])
     refuse_miswired(*robot(tmp_path, WEIGHTLESS, log, "horizon = 0.2"))
     wrong = replace(log, **{turned: -getattr(log, turned)})
@@ -207,17 +193,13 @@ def test_who_knows_better_overrules_both(tmp_path):
     refuse_miswired(replace(own, file=replace(own.file, trust=("units", "wiring"))), read)
 
 
-@pytest.mark.parametrize(
-    ("lacking", "horizon"),
-    [(payload, HORIZON)],
-)
-def test_what_a_model_lacks_is_no_unit_and_no_sign(tmp_path, lacking, horizon):
+def test_what_a_model_lacks_is_no_unit_and_no_sign(tmp_path):
     """Forces decide: where a payload or gravity explains them, no two mistakes are looked for."""
     truth = mujoco.MjModel.from_xml_string(ARM)
-    lacking(truth)
+    payload(truth)
     log = tracked(truth, MOTION_MISTAKES[ARM], seed=3)
     write_log(log, tmp_path / "log.csv")
-    refuse_miswired(*robot(tmp_path, ARM, log, horizon))
+    refuse_miswired(*robot(tmp_path, ARM, log, HORIZON))
 
 
 def exchanged(log, of, signs, turned):
@@ -247,14 +229,10 @@ def test_an_exchange_beside_a_turned_sign_is_told_and_mended(tmp_path, of, turne
     refuse_miswired(own, mended)
 
 
-@pytest.mark.parametrize(
-    ("outputs", "inputs", "horizon"),
-    [((-1, 1), (1, -1), HORIZON)],
-)
-def test_two_turned_signs_are_told_and_mended(tmp_path, outputs, inputs, horizon):
+def test_two_turned_signs_are_told_and_mended(tmp_path):
     right = tracked(mujoco.MjModel.from_xml_string(ARM), MOTION_MISTAKES[ARM])
-    wrong = replace(right, outputs=right.outputs * outputs, inputs=right.inputs * inputs)
-    own, read = robot(tmp_path, ARM, wrong, horizon)
+    wrong = replace(right, outputs=right.outputs * (-1, 1), inputs=right.inputs * (1, -1))
+    own, read = robot(tmp_path, ARM, wrong, HORIZON)
     with pytest.raises(InputError, match=r'turn the sign of .*trust = \["wiring"\]') as refused:
         refuse_miswired(own, read)
     (tmp_path / "log.toml").write_text(advised(str(refused.value)))

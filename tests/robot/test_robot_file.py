@@ -124,11 +124,8 @@ def without_time(record):
     return {name: value for name, value in record.items() if name != "seconds"}
 
 
-@pytest.mark.parametrize(
-    "horizon",
-    ["horizon = 0.5\n"],
-)
-def test_fit_and_confirm_say_what_the_command_says(folder, capsys, horizon):
+def test_fit_and_confirm_say_what_the_command_says(folder, capsys):
+    horizon = "horizon = 0.5\n"
     path = folder / f"verbs{len(horizon)}.toml"
     path.write_text(horizon + TOML)
     logs = folder / "short.csv", folder / "short too.csv"
@@ -144,11 +141,9 @@ def test_fit_and_confirm_say_what_the_command_says(folder, capsys, horizon):
     assert {n: s if np.isfinite(s) else None for n, s in found.std.items()} == std
 
 
-@pytest.mark.parametrize(
-    "horizon",
-    ["horizon = 0.5\n"],
-)
-def test_without_records_the_part_that_was_not_fitted_confirms(folder, tmp_path, horizon):
+@pytest.mark.long
+def test_without_records_the_part_that_was_not_fitted_confirms(folder, tmp_path):
+    horizon = "horizon = 0.5\n"
     path = folder / f"unseen{len(horizon)}.toml"
     path.write_text(horizon + TOML)
     log = simulated({"damping": 3.6, "mass": 1.8}, 600)

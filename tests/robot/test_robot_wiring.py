@@ -157,17 +157,13 @@ def test_a_pendulum_that_feedback_balances_is_not_refused(tmp_path):
     refuse_miswired(*robot(tmp_path, CRANE.format(z=0.3), log, "joint/x.damping"))
 
 
-@pytest.mark.parametrize(
-    "command",
-    ["discover"],
-)
-def test_the_commands_refuse_it_for_the_log_and_for_its_records(cart, tmp_path, capsys, command):
+def test_the_commands_refuse_it_for_the_log_and_for_its_records(cart, tmp_path, capsys):
     own, log = cart
     wrong = tmp_path / "mm.csv"
     write_log(replace(log, outputs=1e3 * log.outputs, units={}), wrong)
     right = own.file.path.with_name("log.csv")
     for logs in ([wrong], [right, "--confirm", wrong]):
-        assert main([command, str(own.file.path), *map(str, logs)]) == 2
+        assert main(["discover", str(own.file.path), *map(str, logs)]) == 2
         assert "log 'mm'" in capsys.readouterr().err
 
 
@@ -210,12 +206,8 @@ def measured(model, samples, torque, noise, still=0):
     )  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    ("joints", "mass", "stiffness"),
-    [(16, 0.3, 2.0)],
-)
-def test_noise_is_no_missing_force_of_a_long_chain(joints, mass, stiffness):
-    model = mujoco.MjModel.from_xml_string(chain_of(joints, mass, stiffness))
+def test_noise_is_no_missing_force_of_a_long_chain():
+    model = mujoco.MjModel.from_xml_string(chain_of(16, 0.3, 2.0))
     log = measured(model, 600, 0.5, 5e-4)
     left = unbalanced_share(model, log)
     assert left is None or left.max() < NEEDED

@@ -52,10 +52,7 @@ def test_a_base_that_was_fixed_collides_with_its_link_and_is_refused(tmp_path, x
     assert f'write trust = ["contacts"] into {path}' in said
 
 
-@pytest.mark.parametrize(
-    "verb",
-    ["fit", "linearize"],
-)
+@pytest.mark.parametrize("verb", ["fit", "linearize"])
 def test_no_verb_begins_with_such_a_model(tmp_path, capsys, log, verb):
     path = make_robot(tmp_path, pedestal(), log, "q")
     out = tmp_path / "out"
@@ -66,11 +63,7 @@ def test_no_verb_begins_with_such_a_model(tmp_path, capsys, log, verb):
 
 @pytest.mark.parametrize(
     "cure",
-    [
-        {"contact": '<exclude body1="pedestal" body2="arm"/>'},
-        {"geom": 'contype="0" conaffinity="0"'},
-        {"flag": '<flag contact="disable"/>'},
-    ],
+    [{"contact": '<exclude body1="pedestal" body2="arm"/>'}, {"flag": '<flag contact="disable"/>'}],
 )
 def test_each_line_that_is_told_cures_it(tmp_path, log, cure):
     path = make_robot(tmp_path, pedestal(**cure), log, "q")
@@ -88,13 +81,9 @@ def test_a_user_may_know_better(tmp_path, log):
 
 
 @HORIZONS
-@pytest.mark.parametrize(
-    "values",
-    [{"mass": 3.0}],
-)
-def test_a_wheel_on_the_ground_is_never_refused(tmp_path, more, values):
+def test_a_wheel_on_the_ground_is_never_refused(tmp_path, more):
     log = simulated(WHEEL.format(**PLAIN))
-    path = make_robot(tmp_path, WHEEL.format(**{**PLAIN, **values}), log, "r", more)
+    path = make_robot(tmp_path, WHEEL.format(**{**PLAIN, **{"mass": 3.0}}), log, "r", more)
     robot = read_robot(path, tmp_path / "log.csv")
     assert "geoms of wheel and the world (plane ground) touch in 100 % of" in robot.touches
     assert "far better" not in robot.touches

@@ -42,10 +42,7 @@ def read(folder, xml, log, more="horizon = 0.3\n", **options):
     return read_robot(make_robot(folder, xml, log, "hip", more), folder / "log.csv", **options)
 
 
-@pytest.mark.parametrize(
-    "verb",
-    ["fit", "linearize"],
-)
+@pytest.mark.parametrize("verb", ["fit", "linearize"])
 def test_no_verb_begins_with_a_base_that_falls(tmp_path, capsys, log, verb):
     path = make_robot(tmp_path, leg(FREE), log, "hip")
     said = refused(capsys, verb, path, tmp_path / "log.csv", "--out", tmp_path / "out")
@@ -87,13 +84,7 @@ def test_a_base_that_an_equality_welds_to_the_world_is_right(tmp_path, log):
 
 @pytest.mark.parametrize(
     ("joint", "more"),
-    [
-        (RAIL.replace("0 0.2 1", "1 0 0"), ""),  # a cart that the leg pushes about
-        (RAIL.replace("/>", ' stiffness="500"/>'), ""),
-        (RAIL.replace("/>", ' range="0 0.01"/>'), ""),
-        (RAIL.replace("/>", ' frictionloss="90"/>'), ""),
-        (RAIL, '<motor name="hoist" joint="rise"/>'),
-    ],
+    [(RAIL.replace("0 0.2 1", "1 0 0"), ""), (RAIL.replace("/>", ' range="0 0.01"/>'), "")],
 )
 def test_a_slide_that_something_holds_may_be_unmeasured(tmp_path, log, joint, more):
     file = read(tmp_path, leg(), log).file

@@ -1,7 +1,6 @@
 """Whatever is wrong in a robot's TOML, the message says in which file and under which key."""
 
 import warnings
-from pathlib import Path
 
 import pytest
 from joint_cases import DAMPING, SLIDER, slider, slider_log, steps
@@ -15,7 +14,6 @@ from identification import (
     NominalModel,
     Size,
     discover,
-    estimate,
     fit,
     joint_plant,
     places,
@@ -55,41 +53,25 @@ def under(table, line):
     ("change", "where", "what"),
     [
         ((FREE, "'joint/slid.damping'"), "free in DIR/bad.toml", "did you mean 'slide'"),
-        ((FREE, "'damping'"), "free in DIR/bad.toml", "write kind/name.attribute"),
         ((FREE, "'qpos[9]'"), "free in DIR/bad.toml", "has 1 entries"),
-        ((FREE, "'body/cart.mass'"), "free in DIR/bad.toml", "all go to 'body/cart.mass'"),
         (
             (FREE, "'coulmb_friction.f_c@slide'"),
             "free in DIR/bad.toml",
             "'coulomb_friction.f_c@slide'?",
         ),
-        ((FREE, "'stribeck_friction.v_s'"), "free in DIR/bad.toml", "how an effect looks"),
         ((FREE, "'stribeck_friction.f_s@slide'"), "free in DIR/bad.toml", "give it a value"),
-        ((PATH, "'body/car.mass'"), "parameters.mass in DIR/bad.toml", "did you mean 'cart'"),
         ((MASS, "value = -3"), "parameters.mass in DIR/bad.toml", "outside its range [0, inf]"),
-        ((MASS, "lower = 5"), "parameters.mass in DIR/bad.toml", "outside its range [5, inf]"),
         ((MASS, "prior = -1"), "parameters.mass in DIR/bad.toml", "its prior is -1"),
-        ((MASS, "unit = 'N'"), "parameters.mass in DIR/bad.toml", "it has the unit 'N'"),
         (("free", "outputs = ['y']\nfree"), "outputs in DIR/bad.toml", "known: position"),
-        (
-            under("effects", "only = ['cuogging']"),
-            "under effects.only in DIR/bad.toml",
-            "'cogging'",
-        ),
         (under("fixed", "'cogging.m' = 1.0"), "fixed in DIR/bad.toml", "cogging.n"),
-        (under("fixed", "'joint/slide.armature' = 1"), "fixed in DIR/bad.toml", "DIR/slider.xml"),
         (under("start", "'qpos[7]' = 0.1"), "start in DIR/bad.toml", "qpos has 1 entries"),
-        (under("start", "slide = 0.1"), "start in DIR/bad.toml", "such as qpos[0] or qvel[0]"),
         (
             under("spread.two", "of = ['joint/slid.damping', 'body/cart.inertia[0]']\nstd = 0.1"),
             "spread.two in DIR/bad.toml",
             "did you mean 'slide'",
         ),
-        (under("log", "units = {y = 'm'}"), "under 'units' in DIR/bad.toml", "known: force"),
         (under("log", "units = {x = 'metre'}"), "units of x in DIR/bad.toml", "known: s, ms"),
-        (under("log", "units = {x = 'A'}"), "DIR/bad.toml gives x in A", "not m"),
         (under("log", "factors = {x = 1e308}"), "'factors' in DIR/bad.toml", "beyond 1e+15"),
-        (under("log", "ignore = ['y']"), "under 'ignore' in DIR/bad.toml", "known: force"),
     ],
 )
 def test_file_and_key_are_told(told, change, where, what):
@@ -143,24 +125,14 @@ def read(tmp_path, refusal):
     return told
 
 
-@pytest.mark.parametrize(
-    ("sensors", "said"),
-    [
-        (
-            '<accelerometer name="imu" site="tip"/><framepos name="p" objtype="site" '
-            'objname="tip"/>',
-            "sensor 'imu' of DIR/arm.xml is an accelerometer, 'p' is a framepos; outputs are joint",
-        ),
-        (
-            '<jointvel name="w1" joint="q1"/><jointvel name="w2" joint="q2"/>',
-            "DIR/arm.xml has no jointpos sensor, and DIR/arm.toml names no outputs; write outputs"
-            ' = ["w1", "w2"] into DIR/arm.toml',
-        ),
-        ("", "DIR/arm.xml has no sensor; it needs a jointpos or jointvel sensor for every output"),
-    ],
-)
-def test_a_sensor_of_another_kind_is_told_by_its_kind(read, sensors, said):
-    assert said in read(sensors)
+def test_a_sensor_of_another_kind_is_told_by_its_kind(read):
+    sensors = (
+        '<accelerometer name="imu" site="tip"/><framepos name="p" objtype="site" objname="tip"/>'
+    )
+    assert (
+        "sensor 'imu' of DIR/arm.xml is an accelerometer, 'p' is a framepos; outputs are joint"
+        in read(sensors)
+    )
 
 
 TWO = '<jointpos name="q1" joint="q1"/><jointpos name="q2" joint="q2"/>'
@@ -184,12 +156,8 @@ NOMINAL = NominalModel(slider(), ("mass",), [0.3])
     ("call", "said"),
     [
         (lambda: read_robot(3, "log.csv"), "takes the path of a robot's TOML, not 3 of type int"),
-        (lambda: read_robot("r.toml", 3), "log of read_robot takes paths of files or Logs"),
-        (lambda: read_robot("r.toml", "a.csv", "b.csv"), r"write confirm=[...] around it"),
         (lambda: fit("robot.toml"), "fit takes a robot (read_robot), not 'robot.toml' of type str"),
-        (lambda: discover(Path("r.toml")), "discover takes a robot (read_robot) or a NominalModel"),
         (lambda: discover(NOMINAL, "log.csv", []), "discover takes a Log (read_log)"),
-        (lambda: estimate(slider(), "log.csv", ["mass"]), "estimate takes a Log (read_log)"),
     ],
 )
 def test_wrong_types_are_told(refusal, call, said):
@@ -210,17 +178,11 @@ def root(s, p):
     return p[0] * s.q**0.5
 
 
-def inverse(s, p):
-    return p[0] / s.v
-
-
 @pytest.mark.parametrize(
     ("function", "said"),
     [
         (none_at_rest, "returns nothing in some branch; it must take a Joint"),
-        (raises_behind, "raises ValueError: no way back at time = 0.5, q = -0.7"),
         (root, "of its hook 'force'"),
-        (inverse, "raises ZeroDivisionError"),
     ],
 )
 def test_a_function_that_may_fail_is_refused_when_the_effect_is_compiled_in(

@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import lsq_linear
-from statics_cases import ROBOT, random_poses
+from statics_cases import ROBOT
 
 from inca_mj.kinematics.cables import inverse
 from inca_mj.robot.geometry import GRIP, GRIP_RADIUS, INCA
@@ -30,22 +30,6 @@ def test_segments_are_as_far_apart_as_a_bounded_least_squares_says(p, u, q, v):
         float(segment_distance(q, v, p, u)) == found
         or abs(float(segment_distance(q, v, p, u)) - found) < 1e-12
     )
-
-
-def test_a_point_is_nearest_to_the_end_or_the_foot():
-    p, u = np.zeros(3), np.array([2.0, 0, 0])
-    x = np.array([[1.0, 3, 0], [-4, 3, 0], [2, 0, 1]])
-    np.testing.assert_allclose(point_distance(x, p, u), [3, 5, 1])
-
-
-def test_many_poses_are_the_same_as_each():
-    poses = random_poses(20, across=0.8)
-    whole = interference(poses, INCA)
-    for n, pose in enumerate(poses):
-        one = interference(pose, INCA)
-        np.testing.assert_allclose(one.between[0], whole.between[n])
-        np.testing.assert_allclose(one.angle[0], whole.angle[n])
-        np.testing.assert_allclose(one.platform[0], whole.platform[n])
 
 
 def test_cables_with_a_common_connector_are_told_by_their_angle():

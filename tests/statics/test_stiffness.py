@@ -10,14 +10,7 @@ from inca_mj.kinematics.cables import inverse
 from inca_mj.robot.geometry import INCA
 from inca_mj.statics.equilibrium import equilibrium, moved
 from inca_mj.statics.robot import pull
-from inca_mj.statics.stiffness import (
-    axis_words,
-    mass_matrix,
-    modes,
-    principal,
-    stiffness,
-    with_drums,
-)
+from inca_mj.statics.stiffness import mass_matrix, modes, principal, stiffness, with_drums
 
 STEP = 3e-5  # tensions are known to λ times rounding, 5e-12 N
 
@@ -66,14 +59,6 @@ def test_it_is_symmetric_at_rest_and_only_there():
     assert abs(lost[4, 5]) == pytest.approx(0.02, abs=1e-9)
 
 
-def test_many_poses_at_once_are_the_same_as_each():
-    at = inverse(np.array([ROBOT.start, ROBOT.start + 0.05]), INCA)
-    T, k = np.full((2, 8), 4.0), np.full((2, 8), 1e4)
-    both = stiffness(at, T, k)
-    for n, pose in enumerate((ROBOT.start, ROBOT.start + 0.05)):
-        np.testing.assert_allclose(both[n], stiffness(inverse(pose, INCA), T[n], k[n]))
-
-
 def test_eliminating_the_drums_gives_the_stiffness_with_free_drums():
     at = inverse(ROBOT.start, INCA)
     whole = with_drums(ROBOT, at, ROBOT.tension, ROBOT.no_load)
@@ -109,17 +94,3 @@ def test_modes_solve_the_equation_and_drums_slow_them():
     assert (modes(whole, heavy[0]).frequency < found.frequency).all()
     # drums of endless inertia are locked: the platform's modes are the last six
     np.testing.assert_allclose(modes(whole, heavy[1], 14).frequency[8:], found.frequency, rtol=1e-6)
-
-
-@pytest.mark.parametrize(
-    ("v", "words"),
-    [((0, 0, -2.0), "z"), ((1, 0.05, 0), "x"), ((-0.6, 0.8, 0), "y (0.80) and x (-0.60)")],
-)
-def test_directions_in_words(v, words):
-    assert axis_words(np.array(v)) == words
-
-
-def test_a_frame_that_is_turned_gives_turned_masses():
-    pose = np.r_[0, 0, 1, 0, 0, np.pi / 2]
-    I = mass_matrix(ROBOT, pose)[3:, 3:]
-    np.testing.assert_allclose(np.diag(I), ROBOT.I[[1, 0, 2]])

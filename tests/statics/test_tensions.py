@@ -93,11 +93,6 @@ def test_a_general_solver_finds_the_same() -> None:
     assert compared >= 10
 
 
-def test_wide_limits_change_nothing() -> None:
-    W, w = wrench_matrix(np.array([0.1, 0, 1.4, 0, 0, 0.1])), np.array([0, 0, 1.7, 0, 0, 0])
-    np.testing.assert_array_equal(distribute(W, w, 0.0, np.inf), nearest(W, w))
-
-
 def test_each_cable_has_its_own_limits() -> None:
     W, w = wrench_matrix(np.array([0, 0, 1.43, 0, 0, 0])), np.array([0, 0, 1.7, 0, 0, 0])
     low = np.array([6.0, 0, 0, 0, 0, 0, 0, 0])
@@ -111,10 +106,6 @@ def test_each_cable_has_its_own_limits() -> None:
     [
         ({"low": 5.0, "high": 4.0}, "none above its upper limit"),
         ({"high": 0.1, "low": 0.0}, "no tensions between 0 and 0.1 N"),
-        ({"w": np.zeros(5)}, "do not belong together"),
-        ({"w": np.full(6, np.nan)}, "finite numbers"),
-        ({"low": np.zeros(3)}, r"low has shape \(3,\)"),
-        ({"low": -np.inf}, "finite lower limits"),
         ({"W": np.zeros((6, 8))}, "rank 0 of 6"),
     ],
 )

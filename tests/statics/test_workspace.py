@@ -85,25 +85,11 @@ def test_poses_of_a_workspace_are_those_inside():
     [
         ({"kind": "reachable"}, "unknown workspace 'reachable'"),
         ({"cells": 2}, "2 cells along an edge"),
-        ({"orientation": (0, 0)}, "an orientation is three finite numbers"),
     ],
 )
 def test_refusals(arguments, sentence):
     with pytest.raises(InputError, match=sentence):
         workspace(**{"kind": "static", "robot": ROBOT, **arguments})
-
-
-@pytest.mark.parametrize(
-    ("arguments", "sentence"),
-    [
-        ({"current": (1.0, 1.0)}, "currents from 1 to 1 A are no range"),
-        ({"taut": -1.0}, "taut -1 N is not possible"),
-        ({"torque": np.inf}, "torque inf N m is not possible"),
-    ],
-)
-def test_limits_that_cannot_be_are_refused(arguments, sentence):
-    with pytest.raises(InputError, match=sentence):
-        DriveLimits(**arguments)
 
 
 def _ball(points):
@@ -126,9 +112,3 @@ def test_the_surface_of_a_ball_is_closed_looks_outwards_and_converges():
         assert np.abs(np.linalg.norm(vertices, axis=1) - 1).max() < 2.4 / points
     assert errors[1] < errors[0] / 2.5
     assert errors[1] < 0.02 * 4 / 3 * np.pi
-
-
-def test_where_nothing_is_inside_there_is_no_surface():
-    axis = np.linspace(0, 1, 5)
-    vertices, faces = surface((axis, axis, axis), -np.ones((5, 5, 5)))
-    assert len(vertices) == len(faces) == 0

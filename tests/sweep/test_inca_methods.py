@@ -1,12 +1,24 @@
 """Methods on INCA: worlds are those of their numbers, labels are read, estimates meet the truth."""
 
 import json
+from shutil import copytree
 
 import numpy as np
+import pyarrow.dataset
 import pytest
+from fake_discovery import found
+from joint_cases import SLIDER
+from robot_cases import TOML, simulated
+from sweep_cases import run
 
+from identification import fit as fit_robot
+from identification import read_robot, write_log
+from identification.__main__ import main
 from identification.errors import InputError
+from identification.sweep.answers import ANSWER, PROOF, answer, nested, proof
 from identification.sweep.method import Seed, load_method
+from identification.sweep.methods import METHODS as ROBOT_METHODS
+from identification.sweep.methods.discover_log import named_findings
 from identification.sweep.work import checked
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.studies import METHODS
@@ -15,16 +27,7 @@ from inca_mj.studies.null_score import null_findings
 from inca_mj.studies.practice import truth_of
 from inca_mj.studies.world_score import score_findings
 from inca_mj.studies.world_settings import WorldSettings, make_world
-from inca_mj.studies.worlds import (
-    CHANGES,
-    FAULTS,
-    HIDDEN_EFFECTS,
-    UNLISTED,
-    HiddenSetting,
-    draw_effect,
-    records,
-    world,
-)
+from inca_mj.studies.worlds import HIDDEN_EFFECTS, HiddenSetting, draw_effect, records, world
 
 SEED = Seed(5, (0, 0, 3))
 
@@ -37,14 +40,6 @@ def test_a_null_world_is_that_of_its_number():
     )  # fmt: skip
     np.testing.assert_array_equal(log.outputs, world(11, setting=setting).log.outputs)
     assert (truth["kind"], truth["hidden"], truth["ratio"]) == ("null", [], 0.0)
-
-
-def test_without_a_number_the_seed_gives_one():
-    settings = WorldSettings(kind="null", duration=0.5)
-    (first,), truth = make_world(settings, SEED)
-    (second,), _ = make_world(WorldSettings(world=SEED.number(), kind="null", duration=0.5), SEED)
-    assert truth["world"] == SEED.number() != Seed(5, (0, 0, 4)).number()
-    np.testing.assert_array_equal(first.outputs, second.outputs)
 
 
 def test_an_effect_that_is_asked_for_is_hidden_with_its_ratio():
@@ -62,48 +57,16 @@ def test_an_effect_that_is_asked_for_is_hidden_with_its_ratio():
     assert truth["hidden_sizes"] == [made[0].truth.effects[0].c]
 
 
-def test_of_six_mixed_worlds_one_hides_nothing_and_one_an_unlisted_effect(monkeypatch):
-    from inca_mj.studies.world_settings import _drawn
-
-    settings = WorldSettings(kind="mixed", first=100, effects=2)
-    drawn = [_drawn(settings, 100 + k) for k in range(60)]
-    assert [kind for kind, *_ in drawn[:6]] == ["null", "pair", "pair", "unknown", "pair", "pair"]
-    assert all(not names for kind, names, *_ in drawn if kind == "null")
-    assert {n for kind, names, *_ in drawn if kind == "unknown" for n in names} <= {*UNLISTED}
-    pairs = [names for kind, names, *_ in drawn if kind == "pair"]
-    assert all(len({*names}) == 2 and {*names} <= {*HIDDEN_EFFECTS} for names in pairs)
-    assert len({tuple(names) for names in pairs}) > 20
-    assert {ratio for *_, ratio in drawn} == {1.0, 3.0, 10.0}
-    for kind, names, others, _ in drawn:
-        if kind == "pair":
-            assert sorted([*names, *others]) == sorted(HIDDEN_EFFECTS)
-
-
-@pytest.mark.parametrize(("kind", "known"), [("rule", CHANGES), ("sensor", FAULTS)])
-def test_a_kind_of_its_own_hides_one_of_its_effects(kind, known):
-    from inca_mj.studies.world_settings import _drawn
-
-    drawn = [_drawn(WorldSettings(kind=kind), k) for k in range(150)]
-    assert {told for told, *_ in drawn} == {kind}
-    assert {name for _, names, *_ in drawn for name in names} == {*known}
-    assert all(sorted([*names, *others]) == sorted(known) for _, names, others, _ in drawn)
-
-
 @pytest.mark.parametrize(
     ("settings", "words"),
     [
         ({"kind": "nul"}, "unknown kind of world 'nul'; did you mean 'null'"),
-        ({"effect": "cog"}, "unknown effect 'cog'"),
         (
             {"effect": "cogging", "kind": "sensor"},
             'write kind = "listed", or leave effect out, or one of kind sensor: encoder_ecc',
         ),
-        ({"effect": "encoder_lag", "kind": "mixed"}, "is of kind sensor"),
-        ({"effect": "cogging", "kind": "null"}, "worlds of kind null do not hide it"),
         ({"effects": 4}, "a world hides 1, 2 or 3"),
         ({"rate": 0.0}, "give samples a second above zero"),
-        ({"ratio": -1.0}, "give a number above zero"),
-        ({"records": 0}, "give 1 or more"),
         ({"input": "sine"}, "unknown input 'sine'"),
     ],
 )
@@ -171,3 +134,99 @@ def test_scores_are_counted_by_effect():
     found = score_findings(rows).record["by_effect"]
     assert found["delay"]["found"]["hits"] == 2
     assert found["nothing"]["found"]["of"] == 0
+
+
+SWEEP = """
+[[study]]
+method = "fit-log"
+[study.settings]
+robot = "slider.toml"
+[study.grid]
+log = { files = "logs/*.csv" }
+"""
+
+
+@pytest.fixture
+def folder(tmp_path):
+    (tmp_path / "slider.xml").write_text(SLIDER)
+    (tmp_path / "slider.toml").write_text(TOML)
+    (tmp_path / "logs").mkdir()
+    for seed in (1, 2):
+        log = simulated({"damping": 3.6, "mass": 1.8}, samples=300, seed=seed)
+        write_log(log, tmp_path / "logs" / f"{seed}.csv")
+    (tmp_path / "logs" / "3.csv").write_text("no log\n")
+    (tmp_path / "fits.toml").write_text(SWEEP)
+    return tmp_path
+
+
+def test_each_log_of_a_folder_is_fitted(folder):
+    line = ["sweep", str(folder / "fits.toml"), "--backend", "serial", "--out", str(folder / "out")]
+    assert main(line) == 0
+    rows = pyarrow.dataset.dataset(folder / "out" / "records").to_table().sort_by("task")
+    first, second, bad = rows.to_pylist()
+    assert bad["error"].startswith("InputError: ")
+    for row, name in ((first, "1"), (second, "2")):
+        fitted = fit_robot(read_robot(folder / "slider.toml", folder / "logs" / f"{name}.csv"))
+        assert dict(zip(row["names"], row["estimated"], strict=True)) == fitted.values
+        np.testing.assert_array_equal(row["std"], [*fitted.std.values()])
+        assert row["set.log"] == f"logs/{name}.csv"
+        assert row["after"] <= row["before"]
+    assert (folder / "out" / "report.html").exists()
+
+
+def test_the_same_folder_elsewhere_gives_the_same_records(folder, tmp_path_factory):
+    (folder / "logs" / "2.csv").unlink()
+    moved = copytree(folder, tmp_path_factory.mktemp("moved") / "robot")
+    here, there = (run(place / "fits.toml", place / "out", known=ROBOT_METHODS)
+                   for place in (folder, moved))  # fmt: skip
+    assert here[:1] == there[:1]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ('{ files = "logs/*.csv" }', '["logs/1.csv", "logs/4.csv"]', "logs/4.csv, which does not"),
+        ("slider.toml", "cart.toml", "robot in study"),
+    ],
+)
+def test_a_file_that_is_not_there_is_refused_before_anything_runs(folder, capsys, old, new, words):
+    text = SWEEP.replace("fit-log", "fit-log").replace(old, new)
+    (folder / "fits.toml").write_text(text)
+    line = ["sweep", str(folder / "fits.toml"), "--out", str(folder / "out")]
+    assert main(line) == 2
+    said = capsys.readouterr().err
+    assert words in said
+    assert len(said.splitlines()) == 1
+    assert not (folder / "out").exists()
+
+
+def test_a_summary_needs_the_records_alone(folder, capsys):
+    for file in (folder / "logs").iterdir():
+        file.write_text("no log\n")
+    text = SWEEP.replace('{ files = "logs/*.csv" }', '["logs/1.csv", "logs/2.csv"]')
+    (folder / "fits.toml").write_text(text)
+    line = ["sweep", str(folder / "fits.toml"), "--backend", "serial", "--out", str(folder / "out")]
+    assert main(line) == 1  # every task met an error, which is a record too
+    (folder / "logs" / "2.csv").unlink()
+    assert main([*line, "--resume"]) == 2
+    assert main([*line, "--summary"]) == 1
+    assert "2 of 2 tasks have a record" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("one_of", [False, True])
+def test_a_discovery_is_told_as_its_json_tells_it(one_of):
+    discovery = found(one_of=one_of, several=True)
+    record = checked({**answer(discovery), **proof(discovery)}, {**ANSWER, **PROOF})
+    names = [n.candidate.effect.name for n in discovery.named]
+    assert record["named"] == names
+    assert record["confidence"] == [n.confidence for n in discovery.named]
+    assert [bool(rivals) for rivals in record["rivals"]] == [n.one_of for n in discovery.named]
+    truth = {"kind": "single", "ratio": 3.0, "hidden": names[:1], "hidden_where": [""],
+             "hidden_size_of": [], "hidden_sizes": [], "other_shape": False}  # fmt: skip
+    row = nested({**record, **truth, "run.processor_seconds": 1.0})
+    for told, named in zip(row["answer"]["named"], discovery.named, strict=True):
+        assert told["where"] == named.candidate.where
+        assert told["sizes"] == {name: p[0] for name, p in named.parameters.items()}
+    counted = named_findings([record, record | {"named": [], "where": [], "verdict": "nothing"}])
+    assert counted.record["answers"]["nothing"] == 1
+    assert sum(counted.record["answers"].values()) == len(names) + 1

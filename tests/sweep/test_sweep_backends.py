@@ -37,8 +37,11 @@ def serial(tmp_path_factory):
     return path, run(path, path.parent / "out")
 
 
+SLOW = [pytest.param(kind, marks=pytest.mark.long) for kind in ("dask", "submitit")]
+
+
 @quiet
-@pytest.mark.parametrize("kind", ["shuffled", "2 processes", "dask", "submitit"])
+@pytest.mark.parametrize("kind", ["shuffled", "2 processes", *SLOW])
 def test_records_are_the_same_to_the_bit(serial, tmp_path, kind, monkeypatch):
     monkeypatch.setenv("OMP_NUM_THREADS", "2")
     path, expected = serial
@@ -52,21 +55,6 @@ def test_records_are_the_same_to_the_bit(serial, tmp_path, kind, monkeypatch):
     assert read(tmp_path / "out") == expected
     assert json.loads(expected[0])["threads"] == "1"
     assert os.environ["OMP_NUM_THREADS"] == "2"
-
-
-def test_tasks_are_asked_for_as_there_is_room(serial):
-    path, _ = serial
-    sweep, asked = read_sweep(path, {}), []
-
-    def tasks():
-        for number in range(len(sweep)):
-            asked.append(number)
-            yield sweep.task(number)
-
-    outcomes = Processes(1).outcomes(work, tasks())
-    assert next(outcomes).number in range(3)
-    assert len(asked) <= 6  # three are there, and one more for each that has ended
-    outcomes.close()
 
 
 def test_a_process_that_dies_ends_the_sweep_and_costs_no_record(tmp_path, refusal):
@@ -181,10 +169,7 @@ def test_a_stopped_job_goes_on_where_it_was(serial):
     [
         ("dusk", None, {}, "unknown backend 'dusk'; did you mean 'dask'"),
         ("processes", 0, {}, "--jobs 0: give 1 or more"),
-        ("processes", 1, {"timeout_min": "3"}, "--job is for --backend slurm"),
         ("submitit-local", 1, {"tasks_per_job": "0"}, "give a whole number, 1 or more"),
-        ("submitit-local", 1, {"no_such": "0"}, "submitit cannot submit to local"),
-        ("slurm", 1, {}, "submitit cannot submit to slurm"),
         ("dask://127.0.0.1:1", 1, {}, "no Dask scheduler with a worker answers at tcp://127"),
     ],
 )
@@ -200,12 +185,8 @@ def test_what_a_backend_refuses(serial, tmp_path, refusal, monkeypatch, word, jo
     assert words in refusal(call)
 
 
-@pytest.mark.parametrize(
-    ("options", "cure"),
-    [({"slurm_partition": "lnog"}, "correct the options that --job gives (slurm_partition=lnog)"),
-     ({}, "give the options that it wants with --job, such as slurm_partition=long")],
-)  # fmt: skip
-def test_a_cluster_that_takes_no_job_is_told(serial, tmp_path, refusal, monkeypatch, options, cure):
+def test_a_cluster_that_takes_no_job_is_told(serial, tmp_path, refusal, monkeypatch):
+    options = {"slurm_partition": "lnog"}
     programs, said = tmp_path / "bin", "sbatch: error: invalid partition specified"
     programs.mkdir()
     for name in ("sbatch", "srun"):
@@ -217,20 +198,13 @@ def test_a_cluster_that_takes_no_job_is_told(serial, tmp_path, refusal, monkeypa
         return run(serial[0], tmp_path / "out", backend_of("slurm", 1, tmp_path, options))
 
     assert f"slurm took no job: {said}" in (words := refusal(call))
-    assert cure in words
+    assert "correct the options that --job gives (slurm_partition=lnog)" in words
     assert "--resume" in words
 
 
-@pytest.mark.parametrize(
-    ("module", "call", "extra"),
-    [
-        ("distributed", lambda: Dask(None, 1), "cluster"),
-        ("submitit", lambda: Submitit("local", 1, None, {}), "cluster"),
-    ],
-)
-def test_a_missing_package_is_told(monkeypatch, refusal, module, call, extra):
-    monkeypatch.setitem(sys.modules, module, None)
-    assert f"pip install 'inca-mj[{extra}]'" in refusal(call)
+def test_a_missing_package_is_told(monkeypatch, refusal):
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    assert "pip install 'inca-mj[cluster]'" in refusal(lambda: Dask(None, 1))
 
 
 def test_without_pyarrow_no_sweep(monkeypatch, tmp_path, refusal):

@@ -120,10 +120,8 @@ def test_progress_is_told_in_lines_and_errors_are_counted(tmp_path, capsys, monk
     ("more", "words"),
     [
         (["--backend", "dusk"], "unknown backend 'dusk'; did you mean 'dask'"),
-        (["--job", "x"], "'x' is not NAME=VALUE"),
         (["--summary"], "there is no folder"),
         (["--again"], "write --resume too"),
-        (["--jobs", "0"], "--jobs 0: give 1 or more"),
     ],
 )
 def test_what_is_refused_leaves_no_records(tmp_path, capsys, more, words):

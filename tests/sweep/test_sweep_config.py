@@ -1,12 +1,23 @@
 """Tasks and seeds come from the TOML alone; what it gets wrong is refused in a sentence."""
 
 import json
+import re
+from dataclasses import MISSING, fields
+from pathlib import Path
 
 import numpy as np
 import pytest
-from sweep_cases import GRID, METHOD, write
+from sweep_cases import GRID, METHOD, run, write
 
 from identification.sweep.config import read_sweep
+from identification.sweep.figures import power_figure, threshold_figure
+from identification.sweep.method import load_method
+from identification.sweep.power import Threshold, curves
+from identification.sweep.settings import check_values, kinds_of
+from identification.sweep.statistics import wilson
+from identification.sweep.store import Store
+from identification.sweep.summary import summarise
+from identification.sweep.words import Heads, about_of
 from inca_mj.studies import METHODS
 
 TWO = f"seed = 3\n[[study]]\nname='one'\nmethod='{METHOD}:TOSS'\ncount=4\n{{}}\n" + (
@@ -89,49 +100,28 @@ def test_files_of_a_folder_are_an_axis(tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("seed = 1", "has no [[study]]"),
-        ("seed = -1\n[[study]]\nmethod = 'trial'", "seed in .* is negative"),
-        ("speed = 1\n[[study]]\nmethod = 'trial'", "unknown key .*'speed'; did you mean 'seed'"),
-        ("[[study]]\ncount = 2", "does not say 'method'; known: .*trial"),
-        ("[[study]]\nmethod = 'trail'", "unknown method 'trail'; did you mean 'trial'"),
-        ("[[study]]\nmethod = 'no.py:M'", "there is no file .*no.py"),
-        (f"[[study]]\nmethod = '{METHOD}:toss'", "names no method; .* has TOSS, WRONG"),
-        (TRIAL + "\ncounts = 2", "unknown key in .*'counts'"),
-        (TRIAL + "\ncount = 0", "count in .* must be 1 or more"),
-        (TRIAL + "\npaired = 1", "paired in .* must be true or false"),
-        (TRIAL + "\n[study.settings]\ntrials = 4", "unknown setting .*'trials'"),
-        (TRIAL + "\n[study.settings]\ntrial = '4'", "trial in .* a whole number"),
-        (TRIAL + "\n[study.settings]\ntrial = true", "trial in .* a whole number"),
-        (TRIAL + "\n[study.grid]\ntrial = [3, 9]", "unknown trial '9'"),
-        (TRIAL + "\n[study.grid]\ntrial = 3", "must be a list of values"),
-        (TRIAL + "\n[study.grid]\ntrial = []", "has no values"),
-        (TRIAL + "\n[study.grid]\ntrial = [4, 4]", "has a value twice"),
-        (TRIAL + "\n[study.grid]\ntrial = { first = 1 }", "both first and count"),
-        (TRIAL + "\n[study.settings]\ntrial=4\n[study.grid]\ntrial=[4]", "in grid"),
-        (TRIAL + "\n[study.grid]\nnoise_seed = { first = 1, count = 200000 }", "100000 at most"),
-        (TRIAL + "\ncount = 2000000000", "1000000000 tasks at most"),
-        ("[[study]]\nmethod='null-score'", "does not say 'robot'"),
-        (PRACTICE + "\n[study.grid]\nlog={files='no/*.csv'}", "no file matches .*no/"),
-        (PRACTICE + "\n[study.settings]\nlog='a.csv'", "log in study .* which does not exist"),
-        (PRACTICE + "\n[study.settings]\nlog='*.csv'", r'as log = \{ files = "\*.csv" \}'),
-        (PRACTICE + "\n[study.settings]\nlog='.'", "which is a folder"),
-        (WORLDS + "\n[study.settings]\nspread='much'", "spread in .* or give none or usual"),
-        (WORLDS + "\n[study.settings]\nduration=-1", "'world-score': duration = -1 .* 0.02 s"),
-        (WORLDS + "\n[study.settings]\nduration=inf", "duration = inf is not allowed"),
-        (WORLDS + "\n[study.settings]\nduration='long'", "duration in .* must be a number"),
-        (WORLDS + "\n[study.settings]\nworld=-1", "world -1 is negative"),
-        (TRIAL + "\n[study.settings]\nnoise_seed=-1", "noise_seed -1 is negative"),
-        ("[[study]]\nmethod='null-score'\n[study.settings]\nrobot=1\nduration=0",
-         "duration = 0 is not allowed; give two samples"),
-        ("[[study]]\nmethod='excitation'\n[study.settings]\ninput='designed'\nduration=0.1",
-         "duration = 0.1 is not allowed; give 0.2 s or more"),
-        ("[[study]]\nmethod='excitation'\n[study.settings]\ninput='designed'\nspread=1",
-         "spread = 1 is not allowed; give 0 or more and below 1"),
-        (PRACTICE + "\n[study.settings]\nlog='$NO_SUCH/a.csv'",
+    ("seed = 1", "has no [[study]]"),
+    ("speed = 1\n[[study]]\nmethod = 'trial'", "unknown key .*'speed'; did you mean 'seed'"),
+    ("[[study]]\nmethod = 'trail'", "unknown method 'trail'; did you mean 'trial'"),
+    ("[[study]]\nmethod = 'no.py:M'", "there is no file .*no.py"),
+    (TRIAL + "\ncounts = 2", "unknown key in .*'counts'"),
+    (TRIAL + "\ncount = 0", "count in .* must be 1 or more"),
+    (TRIAL + "\n[study.settings]\ntrials = 4", "unknown setting .*'trials'"),
+    (TRIAL + "\n[study.settings]\ntrial = '4'", "trial in .* a whole number"),
+    (TRIAL + "\n[study.grid]\ntrial = 3", "must be a list of values"),
+    (TRIAL + "\n[study.grid]\ntrial = [4, 4]", "has a value twice"),
+    (TRIAL + "\n[study.grid]\ntrial = { first = 1 }", "both first and count"),
+    (TRIAL + "\n[study.settings]\ntrial=4\n[study.grid]\ntrial=[4]", "in grid"),
+    (TRIAL + "\n[study.grid]\nnoise_seed = { first = 1, count = 200000 }", "100000 at most"),
+    ("[[study]]\nmethod='null-score'", "does not say 'robot'"),
+    (PRACTICE + "\n[study.grid]\nlog={files='no/*.csv'}", "no file matches .*no/"),
+    (PRACTICE + "\n[study.settings]\nlog='*.csv'", r'as log = \{ files = "\*.csv" \}'),
+    (WORLDS + "\n[study.settings]\nspread='much'", "spread in .* or give none or usual"),
+    (WORLDS + "\n[study.settings]\nduration=-1", "'world-score': duration = -1 .* 0.02 s"),
+    (WORLDS + "\n[study.settings]\nworld=-1", "world -1 is negative"),
+    (PRACTICE + "\n[study.settings]\nlog='$NO_SUCH/a.csv'",
          "needs the variable NO_SUCH"),
-        (WORLDS + "\n[study.grid]\nkind=['mixed','nul']", "did you mean 'null'"),
-        (TRIAL + "\n" + TRIAL, "are called 'trial'"),
-    ],
+],
 )  # fmt: skip
 def test_bad_sweeps_are_refused_before_anything_runs(tmp_path, refusal, text, words):
     import re
@@ -153,5 +143,103 @@ def test_all_registered_methods_can_be_imported_and_say_what_they_do():
         assert method.against in ("", *kinds_of(method.settings))
 
 
-def test_write_is_a_good_sweep(tmp_path):
-    assert len(read_sweep(write(tmp_path), {})) == 12
+PAGE = (Path(__file__).parents[2] / "docs" / "sweeps.md").read_text(encoding="utf-8")
+HEAD = "| setting | unit | default | required | what it is |\n|---|---|---|---|---|"
+EXAMPLE = {bool: True, int: 1, float: 1.0, str: "a"}
+
+
+def written(value):
+    """A default as the TOML writes it; one that is not given cannot be written there."""
+    if value is MISSING:
+        return "–"
+    if value is None:
+        return "not given"
+    if isinstance(value, bool):
+        return f"`{str(value).lower()}`"
+    return f'`"{value}"`' if isinstance(value, str) else f"`{value:g}`"
+
+
+def table_of(settings):
+    """The table of a settings dataclass."""
+    about = about_of(settings)
+    rows = []
+    for field in fields(settings):
+        required = "yes" if field.default is MISSING else "no"
+        unit = Heads(about).unit(field.name) or "–"
+        words = re.sub(r" \[[^\]]+\]$", "", about[field.name])
+        rows.append(
+            f"| `{field.name}` | {unit} | {written(field.default)} | {required} | {words} |"
+        )
+    return "\n".join([HEAD, *rows])
+
+
+def sections():
+    """The tables of the page by the methods that their headings name."""
+    part = PAGE.split("## Settings of the methods\n")[1].split("\n## ")[0]
+    found = {}
+    for section in part.split("\n### ")[1:]:
+        title, _, rest = section.partition("\n")
+        table = "\n".join(line for line in rest.splitlines() if line.startswith("|"))
+        found.update(dict.fromkeys(re.findall(r"`([\w-]+)`", title), table))
+    return found
+
+
+def test_the_page_has_the_settings_of_every_method():
+    told = sections()
+    assert set(told) == set(METHODS)
+    for name, reference in METHODS.items():
+        expected = table_of(load_method(reference).settings)
+        assert told[name] == expected, f"{name}:\n{expected}"
+
+
+@pytest.mark.parametrize("name", METHODS)
+def test_a_sweep_must_say_what_the_page_calls_required_and_nothing_else(name, refusal):
+    settings = load_method(METHODS[name]).settings
+    kinds = kinds_of(settings)
+    rows = [[c.strip(" `") for c in line.split("|")[1:4:1]] + [line.split("|")[4].strip()]
+            for line in sections()[name].splitlines()[2:]]  # fmt: skip
+    required = [row[0] for row in rows if row[3] == "yes"]
+    given = {key: EXAMPLE.get(kinds[key], "file.csv") for key in required}
+    assert set(check_values(settings, given, "here")) == {row[0] for row in rows}
+    for key in required:
+        rest = {k: v for k, v in given.items() if k != key}
+        assert f"does not say {key!r}" in refusal(check_values, settings, rest, "here")
+
+
+def test_a_report_speaks_in_words_with_units(tmp_path):
+    sweep = read_sweep(write(tmp_path), {})
+    run(write(tmp_path), tmp_path / "out")
+    with Store(sweep, tmp_path / "out") as store:
+        found = summarise(sweep, store.rows())
+    told = " ".join(
+        [*found.sentences]
+        + [f"{s.title} {s.text} {s.table.columns if s.table else ''}" for s in found.sections]
+    )
+    assert "set." not in told
+    assert "run." not in told
+    assert not re.search(r"\b[a-z]+_[a-z]+\b", told), told
+
+
+def rows_of(sizes, lengths):
+    return [{"found": True, "set.size": x, "set.duration": d} for x in sizes for d in lengths]
+
+
+def test_a_logarithmic_axis_says_so_and_another_does_not():
+    far = True
+    heads = Heads({"duration": "length [s]", "size": "of it [N]"})
+    found = curves(rows_of((0.3, 1.0, 30.0), (5.0, 10.0)), "found", "size", ["duration"], heads)
+    assert [curve.label for curve in found] == ["duration 5 s", "duration 10 s"]
+    figure = power_figure(found, heads.head("size"), "found")
+    assert all((ax.get_xscale() == "log") is far for ax in figure.axes)
+    assert figure.get_supxlabel() == "size [N]" + ", logarithmic axis" * far
+    assert all(curve.rates == (wilson(1, 1),) * 3 for curve in found)
+
+
+def test_so_do_both_axes_of_thresholds():
+    smallest = 2.0
+    lines = {"": [Threshold(at, smallest, None, None, smallest) for at in (1.0, 20.0)]}
+    (ax,) = threshold_figure(lines, "duration [s]", "size [N]").axes
+    assert ax.get_xlabel() == "duration [s], logarithmic axis"
+    assert ax.get_xscale() == "log"
+    assert (ax.get_yscale() == "log") is (smallest > 0)
+    assert ax.get_ylabel().endswith("logarithmic axis") is (smallest > 0)

@@ -8,7 +8,6 @@ from as_built_cases import COMMON, NOISE, SPREAD, deviations, log_as_built
 
 from identification import InputError
 from inca_mj.report.calibration import calibration_json, calibration_verdict, untold, unusual
-from inca_mj.robot.spread import at_drives
 from inca_mj.workflows.calibration import calibrate
 from inca_mj.workflows.spread import NONE
 
@@ -59,16 +58,6 @@ def test_records_share_drives_and_begin_at_poses_of_their_own(two):
     assert gap.after < 2 * NOISE < gap.before
 
 
-def test_the_twin_has_the_values_that_are_told(one):
-    values = one.robot.parameters.values()
-    assert {n: values[n] for n in COMMON} == {n: one.values[n] for n in COMMON}
-    expected = one.values["K_t"] * (1 + one.values["K_t@3"])
-    assert at_drives("K_t", values)[2] == pytest.approx(expected, rel=1e-12)
-    told = calibration_json(one)
-    assert told["drives"]["K_t"][2]["value"] == one.values["K_t@3"]
-    assert told["records"][0]["after"] == one.unseen[0].after
-
-
 def test_a_part_far_from_what_is_usual_is_told(one):
     """The same calibration, where usual robots scatter by a tenth of what this one does."""
     tight = {name: std / 10 for name, std in SPREAD.drives.items()}
@@ -84,13 +73,6 @@ def test_a_part_far_from_what_is_usual_is_told(one):
     assert calibration_json(judged)["unusual"][0]["name"] in names
 
 
-@pytest.mark.long
-def test_drives_that_are_alike_have_no_scatter():
-    found = calibrate([log_as_built(3.0, alike=True)], spread=SPREAD)
-    assert found.scatter["K_t"] < 0.3 * SPREAD.drives["K_t"]
-    assert max(abs(found.values[f"K_t@{k}"]) for k in range(1, 9)) < 4e-3
-
-
 def test_what_cannot_be_calibrated_is_refused(refusal):
     log = log_as_built(2.0)
     assert "inca identify" in refusal(calibrate, [log], spread=NONE)
@@ -98,12 +80,8 @@ def test_what_cannot_be_calibrated_is_refused(refusal):
     assert "given twice" in refusal(calibrate, [log], spread=SPREAD, confirm=[log])
 
 
-@pytest.mark.parametrize(
-    ("part", "said"),
-    [((2.0, 3.9), "does not begin where"), ((0.0, 4.1), "leaves 0 samples unseen")],
-)
-def test_a_part_that_leaves_nothing_to_judge_by_is_refused(part, said):
+def test_a_part_that_leaves_nothing_to_judge_by_is_refused():
     log = log_as_built(4.0)
-    log = replace(log, splits={"estimation": part})
-    with pytest.raises(InputError, match=said):
+    log = replace(log, splits={"estimation": (2.0, 3.9)})
+    with pytest.raises(InputError, match="does not begin where"):
         calibrate([log], spread=SPREAD)

@@ -62,6 +62,7 @@ def test_encoders_that_are_late_show_earlier_positions():
     np.testing.assert_allclose(y[5:, 1], np.sin(3 * (t[5:] - 0.0123)), atol=1e-8)  # Hermite's
 
 
+@pytest.mark.long
 def test_a_world_is_read_as_a_robot_and_repeats_itself(tmp_path):
     world, again = (make_world("cart", "offset", 4, duration=2.0) for _ in range(2))
     np.testing.assert_array_equal(world.records[0].outputs, again.records[0].outputs)
