@@ -3,25 +3,12 @@
 import mujoco
 import numpy as np
 import pytest
-from joint_cases import ARM
-from joint_cases import SLIDER
-from joint_cases import arm
-from joint_cases import arm_log
-from joint_cases import run
-from joint_cases import slider
-from joint_cases import slider_log
-from joint_cases import steps
-from identification import InputError
-from identification.effects.bodies import body_effects
-from identification.effects.bodies import displaced
-from identification.effects.bodies import frame_inertia
-from identification.effects.bodies import principal
-from identification.effects.effect import Effect
-from identification.effects.effect import Size
+from joint_cases import ARM, SLIDER, arm, arm_log, run, slider, slider_log, steps
+
+from identification.effects.bodies import body_effects, frame_inertia, principal
 from identification.effects.joint_plant import joint_plant
 from identification.effects.moving_bodies import moving_bodies
 from identification.model.plant import ModelPlant
-
 
 LOWER = '<inertial pos="0 0 -0.1" mass="0.5" diaginertia="0.01 0.01 0.005"/>'
 LOG = arm_log(steps(100, 2))

@@ -10,7 +10,7 @@ from identification.estimation.priors import Priors
 from identification.kalman import problem as module
 from identification.kalman.linear import LinearPlant
 from identification.kalman.noise_fit import NoiseLevel, evaluate_noise, fit_noise
-from identification.kalman.noise_model import Whitened, Noise, augment, build_whitener, whiten
+from identification.kalman.noise_model import Noise, Whitened, augment, build_whitener, whiten
 from identification.kalman.problem import linearise_criterion
 from identification.kalman.recursion import COLUMNS_PER_CALL, filter_gains, propagate
 

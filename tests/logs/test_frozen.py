@@ -33,6 +33,11 @@ from identification.refusals.columns import column_pairs
 from identification.refusals.columns import input_exchanges
 from identification.refusals.columns import output_exchanges
 from identification.prediction.records import as_records
+from identification.refusals.columns import MOST_PAIRS
+from identification.refusals.columns import Doubt
+from identification.refusals.columns import column_pairs
+from identification.refusals.columns import input_exchanges
+from identification.refusals.columns import output_exchanges
 
 
 

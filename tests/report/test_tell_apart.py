@@ -1,19 +1,12 @@
 """The input that tells look-alikes apart: laws of its distance."""
 
 from dataclasses import replace
+
 import pytest
-from fake_discovery import LATE
-from fake_discovery import MISMATCH
-from fake_discovery import STRIBECK
-from fake_discovery import found
+from fake_discovery import LATE, MISMATCH, STRIBECK, found
+
 from identification.report.discovery_verdict import discovery_verdict
-from inca_mj.workflows.discovery_model import Contrast
-from inca_mj.workflows.discovery_model import _distance
-from inca_mj.workflows.discovery_model import sentence
-from inca_mj.workflows.discovery_model import tell_apart
-from inca_mj.workflows.discovery_model import told
-
-
+from inca_mj.workflows.discovery_model import _distance, sentence, tell_apart, told
 
 
 @pytest.fixture(scope="module")

@@ -16,12 +16,12 @@ from identification.model.export import to_xml
 from inca_mj.effects.cable import CABLE_CREEP
 from inca_mj.effects.motor import STRIBECK_FRICTION
 from inca_mj.files import model_path
+from inca_mj.refusals.agreement import assigned
 from inca_mj.robot import law
 from inca_mj.robot.geometry import INCA
 from inca_mj.robot.inputs import make_input
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.robot.spread import with_spread
-from inca_mj.twin.agreement import assigned
 from inca_mj.twin.mjcf import build
 from inca_mj.twin.plain import build_plain
 from inca_mj.twin.run import load_run, save_run, simulate
