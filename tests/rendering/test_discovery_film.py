@@ -102,7 +102,7 @@ def test_slow_frames_are_not_waited_for():
 END = """
 import sys
 from pathlib import Path
-from inca_mj.rendering.encoder import encoder
+from inca_mj.rendering.film import encoder
 try:
     with encoder(Path(sys.argv[1]), (64, 64), 30.0):
         raise KeyboardInterrupt
@@ -121,7 +121,7 @@ FULL = """
 import resource, signal, sys
 from pathlib import Path
 import numpy as np
-from inca_mj.rendering.encoder import encoder
+from inca_mj.rendering.film import encoder
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 resource.setrlimit(resource.RLIMIT_FSIZE, (int(sys.argv[2]), int(sys.argv[2])))
 rng = np.random.default_rng(0)
