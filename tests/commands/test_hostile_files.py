@@ -3,30 +3,21 @@
 import json
 import re
 import sys
+
 import numpy as np
 import pytest
-from identification import InputError
-from identification import read_log
+
+from identification import InputError, read_log
 from identification import child as child_process
-from identification.discovery.options import DiscoveryOptions
 from identification.discovery.options import read_options
 from inca_mj.cli import main
-from inca_mj.robot.geometry import INCA
-from inca_mj.robot.geometry import read_geometry
-from inca_mj.robot.geometry import write_geometry
+from inca_mj.robot.geometry import INCA, read_geometry, write_geometry
 from inca_mj.robot.inputs import prbs
-from inca_mj.twin.logs import ANGLES
-from inca_mj.twin.logs import CURRENTS
-from inca_mj.twin.run import load_run
-from inca_mj.twin.run import save_run
-from inca_mj.twin.run import simulate
-from inca_mj.twin.saved import load_twin
-from inca_mj.twin.saved import save_twin
+from inca_mj.twin.logs import ANGLES, CURRENTS
+from inca_mj.twin.run import load_run, save_run, simulate
+from inca_mj.twin.saved import load_twin, save_twin
 from inca_mj.twin.twin import build_twin
 from inca_mj.workflows.spread import read_spread
-from identification.logs import mat_child
-
-
 
 DEEP = "a = " + 5000 * "[" + 5000 * "]"
 DIGITS = "9" * 400

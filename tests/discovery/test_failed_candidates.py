@@ -8,35 +8,21 @@ nominal model may end a search.
 import ast
 from functools import partial
 from pathlib import Path
+
 import pytest
-from discovery_cases import EFFECTS
-from discovery_cases import disturbed
-from discovery_cases import searched
-from discovery_cases import stepped
-from discovery_cases import task
-from failing_cases import ERRORS
-from failing_cases import HOWS
-from failing_cases import Failing
+from discovery_cases import EFFECTS, disturbed, searched, stepped, task
+from failing_cases import ERRORS, HOWS, Failing
+
 from identification.discovery import attempts
-from identification.discovery.attempts import Failed
-from identification.discovery.attempts import attempt
-from identification.discovery.attempts import attempt_each
-from identification.discovery.attempts import collected
-from identification.discovery.attempts import tell_lost
+from identification.discovery.attempts import Failed, attempt, attempt_each, collected, tell_lost
 from identification.effects.effect import Candidate
-from identification.errors import DivergenceError
-from identification.errors import InputError
-from identification.innovations import fitted_model
-from identification.innovations import forward_selection
-from identification.innovations import state
-from identification.innovations.state import first_state
-from identification.innovations.state import next_state
+from identification.errors import DivergenceError, InputError
+from identification.innovations import fitted_model, forward_selection, state
+from identification.innovations.state import first_state, next_state
 from identification.innovations.verdict import conclude
 from identification.report.discovery_json import discovery_to_json
 from identification.report.discovery_sections import FAILED
 from identification.report.discovery_text import discovery_text
-
-
 
 TRUTH = {"offset.f": -0.8, "rubbing.c": 1.0}
 KEY = ("rubbing", "joint")

@@ -4,16 +4,12 @@ import re
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
-import pytest
-from identification.discovery.moves import Move
-from identification.discovery.moves import SearchState
-from identification.discovery.moves import asked_anew
-from identification.discovery.moves import next_state
+
+from identification.discovery.moves import Move, SearchState, asked_anew, next_state
 from identification.discovery.passes import PASSES
 from identification.errors import InputError
 from identification.innovations import state as innovations
 from identification.prediction import state as windows
-
 
 ROOT = Path(__file__).parents[2]
 

@@ -1,17 +1,14 @@
 """What the model's step does to an estimate of a free run is what a fit with a finer step finds."""
 
 from dataclasses import replace
+
 import mujoco
 import numpy as np
 import pytest
-from identification import fit
-from identification import read_robot
-from identification.estimation.uncertainty import step_shift
+
+from identification import fit, read_robot
 from identification.model.protocol import FINER
-from identification.model.protocol import finer
 from identification.report.fit_verdict import fit_verdict
-
-
 
 PENDULUM = """<mujoco><option timestep="{step}" integrator="RK4"/><worldbody><body>
   <joint name="hinge" axis="0 1 0" damping="0.04" armature="0.005"/>

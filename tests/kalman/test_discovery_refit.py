@@ -1,31 +1,20 @@
 """The fit by innovations finds a slider's parameters, from afar, under noise of the input."""
 
 from functools import cache
+
 import numpy as np
 import pytest
-from discovery_cases import EFFECTS
-from discovery_cases import FREE
-from discovery_cases import OPTIONS
-from discovery_cases import SENSOR
-from discovery_cases import nominal_model
-from discovery_cases import record
-from discovery_cases import slider
-from discovery_cases import wander
-from identification import Parameter
-from identification.discovery import nominal_model as nominal_model_file
+from discovery_cases import EFFECTS, FREE, OPTIONS, SENSOR, nominal_model, record, slider, wander
+
 from identification.effects.effect import Candidate
 from identification.estimation.estimation import estimate
 from identification.estimation.priors import Priors
-from identification.innovations.fit import _inside
 from identification.innovations.fit import fit_with_effects
+from identification.kalman.estimate import estimate_innovations
 from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.noise_model import Noise
-from identification.kalman.problem import estimate_noise
-from identification.kalman.problem import linearise_criterion
+from identification.kalman.problem import estimate_noise, linearise_criterion
 from identification.kalman.refit import descend
-from identification.kalman.estimate import estimate_innovations
-
-
 
 ALLOWED = OPTIONS.allowed_input_error
 TRUE = {"mass": 2.4, "damping": 2.6, "x0": 0.02, "v0": -0.03}

@@ -1,25 +1,18 @@
 """The pose from motor angles: at rest and along logs of the twin, whose pose is known."""
 
 from dataclasses import replace
+
 import numpy as np
 import pytest
-from kinematics_cases import measured_angles
-from kinematics_cases import moving_run
-from kinematics_cases import settled_run
+from kinematics_cases import measured_angles, moving_run, settled_run
+
 from identification.errors import InputError
-from inca_mj import log_poses
-from inca_mj import parameter_set
-from inca_mj import pose_at_rest
-from inca_mj import run_to_log
+from inca_mj import log_poses, parameter_set, pose_at_rest, run_to_log
 from inca_mj.kinematics.along import measure
-from inca_mj.kinematics.balance import drum_tension
-from inca_mj.kinematics.balance import no_load_along
-from inca_mj.kinematics.balance import no_load_at_rest
+from inca_mj.kinematics.balance import drum_tension, no_load_along, no_load_at_rest
 from inca_mj.kinematics.resting import at_rest
 from inca_mj.robot.elastic import robot_of
 from inca_mj.robot.geometry import INCA
-
-
 
 
 @pytest.fixture(scope="module")

@@ -12,7 +12,6 @@ from identification.logs.coarse import evened_stamps
 from identification.logs.fitting_steps import EXACT, judged
 from identification.logs.sampling import sampling_time
 from identification.logs.sidecar import Sidecar
-from identification.logs.stamps import moves_on
 from identification.logs.table import Table
 
 FORMS = ("%.4g", "%.5g", "%.6g", "%.7g", "%.8g", "%.1f", "%.2f", "%.3f", "%.4f")

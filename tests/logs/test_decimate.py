@@ -5,8 +5,7 @@ import pytest
 
 from identification import InputError, Log, Parameter
 from identification.logs.decimation import decimate
-from identification.logs.dimension import dimension, refuse_not_si, refuse_other_unit
-from identification.logs.units import UNITS
+from identification.logs.units import UNITS, dimension, refuse_not_si, refuse_other_unit
 
 T = 0.001
 U = np.sin(np.arange(1001) * 0.01)[:, None] * [1.0, 2.0]

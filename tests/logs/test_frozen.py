@@ -2,44 +2,29 @@
 
 from dataclasses import replace
 from itertools import combinations
+
 import mujoco
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from joint_cases import SLIDER
-from joint_cases import STEP
-from joint_cases import arm
-from joint_cases import arm_log
-from joint_cases import run
-from joint_cases import slider
-from joint_cases import slider_log
-from joint_cases import steps
+from joint_cases import SLIDER, STEP, arm, arm_log, run, slider, slider_log, steps
 from records_cases import record
-from stuck_cases import joint_log
-from stuck_cases import stuck
+from stuck_cases import joint_log, stuck
+
 from identification import InputError
 from identification.effects.axes import axes
-from identification.logs.plausible import BEYOND
-from identification.logs.plausible import FEWEST
-from identification.logs.plausible import SPAN
-from identification.logs.plausible import refuse_frozen
+from identification.logs.joined import ROW, share_samples
 from identification.logs.log import Log
-from identification.logs.overlap import ROW
-from identification.logs.overlap import share_samples
-from identification.refusals.columns import MOST_PAIRS
-from identification.refusals.columns import Doubt
-from identification.refusals.columns import column_pairs
-from identification.refusals.columns import input_exchanges
-from identification.refusals.columns import output_exchanges
+from identification.logs.plausible import BEYOND, FEWEST, SPAN, refuse_frozen
 from identification.prediction.records import as_records
-from identification.refusals.columns import MOST_PAIRS
-from identification.refusals.columns import Doubt
-from identification.refusals.columns import column_pairs
-from identification.refusals.columns import input_exchanges
-from identification.refusals.columns import output_exchanges
-
-
+from identification.refusals.columns import (
+    MOST_PAIRS,
+    Doubt,
+    column_pairs,
+    input_exchanges,
+    output_exchanges,
+)
 
 FROM = 300  # sample of 400
 NOISE = 1e-4  # [m]

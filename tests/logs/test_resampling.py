@@ -7,8 +7,7 @@ from hypothesis import strategies as st
 
 from identification import InputError, read_log
 from identification.logs.gaps import Channel, find_lost_rows
-from identification.logs.irregular import on_a_grid
-from identification.logs.resampling import even_out
+from identification.logs.resampling import even_out, on_a_grid
 
 RNG = np.random.default_rng(4)
 

@@ -1,23 +1,18 @@
 """Values of each record by itself: a joined log is predicted as its records are."""
 
 from dataclasses import replace
+
 import numpy as np
 import pytest
-from estimation_plants import SLIDER_PARAMETERS
-from estimation_plants import slider
+from estimation_plants import SLIDER_PARAMETERS, slider
+
 from identification import Log
 from identification.kalman.linear import linearise
 from identification.kalman.noise_fit import compute_unit_ratio
-from identification.kalman.noise_model import Noise
-from identification.kalman.noise_model import build_whitener
+from identification.kalman.noise_model import Noise, build_whitener
 from identification.logs.joined import join_logs
-from identification.model.parameter import of_record
-from identification.model.parameter import own_name
-from identification.model.parameter import values_of_record
 from identification.model.parameter import with_own
 from identification.model.predictor import Predictor
-
-
 
 H = 0.02
 

@@ -2,15 +2,13 @@
 
 import mujoco
 import numpy as np
-from estimation_plants import PENDULUM
-from estimation_plants import positive
+from estimation_plants import PENDULUM, positive
 from hypothesis import given
 from hypothesis import strategies as st
+
 from identification import ParameterSet
 from identification.model.plant import ModelPlant
-from identification.model.tied import spread_place
 from identification.model.tied import spreads
-
 
 BODY = mujoco.MjModel.from_xml_string(PENDULUM).body(1).name
 PATHS = [f"body/{BODY}.spread[{k}]" for k in range(3)]

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from records_cases import AXIS, FREE, HORIZON, nominal_model, pendulum, record, records
 
+from identification.discovery.candidates import list_common
 from identification.discovery.effect_results import Rival
 from identification.discovery.options import DiscoveryOptions
-from identification.discovery.scoring.sensitivities import list_common
 from identification.effects.axes import Axis
 from identification.effects.catalogue import joint_effects
 from identification.effects.joint_plant import candidates

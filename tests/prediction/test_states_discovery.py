@@ -2,40 +2,26 @@
 
 from dataclasses import replace
 from functools import cache
+
 import numpy as np
 import pytest
-from arm_cases import DAMPING
-from arm_cases import FULL
-from arm_cases import SAMPLE
-from arm_cases import Arm
-from arm_cases import inertias
-from arm_cases import text
+from arm_cases import DAMPING, FULL, SAMPLE, Arm, inertias, text
 from chain_cases import WANTED
 from joint_cases import arm_log
-from state_cases import BACKLASH
-from state_cases import COULOMB
-from state_cases import ELASTIC
-from state_cases import F_C
-from state_cases import PRESLIDING
-from state_cases import Truth
-from state_cases import measured
-from state_cases import pendulum
+from state_cases import BACKLASH, COULOMB, ELASTIC, F_C, PRESLIDING, Truth, measured, pendulum
+
+from identification import Parameter
 from identification.discovery.candidates import list_common
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
-from identification.effects.joint_plant import candidates
+from identification.effects.joint_plant import candidates, joint_plant
 from identification.effects.joint_states import JointState
 from identification.prediction.discovery import discover_records
-from identification.prediction.joint_states import model_for
-from identification.prediction.joint_states import widened
+from identification.prediction.joint_states import model_for, widened
 from identification.prediction.nominal_fit import fit_nominal
 from identification.prediction.records import as_records
 from identification.prediction.scores import window_scores
 from identification.prediction.screening import score_all
-from identification import Parameter
-from identification.effects.joint_plant import joint_plant
-
-
 
 FREE = ("J", "d", COULOMB.name)
 OTHERS = ("stribeck_friction",)

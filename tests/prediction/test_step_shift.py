@@ -3,19 +3,16 @@
 import runpy
 from dataclasses import replace
 from pathlib import Path
+
 import numpy as np
 import pytest
-from identification import Log
-from identification import fit
-from identification.discovery import fitted
+
+from identification import Log, fit
 from identification.model.protocol import FINER
-from identification.prediction.step_shift import StepShift
-from identification.prediction.step_shift import step_shift
+from identification.prediction.step_shift import StepShift, step_shift
 from identification.report.step_words import step_sentences
 from identification.robot.file import read_robot_file
 from identification.robot.robot import robot_of
-
-
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "elbow"
 FRICTION = "coulomb_friction.f_c@elbow"

@@ -9,7 +9,7 @@ from fake_discovery import fit
 
 from identification.discovery.effect_results import Detectable
 from identification.effects.effect import Candidate, Effect, Size
-from identification.model.own import with_own
+from identification.model.parameter import with_own
 from identification.report.discovery_json import discovery_to_json
 from identification.report.discovery_tables import parameters_section
 from identification.report.fitted_values import FEW as FEW_PARTS
