@@ -120,3 +120,28 @@ def test_a_coloured_residual_widens_the_profile_as_it_widens_the_std():
     assert (fit.std > 2 * white).all()
     low, high = profile(fit, "damping", points=5).interval
     assert high - low == pytest.approx(2 * 1.96 * std["damping"], rel=0.15)
+
+
+@pytest.mark.parametrize("loss", ["huber", "cauchy", "soft_l1", "arctan"])
+def test_a_profile_counts_outliers_as_the_loss_of_its_fit_does(loss):
+    log = record(slider(), ("position",), noise=5e-4)
+    rng, y = np.random.default_rng(1), log.outputs.copy()
+    y[rng.integers(0, len(y), 10)] += 0.05 * rng.choice([-1, 1], (10, 1))
+    agrees_with_the_std(replace(log, outputs=y), replace(ONCE, loss=loss))
+
+
+def test_a_profile_weighs_relative_noise_as_its_fit_does():
+    log = record(slider(), ("position",))
+    grows = 1 + 0.05 * np.random.default_rng(1).standard_normal(log.outputs.shape)
+    agrees_with_the_std(
+        replace(log, outputs=grows * log.outputs), replace(ONCE, relative_noise=0.05)
+    )
+
+
+def agrees_with_the_std(log, options):
+    """Near its optimum each criterion is a parabola."""
+    fit = assess(estimate(slider(), log, ("damping", "stiffness"), options=options))
+    for name, std in zip(fit.estimate.space.names, fit.std, strict=True):
+        known = profile(fit, name, points=5)
+        ends = (np.array(known.interval) - fit.values[name]) / std
+        np.testing.assert_allclose(ends, [-1.96, 1.96], atol=0.35)

@@ -15,6 +15,7 @@ from hypothesis.extra.numpy import arrays
 from scipy.io import savemat
 
 from identification import Log, write_log
+from identification.files import toml_table, toml_value
 from identification.logs.units import UNITS as WORDS
 
 TEXT = "time,current_1,current_2,angle_1,angle_2\n0,1,2,3,4\n0.1,1,2,3,5\n0.2,1,2,3,6\n"
@@ -239,3 +240,16 @@ def test_a_failed_write_leaves_nothing_and_harms_nothing(tmp_path, monkeypatch, 
     assert "No space left" in text
     assert str(path) in text
     assert {f.name: f.read_bytes() for f in tmp_path.iterdir()} == before
+
+
+def test_what_is_written_as_toml_is_read_as_it_was():
+    odd = {
+        "name": 'a "b" \\ \x7f\n\u20ac',
+        "free": ["a.b", "c"],
+        "on": True,
+        "step": 1e-300,
+        "n": [[0.1, 2]],
+    }
+    assert tomllib.loads(f"x = {toml_value(odd)}")["x"] == odd
+    assert tomllib.loads("\n".join(toml_table("t", odd)))["t"] == odd
+    assert toml_table("t", {}) == []
