@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from typing import Any
 
-from identification.prediction.twins import LEVEL, TWINS
+from identification.prediction.trial import LEVEL, TWINS
 from identification.sweep.statistics import median, rate, said
 
 WORSE = 1.02  # of an error: two searches that end at the same minimum differ by less
@@ -194,7 +194,7 @@ def section(rows: Sequence[Row]) -> str:
         "free parameter and no start of a window imitates. One record is fitted, another",
         "judges. A constant force that is smaller than the Coulomb level, and a level that",
         "differs by direction, are one force by two names",
-        "(`identification/prediction/twins.py`): either is right.",
+        "(`identification/prediction/trial.py`): either is right.",
         "",
         "    python benchmarks/hidden_joints.py",
         "",

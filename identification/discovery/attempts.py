@@ -3,8 +3,12 @@
 A candidate may diverge where a refit takes its size or its shape, may be refused at a value that
 nobody gave (motors with more inertia than the robot), or make a matrix that cannot be solved. It is
 then rejected and told, and the search goes on. Only the nominal model may end a search. No other
-function of `identification.discovery` or `identification.prediction` catches these errors, so that
-what is evaluated elsewhere is seen to be unguarded; a test holds this.
+function of the search or of its evidences catches these errors, so that what is evaluated elsewhere
+is seen to be unguarded; a test holds this.
+
+Two refits of one effect that end at the same values are one: a candidate is refitted from several
+sizes, of which the nearest to the data is not known before, and two of these searches often end in
+one minimum.
 """
 
 from __future__ import annotations

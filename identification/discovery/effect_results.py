@@ -206,7 +206,7 @@ class RejectedEffect(OfCandidate):
         proof: what it does for unseen samples.
         outside: something like it that no catalogue lists and that is likelier, where it was.
         evidence: what speaks for it over all windows; NaN for a free run.
-        doubt: why it is not proven, a word of `identification.prediction.proof.Doubt`; None where
+        doubt: why it is not proven, a word of `identification.prediction.trial.Doubt`; None where
             it is, or where no reason is told.
         confidence: that its name would have had.
     """
@@ -240,7 +240,7 @@ class NamedEffect(OfCandidate):
         outside: something like it that no catalogue lists; None where no curve explains anything
             beside the named effects.
         same_as: the effect that is the same force by another name, so that no record tells which
-            it is (`identification.prediction.twins`); None where there is none.
+            it is (`identification.prediction.trial`); None where there is none.
     """
 
     candidate: Candidate

@@ -1,4 +1,4 @@
-"""Missing forces: which forces would have to act, and where, for the nominal model to be right.
+"""Where the nominal model fails along a free run, and which forces would make it right.
 
     M δv̇ = … + r w,    w: a first-order process of the level that makes the residual most likely
 

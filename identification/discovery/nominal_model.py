@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from identification.errors import InputError
 from identification.model.parameter import Parameter
+from identification.model.plant import start_place
 from identification.model.predictor import Plant
 
 # Of a logarithm, for the prior of a shape about the grid value with the best score; the grids are
@@ -90,3 +91,20 @@ def nonzero(record: Parameter, value: float) -> float:
     """Returns the value of a size, moved away from zero where it is too near to it."""
     least = MIN_START_SHARE * record.scale
     return value if abs(value) > least else least * (1 if record.upper > 0 else -1)
+
+
+def without_starts(nominal_model: NominalModel) -> NominalModel:
+    """Returns a nominal model without free parameters that are entries of the initial state.
+
+    Args:
+        nominal_model: any.
+    """
+    plant, names = nominal_model.plant, nominal_model.names
+    at = plant.parameters
+    keep = [k for k, n in enumerate(names) if start_place(at[n].where, plant.model) is None]
+    kept = tuple(names[k] for k in keep)
+    return replace(
+        nominal_model, names=kept, std=nominal_model.std[keep],
+        own=tuple(n for n in nominal_model.own if n in kept),
+        mean={n: mean for n, mean in nominal_model.mean.items() if n in kept},
+    )  # fmt: skip

@@ -1,7 +1,10 @@
-"""Structure that a fitted model leaves unexplained on the fitted samples, beyond chance.
+"""What a final model of a free run leaves: structure, doubtful effects, a changed robot.
 
-The innovations of the fitted samples are tested; those of the unseen samples contain the error of
-the parameters as well, which is not random.
+    δ = argmin ‖E - F δ‖² + Σ ((q_j + δ_j - q̄_j)/s_j)²        over all samples, F = ∂E/∂q
+
+Are the unseen samples predicted as well as the fitted ones? A fit that knows its parameters only
+roughly predicts unseen samples only roughly. The part of the innovations that a small change δ of
+the parameters can explain is therefore removed; what is left is no uncertainty of the parameters.
 """
 
 from __future__ import annotations

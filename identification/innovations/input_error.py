@@ -1,4 +1,4 @@
-"""Is the unlogged error of the inputs random, or does it follow something that was logged?
+"""Errors of the inputs: are they random, and would another hold of the inputs explain them?
 
     w_k = Σ_i g_i r_i(k),   δx_{k+1} = A_k δx_k + B_k w_k,   S_i = C δx for g_i = 1
     (δ̂, ĝ) = argmin ‖E - F δ - S g‖² + Σ ((q_j + δ_j - q̄_j)/s_j)² + ‖g‖²       fitted samples
@@ -10,7 +10,9 @@ that the noise model assumes, and the prior of g_i has the std 1. Flips of the b
 what is beyond chance, as in the proof of an effect.
 
 A friction that changes along the way follows neither the output nor its rate, but sgn(v) f(y):
-therefore curves of the output are tried for each direction too.
+therefore curves of the output are tried for each direction too. An input that runs in straight
+lines and is taken for steps comes half a sample late; that looks like an error of the inputs, and
+is no effect of a robot.
 """
 
 from __future__ import annotations

@@ -1,17 +1,16 @@
-"""Proof on unseen samples: does a model with an effect predict what no fit has seen better?
+"""The unseen samples of a log: how a fitted model predicts them, and whether an effect helps.
 
+    cov(r) = G K Gᵀ        what errors of the inputs, of covariance K, do to a free run
     Δ_b = ½ Σ_{k in b} ‖E_k(without)‖² - ‖E_k(with)‖²        over blocks b of unseen samples
     t = mean(Δ_b)/(std(Δ_b)/√B)
     chance = P(Σ_b s_b Δ_b >= Σ_b Δ_b)        s_b = ±1, all choices equally likely
-
     share = (rms²(without) - rms²(with))/(rms²(without) - σ² - d²)
 
 The chance decides, and not t: an effect that acts only at times gains much in few blocks and a
 little in the others, and that skew makes t small although every block gains. Flips of the signs
 need no normal distribution. Both residuals pass the filter of the model without the effect, so that
 neither predictor follows the data more closely than the other. rms is that of the free run, and d
-is what input errors do to it. (A robot that is judged over a horizon has a proof of its own:
-`identification.prediction`.)
+is what input errors do to it.
 """
 
 from __future__ import annotations

@@ -1,4 +1,8 @@
-"""The recovered force of an effect that was named for a free run: see `recovered_force`."""
+"""The recovered force of an effect that was named for a free run, along the records of its log.
+
+It is the force that the values with the effect have and those without it lack; see
+`identification.discovery.recovered_force`.
+"""
 
 from __future__ import annotations
 

@@ -1,8 +1,11 @@
 """The loss of a fit where something else stands in an effect's place, to first order.
 
-    loss = min_δ,c C(q̂ + δ, c | η = 0) - min_δ C(q̂ + δ)
+    loss = min_δ,c C(q̂ + δ, c | η = 0) - min_δ C(q̂ + δ)        another effect, of sizes c
+    loss = min_δ C'(q̂ + δ | η = 0) - min_δ C'(q̂ + δ)           other values of the nominal model
 
-C is the criterion about the fit, η the sizes of the effect, and c those of what replaces it.
+C is the criterion about the fit, linearised, η the sizes of the effect, and C' the criterion with
+wider priors. A log that shows one kind of motion only may tell an effect from a wrong parameter by
+nothing but the prior of that parameter, and a name that rests on a prior says so.
 """
 
 from __future__ import annotations

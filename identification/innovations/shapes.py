@@ -1,8 +1,13 @@
-"""A second look at the best refit of an effect: another start, another shape, the usual shape.
+"""A second look at the best refits of an effect: another start, another shape, the usual shape.
 
-Where the refit leaves structure in the innovations, its next likely shape is tried; a first effect
+Where a refit leaves structure in the innovations, its next likely shape is tried; a first effect
 is also fitted from the nominal values. Where the data do not tell two shapes apart, the usual one
 is taken.
+
+Where much is missing, the nominal fit moves a parameter to the end of what is plausible to make up
+for it, and refits that begin there stay there: the likeliest of them is then the effect that goes
+best with a wrong parameter. All refits then begin anew at the nominal values, because one that did
+so alone would win by its start.
 """
 
 from __future__ import annotations

@@ -31,8 +31,8 @@ from identification.prediction.model import WindowModel
 from identification.prediction.problem import MOST_STEPS, Problem, no_moves, problem
 from identification.prediction.records import Record
 from identification.prediction.scores import WindowScore, window_scores
+from identification.prediction.std import degrees_of_freedom, told_std
 from identification.prediction.task import RecordsTask
-from identification.prediction.told_std import degrees_of_freedom, told_std
 
 SHIFT = "time_shift"  # the effect
 # Of the sampling time: a smaller shift that may be chance stands in the JSON alone.

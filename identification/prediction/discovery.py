@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from identification.discovery.nominal_model import NominalModel
+from identification.discovery.nominal_model import NominalModel, without_starts
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.result import Discovery
 from identification.effects.effect import Effect
@@ -13,7 +13,6 @@ from identification.logs.log import Log
 from identification.pool import one_blas_thread
 from identification.prediction.records import as_records
 from identification.prediction.records_fit import NO_HORIZON
-from identification.prediction.starts import without_starts
 from identification.prediction.state import first_state, next_state
 from identification.prediction.task import RecordsTask
 from identification.prediction.verdict import conclude

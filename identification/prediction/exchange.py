@@ -23,7 +23,7 @@ from identification.prediction.fit import solve
 from identification.prediction.model import WindowModel, predict_fitted
 from identification.prediction.problem import ROUGH_STEPS, Problem, no_moves, problem
 from identification.prediction.records import Record
-from identification.prediction.selection import Contender
+from identification.prediction.trial import Contender
 from identification.prediction.unseen import HORIZON, compare
 from identification.progress import Progress
 

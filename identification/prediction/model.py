@@ -18,8 +18,7 @@ from identification.model.predictor import Plant
 from identification.prediction.fit import WindowFit
 from identification.prediction.own_values import Own
 from identification.prediction.records import Record
-from identification.prediction.step_shift import step_shift
-from identification.prediction.told_std import told_std
+from identification.prediction.std import step_shift, told_std
 from identification.prediction.unseen import LENGTHS, Unseen, predict
 
 

@@ -16,7 +16,7 @@ from functools import cached_property, partial
 import numpy as np
 
 from identification.discovery.attempts import attempt
-from identification.discovery.nominal_model import NominalModel
+from identification.discovery.nominal_model import NominalModel, without_starts
 from identification.discovery.options import DiscoveryOptions
 from identification.errors import InputError
 from identification.logs.log import Log
@@ -26,7 +26,6 @@ from identification.prediction.fit import WindowFit
 from identification.prediction.model import WindowModel
 from identification.prediction.nominal_fit import begin, fit_nominal
 from identification.prediction.problem import no_moves
-from identification.prediction.proof import find_doubt
 from identification.prediction.record_errors import (
     RecordError,
     error_unit,
@@ -35,8 +34,8 @@ from identification.prediction.record_errors import (
     scaled_squares,
 )
 from identification.prediction.records import Record, as_records
-from identification.prediction.starts import without_starts
-from identification.prediction.told_std import told_std
+from identification.prediction.std import told_std
+from identification.prediction.trial import find_doubt
 from identification.prediction.unseen import Prediction, Unseen, compare, predict
 from identification.progress import Progress
 from identification.windows.settling import settle

@@ -9,7 +9,6 @@ chosen        of the proven ones the one for which most speaks (`evidence`), or 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -29,48 +28,22 @@ from identification.prediction.evidence import all_gains, count_windows, evidenc
 from identification.prediction.extension import with_effect
 from identification.prediction.first_fit import Begun, begin
 from identification.prediction.model import WindowModel
-from identification.prediction.proof import Doubt, find_doubt, has_size, is_at_bound
 from identification.prediction.records import Record
 from identification.prediction.scores import WindowScore
-from identification.prediction.unseen import Prediction, Unseen, compare
+from identification.prediction.trial import (
+    Contender,
+    Doubt,
+    evidences,
+    find_doubt,
+    has_size,
+    is_at_bound,
+)
+from identification.prediction.unseen import Unseen, compare
 from identification.progress import Progress, counted
 from identification.quantities import fall_words
 
 STRONG_BIC = 10.0  # "very strong evidence" of one law against another (Kass and Raftery 1995)
 REFUTED: tuple[Doubt, ...] = ("numbers", "chance")  # by windows of the horizon alone
-
-
-@dataclass(frozen=True, kw_only=True)
-class Contender:
-    """An effect that was refitted.
-
-    Attributes:
-        model: with it.
-        prediction: of unseen records, over the model without it.
-        gains: by block of the fitted windows, then of the unseen ones, shape (B,).
-        numbers: that it adds to the model, those of each record counted.
-        criterion: E, what speaks for it against the model without it (`evidence`).
-        doubt: why it is not proven; None where it is.
-        alternatives: what else was refitted in its place and may be meant, once it is accepted.
-    """
-
-    model: WindowModel
-    prediction: Prediction
-    gains: np.ndarray
-    numbers: int
-    criterion: float
-    doubt: Doubt | None
-    alternatives: tuple[Contender, ...] = ()
-
-    @property
-    def is_proven(self) -> bool:
-        """Whether unseen records prove it."""
-        return self.doubt is None
-
-    @property
-    def candidate(self) -> Candidate:
-        """The effect, its shapes as they began."""
-        return self.model.candidates[-1]
 
 
 def refit_contenders(
@@ -222,12 +195,3 @@ def _ranked(found: Sequence[Contender], options: DiscoveryOptions) -> tuple[Cont
             if np.mean(each[1] >= each[0]) > options.significance:
                 out = [c, *(o for o in out if o is not c)]
     return tuple(out)
-
-
-def evidences(contenders: Sequence[Contender]) -> np.ndarray:
-    """Returns E of contenders for one place by resample, (k, R); the first is of all blocks."""
-    model = contenders[0].model
-    return evidence(
-        [c.gains for c in contenders], [c.numbers for c in contenders], count_windows(model),
-        len(model.scale),
-    )  # fmt: skip

@@ -9,8 +9,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import numpy as np
-
 from identification.discovery.attempts import collected
 from identification.discovery.moves import Move, Watch, asked_anew
 from identification.discovery.moves import next_state as next_of
@@ -24,10 +22,10 @@ from identification.prediction.moves.drop_drawn_laws import drop_drawn_laws
 from identification.prediction.moves.drop_effects import drop_effects
 from identification.prediction.moves.drop_places import drop_places
 from identification.prediction.nominal_fit import as_begun, fit_nominal
-from identification.prediction.proof import find_doubt
 from identification.prediction.screening import score_all
 from identification.prediction.task import RecordsTask, WindowSearch, finishing
-from identification.prediction.unseen import HORIZON, Unseen, compare, predict
+from identification.prediction.trial import find_doubt
+from identification.prediction.unseen import HORIZON, Unseen, compare, predict, rise
 from identification.progress import Progress
 
 FEWEST_BLOCKS = 3  # of unseen windows, whose scatter is known
@@ -104,9 +102,3 @@ def _refuse_few(unseen: Unseen, horizon: float) -> None:
 def next_state(state: WindowSearch, progress: Progress) -> WindowSearch:
     """Returns the state after one more move, as `identification.discovery.moves.next_state`."""
     return next_of(state, MOVES, progress)
-
-
-def rise(begun: Unseen, fitted: Unseen) -> float:
-    """Returns the relative rise of the mean square at the horizon from before a fit to after it."""
-    before, after = (float(np.mean(np.concatenate(u.at_horizon))) for u in (begun, fitted))
-    return after / before - 1

@@ -11,7 +11,7 @@ from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Effect
 from identification.prediction.model import WindowModel
 from identification.prediction.records import Record
-from identification.prediction.selection import Contender
+from identification.prediction.trial import Contender
 from identification.prediction.unseen import Unseen
 from identification.progress import Progress
 

@@ -2,7 +2,7 @@
 
 The horizon is predicted first: what it refutes is not predicted over the other lengths. Both models
 begin each window at the state that explains it best, found by the same smoother. Gains of blocks of
-neighbouring windows (`identification.prediction.blocks`) are the sample of a t-test.
+neighbouring windows (`identification.prediction.evidence`) are the sample of a t-test.
 """
 
 from __future__ import annotations
@@ -266,3 +266,9 @@ def _settled(
         d, errors = out[k]
         d[half], errors[half] = s.d, part.error(s.r)
     return out
+
+
+def rise(begun: Unseen, fitted: Unseen) -> float:
+    """Returns the relative rise of the mean square at the horizon from before a fit to after it."""
+    before, after = (float(np.mean(np.concatenate(u.at_horizon))) for u in (begun, fitted))
+    return after / before - 1

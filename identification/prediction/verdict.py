@@ -31,17 +31,14 @@ from identification.logs.log import Log
 from identification.prediction.clocks import record_shifts
 from identification.prediction.evidence import compute_confidence
 from identification.prediction.extension import at_own_steps
-from identification.prediction.input_error import needed_input_error
 from identification.prediction.model import WindowModel
 from identification.prediction.record_errors import error_unit, errors_by_unit, record_errors
 from identification.prediction.records import Record
 from identification.prediction.recovery import recover_over_horizon
-from identification.prediction.remaining import find_remaining
-from identification.prediction.selection import Contender, evidences
-from identification.prediction.state import rise
+from identification.prediction.remaining import find_remaining, needed_input_error
 from identification.prediction.task import WindowSearch
-from identification.prediction.twins import find_twin
-from identification.prediction.unseen import Prediction, Unseen
+from identification.prediction.trial import Contender, evidences, find_twin
+from identification.prediction.unseen import Prediction, Unseen, rise
 
 MIN_LISTED_CONFIDENCE = 0.02  # a rival that is less likely is not listed
 

@@ -10,7 +10,7 @@ model as it is written predicts the log much worse than that over the horizon: w
 then larger than what the steps make.
 
 It is the error of one law. The time in which a joint with dry friction stops goes with the step,
-and is held here; `identification.prediction.step_shift` tells what it does to a fit.
+and is held here; `identification.prediction.std` tells what it does to a fit.
 """
 
 from __future__ import annotations

@@ -18,16 +18,16 @@ from identification.model.parameter import Parameter, ParameterSet
 from identification.model.predictor import Predictor
 from identification.prediction.contenders import count_numbers, list_contenders, list_simpler
 from identification.prediction.evidence import compute_confidence, evidence
-from identification.prediction.proof import is_at_bound
 from identification.prediction.scores import WindowScore
-from identification.prediction.selection import (
-    STRONG_BIC,
+from identification.prediction.selection import STRONG_BIC, _near_best, _ranked
+from identification.prediction.trial import (
+    LEVEL,
+    TWINS,
     Contender,
-    _near_best,
-    _ranked,
     evidences,
+    find_twin,
+    is_at_bound,
 )
-from identification.prediction.twins import LEVEL, TWINS, find_twin
 
 OPTIONS = DiscoveryOptions()
 

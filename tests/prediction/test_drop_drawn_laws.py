@@ -10,7 +10,7 @@ from numba import njit
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate, Effect, Size
 from identification.prediction.moves import curve_for_laws, drop_beside_curves, drop_drawn_laws
-from identification.prediction.proof import has_size
+from identification.prediction.trial import has_size
 
 LAW = njit(lambda s, p: 0.0)
 SIZES = (Size("c", "N", 1.0, 0.1, about=""),)

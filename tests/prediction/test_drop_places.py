@@ -21,10 +21,10 @@ from identification.prediction.moves.drop_places import drop_places
 from identification.prediction.nominal_fit import fit_nominal
 from identification.prediction.records import as_records
 from identification.prediction.scores import WindowScore, window_scores
-from identification.prediction.selection import Contender
-from identification.prediction.several_places import at_several, felt_places, places_of
+from identification.prediction.screening import at_several, felt_places, places_of
 from identification.prediction.state import first_state
 from identification.prediction.task import RecordsTask
+from identification.prediction.trial import Contender
 from identification.prediction.unseen import compare
 from identification.prediction.verdict import conclude
 from identification.report.curve_nodes import curve_nodes

@@ -17,14 +17,14 @@ from identification.prediction.discovery import discover_records
 from identification.prediction.exchange import exchanged, is_contradicted
 from identification.prediction.extension import with_effect
 from identification.prediction.first_fit import begin
-from identification.prediction.input_error import needed_input_error
 from identification.prediction.model import predict_fitted
 from identification.prediction.nominal_fit import fit_nominal
-from identification.prediction.proof import find_doubt
 from identification.prediction.records import as_records
+from identification.prediction.remaining import needed_input_error
 from identification.prediction.scores import window_scores
 from identification.prediction.screening import score_all
 from identification.prediction.selection import REFUTED, refit_contenders
+from identification.prediction.trial import find_doubt
 from identification.prediction.unseen import HORIZON as ALONE
 from identification.prediction.unseen import compare
 

@@ -9,7 +9,7 @@ from identification.discovery.findings.finding import FindingKind
 from identification.discovery.findings.records_evidence import ShiftedRecord
 from identification.discovery.options import DiscoveryOptions
 from identification.prediction import remaining
-from identification.prediction.rivals import CONTRADICTED, OWN_SHARE, find_rivals
+from identification.prediction.trial import CONTRADICTED, OWN_SHARE, find_rivals
 
 OPTIONS = DiscoveryOptions()
 LEAST = 1 + OPTIONS.min_gap_share  # rms over the noise beyond which something is left

@@ -44,7 +44,7 @@ class UnprovenEffect:
         where: its place.
         fall: relative fall of the unseen mean square, at the horizon.
         t: of its gain over blocks.
-        doubt: what is against it, a word of `identification.prediction.proof.Doubt`.
+        doubt: what is against it, a word of `identification.prediction.trial.Doubt`.
     """
 
     name: str

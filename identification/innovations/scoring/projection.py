@@ -4,6 +4,11 @@
     H = S⊥ᵀS⊥,   b = S⊥ᵀE⊥,   and the same of each block of samples:   G_b,  a_b
     b = Sᵀu,   u = Wᵀ E⊥               W: the whitening filter; no sensitivity is whitened for it
 
+The chance of a score by the scatter over B blocks needs no noise model. It is a Wald test of m
+sizes with the candidate in the model (White 1980):
+
+    W = η̂ᵀ H (Σ_b g_b g_bᵀ)⁻¹ H η̂,   g_b = a_b - G_b η̂,   W (B - m)/(B m) ~ F(m, B - m)
+
 A candidate has few sizes. Of its sensitivities nothing is needed but products of few columns, never
 a product with those of another candidate.
 """

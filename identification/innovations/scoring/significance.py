@@ -1,6 +1,13 @@
-"""Selection of the scores worth a refit: beyond chance, with a size that physics admits.
+"""Which scores are beyond chance, what a log would have shown, and what the noise may hide.
 
-max(p_j, p_j by blocks) n < significance        n candidates (Bonferroni)
+    chance of the best of n candidates <= n p
+    found with probability 0.9 where (η/std)² = DETECTION_NONCENTRALITY
+    most  = |η̂| + 1.96 std(η̂)            η̂ as it would be fitted, with the noise most likely then
+    taken = 1 - (ρ_j σ_j)²/(ρ σ)²         share of the power of the inputs' error
+
+A noise model takes what repeats like an error of the inputs for one: a hysteresis of the springs
+pulls a drive as a wrong current does. With the effect in the model the inputs would have to err by
+less, and `taken` says by how much.
 """
 
 from __future__ import annotations

@@ -15,10 +15,10 @@ from identification.discovery.passes import uses
 from identification.prediction.exchange import exchanged, without_contradicted
 from identification.prediction.extension import with_fitting_steps
 from identification.prediction.model import WindowModel
-from identification.prediction.rivals import find_rivals
 from identification.prediction.screening import score_all
-from identification.prediction.selection import Contender, refit_contenders
+from identification.prediction.selection import refit_contenders
 from identification.prediction.task import WindowSearch
+from identification.prediction.trial import Contender, find_rivals
 from identification.progress import Progress
 
 

@@ -11,8 +11,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 from identification.prediction.extension import refitted
-from identification.prediction.selection import Contender
 from identification.prediction.task import Change, WindowSearch
+from identification.prediction.trial import Contender
 from identification.progress import Progress
 
 

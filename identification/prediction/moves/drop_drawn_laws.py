@@ -17,10 +17,9 @@ import numpy as np
 
 from identification.prediction.extension import refitted
 from identification.prediction.model import WindowModel
-from identification.prediction.rivals import OWN_SHARE
-from identification.prediction.selection import Contender
-from identification.prediction.several_places import places_of
+from identification.prediction.screening import places_of
 from identification.prediction.task import Change, WindowSearch
+from identification.prediction.trial import OWN_SHARE, Contender
 from identification.progress import Progress
 
 ON_JOINTS = {"force", "friction"}  # hooks of what a curve, which is a force, may do as well

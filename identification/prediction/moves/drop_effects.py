@@ -13,8 +13,8 @@ from identification.effects.effect import Candidate
 from identification.prediction.crossing import at_their_best
 from identification.prediction.extension import refitted
 from identification.prediction.model import WindowModel
-from identification.prediction.proof import Doubt, find_doubt
 from identification.prediction.task import Change, RecordsTask, WindowSearch
+from identification.prediction.trial import Doubt, find_doubt
 from identification.prediction.unseen import compare
 from identification.progress import Progress
 

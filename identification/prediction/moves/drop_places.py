@@ -13,7 +13,7 @@ from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate
 from identification.prediction.model import WindowModel
 from identification.prediction.moves.drop_effects import as_good_without
-from identification.prediction.several_places import at_places, is_felt, places_of
+from identification.prediction.screening import at_places, is_felt, places_of
 from identification.prediction.task import Change, WindowSearch
 from identification.progress import Progress
 

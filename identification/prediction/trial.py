@@ -1,0 +1,189 @@
+"""An effect that was refitted over windows: its proof by unseen records, its rivals, and its twin.
+
+Two laws are the same force by two names, as long as they are smaller than the Coulomb level:
+
+    a force f_0, a level f_c                 levels f_c + f_a and f_c - f_a by direction, f_a = -f_0
+
+    moves    f_0 - f_c sign v                -(f_c + f_a sign v) sign v = f_0 - f_c sign v
+    rests    |g + f_0| < f_c                 -(f_c - f_a) < g < f_c + f_a, g all other forces
+
+No record tells them apart, whatever moves. Where f_0 is larger than f_c they differ: friction only
+brakes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from identification.discovery.fitted import BOUND_TOLERANCE
+from identification.discovery.options import DiscoveryOptions
+from identification.effects.effect import Candidate
+from identification.effects.joint_group import SLIDE
+from identification.prediction.evidence import count_windows, evidence
+from identification.prediction.model import WindowModel
+from identification.prediction.scores import WindowScore
+from identification.prediction.unseen import Prediction
+
+Doubt = Literal[
+    "numbers", "chance", "lengths", "record", "little", "size", "bound", "exchange", "curve",
+    "drawn",
+]  # fmt: skip
+# Of what an effect explained: one that still explains as much beside another is missing too.
+OWN_SHARE = 0.5
+# By what was measured, or by what is believed of its size.
+CONTRADICTED: tuple[Doubt, ...] = ("lengths", "record", "bound", "exchange")
+TWINS = {"offset": "asymmetric_friction", "asymmetric_friction": "offset"}
+LEVEL = "coulomb_friction.f_c"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Contender:
+    """An effect that was refitted.
+
+    Attributes:
+        model: with it.
+        prediction: of unseen records, over the model without it.
+        gains: by block of the fitted windows, then of the unseen ones, shape (B,).
+        numbers: that it adds to the model, those of each record counted.
+        criterion: E, what speaks for it against the model without it (`evidence`).
+        doubt: why it is not proven; None where it is.
+        alternatives: what else was refitted in its place and may be meant, once it is accepted.
+    """
+
+    model: WindowModel
+    prediction: Prediction
+    gains: np.ndarray
+    numbers: int
+    criterion: float
+    doubt: Doubt | None
+    alternatives: tuple[Contender, ...] = ()
+
+    @property
+    def is_proven(self) -> bool:
+        """Whether unseen records prove it."""
+        return self.doubt is None
+
+    @property
+    def candidate(self) -> Candidate:
+        """The effect, its shapes as they began."""
+        return self.model.candidates[-1]
+
+
+def evidences(contenders: Sequence[Contender]) -> np.ndarray:
+    """Returns E of contenders for one place by resample, (k, R); the first is of all blocks."""
+    model = contenders[0].model
+    return evidence(
+        [c.gains for c in contenders], [c.numbers for c in contenders], count_windows(model),
+        len(model.scale),
+    )  # fmt: skip
+
+
+def find_doubt(found: Prediction, refits: int, options: DiscoveryOptions) -> Doubt | None:
+    """Returns what is against an effect on unseen windows; None where they prove it.
+
+    Args:
+        found: what is predicted better with it.
+        refits: how many effects were refitted, which chance has to pay for.
+        options: what is beyond chance, and enough.
+
+    Returns:
+        "chance": the gain may be luck. "lengths": windows of some length are predicted worse.
+        "record": a record is predicted worse, though physics is the same in all of them.
+        "little": it takes away too little to matter.
+    """
+    if not (found.t > options.min_proof_t and found.chance * refits < options.significance):
+        return "chance"
+    if not found.is_everywhere:
+        return "lengths"
+    if min(found.record_falls) <= -options.min_gap_share:
+        return "record"
+    return None if min(found.typical_falls) > options.min_fall else "little"
+
+
+def has_size(model: WindowModel, options: DiscoveryOptions) -> bool:
+    """Returns whether a free size of the last effect is beyond its own std, where it has one.
+
+    It must be beyond what steps of the simulation err by too. The nodes of a curve go together, and
+    with a free level or slope beside it each of them may be unknown where the curve is not: of it
+    the evidence speaks, which pays for every node.
+    """
+    std, values, c = model.std, model.fit.values, model.candidates[-1]
+    least = {n: s.smallest for n, s in zip(c.sizes, c.effect.sizes, strict=True)}
+    own = [n for n in model.fit.problem.names if n.partition(" [")[0] in c.free]
+    times = 0.0 if c.effect.is_curve else options.min_proof_t
+    return not own or any(
+        abs(values[n]) > max(times * std[n] if times else 0.0, least[n.partition(" [")[0]])
+        for n in own
+    )
+
+
+def is_at_bound(model: WindowModel) -> bool:
+    """Returns whether a size of the last effect ended on the bound of what is believed.
+
+    The data then ask for more than physics allows: the effect stands for something else. Zero as a
+    bound of a size is no effect, and no reason.
+    """
+    parameters, sizes = model.plant.parameters, model.candidates[-1].free
+    values = {n: v for n, v in model.fit.values.items() if n.partition(" [")[0] in sizes}
+    each = ((v, parameters[n.partition(" [")[0]]) for n, v in values.items())
+    return any(
+        bound != 0 and np.isfinite(bound) and abs(v - bound) <= BOUND_TOLERANCE * abs(bound)
+        for v, p in each
+        for bound in (p.lower, p.upper)
+    )
+
+
+def find_rivals(
+    others: Sequence[Contender], before: WindowModel, scores: Sequence[WindowScore],
+    after: WindowModel, then: Sequence[WindowScore],
+) -> tuple[Contender, ...]:  # fmt: skip
+    """Returns other contenders that explain less than half as much once the best one is there.
+
+    What still explains as much is no rival of the best one: it is missing too. A rival need not be
+    proven to make a name doubtful; but what some windows or a record contradict is none, nor what
+    ends on the bound of its size, nor what predicts unseen records no better than the model without
+    it.
+
+    Args:
+        others: refitted in the place of the best one.
+        before: the model without it.
+        scores: of all candidates on that model.
+        after: the model with it.
+        then: scores on this one.
+    """
+    was, still = (
+        {s.candidate.key: s.fall * model.fit.cost for s in reversed(each)}
+        for each, model in ((scores, before), (then, after))
+    )
+    return tuple(
+        o for o in others
+        if o.doubt not in CONTRADICTED and o.prediction.t > 0
+        and still.get(o.candidate.key, 0.0) < OWN_SHARE * was.get(o.candidate.key, 0.0)
+    )  # fmt: skip
+
+
+def find_twin(model: WindowModel, candidate: Candidate) -> str:
+    """Returns the name of the effect that is the same force as a candidate; "" where there is none.
+
+    Args:
+        model: fitted, with the candidate.
+        candidate: the effect at its place.
+    """
+    effect = candidate.effect
+    prefix = SLIDE if effect.name.startswith(SLIDE) else ""
+    name, level = effect.name.removeprefix(SLIDE), prefix + LEVEL
+    values = {**model.plant.parameters.values(), **model.values}
+    every = [s for s in effect.places.values() if s.startswith("@")]
+
+    def is_small(size: str) -> bool:
+        _, at, joint = size.partition("@")
+        places = [at + joint] if joint else every
+        levels = (values.get(level, 0.0) + values.get(level + p, 0.0) for p in places)
+        return abs(values.get(size, 0.0)) < min(levels, default=0.0)
+
+    small = name in TWINS and all(map(is_small, candidate.sizes))
+    return prefix + TWINS[name] if small else ""
