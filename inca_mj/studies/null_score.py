@@ -24,8 +24,8 @@ from identification.sweep.statistics import said, wilson
 from identification.sweep.words import file_setting, setting
 from inca_mj.studies.world_settings import ERROR, SPREAD
 from inca_mj.studies.worlds import AS_BUILT, EXACT, HiddenSetting, world
-from inca_mj.studies.worlds.measure import coloured as wander
-from inca_mj.studies.worlds.measure import encode
+from inca_mj.studies.worlds.sensor import coloured as wander
+from inca_mj.studies.worlds.sensor import encode
 from inca_mj.workflows.spread import WORDS
 
 LEVEL = 0.05  # of p-values that are counted

@@ -9,7 +9,7 @@ from identification.errors import InputError
 from inca_mj.effects.cable import pulley_radius
 from inca_mj.kinematics import Pulleys
 from inca_mj.kinematics.cables import cables_along
-from inca_mj.studies.worlds.pulley import path as path_of_worlds
+from inca_mj.studies.worlds.equations import path as path_of_worlds
 
 SPAN = st.tuples(st.floats(0.3, 2), st.floats(-2, 2), st.floats(0.3, 2), st.booleans()).map(
     lambda s: np.array([s[0], s[1], s[2] if s[3] else -s[2]])

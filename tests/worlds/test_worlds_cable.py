@@ -7,25 +7,26 @@ from hypothesis import strategies as st
 from worlds_cases import FINE, plant, prbs, rate, simulate
 
 from inca_mj.reference import layout as base
-from inca_mj.studies.worlds import (
+from inca_mj.studies.worlds import layout as at
+from inca_mj.studies.worlds.cable_effects import (
     HiddenAirDrag,
     HiddenAnchorOffset,
     HiddenCableCreep,
     HiddenCableHardening,
     HiddenCableWeight,
     HiddenComOffset,
-    HiddenDrumEccentricity,
-    HiddenDrumLayering,
-    HiddenDrumRadiusMismatch,
     HiddenExternalForce,
     HiddenFrameVibration,
     HiddenPulleyRadius,
+)
+from inca_mj.studies.worlds.drive_effects import (
+    HiddenDrumEccentricity,
+    HiddenDrumLayering,
+    HiddenDrumRadiusMismatch,
     HiddenSpringHardening,
     HiddenSpringHysteresis,
 )
-from inca_mj.studies.worlds import layout as at
-from inca_mj.studies.worlds.equations import drag, elastic, sagging, shake
-from inca_mj.studies.worlds.pulley import path
+from inca_mj.studies.worlds.equations import drag, elastic, path, sagging, shake
 
 points = st.tuples(
     st.floats(0.3, 2.0), st.floats(-2.0, 2.0), st.floats(-2.0, 2.0)

@@ -5,7 +5,8 @@ import pytest
 from worlds_cases import FINE, angles, fine, plant, prbs, simulate
 
 from inca_mj.reference import layout as base
-from inca_mj.studies.worlds import (
+from inca_mj.studies.worlds import layout as at
+from inca_mj.studies.worlds.drive_effects import (
     HiddenAsymmetricFriction,
     HiddenBacklash,
     HiddenCogging,
@@ -26,7 +27,6 @@ from inca_mj.studies.worlds import (
     HiddenTorqueConstantMismatch,
     HiddenTorqueRippleTime,
 )
-from inca_mj.studies.worlds import layout as at
 from inca_mj.studies.worlds.equations import friction, motor, radius, spring
 
 SAME = 1e-9  # two ways to one trajectory [rad]

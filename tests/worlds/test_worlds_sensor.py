@@ -7,21 +7,21 @@ from worlds_cases import plant, prbs
 
 from identification.errors import InputError
 from inca_mj.reference import layout as base
-from inca_mj.studies.worlds import (
-    FAULTS,
+from inca_mj.studies.worlds import FAULTS, HiddenSetting, effect, simulate_world, world
+from inca_mj.studies.worlds.changes import (
+    HiddenFrictionDrift,
+    HiddenFrictionJump,
+    HiddenViscousFrictionJump,
+)
+from inca_mj.studies.worlds.sensor import (
     HiddenEncoderEccentricity,
     HiddenEncoderJump,
     HiddenEncoderLag,
     HiddenEncoderScale,
-    HiddenFrictionDrift,
-    HiddenFrictionJump,
-    HiddenSetting,
-    HiddenViscousFrictionJump,
-    effect,
-    simulate_world,
-    world,
+    Motion,
+    lagged,
+    simulate_angles,
 )
-from inca_mj.studies.worlds.sensor import Motion, lagged, simulate_angles
 
 TIME = 0.01 * np.arange(101)
 W = 2 * np.pi * 1.5  # of a sine [rad/s]

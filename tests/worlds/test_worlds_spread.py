@@ -18,13 +18,7 @@ from inca_mj.studies.worlds import (
     EVERY,
     EXACT,
     VARIED,
-    HiddenCogging,
-    HiddenCurrentSaturation,
-    HiddenDrumEccentricity,
-    HiddenFrictionMismatch,
     HiddenSetting,
-    HiddenSpringHysteresis,
-    HiddenStribeckFriction,
     Tolerances,
     make_currents,
     make_plant,
@@ -32,9 +26,17 @@ from inca_mj.studies.worlds import (
     simulate_world,
     world,
 )
-from inca_mj.studies.worlds.measure import encode, noise_rms
+from inca_mj.studies.worlds.drive_effects import (
+    HiddenCogging,
+    HiddenCurrentSaturation,
+    HiddenDrumEccentricity,
+    HiddenFrictionMismatch,
+    HiddenSpringHysteresis,
+    HiddenStribeckFriction,
+)
 from inca_mj.studies.worlds.ratio import HiddenAbsorbed
-from inca_mj.studies.worlds.robot import true_robot
+from inca_mj.studies.worlds.sensor import encode, noise_rms
+from inca_mj.studies.worlds.setting import true_robot
 from inca_mj.studies.worlds.tolerances import as_built, usual_std
 from inca_mj.twin.twin import build_twin
 

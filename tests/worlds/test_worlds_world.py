@@ -23,8 +23,20 @@ from inca_mj.studies.worlds import (
     make_currents,
     world,
 )
-from inca_mj.studies.worlds.measure import coloured, encode, noise_rms
+from inca_mj.studies.worlds.cable_effects import (
+    HiddenAnchorOffset,
+    HiddenCableHardening,
+    HiddenCableWeight,
+)
+from inca_mj.studies.worlds.drive_effects import (
+    HiddenBacklash,
+    HiddenCogging,
+    HiddenCurrentSaturation,
+    HiddenStribeckFriction,
+    HiddenTorqueConstantMismatch,
+)
 from inca_mj.studies.worlds.ratio import HiddenAbsorbed
+from inca_mj.studies.worlds.sensor import coloured, encode, noise_rms
 
 SHORT = HiddenSetting(duration=1.0)
 

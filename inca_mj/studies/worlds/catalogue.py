@@ -8,52 +8,52 @@ import numpy as np
 
 from identification.errors import unknown_name
 from inca_mj.robot.geometry import DRIVES
-from inca_mj.studies.worlds import cable, change, drum, friction, motor, place, sensor
+from inca_mj.studies.worlds import cable_effects, changes, drive_effects, sensor
 from inca_mj.studies.worlds.effect import HiddenEffect, HiddenOneDriveEffect
 
 _KNOWN: tuple[type[HiddenEffect], ...] = (
-    friction.HiddenStribeckFriction,
-    friction.HiddenAsymmetricFriction,
-    friction.HiddenLoadDependentFriction,
-    friction.HiddenQuadraticFriction,
-    friction.HiddenFrictionMismatch,
-    motor.HiddenCogging,
-    motor.HiddenCurrentLag,
-    motor.HiddenDelay,
-    motor.HiddenCurrentSaturation,
-    motor.HiddenTorqueConstantDrift,
-    motor.HiddenTorqueConstantMismatch,
-    drum.HiddenDrumEccentricity,
-    drum.HiddenDrumLayering,
-    drum.HiddenDrumRadiusMismatch,
-    drum.HiddenSpringHardening,
-    drum.HiddenSpringHysteresis,
-    cable.HiddenCableHardening,
-    cable.HiddenCableCreep,
-    place.HiddenPulleyRadius,
-    cable.HiddenCableWeight,
-    place.HiddenAnchorOffset,
-    place.HiddenComOffset,
-    place.HiddenExternalForce,
-    place.HiddenAirDrag,
+    drive_effects.HiddenStribeckFriction,
+    drive_effects.HiddenAsymmetricFriction,
+    drive_effects.HiddenLoadDependentFriction,
+    drive_effects.HiddenQuadraticFriction,
+    drive_effects.HiddenFrictionMismatch,
+    drive_effects.HiddenCogging,
+    drive_effects.HiddenCurrentLag,
+    drive_effects.HiddenDelay,
+    drive_effects.HiddenCurrentSaturation,
+    drive_effects.HiddenTorqueConstantDrift,
+    drive_effects.HiddenTorqueConstantMismatch,
+    drive_effects.HiddenDrumEccentricity,
+    drive_effects.HiddenDrumLayering,
+    drive_effects.HiddenDrumRadiusMismatch,
+    drive_effects.HiddenSpringHardening,
+    drive_effects.HiddenSpringHysteresis,
+    cable_effects.HiddenCableHardening,
+    cable_effects.HiddenCableCreep,
+    cable_effects.HiddenPulleyRadius,
+    cable_effects.HiddenCableWeight,
+    cable_effects.HiddenAnchorOffset,
+    cable_effects.HiddenComOffset,
+    cable_effects.HiddenExternalForce,
+    cable_effects.HiddenAirDrag,
 )
 _UNLISTED: tuple[type[HiddenEffect], ...] = (
-    drum.HiddenBacklash,  # a play: the drum of the catalogue hangs at one edge of the gap
-    place.HiddenFrameVibration,
-    friction.HiddenPositionDependentFriction,
-    motor.HiddenTorqueRippleTime,
+    drive_effects.HiddenBacklash,  # a play: the drum of the catalogue hangs at one edge of the gap
+    cable_effects.HiddenFrameVibration,
+    drive_effects.HiddenPositionDependentFriction,
+    drive_effects.HiddenTorqueRippleTime,
 )
 
 _CHANGES: tuple[type[HiddenEffect], ...] = (
-    change.HiddenFrictionDrift,
-    change.HiddenViscousFrictionDrift,
-    change.HiddenCableElasticityDrift,
-    change.HiddenDrumSpringDrift,
-    change.HiddenFrictionJump,
-    change.HiddenViscousFrictionJump,
-    change.HiddenCableElasticityJump,
-    change.HiddenDrumSpringJump,
-    change.HiddenTorqueConstantJump,
+    changes.HiddenFrictionDrift,
+    changes.HiddenViscousFrictionDrift,
+    changes.HiddenCableElasticityDrift,
+    changes.HiddenDrumSpringDrift,
+    changes.HiddenFrictionJump,
+    changes.HiddenViscousFrictionJump,
+    changes.HiddenCableElasticityJump,
+    changes.HiddenDrumSpringJump,
+    changes.HiddenTorqueConstantJump,
 )
 _FAULTS: tuple[type[HiddenEffect], ...] = (
     sensor.HiddenEncoderScale,

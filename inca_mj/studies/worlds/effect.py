@@ -1,16 +1,32 @@
-"""The common base of effects: a frozen record that knows where in the equations it acts."""
+"""The common base of effects: a frozen record that knows where in the equations it acts.
+
+A field of a law is a `size`, which is zero where the effect is off, or a `shape`. Both may name the
+column of `layout` that they are written to: sizes are added there, shapes replace.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from math import hypot, inf, isfinite
-from typing import ClassVar, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
 from identification.errors import InputError
 from inca_mj.robot.geometry import DRIVES
 from inca_mj.studies.worlds import layout as at
+
+
+def size(default: float, column: int | None = None, *, positive: bool = False) -> Any:
+    """Returns a field that is zero where the effect is off."""
+    return field(default=default, metadata={"size": True, "column": column, "positive": positive})
+
+
+def shape(
+    default: float, column: int | None = None, *, positive: bool = True, times: float = 1.0
+) -> Any:
+    """Returns a field that a change of size leaves; `times` it is written to its column."""
+    return field(default=default, metadata={"column": column, "positive": positive, "times": times})
 
 
 class HiddenNumbers:
@@ -47,22 +63,26 @@ class HiddenEffect:
     """
 
     name: ClassVar[str]
-    acts_on: ClassVar[str]
-    sizes: ClassVar[tuple[str, ...]]  # the fields that are zero where the effect is off
+    acts_on: ClassVar[str] = "platform"
     largest: ClassVar[float] = inf
     reach: ClassVar[float] = 1.0
-    positive: ClassVar[tuple[str, ...]] = ()
     is_smooth: ClassVar[bool] = True  # whether a small size of it acts as a large one does
     is_part: ClassVar[bool] = False  # whether it is a part that deviates, as every part may
 
     def __post_init__(self) -> None:
-        for field, value in self.values().items():
+        for f in fields(self):
+            value = getattr(self, f.name)
             if isinstance(value, float) and not (
-                isfinite(value) or (field in self.sizes and value > 0)
+                isfinite(value) or (f.name in self.sizes and value > 0)
             ):
-                raise InputError(f"{self.name}: {field} = {value} is not a finite number")
-            if field in self.positive and not value > 0:
-                raise InputError(f"{self.name}: {field} = {value:g} must be positive")
+                raise InputError(f"{self.name}: {f.name} = {value} is not a finite number")
+            if f.metadata.get("positive") and not value > 0:
+                raise InputError(f"{self.name}: {f.name} = {value:g} must be positive")
+
+    @property
+    def sizes(self) -> tuple[str, ...]:
+        """The fields that are zero where the effect is off."""
+        return tuple(f.name for f in fields(self) if "size" in f.metadata)
 
     @property
     def where(self) -> str:
@@ -76,23 +96,34 @@ class HiddenEffect:
     @property
     def most(self) -> float:
         """The factor by which its sizes can grow so that a robot may still have it."""
-        size = hypot(*(getattr(self, name) for name in self.sizes))
-        return self.largest / (size * self.reach ** getattr(self, "exponent", 0.0))
+        length = hypot(*(getattr(self, name) for name in self.sizes))
+        return self.largest / (length * self.reach ** getattr(self, "exponent", 0.0))
 
     def scaled(self, factor: float) -> Self:
         """Returns the same effect with its sizes times `factor`; its shape stays."""
         return replace(self, **{name: factor * getattr(self, name) for name in self.sizes})
 
+    def column(self, numbers: HiddenNumbers, column: int) -> np.ndarray:
+        """Returns a view of the numbers of a column that this effect writes, here an entry of P."""
+        return numbers.P[column : column + 1]
+
     def put(self, numbers: HiddenNumbers) -> None:
         """Write the effect's numbers where the equations read them."""
-        raise NotImplementedError
+        for f in fields(self):
+            if (column := f.metadata.get("column")) is None:
+                continue
+            view = self.column(numbers, column)
+            if "size" in f.metadata:
+                view += getattr(self, f.name)
+            else:
+                view[:] = f.metadata["times"] * getattr(self, f.name)
 
 
 @dataclass(frozen=True, kw_only=True)
 class HiddenDriveEffect(HiddenEffect):
     """An effect on every drive (`drive` None) or on one of them (1 to 8)."""
 
-    acts_on: ClassVar[str] = "all drives"
+    acts_on = "all drives"
     drive: int | None = None
 
     def __post_init__(self) -> None:
@@ -115,7 +146,7 @@ class HiddenDriveEffect(HiddenEffect):
 class HiddenOneDriveEffect(HiddenDriveEffect):
     """An effect that tells one drive from the others."""
 
-    is_part: ClassVar[bool] = True
+    is_part = True
     drive: int | None = 1
 
     def __post_init__(self) -> None:

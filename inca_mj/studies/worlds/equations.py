@@ -1,6 +1,6 @@
 """The right-hand side of a world: the reference's equations with every effect in its place.
 
-    d, s       path of the cable from the true, moving A_i                       `pulley`
+    d, s       path of the cable from the true, moving A_i                       `path`
     R_k        = R (1 + δ + a cos ψ + b sin ψ) + h ψ
     ḋ₀         = −R_k ψ̇ d₀/d,  ψ̇ = ω_m, or 0 inside the play
     T          = max(0, λ ε (1 + κ ε^n) + c λ (ε − ε_v) + b (ḋ − ḋ₀) + sag)
@@ -16,7 +16,7 @@ the two to agree where no effect is on. An effect that is off is skipped or adds
 
 from __future__ import annotations
 
-from math import cos, exp, sin, sqrt, tanh
+from math import atan2, cos, exp, pi, sin, sqrt, tanh
 
 import numpy as np
 
@@ -33,7 +33,38 @@ from inca_mj.reference.equations import (
     vector,
 )
 from inca_mj.studies.worlds import layout as at
-from inca_mj.studies.worlds.pulley import path
+
+
+@compiled
+def path(ds: Vector, r: float, side: float) -> tuple[float, Vector]:
+    """Returns the length of the path [m], and its gradient by the connector, a unit vector in O.
+
+    A pulley of radius r swivels about the vertical through A, where the cable enters it along that
+    vertical; the pulley stands in the vertical plane of A and the connector, its centre at r u,
+    with u horizontal towards the connector. In that plane, from A: ρ along u, z along the vertical
+    (upwards for an exit point that is high, downwards for a low one: the cable runs over the side
+    away from the platform), the cable leaves the pulley where the normal has the angle α:
+
+        w = (ρ − r, z),  l = √(|w|² − r²)                        tangent from the pulley to B
+        α = atan2(z, ρ − r) + atan2(l, r)                        w = r n(α) + l t(α)
+        d = r (π − α) + l,  ∂d/∂B = t = (sin α, −cos α)          arc and tangent
+
+    Args:
+        ds: from A to the connector, in O [m].
+        r: radius of the pulley [m]; 0 is a straight cable.
+        side: +1 for a cable over the top of its pulley, −1 for one under it.
+    """
+    if r == 0.0:
+        d = sqrt(ds[0] * ds[0] + ds[1] * ds[1] + ds[2] * ds[2])
+        return d, (ds[0] / d, ds[1] / d, ds[2] / d)
+    ρ = sqrt(ds[0] * ds[0] + ds[1] * ds[1])
+    wx, wz = ρ - r, side * ds[2]
+    square = wx * wx + wz * wz - r * r
+    l = sqrt(square) if square > 0.0 else np.nan  # the connector is inside the pulley
+    α = atan2(wz, wx) + atan2(l, r)
+    tx, tz = sin(α), -cos(α)
+    return r * (pi - α) + l, (tx * ds[0] / ρ, tx * ds[1] / ρ, side * tz)
+
 
 EDGE = 1e-9  # a rotor this near to an edge of its gap pushes it: rounding must not let go [rad]
 

@@ -20,8 +20,7 @@ from inca_mj.reference import layout as base
 from inca_mj.reference.compiled import compiled
 from inca_mj.reference.equations import rotation, times, vector
 from inca_mj.studies.worlds import layout as at
-from inca_mj.studies.worlds.equations import radius, world_rate
-from inca_mj.studies.worlds.pulley import path
+from inca_mj.studies.worlds.equations import path, radius, world_rate
 
 STEP = 5e-4  # [s]; at half of it no angle of 20 s changes by 1e-8 rad
 PLAY_STEP = 1.25e-4  # the same for a robot whose drums play: 5e-5 rad rms at ±0.015 rad [s]

@@ -23,8 +23,8 @@ from inca_mj.robot.parameters import GRAVITY, PRETENSION
 from inca_mj.robot.spread import at_drives, displaced
 from inca_mj.studies.worlds import layout as at
 from inca_mj.studies.worlds.effect import HiddenEffect, HiddenNumbers
+from inca_mj.studies.worlds.equations import path
 from inca_mj.studies.worlds.integrate import PLAY_STEP, STEP, trajectory
-from inca_mj.studies.worlds.pulley import path
 
 
 @dataclass(frozen=True)

@@ -1,19 +1,21 @@
-"""Encoders that do not tell the angle φ of their motor; the robot moves as if they were right.
+"""Encoders: how they read an angle, and faults that hide the angle φ of a motor.
+
+y = Δ round((φ + σ w)/Δ),  Δ = 2π/counts,  w white       rms √(σ² + Δ²/12)
+e_k+1 = a e_k + √(1 − a²) e_rms w,  a = e^(−T_s/τ)       error of a current, stationary low-pass
 
 scale           s φ                                      counts a turn are not what they are
 eccentricity    a cos φ + b sin φ                        the disc turns about another centre
 lag             x − φ, τ ẋ = φ − x;  φ(t − τ) − φ        filtered, or read too late where `late`
 jump            c from t_s on                            counts are lost
 
-Between the samples φ is the cubic that has their angles and rates. The lag is exact where φ is
-straight over `FINE` of a sample.
+The robot moves as if faulty encoders were right. Between the samples φ is the cubic that has their
+angles and rates. The lag is exact where φ is straight over `FINE` of a sample.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import ClassVar
 
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
@@ -22,10 +24,54 @@ from inca_mj.reference import layout as base
 from inca_mj.studies.worlds.effect import (
     HiddenDriveEffect,
     HiddenEffect,
-    HiddenNumbers,
     HiddenOneDriveEffect,
+    size,
 )
 from inca_mj.studies.worlds.plant import HiddenPlant, simulate_world
+
+
+def encode(angles: np.ndarray, counts: int, noise: float, rng: np.random.Generator) -> np.ndarray:
+    """Returns angles as encoders give them [rad], same shape.
+
+    Args:
+        angles: true angles [rad].
+        counts: of an encoder a turn; 0 for one without steps.
+        noise: rms of the white noise before the rounding [rad].
+        rng: of the noise.
+    """
+    y = angles + noise * rng.normal(size=angles.shape)
+    if counts == 0:
+        return y
+    Δ = 2 * np.pi / counts
+    return Δ * np.round(y / Δ)
+
+
+def noise_rms(counts: int, noise: float) -> float:
+    """Returns the rms of the measurement noise [rad]."""
+    Δ = 2 * np.pi / counts if counts else 0.0
+    return float(np.sqrt(noise**2 + Δ**2 / 12))
+
+
+def coloured(
+    shape: tuple[int, int], sampling_time: float, rms: float, time: float, rng: np.random.Generator
+) -> np.ndarray:
+    """Returns an error of the currents, low-passed white noise, independent by column [A].
+
+    Args:
+        shape: samples and drives (n, 8).
+        sampling_time: T_s [s].
+        rms: e_rms [A].
+        time: τ [s]; 0 for white noise.
+        rng: of the noise.
+    """
+    w = rms * rng.normal(size=shape)
+    a = float(np.exp(-sampling_time / time)) if time > 0 else 0.0
+    e = np.empty(shape)
+    e[0] = w[0]
+    for k in range(1, shape[0]):
+        e[k] = a * e[k - 1] + np.sqrt(1 - a**2) * w[k]
+    return e
+
 
 FINE = 100  # parts of a sample in which an angle is straight
 BETWEEN = 5  # simulated states a sample, where angles between samples are asked for
@@ -53,9 +99,6 @@ class Motion:
 class HiddenEncoderFault(HiddenDriveEffect):
     """A fault that an encoder adds to the angle; it changes nothing of the robot."""
 
-    def put(self, numbers: HiddenNumbers) -> None:
-        """Change nothing."""
-
     def added(self, motion: Motion) -> np.ndarray:
         """Returns what the encoders add if all have the fault, shape (n, k) [rad]."""
         raise NotImplementedError
@@ -65,10 +108,9 @@ class HiddenEncoderFault(HiddenDriveEffect):
 class HiddenEncoderScale(HiddenOneDriveEffect, HiddenEncoderFault):
     """s φ."""
 
-    name: ClassVar[str] = "encoder_scale"
-    sizes: ClassVar[tuple[str, ...]] = ("s",)
-    largest: ClassVar[float] = 0.05
-    s: float = 0.003
+    name = "encoder_scale"
+    largest = 0.05
+    s: float = size(0.003)
 
     def added(self, motion: Motion) -> np.ndarray:
         """Returns what the scale adds, s φ, shape (n, k) [rad]."""
@@ -79,11 +121,10 @@ class HiddenEncoderScale(HiddenOneDriveEffect, HiddenEncoderFault):
 class HiddenEncoderEccentricity(HiddenOneDriveEffect, HiddenEncoderFault):
     """a cos φ + b sin φ; a, b [rad]."""
 
-    name: ClassVar[str] = "encoder_eccentricity"
-    sizes: ClassVar[tuple[str, ...]] = ("a", "b")
-    largest: ClassVar[float] = 0.05  # a disc that is off its centre by a twentieth of its radius
-    a: float = 0.005
-    b: float = 0.005
+    name = "encoder_eccentricity"
+    largest = 0.05  # a disc that is off its centre by a twentieth of its radius
+    a: float = size(0.005)
+    b: float = size(0.005)
 
     def added(self, motion: Motion) -> np.ndarray:
         """Returns what the eccentric disc adds, a cos φ + b sin φ, shape (n, k) [rad]."""
@@ -94,10 +135,9 @@ class HiddenEncoderEccentricity(HiddenOneDriveEffect, HiddenEncoderFault):
 class HiddenEncoderLag(HiddenEncoderFault):
     """x − φ with τ ẋ = φ − x, or φ(t − τ) − φ where `late`; τ [s]."""
 
-    name: ClassVar[str] = "encoder_lag"
-    sizes: ClassVar[tuple[str, ...]] = ("tau",)
-    largest: ClassVar[float] = 0.02
-    tau: float = 2e-3
+    name = "encoder_lag"
+    largest = 0.02
+    tau: float = size(2e-3)
     late: bool = False
 
     def added(self, motion: Motion) -> np.ndarray:
@@ -111,10 +151,9 @@ class HiddenEncoderLag(HiddenEncoderFault):
 class HiddenEncoderJump(HiddenOneDriveEffect, HiddenEncoderFault):
     """c [rad] from t_s [s] on."""
 
-    name: ClassVar[str] = "encoder_jump"
-    sizes: ClassVar[tuple[str, ...]] = ("c",)
-    largest: ClassVar[float] = 0.5
-    c: float = 0.02
+    name = "encoder_jump"
+    largest = 0.5
+    c: float = size(0.02)
     t_s: float = 0.5
 
     def added(self, motion: Motion) -> np.ndarray:

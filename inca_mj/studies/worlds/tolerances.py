@@ -28,17 +28,8 @@ class Tolerances:
     """Differences of drives, points and platform of a robot from what they should be.
 
     Attributes:
-        R: largest relative deviation of a drive's roller radius from the common value; the
-            other parameters of a drive likewise.
-        R_s: of the drum radius, spring side.
-        k_s: of the constant of the drum spring.
-        lambda_: of the elastic modulus λ of the cable.
-        b: of the damping of the cable.
-        J: of the inertia of motor, rollers and cable.
-        b_v: of the viscous friction.
-        b_c: of the Coulomb friction.
-        beta: of the smoothness of the Coulomb friction.
-        K_t: of the torque constant.
+        R, R_s, k_s, lambda_, b, J, b_v, b_c, beta, K_t: largest relative deviation of a drive's
+            parameter from the common value.
         exit: std of each coordinate of an exit point [m].
         connector: std of each coordinate of a connector [m].
         inertia: largest relative deviation of each inertia of the platform.

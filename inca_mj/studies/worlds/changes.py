@@ -1,7 +1,7 @@
 """A parameter of a drive that does not stay what it was. At most one of a drive changes.
 
-p (1 − α t), or p (1 − α ∫ i² dt) with heat      drift, of all drives or of one
-p (1 + δ) from t_s on                            jump, of one drive
+    p (1 − α t), or p (1 − α ∫ i² dt) with heat      drift, of all drives or of one
+    p (1 + δ) from t_s on                            jump, of one drive
 
 Where t_s is the time of a sample, a step of the integrator ends there.
 """
@@ -14,7 +14,13 @@ from typing import ClassVar
 from identification.errors import InputError
 from inca_mj.reference import layout as base
 from inca_mj.studies.worlds import layout as at
-from inca_mj.studies.worlds.effect import HiddenDriveEffect, HiddenNumbers, HiddenOneDriveEffect
+from inca_mj.studies.worlds.effect import (
+    HiddenDriveEffect,
+    HiddenNumbers,
+    HiddenOneDriveEffect,
+    shape,
+    size,
+)
 
 
 def _take(effect: HiddenDriveEffect, numbers: HiddenNumbers, parameter: int) -> None:
@@ -33,9 +39,8 @@ def _take(effect: HiddenDriveEffect, numbers: HiddenNumbers, parameter: int) -> 
 class HiddenDrift(HiddenDriveEffect):
     """p (1 − α t), α [1/s]; where `heat` is True p (1 − α ∫ i² dt), α [1/(A^2 s)]."""
 
-    sizes: ClassVar[tuple[str, ...]] = ("alpha",)
     parameter: ClassVar[int]
-    alpha: float = 2e-3
+    alpha: float = size(2e-3)
     heat: bool = False
 
     def put(self, numbers: HiddenNumbers) -> None:
@@ -48,85 +53,69 @@ class HiddenDrift(HiddenDriveEffect):
 class HiddenJump(HiddenOneDriveEffect):
     """p (1 + δ) from t_s [s] on."""
 
-    sizes: ClassVar[tuple[str, ...]] = ("delta",)
     parameter: ClassVar[int]
-    delta: float = 0.05
-    t_s: float = 0.5
+    delta: float = size(0.05, at.JUMP)
+    t_s: float = shape(0.5, at.JUMP_TIME, positive=False)
 
     def put(self, numbers: HiddenNumbers) -> None:
         """Write δ and t_s."""
         _take(self, numbers, self.parameter)
-        self.column(numbers, at.JUMP)[:] = self.delta
-        self.column(numbers, at.JUMP_TIME)[:] = self.t_s
+        super().put(numbers)
 
 
 class HiddenFrictionDrift(HiddenDrift):
     """b_c: grease gets warm."""
 
-    name: ClassVar[str] = "friction_drift"
-    parameter: ClassVar[int] = base.B_C
-    largest: ClassVar[float] = 0.025  # half of it in 20 s [1/s]
+    name, parameter = "friction_drift", base.B_C
+    largest = 0.025  # half of it in 20 s [1/s]
 
 
 class HiddenViscousFrictionDrift(HiddenDrift):
     """b_v: grease gets warm."""
 
-    name: ClassVar[str] = "viscous_friction_drift"
-    parameter: ClassVar[int] = base.B_V
-    largest: ClassVar[float] = 0.025  # half of it in 20 s [1/s]
+    name, parameter = "viscous_friction_drift", base.B_V
+    largest = 0.025  # half of it in 20 s [1/s]
 
 
 class HiddenCableElasticityDrift(HiddenDrift):
     """λ: fibres settle."""
 
-    name: ClassVar[str] = "cable_elasticity_drift"
-    parameter: ClassVar[int] = base.LAMBDA
-    largest: ClassVar[float] = 0.015  # 30 % in 20 s [1/s]
+    name, parameter = "cable_elasticity_drift", base.LAMBDA
+    largest = 0.015  # 30 % in 20 s [1/s]
 
 
 class HiddenDrumSpringDrift(HiddenDrift):
     """k_s: a spring settles."""
 
-    name: ClassVar[str] = "drum_spring_drift"
-    parameter: ClassVar[int] = base.K_S
-    largest: ClassVar[float] = 0.015  # 30 % in 20 s [1/s]
+    name, parameter = "drum_spring_drift", base.K_S
+    largest = 0.015  # 30 % in 20 s [1/s]
 
 
 class HiddenFrictionJump(HiddenJump):
     """b_c: something begins to rub."""
 
-    name: ClassVar[str] = "friction_jump"
-    parameter: ClassVar[int] = base.B_C
-    largest: ClassVar[float] = 0.5
+    name, parameter, largest = "friction_jump", base.B_C, 0.5
 
 
 class HiddenViscousFrictionJump(HiddenJump):
     """b_v: something begins to rub."""
 
-    name: ClassVar[str] = "viscous_friction_jump"
-    parameter: ClassVar[int] = base.B_V
-    largest: ClassVar[float] = 1.0
+    name, parameter, largest = "viscous_friction_jump", base.B_V, 1.0
 
 
 class HiddenCableElasticityJump(HiddenJump):
     """λ: strands break."""
 
-    name: ClassVar[str] = "cable_elasticity_jump"
-    parameter: ClassVar[int] = base.LAMBDA
-    largest: ClassVar[float] = 0.3
+    name, parameter, largest = "cable_elasticity_jump", base.LAMBDA, 0.3
 
 
 class HiddenDrumSpringJump(HiddenJump):
     """k_s: a coil of the spring sticks."""
 
-    name: ClassVar[str] = "drum_spring_jump"
-    parameter: ClassVar[int] = base.K_S
-    largest: ClassVar[float] = 0.3
+    name, parameter, largest = "drum_spring_jump", base.K_S, 0.3
 
 
 class HiddenTorqueConstantJump(HiddenJump):
     """K_t: an amplifier loses a part of its current."""
 
-    name: ClassVar[str] = "torque_constant_jump"
-    parameter: ClassVar[int] = base.K_T
-    largest: ClassVar[float] = 0.2
+    name, parameter, largest = "torque_constant_jump", base.K_T, 0.2
