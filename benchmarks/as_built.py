@@ -24,7 +24,7 @@ from typing import Any
 import numpy as np
 from as_built_statistics import page
 
-from identification.sweep.code import commit
+from identification.sweep.work import commit
 
 HERE = Path(__file__).parent
 RESULTS = HERE / "results" / "as_built"

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 from as_built_calibrations import calibration_lines
 from as_built_rows import Row, commits_of, median_time, rate_of, records_of
 
-from identification.sweep.discovery_rates import in_set, right, size_errors
+from identification.sweep.discovery_findings import in_set, right, size_errors
 from inca_mj.studies.worlds import ALL_EFFECTS, UNLISTED
 
 USUAL = 20.0  # length of a world's log where nothing is said [s]

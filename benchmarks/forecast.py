@@ -25,7 +25,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from identification.sweep.code import commit
+from identification.sweep.work import commit
 
 RECORD = Path(__file__).parent / "results" / "forecast.jsonl"
 RATE = 100.0  # [Hz]

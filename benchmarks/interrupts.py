@@ -25,7 +25,7 @@ from pathlib import Path
 from typing import Any
 
 from identification.folders import list_foreign
-from identification.sweep.code import commit
+from identification.sweep.work import commit
 
 LATEST = 20.0  # [s] after the start; until then most commands read, fit, search, and draw
 WITHIN = 4.0  # [s], on a machine that does other work too

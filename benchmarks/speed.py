@@ -30,7 +30,7 @@ from step_shares import SAMPLES, bare_times, lean, share_of
 
 from identification.engine import untimed
 from identification.estimation.estimation import estimate
-from identification.sweep.code import commit
+from identification.sweep.work import commit
 from inca_mj.robot.inputs import prbs
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.twin.twin import Twin, build_twin

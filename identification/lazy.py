@@ -1,10 +1,13 @@
-"""Public names that are imported when they are first asked for."""
+"""Imports that wait: public names until they are asked for, packages that not everybody has."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from importlib import import_module
+from types import ModuleType
 from typing import Any
+
+from identification.errors import InputError
 
 
 def lazy(
@@ -22,3 +25,23 @@ def lazy(
         return getattr(module, name)
 
     return get, lambda: sorted(public)
+
+
+def needed(module: str, extra: str, what: str) -> ModuleType:
+    """Import a module of an extra.
+
+    Args:
+        module: such as "pyarrow.parquet".
+        extra: of this distribution that brings it.
+        what: needs it.
+
+    Raises:
+        InputError: it is not installed; the message says what to install.
+    """
+    try:
+        return import_module(module)
+    except ModuleNotFoundError as error:
+        name = module.partition(".")[0]
+        raise InputError(
+            f"{what} needs {name}, which is not installed; run pip install 'inca-mj[{extra}]'"
+        ) from error

@@ -18,7 +18,7 @@ from identification.prediction.discovery import discover_records
 from identification.report.discovery_json import discovery_to_json
 from identification.report.discovery_text import discovery_text
 from identification.robot.robot import Robot
-from identification.sweep.code import commit
+from identification.sweep.work import commit
 from robots.changed import on_changed
 from robots.measured_robot import MeasuredRobot, Outcome
 from robots.unseen import compare, errors_of

@@ -16,8 +16,8 @@ from identification.commands.places import refuse_place
 from identification.errors import InputError
 
 if TYPE_CHECKING:
+    from identification.sweep.method import Findings
     from identification.sweep.store import Store
-    from identification.sweep.summary import Summary
     from identification.sweep.task import Sweep
 
 
@@ -73,13 +73,12 @@ class SweepCommand:
 
     def methods(self) -> Mapping[str, str]:
         """Returns the methods that a sweep may name."""
-        from identification.sweep.methods import METHODS
+        from identification.sweep.log_methods import METHODS
 
         return METHODS
 
     def _compute(self, sweep: Sweep, store: Store) -> None:
-        from identification.sweep.backends.choice import backend_of
-        from identification.sweep.run import run_sweep
+        from identification.sweep.run import backend_of, run_sweep
 
         options = _options([text for some in self.job for text in some])
         backend = backend_of(self.backend, self.jobs, store.folder, options)
@@ -110,6 +109,6 @@ def _options(words: Sequence[str]) -> dict[str, str]:
     return dict(word.split("=", 1) for word in words)
 
 
-def _draw(sweep: Sweep, found: Summary, out: Path) -> None:
+def _draw(sweep: Sweep, found: Findings, out: Path) -> None:
     footer = f"seed {sweep.seed}, digest of the records {found.record['digest'][:16]}"
     draw_report(out, sweep.about, found.sentences, found.sections, footer=footer)

@@ -19,25 +19,25 @@ _PUBLIC = {
     "read_sweep": "config",
     "Store": "store",
     "run_sweep": "run",
-    "Backend": "backends.backend",
-    "backend_of": "backends.choice",
-    "setting": "words",
-    "file_setting": "words",
+    "Backend": "backend",
+    "backend_of": "run",
+    "setting": "settings",
+    "file_setting": "settings",
 }
 __all__ = list(_PUBLIC)
 
 if TYPE_CHECKING:  # the same list, for type checkers and editors
-    from identification.sweep.backends.backend import Backend as Backend
-    from identification.sweep.backends.choice import backend_of as backend_of
+    from identification.sweep.backend import Backend as Backend
     from identification.sweep.config import read_sweep as read_sweep
     from identification.sweep.method import Column as Column
     from identification.sweep.method import Findings as Findings
     from identification.sweep.method import Method as Method
     from identification.sweep.method import Seed as Seed
+    from identification.sweep.run import backend_of as backend_of
     from identification.sweep.run import run_sweep as run_sweep
+    from identification.sweep.settings import file_setting as file_setting
+    from identification.sweep.settings import setting as setting
     from identification.sweep.store import Store as Store
     from identification.sweep.task import Sweep as Sweep
-    from identification.sweep.words import file_setting as file_setting
-    from identification.sweep.words import setting as setting
 else:
     __getattr__, __dir__ = lazy(__name__, _PUBLIC)

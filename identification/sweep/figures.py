@@ -11,8 +11,8 @@ from matplotlib.figure import Figure
 
 from identification.report.style import GREY, INK, MEASURED, SERIES, STYLE, literal
 from identification.sweep.power import IN_WORDS, LEVEL, Curve, Threshold
+from identification.sweep.settings import LOGARITHMIC
 from identification.sweep.statistics import wilson
-from identification.sweep.words import LOGARITHMIC
 
 EDGES = (0.0, 0.3, 0.5, 0.7, 0.9, 1.0)  # of confidence
 WIDE_RANGE = 8.0  # ratio of the largest to the smallest value above which an axis is logarithmic

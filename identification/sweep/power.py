@@ -13,9 +13,8 @@ from typing import Any
 
 from identification.sweep.method import Record
 from identification.sweep.rows import SET
-from identification.sweep.settings import Plain
+from identification.sweep.settings import NAMES, Heads, Plain, in_words
 from identification.sweep.statistics import crossing, wilson
-from identification.sweep.words import NAMES, Heads, in_words
 
 LEVEL = 0.8
 IN_WORDS = f"{100 * LEVEL:g} %"

@@ -16,11 +16,10 @@ from pathlib import Path
 from typing import Any
 
 from identification.errors import InputError
-from identification.sweep.extras import needed
+from identification.lazy import needed
 from identification.sweep.method import Record
-from identification.sweep.settings import kinds_of
+from identification.sweep.settings import about_of, kinds_of
 from identification.sweep.task import Sweep
-from identification.sweep.words import about_of
 from identification.sweep.work import Outcome
 
 RUN = "run."

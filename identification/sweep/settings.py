@@ -1,22 +1,57 @@
-"""Settings of a method from plain values: names, kinds and missing ones are checked."""
+"""Settings of a method: their fields, their values from a TOML, and how a reader sees them.
+
+What a setting or a column is about ends with its unit in brackets, as in "length of a log [s]".
+Tables and axes take the unit from there, so that it is written once.
+"""
 
 from __future__ import annotations
 
 import os
 import re
 from collections.abc import Mapping
-from dataclasses import MISSING, fields
+from dataclasses import MISSING, dataclass, field, fields
 from pathlib import Path
 from types import NoneType, UnionType
 from typing import Any, Union, get_args, get_origin, get_type_hints
 
 from identification.errors import InputError, unknown_name
 from identification.files import is_file
-from identification.sweep.words import file_words
 
 Plain = bool | int | float | str | None
 _WORDS = {bool: "true or false", int: "a whole number", float: "a number", str: "text in quotes",
           Path: "a path in quotes"}  # fmt: skip
+LOGARITHMIC = ", logarithmic axis"
+
+
+def setting(about: str, default: Any = MISSING) -> Any:
+    """Returns a field of a settings dataclass that says what it is.
+
+    Args:
+        about: what it is, with its unit in brackets at the end.
+        default: its value where a sweep gives none; without it a sweep must give one.
+    """
+    return field(default=default, metadata={"about": about})
+
+
+def file_setting(about: str, default: Any = MISSING, *, words: tuple[str, ...] = ()) -> Any:
+    """Returns a setting that names a file which tasks read, to be there before the first task.
+
+    Args:
+        about: what the file is.
+        default: as of `setting`.
+        words: that stand for no file of the user.
+    """
+    return field(default=default, metadata={"about": about, "file": True, "words": words})
+
+
+def about_of(settings: type) -> dict[str, str]:
+    """Returns what each field of a settings dataclass is about; "" where it does not say."""
+    return {f.name: f.metadata.get("about", "") for f in fields(settings)}
+
+
+def file_words(settings: type) -> dict[str, tuple[str, ...]]:
+    """Returns the fields that name a file that tasks read, with words that may stand instead."""
+    return {f.name: f.metadata["words"] for f in fields(settings) if f.metadata.get("file")}
 
 
 def kinds_of(settings: type) -> dict[str, type]:
@@ -26,13 +61,13 @@ def kinds_of(settings: type) -> dict[str, type]:
         InputError: a field is of a kind that a TOML cannot give.
     """
     hints, kinds = get_type_hints(settings), {}
-    for field in fields(settings):
-        kind = hints[field.name]
+    for f in fields(settings):
+        kind = hints[f.name]
         if get_origin(kind) in (Union, UnionType):
             (kind,) = (k for k in get_args(kind) if k is not NoneType)
         if kind not in _WORDS:
-            raise InputError(f"{settings.__name__}.{field.name} is no plain value, but {kind}")
-        kinds[field.name] = kind
+            raise InputError(f"{settings.__name__}.{f.name} is no plain value, but {kind}")
+        kinds[f.name] = kind
     return kinds
 
 
@@ -54,11 +89,11 @@ def check_values(settings: type, values: Mapping[str, Plain], where: str) -> dic
         if not _fits(value, kinds[name]):
             raise InputError(f"{name} in {where} must be {_WORDS[kinds[name]]}, not {value!r}")
     out: dict[str, Plain] = {}
-    for field in fields(settings):
-        name, kind = field.name, kinds[field.name]
-        if name not in values and field.default is MISSING:
+    for f in fields(settings):
+        name, kind = f.name, kinds[f.name]
+        if name not in values and f.default is MISSING:
             raise InputError(f"{where} does not say {name!r}; give {_WORDS[kind]}")
-        given: Any = values.get(name, field.default)
+        given: Any = values.get(name, f.default)
         if given is not None:
             given = str(given) if kind is Path else float(given) if kind is float else given
         out[name] = given
@@ -154,3 +189,37 @@ def build(settings: type, values: Mapping[str, Plain]) -> Any:
             for name, value in values.items()
         }
     )
+
+
+@dataclass(frozen=True)
+class Heads:
+    """Names of settings and columns in words.
+
+    Attributes:
+        about: what each is about, by name; a name that is missing has no unit.
+    """
+
+    about: Mapping[str, str]
+
+    def unit(self, name: str) -> str:
+        """Returns the unit of a name, or ""."""
+        found = re.search(r"\[([^\]]+)\]", self.about.get(name, ""))
+        return found[1] if found else ""
+
+    def head(self, name: str) -> str:
+        """Returns a name in words with its unit in brackets, for a column or an axis."""
+        unit = self.unit(name)
+        return f"{in_words(name)} [{unit}]" if unit else in_words(name)
+
+    def meaning(self, name: str) -> str:
+        """Returns a name in words, and what it is about."""
+        about = self.about.get(name, "")
+        return f"{in_words(name)}: {about}" if about else in_words(name)
+
+
+NAMES = Heads({})  # names alone, without units
+
+
+def in_words(name: str) -> str:
+    """Returns the name of a setting or a column without the underscores of code."""
+    return name.replace("_", " ")

@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
 BINS = 10
-Row = Mapping[str, Any]
+T = TypeVar("T")
 
 
 def wilson(hits: int, of: int, z: float = 1.96) -> dict[str, Any]:
@@ -33,7 +33,7 @@ def wilson(hits: int, of: int, z: float = 1.96) -> dict[str, Any]:
     return {"value": p, **ends, "hits": hits, "of": of}
 
 
-def rate(rows: Iterable[Row], test: Callable[[Row], bool]) -> dict[str, Any]:
+def rate(rows: Iterable[T], test: Callable[[T], bool]) -> dict[str, Any]:
     """Returns the share of rows that pass a test."""
     outcomes = [test(row) for row in rows]
     return wilson(sum(outcomes), len(outcomes))

@@ -15,16 +15,15 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 from uuid import uuid4
 
 from identification.errors import InputError
-from identification.files import read_json, write_text
-from identification.sweep.extras import needed
-from identification.sweep.parquet import read_tables, read_tasks, write_whole
+from identification.files import digest, read_json, write_text
+from identification.lazy import needed
 from identification.sweep.rows import schema
 from identification.sweep.task import Sweep
 
@@ -32,6 +31,8 @@ RECORDS = "records"
 KEY = ".sweep.json"
 _LOCK = ".sweep.lock"
 TOGETHER = 256  # single records that are put into one file
+_BLOCK = 20_000  # rows that are held at once
+_LARGEST = 2**36  # bytes of a file of records, which is read a part at a time
 
 
 class Store:
@@ -89,7 +90,7 @@ class Store:
     def add(self, row: dict[str, Any]) -> None:
         """Write the record of a task; it is on the disk when this returns."""
         table = self._pa.Table.from_pylist([row], schema=self._schema)
-        path = write_whole(self.records, f"part-{row['task']:09d}", self._schema, [table])
+        path = _write_whole(self.records, f"part-{row['task']:09d}", self._schema, [table])
         self.done.add(row["task"])
         self._single.append(path)
         if len(self._single) >= TOGETHER:
@@ -112,7 +113,7 @@ class Store:
         compute: Any = needed("pyarrow.compute", "sweep", "a sweep")
         files, before = self._files(), len(self.done)
         good = (table.filter(compute.is_null(table["error"])) for table in self._tables(files))
-        write_whole(self.records, f"rows-{uuid4().hex}", self._schema, good)
+        _write_whole(self.records, f"rows-{uuid4().hex}", self._schema, good)
         for file in files:
             file.unlink()
         self._look()
@@ -163,11 +164,11 @@ class Store:
         return sorted(self.records.glob("*.parquet"))
 
     def _tables(self, files: Sequence[Path]) -> Iterator[Any]:
-        return read_tables(files, self._schema, len(self.sweep))
+        return _read_tables(files, self._schema, len(self.sweep))
 
     def _merge(self, files: Sequence[Path]) -> Path:
         name = f"rows-{uuid4().hex}"
-        path = write_whole(self.records, name, self._schema, self._tables(files))
+        path = _write_whole(self.records, name, self._schema, self._tables(files))
         for file in files:
             file.unlink()
         return path
@@ -184,3 +185,77 @@ def _lock(number: int, folder: Path) -> None:
         raise InputError(
             f"another sweep writes into {folder} now; wait for it, or give --out another folder"
         ) from error
+
+
+def _write_whole(folder: Path, stem: str, schema: Any, tables: Iterable[Any]) -> Path:
+    """Write tables into a file that is there whole when this returns, or not at all.
+
+    Args:
+        folder: of the file.
+        stem: how its name begins; a digest of its content follows.
+        schema: of the tables, as pyarrow has it.
+        tables: one after the other.
+
+    Returns:
+        The path of the file.
+    """
+    parquet: Any = needed("pyarrow.parquet", "sweep", "a sweep")
+    draft = folder / f".{stem}.tmp"
+    with draft.open("w+b") as stream:
+        with parquet.ParquetWriter(stream, schema, compression="zstd") as writer:
+            for table in tables:
+                writer.write_table(table)
+        stream.flush()
+        os.fsync(stream.fileno())
+    path = folder / f"{stem}-{_digest(draft)}.parquet"
+    draft.replace(path)
+    _sync_folder(folder)
+    return path
+
+
+def read_tasks(path: Path) -> set[int]:
+    """Reads the tasks of a file.
+
+    Raises:
+        InputError: it is no regular file.
+        OSError: the file is not whole, or was changed.
+    """
+    parquet: Any = needed("pyarrow.parquet", "sweep", "a sweep")
+    if not path.stem.endswith(f"-{_digest(path)}"):
+        raise OSError(f"{path} is not what was written")
+    return set(parquet.read_table(path, columns=["task"])["task"].to_pylist())
+
+
+def _digest(path: Path) -> str:
+    return digest(path, _LARGEST, "record of a sweep")[:16]
+
+
+def _read_tables(files: Sequence[Path], schema: Any, count: int) -> Iterator[Any]:
+    """Yields the rows of some files in the order of their tasks, a block at a time.
+
+    Args:
+        files: with a column `task`.
+        schema: of the tables.
+        count: of all tasks.
+    """
+    dataset: Any = needed("pyarrow.dataset", "sweep", "a sweep")
+    if not files:
+        return
+    every = dataset.dataset([str(file) for file in files], schema=schema)
+    task = dataset.field("task")
+    for first in range(0, count, _BLOCK):
+        table = every.to_table(filter=(task >= first) & (task < first + _BLOCK)).sort_by("task")
+        if len(table):
+            yield table
+
+
+def _sync_folder(folder: Path) -> None:
+    """Bring the names in a folder to the disk, where the system can."""
+    try:
+        number = os.open(folder, os.O_RDONLY)
+    except OSError:
+        return
+    try:
+        os.fsync(number)
+    finally:
+        os.close(number)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 import socket
+import subprocess
 import sys
 import threading
 import time
@@ -15,12 +16,43 @@ import traceback
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
 from typing import Any
 
-from identification.sweep.code import code
 from identification.sweep.method import Column, error_line, load_method
 from identification.sweep.settings import build
 from identification.sweep.task import Task
+
+HERE = Path(__file__).parent
+
+
+@cache
+def commit() -> str:
+    """Returns the commit of the checkout of this file, "-dirty" where files differ from it.
+
+    It is empty where there is no git, or where the file is not one of a checkout.
+    """
+    try:
+        subprocess.run(
+            ["git", "ls-files", "--error-unmatch", Path(__file__).name], cwd=HERE,
+            capture_output=True, check=True,
+        )  # fmt: skip
+        said = subprocess.run(
+            ["git", "describe", "--always", "--dirty"], cwd=HERE, capture_output=True, text=True,
+            check=True,
+        )  # fmt: skip
+    except (OSError, subprocess.CalledProcessError):
+        return ""
+    return said.stdout.strip()
+
+
+@cache
+def code() -> str:
+    """Returns the version of the package, and its commit in a checkout: "0.2.0, c7d7b26"."""
+    return ", ".join(filter(None, (version("inca-mj"), commit())))
+
 
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "INCA_MJ_THREADS")
 _ONE = threading.Lock()  # a Dask worker may have several threads; limits hold for the process

@@ -1,13 +1,13 @@
 """Methods of sweeps on the INCA robot, by their names in a sweep's TOML."""
 
-from identification.sweep.methods import METHODS as OF_ANY_ROBOT
+from identification.sweep.log_methods import METHODS as OF_ANY_ROBOT
 
 METHODS = {
     **OF_ANY_ROBOT,
     "null-score": "inca_mj.studies.null_score:NULL_SCORE",
-    "world-score": "inca_mj.studies.world_score:WORLD_SCORE",
-    "world-discovery": "inca_mj.studies.world_discovery:WORLD_DISCOVERY",
-    "practice-discovery": "inca_mj.studies.practice:PRACTICE_DISCOVERY",
-    "trial": "inca_mj.studies.trial:TRIAL",
-    "excitation": "inca_mj.studies.excitation:EXCITATION",
+    "world-score": "inca_mj.studies.scores:WORLD_SCORE",
+    "world-discovery": "inca_mj.studies.searches:WORLD_DISCOVERY",
+    "practice-discovery": "inca_mj.studies.searches:PRACTICE_DISCOVERY",
+    "trial": "inca_mj.studies.parameters:TRIAL",
+    "excitation": "inca_mj.studies.parameters:EXCITATION",
 }

@@ -20,9 +20,10 @@ import numpy as np
 from identification.errors import refuse_negative
 from identification.report.page import Section, Table
 from identification.sweep.method import Column, Findings, Method, Record, Seed
+from identification.sweep.settings import file_setting, setting
 from identification.sweep.statistics import said, wilson
-from identification.sweep.words import file_setting, setting
-from inca_mj.studies.world_settings import ERROR, SPREAD
+from inca_mj.studies.hidden_worlds import ERROR, SPREAD
+from inca_mj.studies.scores import fit_nominal, named
 from inca_mj.studies.worlds import AS_BUILT, EXACT, HiddenSetting, world
 from inca_mj.studies.worlds.sensor import coloured as wander
 from inca_mj.studies.worlds.sensor import encode
@@ -60,7 +61,6 @@ def null_score(settings: NullSettings, seed: Seed) -> dict[str, Any]:
     from identification.discovery.options import DiscoveryOptions
     from identification.innovations.scoring.scores import score
     from identification.kalman.noise_fit import fit_noise
-    from inca_mj.studies.scoring import named
 
     options = DiscoveryOptions()
     fit, sensitivities = _fitted(replace(settings, coloured=False))
@@ -91,8 +91,6 @@ def _setting(settings: NullSettings) -> HiddenSetting:
 @lru_cache(maxsize=1)  # the sensitivities of all candidates are hundreds of megabytes
 def _fitted(settings: NullSettings) -> tuple[Any, Any]:
     """Returns the fit of a robot and sensitivities of all candidates, the same in every worker."""
-    from inca_mj.studies.scoring import fit_nominal
-
     log = world(settings.robot, setting=_setting(settings)).log
     fit, sensitivities, _ = fit_nominal(log, settings.spread, settled=False)
     return fit, sensitivities

@@ -5,10 +5,9 @@ from pathlib import Path
 
 import pyarrow.dataset
 
-from identification.sweep.backends.choice import Serial
 from identification.sweep.config import read_sweep
 from identification.sweep.rows import RUN, comparable
-from identification.sweep.run import run_sweep
+from identification.sweep.run import Serial, run_sweep
 from identification.sweep.store import Store
 
 METHOD = Path(__file__).parent / "sweep_method.py"

@@ -12,9 +12,9 @@ from identification.files import read_archive, read_bytes, read_json, read_text,
 from identification.folders import MADE, list_foreign, whole_folder
 from identification.linear.export import load_system
 from identification.report.media import image_source, video_source
-from identification.sweep.axis import axis
-from identification.sweep.parquet import read_tasks
-from inca_mj.studies.practice import truth_of
+from identification.sweep.config import axis
+from identification.sweep.store import read_tasks
+from inca_mj.studies.searches import truth_of
 from inca_mj.twin.run import load_run
 from inca_mj.twin.saved import load_twin, save_twin
 from inca_mj.twin.twin import build_twin

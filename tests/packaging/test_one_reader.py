@@ -34,10 +34,9 @@ ALLOWED = {
     "identification/child.py: loadmat": "the bytes of its input",
     "identification/effects/rows.py: from_file": "MuJoCo, after the reader has looked",
     "identification/child.py: from_file": "MuJoCo, after the reader has looked",
-    "identification/sweep/parquet.py: read_table": "pyarrow, after the digest was read",
-    "identification/sweep/parquet.py: dataset": "pyarrow, after the digest was read",
-    "identification/sweep/parquet.py: open": "a folder, to bring it to the disk",
-    "identification/sweep/store.py: open": "the lock, of which nothing is read",
+    "identification/sweep/store.py: read_table": "pyarrow, after the digest was read",
+    "identification/sweep/store.py: dataset": "pyarrow, after the digest was read",
+    "identification/sweep/store.py: open": "the lock and a folder, of which nothing is read",
     "identification/sweep/method.py: spec_from_file_location": "after the reader has looked",
     "identification/sweep/method.py: exec_module": "after the reader has looked",
 }

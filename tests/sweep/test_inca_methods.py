@@ -22,7 +22,7 @@ from identification.sweep.methods.discover_log import named_findings
 from identification.sweep.work import checked
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.studies import METHODS
-from inca_mj.studies.excitation import excitation_findings
+from inca_mj.studies.hidden_worlds import WorldSettings, make_world
 from inca_mj.studies.null_score import null_findings
 from inca_mj.studies.practice import truth_of
 from inca_mj.studies.world_score import score_findings
@@ -77,7 +77,7 @@ def test_settings_of_worlds_are_checked(settings, words):
 
 @pytest.mark.parametrize("kind", ["listed", "mixed", "unknown", "rule", "sensor"])
 def test_an_effect_of_its_own_kind_may_be_asked_for(kind):
-    from inca_mj.studies.world_settings import HIDES, _drawn
+    from inca_mj.studies.hidden_worlds import HIDES, _drawn
 
     for effect in HIDES.get(kind, HIDDEN_EFFECTS):
         number = 1  # of six mixed worlds, this one hides what is listed

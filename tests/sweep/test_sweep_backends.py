@@ -12,11 +12,10 @@ import dask
 import pytest
 from sweep_cases import read, run, write
 
-from identification.sweep.backends.choice import backend_of
-from identification.sweep.backends.dask_cluster import Dask
-from identification.sweep.backends.processes import Processes
-from identification.sweep.backends.submitit_jobs import Chunk, Submitit
+from identification.sweep.backend import Processes
+from identification.sweep.clusters import Chunk, Dask, Submitit
 from identification.sweep.config import read_sweep
+from identification.sweep.run import backend_of
 from identification.sweep.work import work
 
 quiet = pytest.mark.filterwarnings("default")  # of Dask and submitit, which are not ours
@@ -175,7 +174,7 @@ def test_a_stopped_job_goes_on_where_it_was(serial):
 )
 @quiet
 def test_what_a_backend_refuses(serial, tmp_path, refusal, monkeypatch, word, jobs, options, words):
-    monkeypatch.setattr("identification.sweep.backends.dask_cluster.WAIT", 1)
+    monkeypatch.setattr("identification.sweep.clusters.WAIT", 1)
     monkeypatch.setenv("PATH", str(tmp_path))  # no Slurm
     path, _ = serial
 

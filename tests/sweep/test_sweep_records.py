@@ -11,11 +11,10 @@ from sweep_cases import GRID, read, run, write
 from identification.__main__ import main
 from identification.commands.program import STOPPED
 from identification.sweep import store as module
-from identification.sweep.backends.choice import Serial
-from identification.sweep.code import code
 from identification.sweep.config import read_sweep
-from identification.sweep.run import run_sweep
+from identification.sweep.run import Serial, run_sweep
 from identification.sweep.store import Store
+from identification.sweep.work import code
 
 
 class Stopped(Exception):

@@ -6,7 +6,7 @@ from scipy.stats import binomtest
 
 from identification.sweep.answers import judged, nested
 from identification.sweep.discovery_findings import discovery_findings
-from identification.sweep.estimates import estimate_findings
+from identification.sweep.log_methods import estimate_findings
 from identification.sweep.power import curves, thresholds
 from identification.sweep.statistics import calibration_of, crossing, median, said, wilson
 

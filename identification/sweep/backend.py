@@ -1,6 +1,9 @@
-"""Tasks in processes of this machine, by `concurrent.futures`.
+"""The seam between a sweep and the machines: a backend takes tasks and yields outcomes.
 
-A worker ends when this process does, also where that is killed: it watches its parent.
+A backend holds few tasks at a time, so that memory does not grow with their number, and it may
+yield outcomes in any order. It has no queue of its own: `concurrent.futures`, Dask and Slurm have.
+Those of this machine stand here. A worker process ends when this process does, also where that is
+killed: it watches its parent.
 """
 
 from __future__ import annotations
@@ -8,17 +11,49 @@ from __future__ import annotations
 import os
 import signal
 import threading
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from itertools import islice
 from multiprocessing import active_children, get_context, parent_process
 from multiprocessing.connection import wait as wait_for
+from typing import Protocol
 
-from identification.sweep.backends.backend import WINDOW, LostWorkers, Work
+from identification.errors import InputError
 from identification.sweep.task import Task
 from identification.sweep.work import Outcome, one_thread
+
+WINDOW = 3  # tasks that wait or run, for each worker
+Work = Callable[[Task], Outcome]
+
+
+class Backend(Protocol):
+    """Runs tasks somewhere."""
+
+    def outcomes(self, work: Work, tasks: Iterable[Task]) -> Iterator[Outcome]:
+        """Yields the outcome of each task, in the order in which they end.
+
+        Args:
+            work: a function of a module, which a worker can import.
+            tasks: asked for one by one, as there is room.
+
+        Raises:
+            InputError: workers cannot be had, or died; what was yielded before is right.
+        """
+        ...
+
+
+class LostWorkers(InputError):
+    """Workers died or cannot be reached; a sweep is resumed with what it has."""
+
+
+class Serial:
+    """Runs tasks one after the other in this process."""
+
+    def outcomes(self, work: Work, tasks: Iterable[Task]) -> Iterator[Outcome]:
+        """Yields the outcome of each task, in their order."""
+        return map(work, tasks)
 
 
 @dataclass(frozen=True)

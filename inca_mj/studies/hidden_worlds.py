@@ -16,7 +16,7 @@ from identification import Log
 from identification.errors import InputError, refuse_negative, refuse_number, unknown_name
 from identification.sweep.answers import size_name
 from identification.sweep.method import Column, Seed
-from identification.sweep.words import file_setting, setting
+from identification.sweep.settings import file_setting, setting
 from inca_mj.studies.worlds import (
     ALL_EFFECTS,
     AS_BUILT,

@@ -1,4 +1,7 @@
-"""A whole search on a log whose truth a file `labels.json` beside it tells."""
+"""Whole searches on logs of known truth: hidden worlds, and logs that `labels.json` describes.
+
+A search takes minutes of one core.
+"""
 
 from __future__ import annotations
 
@@ -20,9 +23,46 @@ from identification.sweep.answers import (
 )
 from identification.sweep.discovery_findings import discovery_findings
 from identification.sweep.method import Method, Seed
-from identification.sweep.words import file_setting
-from inca_mj.studies.world_settings import SPREAD
+from identification.sweep.settings import file_setting
+from inca_mj.studies.hidden_worlds import SPREAD, WORLD, WorldSettings, make_world
 from inca_mj.workflows.spread import WORDS
+
+
+def world_discovery(settings: WorldSettings, seed: Seed) -> dict[str, Any]:
+    """Make a world, and find what the twin lacks to explain it.
+
+    A world stands at rest with what it lacks, as a robot that was let go.
+
+    Raises:
+        InputError: the world cannot be made, or the search refuses its logs.
+        DivergenceError: a simulation left the finite numbers.
+    """
+    from inca_mj.workflows.discovery import discover
+    from inca_mj.workflows.spread import spread_of
+
+    logs, truth = make_world(settings, seed)
+    found = discover(logs, settled=True, spread=spread_of(settings.spread))
+    return _record(truth, found)
+
+
+def _record(truth: dict[str, Any], found: Any) -> dict[str, Any]:
+    named = answer(found)
+    return {
+        **truth, **named, **proof(found),
+        **judged(named["named"], truth["hidden"], truth["kind"]),
+    }  # fmt: skip
+
+
+WORLD_DISCOVERY = Method(
+    about="makes a hidden world and searches what the twin lacks",
+    settings=WorldSettings,
+    columns={**WORLD, **TRUTH, **ANSWER, **PROOF, **JUDGED},
+    run=world_discovery,
+    success="right",
+    against="ratio",
+    summary=discovery_findings,
+)
+
 
 # Names of sizes in labels, by effect and size here, as far as they mean the same.
 LABELS = {
@@ -63,11 +103,7 @@ def practice_discovery(settings: PracticeSettings, seed: Seed) -> dict[str, Any]
     from inca_mj.workflows.spread import spread_of
 
     truth = truth_of(settings.log)
-    found = discover(read_inca_log(settings.log), spread=spread_of(settings.spread))
-    told = answer(found)
-    return {
-        **truth, **told, **proof(found), **judged(told["named"], truth["hidden"], truth["kind"]),
-    }  # fmt: skip
+    return _record(truth, discover(read_inca_log(settings.log), spread=spread_of(settings.spread)))
 
 
 def truth_of(log: Path) -> dict[str, Any]:

@@ -1,1 +1,0 @@
-"""Backends for tasks: this process, processes beside it, Dask, or jobs of Slurm."""
