@@ -87,7 +87,7 @@ _PUBLIC = {
     "repeat_thesis": "thesis.results",
     "ThesisResults": "thesis.results",
     "crosscheck": "verification.check",
-    "CrossCheck": "verification.result",
+    "CrossCheck": "verification.check",
     # what its cables can hold, and where
     "analyse_statics": "workflows.statics",
     "StaticAnalysis": "workflows.statics",
@@ -166,8 +166,8 @@ if TYPE_CHECKING:  # the same list, for type checkers and editors
     from inca_mj.twin.saved import save_twin as save_twin
     from inca_mj.twin.twin import Twin as Twin
     from inca_mj.twin.twin import build_twin as build_twin
+    from inca_mj.verification.check import CrossCheck as CrossCheck
     from inca_mj.verification.check import crosscheck as crosscheck
-    from inca_mj.verification.result import CrossCheck as CrossCheck
     from inca_mj.workflows.calibration import Calibration as Calibration
     from inca_mj.workflows.calibration import calibrate as calibrate
     from inca_mj.workflows.comparison import Comparison as Comparison

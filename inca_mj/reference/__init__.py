@@ -4,15 +4,15 @@ It shares parameters and geometry with the MuJoCo twin, and no physics code. Nam
 the public ones.
 """
 
-from inca_mj.reference.energy import Energy as Energy
-from inca_mj.reference.energy import Power as Power
-from inca_mj.reference.energy import energy as energy
-from inca_mj.reference.energy import power as power
 from inca_mj.reference.equations import derivative as derivative
+from inca_mj.reference.integrate import ReferenceRun as ReferenceRun
 from inca_mj.reference.integrate import simulate_reference as simulate_reference
+from inca_mj.reference.numbers import Rest as Rest
 from inca_mj.reference.numbers import pack as pack
+from inca_mj.reference.numbers import rest as rest
+from inca_mj.reference.outputs import Energy as Energy
 from inca_mj.reference.outputs import Outputs as Outputs
+from inca_mj.reference.outputs import Power as Power
+from inca_mj.reference.outputs import energy as energy
 from inca_mj.reference.outputs import outputs as outputs
-from inca_mj.reference.run import ReferenceRun as ReferenceRun
-from inca_mj.reference.statics import Rest as Rest
-from inca_mj.reference.statics import rest as rest
+from inca_mj.reference.outputs import power as power

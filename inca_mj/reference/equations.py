@@ -26,11 +26,21 @@ the thesis says so only in words.
 from __future__ import annotations
 
 from math import cos, sin, sqrt, tan, tanh
+from pathlib import Path
 
 import numpy as np
 
+from identification.kept_code import kept_code
 from inca_mj.reference import layout as at
-from inca_mj.reference.compiled import compiled
+
+FOLDERS = (
+    "reference",
+    "robot",
+    "studies/worlds",
+)  # of the package, from which the equations import
+
+compiled = kept_code(*(Path(__file__).parents[1] / name for name in FOLDERS))
+
 
 Vector = tuple[float, float, float]
 

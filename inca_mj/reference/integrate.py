@@ -15,6 +15,7 @@ steps are bounded by stability (the stiff, damped rotation of the platform), not
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 from math import degrees, isfinite
 from typing import Literal
@@ -25,15 +26,51 @@ from scipy.integrate import DOP853
 from identification.errors import DivergenceError, InputError
 from identification.model.parameter import ParameterSet
 from inca_mj.reference import layout as at
-from inca_mj.reference.equations import cables, derivative
-from inca_mj.reference.numbers import NO_FORCE, pack
-from inca_mj.reference.rk4 import rk4
-from inca_mj.reference.run import ReferenceRun
-from inca_mj.reference.statics import rest
+from inca_mj.reference.equations import cables, compiled, derivative
+from inca_mj.reference.numbers import NO_FORCE, pack, rest
 from inca_mj.robot.geometry import Geometry
 
 STEP = 1e-3  # default step of rk4 [s]
 SINGULAR = np.radians(89.0)  # largest pitch [rad]: Euler rates are up to 57 times ω there
+
+
+@dataclass(frozen=True)
+class ReferenceRun:
+    """A trajectory of the reference, sampled; its arrays are read-only.
+
+    Attributes:
+        time: sample times, shape (n,) [s].
+        state: the 36 states in the order of `layout`, shape (n, 36).
+        tension: cable tensions, shape (n, 8) [N].
+    """
+
+    time: np.ndarray
+    state: np.ndarray
+    tension: np.ndarray
+
+    def __post_init__(self) -> None:
+        for array in (self.time, self.state, self.tension):
+            array.setflags(write=False)
+
+    @property
+    def position(self) -> np.ndarray:
+        """Position of the platform in O, shape (n, 3) [m]."""
+        return self.state[:, at.POSITION]
+
+    @property
+    def euler(self) -> np.ndarray:
+        """Roll, pitch and yaw of the platform, shape (n, 3) [rad]."""
+        return self.state[:, at.EULER]
+
+    @property
+    def rates(self) -> np.ndarray:
+        """Angular rate of the platform along its body axes, shape (n, 3) [rad/s]."""
+        return self.state[:, at.RATES]
+
+    @property
+    def angles(self) -> np.ndarray:
+        """Motor angles, positive winds in, shape (n, 8) [rad]."""
+        return self.state[:, at.ANGLES]
 
 
 def simulate_reference(
@@ -92,7 +129,7 @@ def _adaptive(
 ) -> None:
     """Fill x[1:] by DOP853, restarted only where the currents change."""
     changes = np.flatnonzero((u[1:-1] != u[:-2]).any(axis=1)) + 1
-    for first, last in _pairs([0, *changes.tolist(), len(t) - 1]):
+    for first, last in pairwise(np.unique([0, *changes, len(t) - 1]).tolist()):
         i, k = u[first], first + 1
         # Overflow is no surprise here: the state is checked after every step.
         with np.errstate(all="ignore"):
@@ -121,6 +158,26 @@ def _fixed(t: np.ndarray, u: np.ndarray, q: np.ndarray, x: np.ndarray, step: flo
         _refuse_bad_state(t[k + 1], x[k + 1])
 
 
+@compiled
+def rk4(x: np.ndarray, i: np.ndarray, q: np.ndarray, h: float, steps: int) -> np.ndarray:
+    """Returns the state after `steps` steps of length h under constant currents.
+
+    Args:
+        x: state, shape (36,).
+        i: currents, shape (8,) [A].
+        q: packed numbers, from `pack`.
+        h: step [s].
+        steps: number of steps.
+    """
+    for _ in range(steps):
+        k1 = derivative(x, i, q)
+        k2 = derivative(x + h / 2 * k1, i, q)
+        k3 = derivative(x + h / 2 * k2, i, q)
+        k4 = derivative(x + h * k3, i, q)
+        x = x + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
+    return x
+
+
 def _steps_per_sample(intervals: np.ndarray, step: float) -> list[int]:
     if not (isfinite(step) and step > 0):
         raise InputError(f"step must be a positive number of seconds, got {step!r}")
@@ -134,10 +191,6 @@ def _steps_per_sample(intervals: np.ndarray, step: float) -> list[int]:
             f"step {step:g} s does not divide the sample interval {interval:g} s; {good:g} s does"
         )
     return [int(n) for n in counts]
-
-
-def _pairs(bounds: list[int]) -> list[tuple[int, int]]:
-    return [(a, b) for a, b in pairwise(bounds) if a < b]
 
 
 def _samples(time: np.ndarray, currents: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -5,8 +5,8 @@ states (`derivatives`), and trajectories at several steps of the twin (`trajecto
 from here are the public ones.
 """
 
+from inca_mj.verification.check import CrossCheck as CrossCheck
 from inca_mj.verification.check import crosscheck as crosscheck
 from inca_mj.verification.derivatives import DerivativeErrors as DerivativeErrors
 from inca_mj.verification.derivatives import compare_derivatives as compare_derivatives
-from inca_mj.verification.result import CrossCheck as CrossCheck
 from inca_mj.verification.trajectories import CASES as CASES

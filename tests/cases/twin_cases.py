@@ -9,7 +9,7 @@ from identification.model.rollout import State, rollout
 from inca_mj.robot.geometry import INCA
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.twin.twin import build_twin
-from inca_mj.verification.states import random_states, to_mujoco
+from inca_mj.verification.derivatives import random_states, to_mujoco
 
 STEP = 1e-3  # [s]
 

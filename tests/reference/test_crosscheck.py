@@ -18,7 +18,7 @@ from inca_mj.verification import (
     crosscheck,
 )
 from inca_mj.verification.check import STEPS
-from inca_mj.verification.order import crossing, leading_slope, slope
+from inca_mj.verification.trajectories import crossing, leading_slope, slope
 
 
 def derivative_errors(**some):

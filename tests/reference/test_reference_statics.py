@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from identification.errors import InputError
 from inca_mj.reference import derivative, kinematics, pack, rest
-from inca_mj.reference.statics import wrench_matrix
+from inca_mj.reference.numbers import wrench_matrix
 from inca_mj.robot.geometry import INCA
 from inca_mj.robot.parameters import SETS, parameter_set
 

@@ -18,8 +18,8 @@ from inca_mj.robot.parameters import GRAVITY, SETS, parameter_set
 from inca_mj.twin.run import simulate
 from inca_mj.twin.statics import start_from, starts_from
 from inca_mj.twin.twin import build_twin
-from inca_mj.verification.order import slope
-from inca_mj.verification.states import to_mujoco
+from inca_mj.verification.derivatives import to_mujoco
+from inca_mj.verification.trajectories import slope
 
 COARSE = (1e-3, 5e-4, 2.5e-4)
 FINE = (2.5e-4, 1.25e-4, 6.25e-5)

@@ -21,9 +21,9 @@ from math import atan2, cos, exp, pi, sin, sqrt, tanh
 import numpy as np
 
 from inca_mj.reference import layout as base
-from inca_mj.reference.compiled import compiled
 from inca_mj.reference.equations import (
     Vector,
+    compiled,
     cross,
     dot,
     euler_rate_matrix,

@@ -17,8 +17,7 @@ from math import ceil, exp, tanh
 import numpy as np
 
 from inca_mj.reference import layout as base
-from inca_mj.reference.compiled import compiled
-from inca_mj.reference.equations import rotation, times, vector
+from inca_mj.reference.equations import compiled, rotation, times, vector
 from inca_mj.studies.worlds import layout as at
 from inca_mj.studies.worlds.equations import path, radius, world_rate
 
