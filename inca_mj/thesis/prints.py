@@ -51,7 +51,13 @@ class PrintedFits:
 _INERTIA = "diag(0.8, 1.5, 1.8) 1e-4"
 _TRIAL = ("parameter", "value", "initial", "estimated", "fitting")
 _STEP = ("parameter", "initial value", "estimated value")
-_FIXED = ("(fix)", "(fix)", "(fix)")
+FIXED = "(fix)"
+_FIXED = (FIXED,) * 3
+# How the symbols are called here; a triple is one row of the thesis.
+NAMES = {
+    "λ": "lambda", "β": "beta", "[x, y, z]": "x y z", "[φ, θ, ψ]": "roll pitch yaw",
+    "I": "I_x I_y I_z",
+}  # fmt: skip
 
 _TABLES = (
     PrintedTable(

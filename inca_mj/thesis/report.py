@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -214,8 +213,3 @@ def _fits(
 
 def _table(number: str) -> str:
     return f"Table {number}: {TABLES[number].title}"
-
-
-def numbered(sections: Sequence[Section]) -> list[str]:
-    """Returns the numbers that the headings begin with, such as "Table 3.3", in order."""
-    return [s.title.partition(":")[0] for s in sections]

@@ -9,15 +9,10 @@ import numpy as np
 from identification.estimation.fit import Fit
 from identification.report.page import Table
 from inca_mj.robot.parameters import parameter_set
-from inca_mj.thesis.prints import FITS, TABLES, PrintedTable
+from inca_mj.thesis.prints import FITS, NAMES, TABLES, PrintedTable
 from inca_mj.thesis.trials import TrialResult
 from inca_mj.twin.twin import Twin
 
-# How the thesis' symbols are called here; a triple is one row of the thesis.
-NAMES = {
-    "λ": "lambda", "β": "beta", "[x, y, z]": "x y z", "[φ, θ, ψ]": "roll pitch yaw",
-    "I": "I_x I_y I_z",
-}  # fmt: skip
 FIXED = "fixed"
 
 

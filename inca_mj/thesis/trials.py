@@ -24,19 +24,13 @@ from identification.progress import counted
 from identification.quantities import finite_or_none
 from inca_mj.robot.inputs import make_input
 from inca_mj.robot.parameters import parameter_set
+from inca_mj.thesis.prints import FITS, FIXED, NAMES, TABLES
 from inca_mj.twin.logs import run_to_log
 from inca_mj.twin.run import simulate
 from inca_mj.twin.twin import Twin, build_twin
 
 DURATION = 5.0  # of the data [s]
 NOISE = 0.05  # largest error of a sample, relative to it
-
-LARGE = {"lambda": 31250.0, "b": 16.0, "J": 1e-4, "b_v": 1.7e-4, "b_c": 0.004, "beta": 1.0}
-SMALL = {"lambda": 26250.0, "b": 7.2, "J": 8.4e-5, "b_v": 1.9e-4, "b_c": 0.00475, "beta": 0.84}
-ALL = {
-    "R": 0.0175, "R_s": 0.006, "k_s": 16.0, **LARGE, "K_t": 0.08, "m": 0.1725,
-    "x": 0.025, "y": 0.025, "z": 1.5,
-}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -58,25 +52,18 @@ class Trial:
     thesis_fit: float
 
 
-TRIALS = (
-    Trial(1, ALL, False, {
-        "R": 0.0199, "R_s": 0.0070, "k_s": 17.189, "lambda": 36171.1, "b": 2.2650, "J": 1.1e-4,
-        "b_v": 2.7e-4, "b_c": 0.00697, "beta": 0.8075, "K_t": 0.1099, "m": 0.1725, "x": 0.003,
-        "y": 0.0, "z": 1.421,
-    }, 97.74),
-    Trial(2, LARGE, False, {
-        "lambda": 29177.9, "b": 13.35, "J": 7.79e-5, "b_v": 1.97e-4, "b_c": 0.00505,
-        "beta": 0.7396,
-    }, 97.82),
-    Trial(3, SMALL, False, {
-        "lambda": 25598.3, "b": 17.036, "J": 7.78e-5, "b_v": 1.97e-4, "b_c": 0.00506,
-        "beta": 0.7374,
-    }, 97.83),
-    Trial(4, SMALL, True, {
-        "lambda": 25392.6, "b": 19.0473, "J": 7.78e-5, "b_v": 1.97e-4, "b_c": 0.00506,
-        "beta": 0.741,
-    }, 97.85),
-)  # fmt: skip
+def _printed(number: int) -> Trial:
+    """Returns a trial as its table and its figure print it."""
+    start, thesis = dict[str, float](), dict[str, float]()
+    for symbol, _, *cells, _ in TABLES[f"3.{number + 2}"].rows:
+        names = NAMES.get(symbol, symbol).split()
+        for values, cell in zip((start, thesis), cells, strict=True):
+            if cell != FIXED:
+                values |= zip(names, map(float, cell.strip("[]").split(", ")), strict=True)
+    return Trial(number, start, number == 4, thesis, FITS[f"3.{number + 3}"].mean)
+
+
+TRIALS = tuple(map(_printed, (1, 2, 3, 4)))
 
 
 def trial_data(robot: Twin, seed: int = 0) -> Log:

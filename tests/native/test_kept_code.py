@@ -5,8 +5,9 @@ import subprocess
 import sys
 from pathlib import Path
 
-import inca_mj.reference
 from inca_mj.reference.compiled import FOLDERS
+
+import inca_mj.reference
 
 RUN = """
 import sys

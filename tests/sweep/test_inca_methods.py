@@ -16,17 +16,16 @@ from identification import read_robot, write_log
 from identification.__main__ import main
 from identification.errors import InputError
 from identification.sweep.answers import ANSWER, PROOF, answer, nested, proof
+from identification.sweep.log_methods import METHODS as ROBOT_METHODS
+from identification.sweep.log_methods import named_findings
 from identification.sweep.method import Seed, load_method
-from identification.sweep.methods import METHODS as ROBOT_METHODS
-from identification.sweep.methods.discover_log import named_findings
 from identification.sweep.work import checked
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.studies import METHODS
 from inca_mj.studies.hidden_worlds import WorldSettings, make_world
 from inca_mj.studies.null_score import null_findings
-from inca_mj.studies.practice import truth_of
-from inca_mj.studies.world_score import score_findings
-from inca_mj.studies.world_settings import WorldSettings, make_world
+from inca_mj.studies.scores import score_findings
+from inca_mj.studies.searches import truth_of
 from inca_mj.studies.worlds import HIDDEN_EFFECTS, HiddenSetting, draw_effect, records, world
 
 SEED = Seed(5, (0, 0, 3))

@@ -13,11 +13,10 @@ from identification.sweep.config import read_sweep
 from identification.sweep.figures import power_figure, threshold_figure
 from identification.sweep.method import load_method
 from identification.sweep.power import Threshold, curves
-from identification.sweep.settings import check_values, kinds_of
+from identification.sweep.settings import Heads, about_of, check_values, kinds_of
 from identification.sweep.statistics import wilson
 from identification.sweep.store import Store
 from identification.sweep.summary import summarise
-from identification.sweep.words import Heads, about_of
 from inca_mj.studies import METHODS
 
 TWO = f"seed = 3\n[[study]]\nname='one'\nmethod='{METHOD}:TOSS'\ncount=4\n{{}}\n" + (

@@ -21,17 +21,19 @@ from inca_mj.studies.worlds import (
     ALL_EFFECTS,
     SHAPES,
     UNLISTED,
+    HiddenSetting,
+    draw_effect,
+    effect,
+    world,
+)
+from inca_mj.studies.worlds.cable_effects import (
     HiddenAnchorOffset,
     HiddenCableHardening,
     HiddenComOffset,
     HiddenExternalForce,
     HiddenPulleyRadius,
-    HiddenSetting,
-    HiddenStribeckFriction,
-    draw_effect,
-    effect,
-    world,
 )
+from inca_mj.studies.worlds.drive_effects import HiddenStribeckFriction
 from inca_mj.twin.twin import build_twin
 
 CLOSE = 1e-7  # the oracle is adaptive, at 1e-11 [rad]

@@ -9,20 +9,7 @@ import pytest
 from identification.errors import InputError
 from inca_mj.robot.geometry import INCA
 from inca_mj.robot.parameters import parameter_set
-from inca_mj.studies.worlds import (
-    EVERY,
-    VARIED,
-    HiddenAnchorOffset,
-    HiddenBacklash,
-    HiddenCableHardening,
-    HiddenCableWeight,
-    HiddenCurrentSaturation,
-    HiddenSetting,
-    HiddenStribeckFriction,
-    HiddenTorqueConstantMismatch,
-    make_currents,
-    world,
-)
+from inca_mj.studies.worlds import EVERY, VARIED, HiddenSetting, make_currents, world
 from inca_mj.studies.worlds.cable_effects import (
     HiddenAnchorOffset,
     HiddenCableHardening,
@@ -30,7 +17,6 @@ from inca_mj.studies.worlds.cable_effects import (
 )
 from inca_mj.studies.worlds.drive_effects import (
     HiddenBacklash,
-    HiddenCogging,
     HiddenCurrentSaturation,
     HiddenStribeckFriction,
     HiddenTorqueConstantMismatch,
