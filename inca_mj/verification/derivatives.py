@@ -215,6 +215,6 @@ def random_states(n: int, geometry: Geometry, rng: np.random.Generator) -> np.nd
     x[:, at.RATES] = rng.normal(0, 5, (n, 3))
     x[:, at.ANGLES] = rng.normal(0, 50, (n, DRIVES))
     x[:, at.SPEEDS] = rng.normal(0, 20, (n, DRIVES))
-    d = [cables_at(row[at.POSITION], rotation(*row[at.EULER]), geometry)[0] for row in x]
+    d = [cables_at(row[at.POSITION], rotation(*row[at.EULER]), geometry).lengths for row in x]
     x[:, at.NO_LOAD] = d / (1 + rng.uniform(-STRETCH, STRETCH, (n, DRIVES)))
     return x
