@@ -6,8 +6,14 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from as_built_calibrations import calibration_lines
-from as_built_rows import Row, commits_of, median_time, rate_of, records_of
+from as_built_calibrations import (
+    Row,
+    calibration_lines,
+    commits_of,
+    median_time,
+    rate_of,
+    records_of,
+)
 
 from identification.sweep.discovery_findings import in_set, right, size_errors
 from inca_mj.studies.worlds import ALL_EFFECTS, UNLISTED

@@ -21,9 +21,9 @@ from pathlib import Path
 from typing import Any
 
 from joint_statistics import section, summary
-from joint_worlds.catalogue import NULL, effects_of
-from joint_worlds.dynamics import ROBOTS
 from joint_worlds.files import truth_of, write_world
+from joint_worlds.hidden import NULL, effects_of
+from joint_worlds.motion import ROBOTS
 from joint_worlds.world import UnseenError, make_world
 
 HERE = Path(__file__).parent

@@ -231,7 +231,7 @@ def _unlisted_lines(found: Mapping[str, Any]) -> list[str]:
     columns = [n for n in found if found[n]["law_named"]["of"]]
     lines = [
         "",
-        "Forces that are in no catalogue (`benchmarks/joint_worlds/unlisted.py`): a place where",
+        "Forces that are in no catalogue (`benchmarks/joint_worlds/laws.py`): a place where",
         "something catches (bump), a soft stop, a brake that acts from a speed on (fast), a torque",
         "that follows the position (beside) or the speed (drag) of a neighbouring joint, and a",
         "viscous friction that waves along the way (ripple), which no curve can draw.",

@@ -16,8 +16,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from joint_worlds.compiled import compiled
 from joint_worlds.robot import Free, JointRobot
+from joint_worlds.slots import compiled
 
 N, LINK = 6, 11  # numbers of a link: mass, centre (3), inertia (3), armature, place of joint (3)
 PAYLOAD, GRAVITY, TIP = N * LINK, N * LINK + 1, N * LINK + 2

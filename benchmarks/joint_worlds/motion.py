@@ -1,4 +1,4 @@
-"""A robot in motion: Runge and Kutta's fourth-order steps, a controller, and windows.
+"""A robot in motion, M q̈ = r - c - g: Runge-Kutta steps of order 4, a controller, and windows.
 
 An input is held for a sample. On its way to the joint it is clipped, comes late, lags (exactly:
 x(t + h) = u + (x - u) exp(-h/τ)), loses α t of its gain, and weakens by c x³. Unlogged torque
@@ -16,25 +16,73 @@ from __future__ import annotations
 import numpy as np
 
 from joint_worlds import slots as at
-from joint_worlds.compiled import compiled
-from joint_worlds.dynamics import accelerations, slip, terms
+from joint_worlds.arm import ARM, arm
+from joint_worlds.cart import CART, cart
+from joint_worlds.laws import dahl, force, held, largest, stretched, unlisted
+from joint_worlds.pendulum import PENDULUM, pendulum
+from joint_worlds.robot import JointRobot
+from joint_worlds.slots import compiled
+from joint_worlds.two_link import TWO_LINK, two_link
 
-DELAY, LAG, LIMIT, SAG = at.DELAY, at.LAG, at.LIMIT, at.SAG
-SCALE, OFF_COS, OFF_SIN, WEAK, ZERO = at.SCALE, at.OFF_COS, at.OFF_SIN, at.WEAK, at.ZERO
+ROBOTS: dict[str, JointRobot] = {r.name: r for r in (PENDULUM, CART, TWO_LINK, ARM)}
+
+
+@compiled
+def terms(code, q, v, p, M, c, g):  # type: ignore[no-untyped-def]
+    """Mass matrix, velocity forces and gravity of a robot, into M, c and g."""
+    if code == 0:
+        pendulum(q, v, p, M, c, g)
+    elif code == 1:
+        cart(q, v, p, M, c, g)
+    elif code == 2:
+        two_link(q, v, p, M, c, g)
+    else:
+        arm(q, v, p, M, c, g)
+
+
+@compiled
+def accelerations(code, p, joints, q, v, q0, z, tau, M, c, g, a):  # type: ignore[no-untyped-def]
+    """q̈ into a: of drives' forces tau, in a step that began at q0 with contacts stretched by z."""
+    terms(code, q, v, p, M, c, g)
+    for i in range(q.size):
+        low = largest(joints[i], q[i], v[i], tau[i], g[i], -1.0)
+        high = largest(joints[i], q[i], v[i], tau[i], g[i], 1.0)
+        a[i] = tau[i] - c[i] - g[i] + force(joints[i], q[i], v[i])
+        o = i - 1 if i > 0 else q.size - 1 if q.size < 2 else 1
+        a[i] += unlisted(joints[i], q[i], v[i], q[o], v[o])
+        if joints[i, at.GIVE] > 0.0:
+            a[i] -= dahl(joints[i], z[i], q[i] - q0[i], low, high)
+        elif low > 0.0 or high > 0.0:
+            a[i] -= held(joints[i], z[i] + q[i] - q0[i], v[i], low, high)
+    a[:] = np.linalg.solve(M, a)
+
+
+@compiled
+def slip(joints, q, v, q0, z, tau, g):  # type: ignore[no-untyped-def]
+    """Move the contacts, in place, at the end of a step."""
+    for i in range(q.size):
+        low = largest(joints[i], q[i], v[i], tau[i], g[i], -1.0)
+        high = largest(joints[i], q[i], v[i], tau[i], g[i], 1.0)
+        if joints[i, at.GIVE] > 0.0:
+            z[i] = joints[i, at.GIVE] * dahl(joints[i], z[i], q[i] - q0[i], low, high)
+        elif low > 0.0 or high > 0.0:
+            z[i] = stretched(joints[i], z[i] + q[i] - q0[i], low, high)
+        else:
+            z[i] = 0.0
 
 
 @compiled
 def encoder(joint, q):  # type: ignore[no-untyped-def]
     """What an encoder without noise shows."""
-    turning = joint[OFF_COS] * np.cos(q) + joint[OFF_SIN] * np.sin(q)
-    return (1 + joint[SCALE]) * q + turning + joint[ZERO]
+    turning = joint[at.OFF_COS] * np.cos(q) + joint[at.OFF_SIN] * np.sin(q)
+    return (1 + joint[at.SCALE]) * q + turning + joint[at.ZERO]
 
 
 @compiled
 def late(joint, u, i, k, since, period):  # type: ignore[no-untyped-def]
     """Input i as it arrives `since` seconds after sample k began."""
-    at_ = max(0, k + int(np.floor((since - joint[DELAY]) / period)))
-    return min(max(u[at_, i], -joint[LIMIT]), joint[LIMIT])
+    at_ = max(0, k + int(np.floor((since - joint[at.DELAY]) / period)))
+    return min(max(u[at_, i], -joint[at.LIMIT]), joint[at.LIMIT])
 
 
 @compiled
@@ -47,15 +95,15 @@ def advance(code, p, joints, state, u, k, push, h, m, room):  # type: ignore[no-
     for s in range(m):
         for i in range(n):
             come = late(joints[i], u, i, k, (s + 0.5) * h, h * m)
-            half = np.exp(-0.5 * h / joints[i, LAG]) if joints[i, LAG] > 0.0 else 0.0
+            half = np.exp(-0.5 * h / joints[i, at.LAG]) if joints[i, at.LAG] > 0.0 else 0.0
             x1 = come + (x[i] - come) * half
             x2 = come + (x1 - come) * half
-            x0 = x[i] if joints[i, LAG] > 0.0 else come
+            x0 = x[i] if joints[i, at.LAG] > 0.0 else come
             t = k * m * h + s * h
-            weak = joints[i, WEAK]
-            tau[0, i] = (1 - joints[i, SAG] * t) * x0 - weak * x0**3 + push[i]
-            tau[1, i] = (1 - joints[i, SAG] * (t + 0.5 * h)) * x1 - weak * x1**3 + push[i]
-            tau[2, i] = (1 - joints[i, SAG] * (t + h)) * x2 - weak * x2**3 + push[i]
+            weak = joints[i, at.WEAK]
+            tau[0, i] = (1 - joints[i, at.SAG] * t) * x0 - weak * x0**3 + push[i]
+            tau[1, i] = (1 - joints[i, at.SAG] * (t + 0.5 * h)) * x1 - weak * x1**3 + push[i]
+            tau[2, i] = (1 - joints[i, at.SAG] * (t + h)) * x2 - weak * x2**3 + push[i]
             x[i] = x2
             Q[0, i], V[0, i] = q[i], v[i]
         accelerations(code, p, joints, Q[0], V[0], Q[0], z, tau[0], M, c, g, A[0])

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from joint_worlds.compiled import compiled
 from joint_worlds.robot import Free, JointRobot
+from joint_worlds.slots import compiled
 
 MASS, CENTRE, INERTIA, LENGTH, PAYLOAD, GRAVITY = range(6)
 

@@ -1,12 +1,17 @@
-"""The numbers of a joint: columns of an array of shape (n joints, SLOTS).
+"""The numbers of a joint, columns of an array of shape (n joints, SLOTS), and what compiles them.
 
 Every number of an effect is zero where the effect is absent; a limit of the input is infinite.
 """
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 
+from identification.kept_code import kept_code
+
+compiled = kept_code(Path(__file__).parent)
 # friction that holds: stiffness and damping of the contact, then what the largest friction is of
 STIFF, DAMP = 0, 1
 COULOMB, UNEVEN, PEAK, PEAK_SPEED, PEAK_POWER, LOAD = 2, 3, 4, 5, 6, 7

@@ -13,8 +13,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from joint_worlds.compiled import compiled
 from joint_worlds.robot import Free, JointRobot
+from joint_worlds.slots import compiled
 
 M1, C1, L1, I1, M2, C2, L2, I2, PAYLOAD, GRAVITY = range(10)
 

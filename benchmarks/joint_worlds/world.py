@@ -8,10 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from joint_worlds import slots as at
-from joint_worlds.catalogue import EVERY, NULL
-from joint_worlds.dynamics import ROBOTS, terms
-from joint_worlds.hidden import Habits, Shape
-from joint_worlds.motion import closed_loop
+from joint_worlds.hidden import EVERY, NULL, Habits, Shape
+from joint_worlds.motion import ROBOTS, closed_loop, terms
 from joint_worlds.reference import KINDS, reference
 from joint_worlds.robot import PRESLIDING, SPREAD, Free, JointRobot
 from joint_worlds.seen import Numbers, logged, ratio

@@ -18,8 +18,14 @@ import numpy as np
 from identification import Log, Parameter, axes, joint_plant, window_error
 from identification.model.paths import resolve, write
 from robots import needed
-from robots.gridded import gridded
-from robots.measured_robot import MODELS, Free, MeasuredRobot, PublishedModel, PublishedSize
+from robots.measured_robot import (
+    MODELS,
+    Free,
+    MeasuredRobot,
+    PublishedModel,
+    PublishedSize,
+    gridded,
+)
 
 MODEL = MODELS / "double_pendulum.xml"
 STEP, WIDEST = 0.01, 0.02  # of the grid, and a gap that is still bridged [s]

@@ -19,9 +19,8 @@ from identification.report.discovery_json import discovery_to_json
 from identification.report.discovery_text import discovery_text
 from identification.robot.robot import Robot
 from identification.sweep.work import commit
-from robots.changed import on_changed
 from robots.measured_robot import MeasuredRobot, Outcome
-from robots.unseen import compare, errors_of
+from robots.unseen import compare, errors_of, on_changed
 from robots.written import write_model
 
 NOMINAL, FINAL, BEGUN = "nominal, fitted", "with what is named", "as begun"

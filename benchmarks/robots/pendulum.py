@@ -15,8 +15,15 @@ import numpy as np
 from identification import Log
 from identification.windows.windows import windows
 from robots import needed
-from robots.gridded import gridded
-from robots.measured_robot import MODELS, Apart, Free, MeasuredRobot, PublishedModel, PublishedSize
+from robots.measured_robot import (
+    MODELS,
+    Apart,
+    Free,
+    MeasuredRobot,
+    PublishedModel,
+    PublishedSize,
+    gridded,
+)
 from robots.window_starts import best_errors
 
 STEP, SLOW = 0.01, 0.02  # of the grid, and of the one record that is no faster [s]

@@ -20,8 +20,7 @@ import numpy as np
 
 from identification import Log, Parameter, axes, joint_plant, window_error
 from robots import needed
-from robots.gridded import gridded
-from robots.measured_robot import Free, MeasuredRobot, PublishedModel, PublishedSize
+from robots.measured_robot import Free, MeasuredRobot, PublishedModel, PublishedSize, gridded
 
 STEP, WIDEST = 0.02, 0.05  # of the grid, and a gap that is still bridged [s]
 FIT = ("ur-20_02_10-30sec_12harm", "ur-20_02_10-20sec_7harm")

@@ -15,7 +15,6 @@ import numpy as np
 
 from identification import Log
 from robots import needed
-from robots.gridded import gridded
 from robots.measured_robot import (
     MODELS,
     PROJECT_MODELS,
@@ -23,6 +22,7 @@ from robots.measured_robot import (
     Free,
     MeasuredRobot,
     PublishedSize,
+    gridded,
 )
 
 RADIUS, K_T, G = 0.020, 0.0551, 9.81  # [m], [N m/A], [m/s^2]: the authors'

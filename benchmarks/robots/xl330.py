@@ -18,8 +18,14 @@ import numpy as np
 
 from identification import Log
 from robots import bam, needed
-from robots.gridded import gridded
-from robots.measured_robot import PROJECT_MODELS, Free, MeasuredRobot, PublishedModel, PublishedSize
+from robots.measured_robot import (
+    PROJECT_MODELS,
+    Free,
+    MeasuredRobot,
+    PublishedModel,
+    PublishedSize,
+    gridded,
+)
 
 MODEL = PROJECT_MODELS / "xl330.xml"
 STEP, WIDEST = 0.01, 0.02  # of the grid, and a gap that is still bridged [s]

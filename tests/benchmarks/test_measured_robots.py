@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from measured_cases import DATA, oscillator, oscillator_log, with_data
 from robots import ROBOTS, reader
-from robots.gridded import gridded
+from robots.measured_robot import gridded
 from robots.page import page
 from robots.unseen import MOST, spread
 from robots.written import command, write_files

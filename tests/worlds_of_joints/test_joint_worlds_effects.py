@@ -3,11 +3,9 @@
 import numpy as np
 import pytest
 from joint_worlds import slots as at
-from joint_worlds.catalogue import EVERY, effects_of
-from joint_worlds.dynamics import ROBOTS
 from joint_worlds.files import write_world
-from joint_worlds.hidden import Habits
-from joint_worlds.motion import windows
+from joint_worlds.hidden import EVERY, Habits, effects_of
+from joint_worlds.motion import ROBOTS, windows
 from joint_worlds.seen import logged
 from joint_worlds.world import LEAST, UnseenError, held_base, make_world, with_effect
 

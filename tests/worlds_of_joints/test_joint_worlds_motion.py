@@ -4,8 +4,7 @@ import mujoco
 import numpy as np
 import pytest
 from joint_worlds import slots as at
-from joint_worlds.dynamics import ROBOTS, terms
-from joint_worlds.motion import windows
+from joint_worlds.motion import ROBOTS, terms, windows
 from joint_worlds.slots import plain_joints
 from joint_worlds.world import held_base
 

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from joint_statistics import is_drawn, is_drawn_over_its_cause, is_law_named, section, summary
 from joint_worlds import slots as at
-from joint_worlds.catalogue import EVERY, UNLISTED
-from joint_worlds.dynamics import ROBOTS
+from joint_worlds.hidden import EVERY, UNLISTED
+from joint_worlds.laws import unlisted
+from joint_worlds.motion import ROBOTS
 from joint_worlds.slots import plain_joints
-from joint_worlds.unlisted import unlisted
 
 from identification.effects.axes import Axis
 from identification.effects.catalogue import joint_effects
