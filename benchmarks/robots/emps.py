@@ -52,49 +52,6 @@ MODELS = {
     "and Coulomb friction": ("M", "F_v", F_0, F_C),
     "and asymmetric viscous friction": ("M", "F_v", F_0, F_C, D_A),
 }
-
-
-def protocol(model: Path, log: Log, pulses: Log, outcome: Outcome) -> dict[str, Any]:
-    """Free-run rms on the record with pulses [mm], by what was fitted, and of others."""
-    plant = plant_of(model, log)
-    rows = {}
-    for what, names in MODELS.items():
-        off = {n: 0.0 for n in (F_C, D_A) if n not in names}
-        start = {n: BEGUN[n] for n in names}
-        found = estimate(plant.with_values(off), log, (*names, "x_0", "v_0"), start)
-        fitted = {**off, **{n: found.values[n] for n in names}}
-        rows[what] = 1e3 * free_run(plant, pulses, fitted)
-    known = {n: v for n, v in outcome.values.items() if n in plant.parameters.values()}
-    rows["fitted over windows of 0.2 s, with what is named"] = 1e3 * free_run(plant, pulses, known)
-    return {"free_run_mm": rows, "published_mm": OTHERS}
-
-
-def published_errors(model: Path, log: Log, horizon: float) -> np.ndarray:
-    """Window errors of the authors' values with symmetric friction, shape (W, L, 1)."""
-    return window_error(plant_of(model, log), log, horizon)
-
-
-def plant_of(model: Path, log: Log) -> JointPlant:
-    """The axis with the parameters of every model, and its start."""
-    records = (
-        Parameter(name="M", value=95.11, unit="kg", where="body/carriage.mass", lower=0.0),
-        Parameter(name="F_v", value=203.5, unit="N s/m", where="joint/slide.damping", lower=0.0),
-        Parameter(name=F_C, value=20.39, unit="N", where="effect", lower=0.0),
-        Parameter(name=F_0, value=3.16, unit="N", where="effect"),
-        Parameter(name=D_A, value=0.0, unit="N s/m", where="effect", scale=10.0),
-        Parameter(name="x_0", value=0.0, unit="m", where="qpos[0]", scale=1e-3),
-        Parameter(name="v_0", value=0.0, unit="m/s", where="qvel[0]", scale=1e-2),
-    )
-    return joint_plant(model, records, log, joints=axes(read_model(model).compile(), log))
-
-
-def free_run(plant: JointPlant, log: Log, values: Mapping[str, float]) -> float:
-    """Rms error of a record [m], begun at its first sample at rest."""
-    start = {"x_0": float(log.outputs[0, 0]), "v_0": 0.0}
-    y = Predictor(plant, log, (), {**values, **start}).predict(np.empty((1, 0)))[0]
-    return float(np.sqrt(np.mean((log.outputs - y) ** 2)))
-
-
 MODEL = PROJECT_MODELS / "emps.xml"
 EVERY = 10  # samples of 1 ms
 SOURCE = "Janot, Gautier, Brunot 2019, nonlinearbenchmark.org"
@@ -152,3 +109,44 @@ def _halves(log: Log) -> tuple[Log, Log]:
             )
         )  # fmt: skip
     return halves[0], halves[1]
+
+
+def protocol(model: Path, log: Log, pulses: Log, outcome: Outcome) -> dict[str, Any]:
+    """Free-run rms on the record with pulses [mm], by what was fitted, and of others."""
+    plant = plant_of(model, log)
+    rows = {}
+    for what, names in MODELS.items():
+        off = {n: 0.0 for n in (F_C, D_A) if n not in names}
+        start = {n: BEGUN[n] for n in names}
+        found = estimate(plant.with_values(off), log, (*names, "x_0", "v_0"), start)
+        fitted = {**off, **{n: found.values[n] for n in names}}
+        rows[what] = 1e3 * free_run(plant, pulses, fitted)
+    known = {n: v for n, v in outcome.values.items() if n in plant.parameters.values()}
+    rows["fitted over windows of 0.2 s, with what is named"] = 1e3 * free_run(plant, pulses, known)
+    return {"free_run_mm": rows, "published_mm": OTHERS}
+
+
+def published_errors(model: Path, log: Log, horizon: float) -> np.ndarray:
+    """Window errors of the authors' values with symmetric friction, shape (W, L, 1)."""
+    return window_error(plant_of(model, log), log, horizon)
+
+
+def plant_of(model: Path, log: Log) -> JointPlant:
+    """The axis with the parameters of every model, and its start."""
+    records = (
+        Parameter(name="M", value=95.11, unit="kg", where="body/carriage.mass", lower=0.0),
+        Parameter(name="F_v", value=203.5, unit="N s/m", where="joint/slide.damping", lower=0.0),
+        Parameter(name=F_C, value=20.39, unit="N", where="effect", lower=0.0),
+        Parameter(name=F_0, value=3.16, unit="N", where="effect"),
+        Parameter(name=D_A, value=0.0, unit="N s/m", where="effect", scale=10.0),
+        Parameter(name="x_0", value=0.0, unit="m", where="qpos[0]", scale=1e-3),
+        Parameter(name="v_0", value=0.0, unit="m/s", where="qvel[0]", scale=1e-2),
+    )
+    return joint_plant(model, records, log, joints=axes(read_model(model).compile(), log))
+
+
+def free_run(plant: JointPlant, log: Log, values: Mapping[str, float]) -> float:
+    """Rms error of a record [m], begun at its first sample at rest."""
+    start = {"x_0": float(log.outputs[0, 0]), "v_0": 0.0}
+    y = Predictor(plant, log, (), {**values, **start}).predict(np.empty((1, 0)))[0]
+    return float(np.sqrt(np.mean((log.outputs - y) ** 2)))
