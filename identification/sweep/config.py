@@ -38,11 +38,6 @@ _FILES: Kinds = {"files": (str, "a pattern in quotes"), "label": (dict, "a table
 def axis(value: Any, folder: Path, where: str) -> tuple[Plain, ...]:
     """Returns the values of an axis.
 
-    Args:
-        value: as the TOML has it.
-        folder: of the TOML.
-        where: it stands, for messages.
-
     Raises:
         InputError: it is no axis, or has no values.
     """

@@ -24,11 +24,6 @@ def power_figure(curves: Sequence[Curve], axis: str, success: str) -> Figure:
     """Draws the share of successes over a setting, Wilson's 95 % intervals, a line for each curve.
 
     Many curves have a panel each, with the others in grey.
-
-    Args:
-        curves: each with its label.
-        axis: the setting in words, with its unit.
-        success: what is counted, in words.
     """
     panels = [[*curves]] if len(curves) <= TOGETHER else [[curve] for curve in curves]
     across = min(4, len(panels))
@@ -68,13 +63,7 @@ def _part(curve: Curve, part: str) -> list[float]:
 
 
 def threshold_figure(lines: Mapping[str, Sequence[Threshold]], axis: str, against: str) -> Figure:
-    """Draws the smallest value that is found in 80 %, over another setting, with its interval.
-
-    Args:
-        lines: by label.
-        axis: the other setting in words, with its unit.
-        against: the setting whose smallest value is shown, in words, with its unit.
-    """
+    """Draws the smallest value that is found in 80 %, over another setting, with its interval."""
     with matplotlib.rc_context(STYLE):
         figure = Figure((5.2, 3.6), layout="constrained")
         ax = figure.subplots()
@@ -109,11 +98,7 @@ def _points(pairs: Sequence[tuple[float, float]]) -> tuple[list[float], list[flo
 
 
 def confusion_figure(confusion: Mapping[str, Mapping[str, int]]) -> Figure:
-    """Counts of answers by what is true, one row for each truth.
-
-    Args:
-        confusion: counts by truth and by answer.
-    """
+    """Counts of answers by what is true, one row for each truth."""
     true = list(confusion)
     said = sorted({name for row in confusion.values() for name in row})
     said = [*(name for name in true if name in said), *(n for n in said if n not in true)]
@@ -134,11 +119,7 @@ def confusion_figure(confusion: Mapping[str, Mapping[str, int]]) -> Figure:
 
 
 def reliability_figure(pairs: Sequence[tuple[float, bool]]) -> Figure:
-    """Draws the share of right names over confidence, with Wilson's 95 % intervals and counts.
-
-    Args:
-        pairs: a confidence, and whether the name was right.
-    """
+    """Draws the share of right names over confidence, with Wilson's 95 % intervals and counts."""
     with matplotlib.rc_context(STYLE):
         figure = Figure((4.4, 3.9), layout="constrained")
         ax = figure.subplots()

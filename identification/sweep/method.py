@@ -136,10 +136,6 @@ def reference_of(word: str, known: Registry, folder: Path) -> str:
 def told_in_method(reference: str, what: str) -> Iterator[None]:
     """Tells an error of a method's own code with its file and line; `sys.exit` in it is one too.
 
-    Args:
-        reference: of the method, the result of `reference_of`.
-        what: the method does not do, such as "cannot be imported".
-
     Raises:
         InputError: the code raised, or wanted to end the program.
     """
@@ -158,10 +154,6 @@ def error_line(error: BaseException, reference: str) -> str:
 
     The line is the last one of the method's own file, where it had a part. A refusal of input says
     itself what is wrong, and has no line.
-
-    Args:
-        error: it.
-        reference: of the method, the result of `reference_of`.
     """
     try:
         said = " ".join(str(error).split())
@@ -178,9 +170,6 @@ def error_line(error: BaseException, reference: str) -> str:
 
 def load_method(reference: str) -> Method:
     """Import a method.
-
-    Args:
-        reference: the result of `reference_of`.
 
     Raises:
         InputError: the module cannot be imported, or has no method of that name.

@@ -108,15 +108,7 @@ def curves(
     others: Sequence[str],
     heads: Heads = NAMES,
 ) -> list[Curve]:
-    """Returns a curve for each combination of the other settings.
-
-    Args:
-        rows: of one study, without errors.
-        success: a column of bool; where it is null, a row does not count.
-        axis: the setting over which the share is shown.
-        others: the settings that are fixed along a curve.
-        heads: the settings in words.
-    """
+    """Returns a curve for each combination of the other settings."""
     counted = [row for row in rows if row[success] is not None]
     out = []
     for values, mine in grouped(counted, others).items():

@@ -74,11 +74,6 @@ def kinds_of(settings: type) -> dict[str, type]:
 def check_values(settings: type, values: Mapping[str, Plain], where: str) -> dict[str, Plain]:
     """Returns the values of all fields, defaults among them, in the right kind.
 
-    Args:
-        settings: the dataclass.
-        values: by name, as a TOML gives them.
-        where: they stand, for messages.
-
     Raises:
         InputError: a name is unknown, a value is of another kind, or one is missing.
     """
@@ -111,11 +106,6 @@ def _fits(value: Any, kind: type) -> bool:
 def resolve(settings: type, values: Mapping[str, Plain], folder: Path) -> dict[str, Plain]:
     """Returns the values with whole paths in place of those that are relative to a TOML.
 
-    Args:
-        settings: the dataclass.
-        values: of all its fields.
-        folder: of the TOML.
-
     Raises:
         InputError: a path names a variable of the environment that is not set.
     """
@@ -131,11 +121,6 @@ def resolve(settings: type, values: Mapping[str, Plain], folder: Path) -> dict[s
 
 def refuse_missing_files(settings: type, values: Mapping[str, Plain], where: str) -> None:
     """Refuse files that tasks would read and that are not there.
-
-    Args:
-        settings: the dataclass.
-        values: of all its fields, paths whole.
-        where: they stand, for messages.
 
     Raises:
         InputError: there is no such file.
@@ -157,10 +142,6 @@ def refuse_missing_files(settings: type, values: Mapping[str, Plain], where: str
 def place(text: str, folder: Path) -> Path:
     """Returns a path of a TOML: `$NAME` is from the environment, the rest is relative to the TOML.
 
-    Args:
-        text: the path.
-        folder: of the TOML.
-
     Raises:
         InputError: the variable is not set.
     """
@@ -174,10 +155,6 @@ def place(text: str, folder: Path) -> Path:
 
 def build(settings: type, values: Mapping[str, Plain]) -> Any:
     """Returns the settings as their dataclass.
-
-    Args:
-        settings: the dataclass.
-        values: of all fields, paths as text.
 
     Raises:
         InputError: the dataclass refuses them.

@@ -55,11 +55,7 @@ def median(values: Sequence[float]) -> float | None:
 
 
 def calibration_of(pairs: Sequence[tuple[float, bool]]) -> dict[str, Any]:
-    """Returns the expected calibration error and the Brier score.
-
-    Args:
-        pairs: a confidence, and whether it was right.
-    """
+    """Returns the expected calibration error and the Brier score."""
     if not pairs:
         return {"ece": None, "brier": None, "of": 0, "bins": []}
     bins: dict[int, list[tuple[float, bool]]] = {}

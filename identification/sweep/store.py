@@ -190,12 +190,6 @@ def _lock(number: int, folder: Path) -> None:
 def _write_whole(folder: Path, stem: str, schema: Any, tables: Iterable[Any]) -> Path:
     """Write tables into a file that is there whole when this returns, or not at all.
 
-    Args:
-        folder: of the file.
-        stem: how its name begins; a digest of its content follows.
-        schema: of the tables, as pyarrow has it.
-        tables: one after the other.
-
     Returns:
         The path of the file.
     """
@@ -231,13 +225,7 @@ def _digest(path: Path) -> str:
 
 
 def _read_tables(files: Sequence[Path], schema: Any, count: int) -> Iterator[Any]:
-    """Yields the rows of some files in the order of their tasks, a block at a time.
-
-    Args:
-        files: with a column `task`.
-        schema: of the tables.
-        count: of all tasks.
-    """
+    """Yields the rows of some files in the order of their tasks, a block at a time."""
     dataset: Any = needed("pyarrow.dataset", "sweep", "a sweep")
     if not files:
         return

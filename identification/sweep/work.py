@@ -123,10 +123,6 @@ def one_thread() -> Iterator[None]:
 def checked(record: Mapping[str, Any], columns: Mapping[str, Column]) -> dict[str, Any]:
     """Returns a record with plain values of the kinds that its method declares.
 
-    Args:
-        record: of a method.
-        columns: of that method.
-
     Raises:
         TypeError: an entry is missing, too many, or of another kind: a fault of the method.
     """

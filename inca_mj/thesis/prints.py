@@ -51,8 +51,7 @@ class PrintedFits:
 _INERTIA = "diag(0.8, 1.5, 1.8) 1e-4"
 _TRIAL = ("parameter", "value", "initial", "estimated", "fitting")
 _STEP = ("parameter", "initial value", "estimated value")
-FIXED = "(fix)"
-_FIXED = (FIXED,) * 3
+_FIXED = ("(fix)", "(fix)", "(fix)")
 # How the symbols are called here; a triple is one row of the thesis.
 NAMES = {
     "λ": "lambda", "β": "beta", "[x, y, z]": "x y z", "[φ, θ, ψ]": "roll pitch yaw",
@@ -223,6 +222,18 @@ _TABLES = (
     ),
 )  # fmt: skip
 TABLES = {table.number: table for table in _TABLES}
+
+
+def printed(number: str, column: str) -> dict[str, float]:
+    """Returns a column of a table by the names of parameters here, without those that are fixed."""
+    table, values = TABLES[number], dict[str, float]()
+    for row in table.rows:
+        cell = row[table.columns.index(column)]
+        if "fix" not in cell:
+            numbers = map(float, cell.strip("[]").split(", "))
+            values |= zip(NAMES.get(row[0], row[0]).split(), numbers, strict=True)
+    return values
+
 
 _TRIAL_FIGURE = "Comparison between simulated data and estimated model output"
 _REAL_FIGURE = "Comparison between measurement data and estimated model output"

@@ -17,12 +17,7 @@ FIXED = "fixed"
 
 
 def parameter_table(number: str, name: str) -> Table:
-    """Returns Table 2.1 or 3.2: the printed value of each parameter, and ours in SI units.
-
-    Args:
-        number: of the table.
-        name: of the parameter set.
-    """
+    """Returns Table 2.1 or 3.2: the printed value of each parameter, and ours in SI units."""
     printed, known = TABLES[number], parameter_set(name)
     values = known.values()
     rows = []
@@ -49,12 +44,7 @@ def model_table(robot: Twin) -> Table:
 
 
 def trial_table(number: str, result: TrialResult) -> Table:
-    """Returns one of Tables 3.3 to 3.6: the thesis' estimates and ours.
-
-    Args:
-        number: of the table.
-        result: of the trial.
-    """
+    """Returns one of Tables 3.3 to 3.6: the thesis' estimates and ours."""
     shown = result.to_json()["parameters"]
     found = {name: p["estimated"] for name, p in shown.items()}
     fits = {name: p["fit_percent"] for name, p in shown.items()}

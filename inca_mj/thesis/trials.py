@@ -24,7 +24,7 @@ from identification.progress import counted
 from identification.quantities import finite_or_none
 from inca_mj.robot.inputs import make_input
 from inca_mj.robot.parameters import parameter_set
-from inca_mj.thesis.prints import FITS, FIXED, NAMES, TABLES
+from inca_mj.thesis.prints import FITS, printed
 from inca_mj.twin.logs import run_to_log
 from inca_mj.twin.run import simulate
 from inca_mj.twin.twin import Twin, build_twin
@@ -52,18 +52,13 @@ class Trial:
     thesis_fit: float
 
 
-def _printed(number: int) -> Trial:
+def _trial(n: int) -> Trial:
     """Returns a trial as its table and its figure print it."""
-    start, thesis = dict[str, float](), dict[str, float]()
-    for symbol, _, *cells, _ in TABLES[f"3.{number + 2}"].rows:
-        names = NAMES.get(symbol, symbol).split()
-        for values, cell in zip((start, thesis), cells, strict=True):
-            if cell != FIXED:
-                values |= zip(names, map(float, cell.strip("[]").split(", ")), strict=True)
-    return Trial(number, start, number == 4, thesis, FITS[f"3.{number + 3}"].mean)
+    start, found = (printed(f"3.{n + 2}", column) for column in ("initial", "estimated"))
+    return Trial(n, start, n == 4, found, FITS[f"3.{n + 3}"].mean)
 
 
-TRIALS = tuple(map(_printed, (1, 2, 3, 4)))
+TRIALS = tuple(map(_trial, (1, 2, 3, 4)))
 
 
 def trial_data(robot: Twin, seed: int = 0) -> Log:

@@ -69,12 +69,6 @@ class Case:
 def make_case(name: str, parameters: ParameterSet, geometry: Geometry, duration: float) -> Case:
     """Returns a case by name.
 
-    Args:
-        name: one of `CASES`.
-        parameters: whose rest the case starts from.
-        geometry: anchors of the cables.
-        duration: [s].
-
     Raises:
         InputError: the case is unknown, or no rest exists.
     """

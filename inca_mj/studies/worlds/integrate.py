@@ -50,14 +50,7 @@ def limited(i: float, D: np.ndarray) -> float:
 
 @compiled
 def close_play(x: np.ndarray, before: np.ndarray, q: np.ndarray, D: np.ndarray) -> None:
-    """Put every drum where the play operator has it, with the cable that it winds.
-
-    Args:
-        x: state after a step, changed in place, shape (60,).
-        before: ψ before the step, shape (8,) [rad].
-        q: packed numbers of the reference.
-        D: numbers of the drives.
-    """
+    """Put every drum where the play operator has it, with the cable that it winds."""
     A, B = q[base.EXITS], q[base.CONNECTORS]
     for k in range(8):
         h, φ, ψ = D[k, at.PLAY], x[12 + k], x[36 + k]

@@ -79,10 +79,6 @@ def usual_std(parameters: ParameterSet, tolerances: Tolerances) -> dict[str, flo
 
     A uniform deviation has the half-width over √3 as its std; inertias and mass have it times their
     value.
-
-    Args:
-        parameters: of a robot that was built, with its deviations.
-        tolerances: of drives, points and platform.
     """
     of_drives = {name: largest / np.sqrt(3) for name, largest in tolerances.drives.items()}
     of_points = {f"{p}_{axis}": std for p, std in tolerances.points.items() for axis in AXES}
@@ -110,11 +106,6 @@ def as_built(
     """Returns a robot within its tolerances; the same parameters where these are `EXACT`.
 
     Everything is drawn, so that no tolerance changes what another one gives.
-
-    Args:
-        parameters: the common values.
-        tolerances: of drives, points and platform.
-        rng: of the deviations.
 
     Raises:
         InputError: a point is farther from its place than a displacement may be.
