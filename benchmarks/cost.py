@@ -29,6 +29,8 @@ from typing import Any
 
 import numpy as np
 
+from identification.sweep.work import commit
+
 ROOT = Path(__file__).resolve().parents[1]
 ROWS = ROOT / "benchmarks" / "results" / "cost.jsonl"
 LOG = ROOT / "examples" / "log.csv"
@@ -52,13 +54,9 @@ def main() -> int:
     if given.case is not None:
         print(json.dumps(measured(given.case[0], int(given.case[1]))))
         return 0
-    commit = subprocess.run(
-        ["git", "describe", "--always", "--dirty"], cwd=ROOT, capture_output=True, text=True,
-        check=True,
-    ).stdout.strip()  # fmt: skip
     for kind in [given.only] if given.only else CASES:
         for count in CASES[kind]:
-            row = {"commit": commit, "against": kind, "of": count}
+            row = {"commit": commit(), "against": kind, "of": count}
             row |= of_a_process(kind, count, given.limit)
             with ROWS.open("a", encoding="utf-8") as file:
                 file.write(json.dumps(row) + "\n")

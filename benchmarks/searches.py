@@ -12,14 +12,12 @@ from which `speed_page.py` makes a part of `docs/speed.md`.
 from __future__ import annotations
 
 import argparse
-import io
 import json
 import os
 import platform
 import shlex
 import subprocess
 import sys
-import tarfile
 import tempfile
 import time
 import tomllib
@@ -27,6 +25,8 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from queue import SimpleQueue
 from typing import Any
+
+from golden import checkout
 
 ROOT = Path(__file__).resolve().parents[1]
 ROWS = ROOT / "benchmarks" / "results" / "searches.jsonl"
@@ -50,7 +50,7 @@ def main() -> int:
             ).stdout.strip()
             for commit in given.commits
         ]  # fmt: skip
-        trees = {commit: checkout(commit, Path(folder)) for commit in names}
+        trees = {commit: checkout(commit, Path(folder, commit)) for commit in names}
 
         def work(of: str, name: str, line: str, commit: str) -> dict[str, Any]:
             place = places.get()
@@ -75,16 +75,6 @@ def main() -> int:
                     file.write(json.dumps(job.result()) + "\n")
                 print(json.dumps(job.result()), flush=True)
     return 0
-
-
-def checkout(commit: str, folder: Path) -> Path:
-    """Returns a folder with the files of a commit."""
-    packed = subprocess.run(
-        ["git", "archive", commit], cwd=ROOT, capture_output=True, check=True
-    ).stdout
-    with tarfile.open(fileobj=io.BytesIO(packed)) as archive:
-        archive.extractall(folder / commit, filter="data")
-    return folder / commit
 
 
 def answer(

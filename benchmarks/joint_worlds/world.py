@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from inca_mj.studies.worlds.sensor import coloured
 from joint_worlds import slots as at
 from joint_worlds.hidden import EVERY, NULL, Habits, Shape
 from joint_worlds.motion import ROBOTS, closed_loop, terms
@@ -115,7 +116,9 @@ def make_world(name: str, effect: str, seed: int, duration: float = 20.0) -> Wor
     still = _quiet(robot, base, control, aims[0])
     share = float(rng.uniform(*PUSH))
     pushes = [
-        share * still[1].std(axis=0) * _wander((count, robot.n), robot.sampling_time, rng)
+        share
+        * still[1].std(axis=0)
+        * coloured((count, robot.n), robot.sampling_time, 1.0, rng.uniform(*COLOUR), rng)
         for _ in aims
     ]
     places: tuple[str, ...] = ()
@@ -196,15 +199,6 @@ def _quiet(
         nothing, np.zeros(robot.n), nothing, robot.sampling_time / robot.substeps, robot.substeps,
     )  # fmt: skip
     return states, u
-
-
-def _wander(shape: tuple[int, int], h: float, rng: np.random.Generator) -> np.ndarray:
-    """Noise of std 1 with a correlation time, sampled every h seconds."""
-    keep = np.exp(-h / rng.uniform(*COLOUR))
-    x = rng.normal(size=shape)
-    for k in range(1, len(x)):
-        x[k] = keep * x[k - 1] + np.sqrt(1 - keep**2) * x[k]
-    return x
 
 
 def _record(

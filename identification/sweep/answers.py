@@ -98,7 +98,7 @@ def judged(named: Sequence[str], hidden: Sequence[str], kind: str) -> dict[str, 
 
 
 def nested(record: Record) -> dict[str, Any]:
-    """Returns a record with `TRUTH`, `ANSWER`, `PROOF` as a row that `discovery_rates` counts."""
+    """Returns a record with `TRUTH`, `ANSWER`, `PROOF` as a row for `discovery_findings`."""
     sizes, hidden = (
         dict(zip(record[a], record[b], strict=True))
         for a, b in (("size_of", "sizes"), ("hidden_size_of", "hidden_sizes"))
