@@ -15,10 +15,12 @@ from identification.windows.window_estimate import estimate_windows
 from identification.windows.windows import apart, moved, windows
 from inca_mj.robot.inputs import make_input
 from inca_mj.robot.parameters import parameter_set
-from inca_mj.thesis.trials import SMALL
+from inca_mj.thesis.trials import TRIALS
 from inca_mj.twin.logs import POSE, run_to_log
 from inca_mj.twin.run import simulate
 from inca_mj.twin.twin import build_twin
+
+SMALL = TRIALS[2].start  # 5 % off
 
 NAMES = ("mass", "damping")
 START = {"mass": 2.4, "damping": 2.3}

@@ -5,9 +5,8 @@ import subprocess
 import sys
 from pathlib import Path
 
-from inca_mj.reference.compiled import FOLDERS
-
 import inca_mj.reference
+from inca_mj.reference.equations import FOLDERS
 
 RUN = """
 import sys

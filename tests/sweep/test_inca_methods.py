@@ -24,6 +24,7 @@ from inca_mj.robot.parameters import parameter_set
 from inca_mj.studies import METHODS
 from inca_mj.studies.hidden_worlds import WorldSettings, make_world
 from inca_mj.studies.null_score import null_findings
+from inca_mj.studies.parameters import excitation_findings
 from inca_mj.studies.scores import score_findings
 from inca_mj.studies.searches import truth_of
 from inca_mj.studies.worlds import HIDDEN_EFFECTS, HiddenSetting, draw_effect, records, world
