@@ -109,12 +109,12 @@ _PUBLIC = {
     # words and figures
     "fit_verdict": "report.fit_verdict",
     "fit_to_json": "report.fit_json",
-    "discovery_text": "report.discovery_text",
+    "discovery_text": "report.discovery_report",
     "discovery_to_json": "report.discovery_json",
     "describe_rejected": "report.effect_words",
     "describe_finding": "report.finding_words",
-    "compare_figure": "report.compare_figure",
-    "windows_figure": "report.windows_figure",
+    "compare_figure": "report.figures",
+    "windows_figure": "report.figures",
     "save_png": "report.style",
 }
 __all__ = list(_PUBLIC)
@@ -194,15 +194,15 @@ if TYPE_CHECKING:  # the same list, for type checkers and editors
     from identification.model.protocol import Plant as Plant
     from identification.model.rollout import State as State
     from identification.model.sensitivity import sensitivity as sensitivity
-    from identification.report.compare_figure import compare_figure as compare_figure
     from identification.report.discovery_json import discovery_to_json as discovery_to_json
-    from identification.report.discovery_text import discovery_text as discovery_text
+    from identification.report.discovery_report import discovery_text as discovery_text
     from identification.report.effect_words import describe_rejected as describe_rejected
+    from identification.report.figures import compare_figure as compare_figure
+    from identification.report.figures import windows_figure as windows_figure
     from identification.report.finding_words import describe_finding as describe_finding
     from identification.report.fit_json import fit_to_json as fit_to_json
     from identification.report.fit_verdict import fit_verdict as fit_verdict
     from identification.report.style import save_png as save_png
-    from identification.report.windows_figure import windows_figure as windows_figure
     from identification.robot.confirmation import confirm as confirm
     from identification.robot.discovery import discover as discover
     from identification.robot.fitting import RobotFit as RobotFit

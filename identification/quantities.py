@@ -4,13 +4,16 @@
 
 A number that rounds to zero has no minus sign: the `z` of a format, here and in all sentences. A
 value that would read as zero beside its std is said with one digit more: 0.02 ± 0.50 nm.
+`plain` is what JSON takes.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import fields, is_dataclass
 from math import ceil, floor, isfinite, log10
+from typing import Any
 
 _PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M"}
 _TAKE = ("N", "m", "s", "A", "g", "V", "W", "Hz")  # units that take a prefix where they lead
@@ -28,6 +31,25 @@ HELD = 2  # digits of the error of a model that are said (docs/identification.md
 def finite_or_none(value: float | None) -> float | None:
     """Returns a number for JSON, which knows no infinity: None (null) where it is not finite."""
     return None if value is None or not isfinite(value) else float(value)
+
+
+def plain(value: Any) -> Any:
+    """Returns plain values for JSON: dicts of records, lists of arrays, None if not finite."""
+    if isinstance(value, Mapping):
+        return {k: plain(v) for k, v in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain(v) for v in value]
+    if is_dataclass(value) and not isinstance(value, type):
+        return {f.name: plain(getattr(value, f.name)) for f in fields(value)}
+    if hasattr(value, "tolist"):
+        return plain(value.tolist())
+    return finite_or_none(value) if isinstance(value, float) else value
+
+
+def plain_fields(value: object, *names: str, **renamed: str) -> dict[str, Any]:
+    """Returns fields of a record as plain values for JSON, by their names or by new ones."""
+    every = {**{name: name for name in names}, **renamed}
+    return {new: plain(getattr(value, old)) for new, old in every.items()}
 
 
 def fall_words(fall: float) -> str:

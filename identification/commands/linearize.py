@@ -52,7 +52,7 @@ class Linearize:
         """Linearise, say, keep."""
         from identification.linear.linearization import linearize
         from identification.linear.system import sampling_time_of
-        from identification.report.linear_json import system_to_json
+        from identification.report.linear import system_to_json
         from identification.robot.file import read_robot_file
         from identification.robot.linearization import operating_points
         from identification.robot.robot import read_robot_log
@@ -81,7 +81,7 @@ class Linearize:
 def said(system: LinearSystem, label: str) -> str:
     """Returns the modes of a system as a text table, and a sentence on its minimal realisation."""
     from identification.linear.modes import minimal
-    from identification.report.linear_sections import HEAD, minimal_sentence, mode_rows
+    from identification.report.linear import HEAD, minimal_sentence, mode_rows
 
     sizes = f"{len(system.states)} states, {len(system.inputs)} inputs, {len(system.outputs)}"
     return "\n".join(
@@ -99,7 +99,7 @@ def draw(
 ) -> None:
     """Write figures and the one-file report of the systems into a folder."""
     from identification.linear.modes import modes
-    from identification.report.linear_sections import linear_sections, slowest_and_fastest
+    from identification.report.linear import linear_sections, slowest_and_fastest
 
     verdict = [slowest_and_fastest(modes(systems[0]))]
     draw_report(out, "The linear model", verdict, linear_sections(systems, labels, rate, units))

@@ -117,8 +117,7 @@ class Discover(OnRobot):
         options = None if self.options is None else read_options(self.options)
         robot = self.read()
         from identification.report.discovery_json import discovery_to_json
-        from identification.report.discovery_report import write_discovery_report
-        from identification.report.discovery_text import discovery_text
+        from identification.report.discovery_report import discovery_text, write_discovery_report
         from identification.robot.confirmation import confirm
         from identification.robot.discovery import discover
         from identification.robot.reading import doubtful

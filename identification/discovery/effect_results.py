@@ -17,7 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from math import nan
+from math import inf, isfinite, nan
 from typing import Literal, Protocol
 
 import numpy as np
@@ -315,3 +315,13 @@ class Detectable(OfCandidate):
     size: str
     smallest: float
     unit: str
+
+    @property
+    def largest(self) -> float:
+        """The largest plausible magnitude of the size [unit]; inf where none is known."""
+        return next((s.largest for s in self.candidate.effect.sizes if s.name == self.size), inf)
+
+    @property
+    def is_plausible(self) -> bool:
+        """Whether a plausible size would have shown."""
+        return isfinite(self.smallest) and self.smallest <= self.largest

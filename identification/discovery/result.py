@@ -32,7 +32,7 @@ from identification.discovery.effect_results import (
     Scored,
     Unlogged,
 )
-from identification.discovery.findings.finding import Finding
+from identification.discovery.findings.finding import Finding, FindingKind
 from identification.discovery.findings.records_evidence import ShiftedRecord
 from identification.discovery.fitted import Fitted
 from identification.discovery.free_run import FreeRun
@@ -42,6 +42,7 @@ from identification.discovery.recovered_force import RecoveredForce
 from identification.effects.effect import Candidate, Effect
 from identification.estimation.metrics import output_units, relative
 from identification.logs.joined import Record
+from identification.model.parameter import Parameter
 from identification.shown import Shown
 
 Recover = Callable[[Candidate, Sequence[Rival]], RecoveredForce | None]
@@ -159,6 +160,50 @@ class Discovery(Shown):
         if self.verdict == "nothing missing" or self.run is None:
             return ()
         return self.run.located(self.missing_forces)
+
+    @property
+    def judged_by(self) -> Literal["free run", "windows"]:
+        """What errors are of: free runs, or predictions over windows as long as the horizon."""
+        return "free run" if self.horizon is None else "windows"
+
+    @property
+    def over(self) -> str:
+        """Over which time errors are meant, such as " over 0.2 s"; "" along a free run."""
+        return "" if self.horizon is None else f" over {self.horizon:g} s"
+
+    @property
+    def is_told_by_record(self) -> bool:
+        """Whether the errors of single records say more than that of all of them."""
+        return self.horizon is not None or len(self.errors) > 1
+
+    @property
+    def is_begun(self) -> bool:
+        """Whether the search began with the model's first values, because a fit made it worse."""
+        return any(finding.kind is FindingKind.WORSE_FIT for finding in self.findings)
+
+    @property
+    def has_deviations(self) -> bool:
+        """Whether values of single drives or points were free (`NAME@PLACE`)."""
+        free = {*self.nominal.told_std, *self.final.told_std}
+        return any("@" in p.name and p.name in free for p in self._own_parameters)
+
+    @property
+    def held_fixed(self) -> tuple[str, ...]:
+        """Names of the parameters whose errors the std leave out, because they were held fixed.
+
+        Empty over a horizon: there std come from how much windows differ.
+        """
+        if self.horizon is not None:
+            return ()
+        free = {*self.nominal.told_std, *self.final.told_std}
+        return tuple(
+            p.name for p in self._own_parameters if p.name not in free and p.where != "start"
+        )
+
+    @property
+    def _own_parameters(self) -> list[Parameter]:
+        """The parameters of the model without those of effects."""
+        return [p for p in self.final.plant.parameters if p.where != "effect"]
 
     @property
     def outputs(self) -> Mapping[str, str]:

@@ -1,4 +1,4 @@
-"""The report of a discovery: one list of sections, and the one-file page made of them."""
+"""The report of a discovery: text for a terminal and a one-file page, of the same sections."""
 
 from __future__ import annotations
 
@@ -8,45 +8,58 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from identification.discovery.result import Discovery
-from identification.report.discovery_sections import gap_section, rivals_section, where_section
-from identification.report.discovery_tables import (
-    diff_section,
+from identification.report.discovery_sections import (
+    gap_section,
     parameters_section,
     records_section,
     shifts_section,
+    steps_taken,
     unseen_section,
+    where_section,
 )
 from identification.report.discovery_verdict import discovery_verdict
-from identification.report.law_section import LAWS, law_sections
+from identification.report.effect_sections import added_section, rivals_section
+from identification.report.law import LAWS, law_sections
 from identification.report.page import Section, save_figures, write_report
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def discovery_sections(found: Discovery, files: str = "") -> list[Section]:
-    """Returns the sections of every report of a discovery.
+def discovery_text(found: Discovery) -> str:
+    """Returns the whole outcome as text: the verdict first, then what was added and the rest."""
+    sections = [
+        added_section(found),
+        gap_section(found),
+        *records_section(found),
+        parameters_section(found),
+        *shifts_section(found),
+        *where_section(found),
+        rivals_section(found),
+        *unseen_section(found),
+    ]
+    parts = [
+        "\n".join(discovery_verdict(found)),
+        *(section.plain for section in sections),
+        *steps_taken(found),
+        f"The search took {sum(found.seconds.values()):.1f} s.",
+    ]
+    return "\n\n".join(filter(None, parts))
 
-    Args:
-        found: the discovery.
-        files: a sentence that says where the model with the named effects is.
-    """
+
+def discovery_sections(found: Discovery, files: str = "") -> list[Section]:
+    """Returns the sections of every page on a discovery; `files` says where the new model is."""
     return [
         gap_section(found),
         *records_section(found),
         *law_sections(found),
         *where_section(found),
         rivals_section(found),
-        diff_section(found, files),
-        _final_first(parameters_section(found)),
+        added_section(found, files),
+        parameters_section(found),
         *shifts_section(found),
         *unseen_section(found),
     ]
-
-
-def _final_first(section: Section) -> Section:
-    """Returns a section whose table has the final values beside the names."""
-    return replace(section, table=section.table and section.table.last_first)
 
 
 def write_discovery_report(found: Discovery, folder: Path, sentences: Sequence[str] = ()) -> Path:
@@ -77,13 +90,9 @@ def write_page(
     Args:
         found: the discovery.
         folder: exists.
-        sections: those of every report of a discovery, and more.
+        sections: those of every page on a discovery, and more.
         sentences: that follow the verdict.
-        drawings: elements of the page that an earlier page drew of the same figures; the others
-            are added.
-
-    Raises:
-        InputError: the file cannot be written.
+        drawings: see `write_report`.
     """
     if all(section.video is None for section in sections):  # the law stands where a film would
         sections = [replace(s, first=s.first or s.title == LAWS) for s in sections]

@@ -1,173 +1,188 @@
-"""Sections of a report with figures: the gap, where the models fail, and all candidates."""
+"""The sections of a discovery: each has its sentences, table, figures and lines for a terminal.
+
+Those on effects stand in `effect_sections`, those on recovered forces in `law`.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from functools import cache, partial
+from math import isfinite, isnan
 
 import numpy as np
 
-from identification.discovery.attempts import Failed
-from identification.discovery.result import Discovery, Scored
-from identification.estimation.metrics import of_outputs
+from identification.discovery.result import Discovery
+from identification.prediction.clocks import shown_shifts
 from identification.quantities import held
-from identification.report.discovery_figures import (
-    GAIN,
-    force_figure,
-    gains_figure,
-    gap_figure,
-    rms_figure,
+from identification.report.discovery_figures import gap_figures, where_figures
+from identification.report.effect_sections import listed_below
+from identification.report.effect_words import words_of
+from identification.report.error_words import error_words, pair_words
+from identification.report.finding_words import describe_finding, describe_shift, sentence
+from identification.report.fitted_values import (
+    std_sentence,
+    step_sentences,
+    value_lines,
+    value_table,
 )
-from identification.report.effect_words import describe_effect, describe_rejected, describe_there
-from identification.report.error_words import error_words
-from identification.report.finding_words import describe_finding, sentence
 from identification.report.page import Section, Table
+from identification.report.shown_words import shown_lines, shown_rows, shown_sentences
+from identification.windows.coarse import steps_of
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-BEST = 10  # candidates shown
-FAILED = "tried, and not possible to simulate"
-MANY = 8  # lines on what failed; of more the count is told
-MEASURES = {  # of a score: what its bars are, their axis, and the title of the figure
-    "gain": (
-        "What each effect, at its best place and shape, would explain of the fitted nominal model's"
-        " residual, the model's parameters tuned again. The bars are the gains that the nominal fit"
-        " promises before an effect is fitted; a gain that is said in words is that of the refitted"
-        " model, so that the two differ.",
-        GAIN,
-        "Gain of the best candidates on the nominal fit",
+DIGITS = 3  # of errors of records
+FITTED = "all of it was fitted"
+LATER = (
+    "Inputs that seem to act earlier may also be the answer of a controller to what the robot did."
+)
+SHIFTS = (
+    "by how much the inputs of a record seem to act later or earlier than their time stamps say,"
+    " where both halves of it tell the same"
+)
+GAPS = {  # by what errors are of: what the gap on unseen data is
+    "free run": "Measured minus simulated, from the inputs alone, over samples that no fit has"
+    " seen. The grey band is what the sensors, and disturbances that were not logged, do to a model"
+    " that lacks nothing.",
+    "windows": "Rms error of predictions on data that no fit has seen.",
+}
+RECORDS = {  # likewise: the errors of records, on a page and in a terminal
+    "free run": (
+        "Rms error of free runs over the unseen samples of each record.",
+        "unseen samples of each record",
     ),
-    "fall": (
-        "Share of the fitted error that each effect would explain at its best place and shape.",
-        "share of the mean square of the fitted error",
-        "Share of the fitted error",
+    "windows": (
+        "Rms error over windows of {:g} s, each from the state that explains it best. Nothing was"
+        " fitted to the records that confirm.",
+        "error of prediction over {:g} s",
     ),
+}
+STD = {  # likewise: what a std rests on
+    "free run": "A std holds if the model is right; that of a wrong model is too small.",
+    "windows": "Std by blocks of windows, whose errors need not be white; unknown where too few"
+    " windows tell of a value.",
 }
 
 
 def gap_section(found: Discovery) -> Section:
     """Returns the section on the gap on unseen samples, before and after."""
-    run, names, units = found.run, [*found.outputs], [*found.outputs.values()]
-    said = "Rms error of predictions on data that no fit has seen."
-    figures: tuple[tuple[str, Figure], ...] = ()
-    if run is not None:
-        said = (
-            "Measured minus simulated, from the inputs alone, over samples that no fit has seen."
-            " The grey band is what the sensors, and disturbances that were not logged, do to a"
-            " model that lacks nothing."
-        )
-        rows, after = run.unseen, run.after[run.unseen] if found.named else None
-        figure = gap_figure(
-            run.log.time[rows], run.before[rows], after, 2 * of_outputs(found.floor, run.log),
-            names, units,
-        )  # fmt: skip
-        figures = (("Error on unseen data, before and after", figure),)
-    gaps = [("nominal model, fitted", found.before)]
-    if found.named:
-        gaps.append(("with what was missing", found.after))
-    rms = error_words([found.errors_of(gap) for _, gap in gaps], "")
-    fits = [g.fit_percent[np.isfinite(g.fit_percent)] for _, g in gaps]
-    table = Table(
-        ("model", "rms", "times the noise", "mean fit [%]"),
-        tuple(
-            (name, size, _ratio(found.times_noise(gap)), float(fit.mean()) if len(fit) else None)
-            for (name, gap), size, fit in zip(gaps, rms, fits, strict=True)
+    run = found.run
+    told = [("before", "nominal model, fitted", found.before),
+            ("after", "with what was missing", found.after)]  # fmt: skip
+    errors = [found.errors_of(gap) for *_, gap in told]
+    sizes, rows, lines = error_words(errors, ""), [], []
+    for (when, model, gap), size, rms in zip(told, sizes, error_words(errors), strict=True):
+        ratio, fit = found.times_noise(gap), gap.fit_percent[np.isfinite(gap.fit_percent)]
+        times = held(ratio) if isfinite(ratio) else None
+        rows.append((model, size, times, float(fit.mean()) if len(fit) else None))
+        lines.append(f"  {when:<7}{rms}" + (f", {times} times the noise" if times else ""))
+    title = "error on unseen data:"
+    return Section(
+        "The gap on unseen data",
+        GAPS[found.judged_by],
+        first=True,
+        figures=cache(partial(gap_figures, found, run)) if run else (),
+        table=Table(
+            ("model", "rms", "times the noise", "mean fit [%]"),
+            tuple(rows if found.named else rows[:1]),
         ),
+        plain="\n".join([title, *lines]) if found.named else title + lines[0][8:],
     )
-    return Section("The gap on unseen data", said, first=True, figures=figures, table=table)
+
+
+def records_section(found: Discovery) -> list[Section]:
+    """Returns the section on the errors of each record; none where no record is told apart."""
+    if not found.is_told_by_record:
+        return []
+    seen = [e for e in found.errors if not isnan(e.before)]
+    pairs = pair_words([(e.before_by_unit, e.after_by_unit) for e in seen], "", DIGITS)
+    words = dict(zip(map(id, seen), pairs, strict=True))
+    rows = [(e.name, *words.get(id(e), (FITTED, "")), e.role) for e in found.errors]
+    said, over = (text.format(found.horizon) for text in RECORDS[found.judged_by])
+    lines = [f"{over}, {'without and with what is named' if found.named else 'nothing is named'}:"]
+    for error, (name, before, after, role) in zip(found.errors, rows, strict=True):
+        is_told = bool(found.named) and before != FITTED
+        worse = "; it is predicted worse" if is_told and error.after > error.before else ""
+        lines.append(f"  {name} ({role}): {before}{f' -> {after}' if is_told else ''}{worse}")
+    return [
+        Section(
+            "Error by record",
+            " ".join([said, *steps_taken(found)]),
+            table=Table(("record", "nominal model", "final model", "role"), tuple(rows)),
+            plain="\n".join(lines),
+        )
+    ]
+
+
+def steps_taken(found: Discovery) -> list[str]:
+    """Returns sentences on the steps of simulations, on finer ones, and on passes left out."""
+    steps, without = steps_of(found.nominal.plant), ", ".join(found.options.without)
+    left_out = [f"The options left out these passes of the search: {without}."] if without else []
+    return [*step_sentences(found.final, words_of(found), steps), *left_out]
 
 
 def where_section(found: Discovery) -> list[Section]:
-    """Returns the section on where the models fail; none over a horizon."""
-    run = found.run
-    if run is None:
+    """Returns the section on where the models fail; none without free runs, which tell it."""
+    if (run := found.run) is None:
         return []
-    before, after = (_rms(e[run.unseen]) for e in (run.before, run.after))
-    noise, unit = of_outputs(found.floor, run.log), found.unit
-    scale, level = np.ones(len(noise)), float(noise.max())
-    if len({*found.outputs.values()}) > 1 and noise.min() > 0:  # unlike outputs have no one axis
-        scale, level, unit = noise, 1.0, "times the noise"
-    figure = rms_figure(
-        before / scale, after / scale if found.named else None, level, [*found.outputs], unit
-    )
-    forces = tuple(
-        (f"Force on {m.where} that the nominal model lacks",
-         force_figure(run.log.time[: len(m.force)], m.force, m.names, m.units))
-        for m in found.missing_forces
-    )  # fmt: skip
-    parts = [" ".join(sentence(describe_finding(f)) for f in found.located)]
+    located = [describe_finding(f) for f in found.located]
+    parts = [" ".join(map(sentence, located))]
     if found.findings:
         title = "With what is named" if found.named else "What is left"
         parts.append(f"{title}: {'; '.join(map(describe_finding, found.findings))}.")
-    figures = (("Error by output on unseen data", figure), *forces)
-    return [Section("Where it disagrees", "\n\n".join(parts), figures=figures)]
-
-
-def best_scores(found: Discovery) -> list[Scored]:
-    """Returns the best score of each effect: its best place and shape."""
-    each: dict[str, Scored] = {}
-    for score in found.scores:
-        each.setdefault(score.candidate.effect.name, score)
-    return [*each.values()]
-
-
-def describe_score(found: Discovery, score: Scored) -> str:
-    """Returns in words what a candidate would explain, before it is fitted."""
-    value = f"gain {score.explains:z.3g}"
-    if found.scored_by == "fall":
-        value = f"{100 * score.explains:z.0f} % of the fitted error"
-    effect = describe_there(score.candidate, found.final.plant)
-    return f"{effect}: {value}, chance {score.p_value:.2g}"
-
-
-def rivals_section(found: Discovery) -> Section:
-    """Returns the section on all candidates: what each would explain, and rivals of the named."""
-    best, (text, axis, caption) = best_scores(found)[:BEST], MEASURES[found.scored_by]
-    named = {n.candidate.effect.name for n in found.named}
-    # What the data cannot tell from a named effect is named with it.
-    named |= {r.candidate.effect.name for n in found.named if n.one_of for r in n.rivals[:1]}
-    figures: tuple[tuple[str, Figure], ...] = ()
-    if best:
-        figure = gains_figure(
-            [describe_effect(s.candidate) for s in best], np.array([s.explains for s in best]),
-            [s.candidate.effect.name in named for s in best], axis,
-        )  # fmt: skip
-        figures = ((caption, figure),)
-    rows = tuple(
-        (
-            describe_effect(r.candidate),
-            f"{100 * r.confidence:.0f} %",
-            describe_effect(n.candidate),
-            r.alike,
+    return [
+        Section(
+            "Where it disagrees",
+            "\n\n".join(parts),
+            figures=cache(partial(where_figures, found, run)),
+            plain=listed_below("where the nominal model fails", located),
         )
-        for n in found.named
-        for r in n.rivals
+    ]
+
+
+def parameters_section(found: Discovery) -> Section:
+    """Returns the section on parameters: nominal, fitted without effects, and of the final fit."""
+    words, said = words_of(found), STD[found.judged_by]
+    if found.has_deviations:
+        said += " Values of single parts are their relative deviations from the common value, and"
+        said += " those of single points their displacements."
+    if found.held_fixed:
+        kept = " or ".join(words[name] for name in found.held_fixed)
+        said += f" It is also too small where the true value of {kept}, which was held fixed, is"
+        said += " not the nominal one."
+    steps, table = std_sentence(found.final, words), value_table(found)
+    plain = value_lines(found, table)
+    return Section(
+        "The parameters",
+        f"{said} {steps}".rstrip(),
+        table=table.last_first,
+        plain="\n".join([*plain, *filter(None, [steps])]) if plain else "",
     )
-    if not rows and found.named:
-        text += "\n\nNo other explanation comes near those that are named."
-    title, lines = describe_rejected(found)
-    if lines:
-        text = "\n\n".join([text, f"{title.capitalize()}:", *map(sentence, lines)])
-    if failed := failed_lines(found.failed):
-        text = "\n\n".join([text, f"{FAILED.capitalize()}:", *failed])
-    table = Table(("rival", "confidence", "named", "alike"), rows) if rows else None
-    return Section("Who could explain it", text, figures=figures, table=table)
 
 
-def failed_lines(failed: Sequence[Failed]) -> list[str]:
-    """Returns a line for each candidate that failed, and one for those that are left out."""
-    lines = []
-    for one in failed[:MANY]:
-        place = f", {one.where}" if one.where else ""
-        lines.append(f"{one.name.replace('_', ' ')}{place}: {one.outcome}")
-    more = len(failed) - len(lines)
-    return [*lines, f"and {more} more"] if more > 0 else lines
+def shifts_section(found: Discovery) -> list[Section]:
+    """Returns the section on records whose inputs are shifted in time; none where none is told."""
+    shifts = shown_shifts(found.shifts, found.records, found.options)
+    if not shifts:
+        return []
+    rows = tuple((s.record, describe_shift(s), 100 * s.fall) for s in shifts)
+    lines = [f"  {name}: {shift}, {fall:z.0f} % of its mean square" for name, shift, fall in rows]
+    return [
+        Section(
+            "Shifts in time",
+            f"{sentence(SHIFTS)} {LATER}",
+            table=Table(("record", "its inputs act", "of its mean square [%]"), rows),
+            plain="\n".join([f"{SHIFTS}:", *lines]),
+        )
+    ]
 
 
-def _rms(e: np.ndarray) -> np.ndarray:
-    return np.asarray(np.sqrt(np.mean(e**2, axis=0)))
-
-
-def _ratio(ratio: float) -> str | None:
-    return held(ratio) if np.isfinite(ratio) else None
+def unseen_section(found: Discovery) -> list[Section]:
+    """Returns the section on what this log would have shown, and what not; none where unknown."""
+    if not found.detectable:
+        return []
+    said = (
+        "The smallest size of each effect that is found in 9 of 10 logs like this one, beside the"
+        " largest that is plausible, the hardest to see first. What is missing and smaller stays"
+        f" hidden.\n\n{shown_sentences(found.detectable)}"
+    )
+    head = ("effect", "smallest seen", "largest plausible")
+    table, plain = Table(head, tuple(shown_rows(found.detectable))), shown_lines(found.detectable)
+    return [Section("What it could have seen", said, table=table, plain="\n".join(plain))]

@@ -7,13 +7,12 @@ from math import inf, isfinite
 from identification.discovery.findings.finding import FindingKind
 from identification.discovery.result import Discovery
 from identification.quantities import held, quantity
-from identification.report.bound_words import bound_sentences
 from identification.report.effect_words import describe_chance, describe_effect, phrase
-from identification.report.error_words import change_words, error_words
+from identification.report.error_words import change_words, describe_scale, error_words
 from identification.report.finding_words import describe_finding, sentence
 from identification.report.named_words import named_sentences
-from identification.report.scale_words import describe_scale
 from identification.report.shown_words import SHOWN, hiding, smallest, split_detectable
+from identification.report.untold_words import bound_sentences
 from identification.shown import verdict_of
 
 NO_ERROR = 1e-3  # of the inputs' rms: less is not told from none
@@ -45,11 +44,6 @@ def _findings(found: Discovery) -> list[str]:
     return [sentence(describe_finding(finding)) for finding in found.findings]
 
 
-def _over(found: Discovery) -> str:
-    """Returns over which horizon errors are meant; "" along a free run."""
-    return f" over {found.horizon:g} s" if found.horizon is not None else ""
-
-
 def _off(found: Discovery) -> tuple[str, str, str]:
     """Returns what the nominal model leaves on unseen data, the noise, and that of the sensors."""
     errors = [found.errors_of(found.before), found.floor, found.sensors]
@@ -65,13 +59,13 @@ def _nothing(found: Discovery) -> str:
     if not is_noise and ratio**2 > 1 + found.options.min_gap_share:
         return (
             "No effect is named: no candidate lowers the error of prediction on unseen data beyond"
-            f" chance. It is {left}{_over(found)}, {held(ratio)} times the {alone} that the sensors"
+            f" chance. It is {left}{found.over}, {held(ratio)} times the {alone} that the sensors"
             f" make. {_either(found)}"
         )
     seen, unseen = split_detectable(found.detectable)
     said = (
         f"Nothing is missing{'' if found.detectable else ', as far as these data can tell'}: what"
-        f" the fitted model leaves unexplained is noise, {left}{_over(found)} on unseen data where"
+        f" the fitted model leaves unexplained is noise, {left}{found.over} on unseen data where"
         f" the sensors{' and unlogged disturbances' if found.unlogged else ''} make {noise}."
     )
     said += _rest(found, alone)
@@ -96,12 +90,7 @@ def _either(found: Discovery) -> str:
 
 
 def _rest(found: Discovery, alone: str) -> str:
-    """Returns sentences on what makes the error that sensors do not, on which a verdict rests.
-
-    Args:
-        found: the discovery.
-        alone: what the sensors make, in words.
-    """
+    """Returns sentences on what makes the error that sensors, which make `alone`, do not."""
     unlogged = found.unlogged
     if unlogged is None:
         if found.input_error < NO_ERROR:
@@ -138,7 +127,7 @@ def _unknown(found: Discovery) -> str:
     return " ".join(
         [
             f"Something is missing that none of the {tried} known effects surely explains: the"
-            f" fitted model is {left} off{_over(found)} on unseen data{times}{needed}.",
+            f" fitted model is {left} off{found.over} on unseen data{times}{needed}.",
             "It is not named here rather than named wrongly.",
             *_findings(found),
             *(sentence(describe_finding(f)) for f in found.located),
@@ -158,7 +147,7 @@ def _unexplained(found: Discovery) -> str:
     return " ".join(
         [
             f"Something is left beside {more} that no known effect surely explains: the model is"
-            f" still {left} off{_over(found)} on unseen data{times}.",
+            f" still {left} off{found.over} on unseen data{times}.",
             *findings,
             *_nearest(found),
         ]
@@ -185,7 +174,7 @@ def _proof(found: Discovery) -> str:
     whom = "it" if len(found.named) == 1 else "them"
     rest = f", of which sensors make {own} and unlogged errors of the inputs the rest"
     made = rest if found.floor_rms > found.noise_rms else ""
-    of = f" of prediction{_over(found)}" if found.horizon is not None else ""
+    of = found.over and f" of prediction{found.over}"
     square = (found.after.rms / found.before.rms) ** 2 - 1 if found.before.rms > 0 else 0.0
     is_one = found.scale is not None or len(errors[0]) == 1  # else the square has no meaning
     nearly_all = "less by more than 99" if square < -0.995 else f"{100 * square:+z.0f}"

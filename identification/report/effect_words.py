@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterable
 from math import isfinite, isinf, isnan
 from typing import TYPE_CHECKING
 
-from identification.effects.named import phrase_there
 from identification.quantities import probability, quantity
 
 if TYPE_CHECKING:  # a search is slow to import, and a page may tell of a model alone
@@ -17,7 +18,46 @@ if TYPE_CHECKING:  # a search is slow to import, and a page may tell of a model 
     )
     from identification.discovery.result import Discovery
     from identification.effects.effect import Candidate, Effect
+    from identification.model.parameter import Parameter
     from identification.model.predictor import Plant
+
+
+def describe_parameter(parameter: Parameter) -> str:
+    """Returns what a parameter is, its letter before the place; its name where that is not said."""
+    if not parameter.short:
+        return parameter.name
+    return with_letter(parameter.short, parameter.letter)
+
+
+def with_letter(words: str, letter: str) -> str:
+    """Returns words with a letter of the equations before their first comma, if they lack it."""
+    if re.search(rf"(?<!\w){re.escape(letter)}(?!\w)", words):
+        return words
+    what, comma, where = words.partition(",")
+    return f"{what} {letter}{comma}{where}"
+
+
+def parameter_words(
+    parameters: Iterable[Parameter], effects: Iterable[Effect] = ()
+) -> dict[str, str]:
+    """Returns the words of parameters by name, also of effects, whose sizes are told with place."""
+    words = {p.name: describe_parameter(p) for p in parameters}
+    for effect in effects:
+        what = phrase(effect)
+        words |= {f"{effect.name}.{shape.name}": f"{shape.name}, {what}" for shape in effect.shapes}
+        words |= {
+            effect.parameter(size.name, where): f"{size.name}, {what}, {where}"
+            for size in effect.sizes
+            for where in effect.places
+        }
+    return words
+
+
+def words_of(found: Discovery) -> dict[str, str]:
+    """Returns the words of all parameters of a discovery by name."""
+    effects = [named.candidate.effect for named in found.named]
+    return parameter_words(found.final.plant.parameters, effects)
+
 
 FEW = 0.01  # a chance above it is told as a share, and not as a power of ten
 NOT_TOLD = "(std not known, because too few data tell of it)"
@@ -44,6 +84,8 @@ def describe_effect(candidate: Candidate) -> str:
 
 def describe_there(candidate: Candidate, plant: Plant) -> str:
     """Returns an effect and its place in words, in which a neighbouring joint has its name."""
+    from identification.effects.named import phrase_there  # slow to import
+
     return f"{without_colon(phrase_there(candidate, plant))}, {candidate.where}"
 
 
@@ -58,13 +100,9 @@ def without_colon(said: str) -> str:
 
 
 def value_with_std(value: float, std: float, unit: str, like: float = 0.0) -> str:
-    """Returns a value with its std in words, also where the std cannot be known.
+    """Returns a value and its std [unit] in words, also where the std is not known.
 
-    Args:
-        value: in `unit`.
-        std: in `unit`; NaN where too few data tell of it, inf where none feel it.
-        unit: SI unit.
-        like: see `quantity`.
+    The std is NaN where too few data tell of it, and inf where none feel it.
     """
     if isinf(std):
         return f"{quantity(value, unit=unit, like=like)}, not felt"

@@ -8,7 +8,37 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from identification.quantities import HELD, alike, held
+import numpy as np
+
+from identification.quantities import HELD, alike, held, quantity
+
+
+def describe_scale(outputs: Mapping[str, str], scale: np.ndarray | None) -> list[str]:
+    """Returns a sentence on what a mean square over unlike outputs is; none for outputs alike.
+
+    Args:
+        outputs: the unit of each output by name.
+        scale: what counts as one of each output, shape (ny,), in its unit: its rms error under the
+            nominal model; None where 1 counts alike in each unit.
+    """
+    units = [*dict.fromkeys(outputs.values())]
+    if len(units) == 1:
+        return []
+    if scale is None:
+        return [
+            f"The outputs have several units ({', '.join(unit or 'none' for unit in units)}), and a"
+            " free run counts an error of 1 in each of them alike, with one noise for all: give the"
+            " nominal model a horizon, over which each output counts in its own scale."
+        ]
+    each = ", ".join(
+        f"{quantity(float(s), unit=unit)} of {name}"
+        for (name, unit), s in zip(outputs.items(), scale, strict=True)
+    )
+    return [
+        "A mean square over outputs of several units counts the error of each output in multiples"
+        f" of its rms error under the fitted nominal model: {each}."
+    ]
+
 
 KINDS = {"rad": "angles", "m": "slides", "rad/s": "angular speeds", "m/s": "speeds of slides"}
 
@@ -41,13 +71,7 @@ def pair_words(
     word: str = "rms",
     digits: int = HELD,
 ) -> list[tuple[str, str]]:
-    """Returns errors of two models on several records in words, with one prefix for all.
-
-    Args:
-        pairs: errors of both, by unit and in it; all have the same units.
-        word: that follows each size; "" for none.
-        digits: of each size.
-    """
+    """Returns errors of two models on several records in words, with one prefix for all."""
     if not pairs:
         return []
     each = error_words([errors for pair in pairs for errors in pair], word, digits)
@@ -60,14 +84,7 @@ def change_words(
     beside: Sequence[Mapping[str, float]] = (),
     digits: int = HELD,
 ) -> tuple[str, list[str]]:
-    """Returns a change of errors, "from 3.7 mrad to 1.1 mrad rms", and other errors beside it.
-
-    Args:
-        before: error by unit.
-        after: likewise.
-        beside: others, which get the prefixes of these and no "rms".
-        digits: of each size.
-    """
+    """Returns a change of errors, "from 3.7 mrad to 1.1 mrad rms", and other errors beside it."""
     told = [before, after, *beside]
     sizes = error_words(told, "", digits)
     if len(before) == 1:

@@ -3,31 +3,55 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import singledispatch
 from typing import TYPE_CHECKING
 
-from identification.estimation.metrics import relative
+import numpy as np
+
+from identification.estimation.fit import Fit
+from identification.estimation.identifiability import in_words
+from identification.estimation.metrics import output_units, relative
 from identification.model.protocol import FINER
 from identification.quantities import held, quantity
-from identification.report.bound_words import bound_sentences
-from identification.report.error_words import error_words, times_words
-from identification.report.untold_words import identifiable_sentences, weak_sentences
+from identification.report.error_words import describe_scale, error_words, times_words
+from identification.report.fitted_values import first_few, std_sentence, step_sentences
+from identification.report.untold_words import (
+    WEAK,
+    bound_sentences,
+    cure,
+    identifiable_sentences,
+    scale_of_forces,
+    too_weak,
+    weak_sentences,
+)
 
-if TYPE_CHECKING:
-    from identification.estimation.fit import Fit
+if TYPE_CHECKING:  # both are slow to import
+    from identification.prediction.records_fit import RecordsFit
     from identification.windows.window_estimate import WindowEstimate
 
 # A residual above this multiple of the noise floor is more than noise; the floor itself is an upper
 # bound of the noise that errs by a few percent.
 ABOVE = 1.2
+MUCH = 3.0  # times the noise floor, beyond which windows are told to lack something
 HOLDS = 1.2  # a fit holds on unseen data up to this multiple of the residual that is expected there
 GROWN = 10.0  # a free run that errs by more than this multiple of the fitted residual has diverged
-SHOWN = 3  # values that finer steps would move, those that move most first
 LEVEL = 0.01  # significance of the tests of the residual: one false alarm in a hundred
+CONVERGED = {True: "The search converged.", False: "The search ran out of iterations."}
 
 
-def fit_verdict(fit: Fit) -> list[str]:
-    """Returns sentences: did it converge, what is known, is it enough, does it hold unseen."""
-    if fit.estimate.status == "stopped":  # a search that was stopped says nothing of the model
+@singledispatch
+def fit_verdict(fit: Fit | RecordsFit) -> list[str]:
+    """Returns sentences: did the search converge, what is known, is it enough, does it hold unseen.
+
+    Args:
+        fit: of a free run (`estimate`) or of the windows of records (`fit`).
+    """
+    return _of_records(fit)  # type: ignore[arg-type]
+
+
+@fit_verdict.register
+def _of_free_run(fit: Fit) -> list[str]:
+    if fit.stopped:  # a search that was stopped says nothing of the model
         return search_sentences(fit)
     return [
         *search_sentences(fit), *identifiable_sentences(fit), *_enough(fit), *_steps(fit),
@@ -35,26 +59,41 @@ def fit_verdict(fit: Fit) -> list[str]:
     ]  # fmt: skip
 
 
-def _steps(fit: Fit) -> list[str]:
-    """Returns a sentence on what a finer step would change beyond what the std tell."""
-    far = fit.far
-    if not far:
-        return []
-    step = float(fit.estimate.predictor.plant.model.opt.timestep)
-    moves = dict(zip(fit.estimate.space.names, fit.step_shift.tolist(), strict=True))
-    told = [f"{name} by {moves[name]:+z.2g}, {held(far[name])} std" for name in [*far][:SHOWN]]
-    more = f" and {len(far) - SHOWN} more" if len(far) > SHOWN else ""
-    return [
-        f"A quarter of the model's step, {quantity(step / FINER, unit='s')}, would move"
-        f" {'; '.join(told)}{more}; the std tell nothing of this. Where this matters, write"
-        f' timestep="{step / FINER:.6g}" into the <option> of the model, and do this once more.'
+def _of_records(fit: RecordsFit) -> list[str]:
+    model, floor, rms = fit.model, fit.noise_by_unit, fit.rms_by_unit
+    said = [
+        *_worse(fit),  # first, because nothing else matters then
+        CONVERGED[fit.converged],
+        *filter(None, [std_sentence(model)]),
+        *bound_sentences(model.plant.parameters, model.at_bound),
+        *_blind(fit),
+        *_weak(fit),
+        *_unknown_std(fit),
+        _left_by_windows(_count_windows(fit), fit.horizon, rms, floor),
     ]
+    if any(floor.values()) and relative(rms, floor) > MUCH:
+        said.append(
+            "That is far more than the sensors make: the model lacks something, or a column is not"
+            " what the model takes it for; discover looks for what is missing."
+        )
+    scale = describe_scale(output_units(fit.records[0].log), model.scale)
+    return [*said, *scale, *step_sentences(model)]
+
+
+def window_sentences(found: WindowEstimate, floor: float, unit: str) -> list[str]:
+    """Returns sentences on a search over windows; `floor` is the rms of the noise [unit]."""
+    bound = [n for n, at in zip(found.values, found.at_bound, strict=True) if at]
+    said = [CONVERGED[found.converged], *bound_sentences((), bound)]
+    if unknown := [n for n, u in zip(found.values, found.found.undetermined, strict=True) if u]:
+        said.append(f"The windows cannot tell {' and '.join(unknown)}; fix one, or widen them.")
+    left = _left_by_windows(len(found.residual), found.length, {unit: found.rms}, {unit: floor})
+    return [*said, *weak_sentences(found), left]
 
 
 def search_sentences(fit: Fit) -> list[str]:
-    """Returns sentences on how the search ended."""
+    """Returns sentences on how the search of a free run ended."""
     said = {
-        "converged": "The search converged.",
+        "converged": CONVERGED[True],
         "iterations": "The search ran out of iterations; start nearer, or allow more.",
         "stopped": "The search was stopped; these are the best values it had seen.",
     }[fit.estimate.status]
@@ -62,59 +101,39 @@ def search_sentences(fit: Fit) -> list[str]:
     return [said, *bound_sentences(fit.estimate.predictor.plant.parameters, bound)]
 
 
-def window_sentences(found: WindowEstimate, floor: float, unit: str) -> list[str]:
-    """Returns sentences on how a search over windows ended, what it cannot know, and its residual.
-
-    Args:
-        found: the search.
-        floor: rms of the noise over all outputs, in `unit`.
-        unit: of the outputs, "" where they have several.
-    """
-    said = ["The search converged." if found.converged else "The search ran out of iterations."]
-    bound = [n for n, at in zip(found.values, found.at_bound, strict=True) if at]
-    said += bound_sentences((), bound)
-    if unknown := [n for n, u in zip(found.values, found.found.undetermined, strict=True) if u]:
-        said.append(f"The windows cannot tell {' and '.join(unknown)}; fix one, or widen them.")
-    said += weak_sentences(found)
-    left = left_by_windows(len(found.residual), found.length, {unit: found.rms}, {unit: floor})
-    return [*said, left]
-
-
-def left_by_windows(
-    count: int, length: float, rms: Mapping[str, float], floor: Mapping[str, float]
-) -> str:
-    """Returns a sentence on the error that windows leave, beside the noise where it is known.
-
-    Args:
-        count: of the windows.
-        length: of each [s].
-        rms: error by the outputs' units, each in it.
-        floor: noise likewise.
-    """
-    (left,), (own,) = error_words([rms]), error_words([floor], "")
-    ratio = f", {times_words(rms, floor)} times the noise floor of {own}"
-    of = f"of {length:g} s"
-    each = f"1 window {of} leaves" if count == 1 else f"{count} windows {of} leave"
-    return f"{each} {left}{ratio if any(floor.values()) else ''}."
-
-
 def coloured_outputs(fit: Fit) -> int:
     """Returns how many outputs' residuals are not white."""
     return int((fit.tests.white < LEVEL / len(fit.tests.white)).sum())
 
 
-def _outputs(count: int) -> str:
-    return "1 output" if count == 1 else f"{count} outputs"
+def _steps(fit: Fit) -> list[str]:
+    """Returns a sentence on what a finer step would change beyond what the std tell."""
+    if not (far := fit.far):
+        return []
+    step = float(fit.estimate.predictor.plant.model.opt.timestep) / FINER
+    moves = dict(zip(fit.estimate.space.names, fit.step_shift.tolist(), strict=True))
+    told = [f"{name} by {moves[name]:+z.2g}, {held(std)} std" for name, std in far.items()]
+    return [
+        f"A quarter of the model's step, {quantity(step, unit='s')}, would move"
+        f" {first_few(told, '; ')}; the std tell nothing of this. Where this matters, write"
+        f' timestep="{step:.6g}" into the <option> of the model, and do this once more.'
+    ]
 
 
-def _above(fit: Fit) -> float:
-    """Returns the residual as a multiple of the noise floor."""
-    return relative(fit.rms_by_unit, fit.floor_by_unit)
+def _left_by_windows(
+    count: int, length: float, rms: Mapping[str, float], floor: Mapping[str, float]
+) -> str:
+    """Returns a sentence on the error that windows of a length [s] leave, and on the noise."""
+    (left,), (noise,) = error_words([rms]), error_words([floor], "")
+    ratio = f", {times_words(rms, floor)} times the noise floor of {noise}"
+    of = f"of {length:g} s"
+    each = f"1 window {of} leaves" if count == 1 else f"{count} windows {of} leave"
+    return f"{each} {left}{ratio if any(floor.values()) else ''}."
 
 
 def _enough(fit: Fit) -> list[str]:
-    ratio, (floor,) = _above(fit), error_words([fit.floor_by_unit], "")
-    (left,) = error_words([fit.rms_by_unit])
+    ratio = relative(fit.rms_by_unit, fit.floor_by_unit)
+    (left,), (floor,) = error_words([fit.rms_by_unit]), error_words([fit.floor_by_unit], "")
     times = times_words(fit.rms_by_unit, fit.floor_by_unit)
     sentences = [f"The residual is {left}, {times} times the noise floor of {floor}."]
     dependent = int((fit.tests.independent < LEVEL / len(fit.tests.independent)).sum())
@@ -140,25 +159,95 @@ def _enough(fit: Fit) -> list[str]:
     return sentences
 
 
+def _outputs(count: int) -> str:
+    return "1 output" if count == 1 else f"{count} outputs"
+
+
 def _unseen(fit: Fit) -> list[str]:
     there, expected = fit.validation_rms_by_unit, fit.validation_expected_by_unit
     if there is None or expected is None:
         return ["There is no unseen data to confirm it on."]
     (unseen,) = error_words([there])
     ratio, grown = relative(there, expected), relative(there, fit.rms_by_unit)
-    said = "it does not hold: too many parameters, or an effect missing"
-    if ratio < HOLDS:
-        said = "what was fitted holds there too"
-        if _above(fit) > ABOVE:
-            said = "no worse than on what was fitted, but what is missing is missing there too"
     if ratio < HOLDS and grown > GROWN:
         return [
             f"On unseen data the residual is {unseen}, {grown:.0f} times that of the fitted part;"
             " so small errors of the parameters may do that there, and it says little. Judge over"
             " a horizon."
         ]
-    times = times_words(there, expected)
+    said = "it does not hold: too many parameters, or an effect missing"
+    if ratio < HOLDS:
+        said = "what was fitted holds there too"
+        if relative(fit.rms_by_unit, fit.floor_by_unit) > ABOVE:
+            said = "no worse than on what was fitted, but what is missing is missing there too"
     return [
-        f"On unseen data the residual is {unseen}, {times} times what the fit leads one to expect:"
-        f" {said}."
+        f"On unseen data the residual is {unseen}, {times_words(there, expected)} times what the"
+        f" fit leads one to expect: {said}."
     ]
+
+
+def _worse(fit: RecordsFit) -> list[str]:
+    """Returns a sentence where unseen records are predicted worse than by the first values."""
+    if fit.worse is None:
+        return []
+    before, after = fit.unseen_rms
+    percent = 100 * ((after / before) ** 2 - 1)
+    return [
+        "The fitted values predict what was not fitted worse than the values with which the fit"
+        f" began (mean square {percent:+z.0f} %, t = {fit.worse.t:z.1f}): do not use them. Fit"
+        " more records, state in the robot's file what is known of the free parameters (known), or"
+        " leave some of them out."
+    ]
+
+
+def _blind(fit: RecordsFit) -> list[str]:
+    """Returns sentences on directions that the windows tell less of than was known before."""
+    names, out = fit.model.fit.problem.names, []
+    for direction in fit.blind:
+        moved, one = in_words(direction, names), names[int(abs(direction).argmax())]
+        if "," in moved:
+            out.append(
+                f"The windows tell less along ({moved}) than was known before the fit; what does"
+                " not change along it is known. Fix one of these, or record a motion that tells"
+                f" them apart.{scale_of_forces([r.log for r in fit.records if r.role == 'fit'])}"
+            )
+        else:
+            out.append(
+                f"The windows tell less of {one} than was known before the fit; fix it, or record a"
+                " motion that shows it."
+            )
+    return out
+
+
+def _weak(fit: RecordsFit) -> list[str]:
+    """Returns a sentence on positive parameters of which the windows tell too little."""
+    logarithmic = fit.model.fit.problem.prior.space.logarithmic
+    rows = zip(fit.values.items(), fit.std, logarithmic, strict=True)
+    weak = [n for (n, v), std, positive in rows if positive and std > WEAK * abs(v)]
+    return [f"{too_weak(weak, 'windows')} {cure(weak)}"] if weak else []
+
+
+def _unknown_std(fit: RecordsFit) -> list[str]:
+    """Returns the sentence on values that are fitted and whose std too few windows tell."""
+    rows = zip(fit.values, fit.std, fit.at_bound, strict=True)
+    few = [n for n, std, at_bound in rows if np.isnan(std) and not at_bound]
+    if not few:
+        return []
+    count = _count_windows(fit)
+    values, it, they, are = (
+        ("value", "it", "it", "is") if len(few) == 1 else ("values", "them", "they", "are")
+    )
+    told = (
+        "the only window cannot be compared with another"
+        if count == 1
+        else f"too few of the {count} windows tell of {it}"
+    )
+    return [
+        f"The {values} of {', '.join(few)} {are} fitted, but how far off {they} may be is not"
+        f" known: a std comes from how much windows differ, and {told}. Record longer or give more"
+        f" logs for a std, or compare the {values} with those of a fit of another log."
+    ]
+
+
+def _count_windows(fit: RecordsFit) -> int:
+    return sum(len(part.cut.starts) for part in fit.model.fit.problem.parts)

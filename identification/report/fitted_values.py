@@ -1,4 +1,4 @@
-"""The fitted values of a discovery: as the model had them, and fitted without and with effects.
+"""The fitted values of a model, and what finer steps of the simulation would change of them.
 
 A parameter whose name has an @ and no dot is the deviation of one drive or the displacement of one
 point. There are 96 of them where all drives and points of INCA may differ. A terminal shows only
@@ -11,16 +11,21 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from math import isfinite
+from typing import TYPE_CHECKING
 
-from identification.discovery.findings.finding import FindingKind
-from identification.discovery.fitted import Fitted
-from identification.discovery.result import Discovery
+import numpy as np
+
+from identification.discovery.fitted import TOLD_SHIFT, Fitted
 from identification.model.parameter import Parameter
-from identification.quantities import quantity
-from identification.report.effect_words import value_with_std
+from identification.model.protocol import FINER
+from identification.quantities import held, quantity
+from identification.report.effect_words import value_with_std, words_of
 from identification.report.page import Table
-from identification.report.parameter_words import words_of
 
+if TYPE_CHECKING:  # a search is slow to import
+    from identification.discovery.result import Discovery
+
+SHOWN = 3  # values that are told, those that move most first
 FEW = 3  # single parts that are shown where there are more than MANY
 MANY = 8
 NONE = "–"
@@ -29,7 +34,7 @@ NONE = "–"
 def value_table(found: Discovery) -> Table:
     """Returns a table of values: nominal, fitted without effects, and with what is named."""
     models = [found.nominal, found.final][: 1 + bool(found.named)]
-    is_begun = any(f.kind is FindingKind.WORSE_FIT for f in found.findings)
+    is_begun = found.is_begun
     parameters = {p.name: p for p in found.final.plant.parameters}
     like = _sizes(models, parameters)
     columns = [_words(m, parameters, like, is_begun and m is found.nominal) for m in models]
@@ -45,12 +50,19 @@ def value_table(found: Discovery) -> Table:
     return Table(head[: 2 + len(models)], tuple(rows))
 
 
-def text_table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
-    """Returns the lines of a table for a terminal, its cells to the left."""
-    widths = [max(map(len, column)) for column in zip(head, *rows, strict=True)]
+def value_lines(found: Discovery, table: Table) -> list[str]:
+    """Returns the lines of `value_table` for a terminal; of many single parts the worst known."""
+    if not table.rows:
+        return []
+    words = words_of(found)
+    shares = {words.get(n, n): share for n, share in unknown_shares(found.final).items()}
+    rows, rest = shown_values([[str(cell) for cell in row] for row in table.rows], shares)
+    lines = [[*table.columns], *rows]
+    width = [max(map(len, column)) for column in zip(*lines, strict=True)]
     return [
-        "  " + "  ".join(c.ljust(w) for c, w in zip(row, widths, strict=True)).rstrip()
-        for row in (head, *rows)
+        "fitted values:",
+        *("  " + "  ".join(map(str.ljust, line, width)).rstrip() for line in lines),
+        *([f"  {rest}"] if rest else []),
     ]
 
 
@@ -62,15 +74,11 @@ def unknown_shares(fit: Fitted) -> dict[str, float]:
 def shown_values(
     rows: Sequence[Sequence[str]], shares: Mapping[str, float]
 ) -> tuple[list[Sequence[str]], str]:
-    """Returns the rows that matter, and a sentence on those that are left out.
+    """Returns the rows but those of well known single parts, and a sentence on those left out.
 
     Args:
         rows: of a table of parameters; each begins with what the parameter is called.
         shares: see `unknown_shares`, by what the table calls them.
-
-    Returns:
-        All rows but those of single parts that are better known than the worst few, and "" where
-        no row is left out.
     """
     if len(shares) <= MANY:
         return list(rows), ""
@@ -80,6 +88,91 @@ def shown_values(
         f"Of {len(shares)} deviations of single drives and displacements of single points only the"
         f" {FEW} worst known are shown; all of them stand in the report that --out keeps."
     )
+
+
+def step_sentences(
+    model: Fitted,
+    words: Mapping[str, str] | None = None,
+    steps: tuple[float, float] | None = None,
+) -> list[str]:
+    """Returns a paragraph on the steps; none where they are the model's and finer change little.
+
+    Args:
+        model: fitted.
+        words: what to call the values by name; their names when None.
+        steps: of the simulations and of the user's model [s]; those of `model` when None.
+    """
+    from identification.windows.coarse import OUTPUT_ERROR, steps_of  # slow to import
+
+    taken, own = steps or steps_of(model.plant)
+    changed = _changed(model, words or {})
+    if taken <= own and not changed:
+        return []
+    model_step, finer = quantity(own, unit="s"), own / FINER
+    said = f"Simulations took steps of {model_step}, as the model says."
+    if taken > own:
+        is_last_own = steps_of(model.plant)[0] <= own
+        said = (
+            f"{'The search' if is_last_own else 'Simulations'} took steps of"
+            f" {quantity(taken, unit='s')} where the model has {model_step}: this changes what is"
+            f" predicted by less than {100 * OUTPUT_ERROR:.0f} % of its error."
+        )
+        if is_last_own:
+            said += " The last fit took the steps of the model."
+    if model.finer is None or not model.finer.is_known:
+        return [said]
+    said += (
+        f" The last fit was checked with a quarter of the model's step, {quantity(finer, unit='s')}"
+    )
+    if not changed:
+        return [f"{said}: no value would move by more than {held(TOLD_SHIFT)} std."]
+    return [
+        f"{said}: it would {', and would '.join(changed)}. Where this matters, write"
+        f' timestep="{finer:.6g}" into the <option> of the model, and do this once more.'
+    ]
+
+
+def std_sentence(model: Fitted, words: Mapping[str, str] | None = None) -> str:
+    """Returns a warning that the std leave out the error of the steps, where it is larger; or "".
+
+    It stands beside the std; `step_sentences` says by how much, and what to do.
+    """
+    if not (far := _far(model)):
+        return ""
+    return (
+        "The std leave out the error of the simulation's steps, which is more than"
+        f" {held(TOLD_SHIFT)} std for {first_few([(words or {}).get(n, n) for n in far])}."
+    )
+
+
+def first_few(told: Sequence[str], join: str = ", ") -> str:
+    """Returns the first of some words, and how many more there are."""
+    more = f" and {len(told) - SHOWN} more" if len(told) > SHOWN else ""
+    return f"{join.join(told[:SHOWN])}{more}"
+
+
+def _changed(model: Fitted, words: Mapping[str, str]) -> list[str]:
+    """Returns clauses on what finer steps would do beyond what the std tell."""
+    finer, said = model.finer, []
+    if finer is None:
+        return []
+    if far := _far(model):
+        told = first_few([f"{words.get(n, n)} by {held(std)} std" for n, std in far.items()])
+        said.append(f"move {told}, of which the std tell nothing")
+    if finer.is_lower():
+        said.append(
+            f"lower the error of the fitted windows to {held(finer.error)} of what it is: that part"
+            " is of the steps, and nothing that is missing"
+        )
+    return said
+
+
+def _far(model: Fitted) -> dict[str, float]:
+    """Returns the values that finer steps would move far enough to be told, in std by name."""
+    if model.finer is None:
+        return {}
+    names, std = [*model.told_std], np.array([*model.told_std.values()])
+    return model.finer.far(names, std)
 
 
 def _of(name: str, parameters: Mapping[str, Parameter]) -> Parameter:

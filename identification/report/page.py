@@ -3,26 +3,38 @@
 from __future__ import annotations
 
 import re
+import shlex
+import sys
 from base64 import b64encode
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from datetime import date
 from hashlib import sha256
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from identification.errors import InputError
 from identification.files import read_text, write_text
-from identification.report.cells import columns_of, text_of
 from identification.report.media import drawing, image_source, video_source
-from identification.report.origin import origin
-from identification.report.whole_quantities import whole_quantities
 
 if TYPE_CHECKING:
+    from markupsafe import Markup
     from matplotlib.figure import Figure
+
+    Figures = tuple[tuple[str, Figure], ...]
 
 TEMPLATES = Path(__file__).parent / "templates"
 LONG = 12  # rows: a table of more is folded
 WIDE = 9.0  # a figure of so many inches has a row of its own
+PACKAGE = "inca-mj"
+PROGRAMS = ("inca", "inca_mj", "identification")
+NUMBER = re.compile(r"[-+]?\d+(\.\d+)?(e[-+]?\d+)?")
+EMPTY = ("–", "unknown", None)  # in the place of a number
+UNIT = r"[nµmkM]?(?:kg|rad|Hz|min|[gNmsAVWJh])(?:\^?-?[\d²³]+)?(?:/(?:\([^)]*\)|[\w²³^]+))?"
+QUANTITY = re.compile(  # a number, its std, and a unit such as N m s/rad
+    rf"[-+]?\d[\d.]*(?:e[-+]?\d+)?(?: ± [\d.]+(?:e[-+]?\d+)?)?(?: %|(?: {UNIT}(?![\w/]))+)"
+)
 
 
 @dataclass(frozen=True)
@@ -37,6 +49,13 @@ class Table:
     columns: tuple[str, ...]
     rows: tuple[tuple[object, ...], ...]
 
+    def __post_init__(self) -> None:
+        for row in self.rows:
+            if len(row) != len(self.columns):
+                raise InputError(
+                    f"a table of {len(self.columns)} columns has a row of {len(row)} cells"
+                )
+
     @property
     def last_first(self) -> Table:
         """The table with the last column behind the first, so that both fit a narrow screen."""
@@ -44,12 +63,13 @@ class Table:
         rows = tuple((first, end, *rest) for first, *rest, end in self.rows)
         return Table((name, last, *middle), rows)
 
-    def __post_init__(self) -> None:
-        for row in self.rows:
-            if len(row) != len(self.columns):
-                raise InputError(
-                    f"a table of {len(self.columns)} columns has a row of {len(row)} cells"
-                )
+    @property
+    def headings(self) -> list[tuple[str, bool]]:
+        """Each heading, and whether numbers stand below it."""
+        cells = zip(*self.rows, strict=True) if self.rows else ((),) * len(self.columns)
+        return [
+            (head, _holds_numbers(cell)) for head, cell in zip(self.columns, cells, strict=True)
+        ]
 
 
 @dataclass(frozen=True)
@@ -59,20 +79,27 @@ class Section:
     Attributes:
         title: its heading.
         text: paragraphs, parted by empty lines.
-        figures: figures by caption.
+        figures: figures by caption, or a cached function that draws them.
         table: shown below the text; a long one is folded.
         video: an mp4 file, shown last.
         poster: a picture of the film, shown on paper.
         first: its figures and its film stand above all sections, under the verdict.
+        plain: what a terminal prints of it, without its title; paragraphs likewise.
     """
 
     title: str
     text: str = ""
-    figures: tuple[tuple[str, Figure], ...] = ()
+    figures: Figures | Callable[[], Figures] = ()
     table: Table | None = None
     video: Path | None = None
     poster: Path | None = None
     first: bool = False
+    plain: str = ""
+
+    @property
+    def drawn(self) -> Figures:
+        """The figures by caption, drawn."""
+        return self.figures() if callable(self.figures) else self.figures
 
 
 def write_report(
@@ -104,7 +131,7 @@ def write_report(
     from jinja2 import Environment, PackageLoader, StrictUndefined
     from markupsafe import Markup
 
-    from identification.report.vector import DARK
+    from identification.report.media import DARK
 
     script = f"\n//<![CDATA[\n{read_text(TEMPLATES / 'figures.js')}\n//]]>\n"
     environment = Environment(
@@ -115,14 +142,12 @@ def write_report(
         lstrip_blocks=True,
     )
     environment.filters["whole"] = whole_quantities
+    drawn = {} if drawings is None else drawings
     page = environment.get_template("report.html").render(
         title=title,
         file=Path(path).name,
         verdict=list(verdict),
-        sections=[
-            _section(section, number, {} if drawings is None else drawings)
-            for number, section in enumerate(sections, 1)
-        ],
+        sections=[_parts(section, number, drawn) for number, section in enumerate(sections, 1)],
         mood={True: "good", False: "bad", None: "plain"}[good],
         footer="\n".join(filter(None, [footer, origin(data)])),
         dark=DARK,
@@ -132,15 +157,80 @@ def write_report(
     return write_text(path, page)
 
 
+def save_figures(sections: Iterable[Section], folder: Path) -> list[Path]:
+    """Write the figures of some sections as PNG, named by their captions."""
+    from identification.report.style import save_png, settle
+
+    paths = []
+    for caption, figure in (each for section in sections for each in section.drawn):
+        settle(figure)  # a report shows it too
+        name = re.sub("[^a-z0-9]+", "-", caption.lower()).strip("-")
+        paths.append(save_png(figure, folder / f"{name}.png"))
+    return paths
+
+
+def origin(data: Sequence[str] = ()) -> str:
+    """Returns lines that say what made a report: version, command, names of logs, and date."""
+    lines = [f"{PACKAGE} {_version(PACKAGE)} with MuJoCo {_version('mujoco')}"]
+    if command := _command(sys.argv):
+        lines.append(f"Command: {command}")
+    if named := [name for name in data if name]:
+        lines.append(f"Data: {', '.join(named)}")
+    return "\n".join([*lines, f"Date: {date.today().isoformat()}"])
+
+
+def whole_quantities(text: str) -> Markup:
+    """Returns text, escaped, in which no line of a page ends between a number and its unit."""
+    from markupsafe import Markup, escape
+
+    return Markup(QUANTITY.sub(r'<span class="whole">\g<0></span>', str(escape(text))))
+
+
+def _parts(section: Section, number: int, drawings: dict[Figure, str]) -> dict[str, Any]:
+    """Returns what the template needs of a section."""
+    figures, table = section.drawn, section.table
+    for k, (caption, figure) in enumerate(figures, 1):
+        if figure not in drawings:
+            drawings[figure] = drawing(figure, f"f{number}_{k}_", caption)
+    width = [float(figure.get_size_inches()[0]) for _, figure in figures]
+    return {
+        "title": section.title,
+        "name": f"part-{number}",
+        "first": section.first,
+        "paragraphs": [part.strip() for part in section.text.split("\n\n") if part.strip()],
+        "figures": [
+            (caption, drawings[figure], inches >= WIDE, inches)
+            for (caption, figure), inches in zip(figures, width, strict=True)
+        ],
+        "columns": table.headings if table else [],
+        "rows": [[_text(cell) for cell in row] for row in table.rows] if table else [],
+        "folded": table is not None and len(table.rows) > LONG,
+        "video": video_source(section.video) if section.video else None,
+        "poster": image_source(section.poster) if section.poster else None,
+    }
+
+
+def _text(cell: object) -> str:
+    """Returns a cell as it is read; – where it is empty."""
+    if cell is None:
+        return "–"
+    return f"{cell:z.5g}" if isinstance(cell, float) else str(cell)
+
+
+def _holds_numbers(column: Iterable[object]) -> bool:
+    """Returns whether some of the cells are numbers, or all of them are written numbers."""
+    cells = list(column)
+    written = [isinstance(c, str) and bool(NUMBER.fullmatch(c)) for c in cells]
+    numbers = [isinstance(c, int | float) and not isinstance(c, bool) for c in cells]
+    return any(numbers) or (
+        any(written) and all(w or c in EMPTY for w, c in zip(written, cells, strict=True))
+    )
+
+
 def _policy(script: str) -> str:
-    """Returns what a browser may do for a page: nothing but show what stands in it.
-
-    No word of a log or a model can then run a script, or ask another computer for anything. Styles
-    may stand anywhere, because figures have some in their elements.
-
-    Args:
-        script: all that stands in the element of the page's one script.
-    """
+    """Returns what a browser may do for a page that has one script: show what stands in it."""
+    # No word of a log or a model can then run a script, or ask another computer for anything.
+    # Styles may stand anywhere, because figures have some in their elements.
     digest = b64encode(sha256(script.encode()).digest()).decode()
     return (
         f"default-src 'none'; script-src 'sha256-{digest}'; style-src 'unsafe-inline';"
@@ -148,40 +238,18 @@ def _policy(script: str) -> str:
     )
 
 
-def save_figures(sections: Iterable[Section], folder: Path) -> list[Path]:
-    """Write the figures of some sections as PNG, named by their captions."""
-    from identification.report.style import save_png, settle
-
-    paths = []
-    for caption, figure in (each for section in sections for each in section.figures):
-        settle(figure)  # a report shows it too
-        name = re.sub("[^a-z0-9]+", "-", caption.lower()).strip("-")
-        paths.append(save_png(figure, folder / f"{name}.png"))
-    return paths
+def _command(argv: Sequence[str]) -> str:
+    """Returns the command line; empty where another program asked for the report."""
+    path = Path(argv[0]) if argv else Path()
+    name = path.parent.name if path.name == "__main__.py" else path.name
+    if name not in PROGRAMS:
+        return ""
+    begin = "python -m inca_mj" if name == "inca_mj" else name
+    return shlex.join([*begin.split(), *argv[1:]])
 
 
-def _section(section: Section, number: int, drawings: dict[Figure, str]) -> dict[str, Any]:
-    table = section.table
-    for k, (caption, figure) in enumerate(section.figures, 1):
-        if figure not in drawings:
-            drawings[figure] = drawing(figure, f"f{number}_{k}_", caption)
-    return {
-        "title": section.title,
-        "name": f"part-{number}",
-        "first": section.first,
-        "paragraphs": [part.strip() for part in section.text.split("\n\n") if part.strip()],
-        "figures": [
-            (
-                caption,
-                drawings[figure],
-                figure.get_size_inches()[0] >= WIDE,
-                float(figure.get_size_inches()[0]),
-            )
-            for caption, figure in section.figures
-        ],
-        "columns": columns_of(table.columns, table.rows) if table else [],
-        "rows": [[text_of(cell) for cell in row] for row in table.rows] if table else [],
-        "folded": table is not None and len(table.rows) > LONG,
-        "video": video_source(section.video) if section.video else None,
-        "poster": image_source(section.poster) if section.poster else None,
-    }
+def _version(package: str) -> str:
+    try:
+        return version(package)
+    except PackageNotFoundError:  # run from a source tree
+        return "of a source tree"

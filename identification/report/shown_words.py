@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from math import inf, isfinite
 
 from identification.discovery.effect_results import Detectable, Hidden
-from identification.effects.effect import Candidate
 from identification.quantities import quantity
 from identification.report.effect_words import describe_effect
 
@@ -28,73 +27,80 @@ WHERE = (
 
 @dataclass(frozen=True)
 class Shown:
-    """The sizes of an effect that a log would have shown.
+    """The sizes of an effect, at the place where it is judged, that a log would have shown."""
 
-    Attributes:
-        candidate: the effect at the place where it is judged.
-        sizes: the smallest that shows of each of its sizes.
-    """
-
-    candidate: Candidate
     sizes: tuple[Detectable, ...]
+
+    def __str__(self) -> str:
+        """Returns the effect and its place in words."""
+        return describe_effect(self.sizes[0].candidate)
 
     @property
     def share(self) -> float:
         """The smallest size that shows over the largest plausible one, the best of all sizes."""
-        return min(d.smallest / largest(d) if isfinite(d.smallest) else inf for d in self.sizes)
+        return min(d.smallest / d.largest if isfinite(d.smallest) else inf for d in self.sizes)
 
     @property
     def is_seen(self) -> bool:
         """Whether a plausible size shows."""
-        return any(map(is_plausible, self.sizes))
+        return any(d.is_plausible for d in self.sizes)
+
+    @property
+    def bounds(self) -> str:
+        """From which size on it shows, and up to which it is plausible, in words."""
+        return ", ".join(
+            f"{d.size} from {sized(d.smallest, d.unit)} on"
+            + (f" (plausible up to {sized(d.largest, d.unit)})" if isfinite(d.largest) else "")
+            for d in self.sizes
+            if d.is_plausible
+        )
 
 
-def shown_effects(detectable: Sequence[Detectable]) -> list[Shown]:
-    """Returns what a log would have shown, one for each effect, the hardest to see first."""
+def shown_effects(detectable: Sequence[Detectable]) -> tuple[list[Shown], list[Shown]]:
+    """Returns effects that a log would have shown, the hardest to see first, and all others."""
     each: dict[str, list[Detectable]] = {}
     for d in detectable:
         each.setdefault(d.candidate.effect.name, []).append(d)
-    shown = [Shown(sizes[0].candidate, tuple(sizes)) for sizes in each.values()]
-    return sorted(shown, key=lambda s: -s.share)
+    shown = sorted((Shown(tuple(sizes)) for sizes in each.values()), key=lambda s: -s.share)
+    return [s for s in shown if s.is_seen], [s for s in shown if not s.is_seen]
 
 
 def shown_lines(detectable: Sequence[Detectable]) -> list[str]:
     """Returns lines: what never shows, the hardest to see of the others, and how many more."""
-    shown = shown_effects(detectable)
-    never = [f"  {describe_effect(s.candidate)}" for s in shown if not s.is_seen]
-    seen = [s for s in shown if s.is_seen]
-    lines = [f"{NEVER}:", *never] if never else []
+    seen, never = shown_effects(detectable)
+    lines = [f"{NEVER}:", *(f"  {s}" for s in never)] if never else []
     if seen:
         lines.append("what this log would have shown in 9 cases of 10, the hardest to see first:")
-        lines += [f"  {describe_effect(s.candidate)}: {_from(s)}" for s in seen[:LISTED]]
+        lines += [f"  {s}: {s.bounds}" for s in seen[:LISTED]]
         lines += [f"  {more}" for more in _more(seen)]
     return [*lines, f"  {WHERE}"] if lines else []
 
 
 def shown_sentences(detectable: Sequence[Detectable]) -> str:
     """Returns a paragraph on what a log would have shown, beside a table of all; "" for none."""
-    shown = shown_effects(detectable)
-    never = [describe_effect(s.candidate) for s in shown if not s.is_seen]
-    seen = [s for s in shown if s.is_seen]
-    said = [f"{NEVER.capitalize()}: {'; '.join(never)}."] if never else []
+    seen, never = shown_effects(detectable)
+    said = [f"{NEVER.capitalize()}: {'; '.join(map(str, never))}."] if never else []
     if seen:
-        hard = "; ".join(f"{describe_effect(s.candidate)}, {_from(s)}" for s in seen[:FEW])
+        hard = "; ".join(f"{s}, {s.bounds}" for s in seen[:FEW])
         said.append(f"Hardest to see{' of the others' if never else ''}: {hard}.")
     return " ".join([*said, WHERE]) if said else ""
 
 
 def shown_rows(detectable: Sequence[Detectable]) -> list[tuple[str, str, str]]:
     """Returns table rows of all effects: effect and place, smallest seen, largest plausible."""
-    return [
-        (
-            describe_effect(s.candidate),
-            "; ".join(_named(d, _smallest(d), s) for d in s.sizes)
-            if s.is_seen
-            else "not by this log",
-            "; ".join(_named(d, sized(largest(d), d.unit), s) for d in s.sizes),
+    seen, never = shown_effects(detectable)
+    rows = []
+    for s in (*never, *seen):
+        names = [f"{d.size} " if len(s.sizes) > 1 else "" for d in s.sizes]
+        least = "; ".join(
+            name + (sized(d.smallest, d.unit) if d.is_plausible else "at no plausible size")
+            for name, d in zip(names, s.sizes, strict=True)
         )
-        for s in shown_effects(detectable)
-    ]
+        most = "; ".join(
+            name + sized(d.largest, d.unit) for name, d in zip(names, s.sizes, strict=True)
+        )
+        rows.append((str(s), least if s.is_seen else "not by this log", most))
+    return rows
 
 
 def sized(value: float, unit: str) -> str:
@@ -102,25 +108,6 @@ def sized(value: float, unit: str) -> str:
     if not isfinite(value):
         return "–"
     return quantity(value, unit=unit) if unit else f"{100 * value:.3g} %"
-
-
-def _smallest(d: Detectable) -> str:
-    return sized(d.smallest, d.unit) if is_plausible(d) else "at no plausible size"
-
-
-def _named(d: Detectable, said: str, shown: Shown) -> str:
-    """Returns a size with its name, where the effect has several."""
-    return f"{d.size} {said}" if len(shown.sizes) > 1 else said
-
-
-def _from(shown: Shown) -> str:
-    """Returns in words from which size on an effect shows, and up to which it is plausible."""
-    return ", ".join(
-        f"{d.size} from {sized(d.smallest, d.unit)} on (plausible up to {sized(most, d.unit)})"
-        if isfinite(most := largest(d))
-        else f"{d.size} from {sized(d.smallest, d.unit)} on"
-        for d in filter(is_plausible, shown.sizes)
-    )
 
 
 def _more(seen: Sequence[Shown]) -> list[str]:
@@ -156,23 +143,10 @@ def split_detectable(
     detectable: Sequence[Detectable],
 ) -> tuple[list[Detectable], list[Detectable]]:
     """Returns effects that a plausible size would show, the easiest to find first; and others."""
-    seen = [d for d in detectable if is_plausible(d)]
-    return (
-        sorted(seen, key=lambda d: d.smallest / largest(d)),
-        [d for d in detectable if not is_plausible(d)],
-    )
-
-
-def is_plausible(d: Detectable) -> bool:
-    """Returns whether a plausible size would have shown."""
-    return d.smallest < float("inf") and d.smallest <= largest(d)
+    seen = sorted((d for d in detectable if d.is_plausible), key=lambda d: d.smallest / d.largest)
+    return seen, [d for d in detectable if not d.is_plausible]
 
 
 def smallest(d: Detectable) -> str:
     """Returns the smallest size in words."""
     return f"{d.size} {quantity(d.smallest, unit=d.unit)}"
-
-
-def largest(d: Detectable) -> float:
-    """Returns the largest plausible magnitude of a size [unit]; inf where none is known."""
-    return next((s.largest for s in d.candidate.effect.sizes if s.name == d.size), float("inf"))

@@ -6,6 +6,8 @@ import warnings
 from pathlib import Path
 from typing import IO, Any
 
+import matplotlib
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from identification.files import whole_file
@@ -37,6 +39,19 @@ STYLE: Any = {
     "svg.hashsalt": "identification",  # the same figure gives the same bytes
 }
 
+styled = matplotlib.rc_context(STYLE)  # decorates a function that draws
+
+
+def time_panels(figure: Figure, count: int, **how: Any) -> list[Axes]:
+    """Returns axes for so many panels over time, in up to two columns, the first one filled."""
+    axes = figure.subplots(-(-count // 2), min(2, count), sharex=True, squeeze=False, **how)
+    for ax in axes[-1]:
+        ax.set_xlabel("time [s]")
+    panels = [*axes.T.ravel()]
+    for ax in panels[count:]:
+        ax.set_axis_off()
+    return panels[:count]
+
 
 def literal(text: str) -> str:
     """Returns a name as a figure shows it, letter by letter: `$` would begin a formula."""
@@ -44,10 +59,7 @@ def literal(text: str) -> str:
 
 
 def settle(figure: Figure) -> None:
-    """Place the parts of a figure for good.
-
-    It would be done anew for each file that shows the figure, and takes as long as drawing it.
-    """
+    """Place the parts of a figure for good: anew for each file it takes as long as drawing."""
     engine = figure.get_layout_engine()
     if engine is not None:
         engine.execute(figure)
@@ -55,15 +67,10 @@ def settle(figure: Figure) -> None:
 
 
 def write_figure(figure: Figure, stream: IO[Any], **how: Any) -> None:
-    """Writes a figure, also one with letters that the font of its pixels lacks.
+    """Write a figure to a stream, also one with letters that the font of its pixels lacks.
 
     A joint may be called by any letter. Where there is no picture of it, a box stands, and a
     browser shows the letter itself; matplotlib would warn of each one.
-
-    Args:
-        figure: of matplotlib.
-        stream: is written.
-        how: what `Figure.savefig` takes.
     """
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", r"Glyph .* missing from", UserWarning)

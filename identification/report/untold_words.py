@@ -2,21 +2,37 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from identification.estimation.identifiability import in_words
 from identification.estimation.scaling_symmetry import ScalingSymmetry
+from identification.model.parameter import Parameter
 from identification.quantities import matched
-from identification.report.parameter_words import parameter_words
+from identification.report.effect_words import parameter_words
 
 if TYPE_CHECKING:
     from identification.estimation.fit import Fit
     from identification.estimation.identifiability import Identifiability
     from identification.logs.log import Log
     from identification.windows.window_estimate import WindowEstimate
+
+
+def bound_sentences(parameters: Iterable[Parameter], at_bound: Iterable[str]) -> list[str]:
+    """Returns sentences on values that lie on a bound, with what moves it; none where none does.
+
+    A value that a record has for itself is called `name [record]`.
+    """
+    reasons = {p.name: p.bounded_by for p in parameters}
+    each = {name: reasons.get(name.partition(" [")[0], "") for name in at_bound}
+    plain = [name for name, reason in each.items() if not reason]
+    said = [f"At a bound: {name}; {reason}." for name, reason in each.items() if reason]
+    if plain:
+        said.insert(0, f"At a bound: {', '.join(plain)}; widen it or fix the parameter.")
+    return said
+
 
 WEAK = 0.5  # of its value: the std of a value that is not worth its digits
 ROUGH = 1e-4  # relative error of a sensitivity, which a smooth simulation stays far below
@@ -60,10 +76,7 @@ def untold(
 ) -> str:
     """Returns in words what no output feels: single parameters, and those that trade off.
 
-    Args:
-        symmetries: one or more.
-        names: the parameters.
-        words: what to call single parameters, by name; their names where not given.
+    Single parameters are called by `words`, or by their names where these lack them.
     """
     single = [s for s in symmetries if len(s.powers) == 1]
     several = [s for s in symmetries if len(s.powers) > 1]
@@ -119,11 +132,7 @@ def _traded(weak: Sequence[str], found: Identifiability) -> str:
 
 
 def scale_of_forces(logs: Sequence[Log]) -> str:
-    """Says why a free swing leaves parameters that trade off; empty where an input moves.
-
-    Args:
-        logs: those that were fitted.
-    """
+    """Returns why a free swing leaves parameters that trade off; "" where an input moves."""
     if any(log.inputs.any() for log in logs):
         return ""
     return (
@@ -133,12 +142,7 @@ def scale_of_forces(logs: Sequence[Log]) -> str:
 
 
 def too_weak(names: Sequence[str], what: str) -> str:
-    """Returns a sentence on parameters whose std is too large.
-
-    Args:
-        names: of one or more.
-        what: noise or windows, for which they are felt too weakly.
-    """
+    """Returns a sentence on parameters whose std is too large for "noise" or "windows"."""
     their = "its" if len(names) == 1 else "their"
     this = "this" if what == "noise" else "these"
     return f"Too weakly for {this} {what}: {', '.join(names)}, {their} std exceeds half the value."

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from identification.report.error_words import kind, listed
-from identification.report.fit_json import fit_to_json, records_fit_to_json
+from identification.report.fit_json import fit_to_json
 from identification.robot.fitting import RobotFit
 from identification.robot.free_swing import impossible_sentence
 from identification.robot.reading import doubtful
@@ -28,10 +28,7 @@ FARTHEST = 100.0  # a value that changes by this factor is not believed
 def robot_fit_to_json(result: RobotFit, confirmed: Sequence[Confirmation] = ()) -> dict[str, Any]:
     """Returns the numbers and the verdict of a fit; unknown and infinite numbers are null."""
     found = result.found
-    if found.horizon is None:
-        record = {**fit_to_json(found), "horizon": None, "worse": None}
-    else:
-        record = records_fit_to_json(found)
+    record = {"horizon": None, "worse": None, **fit_to_json(found)}
     repeated = find_repetitions(result.robot)
     said = (*(confirmed or result.unseen), *repeated)
     far = _far(record["parameters"])

@@ -96,7 +96,7 @@ class Discover:
             logs, parameters, place, confirm=confirm, spread=spread, progress=self.output.tell,
             settled=self.settled, options=options, trust=trust,
         )  # fmt: skip
-        from identification.report.discovery_text import discovery_text  # slow to import
+        from identification.report.discovery_report import discovery_text  # slow to import
 
         if not self.output.json:
             say(discovery_text(found))

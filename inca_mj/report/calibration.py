@@ -9,7 +9,7 @@ import numpy as np
 
 from identification.chances import normal_level
 from identification.quantities import alike, matched, quantity
-from identification.report.parameter_words import describe_parameter
+from identification.report.effect_words import describe_parameter
 from inca_mj.robot.geometry import DRIVES
 from inca_mj.robot.spread import AXES, EACH_DRIVE, POINTS
 from inca_mj.twin.logs import POSE
@@ -111,10 +111,7 @@ def _far(found: Calibration, group: str, name: str, times: float) -> str:
 
 
 def point_std(found: Calibration, point: str) -> tuple[float, float]:
-    """Returns the rms std of points relative to one another, and in the frame [m].
-
-    Relative to one another: without the translations and turns of all of them together.
-    """
+    """Returns the rms std of points without turns and shifts of all of them, and with these [m]."""
     names = [f"{point}_{axis}@{k}" for k in range(1, DRIVES + 1) for axis in AXES]
     at = [found.fit.point.space.names.index(name) for name in names]
     C = found.covariance[np.ix_(at, at)]

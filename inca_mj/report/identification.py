@@ -159,12 +159,7 @@ def held_sentence(fit: Fit) -> str:
 
 
 def starts_sentence(errors: np.ndarray, unit: str) -> str:
-    """Says how many starts were needed, and how well they agree.
-
-    Args:
-        errors: rms error at which each ended, in `unit`.
-        unit: of the outputs, "" where they have several.
-    """
+    """Says how many starts were needed, and how well the rms errors [unit] of their ends agree."""
     best = float(errors.min())
     same = int((errors < 1.01 * best).sum())
     if len(errors) == 1:
@@ -215,7 +210,7 @@ def fit_section(result: Identification, fit: Fit, title: str) -> Section:
 
 def profile_section(fit: Fit, known: Profile) -> Section:
     """Returns the profile of one parameter: how well the others can compensate a change of it."""
-    from identification.report.profile_figure import profile_figure
+    from identification.report.figures import profile_figure
 
     unit = fit.estimate.predictor.plant.parameters[known.name].unit
     return Section(

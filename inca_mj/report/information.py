@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from identification.estimation.information import Information, determinable
-from identification.quantities import finite_or_none
+from identification.quantities import plain
 from identification.report.page import Section, Table
 from identification.report.untold_words import unresolved_words, untold
 
@@ -65,27 +65,22 @@ def _amount(found: Information, i: int) -> str:
 
 def information_json(found: Information) -> dict[str, Any]:
     """Returns the numbers as plain values."""
-    return {
+    rows = zip(found.names, found.std, found.conditional, found.logarithmic, strict=False)
+    return plain({
         "parameters": {
-            name: {
-                "std": finite_or_none(std),
-                "conditional_std": finite_or_none(alone),
-                "relative": bool(relative),
-            }
-            for name, std, alone, relative in zip(
-                found.names, found.std, found.conditional, found.logarithmic, strict=False
-            )
+            name: {"std": std, "conditional_std": alone, "relative": bool(relative)}
+            for name, std, alone, relative in rows
         },
-        "ranking": list(found.ranking),
-        "strengths": found.found.strengths.tolist(),
+        "ranking": found.ranking,
+        "strengths": found.found.strengths,
         "worst_direction": found.found.weakest(),
-        "condition": finite_or_none(found.condition),
+        "condition": found.condition,
         "E": found.e_value,
-        "D": finite_or_none(found.d_value),
-        "A": finite_or_none(found.a_value),
+        "D": found.d_value,
+        "A": found.a_value,
         "combinations": [str(c) for c in found.combinations],
         "verdict": information_verdict(found),
-    }
+    })  # fmt: skip
 
 
 def information_section(found: Information, about: str) -> Section:
@@ -147,8 +142,7 @@ def design_json(result: Design) -> dict[str, Any]:
     )  # fmt: skip
     return {
         "parameters": {
-            name: {"std_prbs": float(a), "std_designed": float(b), "gain": float(g),
-                   "relative": bool(r)}
+            name: plain({"std_prbs": a, "std_designed": b, "gain": g, "relative": bool(r)})
             for name, a, b, g, r in rows
         },
         "worst_gain": result.worst_gain,

@@ -5,19 +5,19 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 
 from identification.linear.gridded import GriddedSystem
 from identification.linear.modes import Mode, modes
-from identification.report.linear_json import system_to_json
-from identification.report.linear_sections import (
+from identification.quantities import plain, plain_fields
+from identification.report.linear import (
     linear_sections,
     slowest_and_fastest,
+    system_to_json,
 )
 from identification.report.page import Section, Table
-from identification.report.style import GREY, INK, MEASURED, SERIES, SIMULATED, STYLE
+from identification.report.style import GREY, INK, MEASURED, SERIES, SIMULATED, styled
 from inca_mj.kinematics.rotations import rotation
 from inca_mj.linear.accuracy import InterpolationError, RunError
 from inca_mj.linear.linearization import LinearModel
@@ -38,42 +38,29 @@ def handle_share(mode: Mode) -> float:
 
 
 def handle_modes(model: LinearModel) -> list[Mode]:
-    """Returns the swinging modes in which the platform has the largest share, the slowest first.
-
-    Args:
-        model: of the robot.
-    """
+    """Returns the swinging modes in which the platform has the largest share, the slowest first."""
     swinging = [m for m in modes(model.system) if m.swings]
     chosen = sorted(swinging, key=handle_share, reverse=True)[:SHOWN]
     return sorted(chosen, key=lambda m: m.frequency)
 
 
 def handle_motion(mode: Mode, arm: float) -> str:
-    """Returns which motions of the platform a mode has: those of at least half the largest.
-
-    Args:
-        mode: the mode.
-        arm: that turns an angle into a way [m].
-    """
+    """Returns the motions of at least half the largest; `arm` [m] turns an angle into a way."""
     size = np.abs(np.concatenate([mode.shape[POSITION], arm * mode.shape[EULER]]))
     order = np.argsort(-size)
     return ", ".join(POSE_WORDS[i] for i in order if size[i] >= size.max() / 2)
 
 
+@styled
 def shape_figure(model: LinearModel) -> Figure:
-    """Returns a figure of the platform at both ends of its swing in each mode, with cable parts.
-
-    Args:
-        model: of the robot.
-    """
+    """Returns a figure of the platform at both ends of its swing in each mode, with cable parts."""
     placed = displaced(model.robot.geometry, model.robot.parameters.values())
     found = handle_modes(model)
-    with matplotlib.rc_context(STYLE):
-        figure = Figure((9.5, 6.4), layout="constrained")
-        rows = -(-max(1, len(found)) // 3)
-        for k, mode in enumerate(found, 1):
-            axis: Any = figure.add_subplot(rows, 3, k, projection="3d")
-            _draw_mode(axis, model, mode, placed)
+    figure = Figure((9.5, 6.4), layout="constrained")
+    rows = -(-max(1, len(found)) // 3)
+    for k, mode in enumerate(found, 1):
+        axis: Any = figure.add_subplot(rows, 3, k, projection="3d")
+        _draw_mode(axis, model, mode, placed)
     return figure
 
 
@@ -121,40 +108,31 @@ def _draw_handle(
         axis.plot(*np.stack([point, point + STUB * way], axis=1), color=colour, lw=0.5)
 
 
+@styled
 def spacing_figure(errors: Mapping[str, Sequence[tuple[float, float]]]) -> Figure:
-    """Returns the largest error of the transfer function between grid points, over their spacing.
-
-    Args:
-        errors: by what is interpolated and how, pairs of spacing [m] and error.
-    """
-    with matplotlib.rc_context(STYLE):
-        figure = Figure((6.5, 3.6), layout="constrained")
-        axis = figure.subplots()
-        for k, (label, pairs) in enumerate(errors.items()):
-            x, y = zip(*pairs, strict=True)
-            axis.loglog(x, y, "o-", color=SERIES[k], label=label)
-        axis.set(xlabel="spacing of the grid [m]", ylabel="largest relative error of G(f)")
-        axis.legend(fontsize=8)
+    """Returns a figure of errors of G(f) between grid points over their spacing [m], by method."""
+    figure = Figure((6.5, 3.6), layout="constrained")
+    axis = figure.subplots()
+    for k, (label, pairs) in enumerate(errors.items()):
+        x, y = zip(*pairs, strict=True)
+        axis.loglog(x, y, "o-", color=SERIES[k], label=label)
+    axis.set(xlabel="spacing of the grid [m]", ylabel="largest relative error of G(f)")
+    axis.legend(fontsize=8)
     return figure
 
 
+ERRORS = ("matrix", "response", "eigenvalue")
 HANDLE_HEAD = ("frequency [Hz]", "damping", "the platform moves along", "share of the platform")
 
 
 def model_to_json(model: LinearModel, rate: float) -> dict[str, Any]:
-    """Returns a linear model of the robot as plain values.
-
-    Args:
-        model: of the robot.
-        rate: of the samples of its discrete form [Hz].
+    """Returns a linear model of the robot as plain values; its discrete form has the rate [Hz].
 
     Raises:
         InputError: the rate is not above zero.
     """
     return {
-        "time": model.time,
-        "tension": model.tension.tolist(),
-        "friction_slope": model.friction_slope.tolist(),
+        **plain_fields(model, "time", "tension", "friction_slope"),
         **system_to_json(model.system, rate),
     }
 
@@ -169,12 +147,7 @@ def handle_rows(model: LinearModel) -> list[tuple[str, str, str, str]]:
 
 
 def model_sentences(model: LinearModel, label: str) -> list[str]:
-    """Returns what matters about a linear model, in sentences.
-
-    Args:
-        model: of the robot.
-        label: what its operating point is called.
-    """
+    """Returns what matters about a linear model, in sentences; `label` is its operating point."""
     low, high = model.friction_slope.min(), model.friction_slope.max()
     slope = f"{low:.3g}" if high - low < 1e-3 * high else f"{low:.3g} to {high:.3g}"
     return [
@@ -187,13 +160,7 @@ def model_sentences(model: LinearModel, label: str) -> list[str]:
 
 
 def model_sections(models: Sequence[LinearModel], labels: Sequence[str], rate: float) -> list:
-    """Returns the sections on linear models of the robot.
-
-    Args:
-        models: at some operating points.
-        labels: what these are called.
-        rate: of the samples of the discrete form of the first one [Hz].
-    """
+    """Returns the sections on linear models; the discrete form of the first has the rate [Hz]."""
     shapes = Section(
         f"The modes of the platform, {labels[0]}",
         "Grey: at rest. Blue and red: both ends of the swing, enlarged so that a connector moves by"
@@ -210,37 +177,19 @@ def model_sections(models: Sequence[LinearModel], labels: Sequence[str], rate: f
 def grid_to_json(
     grid: GriddedSystem, errors: Sequence[InterpolationError], runs: Sequence[RunError]
 ) -> dict[str, Any]:
-    """Returns a gridded model by its axes and its errors as plain values.
-
-    Args:
-        grid: the gridded model.
-        errors: at points off the grid.
-        runs: beside the twin.
-    """
+    """Returns a gridded model by its axes, its errors off the grid and its runs as plain values."""
     return {
-        "axes": {name: points.tolist() for name, points in grid.axes.items()},
-        "method": grid.method,
-        "errors": {
-            key: max(getattr(e, key) for e in errors)
-            for key in ("matrix", "response", "eigenvalue")
-        },
-        "runs": [
-            {**vars(run), "scheduled": run.scheduled if np.isfinite(run.scheduled) else None}
-            for run in runs
-        ],
+        **plain_fields(grid, "axes", "method"),
+        "errors": {key: max(getattr(e, key) for e in errors) for key in ERRORS},
+        "runs": plain(runs),
     }
 
 
 def grid_sentences(
     errors: Sequence[InterpolationError], runs: Sequence[RunError]
 ) -> list[str]:  # fmt: skip
-    """Returns how good a gridded model is, in sentences.
-
-    Args:
-        errors: at points off the grid.
-        runs: beside the twin.
-    """
-    worst = {k: max(getattr(e, k) for e in errors) for k in ("matrix", "response", "eigenvalue")}
+    """Returns how good a gridded model is, in sentences."""
+    worst = {key: max(getattr(e, key) for e in errors) for key in ERRORS}
     said = [
         f"At {len(errors)} random points off the grid the interpolated model differs from the"
         f" twin's own linearisation by at most {worst['response']:.2g} of the transfer function,"

@@ -5,93 +5,30 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 
 from identification.files import write_text
+from identification.quantities import plain, plain_fields
 from identification.report.page import Section, Table
-from identification.report.style import GREY, INK, SERIES, STYLE
+from identification.report.style import GREY, INK, SERIES, styled
 from inca_mj.kinematics.cables import Cables
 from inca_mj.kinematics.jacobians import condition, jacobian, rank
 from inca_mj.robot.geometry import Geometry
 from inca_mj.twin.logs import POSE
 from inca_mj.workflows.poses import LogPoses
 
-_NAMES = ("x", "y", "z", "roll", "pitch", "yaw")
-
-
-def cables_figure(pose: np.ndarray, cables: Cables, geometry: Geometry) -> Figure:
-    """Returns a figure of the frame, the cables and the platform in space.
-
-    Args:
-        pose: x, y, z [m], roll, pitch, yaw [rad], shape (6,).
-        cables: of that pose.
-        geometry: exit points and connectors.
-    """
-    A, B = geometry.A, pose[:3] + cables.arms
-    with matplotlib.rc_context(STYLE):
-        figure = Figure((6.0, 5.2), layout="constrained")
-        ax: Any = figure.add_subplot(projection="3d")
-        for k, (a, b) in enumerate(zip(A, B, strict=True)):
-            d = cables.lengths[k]
-            ax.plot(*zip(a, b, strict=True), color=SERIES[k], label=f"cable {k + 1}: {d:.4f} m")
-            ax.plot(*zip(pose[:3], b, strict=True), color=INK, lw=2)
-        ax.scatter(*A.T, color=GREY, s=12)
-        ax.set(xlabel="x [m]", ylabel="y [m]", zlabel="z [m]")
-        ax.set_box_aspect(np.maximum(np.ptp(np.vstack([A, B]), axis=0), 0.5))
-        figure.legend(loc="outside lower center", ncols=4)
-    return figure
-
-
-def poses_figure(found: LogPoses) -> Figure:
-    """Returns a figure of the pose over time with its std, or its error if the log has a pose."""
-    with matplotlib.rc_context(STYLE):
-        figure = Figure((9.5, 5.6), layout="constrained")
-        axes = figure.subplots(2, 2, sharex=True)
-        for row, (about, unit, small) in enumerate((("position", "m", "µm"),
-                                                     ("angle", "rad", "mrad"))):  # fmt: skip
-            scale = 1e6 if row == 0 else 1e3
-            left, right = axes[row]
-            for k in range(3):
-                at, color = 3 * row + k, SERIES[k]
-                left.plot(found.log.time, found.pose[:, at], color=color, label=_NAMES[at])
-                std = scale * found.std[:, at]
-                if found.measured is None:
-                    right.plot(found.log.time, std, color=color, lw=0.8)
-                    continue
-                error = scale * (found.pose - found.measured)[:, at]
-                right.fill_between(found.log.time, -2 * std, 2 * std, color=color, alpha=0.15, lw=0)
-                right.plot(found.log.time, error, color=color, lw=0.7)
-            left.set_ylabel(f"{about} [{unit}]")
-            left.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=3)
-            what = "std of the" if found.measured is None else "error and ± 2 std of the"
-            right.set_ylabel(f"{what} {about} [{small}]")
-        for ax in axes[1]:
-            ax.set_xlabel("time [s]")
-    return figure
-
-
 INSIDE = 1.96  # std on each side that hold 95 % of a Gaussian
 
 
 def cables_json(pose: np.ndarray, cables: Cables) -> dict[str, Any]:
-    """Returns a pose and its cables as plain values.
-
-    Args:
-        pose: x, y, z [m], roll, pitch, yaw [rad], shape (6,).
-        cables: of that pose.
-    """
-    number = condition(cables)
+    """Returns a pose (6,) [m, rad] and its cables as plain values."""
     return {
-        "pose": pose.tolist(),
-        "lengths": cables.lengths.tolist(),
-        "directions": cables.directions.tolist(),
-        "cable_angles": cables.angles.tolist(),
-        "wraps": cables.wraps.tolist(),
-        "jacobian": jacobian(cables).tolist(),
+        "pose": plain(pose),
+        **plain_fields(cables, "lengths", "directions", "wraps", cable_angles="angles"),
+        "jacobian": plain(jacobian(cables)),
         "rank": rank(cables),
-        "condition": number if np.isfinite(number) else None,
+        "condition": plain(condition(cables)),
     }
 
 
@@ -144,18 +81,14 @@ def poses_json(found: LogPoses) -> dict[str, Any]:
     """Returns poses along a log as plain values."""
     return {
         "samples": len(found.log),
-        "encoder_std": found.encoder.tolist(),
-        "length_error": found.length_error,
-        "tension_error": found.tension_error,
-        "force_error": found.force_error,
+        "encoder_std": plain(found.encoder),
+        **plain_fields(found, "length_error", "tension_error", "force_error"),
         "slack_samples": int((~found.taut.all(axis=1)).sum()),
-        "mean_std": found.std.mean(axis=0).tolist(),
-        "mean_noise_std": found.noise_std.mean(axis=0).tolist(),
-        "measured": _measured(found),
-        "time": found.log.time.tolist(),
-        "pose": found.pose.tolist(),
-        "std": found.std.tolist(),
-        "tension": found.tension.tolist(),
+        "mean_std": plain(found.std.mean(axis=0)),
+        "mean_noise_std": plain(found.noise_std.mean(axis=0)),
+        "measured": plain(_measured(found)),
+        "time": plain(found.log.time),
+        **plain_fields(found, "pose", "std", "tension"),
     }
 
 
@@ -198,6 +131,8 @@ def poses_section(found: LogPoses) -> Section:
     """Returns the section on poses along a log: figure and table."""
     against = _measured(found)
     columns: tuple[str, ...] = ("coordinate", "unit", "mean std", "of it noise")
+    if against is not None:
+        columns += ("rms error", "within 95 % interval [%]")
     rows: list[tuple[object, ...]] = []
     for k, name in enumerate(POSE):
         std, noise = found.std[:, k].mean(), found.noise_std[:, k].mean()
@@ -205,8 +140,6 @@ def poses_section(found: LogPoses) -> Section:
         if against is not None:
             row += (against["rms"][k], 100 * against["inside_95"][k])
         rows.append(row)
-    if against is not None:
-        columns += ("rms error", "within 95 % interval [%]")
     return Section(
         "The pose along the log",
         f"{len(found.log)} samples, each by weighted least squares of cable lengths, balances of"
@@ -214,6 +147,51 @@ def poses_section(found: LogPoses) -> Section:
         figures=(("Pose and its std", poses_figure(found)),),
         table=Table(columns, tuple(rows)),
     )
+
+
+@styled
+def cables_figure(pose: np.ndarray, cables: Cables, geometry: Geometry) -> Figure:
+    """Returns a figure of the frame, the cables and the platform in space."""
+    A, B = geometry.A, pose[:3] + cables.arms
+    figure = Figure((6.0, 5.2), layout="constrained")
+    ax: Any = figure.add_subplot(projection="3d")
+    for k, (a, b) in enumerate(zip(A, B, strict=True)):
+        d = cables.lengths[k]
+        ax.plot(*zip(a, b, strict=True), color=SERIES[k], label=f"cable {k + 1}: {d:.4f} m")
+        ax.plot(*zip(pose[:3], b, strict=True), color=INK, lw=2)
+    ax.scatter(*A.T, color=GREY, s=12)
+    ax.set(xlabel="x [m]", ylabel="y [m]", zlabel="z [m]")
+    ax.set_box_aspect(np.maximum(np.ptp(np.vstack([A, B]), axis=0), 0.5))
+    figure.legend(loc="outside lower center", ncols=4)
+    return figure
+
+
+@styled
+def poses_figure(found: LogPoses) -> Figure:
+    """Returns a figure of the pose over time with its std, or its error if the log has a pose."""
+    figure = Figure((9.5, 5.6), layout="constrained")
+    axes = figure.subplots(2, 2, sharex=True)
+    for row, (about, unit, small) in enumerate((("position", "m", "µm"),
+                                                 ("angle", "rad", "mrad"))):  # fmt: skip
+        scale = 1e6 if row == 0 else 1e3
+        left, right = axes[row]
+        for k in range(3):
+            at, color = 3 * row + k, SERIES[k]
+            left.plot(found.log.time, found.pose[:, at], color=color, label=POSE[at])
+            std = scale * found.std[:, at]
+            if found.measured is None:
+                right.plot(found.log.time, std, color=color, lw=0.8)
+                continue
+            error = scale * (found.pose - found.measured)[:, at]
+            right.fill_between(found.log.time, -2 * std, 2 * std, color=color, alpha=0.15, lw=0)
+            right.plot(found.log.time, error, color=color, lw=0.7)
+        left.set_ylabel(f"{about} [{unit}]")
+        left.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=3)
+        what = "std of the" if found.measured is None else "error and ± 2 std of the"
+        right.set_ylabel(f"{what} {about} [{small}]")
+    for ax in axes[1]:
+        ax.set_xlabel("time [s]")
+    return figure
 
 
 def write_poses(found: LogPoses, path: Path) -> Path:

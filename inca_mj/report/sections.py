@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from identification.estimation.metrics import mean_fit
-from identification.report.compare_figure import compare_figure
+from identification.report.effect_words import parameter_words
+from identification.report.figures import compare_figure
 from identification.report.page import Section, Table
-from identification.report.parameter_words import parameter_words
 from inca_mj.report.figures import crosscheck_figure, simulation_figures, tracking_figure
 
 if TYPE_CHECKING:

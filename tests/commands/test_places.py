@@ -9,9 +9,9 @@ from folder_cases import content, made
 from identification.__main__ import main as identification
 from identification.errors import InputError
 from identification.folders import MADE, list_foreign, whole_folder
-from identification.report.compare_figure import compare_figure
 from identification.report.discovery_figures import gap_figure, rms_figure
-from identification.report.vector import svg
+from identification.report.figures import compare_figure
+from identification.report.media import svg
 from inca_mj.cli import main as inca
 
 LOG = "time,i1\n0,1\n"

@@ -21,8 +21,8 @@ from identification.innovations import fitted_model, forward_selection, state
 from identification.innovations.state import first_state, next_state
 from identification.innovations.verdict import conclude
 from identification.report.discovery_json import discovery_to_json
-from identification.report.discovery_sections import FAILED
-from identification.report.discovery_text import discovery_text
+from identification.report.discovery_report import discovery_text
+from identification.report.effect_sections import FAILED
 
 TRUTH = {"offset.f": -0.8, "rubbing.c": 1.0}
 KEY = ("rubbing", "joint")

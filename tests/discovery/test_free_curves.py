@@ -28,7 +28,7 @@ from identification.innovations.replacement import replace_effect
 from identification.kalman.linear import LinearPlant
 from identification.model.predictor import Predictor
 from identification.report.discovery_json import discovery_to_json
-from identification.report.discovery_text import discovery_text
+from identification.report.discovery_report import discovery_text
 
 N = 1000
 ROBOT = {"mass": 2.2, "damping": 2.7, "x0": 0.01, "v0": 0.02}

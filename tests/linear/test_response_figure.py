@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from identification.linear.system import LinearSystem
-from identification.report.linear_figures import response_figure
+from identification.report.linear import response_figure
 
 CORNER = 2.0  # of a lag of first order [Hz]
 

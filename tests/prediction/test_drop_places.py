@@ -27,9 +27,9 @@ from identification.prediction.task import RecordsTask
 from identification.prediction.trial import Contender
 from identification.prediction.unseen import compare
 from identification.prediction.verdict import conclude
-from identification.report.curve_nodes import curve_nodes
 from identification.report.discovery_json import discovery_to_json
 from identification.report.effect_words import describe_there
+from identification.report.named_words import curve_nodes
 
 PLACES, HORIZON, NOISE = ["joint shoulder", "joint elbow"], 0.2, 3e-4
 SIZES = ("quadratic_friction.c@shoulder", "quadratic_friction.c@elbow")

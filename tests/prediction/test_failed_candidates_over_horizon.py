@@ -23,8 +23,7 @@ from identification.prediction.state import first_state, next_state
 from identification.prediction.task import RecordsTask
 from identification.prediction.verdict import conclude
 from identification.report.discovery_json import discovery_to_json
-from identification.report.discovery_report import write_discovery_report
-from identification.report.discovery_text import discovery_text
+from identification.report.discovery_report import discovery_text, write_discovery_report
 
 SIZE, NAME, WHERE = "quadratic_friction.c@hinge", "quadratic_friction", "joint hinge"
 KEY, TRUE = (NAME, WHERE), 0.01

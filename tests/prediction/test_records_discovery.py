@@ -15,8 +15,7 @@ from identification.effects.joint_plant import candidates
 from identification.errors import InputError
 from identification.prediction.discovery import discover_records
 from identification.report.discovery_json import discovery_to_json
-from identification.report.discovery_report import write_discovery_report
-from identification.report.discovery_text import discovery_text
+from identification.report.discovery_report import discovery_text, write_discovery_report
 from identification.report.finding_words import describe_finding
 
 SAMPLES = 300  # of each record

@@ -10,7 +10,7 @@ import pytest
 from identification import Log, fit
 from identification.model.protocol import FINER
 from identification.prediction.std import StepShift, step_shift
-from identification.report.step_words import step_sentences
+from identification.report.fitted_values import step_sentences
 from identification.robot.file import read_robot_file
 from identification.robot.robot import robot_of
 

@@ -8,10 +8,10 @@ from PIL import Image
 
 from identification.errors import InputError
 from identification.report import media
-from identification.report.compare_figure import compare_figure
+from identification.report.figures import compare_figure
+from identification.report.media import svg
 from identification.report.page import Section, Table, write_report
 from identification.report.style import save_png
-from identification.report.vector import svg
 from inca_mj.rendering.legend import SLACK, tension_scale
 from inca_mj.report.figures import crosscheck_figure, simulation_figures
 

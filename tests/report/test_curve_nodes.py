@@ -5,8 +5,8 @@ import pytest
 from joint_cases import arm, reached, seen, share, slider
 
 from identification.effects.effect import Candidate
-from identification.report.curve_nodes import curve_nodes, nodes_sentence
 from identification.report.effect_words import describe_there
+from identification.report.named_words import curve_nodes, nodes_sentence
 
 C = (1.0, -2.0, 3.0, -4.0, 5.0, -6.0, 7.0, -8.0)
 FIELD = {"speed": "v", "load": "f_u", "position": "q", "time": "time",

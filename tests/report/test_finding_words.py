@@ -8,7 +8,7 @@ import pytest
 from finding_cases import EVIDENCE_OF, FINDINGS
 
 from identification.discovery.findings.finding import Finding, FindingKind
-from identification.report.finding_json import finding_to_json
+from identification.report.discovery_json import finding_to_json
 from identification.report.finding_words import (
     FOLLOWED,
     HOLDS,

@@ -14,12 +14,17 @@ from matplotlib.figure import Figure
 
 from identification.report import media
 from identification.report.discovery_report import write_discovery_report
-from identification.report.media import drawing
-from identification.report.origin import _command, origin
-from identification.report.page import LONG, Section, Table, write_report
+from identification.report.media import DARK, drawing, svg
+from identification.report.page import (
+    LONG,
+    Section,
+    Table,
+    _command,
+    origin,
+    whole_quantities,
+    write_report,
+)
 from identification.report.style import SERIES, save_png
-from identification.report.vector import DARK, svg
-from identification.report.whole_quantities import whole_quantities
 
 SVG = "{http://www.w3.org/2000/svg}"
 

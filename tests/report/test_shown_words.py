@@ -11,10 +11,10 @@ from identification.discovery.effect_results import Detectable
 from identification.effects.effect import Candidate, Effect, Size
 from identification.model.parameter import with_own
 from identification.report.discovery_json import discovery_to_json
-from identification.report.discovery_tables import parameters_section
+from identification.report.discovery_sections import parameters_section
+from identification.report.effect_words import describe_parameter, parameter_words, words_of
 from identification.report.fitted_values import FEW as FEW_PARTS
 from identification.report.fitted_values import shown_values, unknown_shares
-from identification.report.parameter_words import describe_parameter, parameter_words, words_of
 from identification.report.shown_words import (
     FEW,
     LISTED,
@@ -52,7 +52,8 @@ def test_every_line_has_a_place_and_few_have_one() -> None:
 
 
 def test_the_hardest_is_first_and_what_never_shows_before_it() -> None:
-    names = [s.candidate.effect.name for s in shown_effects([*MANY, *BLIND])]
+    seen, never = shown_effects([*MANY, *BLIND])
+    names = [s.sizes[0].candidate.effect.name for s in (*never, *seen)]
     assert names == ["creep", "backlash", *(f"law_{k}" for k in reversed(range(60)))]
 
 

@@ -7,7 +7,7 @@ import pytest
 from fake_discovery import DRIVE_3, NOISE, REJECTED, SLOW, found
 
 from identification.report.discovery_json import discovery_to_json
-from identification.report.discovery_text import discovery_text
+from identification.report.discovery_report import discovery_text
 from identification.report.discovery_verdict import discovery_verdict
 from identification.report.effect_words import describe_effect
 from identification.report.finding_words import describe_finding, sentence

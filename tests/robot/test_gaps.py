@@ -14,7 +14,7 @@ from robot_cases import refused, simulated
 
 from identification import InputError, Predictor, fit, read_robot, write_log
 from identification.logs.decimation import decimate
-from identification.report.windows_figure import windows_figure
+from identification.report.figures import windows_figure
 from identification.windows.windows import windows
 
 DROPPED = range(60, 76)  # while the drive turns the pendulum round

@@ -14,10 +14,10 @@ from identification import InputError, discover, fit, read_robot
 from identification.estimation.metrics import relative
 from identification.prediction.record_errors import error_unit, errors_by_unit
 from identification.report.discovery_json import discovery_to_json
+from identification.report.discovery_report import discovery_text
 from identification.report.discovery_sections import gap_section, where_section
-from identification.report.discovery_text import discovery_text
 from identification.report.fit_verdict import fit_verdict
-from identification.report.vector import svg
+from identification.report.media import svg
 from identification.robot.fit_json import worse_unit
 from identification.robot.record_error import AS_WRITTEN, FITTED, Confirmation
 
@@ -93,7 +93,7 @@ def test_a_discovery_tells_each_unit_and_what_would_be_better():
     assert "The outputs have several units (rad, m), and a free run counts" in text
     assert "several units" not in discovery_text(fake)
     for section in (gap_section(answer), *where_section(answer)):
-        assert all("svg" in svg(figure) for _, figure in section.figures)
+        assert all("svg" in svg(figure) for _, figure in section.drawn)
     gap = discovery_to_json(answer)["gap"]
     assert gap["after"]["rms_by_unit"] == by["after"]
     assert gap["noise_rms_by_unit"] == {"rad": 9e-4, "m": 2e-5}

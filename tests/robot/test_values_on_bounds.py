@@ -15,7 +15,7 @@ from identification import discover, fit, read_robot, write_log
 from identification.effects.moving_bodies import Felt
 from identification.model.coordinates import coordinates
 from identification.model.parameter import Parameter, ParameterSet
-from identification.report.discovery_text import discovery_text
+from identification.report.discovery_report import discovery_text
 from identification.robot.fit_json import robot_fit_to_json
 from identification.robot.write import write_robot
 

@@ -2,14 +2,79 @@
 
 from __future__ import annotations
 
-import matplotlib
+from collections.abc import Callable
+from functools import partial
+from typing import TYPE_CHECKING
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from identification.discovery.recovered_force import LawLine, RecoveredForce
+from identification.discovery.result import Discovery
+from identification.errors import DivergenceError
+from identification.quantities import quantity
 from identification.report.effect_words import describe_effect
-from identification.report.style import GREY, INK, MEASURED, SERIES, STYLE, literal
+from identification.report.page import Section
+from identification.report.style import GREY, INK, MEASURED, SERIES, literal, styled
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+LAWS = "The physics that was found"
+HOW = (
+    "The points are the force that the data ask for: in the place of the law the fit got a curve"
+    " whose nodes are free, so that nothing holds the points near the law. All other parameters are"
+    " those of the fit with the law. Bars and band are of 95 %: the bars hold the noise, the band"
+    " what is not known of the law's own parameters. Where the law is right, the points lie on it;"
+    " where they leave it, another law is at work there."
+)
+RECOVERED = {  # by what errors are of
+    "free run": "",
+    "windows": " They are recovered over windows, each of which begins in the state that explains"
+    " it best, so that what a state can explain is not counted; a rival's law has the sizes of its"
+    " own fit.",
+}
+NONE = (
+    "{effect}: not drawn. It acts at several places at once, or by more than one quantity together,"
+    " so that there is nothing to draw it against. The figures of the gap show what it does."
+)
+
+
+def law_sections(found: Discovery) -> list[Section]:
+    """Returns the section on the recovered forces; none where nothing is named."""
+    each = [
+        (n.candidate, _if_simulated(partial(found.recover, n.candidate, n.rivals)))
+        for n in found.named
+    ]
+    if not each:
+        return []
+    figures: list[tuple[str, Figure]] = []
+    drawn = any(of is not None for _, of in each)
+    said = [HOW + RECOVERED[found.judged_by]] if drawn else []
+    for candidate, of in each:
+        effect = describe_effect(candidate)
+        if of is None:
+            said.append(NONE.format(effect=effect[0].upper() + effect[1:]))
+            continue
+        what = "error" if "reading" in candidate.effect.hooks else "force"
+        figures.append((f"Missing {what} and its law: {effect}", law_figure(of)))
+        most = quantity(float(np.abs(of.law.force).max()), unit=of.units[1])
+        said.append(
+            f"{effect[0].upper()}{effect[1:]}: {candidate.effect.law}. Along this motion it is"
+            f" {most} at most, which need not be the value of one of its parameters."
+        )
+    return [Section(LAWS, "\n\n".join(said), figures=tuple(figures))]
+
+
+def _if_simulated(recover: Callable[[], RecoveredForce | None]) -> RecoveredForce | None:
+    """Returns a recovered force; None where the changed law, or a rival's, diverges."""
+    try:
+        return recover()
+    except DivergenceError:
+        return None
+
 
 SURE = 1.96  # std on each side of 95 %
 RIVALS = 2  # that are drawn, the likeliest
@@ -22,32 +87,29 @@ FOLLOWS = {
 }  # fmt: skip
 
 
+@styled
 def law_figure(of: RecoveredForce) -> Figure:
     """Returns a figure of recovered points with bars, the law with its band, and up to two rivals.
 
     A law that changes in a small part of the range has a second panel of that part.
-
-    Args:
-        of: the recovered force.
     """
     x_unit, unit = of.units
     top = max(np.abs(of.law.force).max(), np.abs(of.points.force).max(initial=0.0))
     factor, said = (1e3, f"m{unit}") if top < SMALL and unit else (1.0, unit)
     near = _bends(of)
-    with matplotlib.rc_context(STYLE):
-        figure = Figure((9.0 if near else 7.0, 3.8), layout="constrained")
-        panels = figure.subplots(1, 2 if near else 1, squeeze=False)[0]
-        for ax in panels:
-            _draw(ax, of, factor)
-            ax.set_xlabel(literal(_follows(of) + (f" [{x_unit}]" if x_unit else "")))
-        if near:
-            panels[0].set_title("all of it", loc="left", color=INK)
-            panels[1].set_title("where it bends", loc="left", color=INK)
-            panels[1].set_xlim(*near)
-        panels[0].set_ylabel(literal(_force(of) + (f" [{said}]" if said else "")))
-        figure.legend(
-            *panels[0].get_legend_handles_labels(), loc="outside upper center", ncols=2, fontsize=8
-        )
+    figure = Figure((9.0 if near else 7.0, 3.8), layout="constrained")
+    panels = figure.subplots(1, 2 if near else 1, squeeze=False)[0]
+    for ax in panels:
+        _draw(ax, of, factor)
+        ax.set_xlabel(literal(_follows(of) + (f" [{x_unit}]" if x_unit else "")))
+    if near:
+        panels[0].set_title("all of it", loc="left", color=INK)
+        panels[1].set_title("where it bends", loc="left", color=INK)
+        panels[1].set_xlim(*near)
+    panels[0].set_ylabel(literal(_force(of) + (f" [{said}]" if said else "")))
+    figure.legend(
+        *panels[0].get_legend_handles_labels(), loc="outside upper center", ncols=2, fontsize=8
+    )
     return figure
 
 
