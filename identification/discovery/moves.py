@@ -3,8 +3,9 @@
     growing moves     the first that adds an effect is taken, and all of them are asked again
     finishing moves   once none adds an effect, or there is room for no more, each is asked once
 
-The two kinds of evidence (the innovations of a free run, predictions over a horizon) have moves of
-their own, and search in this one loop.
+What tells one model from another is an `Evidence`: the innovations of a free run
+(`identification.innovations`), or predictions over a horizon (`identification.prediction`). Each
+has moves, and both search in this one loop.
 """
 
 from __future__ import annotations
@@ -13,10 +14,42 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any, Generic, TypeVar
+from typing import Any, Generic, Protocol, TypeVar
 
 from identification.discovery.attempts import Failed, attempt, collected
+from identification.discovery.nominal_model import NominalModel
+from identification.discovery.options import DiscoveryOptions
+from identification.discovery.result import Discovery
+from identification.effects.effect import Candidate, Effect
+from identification.pool import one_blas_thread
 from identification.progress import Progress
+
+
+@dataclass(frozen=True, kw_only=True)
+class Task:
+    """The question of a search: what does this model lack? An evidence adds the data.
+
+    Attributes:
+        nominal_model: the model with every candidate effect compiled in, and its free parameters.
+        effects: the candidates.
+        options: all judgement constants.
+    """
+
+    nominal_model: NominalModel
+    effects: tuple[Effect, ...]
+    options: DiscoveryOptions
+
+
+class Trial(Protocol):
+    """An effect that was refitted beside those that a model has."""
+
+    @property
+    def model(self) -> Any:
+        """The model with it, and what speaks for it there."""
+
+    @property
+    def candidate(self) -> Candidate:
+        """The effect at its place, with its shapes."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -29,7 +62,7 @@ class SearchState:
         nominal: the fitted model without effects.
         nominal_scores: of all candidates on the nominal fit, the best first.
         model: the fitted model with the accepted effects.
-        accepted: the effects that were accepted, in that order.
+        accepted: the effects that were accepted, each a `Trial`, in that order.
         scores: of the candidates that the model does not have, on it, the best first.
         rejected: what the last round refitted and did not accept, the best first.
         seconds: wall time by kind of work [s].
@@ -82,37 +115,103 @@ class Move(Generic[State]):
         return self.name.replace("_", " ")
 
 
-def asked_anew(state: State, every: Sequence[Move[State]]) -> tuple[Move[State], ...]:
-    """Returns the moves that are to be asked of a model with one more effect, or with none.
+@dataclass(frozen=True)
+class Evidence(Generic[State]):
+    """What tells one model from another: it alone knows how a model is fitted, scored and proven.
+
+    Attributes:
+        first: returns the state after the nominal fit of a task, with all candidates scored.
+        moves: those that a state is asked, in their order.
+        conclude: returns the outcome of a finished search.
+    """
+
+    first: Callable[[Any, Progress], State]
+    moves: tuple[Move[State], ...]
+    conclude: Callable[[State], Discovery]
+
+    def begin(self, task: Task, progress: Progress) -> State:
+        """Returns the state with which a search begins.
+
+        Args:
+            task: what is asked.
+            progress: is told a line per step.
+
+        Raises:
+            InputError: the data do not suffice, or a free parameter has no effect on any output.
+            DivergenceError: the nominal model cannot be simulated.
+        """
+        state = self.first(task, progress)
+        return replace(state, moves=self.asked(state))
+
+    def asked(self, state: State) -> tuple[Move[State], ...]:
+        """Returns the moves to be asked of a model with one more effect, or with none."""
+        used = [m for m in self.moves if m.name not in state.task.options.without]
+        return tuple(m for m in used if not m.grows or state.room > 0)
+
+    def step(self, state: State, progress: Progress) -> State:
+        """Returns the state after one more move; a finished state stays as it is.
+
+        A move that fails is told and skipped: what was found before it stands.
+
+        Args:
+            state: the state before.
+            progress: is told a line per refit.
+        """
+        if state.is_finished:
+            return state
+        move, *rest = state.moves
+        with collected(progress, state.failed) as failed:
+            new = attempt(f"the move {move}", partial(move.make, state, progress)) or state
+        new = replace(new, failed=tuple(failed))
+        if [*map(id, new.accepted)] != [*map(id, state.accepted)]:
+            new = replace(new, made=(*new.made, move.name))
+        grown = len(new.accepted) > len(state.accepted)
+        return replace(new, moves=self.asked(new) if grown else tuple(rest))
+
+    @one_blas_thread()
+    def search(self, task: Task, progress: Progress | None = None) -> Discovery:
+        """Returns what a model lacks, as far as the data tell it.
+
+        Args:
+            task: what is asked.
+            progress: is told a line per step.
+
+        Raises:
+            InputError: as `begin`.
+            DivergenceError: as `begin`.
+        """
+        say = progress or _say_nothing
+        state = self.begin(task, say)
+        while not state.is_finished:
+            state = self.step(state, say)
+        return self.conclude(state)
+
+
+T = TypeVar("T", bound=Trial)
+
+
+def drop_needless(
+    model: Any, accepted: Sequence[T], without: Callable[[Any, T], Any], progress: Progress
+) -> tuple[tuple[T, ...], Any]:
+    """Returns the effects that are still needed, and the model with them.
 
     Args:
-        state: with its model and its options.
-        every: all moves of this kind of evidence, in their order.
+        model: with all effects.
+        accepted: the effects in the order of their acceptance; the last one was just proven.
+        without: returns the refit of a model without one of them; None where it is needed.
+        progress: is told a line per effect that is dropped.
     """
-    used = [m for m in every if m.name not in state.task.options.without]
-    return tuple(m for m in used if not m.grows or state.room > 0)
+    kept = [*accepted]
+    for old in accepted[:-1]:
+        less = without(model, old)
+        if less is not None:
+            progress(f"{old.candidate.effect.name}, {old.candidate.where}: no longer needed")
+            model, kept = less, [k for k in kept if k is not old]
+    return tuple(kept), model
 
 
-def next_state(state: State, every: Sequence[Move[State]], progress: Progress) -> State:
-    """Returns the state after one more move; a finished state stays as it is.
-
-    A move that fails is told and skipped: what was found before it stands.
-
-    Args:
-        state: the state before.
-        every: all moves of this kind of evidence, in their order.
-        progress: is told a line per refit.
-    """
-    if state.is_finished:
-        return state
-    move, *rest = state.moves
-    with collected(progress, state.failed) as failed:
-        new = attempt(f"the move {move}", partial(move.make, state, progress)) or state
-    new = replace(new, failed=tuple(failed))
-    if [*map(id, new.accepted)] != [*map(id, state.accepted)]:
-        new = replace(new, made=(*new.made, move.name))
-    grown = len(new.accepted) > len(state.accepted)
-    return replace(new, moves=asked_anew(new, every) if grown else tuple(rest))
+def _say_nothing(line: str) -> None:
+    """Ignores a line of progress."""
 
 
 class Watch:

@@ -4,22 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from identification.discovery.moves import Evidence
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.result import Discovery
 from identification.effects.effect import Effect
 from identification.errors import InputError
 from identification.innovations.forecast import forecast, refuse_large
-from identification.innovations.state import first_state, next_state
+from identification.innovations.state import MOVES, first_state
 from identification.innovations.task import DiscoveryTask
 from identification.innovations.verdict import conclude
 from identification.logs.joined import records_of, rows_of
 from identification.logs.log import Log
-from identification.pool import one_blas_thread
 from identification.progress import Progress
 
+INNOVATIONS = Evidence(first_state, MOVES, conclude)
 
-@one_blas_thread()
+
 def discover(
     nominal_model: NominalModel,
     log: Log,
@@ -44,18 +45,15 @@ def discover(
             or a free parameter has no effect.
         DivergenceError: the nominal model cannot be simulated.
     """
-    options, say = options or DiscoveryOptions(), progress or _say_nothing
+    options = options or DiscoveryOptions()
     refuse_unfit(log, options)
     shared = tuple(effect for effect in effects if not (effect.own or effect.is_curve))
-    task = DiscoveryTask(nominal_model, log, shared, options)
+    task = DiscoveryTask(nominal_model=nominal_model, log=log, effects=shared, options=options)
     needs = forecast(task)
     refuse_large(needs, options.max_memory_share, least=2 * options.min_samples)
-    if needs.is_large:
-        say(str(needs))
-    state = first_state(task, say)
-    while not state.is_finished:
-        state = next_state(state, say)
-    return conclude(state)
+    if needs.is_large and progress is not None:
+        progress(str(needs))
+    return INNOVATIONS.search(task, progress)
 
 
 def refuse_unfit(log: Log, options: DiscoveryOptions) -> None:
@@ -83,7 +81,3 @@ def refuse_unfit(log: Log, options: DiscoveryOptions) -> None:
             "the log's part 'estimation' does not begin where the log begins; discovery fits the"
             " beginning and confirms on the rest: change the split in the log's TOML"
         )
-
-
-def _say_nothing(line: str) -> None:
-    """Ignores a line of progress."""

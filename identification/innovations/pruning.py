@@ -31,20 +31,18 @@ from identification.innovations.scoring.significance import select_plausible
 from identification.innovations.task import DiscoveryTask
 
 
-def eliminate(
-    task: DiscoveryTask, accepted: Sequence[AcceptedEffect], model: FittedModel
-) -> tuple[tuple[AcceptedEffect, ...], FittedModel]:
-    """Drop effects that later ones have made needless; the last one was just proven."""
-    kept = list(accepted)
-    for old in accepted[:-1]:
-        if _is_needed(task, model, old.candidate):
-            continue
-        rest = tuple(c for c in model.candidates if c is not old.candidate)
-        least = model.log_posterior_of_equal(_count(model, old.candidate))
-        without = try_fit(task, rest, model.refit.point.values, model, least=least)
-        if without is not None and without.negative_bic > model.negative_bic:
-            kept, model = [a for a in kept if a is not old], without
-    return tuple(kept), model
+def without_needless(
+    task: DiscoveryTask, model: FittedModel, old: AcceptedEffect
+) -> FittedModel | None:
+    """Returns the model without an effect where its BIC is the better one; else None."""
+    if _is_needed(task, model, old.candidate):
+        return None
+    rest = tuple(c for c in model.candidates if c is not old.candidate)
+    least = model.log_posterior_of_equal(_count(model, old.candidate))
+    without = try_fit(task, rest, model.refit.point.values, model, least=least)
+    if without is None or without.negative_bic <= model.negative_bic:
+        return None
+    return without
 
 
 def _is_needed(task: DiscoveryTask, model: FittedModel, candidate: Candidate) -> bool:

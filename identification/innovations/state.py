@@ -9,11 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 from identification.discovery.attempts import collected, tell_lost
 from identification.discovery.candidates import list_common, list_single
-from identification.discovery.moves import Move, SearchState, Watch, asked_anew
-from identification.discovery.moves import next_state as next_of
+from identification.discovery.moves import Move, SearchState, Watch, drop_needless
 from identification.discovery.passes import uses
 from identification.innovations.deviants import accept_deviants, within_bounds
 from identification.innovations.fitted_model import (
@@ -26,7 +26,7 @@ from identification.innovations.fitted_model import (
 from identification.innovations.forward_selection import select_effect
 from identification.innovations.kinds import improve_kinds
 from identification.innovations.pairs import find_pair
-from identification.innovations.pruning import eliminate, exchange
+from identification.innovations.pruning import exchange, without_needless
 from identification.innovations.scoring.scores import Score
 from identification.innovations.scoring.sensitivities import Sensitivity, compute_sensitivities
 from identification.innovations.task import DiscoveryTask
@@ -44,6 +44,7 @@ class InnovationSearch(SearchState):
         unproven: the likeliest model of the last round that is half proven; None without one.
     """
 
+    accepted: tuple[AcceptedEffect, ...]
     sensitivities: tuple[Sensitivity, ...]
     unproven: FittedModel | None = None
 
@@ -72,17 +73,11 @@ def first_state(task: DiscoveryTask, progress: Progress) -> InnovationSearch:
     scores = score_candidates(nominal, sensitivities, task.options)
     watch.stop("scores")
     progress(f"{len(scores)} candidates scored, {scores[0].candidate.effect.name} first")
-    state = InnovationSearch(
+    return InnovationSearch(
         task=task, moves=(), nominal=nominal, sensitivities=sensitivities,
         nominal_scores=scores, model=nominal, accepted=(), scores=scores, rejected=(),
         seconds=watch.seconds, failed=tuple(failed),
     )  # fmt: skip
-    return replace(state, moves=asked_anew(state, MOVES))
-
-
-def next_state(state: InnovationSearch, progress: Progress) -> InnovationSearch:
-    """Returns the state after one more move, as `identification.discovery.moves.next_state`."""
-    return next_of(state, MOVES, progress)
 
 
 def _with_scatter(task: DiscoveryTask, nominal: FittedModel) -> tuple[DiscoveryTask, FittedModel]:
@@ -136,9 +131,9 @@ def add_deviants(state: InnovationSearch, progress: Progress) -> InnovationSearc
 
 def drop_effects(state: InnovationSearch, progress: Progress) -> InnovationSearch:
     """Returns the state without effects that later ones have made needless."""
-    del progress
     watch = Watch(state.seconds)
-    kept, model = eliminate(state.task, state.accepted, state.model)
+    without = partial(without_needless, state.task)
+    kept, model = drop_needless(state.model, state.accepted, without, progress)
     return _pruned(state, kept, model, watch)
 
 

@@ -4,22 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+from identification.discovery.moves import Evidence
 from identification.discovery.nominal_model import NominalModel, without_starts
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.result import Discovery
 from identification.effects.effect import Effect
 from identification.errors import InputError
 from identification.logs.log import Log
-from identification.pool import one_blas_thread
 from identification.prediction.records import as_records
 from identification.prediction.records_fit import NO_HORIZON
-from identification.prediction.state import first_state, next_state
+from identification.prediction.state import MOVES, first_state
 from identification.prediction.task import RecordsTask
 from identification.prediction.verdict import conclude
 from identification.progress import Progress
 
+WINDOWS = Evidence(first_state, MOVES, conclude)
 
-@one_blas_thread()
+
 def discover_records(
     nominal_model: NominalModel,
     fit: Sequence[Log],
@@ -51,14 +52,6 @@ def discover_records(
     records = as_records(fit, confirm, values)
     task = RecordsTask(
         nominal_model=without_starts(nominal_model), records=records, effects=tuple(effects),
-        horizon=nominal_model.horizon, options=options or DiscoveryOptions(),
+        options=options or DiscoveryOptions(),
     )  # fmt: skip
-    say = progress or _say_nothing
-    state = first_state(task, say)
-    while not state.is_finished:
-        state = next_state(state, say)
-    return conclude(state)
-
-
-def _say_nothing(line: str) -> None:
-    """Ignores a line of progress."""
+    return WINDOWS.search(task, progress)

@@ -7,11 +7,8 @@ then drop effects and places, and what a curve of the data does
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from identification.discovery.attempts import collected
-from identification.discovery.moves import Move, Watch, asked_anew
-from identification.discovery.moves import next_state as next_of
+from identification.discovery.moves import Move, Watch
 from identification.discovery.passes import uses
 from identification.errors import InputError
 from identification.prediction.blocks import count_blocks
@@ -76,12 +73,11 @@ def first_state(task: RecordsTask, progress: Progress) -> WindowSearch:
     watch.stop("scores")
     if scores:
         progress(f"{len(scores)} candidates scored, {scores[0].candidate.effect.name} first")
-    state = WindowSearch(
+    return WindowSearch(
         task=task, moves=(), begun=begun, nominal=nominal, nominal_scores=scores,
         model=nominal, accepted=(), scores=scores, rejected=(),
         seconds=watch.seconds, worse_fit=worse, failed=tuple(failed),
     )  # fmt: skip
-    return replace(state, moves=asked_anew(state, MOVES))
 
 
 def _refuse_few(unseen: Unseen, horizon: float) -> None:
@@ -97,8 +93,3 @@ def _refuse_few(unseen: Unseen, horizon: float) -> None:
             f" prove anything; give at least {2 * FEWEST_BLOCKS} windows, by longer records or a"
             " shorter horizon"
         )
-
-
-def next_state(state: WindowSearch, progress: Progress) -> WindowSearch:
-    """Returns the state after one more move, as `identification.discovery.moves.next_state`."""
-    return next_of(state, MOVES, progress)

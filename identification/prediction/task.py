@@ -5,10 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from identification.discovery.moves import SearchState, Watch
-from identification.discovery.nominal_model import NominalModel
-from identification.discovery.options import DiscoveryOptions
-from identification.effects.effect import Effect
+from identification.discovery.moves import SearchState, Task, Watch
 from identification.prediction.model import WindowModel
 from identification.prediction.records import Record
 from identification.prediction.trial import Contender
@@ -17,22 +14,19 @@ from identification.progress import Progress
 
 
 @dataclass(frozen=True, kw_only=True)
-class RecordsTask:
-    """The task of a discovery.
+class RecordsTask(Task):
+    """What does this model lack to explain these records?
 
     Attributes:
-        nominal_model: the model with every candidate effect compiled in, and its free parameters.
-        horizon: over which records are predicted [s].
         records: to fit and to confirm.
-        effects: the candidates.
-        options: all judgement constants.
     """
 
-    nominal_model: NominalModel
-    horizon: float
     records: tuple[Record, ...]
-    effects: tuple[Effect, ...]
-    options: DiscoveryOptions
+
+    @property
+    def horizon(self) -> float:
+        """The time over which records are predicted [s]."""
+        return float(self.nominal_model.horizon or 0.0)
 
     @property
     def confirm(self) -> list[Record]:
@@ -53,6 +47,7 @@ class WindowSearch(SearchState):
         exchanged: the model with the roles of the records exchanged; None where it was not needed.
     """
 
+    accepted: tuple[Contender, ...]
     begun: Unseen
     worse_fit: Unseen | None = None
     exchanged: WindowModel | None = None

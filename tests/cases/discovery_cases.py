@@ -13,9 +13,10 @@ from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate, Effect, Size
 from identification.estimation.priors import Priors
+from identification.innovations.discovery import INNOVATIONS
 from identification.innovations.scoring.scores import score
 from identification.innovations.scoring.sensitivities import Sensitivity
-from identification.innovations.state import InnovationSearch, first_state, next_state
+from identification.innovations.state import InnovationSearch
 from identification.innovations.task import DiscoveryTask
 from identification.kalman.linear import LinearPlant
 from identification.kalman.point import Point
@@ -152,7 +153,9 @@ def nominal_model(**values):
 
 def task(log, options=OPTIONS, model=None):
     """What does the slider, or another model, lack to explain a log?"""
-    return DiscoveryTask(model or nominal_model(), log, EFFECTS, options)
+    return DiscoveryTask(
+        nominal_model=model or nominal_model(), log=log, effects=EFFECTS, options=options
+    )
 
 
 def steps(samples, seed=1, hold=10):
@@ -193,11 +196,11 @@ def stepped(state: InnovationSearch) -> list[InnovationSearch]:
     """A state and all that follow it, the finished one last."""
     seen = [state]
     while not seen[-1].is_finished:
-        seen.append(next_state(seen[-1], print))
+        seen.append(INNOVATIONS.step(seen[-1], print))
     return seen
 
 
 @cache
 def searched(**values) -> list[InnovationSearch]:
     """Every state of a search in a disturbed log."""
-    return stepped(first_state(task(disturbed(**values)), print))
+    return stepped(INNOVATIONS.begin(task(disturbed(**values)), print))

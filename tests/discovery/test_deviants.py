@@ -63,7 +63,9 @@ def asked(**values):
         deviants={"part.k": ("spring", "joint"), "part.f": ("offset", "joint")},
     )  # fmt: skip
     truth = {"mass": 2.2, "damping": 2.7, "x0": 0.01, "v0": 0.02, **values}
-    task = DiscoveryTask(model, record(cart(**truth)), EFFECTS, OPTIONS)
+    task = DiscoveryTask(
+        nominal_model=model, log=record(cart(**truth)), effects=EFFECTS, options=OPTIONS
+    )
     return task, fit_model(task, (), {})
 
 

@@ -18,7 +18,7 @@ from identification.discovery.attempts import Failed, attempt, attempt_each, col
 from identification.effects.effect import Candidate
 from identification.errors import DivergenceError, InputError
 from identification.innovations import fitted_model, forward_selection, state
-from identification.innovations.state import first_state, next_state
+from identification.innovations.discovery import INNOVATIONS
 from identification.innovations.verdict import conclude
 from identification.report.discovery_json import discovery_to_json
 from identification.report.discovery_report import discovery_text
@@ -55,7 +55,7 @@ def test_a_candidate_that_fails_is_rejected_and_told_and_the_search_goes_on(
 ):
     bad, said = failing(monkeypatch, how), []
     bad.within(monkeypatch, module, function)
-    states = stepped(first_state(task(disturbed(**TRUTH)), said.append))
+    states = stepped(INNOVATIONS.begin(task(disturbed(**TRUTH)), said.append))
     assert bad.reached
     assert states[-1].is_finished
     found = conclude(states[-1])
@@ -80,7 +80,7 @@ def test_an_accepted_effect_that_fails_as_the_others_are_dropped_or_exchanged_st
     assert {n.name for n in found.named} | {r.name for r in found.rejected} >= {"rubbing"}
 
 
-@pytest.mark.parametrize("stage", ["select_effect", "eliminate"])
+@pytest.mark.parametrize("stage", ["select_effect", "without_needless"])
 def test_a_step_that_fails_as_a_whole_is_told_and_skipped(stage, monkeypatch):
     first, said = searched(**TRUTH)[0], []
 
@@ -90,7 +90,7 @@ def test_a_step_that_fails_as_a_whole_is_told_and_skipped(stage, monkeypatch):
     monkeypatch.setattr(state, stage, fails)
     now = first
     while not now.is_finished:
-        now = next_state(now, said.append)
+        now = INNOVATIONS.step(now, said.append)
     (one,) = (f for f in now.failed if not f.where)
     assert one.reason == "a force is not finite"
     assert str(one) in said
@@ -101,7 +101,7 @@ def test_a_step_that_fails_as_a_whole_is_told_and_skipped(stage, monkeypatch):
 def test_the_nominal_model_ends_a_search_and_nothing_else(how, monkeypatch):
     bad = failing(monkeypatch, how, "mass")
     with bad.active(), pytest.raises(InputError):
-        first_state(task(disturbed(**TRUTH)), print)
+        INNOVATIONS.begin(task(disturbed(**TRUTH)), print)
 
 
 def test_a_failure_is_told_once_and_without_what_nobody_can_follow():

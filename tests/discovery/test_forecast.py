@@ -11,9 +11,8 @@ from identification import InputError
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
 from identification.innovations import forecast as module
-from identification.innovations.discovery import discover
+from identification.innovations.discovery import INNOVATIONS, discover
 from identification.innovations.forecast import Forecast, forecast, refuse_large
-from identification.innovations.state import first_state
 from identification.innovations.task import DiscoveryTask
 
 FREE = ("mass", "damping")
@@ -23,7 +22,12 @@ def task(samples, effects=None):
     plant = slider()
     model = NominalModel(plant, FREE, np.full(len(FREE), 0.3))
     chosen = plant.effects if effects is None else effects
-    return DiscoveryTask(model, slider_log(np.ones((samples, 1))), chosen, DiscoveryOptions())
+    return DiscoveryTask(
+        nominal_model=model,
+        log=slider_log(np.ones((samples, 1))),
+        effects=chosen,
+        options=DiscoveryOptions(),
+    )
 
 
 FACTOR = 1.5  # the goal of the forecast
@@ -36,7 +40,12 @@ def arm_task(samples):
     plant = joint_plant(ARM, (damping,), log)
     model = NominalModel(plant, ("damping",), np.full(1, 0.3))
     y = run(plant, log) + 1e-4 * np.random.default_rng(1).standard_normal(log.outputs.shape)
-    return DiscoveryTask(model, replace(log, outputs=y), plant.effects, DiscoveryOptions())
+    return DiscoveryTask(
+        nominal_model=model,
+        log=replace(log, outputs=y),
+        effects=plant.effects,
+        options=DiscoveryOptions(),
+    )
 
 
 def slider_task(samples):
@@ -72,10 +81,10 @@ def test_a_search_holds_the_arrays_of_its_forecast(make):
     needs, copies = forecast(given), float(given.nominal_model.plant.model.nbuffer)
     fixed = module.BASE_BYTES + module.MODEL_COPIES * copies
     data = (needs.memory - fixed) / (1 + module.KEPT_SHARE)
-    first_state(make(200), lambda line: None)
+    INNOVATIONS.begin(make(200), lambda line: None)
     tracemalloc.start()
     try:
-        first_state(given, lambda line: None)
+        INNOVATIONS.begin(given, lambda line: None)
         held = tracemalloc.get_traced_memory()[1]
     finally:
         tracemalloc.stop()

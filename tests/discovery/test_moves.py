@@ -5,7 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
-from identification.discovery.moves import Move, SearchState, asked_anew, next_state
+from identification.discovery.moves import Evidence, Move, SearchState
 from identification.discovery.passes import PASSES
 from identification.errors import InputError
 from identification.innovations import state as innovations
@@ -34,10 +34,8 @@ def finding(name, effects, asked):
 
 
 def searched(state, every):
-    state = replace(state, moves=asked_anew(state, every))
-    while not state.is_finished:
-        state = next_state(state, every, lambda line: None)
-    return state
+    """Returns the finished state of an evidence that begins with a state."""
+    return Evidence(lambda task, progress: state, every, lambda end: end).search(state.task)
 
 
 def moves(asked):
@@ -91,8 +89,8 @@ def test_every_move_of_both_searches_has_a_reason_and_can_be_left_out():
         for move in every:
             assert move.name in {*PASSES, "add_effect"}
             state = begun(without=(move.name,))
-            assert move not in asked_anew(state, every)
-            assert len(asked_anew(state, every)) == len(every) - 1
+            assert move not in Evidence(None, every, None).asked(state)
+            assert len(Evidence(None, every, None).asked(state)) == len(every) - 1
 
 
 def test_every_pass_is_asked_for_by_some_code():

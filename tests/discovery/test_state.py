@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from discovery_cases import EFFECTS, OPTIONS, searched
 
+from identification.innovations.discovery import INNOVATIONS
 from identification.innovations.fitted_model import fit_model
 from identification.innovations.pruning import exchange
 from identification.innovations.scoring.sensitivities import compute_sensitivities
-from identification.innovations.state import next_state
 
 
 def names(state):
@@ -52,7 +52,7 @@ def test_candidates_are_scored_along_the_trajectory_of_the_model(states):
 def test_no_more_effects_are_accepted_than_the_options_admit(states):
     one = replace(OPTIONS, max_effects=1)
     state = replace(states[0], task=replace(states[0].task, options=one))
-    state = next_state(state, print)
+    state = INNOVATIONS.step(state, print)
     assert [m.name for m in state.moves] == ["drop_effects", "exchange_effects"]
     assert names(state) == names(states[1])
 

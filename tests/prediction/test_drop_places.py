@@ -15,6 +15,7 @@ from identification.effects.effect import Candidate, Effect, Size
 from identification.effects.joint_plant import candidates, joint_plant
 from identification.model.parameter import Parameter
 from identification.model.predictor import Predictor
+from identification.prediction.discovery import WINDOWS
 from identification.prediction.extension import with_effect
 from identification.prediction.first_fit import begin
 from identification.prediction.moves.drop_places import drop_places
@@ -22,7 +23,6 @@ from identification.prediction.nominal_fit import fit_nominal
 from identification.prediction.records import as_records
 from identification.prediction.scores import WindowScore, window_scores
 from identification.prediction.screening import at_several, felt_places, places_of
-from identification.prediction.state import first_state
 from identification.prediction.task import RecordsTask
 from identification.prediction.trial import Contender
 from identification.prediction.unseen import compare
@@ -159,11 +159,11 @@ def over_both(name):
 def state_with_a_curve():
     """A state whose model has a curve of speed at both joints; nothing judged whether it should."""
     task = RecordsTask(
-        nominal_model=NominalModel(plant(), ("d",), np.array([0.5]), HORIZON), horizon=HORIZON,
+        nominal_model=NominalModel(plant(), ("d",), np.array([0.5]), HORIZON),
         records=as_records([record_several(1)], [record_several(2), record_several(3)]),
         effects=(effect("curve_speed"),), options=DiscoveryOptions(),
     )  # fmt: skip
-    state = first_state(task, lambda line: None)
+    state = WINDOWS.begin(task, lambda line: None)
     parent = state.model
     (score,) = window_scores(parent.fit, [over_both("curve_speed")])
     model = with_effect(parent, begin(parent, [score]), HORIZON, task.confirm)

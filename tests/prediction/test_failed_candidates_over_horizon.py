@@ -11,15 +11,15 @@ import numpy as np
 import pytest
 from failing_cases import ERRORS, Failing
 from page_text import text_of
-from records_cases import HORIZON, nominal_model, pendulum, records
+from records_cases import nominal_model, pendulum, records
 
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.joint_plant import candidates
 from identification.errors import InputError
 from identification.prediction import crossing, exchange, extension, selection, state
+from identification.prediction.discovery import WINDOWS
 from identification.prediction.moves import add_effect
 from identification.prediction.records import as_records
-from identification.prediction.state import first_state, next_state
 from identification.prediction.task import RecordsTask
 from identification.prediction.verdict import conclude
 from identification.report.discovery_json import discovery_to_json
@@ -34,7 +34,7 @@ SAMPLES, ONE = 200, np.ones((1, 1))
 def task():
     logs = records(3, {SIZE: TRUE}, samples=SAMPLES)
     return RecordsTask(
-        nominal_model=nominal_model(), horizon=HORIZON,
+        nominal_model=nominal_model(),
         records=as_records(logs[:1], logs[1:], None),
         effects=tuple(
             e for e in candidates(pendulum(), ("J", "d")) if e.name in (NAME, "offset")
@@ -45,13 +45,13 @@ def task():
 
 @cache
 def begun():
-    return first_state(task(), print)
+    return WINDOWS.begin(task(), print)
 
 
-def ended(first, progress=print):
+def ended(first, progress=print, evidence=WINDOWS):
     now = first
     while not now.is_finished:
-        now = next_state(now, progress)
+        now = evidence.step(now, progress)
     return now
 
 
@@ -67,7 +67,7 @@ def failing(monkeypatch, how):
 def test_a_candidate_whose_columns_fail_is_told_and_the_others_are_scored(monkeypatch):
     bad, said = failing(monkeypatch, "gives NaN"), []
     bad.within(monkeypatch, state, "score_all")
-    first = first_state(task(), said.append)
+    first = WINDOWS.begin(task(), said.append)
     assert bad.reached
     assert {s.candidate.effect.name for s in first.scores} == {"offset"}
     assert [f.key for f in first.failed] == [KEY]
@@ -134,13 +134,15 @@ def test_a_round_that_fails_as_a_whole_ends_the_search_with_what_was_found(
     def fails(*_):
         raise InputError("a matrix is singular; take another")
 
+    evidence = WINDOWS
     if step == "drop_effects":
-        moves = tuple(replace(m, make=fails) if m.name == step else m for m in state.MOVES)
-        monkeypatch.setattr(state, "MOVES", moves)
+        moves = tuple(replace(m, make=fails) if m.name == step else m for m in WINDOWS.moves)
+        evidence = replace(WINDOWS, moves=moves)
     else:
         monkeypatch.setattr(add_effect, step, fails)
     said = []
-    answer = conclude(ended(begun(), said.append))
+    first = replace(begun(), moves=evidence.asked(begun()))
+    answer = conclude(ended(first, said.append, evidence))
     (one,) = answer.failed
     assert (one.where, one.reason) == ("", "a matrix is singular")
     assert str(one) in said

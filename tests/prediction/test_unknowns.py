@@ -76,7 +76,7 @@ def test_a_record_that_is_late_is_told_and_the_others_are_not():
     roles = as_records(logs[:2], logs[2:])
     effect = next(e for e in candidates(pendulum(), FREE) if e.name == "time_shift")
     task = RecordsTask(
-        nominal_model=base, horizon=0.26, records=roles, effects=(effect,),
+        nominal_model=base, records=roles, effects=(effect,),
         options=DiscoveryOptions(),
     )  # fmt: skip
     model = fit_nominal(base, roles)

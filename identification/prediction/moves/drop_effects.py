@@ -8,13 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from identification.discovery.moves import drop_needless
 from identification.discovery.passes import uses
 from identification.effects.effect import Candidate
 from identification.prediction.crossing import at_their_best
 from identification.prediction.extension import refitted
 from identification.prediction.model import WindowModel
 from identification.prediction.task import Change, RecordsTask, WindowSearch
-from identification.prediction.trial import Doubt, find_doubt
+from identification.prediction.trial import Contender, Doubt, find_doubt
 from identification.prediction.unseen import compare
 from identification.progress import Progress
 
@@ -23,15 +24,13 @@ NEEDLESS: tuple[Doubt, ...] = ("chance", "little")  # others make up for it
 
 def drop_effects(state: WindowSearch, progress: Progress) -> Change:
     """Returns the state's model without needless effects, and those that stay."""
-    model, kept = state.model, [*state.accepted]
-    for old in state.accepted[:-1]:
+
+    def without(model: WindowModel, old: Contender) -> WindowModel | None:
         rest = [c for c in model.candidates if c.key != old.candidate.key]
-        without = as_good_without(model, rest, state.task)
-        if without is not None:
-            progress(f"{old.candidate.effect.name}, {old.candidate.where}: no longer needed")
-            model = without
-            kept = [k for k in kept if k is not old]
-    return model, tuple(kept), ()
+        return as_good_without(model, rest, state.task)
+
+    kept, model = drop_needless(state.model, state.accepted, without, progress)
+    return model, kept, ()
 
 
 def as_good_without(
