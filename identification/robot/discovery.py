@@ -45,7 +45,7 @@ def discover(
 
     A model with a horizon is judged by predictions over it, on the records that confirm or on the
     second half of each log (`identification.prediction`); one without by the innovations of a
-    Kalman filter along its free run (`identification.discovery`).
+    Kalman filter along its free run (`identification.innovations`).
 
     The result is of one kind. `found` itself shows the first sentence of its verdict;
     `discovery_text(found)` tells all of it. Read `found.verdict` first ("named", "unlisted effect",
