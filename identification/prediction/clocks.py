@@ -26,13 +26,13 @@ from identification.effects.effect import Candidate
 from identification.estimation.priors import Priors
 from identification.model.coordinates import coordinates
 from identification.pool import run_parts
-from identification.prediction.fit import WindowFit, solve
 from identification.prediction.model import WindowModel
-from identification.prediction.problem import MOST_STEPS, Problem, no_moves, problem
-from identification.prediction.records import Record
 from identification.prediction.scores import WindowScore, window_scores
 from identification.prediction.std import degrees_of_freedom, told_std
 from identification.prediction.task import RecordsTask
+from identification.windows.fit import WindowFit, solve
+from identification.windows.problem import MOST_STEPS, Problem, no_moves, problem
+from identification.windows.records import Record
 
 SHIFT = "time_shift"  # the effect
 # Of the sampling time: a smaller shift that may be chance stands in the JSON alone.

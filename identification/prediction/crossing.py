@@ -16,11 +16,11 @@ import numpy as np
 
 from identification.discovery.attempts import attempt, attempt_each, refuse_infinite
 from identification.pool import run_parts
-from identification.prediction.fit import WindowFit
 from identification.prediction.model import WindowModel, predict_fitted
-from identification.prediction.records import Record
-from identification.prediction.unseen import LENGTHS, Unseen
+from identification.windows.fit import WindowFit
+from identification.windows.records import Record
 from identification.windows.settling import Starts, best_starts, sought_from_others
+from identification.windows.unseen import LENGTHS, Unseen
 
 
 def crossed(fit: WindowFit, others: Sequence[WindowFit]) -> WindowFit:

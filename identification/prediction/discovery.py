@@ -11,12 +11,12 @@ from identification.discovery.result import Discovery
 from identification.effects.effect import Effect
 from identification.errors import InputError
 from identification.logs.log import Log
-from identification.prediction.records import as_records
 from identification.prediction.records_fit import NO_HORIZON
 from identification.prediction.state import MOVES, first_state
 from identification.prediction.task import RecordsTask
 from identification.prediction.verdict import conclude
 from identification.progress import Progress
+from identification.windows.records import as_records
 
 WINDOWS = Evidence(first_state, MOVES, conclude)
 

@@ -3,7 +3,7 @@
     E_c = n_y W mean_b g_cb - k_c ln W
     P_c = mean over resamples of the blocks of exp(E_c/2) / Σ_k exp(E_k/2)
 
-g_cb: gains of blocks b with the law c (`identification.prediction.blocks`), W windows of n_y
+g_cb: gains of blocks b with the law c (`identification.windows.blocks`), W windows of n_y
 outputs, k_c numbers that c adds. E is twice the gain of a log likelihood with the price that BIC
 puts on numbers (Schwarz 1978), so that exp(E/2) are the odds of a law in one resample (Kass,
 Raftery 1995): two laws that predict alike share them, however surely one is a little better. Blocks
@@ -16,9 +16,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from identification.prediction.blocks import block_gains
 from identification.prediction.model import WindowModel
 from identification.prediction.record_errors import scaled_squares
+from identification.windows.blocks import block_gains
 
 RESAMPLES = 2000  # of the blocks: a probability is then known to a hundredth
 

@@ -19,13 +19,13 @@ from identification.discovery.passes import uses
 from identification.prediction.crossing import at_their_best
 from identification.prediction.extension import MAX_LINEARISATIONS
 from identification.prediction.first_fit import REFIT_TOLERANCE
-from identification.prediction.fit import solve
 from identification.prediction.model import WindowModel, predict_fitted
-from identification.prediction.problem import ROUGH_STEPS, Problem, no_moves, problem
-from identification.prediction.records import Record
 from identification.prediction.trial import Contender
-from identification.prediction.unseen import HORIZON, compare
 from identification.progress import Progress
+from identification.windows.fit import solve
+from identification.windows.problem import ROUGH_STEPS, Problem, no_moves, problem
+from identification.windows.records import Record
+from identification.windows.unseen import HORIZON, compare
 
 
 def without_contradicted(

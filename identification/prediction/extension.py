@@ -16,16 +16,16 @@ from identification.effects.effect import Candidate
 from identification.effects.jointed import JointPlant
 from identification.model.predictor import Plant
 from identification.prediction.first_fit import REFIT_TOLERANCE, Begun, shapes_of
-from identification.prediction.fit import solve
 from identification.prediction.model import WindowModel, predict_fitted
-from identification.prediction.problem import (
+from identification.windows.fit import solve
+from identification.windows.problem import (
     Problem,
     with_longer_steps,
     with_own_steps,
     with_unknowns,
 )
-from identification.prediction.records import Record
-from identification.prediction.unseen import HORIZON
+from identification.windows.records import Record
+from identification.windows.unseen import HORIZON
 
 MAX_LINEARISATIONS = 12  # of a refit: an effect that takes more is not what is missing
 
@@ -35,7 +35,7 @@ def with_effect(
 ) -> WindowModel | None:
     """Returns the model refitted with one effect more; None where it explains no more.
 
-    Of unseen records it predicts the horizon alone (see `identification.prediction.unseen`).
+    Of unseen records it predicts the horizon alone (see `identification.windows.unseen`).
 
     Args:
         parent: the model without it.

@@ -16,7 +16,7 @@ from identification.effects.effect import Candidate
 from identification.effects.jointed import JointPlant
 from identification.model.predictor import Plant
 from identification.prediction.model import WindowModel
-from identification.prediction.problem import Problem
+from identification.windows.problem import Problem
 from identification.windows.shooting import Shooting
 from identification.windows.windows import extended
 

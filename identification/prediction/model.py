@@ -15,11 +15,11 @@ import numpy as np
 from identification.discovery.fitted import StepShift
 from identification.effects.effect import Candidate
 from identification.model.predictor import Plant
-from identification.prediction.fit import WindowFit
-from identification.prediction.own_values import Own
-from identification.prediction.records import Record
 from identification.prediction.std import step_shift, told_std
-from identification.prediction.unseen import LENGTHS, Unseen, predict
+from identification.windows.fit import WindowFit
+from identification.windows.own_values import Own
+from identification.windows.records import Record
+from identification.windows.unseen import LENGTHS, Unseen, predict
 
 
 @dataclass(frozen=True)

@@ -17,19 +17,19 @@ from identification.estimation.priors import Priors
 from identification.estimation.search import ROUGH_TOLERANCE
 from identification.logs.noise import noise_floor
 from identification.model.coordinates import coordinates
-from identification.prediction.fit import WindowFit, solve
 from identification.prediction.model import WindowModel, predict_fitted
-from identification.prediction.problem import (
+from identification.progress import Progress
+from identification.windows.fit import WindowFit, solve
+from identification.windows.problem import (
     ROUGH_STEPS,
     no_moves,
     problem,
     with_longer_steps,
     with_scale,
 )
-from identification.prediction.records import Record
-from identification.prediction.unknowns import Unknowns
-from identification.prediction.unseen import Unseen
-from identification.progress import Progress
+from identification.windows.records import Record
+from identification.windows.unknowns import Unknowns
+from identification.windows.unseen import Unseen
 
 HORIZON_GROWTH = (0.25, 0.5, 1.0)  # of the horizon
 MIN_WINDOW_SAMPLES = 4  # of the shortest windows

@@ -15,8 +15,8 @@ import numpy as np
 from identification.discovery.effect_results import RecordError
 from identification.estimation.metrics import by_unit
 from identification.logs.log import Log
-from identification.prediction.records import Record
-from identification.prediction.unseen import Unseen
+from identification.windows.records import Record
+from identification.windows.unseen import Unseen
 
 Errors = Sequence[np.ndarray]  # y - ŷ of windows (W, L, ny), one array a record
 

@@ -22,10 +22,8 @@ from identification.errors import InputError
 from identification.logs.log import Log
 from identification.pool import one_blas_thread
 from identification.prediction.extension import at_own_steps
-from identification.prediction.fit import WindowFit
 from identification.prediction.model import WindowModel
 from identification.prediction.nominal_fit import begin, fit_nominal
-from identification.prediction.problem import no_moves
 from identification.prediction.record_errors import (
     RecordError,
     error_unit,
@@ -33,12 +31,14 @@ from identification.prediction.record_errors import (
     record_errors,
     scaled_squares,
 )
-from identification.prediction.records import Record, as_records
 from identification.prediction.std import told_std
 from identification.prediction.trial import find_doubt
-from identification.prediction.unseen import Prediction, Unseen, compare, predict
 from identification.progress import Progress
+from identification.windows.fit import WindowFit
+from identification.windows.problem import no_moves
+from identification.windows.records import Record, as_records
 from identification.windows.settling import settle
+from identification.windows.unseen import Prediction, Unseen, compare, predict
 
 NO_HORIZON = (
     "records are judged by predictions over a horizon, and none is given; write horizon = 0.2 (in"

@@ -38,10 +38,10 @@ from identification.model.coordinates import NOTHING
 from identification.model.protocol import with_numbers
 from identification.model.rollout import hold, rollout, substeps, without_sensors
 from identification.pool import one_blas_thread
-from identification.prediction.fit import STD_BLOCKS
 from identification.prediction.model import WindowModel
-from identification.prediction.problem import MIN_WINDOWS
+from identification.windows.fit import STD_BLOCKS
 from identification.windows.held import NO_VALUES
+from identification.windows.problem import MIN_WINDOWS
 from identification.windows.shooting import Shooting, Tangent
 
 

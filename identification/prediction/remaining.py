@@ -34,10 +34,10 @@ from identification.discovery.findings.records_evidence import (
 from identification.effects.named import phrase_there
 from identification.model.predictor import Plant
 from identification.prediction.clocks import told_shifts
-from identification.prediction.fit import WindowFit
 from identification.prediction.task import WindowSearch
-from identification.prediction.unseen import Unseen, rise
+from identification.windows.fit import WindowFit
 from identification.windows.shooting import Shooting, Tangent
+from identification.windows.unseen import Unseen, rise
 
 INPUT_STEP = 1e-3  # of an input's rms, by which it is moved
 

@@ -23,9 +23,9 @@ from identification.discovery.attempts import attempt, refuse_infinite
 from identification.effects.effect import Candidate
 from identification.model.coordinates import coordinates
 from identification.model.parameter import ParameterSet
-from identification.prediction.fit import STD_BLOCKS, WindowFit
 from identification.prediction.joint_states import rows_for
 from identification.progress import counted
+from identification.windows.fit import STD_BLOCKS, WindowFit
 
 # Of an effect's part in the outputs: with less left by the free parameters it is one of them by
 # another name.

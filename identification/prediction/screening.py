@@ -23,9 +23,9 @@ from identification.discovery.passes import uses
 from identification.effects.effect import Candidate, Effect, Size
 from identification.prediction.contenders import is_plausible, is_significant
 from identification.prediction.first_fit import picks, thinned, thinned_moves, thinned_tangents
-from identification.prediction.fit import WindowFit
 from identification.prediction.model import WindowModel
 from identification.prediction.scores import WindowScore, find_imitated, window_scores
+from identification.windows.fit import WindowFit
 
 AND = " and "  # between places, in words
 MAX_SPREAD_EFFECTS = 4  # that are tried at several places; each takes a simulation for each place

@@ -28,7 +28,6 @@ from identification.prediction.evidence import all_gains, count_windows, evidenc
 from identification.prediction.extension import with_effect
 from identification.prediction.first_fit import Begun, begin
 from identification.prediction.model import WindowModel
-from identification.prediction.records import Record
 from identification.prediction.scores import WindowScore
 from identification.prediction.trial import (
     Contender,
@@ -38,9 +37,10 @@ from identification.prediction.trial import (
     has_size,
     is_at_bound,
 )
-from identification.prediction.unseen import Unseen, compare
 from identification.progress import Progress, counted
 from identification.quantities import fall_words
+from identification.windows.records import Record
+from identification.windows.unseen import Unseen, compare
 
 STRONG_BIC = 10.0  # "very strong evidence" of one law against another (Kass and Raftery 1995)
 REFUTED: tuple[Doubt, ...] = ("numbers", "chance")  # by windows of the horizon alone

@@ -11,7 +11,6 @@ from identification.discovery.attempts import collected
 from identification.discovery.moves import Move, Watch
 from identification.discovery.passes import uses
 from identification.errors import InputError
-from identification.prediction.blocks import count_blocks
 from identification.prediction.moves.add_effect import add_effect
 from identification.prediction.moves.curve_for_laws import curve_for_laws
 from identification.prediction.moves.drop_beside_curves import drop_beside_curves
@@ -22,8 +21,9 @@ from identification.prediction.nominal_fit import as_begun, fit_nominal
 from identification.prediction.screening import score_all
 from identification.prediction.task import RecordsTask, WindowSearch, finishing
 from identification.prediction.trial import find_doubt
-from identification.prediction.unseen import HORIZON, Unseen, compare, predict, rise
 from identification.progress import Progress
+from identification.windows.blocks import count_blocks
+from identification.windows.unseen import HORIZON, Unseen, compare, predict, rise
 
 FEWEST_BLOCKS = 3  # of unseen windows, whose scatter is known
 MOVES = (

@@ -11,7 +11,7 @@ factor of up to ν/χ²(ν, 2.5 %): of one window it is nothing, whatever number
 The std knows noise and what the model leaves, and nothing of the steps Δ of the simulation. Where
 dry friction turns within a step, an integrator of any order errs by about Δ, and so does the
 estimate: δ is the step of Gauss and Newton with which it answers to a quarter of the step. H, S_w,
-P_w and r_w are those of `identification.prediction.point`.
+P_w and r_w are those of `identification.windows.point`.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ import numpy as np
 from identification.discovery.attempts import attempt
 from identification.discovery.fitted import StepShift
 from identification.model.protocol import finer
-from identification.prediction.fit import STD_BLOCKS, WindowFit
+from identification.windows.fit import STD_BLOCKS, WindowFit
 
 
 def step_shift(found: WindowFit) -> StepShift:

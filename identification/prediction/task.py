@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 
 from identification.discovery.moves import SearchState, Task, Watch
 from identification.prediction.model import WindowModel
-from identification.prediction.records import Record
 from identification.prediction.trial import Contender
-from identification.prediction.unseen import Unseen
 from identification.progress import Progress
+from identification.windows.records import Record
+from identification.windows.unseen import Unseen
 
 
 @dataclass(frozen=True, kw_only=True)

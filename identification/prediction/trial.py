@@ -26,7 +26,7 @@ from identification.effects.joint_group import SLIDE
 from identification.prediction.evidence import count_windows, evidence
 from identification.prediction.model import WindowModel
 from identification.prediction.scores import WindowScore
-from identification.prediction.unseen import Prediction
+from identification.windows.unseen import Prediction
 
 Doubt = Literal[
     "numbers", "chance", "lengths", "record", "little", "size", "bound", "exchange", "curve",

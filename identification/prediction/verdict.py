@@ -33,12 +33,12 @@ from identification.prediction.evidence import compute_confidence
 from identification.prediction.extension import at_own_steps
 from identification.prediction.model import WindowModel
 from identification.prediction.record_errors import error_unit, errors_by_unit, record_errors
-from identification.prediction.records import Record
 from identification.prediction.recovery import recover_over_horizon
 from identification.prediction.remaining import find_remaining, needed_input_error
 from identification.prediction.task import WindowSearch
 from identification.prediction.trial import Contender, evidences, find_twin
-from identification.prediction.unseen import Prediction, Unseen, rise
+from identification.windows.records import Record
+from identification.windows.unseen import Prediction, Unseen, rise
 
 MIN_LISTED_CONFIDENCE = 0.02  # a rival that is less likely is not listed
 

@@ -14,12 +14,12 @@ from identification.logs.log import Log
 from identification.model.predictor import Plant, Predictor
 from identification.prediction.model import predict_fitted
 from identification.prediction.record_errors import record_errors
-from identification.prediction.records import Record
 from identification.prediction.records_fit import RecordsFit
-from identification.prediction.unseen import predict
 from identification.robot.fitting import RobotFit
 from identification.robot.record_error import AS_WRITTEN, FITTED, Confirmation, of_record
 from identification.robot.robot import Robot
+from identification.windows.records import Record
+from identification.windows.unseen import predict
 from identification.windows.window_error import window_error
 
 WITHOUT = "without what is named", "with it"

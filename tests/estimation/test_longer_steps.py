@@ -16,13 +16,13 @@ from identification.model.coordinates import coordinates
 from identification.model.predictor import Predictor
 from identification.model.rollout import substeps
 from identification.prediction.extension import at_own_steps
-from identification.prediction.fit import solve
 from identification.prediction.model import WindowModel, predict_fitted
-from identification.prediction.problem import Problem, no_moves, problem, with_longer_steps
-from identification.prediction.records import Record
-from identification.prediction.unknowns import Unknowns
 from identification.windows.coarse import OUTPUT_ERROR, with_longest_slope_steps, with_longest_steps
+from identification.windows.fit import solve
+from identification.windows.problem import Problem, no_moves, problem, with_longer_steps
+from identification.windows.records import Record
 from identification.windows.shooting import Shooting, slower, tangent
+from identification.windows.unknowns import Unknowns
 from identification.windows.windows import first_states, windows
 
 FINE = 0.00125  # [s], an eighth of the sampling time

@@ -17,7 +17,6 @@ from identification.effects.axes import axes
 from identification.logs.joined import ROW, share_samples
 from identification.logs.log import Log
 from identification.logs.plausible import BEYOND, FEWEST, SPAN, refuse_frozen
-from identification.prediction.records import as_records
 from identification.refusals.columns import (
     MOST_PAIRS,
     Doubt,
@@ -25,6 +24,7 @@ from identification.refusals.columns import (
     input_exchanges,
     output_exchanges,
 )
+from identification.windows.records import as_records
 
 FROM = 300  # sample of 400
 NOISE = 1e-4  # [m]

@@ -10,10 +10,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.stats import chi2
 
-from identification.prediction.blocks import MAX_BLOCKS_PER_RECORD, block_gains, count_blocks
 from identification.prediction.first_fit import THIN, kept
-from identification.prediction.problem import MIN_WINDOWS
 from identification.prediction.std import MIN_FREEDOM, degrees_of_freedom, told_std
+from identification.windows.blocks import MAX_BLOCKS_PER_RECORD, block_gains, count_blocks
+from identification.windows.problem import MIN_WINDOWS
 
 lengths = st.lists(st.integers(2, 90), min_size=1, max_size=3)
 

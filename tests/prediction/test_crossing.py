@@ -12,11 +12,11 @@ from records_cases import HORIZON, nominal_model, records
 
 from identification.estimation.priors import Priors
 from identification.prediction.crossing import at_their_best, crossed
-from identification.prediction.fit import solve
 from identification.prediction.nominal_fit import fit_nominal
-from identification.prediction.problem import best_of, no_moves, problem
-from identification.prediction.records import as_records
+from identification.windows.fit import solve
 from identification.windows.held import HeldWindows
+from identification.windows.problem import best_of, no_moves, problem
+from identification.windows.records import as_records
 from identification.windows.settling import Starts, best_starts, sought_from_others
 
 FAR = 3.0  # a speed, in units of what is believed of it, at which a window is left

@@ -17,9 +17,9 @@ from identification.prediction.discovery import discover_records
 from identification.prediction.extension import with_effect
 from identification.prediction.first_fit import begin
 from identification.prediction.nominal_fit import fit_nominal
-from identification.prediction.records import as_records
 from identification.prediction.recovery import recover_over_horizon
 from identification.prediction.scores import window_scores
+from identification.windows.records import as_records
 
 CURVES = ("curve_speed", "curve_load", "curve_position")
 NEIGHBOURS = ("curve_before", "curve_behind", "curve_speed_before", "curve_speed_behind")

@@ -20,16 +20,16 @@ from identification.prediction.extension import with_effect
 from identification.prediction.first_fit import begin
 from identification.prediction.moves.drop_places import drop_places
 from identification.prediction.nominal_fit import fit_nominal
-from identification.prediction.records import as_records
 from identification.prediction.scores import WindowScore, window_scores
 from identification.prediction.screening import at_several, felt_places, places_of
 from identification.prediction.task import RecordsTask
 from identification.prediction.trial import Contender
-from identification.prediction.unseen import compare
 from identification.prediction.verdict import conclude
 from identification.report.discovery_json import discovery_to_json
 from identification.report.effect_words import describe_there
 from identification.report.named_words import curve_nodes
+from identification.windows.records import as_records
+from identification.windows.unseen import compare
 
 PLACES, HORIZON, NOISE = ["joint shoulder", "joint elbow"], 0.2, 3e-4
 SIZES = ("quadratic_friction.c@shoulder", "quadratic_friction.c@elbow")

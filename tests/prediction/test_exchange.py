@@ -19,14 +19,14 @@ from identification.prediction.extension import with_effect
 from identification.prediction.first_fit import begin
 from identification.prediction.model import predict_fitted
 from identification.prediction.nominal_fit import fit_nominal
-from identification.prediction.records import as_records
 from identification.prediction.remaining import needed_input_error
 from identification.prediction.scores import window_scores
 from identification.prediction.screening import score_all
 from identification.prediction.selection import REFUTED, refit_contenders
 from identification.prediction.trial import find_doubt
-from identification.prediction.unseen import HORIZON as ALONE
-from identification.prediction.unseen import compare
+from identification.windows.records import as_records
+from identification.windows.unseen import HORIZON as ALONE
+from identification.windows.unseen import compare
 
 NAME, MU = "transmitted_load_friction", "transmitted_load_friction.mu@hinge"
 LOAD = {MU: 0.15}

@@ -19,11 +19,11 @@ from identification.errors import InputError
 from identification.prediction import crossing, exchange, extension, selection, state
 from identification.prediction.discovery import WINDOWS
 from identification.prediction.moves import add_effect
-from identification.prediction.records import as_records
 from identification.prediction.task import RecordsTask
 from identification.prediction.verdict import conclude
 from identification.report.discovery_json import discovery_to_json
 from identification.report.discovery_report import discovery_text, write_discovery_report
+from identification.windows.records import as_records
 
 SIZE, NAME, WHERE = "quadratic_friction.c@hinge", "quadratic_friction", "joint hinge"
 KEY, TRUE = (NAME, WHERE), 0.01

@@ -19,9 +19,9 @@ from identification.effects.joint_states import JointState
 from identification.prediction.discovery import discover_records
 from identification.prediction.joint_states import model_for, widened
 from identification.prediction.nominal_fit import fit_nominal
-from identification.prediction.records import as_records
 from identification.prediction.scores import window_scores
 from identification.prediction.screening import score_all
+from identification.windows.records import as_records
 
 FREE = ("J", "d", COULOMB.name)
 OTHERS = ("stribeck_friction",)

@@ -17,10 +17,10 @@ from identification.prediction.clocks import record_shifts, told_shifts
 from identification.prediction.extension import with_effect
 from identification.prediction.first_fit import begin
 from identification.prediction.nominal_fit import fit_nominal
-from identification.prediction.records import as_records
 from identification.prediction.scores import window_scores
 from identification.prediction.task import RecordsTask
-from identification.prediction.unknowns import Unknowns
+from identification.windows.records import as_records
+from identification.windows.unknowns import Unknowns
 
 SAMPLES = 300  # of each record
 SHIFTS = (0.02, -0.015, 0.01)  # of three records' inputs [s]

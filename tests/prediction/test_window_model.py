@@ -9,14 +9,14 @@ from records_cases import FREE, HORIZON, nominal_model, pendulum, record, record
 
 from identification.discovery.candidates import list_common
 from identification.effects.joint_plant import candidates
-from identification.prediction import point
 from identification.prediction.extension import with_effect
 from identification.prediction.first_fit import begin
 from identification.prediction.nominal_fit import fit_nominal
-from identification.prediction.records import as_records
 from identification.prediction.scores import find_imitated, window_scores
 from identification.prediction.screening import has_what_it_needs
-from identification.prediction.unseen import compare, predict
+from identification.windows import point
+from identification.windows.records import as_records
+from identification.windows.unseen import compare, predict
 
 SAMPLES = 300  # of each record
 LOAD = {"transmitted_load_friction.mu@hinge": 0.15}

@@ -16,8 +16,8 @@ from identification.prediction.extension import refitted
 from identification.prediction.model import WindowModel
 from identification.prediction.task import Change, RecordsTask, WindowSearch
 from identification.prediction.trial import Contender, Doubt, find_doubt
-from identification.prediction.unseen import compare
 from identification.progress import Progress
+from identification.windows.unseen import compare
 
 NEEDLESS: tuple[Doubt, ...] = ("chance", "little")  # others make up for it
 

@@ -19,16 +19,16 @@ from identification.effects.jointed import JointPlant
 from identification.errors import DivergenceError
 from identification.estimation.priors import Priors
 from identification.model.predictor import Plant, Predictor
-from identification.prediction.records import Record
-from identification.prediction.unknowns import Unknowns
 from identification.windows.coarse import (
     own_step,
     with_longest_slope_steps,
     with_longest_steps,
 )
 from identification.windows.held import HeldRecords, at_values, held_records
+from identification.windows.records import Record
 from identification.windows.settling import settle
 from identification.windows.shooting import Shooting, Tangent, tangent
+from identification.windows.unknowns import Unknowns
 from identification.windows.windows import first_states, spread, windows
 
 # Steps of a simulation of all windows. More windows only make estimates finer than what is missing

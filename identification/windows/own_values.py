@@ -10,9 +10,9 @@ import numpy as np
 from identification.estimation.priors import Priors
 from identification.estimation.search import ROUGH_TOLERANCE
 from identification.model.predictor import Plant
-from identification.prediction.fit import solve
-from identification.prediction.problem import no_moves, problem
-from identification.prediction.records import Record
+from identification.windows.fit import solve
+from identification.windows.problem import no_moves, problem
+from identification.windows.records import Record
 
 
 @dataclass(frozen=True)

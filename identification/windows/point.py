@@ -23,7 +23,7 @@ import numpy as np
 from identification.errors import InputError
 from identification.estimation.levenberg_marquardt import KEPT_GAIN, Cost, Criterion
 from identification.model.coordinates import Coordinates
-from identification.prediction.problem import Problem, best_of
+from identification.windows.problem import Problem, best_of
 from identification.windows.settling import settle
 from identification.windows.shooting import Tangent, along_states
 

@@ -18,11 +18,11 @@ from identification.estimation.metrics import fit_percent
 from identification.logs.noise import noise_floor
 from identification.model.coordinates import NOTHING
 from identification.model.predictor import Plant, Predictor
-from identification.prediction.blocks import block_gains
-from identification.prediction.own_values import Own, of_halves, own_values
-from identification.prediction.problem import MOST_STEPS, most_windows
-from identification.prediction.records import Record
+from identification.windows.blocks import block_gains
 from identification.windows.held import held_records
+from identification.windows.own_values import Own, of_halves, own_values
+from identification.windows.problem import MOST_STEPS, most_windows
+from identification.windows.records import Record
 from identification.windows.settling import Starts, best_starts, settle, sought_from_others
 from identification.windows.shooting import Shooting
 from identification.windows.windows import Windows, first_states, spread, windows

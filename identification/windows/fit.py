@@ -5,7 +5,7 @@ The std of the estimate is that of a sum over blocks of windows, whose residuals
 
     cov(q) = H⁻¹ (Σ_b g_b g_bᵀ B/(B - 1) + W²) H⁻¹,    g_b = Σ_{w in b} S_wᵀ(I - P_w) r_w
 
-H, P_w and W are those of `identification.prediction.point`.
+H, P_w and W are those of `identification.windows.point`.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ from identification.errors import InputError
 from identification.estimation.levenberg_marquardt import Damping, levenberg_marquardt
 from identification.estimation.metrics import rms_by_unit
 from identification.model.rollout import State
-from identification.prediction.point import AtPoint, linearised
-from identification.prediction.problem import Problem
 from identification.progress import Progress, counted
 from identification.quantities import alike
+from identification.windows.point import AtPoint, linearised
+from identification.windows.problem import Problem
 from identification.windows.shooting import Tangent
 
 # Of the squared norms of the columns of X and S.
