@@ -32,7 +32,7 @@ ENGINES = [
     for path in Path(attempts.__file__).parents[1].joinpath(folder).rglob("*.py")
 ]
 # Steps of a search for values within one model, and files: no candidate is judged there.
-INNER = {"attempts.py", "fit.py", "point.py", "unseen.py", "options.py", "forecast.py"}
+INNER = {"attempts.py", "options.py", "forecast.py"}
 
 
 def failing(monkeypatch, how, size="rubbing.c"):
