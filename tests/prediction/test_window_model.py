@@ -113,7 +113,7 @@ def test_a_score_is_that_of_least_squares_with_columns_by_hand():
     below = np.diag(fit.problem.prior.weight)
     F = np.vstack([*bases, below])
     S = np.concatenate([*columns, np.zeros(len(below))])
-    e = np.concatenate([*rests, fit.problem.against(fit.q)])
+    e = np.concatenate([*rests, fit.problem.prior.against(fit.q)])
     S, e = (x - F @ np.linalg.lstsq(F, x, rcond=None)[0] for x in (S, e))
     size = S @ e / (S @ S)
     assert score.size[0] == pytest.approx(size, rel=1e-6)
