@@ -129,7 +129,7 @@ def test_a_folder_that_cannot_be_is_named_before_any_work(
     assert main(["simulate", "--out", str(out)]) == 2
     said = capsys.readouterr().err
     assert said.count("\n") == 1
-    assert str(tmp_path) in said
+    assert str(tmp_path.parent) in said  # very long names are cut in their middle
     assert reason in said
     assert "another" in said
     assert sorted(tmp_path.rglob("*")) == before

@@ -62,9 +62,12 @@ def test_every_kind_is_written_with_its_numbers_and_no_sentence(kind):
     assert record
 
 
+EVIDENCES = ("innovations", "prediction")
+
+
 def strings(path, function):
     """The names that a function of discovery gives to what it lists."""
-    module = Path(__file__).parents[2] / "identification" / "discovery" / "findings" / path
+    module = Path(__file__).parents[2] / "identification" / path
     tree = ast.parse(module.read_text(encoding="utf-8"))
     (body,) = (n for n in ast.walk(tree) if isinstance(n, ast.FunctionDef) and n.name == function)
     body.body = body.body[1:]  # without its docstring
@@ -73,14 +76,14 @@ def strings(path, function):
 
 
 def test_every_regressor_and_every_hold_has_words():
-    assert strings("location.py", "list_regressors") == set(REGRESSORS)
-    assert strings("input_error.py", "list_families") == set(FOLLOWED)
+    assert strings("discovery/missing_forces.py", "list_regressors") == set(REGRESSORS)
+    assert strings("innovations/input_error.py", "list_families") == set(FOLLOWED)
     assert set(HOLDS) == {"foh", "zoh"}
 
 
 def test_discovery_knows_no_words():
-    folder = Path(__file__).parents[2] / "identification" / "discovery"
-    for path in folder.rglob("*.py"):
+    rooms = [Path(__file__).parents[2] / "identification" / r for r in ("discovery", *EVIDENCES)]
+    for path in (path for room in rooms for path in room.rglob("*.py")):
         assert "identification.report" not in {
             ".".join((n.module or "").split(".")[:2])
             for n in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
