@@ -32,7 +32,7 @@ LogLists = Annotated[  # an option that takes logs and may be given again; see `
 
 @dataclass(frozen=True)
 class Output:
-    """How results are said and kept."""
+    """The way in which results are said and kept."""
 
     json: bool = False
     """Print one JSON object on stdout and nothing else."""

@@ -139,7 +139,7 @@ class Scored(Protocol):
 
     @property
     def explains(self) -> float:
-        """How much it would explain, in the measure of `Discovery.scored_by`."""
+        """Returns how much it would explain, in the measure of `Discovery.scored_by`."""
 
     @property
     def p_value(self) -> float:
@@ -323,5 +323,5 @@ class Detectable(OfCandidate):
 
     @property
     def is_plausible(self) -> bool:
-        """Whether a plausible size would have shown."""
+        """Tells whether a plausible size would have shown."""
         return isfinite(self.smallest) and self.smallest <= self.largest

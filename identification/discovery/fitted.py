@@ -36,7 +36,7 @@ class StepShift:
 
     @property
     def is_known(self) -> bool:
-        """Whether the windows could be simulated with finer steps."""
+        """Tells whether the windows could be simulated with finer steps."""
         return bool(np.isfinite(self.error) or np.isfinite(self.values).any())
 
     def far(self, names: Sequence[str], std: np.ndarray) -> dict[str, float]:

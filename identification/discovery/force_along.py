@@ -62,7 +62,7 @@ class ForceAlong:
 
     @property
     def is_timed(self) -> bool:
-        """Whether the first force would be another one at another time."""
+        """Tells whether the first force would be another one at another time."""
         force = self.forces[0]
         return bool(np.abs(self.late - force).max() > MIN_ACTING_SHARE * np.abs(force).max())
 

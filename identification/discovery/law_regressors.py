@@ -52,7 +52,7 @@ class Regressor:
 
     @property
     def resists(self) -> bool:
-        """Whether the force is shown as a resistance, whatever the direction of the motion."""
+        """Tells whether the force is shown as a resistance, in both directions of motion."""
         return bool((self.turn < 0).any())
 
     def samples(self, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

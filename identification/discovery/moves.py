@@ -84,12 +84,12 @@ class SearchState:
 
     @property
     def is_finished(self) -> bool:
-        """Whether there is nothing left to ask."""
+        """Tells whether there is nothing left to ask."""
         return not self.moves
 
     @property
     def room(self) -> int:
-        """How many effects more may be named."""
+        """Returns how many effects more may be named."""
         return int(self.task.options.max_effects) - len(self.accepted)
 
 
@@ -117,7 +117,7 @@ class Move(Generic[State]):
 
 @dataclass(frozen=True)
 class Evidence(Generic[State]):
-    """What tells one model from another: it alone knows how a model is fitted, scored and proven.
+    """A way to tell one model from another, which alone knows how one is fitted and proven.
 
     Attributes:
         first: returns the state after the nominal fit of a task, with all candidates scored.

@@ -101,7 +101,7 @@ class Shown:
 
     @property
     def is_mixed(self) -> bool:
-        """Whether the law's force is no function of one quantity."""
+        """Tells whether the law's force is no function of one quantity."""
         return unexplained(self.follows, self.forces[0]) > MAX_SHOWN_U
 
 

@@ -163,7 +163,7 @@ class Discovery(Shown):
 
     @property
     def judged_by(self) -> Literal["free run", "windows"]:
-        """What errors are of: free runs, or predictions over windows as long as the horizon."""
+        """Returns what errors are of: free runs, or predictions over windows of the horizon."""
         return "free run" if self.horizon is None else "windows"
 
     @property
@@ -173,17 +173,17 @@ class Discovery(Shown):
 
     @property
     def is_told_by_record(self) -> bool:
-        """Whether the errors of single records say more than that of all of them."""
+        """Tells whether the errors of single records say more than that of all of them."""
         return self.horizon is not None or len(self.errors) > 1
 
     @property
     def is_begun(self) -> bool:
-        """Whether the search began with the model's first values, because a fit made it worse."""
+        """Tells whether the search began with the model's first values, as a fit was worse."""
         return any(finding.kind is FindingKind.WORSE_FIT for finding in self.findings)
 
     @property
     def has_deviations(self) -> bool:
-        """Whether values of single drives or points were free (`NAME@PLACE`)."""
+        """Tells whether values of single drives or points were free (`NAME@PLACE`)."""
         free = {*self.nominal.told_std, *self.final.told_std}
         return any("@" in p.name and p.name in free for p in self._own_parameters)
 
@@ -243,7 +243,7 @@ class Discovery(Shown):
 
     @property
     def _is_believed(self) -> bool:
-        """Whether errors of the inputs pass for noise."""
+        """Tells whether errors of the inputs pass for noise."""
         is_small = self.input_error <= self.options.allowed_input_error
         return self.verdict != "unknown effect" and is_small
 

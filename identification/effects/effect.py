@@ -167,7 +167,7 @@ class Effect:
 
     @property
     def is_curve(self) -> bool:
-        """Whether it is no law but a curve drawn from the data."""
+        """Tells whether it is no law but a curve drawn from the data."""
         return self.name.startswith(CURVE)
 
     @property

@@ -69,7 +69,7 @@ class GearNumbers:
 
     @property
     def is_geared(self) -> np.ndarray:
-        """Whether the motor moves by itself, shape (n,)."""
+        """Tells whether the motor moves by itself, shape (n,)."""
         return (self.c != 0) | (self.gap != 0)
 
 

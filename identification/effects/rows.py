@@ -96,7 +96,7 @@ class JointLayout:
 
     @property
     def has_bodies(self) -> bool:
-        """Whether an effect acts on bodies."""
+        """Tells whether an effect acts on bodies."""
         hooks = {hook.name for hook in BODY.hooks}
         return any(hooks & effect.hooks.keys() for effect in self.effects)
 

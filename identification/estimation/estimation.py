@@ -72,7 +72,7 @@ class Estimate:
 
     @property
     def priors(self) -> Priors:
-        """What was known of the parameters before the search."""
+        """Returns what was known of the parameters before the search."""
         return Priors.of(self.space, self.space.encode(self.start), self.options.priors)
 
     @property

@@ -93,12 +93,12 @@ class Fit:
 
     @property
     def converged(self) -> bool:
-        """Whether the search ended by itself."""
+        """Tells whether the search ended by itself."""
         return self.estimate.status == "converged"
 
     @property
     def stopped(self) -> bool:
-        """Whether the user stopped the search; its best values are kept."""
+        """Tells whether the user stopped the search; its best values are kept."""
         return self.estimate.status == "stopped"
 
     @property

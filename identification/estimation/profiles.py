@@ -55,7 +55,7 @@ class Profile:
 
     @property
     def open(self) -> bool:
-        """Whether an end of the interval was not found between the given values."""
+        """Tells whether an end of the interval was not found between the given values."""
         return bool(np.isinf(self.interval).any())
 
 

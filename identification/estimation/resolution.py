@@ -65,7 +65,7 @@ class Resolved:
 
     @property
     def done(self) -> bool:
-        """Whether every direction is felt or a symmetry."""
+        """Tells whether every direction is felt or a symmetry."""
         return len(unresolved_directions(self.S, self.errors)) == len(self.symmetries)
 
     def better(self, S: np.ndarray, E: np.ndarray) -> Resolved:

@@ -81,7 +81,7 @@ class Forecast:
 
     @property
     def is_large(self) -> bool:
-        """Whether it is worth a line."""
+        """Tells whether it is worth a line."""
         seconds, memory = _MIN_TOLD
         return self.seconds > seconds or self.memory > memory
 

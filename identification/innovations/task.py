@@ -10,7 +10,7 @@ from identification.logs.joined import Log
 
 @dataclass(frozen=True, kw_only=True)
 class DiscoveryTask(Task):
-    """What does this model lack to explain this log?
+    """The question what a model lacks to explain one log.
 
     Attributes:
         log: its part `estimation` (or first half) is fitted; the rest is unseen and confirms.

@@ -130,7 +130,7 @@ class Mode:
 
     @property
     def swings(self) -> bool:
-        """Whether the mode is a pair of conjugate eigenvalues."""
+        """Tells whether the mode is a pair of conjugate eigenvalues."""
         return self.eigenvalue.imag > 0
 
 

@@ -72,7 +72,7 @@ class Change:
 
     @property
     def is_derived(self) -> bool:
-        """Whether MuJoCo derives other numbers from those that differ (see `UNDERIVED`)."""
+        """Tells whether MuJoCo derives other numbers from those that differ (see `UNDERIVED`)."""
         return any(slot.field not in UNDERIVED for slot, _ in self.numbers)
 
 

@@ -83,12 +83,12 @@ class RecordsFit:
 
     @property
     def stopped(self) -> bool:
-        """Whether the user stopped the search, which keeps no values over a horizon."""
+        """Tells whether the user stopped the search, which keeps no values over a horizon."""
         return False
 
     @property
     def converged(self) -> bool:
-        """Whether the search ended by itself."""
+        """Tells whether the search ended by itself."""
         return self.model.fit.converged
 
     @property

@@ -15,7 +15,7 @@ from identification.windows.unseen import Unseen
 
 @dataclass(frozen=True, kw_only=True)
 class RecordsTask(Task):
-    """What does this model lack to explain these records?
+    """The question what a model lacks to explain several records.
 
     Attributes:
         records: to fit and to confirm.
@@ -54,7 +54,7 @@ class WindowSearch(SearchState):
 
     @property
     def room(self) -> int:
-        """How many effects more may be named."""
+        """Returns how many effects more may be named."""
         options = self.task.options
         return int(min(options.max_effects, options.max_horizon_effects)) - len(self.accepted)
 

@@ -64,7 +64,7 @@ class Contender:
 
     @property
     def is_proven(self) -> bool:
-        """Whether unseen records prove it."""
+        """Tells whether unseen records prove it."""
         return self.doubt is None
 
     @property

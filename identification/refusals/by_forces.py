@@ -48,12 +48,12 @@ class Balance:
 
     @property
     def contradicts(self) -> bool:
-        """Whether forces do not explain the log as it is read, or say nothing of it."""
+        """Tells whether forces do not explain the log as it is read, or say nothing of it."""
         return self.own is None or bool((self.own > UNEXPLAINED).any())
 
     @property
     def excludes(self) -> bool:
-        """Whether forces cannot be those of the log as it is read, whatever the model lacks."""
+        """Tells whether forces cannot be those of the log as it is read, whatever it lacks."""
         return self.own is not None and bool((self.own > NEEDED).any())
 
     def confirms(self, reading: Reading, left: np.ndarray) -> bool:

@@ -41,7 +41,7 @@ class RobotFile(Protocol):
 
     @property
     def records(self) -> Mapping[str, Mapping[str, Any]]:
-        """What the TOML says of parameters, by name."""
+        """Returns what the TOML says of parameters, by name."""
 
     @property
     def horizon(self) -> float | None:

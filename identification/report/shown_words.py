@@ -42,7 +42,7 @@ class Shown:
 
     @property
     def is_seen(self) -> bool:
-        """Whether a plausible size shows."""
+        """Tells whether a plausible size shows."""
         return any(d.is_plausible for d in self.sizes)
 
     @property

@@ -120,7 +120,7 @@ class Prediction:
 
     @property
     def is_everywhere(self) -> bool:
-        """Whether windows of every length are predicted better on average."""
+        """Tells whether windows of every length are predicted better on average."""
         return min(self.gains) > 0 and min(self.typical_falls) > 0
 
 

@@ -58,7 +58,7 @@ class ForwardPose:
 
     @property
     def is_unique(self) -> bool:
-        """Whether no motion of the platform leaves all lengths as they are."""
+        """Tells whether no motion of the platform leaves all lengths as they are."""
         return self.rank == len(self.pose)
 
 

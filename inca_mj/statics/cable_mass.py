@@ -63,12 +63,12 @@ class LineError:
 
     @property
     def line_is_enough(self) -> bool:
-        """Whether the lengths of the line are right to the noise: only weight may be missing."""
+        """Tells whether the lengths of the line are right to the noise: weight may be missing."""
         return self.angle < NOISE
 
     @property
     def massless_is_enough(self) -> bool:
-        """Whether neither sag nor weight of the cables shows in the angles at rest."""
+        """Tells whether neither sag nor weight of the cables shows in the angles at rest."""
         return self.line_is_enough and self.moved_angle < NOISE
 
 

@@ -66,7 +66,7 @@ class Catenary:
 
     @property
     def from_exit(self) -> bool:
-        """Whether the exit point is the upper end."""
+        """Tells whether the exit point is the upper end."""
         return bool(self.exit[2] >= self.connector[2])
 
     def tension(self, s: np.ndarray | float) -> np.ndarray:

@@ -73,7 +73,7 @@ class Closure:
 
     @property
     def closed(self) -> bool:
-        """Whether every wrench can be exerted with enough tension."""
+        """Tells whether every wrench can be exerted with enough tension."""
         return self.rank == 6 and self.margin > POSITIVE
 
 

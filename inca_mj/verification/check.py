@@ -142,7 +142,7 @@ class CrossCheck:
 
     @property
     def passed(self) -> bool:
-        """Whether every limit that could be judged was kept, and nothing diverged."""
+        """Tells whether every limit that could be judged was kept, and nothing diverged."""
         return all(kept for kept, _ in self._checks()) and not self._diverged_at_model_step()
 
     @property

@@ -72,7 +72,7 @@ class Identification:
 
     @property
     def stopped(self) -> bool:
-        """Whether a search was stopped by the user; its best values are kept."""
+        """Tells whether a search was stopped by the user; its best values are kept."""
         return any(fit.estimate.status == "stopped" for fit in self.fits)
 
     @property
