@@ -62,7 +62,7 @@ _WIDTHS = {"body_mass": 0, "body_ipos": 3, "body_inertia": 3, "body_iquat": 4}
 
 
 @njit
-def point_inertia(m, x, y, z):  # type: ignore[no-untyped-def]
+def point_inertia(m, x, y, z):
     """Returns m (|c|² 1 - c cᵀ) as (xx, yy, zz, xy, xz, yz)."""
     return (
         m * (y * y + z * z), m * (x * x + z * z), m * (x * x + y * y),
@@ -71,7 +71,7 @@ def point_inertia(m, x, y, z):  # type: ignore[no-untyped-def]
 
 
 @njit
-def mass_mismatch(s, p):  # type: ignore[no-untyped-def]
+def mass_mismatch(s, p):
     (dm,) = p
     k, o = dm / s.m, point_inertia(dm, s.cx, s.cy, s.cz)
     return (
@@ -87,7 +87,7 @@ def displaced(axes: str) -> Any:
     ix, iy, iz = (axes.find(a) for a in "xyz")
 
     @njit
-    def com_offset(s, p):  # type: ignore[no-untyped-def]
+    def com_offset(s, p):
         x, y, z = (p[ix] * (ix >= 0), p[iy] * (iy >= 0), p[iz] * (iz >= 0))
         old = point_inertia(s.m, s.cx, s.cy, s.cz)
         new = point_inertia(s.m, s.cx + x, s.cy + y, s.cz + z)
@@ -101,7 +101,7 @@ def displaced(axes: str) -> Any:
 
 
 @njit
-def inertia_mismatch(s, p):  # type: ignore[no-untyped-def]
+def inertia_mismatch(s, p):
     (k,) = p
     return (
         0.0, 0.0, 0.0, 0.0, k * s.Ixx, k * s.Iyy, k * s.Izz, k * s.Ixy, k * s.Ixz, k * s.Iyz
@@ -109,7 +109,7 @@ def inertia_mismatch(s, p):  # type: ignore[no-untyped-def]
 
 
 @njit
-def payload(s, p):  # type: ignore[no-untyped-def]
+def payload(s, p):
     (m,) = p
     o = point_inertia(m, s.px, s.py, s.pz)
     return m, m * s.px, m * s.py, m * s.pz, o[0], o[1], o[2], o[3], o[4], o[5]

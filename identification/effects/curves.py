@@ -57,7 +57,7 @@ BENDING = _bending()
 
 
 @njit
-def through_zero(x, c):  # type: ignore[no-untyped-def]
+def through_zero(x, c):
     """Returns the curve with nodes at -¼, -½, -¾, -1, ¼, ½, ¾, 1, which is zero at zero."""
     z, side = 4.0 * abs(x), 4 if x > 0.0 else 0
     if z >= 4.0:
@@ -68,7 +68,7 @@ def through_zero(x, c):  # type: ignore[no-untyped-def]
 
 
 @njit
-def smooth(x, c):  # type: ignore[no-untyped-def]
+def smooth(x, c):
     """Returns the natural cubic spline with eight nodes evenly from -1 to 1."""
     z = min(7.0, max(0.0, 3.5 * (x + 1.0)))
     k = min(6, int(z))
@@ -81,50 +81,50 @@ def smooth(x, c):  # type: ignore[no-untyped-def]
 
 
 @njit
-def _of_speed(v, c):  # type: ignore[no-untyped-def]
+def _of_speed(v, c):
     """Returns the curve at a speed in units of the top speed."""
     x = sqrt(abs(v))
     return through_zero(x if v > 0.0 else -x, c)
 
 
 @njit
-def curve_speed(s, p):  # type: ignore[no-untyped-def]
+def curve_speed(s, p):
     return _of_speed(s.v / s.v_top, p)
 
 
 @njit
-def curve_load(s, p):  # type: ignore[no-untyped-def]
+def curve_load(s, p):
     return through_zero(s.f_u / s.f_top, p)
 
 
 @njit
-def curve_position(s, p):  # type: ignore[no-untyped-def]
+def curve_position(s, p):
     return smooth((s.q - s.q_mid) / s.q_far, p)
 
 
 # A curve over a neighbour is zero where there is no such joint.
 @njit
-def curve_before(s, p):  # type: ignore[no-untyped-def]
+def curve_before(s, p):
     return smooth(s.x_before, p) if s.x_before == s.x_before else 0.0
 
 
 @njit
-def curve_behind(s, p):  # type: ignore[no-untyped-def]
+def curve_behind(s, p):
     return smooth(s.x_behind, p) if s.x_behind == s.x_behind else 0.0
 
 
 @njit
-def curve_speed_before(s, p):  # type: ignore[no-untyped-def]
+def curve_speed_before(s, p):
     return _of_speed(s.v_before, p) if s.v_before == s.v_before else 0.0
 
 
 @njit
-def curve_speed_behind(s, p):  # type: ignore[no-untyped-def]
+def curve_speed_behind(s, p):
     return _of_speed(s.v_behind, p) if s.v_behind == s.v_behind else 0.0
 
 
 @njit
-def curve_time(s, p):  # type: ignore[no-untyped-def]
+def curve_time(s, p):
     return smooth(2.0 * s.time / s.t_end - 1.0, p)
 
 

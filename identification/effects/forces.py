@@ -34,61 +34,61 @@ EDGE = 0.02  # of the record: how long a jump takes, so that its time can be sea
 
 
 @njit
-def offset(s, p):  # type: ignore[no-untyped-def]
+def offset(s, p):
     return p[0]
 
 
 @njit
-def stiffness(s, p):  # type: ignore[no-untyped-def]
+def stiffness(s, p):
     return -p[0] * s.q
 
 
 @njit
-def hardening(s, p):  # type: ignore[no-untyped-def]
+def hardening(s, p):
     return -p[0] * s.q * s.q * s.q
 
 
 @njit
-def torque_saturation(s, p):  # type: ignore[no-untyped-def]
+def torque_saturation(s, p):
     return -p[0] * s.f_u * s.f_u * s.f_u
 
 
 @njit
-def cogging(s, p):  # type: ignore[no-untyped-def]
+def cogging(s, p):
     a, b, n = p
     return a * cos(n * s.q) + b * sin(n * s.q)
 
 
 @njit
-def risen(x, w):  # type: ignore[no-untyped-def]
+def risen(x, w):
     """Returns r: how much of a change that takes w about x = 0 has happened at x, 0 to 1."""
     return min(1.0, max(0.0, 0.5 + x / w))
 
 
 @njit
-def friction_drift(s, p):  # type: ignore[no-untyped-def]
+def friction_drift(s, p):
     return p[0] * s.time
 
 
 @njit
-def friction_jump(s, p):  # type: ignore[no-untyped-def]
+def friction_jump(s, p):
     f_j, t_j, w = p
     return f_j * risen(s.time - t_j, w)
 
 
 @njit
-def viscous_friction_drift(s, p):  # type: ignore[no-untyped-def]
+def viscous_friction_drift(s, p):
     return -p[0] * s.time * s.v
 
 
 @njit
-def viscous_friction_jump(s, p):  # type: ignore[no-untyped-def]
+def viscous_friction_jump(s, p):
     d_j, t_j, w = p
     return -d_j * risen(s.time - t_j, w) * s.v
 
 
 @njit
-def push(s, p):  # type: ignore[no-untyped-def]
+def push(s, p):
     f_p, t_0, t_p, w = p
     return f_p * (risen(s.time - t_0, w) - risen(s.time - t_0 - t_p, w))
 

@@ -44,44 +44,44 @@ LEVEL = "coulomb_friction"  # what laws change that say how much more friction t
 
 
 @njit
-def coulomb_friction(s, p):  # type: ignore[no-untyped-def]
+def coulomb_friction(s, p):
     return p[0]
 
 
 @njit
-def asymmetric_friction(s, p):  # type: ignore[no-untyped-def]
+def asymmetric_friction(s, p):
     return p[0] * s.sign
 
 
 @njit
-def stribeck_friction(s, p):  # type: ignore[no-untyped-def]
+def stribeck_friction(s, p):
     f_s, v_s, n = p
     return f_s * exp(-(abs(s.v / v_s) ** n))
 
 
 @njit
-def load_dependent_friction(s, p):  # type: ignore[no-untyped-def]
+def load_dependent_friction(s, p):
     return p[0] * abs(s.f_u)
 
 
 @njit
-def transmitted_load_friction(s, p):  # type: ignore[no-untyped-def]
+def transmitted_load_friction(s, p):
     return p[0] * abs(s.f_u - s.f_g)
 
 
 @njit
-def gravity_load_friction(s, p):  # type: ignore[no-untyped-def]
+def gravity_load_friction(s, p):
     return p[0] * abs(s.f_g)
 
 
 @njit
-def two_load_friction(s, p):  # type: ignore[no-untyped-def]
+def two_load_friction(s, p):
     mu, rho = p
     return mu * abs(s.f_u - rho * s.f_g)
 
 
 @njit
-def quadratic_load_friction(s, p):  # type: ignore[no-untyped-def]
+def quadratic_load_friction(s, p):
     q_e, q_m, v_s = p
     if s.f_u * s.f_g >= 0.0:
         return 0.0
@@ -90,34 +90,34 @@ def quadratic_load_friction(s, p):  # type: ignore[no-untyped-def]
 
 
 @njit
-def load_stribeck_friction(s, p):  # type: ignore[no-untyped-def]
+def load_stribeck_friction(s, p):
     mu_s, v_s = p
     return mu_s * abs(s.f_u - s.f_g) * exp(-abs(s.v / v_s))
 
 
 @njit
-def position_dependent_friction(s, p):  # type: ignore[no-untyped-def]
+def position_dependent_friction(s, p):
     return p[0] * s.q
 
 
 @njit
-def periodic_friction(s, p):  # type: ignore[no-untyped-def]
+def periodic_friction(s, p):
     a, b, n = p
     return a * cos(n * s.q) + b * sin(n * s.q)
 
 
 @njit
-def asymmetric_viscous_friction(s, p):  # type: ignore[no-untyped-def]
+def asymmetric_viscous_friction(s, p):
     return -p[0] * abs(s.v)
 
 
 @njit
-def quadratic_friction(s, p):  # type: ignore[no-untyped-def]
+def quadratic_friction(s, p):
     return -p[0] * s.v * abs(s.v)
 
 
 @njit
-def sublinear_friction(s, p):  # type: ignore[no-untyped-def]
+def sublinear_friction(s, p):
     d_p, n = p
     speed = abs(s.v)
     if speed == 0.0:
@@ -126,7 +126,7 @@ def sublinear_friction(s, p):  # type: ignore[no-untyped-def]
 
 
 @njit
-def position_dependent_damping(s, p):  # type: ignore[no-untyped-def]
+def position_dependent_damping(s, p):
     return -p[0] * s.v * s.q
 
 

@@ -37,7 +37,7 @@ LIMITS = (0.5, 0.6, 0.7, 0.8, 0.9, 0.97)  # to try, of the largest input
 
 
 @njit
-def delayed(s, p):  # type: ignore[no-untyped-def]
+def delayed(s, p):
     tau, before = p
     if tau <= 0.0:
         return s.u, 0.0
@@ -48,7 +48,7 @@ def delayed(s, p):  # type: ignore[no-untyped-def]
 
 
 @njit
-def time_shift(s, p):  # type: ignore[no-untyped-def]
+def time_shift(s, p):
     n = floor(p[0] / s.step)
     f = p[0] / s.step - n
     new, old = shifted(s, n), shifted(s, n + 1)
@@ -56,7 +56,7 @@ def time_shift(s, p):  # type: ignore[no-untyped-def]
 
 
 @njit
-def lagged(s, p):  # type: ignore[no-untyped-def]
+def lagged(s, p):
     tau = p[0]
     if tau <= 0.0:
         return s.u, 0.0
@@ -65,24 +65,24 @@ def lagged(s, p):  # type: ignore[no-untyped-def]
 
 
 @njit
-def lag_start(s, p):  # type: ignore[no-untyped-def]
+def lag_start(s, p):
     return p[1] * s.u
 
 
 @njit
-def lag_next(s, p):  # type: ignore[no-untyped-def]
+def lag_next(s, p):
     keep = exp(-s.step / p[0])
     return (1 - keep) * s.u + keep * s.x
 
 
 @njit
-def clipped(s, p):  # type: ignore[no-untyped-def]
+def clipped(s, p):
     c, u_max = p
     return s.u + c * (max(-u_max, min(u_max, s.u)) - s.u), 0.0
 
 
 @njit
-def drifting(s, p):  # type: ignore[no-untyped-def]
+def drifting(s, p):
     return (1 - p[0] * s.time) * s.u, 0.0
 
 

@@ -38,22 +38,22 @@ KIND = Shape("kind", "", (0.0, 1.0), 0.0, 1.0, free=False, usual=0.0, about="0 a
 
 
 @njit
-def encoder_scale(s, p):  # type: ignore[no-untyped-def]
+def encoder_scale(s, p):
     return p[0] * s.y
 
 
 @njit
-def encoder_offset(s, p):  # type: ignore[no-untyped-def]
+def encoder_offset(s, p):
     return p[0]
 
 
 @njit
-def encoder_eccentricity(s, p):  # type: ignore[no-untyped-def]
+def encoder_eccentricity(s, p):
     return p[0] * cos(s.q) + p[1] * sin(s.q)
 
 
 @njit
-def encoder_lag(s, p):  # type: ignore[no-untyped-def]
+def encoder_lag(s, p):
     tau, kind = p
     if kind == 0.0 and tau > 0.0:
         return lagged_position(s, tau) - s.q
@@ -61,7 +61,7 @@ def encoder_lag(s, p):  # type: ignore[no-untyped-def]
 
 
 @njit
-def encoder_jump(s, p):  # type: ignore[no-untyped-def]
+def encoder_jump(s, p):
     return p[0] * min(1.0, max(0.0, 0.5 + (s.time - p[1]) / p[2]))
 
 

@@ -37,19 +37,19 @@ LINK = Shape("link", "", (0.0, 1.0), 0.0, 1.0, free=False, usual=0.0,
 
 
 @njit
-def joint_elasticity(s, p):  # type: ignore[no-untyped-def]
+def joint_elasticity(s, p):
     c, rho, zeta, link = p
     return c, 0.0, rho * s.inertia, zeta, 1.0 - link
 
 
 @njit
-def gear_backlash(s, p):  # type: ignore[no-untyped-def]
+def gear_backlash(s, p):
     eps, rho, link = p
     return 0.0, eps, rho * s.inertia, 0.0, 1.0 - link
 
 
 @njit
-def presliding(s, p):  # type: ignore[no-untyped-def]
+def presliding(s, p):
     return p[0]
 
 

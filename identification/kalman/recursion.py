@@ -97,7 +97,7 @@ def propagate(A: np.ndarray, C: np.ndarray, P: np.ndarray, share: np.ndarray) ->
     return out
 
 
-def _gains(n, nz, ny, A_, C_, P_, share_, K_, L_):  # type: ignore[no-untyped-def]
+def _gains(n, nz, ny, A_, C_, P_, share_, K_, L_):
     A, share, first = carray(A_, (n, nz, nz)), carray(share_, n), carray(P_, (nz, nz))
     C, P = carray(C_, (ny, nz)), first.copy()
     K, L = carray(K_, (n + 1, nz, ny)), carray(L_, (n + 1, ny, ny))
@@ -119,7 +119,7 @@ def _gains(n, nz, ny, A_, C_, P_, share_, K_, L_):  # type: ignore[no-untyped-de
             _step(A[k], P, first, share[k], M, AM)
 
 
-def _propagate(n, nz, ny, A_, C_, P_, share_, out_):  # type: ignore[no-untyped-def]
+def _propagate(n, nz, ny, A_, C_, P_, share_, out_):
     A, share, first = carray(A_, (n, nz, nz)), carray(share_, n), carray(P_, (nz, nz))
     C, P, out = carray(C_, (ny, nz)), first.copy(), carray(out_, (n, ny))
     CP, M, AM = np.empty((ny, nz)), np.empty((nz, nz)), np.empty((nz, nz))
@@ -133,7 +133,7 @@ def _propagate(n, nz, ny, A_, C_, P_, share_, out_):  # type: ignore[no-untyped-
 
 
 @internal
-def _step(A, P, first, share, M, AM):  # type: ignore[no-untyped-def]
+def _step(A, P, first, share, M, AM):
     """Replaces P by that of the next sample; M and AM are scratch."""
     np.dot(A, P, AM)
     np.dot(AM, A.T, M)
@@ -143,7 +143,7 @@ def _step(A, P, first, share, M, AM):  # type: ignore[no-untyped-def]
 
 
 @internal
-def _inverted_factor(S, F, L):  # type: ignore[no-untyped-def]
+def _inverted_factor(S, F, L):
     """Writes the Cholesky factor of S into F, and its inverse into L; both are lower triangles."""
     for j in range(len(S)):
         for i in range(j, len(S)):
@@ -160,9 +160,7 @@ def _inverted_factor(S, F, L):  # type: ignore[no-untyped-def]
             L[i, j] = s / F[i, i]
 
 
-def _innovations(  # type: ignore[no-untyped-def]
-    n, nz, ny, columns, begin, end, A_, C_, K_, L_, e_, out_
-):
+def _innovations(n, nz, ny, columns, begin, end, A_, C_, K_, L_, e_, out_):
     p = end - begin
     A, C = carray(A_, (max(n - 1, 0), nz, nz)), carray(C_, (ny, nz))
     K, L = carray(K_, (n, nz, ny)), carray(L_, (n, ny, ny))
@@ -189,7 +187,7 @@ def _innovations(  # type: ignore[no-untyped-def]
             np.dot(A[k], seen[:nz], z)
 
 
-def _transposed(n, nz, ny, A_, C_, K_, L_, E_, out_, r_):  # type: ignore[no-untyped-def]
+def _transposed(n, nz, ny, A_, C_, K_, L_, E_, out_, r_):
     A, C = carray(A_, (max(n - 1, 0), nz, nz)), carray(C_, (ny, nz))
     K, L = carray(K_, (n, nz, ny)), carray(L_, (n, ny, ny))
     E, out, r = carray(E_, (n, ny)), carray(out_, (n, ny)), carray(r_, (n, nz))

@@ -92,7 +92,7 @@ def _balance(largest: np.ndarray) -> np.ndarray:
     return np.asarray(D)
 
 
-def _exponentials(n, nx, forced, F_, duration_, D_, series_, A_, Γ_):  # type: ignore[no-untyped-def]
+def _exponentials(n, nx, forced, F_, duration_, D_, series_, A_, Γ_):
     F, duration, D = carray(F_, (n, nx, nx)), carray(duration_, n), carray(D_, nx)
     A, Γ = carray(A_, (n, nx, nx)), carray(Γ_, (n, nx, nx - forced))
     c, X = carray(series_, (GROUP, GROUP)), np.empty((GROUP + 1, nx, nx))
@@ -133,7 +133,7 @@ def _exponentials(n, nx, forced, F_, duration_, D_, series_, A_, Γ_):  # type: 
 
 
 @internal
-def _add_group(to, c, X):  # type: ignore[no-untyped-def]
+def _add_group(to, c, X):
     """Add a group of the series: the sum of c[k] X^k."""
     for i in range(len(to)):
         to[i, i] += c[0]
@@ -143,7 +143,7 @@ def _add_group(to, c, X):  # type: ignore[no-untyped-def]
 
 
 @internal
-def _norm(X):  # type: ignore[no-untyped-def]
+def _norm(X):
     """Returns the largest sum of the absolute values in a column."""
     sums = np.zeros(len(X))
     for i in range(len(X)):
@@ -152,7 +152,7 @@ def _norm(X):  # type: ignore[no-untyped-def]
     return sums.max() if len(X) else 0.0
 
 
-def _respond(L, nx, nf, m, every, r, A_, Γ_, first_, g_, rows_, out_):  # type: ignore[no-untyped-def]
+def _respond(L, nx, nf, m, every, r, A_, Γ_, first_, g_, rows_, out_):
     A, Γ = carray(A_, (L, nx, nx)), carray(Γ_, (L, nx, nf))
     first, g = carray(first_, (m, nx)), carray(g_, (m, L, nf))
     rows, out = carray(rows_, r), carray(out_, (m, L // every + 1, r))

@@ -24,7 +24,7 @@ from identification.native.memory import (
 
 
 @internal
-def is_absent(p, sizes):  # type: ignore[no-untyped-def]
+def is_absent(p, sizes):
     """Returns whether the first numbers of a tuple, which are the sizes, are all zero."""
     for k in range(sizes):  # noqa: SIM110
         if p[k] != 0.0:
@@ -48,14 +48,14 @@ def total(element: Element, terms: Sequence[Term], hook: str) -> Function:
     if not leaves:
 
         @internal
-        def nothing(s, row, states):  # type: ignore[no-untyped-def]
+        def nothing(s, row, states):
             return zero
 
         return nothing
     add = _joined(leaves, _one_after_another)
 
     @internal
-    def summed(s, row, states):  # type: ignore[no-untyped-def]
+    def summed(s, row, states):
         return add(zero, s, row, states)
 
     return summed
@@ -73,7 +73,7 @@ def _one_after_another(first: Function, second: Function) -> Function:
     """Returns two functions (before, s, row, states) -> after as one."""
 
     @internal
-    def both(before, s, row, states):  # type: ignore[no-untyped-def]
+    def both(before, s, row, states):
         return second(first(before, s, row, states), s, row, states)
 
     return both
@@ -86,7 +86,7 @@ def _leaf(function: Function, term: Term, element: Element) -> Function:
         own, with_own = 8 * term.state, replacer(element.state, "x")
 
         @internal
-        def with_state(before, s, row, states):  # type: ignore[no-untyped-def]
+        def with_state(before, s, row, states):
             p = load(row + at)
             if is_absent(p, sizes):
                 return before
@@ -95,7 +95,7 @@ def _leaf(function: Function, term: Term, element: Element) -> Function:
         return with_state
 
     @internal
-    def stateless(before, s, row, states):  # type: ignore[no-untyped-def]
+    def stateless(before, s, row, states):
         p = load(row + at)
         if is_absent(p, sizes):
             return before
@@ -119,7 +119,7 @@ def rates(element: Element, terms: Sequence[Term], hook: str = "rate") -> Functi
     if not leaves:
 
         @internal
-        def nothing(s, row, states, out):  # type: ignore[no-untyped-def]
+        def nothing(s, row, states, out):
             return None
 
         return nothing
@@ -130,7 +130,7 @@ def _both_rates(first: Function, second: Function) -> Function:
     """Returns two functions (s, row, states, out) as one."""
 
     @internal
-    def both(s, row, states, out):  # type: ignore[no-untyped-def]
+    def both(s, row, states, out):
         first(s, row, states, out)
         second(s, row, states, out)
 
@@ -143,7 +143,7 @@ def _rate(function: Function, term: Term, element: Element) -> Function:
     with_own = replacer(element.state, "x")
 
     @internal
-    def rate(s, row, states, out):  # type: ignore[no-untyped-def]
+    def rate(s, row, states, out):
         x = load_double(states + own)
         store_double(out + own, function(with_own(s, (x,)), load(row + at)))
 

@@ -48,7 +48,7 @@ def compiled_loop() -> Any:
 
 
 @internal
-def _copy(to, at, n):  # type: ignore[no-untyped-def]
+def _copy(to, at, n):
     """Copy n doubles, and return the address behind the last one that was read."""
     for i in range(n):
         store_double(to + 8 * i, load_double(at + 8 * i))
@@ -56,7 +56,7 @@ def _copy(to, at, n):  # type: ignore[no-untyped-def]
 
 
 @internal
-def _load(m, d, row):  # type: ignore[no-untyped-def]
+def _load(m, d, row):
     """Put a row of states into mjData; a solver of constraints begins without a guess."""
     row = _copy(d + 8 * D.time, row, 1)
     row = _copy(word(d, D.qpos), row, word(m, M.nq))
@@ -67,14 +67,14 @@ def _load(m, d, row):  # type: ignore[no-untyped-def]
 
 
 @internal
-def _forget(m, d):  # type: ignore[no-untyped-def]
+def _forget(m, d):
     """Take the first guess of the accelerations away."""
     for i in range(word(m, M.nv)):
         store_double(word(d, D.qacc_warmstart) + 8 * i, 0.0)
 
 
 @internal
-def _exchange(places, values, n):  # type: ignore[no-untyped-def]
+def _exchange(places, values, n):
     """Exchange entries of a model with some values."""
     for i in range(n):
         at, value = load_word(places + 8 * i), values + 8 * i
@@ -84,7 +84,7 @@ def _exchange(places, values, n):  # type: ignore[no-untyped-def]
 
 
 @internal
-def _collect(d, results, kinds, own, to, weight, is_relative):  # type: ignore[no-untyped-def]
+def _collect(d, results, kinds, own, to, weight, is_relative):
     """Add the results, or how far they are from the base's, to an output."""
     i = 0
     for k in range(kinds):
@@ -98,21 +98,21 @@ def _collect(d, results, kinds, own, to, weight, is_relative):  # type: ignore[n
 
 
 @internal
-def _clear(x, n):  # type: ignore[no-untyped-def]
+def _clear(x, n):
     """Set n doubles to zero."""
     for i in range(n):
         store_double(x + 8 * i, 0.0)
 
 
 @internal
-def _add(x, y, factor, n):  # type: ignore[no-untyped-def]
+def _add(x, y, factor, n):
     """Adds factor · y to x in place, n doubles each."""
     for i in range(n):
         store_double(x + 8 * i, load_double(x + 8 * i) + factor * load_double(y + 8 * i))
 
 
 @internal
-def _keep_shares(m, d, some, n, room):  # type: ignore[no-untyped-def]
+def _keep_shares(m, d, some, n, room):
     """Put the forces of some actuators, as the base has them, into a row of the room each."""
     nv, f = word(m, M.nv), word(d, D.qfrc_passive)
     for k in range(n):
@@ -123,7 +123,7 @@ def _keep_shares(m, d, some, n, room):  # type: ignore[no-untyped-def]
 
 
 @internal
-def _exchange_shares(m, d, own, actuators, n, room):  # type: ignore[no-untyped-def]
+def _exchange_shares(m, d, own, actuators, n, room):
     """Put the rates of the base into mjData, with the shares of some actuators as they are now."""
     nv, f = word(m, M.nv), word(d, D.qfrc_passive)
     _copy(word(d, D.act_dot), own + 8 * nv, word(m, M.na))
@@ -137,7 +137,7 @@ def _exchange_shares(m, d, own, actuators, n, room):  # type: ignore[no-untyped-
     _add(word(d, D.qacc), f, 1.0, nv)
 
 
-def _forward(  # type: ignore[no-untyped-def]
+def _forward(
     base,
     base_states,
     cases,

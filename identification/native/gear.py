@@ -94,20 +94,20 @@ _with_drive = replacer(Joint, "f_u")
 
 
 @inlined
-def gears_of(m, j):  # type: ignore[no-untyped-def]
+def gears_of(m, j):
     """Returns the address of the gear's numbers of joint j, behind those of the other effects."""
     columns = word(m, M.nuser_jnt)
     return word(m, M.jnt_user) + 8 * (columns * (j + 1) - LAST - GEARS)
 
 
 @inlined
-def is_geared(gears):  # type: ignore[no-untyped-def]
+def is_geared(gears):
     """Returns whether the motor of a joint moves by itself."""
     return load_constant(gears + 8 * COMPLIANCE) != 0.0 or load_constant(gears + 8 * GAP) != 0.0
 
 
 @inlined
-def spring(gears, A, h):  # type: ignore[no-untyped-def]
+def spring(gears, A, h):
     """Returns m, κ, r and D of a gear."""
     c, J = load_constant(gears + 8 * COMPLIANCE), load_constant(gears + 8 * INERTIA)
     swinging = 1.0 / (1.0 / J + A)
@@ -123,7 +123,7 @@ def spring(gears, A, h):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def transmitted(load, delta, rate, gap, kappa, r, damping, h):  # type: ignore[no-untyped-def]
+def transmitted(load, delta, rate, gap, kappa, r, damping, h):
     """Returns τ, which a gear deflected by δ passes on of a load; each flank of teeth only pushes.
 
     A flank is damped by no more than what stops it within a step, so that τ has no jumps.
@@ -138,7 +138,7 @@ def transmitted(load, delta, rate, gap, kappa, r, damping, h):  # type: ignore[n
 
 
 @inlined
-def motor_force(m, d, j, gears):  # type: ignore[no-untyped-def]
+def motor_force(m, d, j, gears):
     """Returns f_m, the drives' force on the motor of joint j, and the gear's δ and its rate."""
     at = word(d, D.act) + 8 * np.int64(load_constant(gears + 8 * MOTOR))
     theta, omega = load_constant(at), load_constant(at + 8)
@@ -150,7 +150,7 @@ def motor_force(m, d, j, gears):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def felt(m, d, j, row, gears):  # type: ignore[no-untyped-def]
+def felt(m, d, j, row, gears):
     """Returns the state of a joint with f as its drive, and I; qfrc_smooth is used as room.
 
     Between the flanks of a gap it feels neither drive nor inertia.

@@ -35,13 +35,13 @@ RESOLVED = 1.0  # X: RK4 then damps a swing by 7e-3 a step; semi-implicit Euler 
 
 
 @inlined
-def resolved(c, inertia, h):  # type: ignore[no-untyped-def]
+def resolved(c, inertia, h):
     """Returns r, the share that a step resolves of friction that gives, c being its compliance."""
     return min(1.0, c * inertia * (RESOLVED / h) ** 2)
 
 
 @internal
-def invert(M, A, n):  # type: ignore[no-untyped-def]
+def invert(M, A, n):
     """Computes A = M⁻¹ (n x n) from the lower triangle of a positive M, which is overwritten.
 
     M = L Lᵀ (Cholesky), A = L⁻ᵀ L⁻¹.
@@ -69,7 +69,7 @@ def invert(M, A, n):  # type: ignore[no-untyped-def]
 
 
 @internal
-def hold(A, w, low, high, f, n, r, p):  # type: ignore[no-untyped-def]
+def hold(A, w, low, high, f, n, r, p):
     """Computes friction into f, which comes as zeros; w comes as M⁻¹ g and is overwritten."""
     largest = 0.0
     for i in range(n):
@@ -92,7 +92,7 @@ def hold(A, w, low, high, f, n, r, p):  # type: ignore[no-untyped-def]
 
 
 @njit
-def held(M, g, low, high, r=None, p=None):  # type: ignore[no-untyped-def]
+def held(M, g, low, high, r=None, p=None):
     """Returns friction of joints that pull at each other, shape (n,); for tests and for reading.
 
     Args:

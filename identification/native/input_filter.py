@@ -44,7 +44,7 @@ _SIGNATURE = types.void(types.int64, types.int64, types.float64, types.float64, 
 
 
 @internal
-def past(s, n, before):  # type: ignore[no-untyped-def]
+def past(s, n, before):
     """Returns the input n steps ago; before step 0 it was `before` times the first input."""
     n = min(n, s.k + 1.0)  # a delay may be longer than any whole number
     if n > s.k:
@@ -53,14 +53,14 @@ def past(s, n, before):  # type: ignore[no-untyped-def]
 
 
 @internal
-def shifted(s, n):  # type: ignore[no-untyped-def]
+def shifted(s, n):
     """Returns the input n steps ago, or ahead if n < 0; its first and last values last for ever."""
     at = min(max(s.k - n, 0.0), s.steps - 1.0)  # n may be larger than any whole number
     return load_double(s.signal + 8 * int(at))
 
 
 @internal
-def _zero(s, p):  # type: ignore[no-untyped-def]
+def _zero(s, p):
     return 0.0
 
 
@@ -71,7 +71,7 @@ def _link(rest: Function, term: Term, place: int) -> Function:
     load, at, sizes = loader(len(term.names)), 8 * term.column, term.sizes
 
     @internal
-    def changed(signals, steps, step, begun, row):  # type: ignore[no-untyped-def]
+    def changed(signals, steps, step, begun, row):
         rest(signals, steps, step, begun, row)
         signal = signals + 8 * steps * place
         out, p = signal + 8 * steps, load(row + at)
@@ -108,14 +108,14 @@ def input_filter(terms: Sequence[Term]) -> Any:
     """
 
     @internal
-    def nothing(signals, steps, step, begun, row):  # type: ignore[no-untyped-def]
+    def nothing(signals, steps, step, begun, row):
         return None
 
     chain: Function = nothing
     for place, term in enumerate(terms):
         chain = _link(chain, term, place)
 
-    def inputs(signals, steps, step, begun, row):  # type: ignore[no-untyped-def]
+    def inputs(signals, steps, step, begun, row):
         chain(signals, steps, step, begun, row)
 
     try:

@@ -150,7 +150,7 @@ def is_balanced_rotor(model: mujoco.MjModel, joint: int) -> bool:
 
 
 @internal
-def add_share(m, d, i):  # type: ignore[no-untyped-def]
+def add_share(m, d, i):
     """Add f_i to `qfrc_passive`, and put g_i into `act_dot`."""
     laws = _laws_of()
     for k in range(load_word(laws) - 1, -1, -1):

@@ -100,7 +100,7 @@ def width(terms: Sequence[Term]) -> int:
 
 
 @inlined
-def _clipped(m, limited, range_, i, x):  # type: ignore[no-untyped-def]
+def _clipped(m, limited, range_, i, x):
     """Returns x within limit i of an array of limits, where there is one."""
     if load_byte(word(m, limited) + i):
         x = max(double(m, range_, 2 * i), min(double(m, range_, 2 * i + 1), x))
@@ -108,7 +108,7 @@ def _clipped(m, limited, range_, i, x):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def _actuator_force(m, d, i, q, v):  # type: ignore[no-untyped-def]
+def _actuator_force(m, d, i, q, v):
     """Returns actuator i's force on its joint, gain·u + bias [N or N m]; NaN for another law."""
     bias = integer(m, M.actuator_biastype, i)
     if bias == _USER_BIAS and double(m, M.actuator_biasprm, _BIASES * i) == TAG:
@@ -132,7 +132,7 @@ def _actuator_force(m, d, i, q, v):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def drive_force(m, d, j, q, v):  # type: ignore[no-untyped-def]
+def drive_force(m, d, j, q, v):
     """Returns the force of the actuators on joint j [N or N m]."""
     f = 0.0
     for i in range(word(m, M.nactuator)):
@@ -142,7 +142,7 @@ def drive_force(m, d, j, q, v):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def gravity_force(m, d, j):  # type: ignore[no-untyped-def]
+def gravity_force(m, d, j):
     """Returns the force of gravity on joint j, of its body and all that hang on it [N or N m]."""
     body = integer(m, M.jnt_bodyid, j)
     mass = double(m, M.body_subtreemass, body)
@@ -161,14 +161,14 @@ def gravity_force(m, d, j):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def inertia(m, d, dof):  # type: ignore[no-untyped-def]
+def inertia(m, d, dof):
     """Returns the diagonal entry of the mass matrix for a degree of freedom [kg or kg m²]."""
     last = integer(m, M.M_rowadr, dof) + integer(m, M.M_rownnz, dof) - 1
     return double(d, D.M, last)
 
 
 @inlined
-def _neighbour(m, d, j, other, row):  # type: ignore[no-untyped-def]
+def _neighbour(m, d, j, other, row):
     """Returns (q - q_mid)/q_far and v/v_top of another joint; NaN if it has no row like joint j."""
     columns = word(m, M.nuser_jnt)
     if other < 0 or other >= word(m, M.njnt):
@@ -183,7 +183,7 @@ def _neighbour(m, d, j, other, row):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def joint(m, d, j, row):  # type: ignore[no-untyped-def]
+def joint(m, d, j, row):
     """Returns the state of joint j, as a force sees it; `row` is the address of its row."""
     q = double(d, D.qpos, integer(m, M.jnt_qposadr, j))
     v = double(d, D.qvel, integer(m, M.jnt_dofadr, j))

@@ -61,7 +61,7 @@ DRIVE, LOW, HIGH, STOPPING, FRICTION, MORE, SHARE, SPRING, ROWS = range(9)
 
 
 @inlined
-def _drive_alone(m, d, j, room):  # type: ignore[no-untyped-def]
+def _drive_alone(m, d, j, room):
     """Writes the drive of a joint without effects into `room`, for the joints that feel it."""
     kind, dof = integer(m, M.jnt_type, j), integer(m, M.jnt_dofadr, j)
     if kind in (HINGE, SLIDE):
@@ -71,7 +71,7 @@ def _drive_alone(m, d, j, room):  # type: ignore[no-untyped-def]
 
 
 @internal
-def _hold_together(m, d, stop, room, n):  # type: ignore[no-untyped-def]
+def _hold_together(m, d, stop, room, n):
     """Subtract the friction of all joints; `room` has their drives and largest frictions."""
     A, full, w = np.empty((n, n)), np.zeros((n, n)), np.zeros(n)
     mj_rne((m, d, 0, word(d, D.qfrc_bias)))  # MuJoCo itself does so right after the passive forces
@@ -106,7 +106,7 @@ def passive_force(terms: Sequence[Term], key: float, entries: int, felt: Functio
     force, friction = total(JOINT, terms, "force"), total(JOINT, terms, "friction")
 
     @inlined
-    def alone(m, d, j, row, end):  # type: ignore[no-untyped-def]
+    def alone(m, d, j, row, end):
         """Add what acts on a joint that is held by itself."""
         dof = integer(m, M.jnt_dofadr, j)
         at = word(d, D.qfrc_passive) + 8 * dof
@@ -126,7 +126,7 @@ def passive_force(terms: Sequence[Term], key: float, entries: int, felt: Functio
             store_double(at, load_double(at) + f)
 
     @inlined
-    def together(m, d, j, row, end, room):  # type: ignore[no-untyped-def]
+    def together(m, d, j, row, end, room):
         """Add the force on a joint; its drive and its largest friction into `room`."""
         dof = integer(m, M.jnt_dofadr, j)
         at = word(d, D.qfrc_passive) + 8 * dof
@@ -139,7 +139,7 @@ def passive_force(terms: Sequence[Term], key: float, entries: int, felt: Functio
         room[HIGH, dof] = max(0.0, friction(with_sign(s, (1.0,)), row + 8 * FIRST, 0))
         room[MORE, dof], room[SHARE, dof], room[SPRING, dof] = more, c, p
 
-    def passive(m, d):  # type: ignore[no-untyped-def]
+    def passive(m, d):
         columns, n = word(m, M.nuser_jnt), word(m, M.nv)
         if columns < LAST:
             return
@@ -173,7 +173,7 @@ def callbacks(terms: Sequence[Term], key: float) -> dict[str, Function]:
     """Returns the callback of a set of joint effects without states, to be compiled; see above."""
 
     @inlined
-    def felt(m, d, j, row, end):  # type: ignore[no-untyped-def]
+    def felt(m, d, j, row, end):
         return joint(m, d, j, row), 0.0, 0.0, 0.0
 
     return {"passive": passive_force(terms, key, width(terms), felt)}

@@ -75,20 +75,20 @@ COLUMNS = 12
 
 
 @inlined
-def is_ours(m, j, key):  # type: ignore[no-untyped-def]
+def is_ours(m, j, key):
     """Returns whether joint j has a row of a set of effects."""
     end = gears_of(m, j) + 8 * (GEARS + LAST)
     return load_constant(end - 8) == TAG and load_constant(end - 16) == key
 
 
 @inlined
-def _load(g, k, a):  # type: ignore[no-untyped-def]
+def _load(g, k, a):
     """Returns T of geared joint k, which accelerates by a."""
     return g[k, MASS] * (g[k, FORCE] / g[k, OWN] - (a - g[k, MOBILITY] * g[k, TAU]))
 
 
 @inlined
-def _passed_on(g, k, load, h):  # type: ignore[no-untyped-def]
+def _passed_on(g, k, load, h):
     """Returns τ of geared joint k under a load."""
     return transmitted(
         load, g[k, DELTA], g[k, RATE], g[k, HALF], g[k, KAPPA], g[k, SHARE], g[k, DAMPING], h
@@ -96,7 +96,7 @@ def _passed_on(g, k, load, h):  # type: ignore[no-untyped-def]
 
 
 @internal
-def _gather(m, d, key, g):  # type: ignore[no-untyped-def]
+def _gather(m, d, key, g):
     """Puts geared joints into the rows of g, and F into qacc_smooth.
 
     Returns:
@@ -132,7 +132,7 @@ def _gather(m, d, key, g):  # type: ignore[no-untyped-def]
 
 
 @internal
-def _settle(m, d, g, count, loose, h):  # type: ignore[no-untyped-def]
+def _settle(m, d, g, count, loose, h):
     """Computes τ of the gears that are not resolved into g, and what they change of a, in place."""
     n, room, a = word(m, M.nv), word(d, D.qfrc_smooth), word(d, D.qacc_smooth)
     columns, at, largest = np.empty((loose, n)), 0, 0.0
@@ -162,7 +162,7 @@ def _settle(m, d, g, count, loose, h):  # type: ignore[no-untyped-def]
 
 
 @internal
-def transmit(m, d, key, is_implicit):  # type: ignore[no-untyped-def]
+def transmit(m, d, key, is_implicit):
     """Writes τ of all geared joints into qfrc_actuator, behind MuJoCo's velocity stage.
 
     MuJoCo writes there, and into the room of qfrc_smooth and qacc_smooth, when it has asked all
@@ -192,7 +192,7 @@ def callbacks(terms: Sequence[Term], key: float) -> dict[str, Function]:
     friction, entries = total(JOINT, terms, "friction"), width(terms)
 
     @inlined
-    def felt_of(m, d, j, row, end):  # type: ignore[no-untyped-def]
+    def felt_of(m, d, j, row, end):
         gears, p = end - 8 * (GEARS + LAST), 0.0
         s, more = felt(m, d, j, row, gears)
         c = load_constant(gears + 8 * SLIP)
@@ -201,7 +201,7 @@ def callbacks(terms: Sequence[Term], key: float) -> dict[str, Function]:
         return s, more, c, p
 
     @inlined
-    def mine(m, i):  # type: ignore[no-untyped-def]
+    def mine(m, i):
         """Returns the joint of an actuator that carries states of this law; -1 if it does not."""
         if (
             i < 0
@@ -217,7 +217,7 @@ def callbacks(terms: Sequence[Term], key: float) -> dict[str, Function]:
         own = np.int64(load_constant(gears + 8 * MOTOR)), np.int64(load_constant(gears + 8 * GRIP))
         return j if place in own else -1
 
-    def act_dyn(m, d, i):  # type: ignore[no-untyped-def]
+    def act_dyn(m, d, i):
         j = mine(m, i)
         if j < 0:
             return 0.0
@@ -250,7 +250,7 @@ def callbacks(terms: Sequence[Term], key: float) -> dict[str, Function]:
             return -p / h
         return (v - abs(v) * p / b) / max(c, abs(v) * h / b)
 
-    def act_bias(m, d, i):  # type: ignore[no-untyped-def]
+    def act_bias(m, d, i):
         j = mine(m, i)
         if j < 0:
             return 0.0

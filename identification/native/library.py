@@ -39,8 +39,8 @@ def _function(name: str, bits: tuple[int, ...]) -> Any:
     llvm.add_symbol(name, ctypes.cast(getattr(library(), name), ctypes.c_void_p).value)
 
     @intrinsic
-    def call(typing_context, arguments):  # type: ignore[no-untyped-def]
-        def emit(context, builder, signature, args):  # type: ignore[no-untyped-def]
+    def call(typing_context, arguments):
+        def emit(context, builder, signature, args):
             kinds: list[Any] = [ir.IntType(n) for n in bits]
             function = builder.module.globals.get(name)
             if function is None:
@@ -74,7 +74,7 @@ FIELDS = frozenset((*M._fields, *D._fields))
 
 
 @inlined
-def _rise(m, d, x, last):  # type: ignore[no-untyped-def]
+def _rise(m, d, x, last):
     """Computes L⁻ᵀ x in place, where x is zero behind its entry `last`."""
     L = word(d, D.qLD)
     for i in range(last, -1, -1):
@@ -85,7 +85,7 @@ def _rise(m, d, x, last):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def solve(m, d, x):  # type: ignore[no-untyped-def]
+def solve(m, d, x):
     """Computes M⁻¹ x in place, x an address."""
     n, L = word(m, M.nv), word(d, D.qLD)
     _rise(m, d, x, n - 1)
@@ -99,7 +99,7 @@ def solve(m, d, x):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def unit(x, j, n):  # type: ignore[no-untyped-def]
+def unit(x, j, n):
     """Writes the unit vector e_j of n entries to the address x."""
     for i in range(n):
         store_double(x + 8 * i, 0.0)
@@ -107,7 +107,7 @@ def unit(x, j, n):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def mobility(m, d, dof, x):  # type: ignore[no-untyped-def]
+def mobility(m, d, dof, x):
     """Returns (M⁻¹)_jj of a degree of freedom [1/kg or 1/(kg m²)]; x: address of nv numbers."""
     unit(x, dof, dof + 1)
     _rise(m, d, x, dof)

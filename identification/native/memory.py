@@ -31,8 +31,8 @@ inlined = njit(forceinline=True, **_OPTIONS)
 
 def _load(numba_type: Any, *, constant: bool) -> Any:
     @intrinsic
-    def load(typing_context, address):  # type: ignore[no-untyped-def]
-        def emit(context, builder, signature, args):  # type: ignore[no-untyped-def]
+    def load(typing_context, address):
+        def emit(context, builder, signature, args):
             pointer = context.get_value_type(numba_type).as_pointer()
             value = builder.load(builder.inttoptr(args[0], pointer))
             if constant:
@@ -45,10 +45,10 @@ def _load(numba_type: Any, *, constant: bool) -> Any:
 
 
 @intrinsic
-def store_double(typing_context, address, value):  # type: ignore[no-untyped-def]
+def store_double(typing_context, address, value):
     """Write a double at an address."""
 
-    def emit(context, builder, signature, args):  # type: ignore[no-untyped-def]
+    def emit(context, builder, signature, args):
         pointer = builder.inttoptr(args[0], ir.DoubleType().as_pointer())
         builder.store(args[1], pointer)
         return context.get_dummy_value()
@@ -71,19 +71,19 @@ def offsets(struct: str, names: str) -> Any:
 
 
 @internal
-def word(struct, at):  # type: ignore[no-untyped-def]
+def word(struct, at):
     """Returns a size, or the address of an array."""
     return load_word(struct + 8 * at)
 
 
 @internal
-def double(struct, at, i):  # type: ignore[no-untyped-def]
+def double(struct, at, i):
     """Returns entry i of an array of doubles that no callback writes."""
     return load_constant(load_word(struct + 8 * at) + 8 * i)
 
 
 @internal
-def integer(struct, at, i):  # type: ignore[no-untyped-def]
+def integer(struct, at, i):
     """Returns entry i of an array of ints."""
     return np.int64(load_int(load_word(struct + 8 * at) + 4 * i))
 
@@ -93,8 +93,8 @@ def loader(count: int) -> Any:
     """Returns the compiled function (address) -> tuple of `count` doubles no callback writes."""
 
     @intrinsic
-    def load(typing_context, address):  # type: ignore[no-untyped-def]
-        def emit(context, builder, signature, args):  # type: ignore[no-untyped-def]
+    def load(typing_context, address):
+        def emit(context, builder, signature, args):
             double = ir.DoubleType()
             first = builder.inttoptr(args[0], double.as_pointer())
             values = []
@@ -115,8 +115,8 @@ def replacer(kind: Any, names: str) -> Any:
     columns = [kind._fields.index(name) for name in names.split()]
 
     @intrinsic
-    def replaced(typing_context, record, values):  # type: ignore[no-untyped-def]
-        def emit(context, builder, signature, args):  # type: ignore[no-untyped-def]
+    def replaced(typing_context, record, values):
+        def emit(context, builder, signature, args):
             record, (given, new) = args[0], (signature.args[1], args[1])
             values = cgutils.unpack_tuple(builder, new)
             for column, value, of in zip(columns, values, given.types, strict=True):
@@ -131,12 +131,12 @@ def replacer(kind: Any, names: str) -> Any:
 
 
 @intrinsic
-def added(typing_context, total, more):  # type: ignore[no-untyped-def]
+def added(typing_context, total, more):
     """Returns a number or tuple of numbers with what an effect adds to it."""
     if not typing_context.can_convert(more, total):
         raise TypingError(f"{more} cannot be added to {total}")
 
-    def emit(context, builder, signature, args):  # type: ignore[no-untyped-def]
+    def emit(context, builder, signature, args):
         more = context.cast(builder, args[1], signature.args[1], signature.return_type)
         if isinstance(signature.return_type, types.Float):
             return builder.fadd(args[0], more)

@@ -48,7 +48,7 @@ _SIGNATURE = types.void(types.int64, types.int64, types.int64)
 
 
 @internal
-def position_at(s, time):  # type: ignore[no-untyped-def]
+def position_at(s, time):
     """Returns the joint's position at a time of the record; beyond its ends it moves steadily."""
     q, v, t = [s.signals + 8 * s.samples * i for i in (1, 2, 3)]
     k = s.k
@@ -66,7 +66,7 @@ def position_at(s, time):  # type: ignore[no-untyped-def]
 
 
 @internal
-def lagged_position(s, tau):  # type: ignore[no-untyped-def]
+def lagged_position(s, tau):
     """Returns the joint's position after a first-order lag; before the record it moved steadily."""
     q, v, t = [s.signals + 8 * s.samples * i for i in (1, 2, 3)]
     k, now = s.k, load_double(t + 8 * s.k)
@@ -98,7 +98,7 @@ def sensor_filter(terms: Sequence[Term]) -> Any:
     """
     reading = total(SENSOR, terms, "reading")
 
-    def sensor(signals, samples, row):  # type: ignore[no-untyped-def]
+    def sensor(signals, samples, row):
         q, v, time, out = [signals + 8 * samples * i for i in (1, 2, 3, 4)]
         for k in range(samples):
             y = load_double(signals + 8 * k)

@@ -69,8 +69,8 @@ def table(kind: str) -> Any:
     """Returns the compiled function () -> address of the table of a kind."""
 
     @intrinsic
-    def address(typing_context):  # type: ignore[no-untyped-def]
-        def emit(context, builder, signature, args):  # type: ignore[no-untyped-def]
+    def address(typing_context):
+        def emit(context, builder, signature, args):
             name = f"identification_laws_{kind}"
             symbol = builder.module.globals.get(name)
             if symbol is None:
@@ -84,7 +84,7 @@ def table(kind: str) -> Any:
 
 
 @internal
-def callback(laws, k):  # type: ignore[no-untyped-def]
+def callback(laws, k):
     """Returns the address of the callback of law k of a table."""
     return load_word(laws + 16 + 16 * k)
 
@@ -93,7 +93,7 @@ _passive = table("passive")
 
 
 @internal
-def is_compiled(key):  # type: ignore[no-untyped-def]
+def is_compiled(key):
     """Returns whether a law with this key is in this process; every law has a passive callback."""
     laws = _passive()
     for k in range(load_word(laws)):  # noqa: SIM110
@@ -106,8 +106,8 @@ def caller(signature: Any) -> Any:
     """Returns the compiled function (address, arguments) -> what a C function there returns."""
 
     @intrinsic
-    def call(typing_context, address, arguments):  # type: ignore[no-untyped-def]
-        def emit(context, builder, own, args):  # type: ignore[no-untyped-def]
+    def call(typing_context, address, arguments):
+        def emit(context, builder, own, args):
             given = cgutils.unpack_tuple(builder, args[1])
             returns = ir.VoidType()
             if signature.return_type != types.void:
@@ -125,17 +125,17 @@ def _function(kind: str) -> Function:
     """Returns the function of a trampoline, to be compiled."""
     laws_of, call = table(kind), caller(SIGNATURES[kind])
 
-    def passive(m, d):  # type: ignore[no-untyped-def]
+    def passive(m, d):
         laws = laws_of()
         for k in range(load_word(laws)):
             call(callback(laws, k), (m, d))
 
-    def sensor(m, d, stage):  # type: ignore[no-untyped-def]
+    def sensor(m, d, stage):
         laws = laws_of()
         for k in range(load_word(laws)):
             call(callback(laws, k), (m, d, stage))
 
-    def answer(m, d, i):  # type: ignore[no-untyped-def]
+    def answer(m, d, i):
         laws = laws_of()
         for k in range(load_word(laws) - 1, -1, -1):  # the newest law is most often the one
             value = call(callback(laws, k), (m, d, i))

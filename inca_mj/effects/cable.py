@@ -45,7 +45,7 @@ _MIERMEISTER = "Miermeister, Kraus, Lan, Pott 2015"
 
 
 @njit
-def drum_eccentricity(s, p):  # type: ignore[no-untyped-def]
+def drum_eccentricity(s, p):
     return s.R * (p[0] * cos(s.phi) + p[1] * sin(s.phi))
 
 
@@ -59,7 +59,7 @@ DRUM_ECCENTRICITY = Effect(
 
 
 @njit
-def drum_layering(s, p):  # type: ignore[no-untyped-def]
+def drum_layering(s, p):
     return p[0] * s.phi
 
 
@@ -72,7 +72,7 @@ DRUM_LAYERING = Effect(
 
 
 @njit
-def backlash(s, p):  # type: ignore[no-untyped-def]
+def backlash(s, p):
     return -s.lambda_ * s.R * p[0] / s.d
 
 
@@ -86,7 +86,7 @@ BACKLASH = Effect(
 
 
 @njit
-def spring_hardening(s, p):  # type: ignore[no-untyped-def]
+def spring_hardening(s, p):
     """Δτ = R_s ΔF_s, ΔF_s = -k_s k₃ s³ |s/s₁|^(n-2) [N m]; the spring never pushes."""
     k_3, n = p
     way = s.R_s * s.phi
@@ -103,7 +103,7 @@ SPRING_HARDENING = Effect(
 
 
 @njit
-def spring_hysteresis(s, p):  # type: ignore[no-untyped-def]
+def spring_hysteresis(s, p):
     return p[0] * s.R_s * s.F_s * tanh(s.beta * s.omega)
 
 
@@ -116,7 +116,7 @@ SPRING_HYSTERESIS = Effect(
 
 
 @njit
-def cable_hardening(s, p):  # type: ignore[no-untyped-def]
+def cable_hardening(s, p):
     """ΔT = λ κ ε² (ε/ε₁)^(n-1) of a taut cable [N]: λ ε (1 + κ ε) in all where n = 1."""
     kappa, n = p
     strain = max(0.0, s.strain)
@@ -133,17 +133,17 @@ CABLE_HARDENING = Effect(
 
 
 @njit
-def cable_creep(s, p):  # type: ignore[no-untyped-def]
+def cable_creep(s, p):
     return p[0] * s.lambda_ * (s.strain - s.x)
 
 
 @njit
-def creep_rate(s, p):  # type: ignore[no-untyped-def]
+def creep_rate(s, p):
     return (s.strain - s.x) / p[1]
 
 
 @njit
-def creep_start(s, p):  # type: ignore[no-untyped-def]
+def creep_start(s, p):
     return s.strain
 
 
@@ -157,7 +157,7 @@ CABLE_CREEP = Effect(
 
 
 @njit
-def pulley_radius(s, p):  # type: ignore[no-untyped-def]
+def pulley_radius(s, p):
     """Returns Δd and ∂Δd/∂r, r = B - A."""
     r_p, over = p
     across = sqrt(s.rx**2 + s.ry**2)
@@ -187,7 +187,7 @@ PULLEY_RADIUS = Effect(
 
 
 @njit
-def cable_weight(s, p):  # type: ignore[no-untyped-def]
+def cable_weight(s, p):
     d = sqrt(s.rx**2 + s.ry**2 + s.rz**2)
     return 0.0, 0.0, -0.5 * GRAVITY * p[0] * d
 
@@ -201,7 +201,7 @@ CABLE_WEIGHT = Effect(
 
 
 @njit
-def anchor_offset(s, p):  # type: ignore[no-untyped-def]
+def anchor_offset(s, p):
     """Returns Δd and ∂Δd/∂r; r = B - A, o the offset of A."""
     x, y, z = s.rx - p[0], s.ry - p[1], s.rz - p[2]
     old, new = sqrt(s.rx**2 + s.ry**2 + s.rz**2), sqrt(x**2 + y**2 + z**2)

@@ -44,43 +44,43 @@ PROBE = 0.1  # of the largest plausible size: a cable that is 3 % softer moves a
 
 
 @njit
-def cable_elasticity(s, c):  # type: ignore[no-untyped-def]
+def cable_elasticity(s, c):
     return c * s.lambda_ * s.strain
 
 
 @njit
-def cable_damping(s, c):  # type: ignore[no-untyped-def]
+def cable_damping(s, c):
     return c * s.b * s.strain_rate * s.d_0
 
 
 @njit
-def drum_spring(s, c):  # type: ignore[no-untyped-def]
+def drum_spring(s, c):
     # the spring never pushes
     return s.R_s * max(-s.F_s, -c * s.k_s * s.R_s * s.phi)
 
 
 @njit
-def viscous_friction(s, c):  # type: ignore[no-untyped-def]
+def viscous_friction(s, c):
     return -c * s.b_v * s.omega
 
 
 @njit
-def friction(s, c):  # type: ignore[no-untyped-def]
+def friction(s, c):
     return -c * s.b_c * tanh(s.beta * s.omega)
 
 
 @njit
-def drum_radius(s, c):  # type: ignore[no-untyped-def]
+def drum_radius(s, c):
     return c * s.R
 
 
 @njit
-def torque_constant(s, c):  # type: ignore[no-untyped-def]
+def torque_constant(s, c):
     return c * s.i
 
 
 @njit
-def heat_rate(s, p):  # type: ignore[no-untyped-def]
+def heat_rate(s, p):
     return s.i * s.i
 
 
@@ -114,7 +114,7 @@ def _mismatch(rule: _Rule) -> Effect:
     law = rule.law
 
     @njit
-    def mismatch(s, p):  # type: ignore[no-untyped-def]
+    def mismatch(s, p):
         return law(s, p[0])
 
     return Effect(
@@ -132,7 +132,7 @@ def _drift(rule: _Rule) -> Effect:
     law, largest = rule.law, rule.largest / DRIFTING
 
     @njit
-    def drift(s, p):  # type: ignore[no-untyped-def]
+    def drift(s, p):
         return law(s, -p[0] * (s.time if p[1] == 0.0 else s.x))
 
     about = f"relative loss of {rule.letter} a second, or a second at 1 A"
@@ -153,7 +153,7 @@ def _jump(rule: _Rule) -> Effect:
     law = rule.law
 
     @njit
-    def jump(s, p):  # type: ignore[no-untyped-def]
+    def jump(s, p):
         return law(s, p[0] * min(1.0, max(0.0, 0.5 + (s.time - p[1]) / LASTS)))
 
     return Effect(

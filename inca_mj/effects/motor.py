@@ -47,7 +47,7 @@ _AMPLIFIER, _ENCODER = "data sheet of the amplifier", "data sheet of the encoder
 
 
 @njit
-def stribeck_friction(s, p):  # type: ignore[no-untyped-def]
+def stribeck_friction(s, p):
     f_s, v_s, n = p
     return -f_s * exp(-(abs(s.omega / v_s) ** n)) * tanh(s.beta * s.omega)
 
@@ -65,7 +65,7 @@ STRIBECK_FRICTION = Effect(
 
 
 @njit
-def asymmetric_friction(s, p):  # type: ignore[no-untyped-def]
+def asymmetric_friction(s, p):
     return -p[0] * abs(tanh(s.beta * s.omega))
 
 
@@ -78,7 +78,7 @@ ASYMMETRIC_FRICTION = Effect(
 
 
 @njit
-def load_dependent_friction(s, p):  # type: ignore[no-untyped-def]
+def load_dependent_friction(s, p):
     return -p[0] * s.R * s.T * tanh(s.beta * s.omega)
 
 
@@ -91,7 +91,7 @@ LOAD_DEPENDENT_FRICTION = Effect(
 
 
 @njit
-def quadratic_friction(s, p):  # type: ignore[no-untyped-def]
+def quadratic_friction(s, p):
     c, n = p
     return -c * s.omega * abs(s.omega) ** (n - 1)
 
@@ -107,7 +107,7 @@ QUADRATIC_FRICTION = Effect(
 
 
 @njit
-def cogging(s, p):  # type: ignore[no-untyped-def]
+def cogging(s, p):
     a, b, n = p
     return a * cos(n * s.phi) + b * sin(n * s.phi)
 
@@ -130,7 +130,7 @@ DELAY = Effect(
 
 
 @njit
-def current_saturation(s, p):  # type: ignore[no-untyped-def]
+def current_saturation(s, p):
     c, i_max, soft = p
     limited = i_max * tanh(s.u / i_max) if soft else max(-i_max, min(i_max, s.u))
     return s.u + c * (limited - s.u), 0.0
@@ -155,7 +155,7 @@ CURRENT_LAG = Effect(
 
 
 @njit
-def current_offset(s, p):  # type: ignore[no-untyped-def]
+def current_offset(s, p):
     return p[0]
 
 
@@ -168,7 +168,7 @@ CURRENT_OFFSET = Effect(
 
 
 @njit
-def current_crosstalk(s, p):  # type: ignore[no-untyped-def]
+def current_crosstalk(s, p):
     return p[0] * s.i_before + p[1] * s.i_after
 
 

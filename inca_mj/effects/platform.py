@@ -19,7 +19,7 @@ def _sizes(unit: str, largest: float, probe: float, what: str) -> tuple[Size, ..
 
 
 @njit
-def com_offset(s, p):  # type: ignore[no-untyped-def]
+def com_offset(s, p):
     return p[0], p[1], p[2]
 
 
@@ -32,7 +32,7 @@ COM_OFFSET = Effect(
 
 
 @njit
-def external_force(s, p):  # type: ignore[no-untyped-def]
+def external_force(s, p):
     return p[0], p[1], p[2], 0.0, 0.0, 0.0
 
 
@@ -45,7 +45,7 @@ EXTERNAL_FORCE = Effect(
 
 
 @njit
-def pull(s, p):  # type: ignore[no-untyped-def]
+def pull(s, p):
     x, y, z = p[0], p[1], p[2]
     bx = s.R11 * p[3] + s.R12 * p[4] + s.R13 * p[5]
     by = s.R21 * p[3] + s.R22 * p[4] + s.R23 * p[5]
@@ -66,7 +66,7 @@ PULL = Effect(
 
 
 @njit
-def air_drag(s, p):  # type: ignore[no-untyped-def]
+def air_drag(s, p):
     c, n = p
     k = -c * sqrt(s.vx**2 + s.vy**2 + s.vz**2) ** (n - 1)
     return k * s.vx, k * s.vy, k * s.vz, 0.0, 0.0, 0.0

@@ -208,7 +208,7 @@ def held_at(robot: Twin, poses: Sequence[Sequence[float]]) -> OperatingPoints:
     return replace(point, inputs=i)
 
 
-def _start(robot: Twin, pose: Sequence[float]):  # type: ignore[no-untyped-def]
+def _start(robot: Twin, pose: Sequence[float]):
     values = robot.parameters.with_values(pose_values(pose)).values()
     return start_from(values, robot.geometry, robot.layout)
 

@@ -228,7 +228,7 @@ def ernst_modulus(span: float, tension: float, rho: float, lambda_: float) -> fl
     return lambda_ / (1 + (rho * GRAVITY * span) ** 2 * lambda_ / (12 * tension**3))
 
 
-def _curve(s, H: float, V: float, w: float, lambda_: float):  # type: ignore[no-untyped-def]
+def _curve(s, H: float, V: float, w: float, lambda_: float):
     """Returns X and Z at s."""
     V_s = V - w * s
     T_0, T_s = np.hypot(H, V), np.hypot(H, V_s)

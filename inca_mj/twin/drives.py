@@ -50,19 +50,19 @@ Line: Any = namedtuple("Line", "k body length rate x y z rx ry rz")
 
 
 @internal
-def drive(m, i, column):  # type: ignore[no-untyped-def]
+def drive(m, i, column):
     """Returns a number of drive i: row i of `actuator_user`."""
     return double(m, M.actuator_user, word(m, M.nuser_actuator) * i + column)
 
 
 @internal
-def cable(m, k, column):  # type: ignore[no-untyped-def]
+def cable(m, k, column):
     """Returns a number of cable k: row k of `tendon_user`."""
     return double(m, M.tendon_user, word(m, M.nuser_tendon) * k + column)
 
 
 @internal
-def has_drives(m):  # type: ignore[no-untyped-def]
+def has_drives(m):
     """Returns whether a model may have drives: whether its rows are wide enough."""
     return (
         word(m, M.nuser_actuator) >= law.ACTUATOR_COLUMNS
@@ -71,7 +71,7 @@ def has_drives(m):  # type: ignore[no-untyped-def]
 
 
 @internal
-def key_of(m, i):  # type: ignore[no-untyped-def]
+def key_of(m, i):
     """Returns the key of the effects of drive i; zero where it has none, NaN if i is no drive."""
     if drive(m, i, law.ACTUATOR_TAG) != law.TAG:
         return np.nan
@@ -79,31 +79,31 @@ def key_of(m, i):  # type: ignore[no-untyped-def]
 
 
 @internal
-def row_of(m, i):  # type: ignore[no-untyped-def]
+def row_of(m, i):
     """Returns the address of the row of drive i in `actuator_user`."""
     return word(m, M.actuator_user) + 8 * word(m, M.nuser_actuator) * i
 
 
 @internal
-def activations_of(m, d, i):  # type: ignore[no-untyped-def]
+def activations_of(m, d, i):
     """Returns the address of the activations of drive i: d₀, then the states of its effects."""
     return word(d, D.act) + 8 * integer(m, M.actuator_actadr, i)
 
 
 @internal
-def cable_of(m, i):  # type: ignore[no-untyped-def]
+def cable_of(m, i):
     """Returns the index of the cable of drive i."""
     return np.int64(drive(m, i, law.CABLE))
 
 
 @internal
-def motor_dof(m, i):  # type: ignore[no-untyped-def]
+def motor_dof(m, i):
     """Returns the degree of freedom of the motor of drive i."""
     return integer(m, M.jnt_dofadr, integer(m, M.actuator_trnid, 2 * i))
 
 
 @internal
-def current_of(m, d, i):  # type: ignore[no-untyped-def]
+def current_of(m, d, i):
     """Returns the current of drive i, within its limits [A]."""
     u = integer(m, M.actuator_ctrladr, i)
     current = double(d, D.ctrl, u)
@@ -114,7 +114,7 @@ def current_of(m, d, i):  # type: ignore[no-untyped-def]
 
 
 @internal
-def neighbour_current(m, d, i):  # type: ignore[no-untyped-def]
+def neighbour_current(m, d, i):
     """Returns the current of actuator i where that is a drive, else zero [A]."""
     if i < 0 or i >= word(m, M.nactuator) or drive(m, i, law.ACTUATOR_TAG) != law.TAG:
         return 0.0
@@ -122,7 +122,7 @@ def neighbour_current(m, d, i):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def restart(m, d, i):  # type: ignore[no-untyped-def]
+def restart(m, d, i):
     """Give the cable of drive i its no-load length after a reset, which left it at zero."""
     act = activations_of(m, d, i)
     if load_double(act) == 0.0:
@@ -133,7 +133,7 @@ def restart(m, d, i):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def drive_state(m, d, i, line):  # type: ignore[no-untyped-def]
+def drive_state(m, d, i, line):
     """Returns drive i as the hooks before the tension see it."""
     joint, k = integer(m, M.actuator_trnid, 2 * i), line.k
     return Drive(
@@ -153,19 +153,19 @@ def drive_state(m, d, i, line):  # type: ignore[no-untyped-def]
 
 
 @internal
-def exit_point(m, k):  # type: ignore[no-untyped-def]
+def exit_point(m, k):
     """Returns the site where cable k leaves the frame."""
     return integer(m, M.wrap_objid, integer(m, M.tendon_adr, k))
 
 
 @internal
-def connector(m, k):  # type: ignore[no-untyped-def]
+def connector(m, k):
     """Returns the site where cable k ends."""
     return integer(m, M.wrap_objid, integer(m, M.tendon_adr, k) + 1)
 
 
 @inlined
-def found_line(m, d, k):  # type: ignore[no-untyped-def]
+def found_line(m, d, k):
     """Returns cable k as MuJoCo has it."""
     a, b = exit_point(m, k), connector(m, k)
     body = integer(m, M.site_bodyid, b)
@@ -181,7 +181,7 @@ def found_line(m, d, k):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def drawn_line(m, d, k):  # type: ignore[no-untyped-def]
+def drawn_line(m, d, k):
     """Returns cable k from where the numbers of the model put its ends, in a frame that rests."""
     b = connector(m, k)
     body, a = integer(m, M.site_bodyid, b), _arm(m, d, exit_point(m, k))
@@ -197,7 +197,7 @@ def drawn_line(m, d, k):  # type: ignore[no-untyped-def]
 
 
 @internal
-def _arm(m, d, site):  # type: ignore[no-untyped-def]
+def _arm(m, d, site):
     """Returns the vector from a body's frame to its site, by the model's numbers, in O [m]."""
     at = word(m, M.site_pos) + 24 * site  # an evaluation may exchange these numbers
     x, y, z = load_double(at), load_double(at + 8), load_double(at + 16)
@@ -205,7 +205,7 @@ def _arm(m, d, site):  # type: ignore[no-untyped-def]
 
 
 @internal
-def platform(d, at, body):  # type: ignore[no-untyped-def]
+def platform(d, at, body):
     """Returns what effects on the platform see; `at` is its first degree of freedom."""
     v, R = word(d, D.qvel) + 8 * at, word(d, D.xmat) + 72 * body
     return Platform(
@@ -221,13 +221,13 @@ def platform(d, at, body):  # type: ignore[no-untyped-def]
 
 
 @internal
-def dof(m, body):  # type: ignore[no-untyped-def]
+def dof(m, body):
     """Returns the first degree of freedom of a body's free joint."""
     return integer(m, M.jnt_dofadr, integer(m, M.body_jntadr, body))
 
 
 @internal
-def velocity(m, d, body, arm):  # type: ignore[no-untyped-def]
+def velocity(m, d, body, arm):
     """Returns the velocity of a point of the platform in O [m/s]; the arm starts at the body."""
     at = dof(m, body)
     w = turned(
@@ -242,19 +242,19 @@ def velocity(m, d, body, arm):  # type: ignore[no-untyped-def]
 
 
 @internal
-def push(m, d, line, force):  # type: ignore[no-untyped-def]
+def push(m, d, line, force):
     """Puts a force [N], in O, on the platform where a cable pulls at it."""
     _add(m, d, line.body, force, cross((line.rx, line.ry, line.rz), force))
 
 
 @internal
-def wrench(m, d, body, w):  # type: ignore[no-untyped-def]
+def wrench(m, d, body, w):
     """Puts a force [N] at the centre of mass and a torque [N m], both in O, on the platform."""
     _add(m, d, body, (w[0], w[1], w[2]), (w[3], w[4], w[5]))
 
 
 @internal
-def _add(m, d, body, force, torque):  # type: ignore[no-untyped-def]
+def _add(m, d, body, force, torque):
     """Adds a force and a torque, both in O, to the free joint of a body."""
     at = word(d, D.qfrc_passive) + 8 * dof(m, body)
     own = turned_back(d, body, torque[0], torque[1], torque[2])
@@ -264,7 +264,7 @@ def _add(m, d, body, force, torque):  # type: ignore[no-untyped-def]
 
 
 @internal
-def turned(d, body, x, y, z):  # type: ignore[no-untyped-def]
+def turned(d, body, x, y, z):
     """Returns R (x, y, z): from body axes to O."""
     at = word(d, D.xmat) + 72 * body
     return (
@@ -275,7 +275,7 @@ def turned(d, body, x, y, z):  # type: ignore[no-untyped-def]
 
 
 @internal
-def turned_back(d, body, x, y, z):  # type: ignore[no-untyped-def]
+def turned_back(d, body, x, y, z):
     """Returns Rᵀ (x, y, z): from O to body axes."""
     at = word(d, D.xmat) + 72 * body
     return (
@@ -286,6 +286,6 @@ def turned_back(d, body, x, y, z):  # type: ignore[no-untyped-def]
 
 
 @internal
-def cross(a, b):  # type: ignore[no-untyped-def]
+def cross(a, b):
     """Returns a × b."""
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])

@@ -119,7 +119,7 @@ def callbacks(
     some = key != 0.0
 
     @inlined
-    def winding(m, d, i, line):  # type: ignore[no-untyped-def]
+    def winding(m, d, i, line):
         """Returns drive i with all that follows from its state."""
         s, k = drives.drive_state(m, d, i, line), line.k
         length, rate, R = s.d, line.rate, s.R
@@ -142,7 +142,7 @@ def callbacks(
         return Winding(drive=seen, d_0_dot=d_0_dot, R=R, gx=gx, gy=gy, gz=gz)
 
     @inlined
-    def pull(m, d, i, line, now):  # type: ignore[no-untyped-def]
+    def pull(m, d, i, line, now):
         """Put the forces of drive i on its motor, and those of its effects on the platform."""
         s = now.drive
         tau = -law.coulomb_friction(s.omega, s.b_c, s.beta)
@@ -155,7 +155,7 @@ def callbacks(
         store_double(at, load_double(at) - now.R * s.T + s.R_s * s.F_s + tau)
 
     @inlined
-    def pull_as_found(m, d, i, line):  # type: ignore[no-untyped-def]
+    def pull_as_found(m, d, i, line):
         """Put the forces of drive i on its motor and on the platform."""
         now = winding(m, d, i, line)
         qfrc, start = word(d, D.qfrc_passive), integer(m, M.ten_J_rowadr, line.k)
@@ -164,7 +164,7 @@ def callbacks(
             store_double(at, load_double(at) - now.drive.T * double(d, D.ten_J, a))
         pull(m, d, i, line, now)
 
-    def passive(m, d):  # type: ignore[no-untyped-def]
+    def passive(m, d):
         if not drives.has_drives(m):
             return
         body = -1
@@ -182,7 +182,7 @@ def callbacks(
             wrench(m, d, body, added_wrench(platform(d, dof(m, body), body), row, 0))
 
     @inlined
-    def wind(m, d, i, now):  # type: ignore[no-untyped-def]
+    def wind(m, d, i, now):
         """Put the rates of all states of drive i into `act_dot`."""
         out = word(d, D.act_dot) + 8 * integer(m, M.actuator_actadr, i)
         if some:
@@ -190,7 +190,7 @@ def callbacks(
         store_double(out, now.d_0_dot)  # MuJoCo stores the rate of a single activation only
 
     @inlined
-    def sent(m, d, i, line):  # type: ignore[no-untyped-def]
+    def sent(m, d, i, line):
         """Returns the current of drive i with what effects add to it [A]."""
         current = drives.current_of(m, d, i)
         if some:
@@ -199,19 +199,19 @@ def callbacks(
             current += added_current(s, drives.row_of(m, i), drives.activations_of(m, d, i))
         return current
 
-    def act_dyn(m, d, i):  # type: ignore[no-untyped-def]
+    def act_dyn(m, d, i):
         if not drives.has_drives(m) or drives.key_of(m, i) != key:
             return 0.0
         now = winding(m, d, i, found_line(m, d, drives.cable_of(m, i)))
         wind(m, d, i, now)
         return now.d_0_dot
 
-    def act_bias(m, d, i):  # type: ignore[no-untyped-def]
+    def act_bias(m, d, i):
         if not drives.has_drives(m) or drives.key_of(m, i) != key:
             return 0.0
         return sent(m, d, i, found_line(m, d, drives.cable_of(m, i)))
 
-    def share(m, d, i):  # type: ignore[no-untyped-def]
+    def share(m, d, i):
         if not drives.has_drives(m) or drives.key_of(m, i) != key:
             return 0.0
         line = drawn_line(m, d, drives.cable_of(m, i))
@@ -224,7 +224,7 @@ def callbacks(
         store_double(at, load_double(at) + s.K_t * sent(m, d, i, line) - s.b_v * s.omega)
         return 1.0
 
-    def sensor(m, d, stage):  # type: ignore[no-untyped-def]
+    def sensor(m, d, stage):
         if stage != _STAGE_VEL or not drives.has_drives(m) or word(m, M.nuser_sensor) < 1:
             return
         for s in range(word(m, M.nsensor)):
