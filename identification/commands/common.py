@@ -18,6 +18,7 @@ from identification.commands.stopping import leaving_out
 from identification.errors import InputError
 from identification.files import readable, write_text
 from identification.folders import draft_of
+from identification.quantities import plain
 
 if TYPE_CHECKING:
     from identification.folders import Draft
@@ -215,12 +216,12 @@ def _version(package: str) -> str:
 
 
 def _plain(value: Any) -> Any:
-    """Returns a value with paths as text, and with text that every reader of JSON takes."""
+    """Returns plain values for JSON, with paths as text, and text that every reader takes."""
     if isinstance(value, Mapping):
         return {k: _plain(v) for k, v in value.items()}
     if isinstance(value, list | tuple):
         return [_plain(v) for v in value]
-    return readable(str(value)) if isinstance(value, Path | str) else value
+    return readable(str(value)) if isinstance(value, Path | str) else plain(value)
 
 
 def table(head: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> str:
