@@ -43,6 +43,42 @@ from identification.kalman.point import evaluate_sensitivities
 from identification.pool import one_blas_thread
 
 
+def find_structure(model: FittedModel, options: DiscoveryOptions) -> tuple[Finding, ...]:
+    """Returns what a model does not explain on the fitted samples; empty when it explains all.
+
+    Args:
+        model: the fitted model.
+        options: what counts as beyond chance, and as an error of the inputs that is no noise.
+    """
+    log = model.refit.point.log
+    white = innovation_tests(model.innovations, log.sampling_time)
+    out = []
+    if white.p_line < options.structure_level:
+        line = SpectralLine(log.output_names[white.channel], white.frequency, white.p_line)
+        out.append(Finding(FindingKind.SPECTRAL_LINE, line))
+    if white.p_louder < options.structure_level:
+        noisy = NoisyOutput(log.output_names[white.loudest], white.p_louder)
+        out.append(Finding(FindingKind.NOISY_OUTPUT, noisy))
+    if white.is_correlated(options.structure_level, options.min_structure_share):
+        correlated = CorrelatedInnovations(white.predictable, white.p_correlation)
+        out.append(Finding(FindingKind.CORRELATED_INNOVATIONS, correlated))
+    if names := list_parameters_at_limit(model):
+        out.append(Finding(FindingKind.PARAMETERS_AT_LIMIT, ParametersAtLimit(names)))
+    if model.refit.relative_input_error > options.allowed_input_error:
+        out.append(Finding(FindingKind.LARGE_INPUT_ERROR, _input_error(model)))
+    return tuple(out)
+
+
+def _input_error(model: FittedModel) -> LargeInputError:
+    log, level = model.refit.point.log, model.refit.level
+    return LargeInputError(
+        unit=log.units.get(log.input_names[0], ""),
+        rms=level.input_std,
+        share=model.refit.relative_input_error,
+        correlation_time=level.noise.time,
+    )
+
+
 def find_doubtful_effect(
     rejected: Sequence[RejectedEffect], samples: int, options: DiscoveryOptions
 ) -> tuple[Finding, ...]:
@@ -156,39 +192,3 @@ def _explain(validation: Validation) -> np.ndarray:
         scale = np.linalg.norm(rows, axis=0) + 1e-300
         move = np.linalg.lstsq(rows / scale, target, rcond=1e-12)[0] / scale
     return np.asarray((F @ move).reshape(validation.e.shape))
-
-
-def find_structure(model: FittedModel, options: DiscoveryOptions) -> tuple[Finding, ...]:
-    """Returns what a model does not explain on the fitted samples; empty when it explains all.
-
-    Args:
-        model: the fitted model.
-        options: what counts as beyond chance, and as an error of the inputs that is no noise.
-    """
-    log = model.refit.point.log
-    white = innovation_tests(model.innovations, log.sampling_time)
-    out = []
-    if white.p_line < options.structure_level:
-        line = SpectralLine(log.output_names[white.channel], white.frequency, white.p_line)
-        out.append(Finding(FindingKind.SPECTRAL_LINE, line))
-    if white.p_louder < options.structure_level:
-        noisy = NoisyOutput(log.output_names[white.loudest], white.p_louder)
-        out.append(Finding(FindingKind.NOISY_OUTPUT, noisy))
-    if white.is_correlated(options.structure_level, options.min_structure_share):
-        correlated = CorrelatedInnovations(white.predictable, white.p_correlation)
-        out.append(Finding(FindingKind.CORRELATED_INNOVATIONS, correlated))
-    if names := list_parameters_at_limit(model):
-        out.append(Finding(FindingKind.PARAMETERS_AT_LIMIT, ParametersAtLimit(names)))
-    if model.refit.relative_input_error > options.allowed_input_error:
-        out.append(Finding(FindingKind.LARGE_INPUT_ERROR, _input_error(model)))
-    return tuple(out)
-
-
-def _input_error(model: FittedModel) -> LargeInputError:
-    log, level = model.refit.point.log, model.refit.level
-    return LargeInputError(
-        unit=log.units.get(log.input_names[0], ""),
-        rms=level.input_std,
-        share=model.refit.relative_input_error,
-        correlation_time=level.noise.time,
-    )

@@ -37,31 +37,6 @@ from identification.pool import one_blas_thread
 HOLDS = ("foh", "zoh")  # straight lines, steps
 # Of the inputs' error: the other hold is reported where it leaves less than this.
 OTHER_HOLD_SHARE = 0.5
-
-
-def find_input_hold(fit: Refit) -> tuple[Finding, ...]:
-    """Returns the other hold of the inputs if it makes their error far smaller; else nothing.
-
-    Args:
-        fit: the nominal model, fitted.
-    """
-    point = fit.point
-    if not point.log.inputs.any():  # of a free swing, which no hold changes
-        return ()
-    other = HOLDS[1 - HOLDS.index(point.log.hold)]
-    predictor = replace(point.predictor, log=replace(point.log, hold=other))
-    evaluate = partial(evaluate_point, predictor, point.space, point.q, point, point.small)
-    there = attempt(None, evaluate)
-    if there is None:
-        return ()
-    level = estimate_noise(there, fit.priors, fit.level)
-    if level.input_std >= OTHER_HOLD_SHARE * fit.level.input_std:
-        return ()
-    unit = point.log.units.get(point.log.input_names[0], "")
-    evidence = InputHold(other, unit, level.input_std, fit.level.input_std)
-    return (Finding(FindingKind.INPUT_HOLD, evidence),)
-
-
 ERROR_KNOTS = 12  # of the curves over input, output and rate that an error of the inputs may follow
 
 
@@ -240,3 +215,26 @@ def _fit_family(
         fall=1 - float(np.sum(remaining**2) / np.sum(free**2)),
         error=np.sqrt(np.mean((r @ δg[p:]) ** 2, axis=0)),
     )
+
+
+def find_input_hold(fit: Refit) -> tuple[Finding, ...]:
+    """Returns the other hold of the inputs if it makes their error far smaller; else nothing.
+
+    Args:
+        fit: the nominal model, fitted.
+    """
+    point = fit.point
+    if not point.log.inputs.any():  # of a free swing, which no hold changes
+        return ()
+    other = HOLDS[1 - HOLDS.index(point.log.hold)]
+    predictor = replace(point.predictor, log=replace(point.log, hold=other))
+    evaluate = partial(evaluate_point, predictor, point.space, point.q, point, point.small)
+    there = attempt(None, evaluate)
+    if there is None:
+        return ()
+    level = estimate_noise(there, fit.priors, fit.level)
+    if level.input_std >= OTHER_HOLD_SHARE * fit.level.input_std:
+        return ()
+    unit = point.log.units.get(point.log.input_names[0], "")
+    evidence = InputHold(other, unit, level.input_std, fit.level.input_std)
+    return (Finding(FindingKind.INPUT_HOLD, evidence),)

@@ -32,6 +32,10 @@ from identification.logs.joined import records_of, rows_of
 from identification.logs.log import Log
 from identification.pool import one_blas_thread
 
+MIN_PROOF_SAMPLES = 5  # of a block of unseen samples
+MAX_FLIPPED_BLOCKS = 32  # 2^16 sums of each half; of more blocks neighbours are added
+ROUNDING = 1e-12  # of the blocks' sizes: sums that differ by less are one
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Validation:
@@ -126,11 +130,6 @@ def propagate_input_error(A: np.ndarray, C: np.ndarray, ratio: float, nu: int) -
     P[-nu:, -nu:] = ratio**2 * np.eye(nu)
     moved = propagate(A, C, P, 1 - A[:, -1, -1] ** 2)
     return np.vstack([np.zeros(len(C)), moved])
-
-
-MIN_PROOF_SAMPLES = 5  # of a block of unseen samples
-MAX_FLIPPED_BLOCKS = 32  # 2^16 sums of each half; of more blocks neighbours are added
-ROUNDING = 1e-12  # of the blocks' sizes: sums that differ by less are one
 
 
 def prove(without: Validation, with_it: Validation, options: DiscoveryOptions) -> Proof:

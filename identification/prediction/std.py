@@ -26,34 +26,6 @@ from identification.discovery.fitted import StepShift
 from identification.model.protocol import finer
 from identification.windows.fit import STD_BLOCKS, WindowFit
 
-
-def step_shift(found: WindowFit) -> StepShift:
-    """Returns the change of a fit with a quarter of the model's step.
-
-    Args:
-        found: a fit.
-    """
-    problem, q = found.problem, found.q
-    plant, unknown = finer(problem.plant), StepShift(np.full(len(q), np.nan), np.nan)
-    if plant is None:
-        return unknown
-    parts = (replace(p, predictor=replace(p.predictor, plant=plant)) for p in problem.parts)
-    finer_problem = replace(problem, parts=tuple(parts))
-    errors = attempt(None, lambda: finer_problem.held(q).residuals(found.moves))
-    if errors is None or attempt(None, partial(problem.cost_of, q, errors)) is None:
-        return unknown
-    g, before, after = np.zeros(len(q)), 0.0, 0.0
-    for t, r in zip(found.tangents, errors, strict=True):
-        S, own = t.projected
-        finely = replace(t, r=r).projected[1]
-        g = g + np.einsum("wmp,wm->p", S, finely - own)
-        before, after = before + float(np.sum(own**2)), after + float(np.sum(finely**2))
-    move = np.linalg.pinv(found.curvature, rcond=1e-14, hermitian=True) @ g
-    after -= float(g @ move)
-    error = float(np.sqrt(max(after, 0.0) / before)) if before > 0 else np.nan
-    return StepShift(move * problem.prior.space.slope(q), error)
-
-
 MIN_FREEDOM = 3.0  # degrees of freedom: the std is right within a factor 4 in 19 cases of 20
 
 
@@ -91,3 +63,30 @@ def degrees_of_freedom(found: WindowFit) -> np.ndarray:
     with np.errstate(divide="ignore", invalid="ignore"):
         told = ((total + w) / total) ** 2 * (total**2 / np.sum(h**2, axis=0) - 1)
     return np.where(total > 0, told, np.inf)
+
+
+def step_shift(found: WindowFit) -> StepShift:
+    """Returns the change of a fit with a quarter of the model's step.
+
+    Args:
+        found: a fit.
+    """
+    problem, q = found.problem, found.q
+    plant, unknown = finer(problem.plant), StepShift(np.full(len(q), np.nan), np.nan)
+    if plant is None:
+        return unknown
+    parts = (replace(p, predictor=replace(p.predictor, plant=plant)) for p in problem.parts)
+    finer_problem = replace(problem, parts=tuple(parts))
+    errors = attempt(None, lambda: finer_problem.held(q).residuals(found.moves))
+    if errors is None or attempt(None, partial(problem.cost_of, q, errors)) is None:
+        return unknown
+    g, before, after = np.zeros(len(q)), 0.0, 0.0
+    for t, r in zip(found.tangents, errors, strict=True):
+        S, own = t.projected
+        finely = replace(t, r=r).projected[1]
+        g = g + np.einsum("wmp,wm->p", S, finely - own)
+        before, after = before + float(np.sum(own**2)), after + float(np.sum(finely**2))
+    move = np.linalg.pinv(found.curvature, rcond=1e-14, hermitian=True) @ g
+    after -= float(g @ move)
+    error = float(np.sqrt(max(after, 0.0) / before)) if before > 0 else np.nan
+    return StepShift(move * problem.prior.space.slope(q), error)

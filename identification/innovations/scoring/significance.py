@@ -26,88 +26,7 @@ from identification.kalman.noise_fit import NoiseLevel
 # (4.6 + 1.3)² of a noncentral F: t = 4.6 is what the blocks demand at a chance of 0.01 over 200
 # candidates, and 1.3 is the normal quantile of 0.9.
 DETECTION_NONCENTRALITY = 35.0
-
-
-def list_detectable(scores: Sequence[Score], options: DiscoveryOptions) -> tuple[Detectable, ...]:
-    """Returns the smallest size of each effect that would have been found, ordered by name.
-
-    An effect that acts on all places at once is judged there, with the shape of its best score.
-    Another one is judged at the place and shape where it is hardest to find.
-
-    Args:
-        scores: of all candidates on the final model, the best first.
-        options: the sizes that are believed.
-    """
-    chosen: dict[str, Score] = {}
-    for s in scores:
-        name = s.candidate.effect.name
-        chosen[name] = _harder(s, chosen.get(name, s))
-    out = []
-    for _, s in sorted(chosen.items()):
-        for size, std in zip(s.candidate.effect.sizes, s.std, strict=True):
-            smallest = float(np.sqrt(DETECTION_NONCENTRALITY) * std)
-            largest = options.size_factor * size.largest
-            is_testable = np.isfinite(smallest) and 0 < smallest <= largest
-            out.append(
-                Detectable(s.candidate, size.name, smallest if is_testable else np.inf, size.unit)
-            )
-    return tuple(out)
-
-
-def _harder(s: Score, before: Score) -> Score:
-    """Returns the one of two scores that is on all places, else the one that is harder to find."""
-    if _is_everywhere(s) != _is_everywhere(before):
-        return s if _is_everywhere(s) else before
-    return before if _is_everywhere(s) or s.std.max() <= before.std.max() else s
-
-
-def _is_everywhere(s: Score) -> bool:
-    return not s.candidate.effect.places[s.candidate.where]
-
-
 NORMAL_QUANTILE = normal_level(0.025)  # of a two-sided interval of 95 %
-
-
-def list_hidden(
-    scores: Sequence[Score], level: NoiseLevel, options: DiscoveryOptions
-) -> tuple[Hidden, ...]:
-    """Returns the effects that the noise may hide, those that would explain most first.
-
-    Of each effect the place and the shape count with which it would explain most. An effect that
-    would explain nothing, or of which the log can say no size that is believed, is left out.
-
-    Args:
-        scores: of the candidates that the model does not have, on it, the best first.
-        level: the fitted noise.
-        options: the sizes that are believed.
-    """
-    best: dict[str, Score] = {}
-    for s in scores:
-        if s.gain > 0 and is_plausible(s.candidate, s.size, options):
-            best.setdefault(s.candidate.effect.name, s)
-    return tuple(_hidden(s, level) for s in best.values() if _is_bounded(s, options))
-
-
-def _most(s: Score) -> np.ndarray:
-    """Returns the largest size of each kind that the log does not contradict, shape (m,)."""
-    most: np.ndarray = np.abs(s.size) + NORMAL_QUANTILE * s.std
-    return most
-
-
-def _is_bounded(s: Score, options: DiscoveryOptions) -> bool:
-    largest = np.array([size.largest for size in s.candidate.effect.sizes])
-    return bool(np.all(_most(s) <= options.size_factor * largest))
-
-
-def _hidden(s: Score, level: NoiseLevel) -> Hidden:
-    sizes = zip(s.candidate.effect.sizes, s.size, _most(s), strict=True)
-    with_it, without = s.level.input_std, level.input_std
-    return Hidden(
-        candidate=s.candidate,
-        sizes={size.name: (float(value), float(most), size.unit) for size, value, most in sizes},
-        taken=float(max(0.0, 1 - (with_it / without) ** 2)) if without > 0 else 0.0,
-        gain=s.gain,
-    )
 
 
 def select_significant(scores: Sequence[Score], options: DiscoveryOptions) -> list[Score]:
@@ -184,3 +103,82 @@ def find_oversized(
 def correct_p_value(s: Score, count: int) -> float:
     """Returns the chance that one of `count` candidates scores as high by luck (Bonferroni)."""
     return min(1.0, max(s.p_value, s.block_p_value) * count)
+
+
+def list_detectable(scores: Sequence[Score], options: DiscoveryOptions) -> tuple[Detectable, ...]:
+    """Returns the smallest size of each effect that would have been found, ordered by name.
+
+    An effect that acts on all places at once is judged there, with the shape of its best score.
+    Another one is judged at the place and shape where it is hardest to find.
+
+    Args:
+        scores: of all candidates on the final model, the best first.
+        options: the sizes that are believed.
+    """
+    chosen: dict[str, Score] = {}
+    for s in scores:
+        name = s.candidate.effect.name
+        chosen[name] = _harder(s, chosen.get(name, s))
+    out = []
+    for _, s in sorted(chosen.items()):
+        for size, std in zip(s.candidate.effect.sizes, s.std, strict=True):
+            smallest = float(np.sqrt(DETECTION_NONCENTRALITY) * std)
+            largest = options.size_factor * size.largest
+            is_testable = np.isfinite(smallest) and 0 < smallest <= largest
+            out.append(
+                Detectable(s.candidate, size.name, smallest if is_testable else np.inf, size.unit)
+            )
+    return tuple(out)
+
+
+def _harder(s: Score, before: Score) -> Score:
+    """Returns the one of two scores that is on all places, else the one that is harder to find."""
+    if _is_everywhere(s) != _is_everywhere(before):
+        return s if _is_everywhere(s) else before
+    return before if _is_everywhere(s) or s.std.max() <= before.std.max() else s
+
+
+def _is_everywhere(s: Score) -> bool:
+    return not s.candidate.effect.places[s.candidate.where]
+
+
+def list_hidden(
+    scores: Sequence[Score], level: NoiseLevel, options: DiscoveryOptions
+) -> tuple[Hidden, ...]:
+    """Returns the effects that the noise may hide, those that would explain most first.
+
+    Of each effect the place and the shape count with which it would explain most. An effect that
+    would explain nothing, or of which the log can say no size that is believed, is left out.
+
+    Args:
+        scores: of the candidates that the model does not have, on it, the best first.
+        level: the fitted noise.
+        options: the sizes that are believed.
+    """
+    best: dict[str, Score] = {}
+    for s in scores:
+        if s.gain > 0 and is_plausible(s.candidate, s.size, options):
+            best.setdefault(s.candidate.effect.name, s)
+    return tuple(_hidden(s, level) for s in best.values() if _is_bounded(s, options))
+
+
+def _most(s: Score) -> np.ndarray:
+    """Returns the largest size of each kind that the log does not contradict, shape (m,)."""
+    most: np.ndarray = np.abs(s.size) + NORMAL_QUANTILE * s.std
+    return most
+
+
+def _is_bounded(s: Score, options: DiscoveryOptions) -> bool:
+    largest = np.array([size.largest for size in s.candidate.effect.sizes])
+    return bool(np.all(_most(s) <= options.size_factor * largest))
+
+
+def _hidden(s: Score, level: NoiseLevel) -> Hidden:
+    sizes = zip(s.candidate.effect.sizes, s.size, _most(s), strict=True)
+    with_it, without = s.level.input_std, level.input_std
+    return Hidden(
+        candidate=s.candidate,
+        sizes={size.name: (float(value), float(most), size.unit) for size, value, most in sizes},
+        taken=float(max(0.0, 1 - (with_it / without) ** 2)) if without > 0 else 0.0,
+        gain=s.gain,
+    )
