@@ -7,8 +7,8 @@ Prints one JSON object. Times are the processor's, the least of some calls.
 
 from __future__ import annotations
 
+import argparse
 import json
-import sys
 import time
 from collections.abc import Callable
 from dataclasses import replace
@@ -85,13 +85,16 @@ def timings() -> dict[str, float]:
 
 def main() -> None:
     """Measure, draw, print."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("picture", nargs="?", help="is drawn there, such as poses.png")
+    given = parser.parse_args()
     logs = {(k, s): noisy_log(k, s) for k, s in (("prbs", 0), ("prbs", 3), ("multisine", 0),
                                                  ("step", 0))}  # fmt: skip
-    if len(sys.argv) > 1:
+    if given.picture:
         from identification.report.style import save_png
         from inca_mj.report.poses import poses_figure
 
-        save_png(poses_figure(log_poses(logs["prbs", 0])), sys.argv[1], dpi=110)
+        save_png(poses_figure(log_poses(logs["prbs", 0])), given.picture, dpi=110)
     result = {
         "accuracy": {f"{kind}, seed {seed}": accuracy(log) for (kind, seed), log in logs.items()},
         "microseconds": timings(),

@@ -8,8 +8,8 @@ docs/linearisation_grid.png; docs/linearisation.md tells the numbers.
 
 from __future__ import annotations
 
+import argparse
 import json
-import sys
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -77,7 +77,9 @@ def milliseconds(call: Callable[[], object]) -> dict[str, float]:
 
 
 def main() -> None:
-    quick = "--quick" in sys.argv
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--quick", action="store_true", help="coarser grids")
+    quick = parser.parse_args().quick
     robot = build_twin(visual=False)
     record: dict[str, object] = {"span": SPAN, "points": POINTS}
     grids, table, lines = {}, [], {}

@@ -8,6 +8,8 @@ angles over their rms motion, and the largest difference of the platform's posit
 
 from __future__ import annotations
 
+import argparse
+
 import mujoco
 import numpy as np
 
@@ -54,4 +56,5 @@ def main() -> None:
 
 
 if __name__ == "__main__":
+    argparse.ArgumentParser(description=__doc__.splitlines()[0]).parse_args()
     main()

@@ -8,6 +8,7 @@ Records: results/fuzz.jsonl (`python tests/fuzz --record`), results/interrupts.j
 
 from __future__ import annotations
 
+import argparse
 import json
 from collections import Counter
 from collections.abc import Sequence
@@ -143,4 +144,5 @@ def _robot(row: Row) -> str:
 
 
 if __name__ == "__main__":
+    argparse.ArgumentParser(description=__doc__.splitlines()[0]).parse_args()
     main()

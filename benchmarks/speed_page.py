@@ -5,6 +5,7 @@ Its rows are those of `benchmarks/speed.py`, `benchmarks/searches.py` and `bench
 
 from __future__ import annotations
 
+import argparse
 import json
 from collections.abc import Sequence
 from pathlib import Path
@@ -211,4 +212,5 @@ def write_page() -> None:
 
 
 if __name__ == "__main__":
+    argparse.ArgumentParser(description=__doc__.splitlines()[0]).parse_args()
     write_page()

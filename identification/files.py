@@ -121,7 +121,9 @@ def read_toml(path: Path, what: str = "TOML file") -> dict[str, Any]:
     except (ValueError, RecursionError) as error:  # digits without end are a ValueError too
         if isinstance(error, InputError):
             raise
-        raise InputError(f"{path} is not TOML ({_said(error)}); correct it there") from error
+        raise InputError(
+            f"{path} is not TOML ({_said(error)}); correct it, or give a {what}"
+        ) from error
 
 
 def read_archive(path: Path, what: str) -> dict[str, np.ndarray]:

@@ -1,14 +1,14 @@
 """The confidence in a name, against its rivals and against what it leaves unexplained.
 
     P_j ∝ exp(-ΔBIC_j/(2 T))        over the models that were refitted in its place, and over the
-                                    nominal model with other parameters (`retuning`), and over
+                                    nominal model with other parameters (`retune`), and over
                                     curves that no law gives (`free_curves`)
 
 T, the temperature, is above 1 because the likelihood believes its noise model. The confidence has
 an upper limit because no effect is certain that was confirmed under one kind of input only. Both
 are judgement; a sweep over hidden worlds says how well the confidence is calibrated. Where
-something is left beside the names, the limit is lower: it is the share of such names that were
-right in hidden worlds.
+something is left beside the names, the limit is lower: of the names with which something was left
+in hidden worlds, it is the share that were right.
 """
 
 from __future__ import annotations

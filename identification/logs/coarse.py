@@ -34,8 +34,8 @@ from identification.logs.table import Table
 
 MEANT_EXACT = 1e-2  # the same where the user says that rows with one stamp are meant
 FEW = 2  # irregular steps, which dropped or repeated rows may well make
-MOST = 0.05  # of the rows, that may have come together, such as through a bus
-MEANT = 0.5  # of the stamps, that may have such rows where the user says that they are meant
+MOST = 0.05  # share of the rows that a bus may have delivered together
+MEANT = 0.5  # share of the stamps with such rows where the user says that they are meant
 
 
 def evened_stamps(

@@ -10,8 +10,8 @@ too coarse for a slow motion also repeats values, but it does not stop suddenly.
 
 A sensor that wakes up again jumps to where its joint has gone meanwhile. A joint that rested, stuck
 by friction or at an end stop, or moved by less than a step of its encoder, begins to move from
-where it was, and no faster than elsewhere in the log. So a position that does not jump is never
-told as one that froze for a while, such as that of a joint that is back when its sensor wakes up.
+where it was, and no faster than elsewhere in the log. Only a position that jumps is therefore told
+as one that froze. A sensor that froze while its joint left and came back is not found.
 """
 
 from __future__ import annotations

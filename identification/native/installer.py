@@ -57,7 +57,7 @@ class Law:
         name: of what they act on, e.g. "joints".
         key: what its models carry; two laws with one key are one law, of which the newer counts.
         functions: kind of callback ("passive", "act_dyn", …) -> the function to be compiled; the
-            kind "share" where an actuator's share is given too (`identification.native.installer`).
+            kind "share" where an actuator's share is given too.
         fields: the fields of mjModel and mjData that they touch.
         check: raises `InputError` where a function of an effect cannot be compiled.
         owners: which numbers of a model an actuator of this law alone reads; none of a model that

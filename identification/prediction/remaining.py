@@ -9,9 +9,9 @@ is good to some per cent. What so small an error of the inputs makes is no reaso
 
 Where the error at the horizon is that of the sensors, nothing is left that an effect or a shift of
 a record could explain. Among many that are tried one gains by luck, so that such a doubt counts
-only where more than `min_gap_share` is left above the sensors' noise. All outputs together say that
-least of one that errs while the others, which the nominal model predicts as well, do not: an output
-by itself counts where its error is more than `MAX_OUTPUT_RATIO` times its noise.
+only where more than `min_gap_share` is left above the sensors' noise. One output may err while the
+others do not, and the mean over all outputs then hides it. So an output also counts by itself,
+where its error is more than `MAX_OUTPUT_RATIO` times its noise.
 """
 
 from __future__ import annotations

@@ -1,6 +1,11 @@
 """An effect that was refitted over windows: its proof by unseen records, its rivals, and its twin.
 
-Two laws are the same force by two names, as long as they are smaller than the Coulomb level:
+It is proven where unseen records are predicted better beyond chance, over every length, in every
+record, and by enough to matter; else a `Doubt` says what is against it. Its rivals are the effects
+that were refitted in its place and explain little once it is there.
+
+Its twin is the same force by another name, as an offset and a friction that differs by direction
+are as long as both are smaller than the Coulomb level:
 
     a force f_0, a level f_c                 levels f_c + f_a and f_c - f_a by direction, f_a = -f_0
 
@@ -107,9 +112,9 @@ def find_doubt(found: Prediction, refits: int, options: DiscoveryOptions) -> Dou
 def has_size(model: WindowModel, options: DiscoveryOptions) -> bool:
     """Returns whether a free size of the last effect is beyond its own std, where it has one.
 
-    It must be beyond what steps of the simulation err by too. The nodes of a curve go together, and
-    with a free level or slope beside it each of them may be unknown where the curve is not: of it
-    the evidence speaks, which pays for every node.
+    The size must also be beyond the error of the simulation's steps. A curve is not asked: beside a
+    free level or slope each of its nodes may be unknown although the curve is known, and the
+    evidence, which pays for every node, judges the curve as a whole.
     """
     std, values, c = model.std, model.fit.values, model.candidates[-1]
     least = {n: s.smallest for n, s in zip(c.sizes, c.effect.sizes, strict=True)}

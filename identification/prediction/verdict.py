@@ -22,7 +22,7 @@ from identification.discovery.effect_results import (
     RejectedEffect,
     Rival,
 )
-from identification.discovery.findings.finding import FindingKind
+from identification.discovery.findings.finding import Finding, FindingKind
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.result import Discovery, Verdict
 from identification.effects.effect import Candidate
@@ -41,6 +41,11 @@ from identification.windows.records import Record
 from identification.windows.unseen import Prediction, Unseen, rise
 
 MIN_LISTED_CONFIDENCE = 0.02  # a rival that is less likely is not listed
+EVEN_ODDS = 0.5  # a name below them is none, unless it is told with its look-alike
+# With these findings and no name, the model lacks something.
+SUSPECT = (
+    FindingKind.UNPROVEN_EFFECT, FindingKind.DIFFERENT_RECORD, FindingKind.SHIFTED_RECORD,
+)  # fmt: skip
 
 
 def conclude(state: WindowSearch) -> Discovery:
@@ -57,27 +62,11 @@ def conclude(state: WindowSearch) -> Discovery:
     findings = find_remaining(state, rejected, shifts)
     limit = options.left_confidence if findings else options.max_confidence
     named = tuple(_named(state, a, limit) for a in state.accepted)
-    sure = all(n.confidence >= 0.5 or n.one_of for n in named)
-    doubtful = any(f.kind is FindingKind.UNPROVEN_EFFECT for f in findings)
-    different = any(
-        f.kind in (FindingKind.DIFFERENT_RECORD, FindingKind.SHIFTED_RECORD) for f in findings
-    )
     # Beside a model with effects that diverges there, the nominal one tells it.
     needed = attempt(None, partial(needed_input_error, model.fit, model.unseen.floor))
     if needed is None:
         needed = needed_input_error(nominal.fit, nominal.unseen.floor)
-    verdict: Verdict = "nothing missing"
-    if named and sure:
-        curves = [n.candidate.effect.is_curve for n in named]
-        verdict = "unlisted effect" if all(curves) else "named"
-    elif (
-        named
-        or doubtful
-        or different
-        or _is_worse(state)
-        or (_is_off(model, options) and needed > options.max_input_error)
-    ):
-        verdict = "unknown effect"
+    verdict = decide(named, findings, _is_worse(state) or _errs(model, needed, options))
     if verdict == "unknown effect":
         rejected, named, model = listed_once([*map(_unnamed, named), *rejected]), (), nominal
     floor = model.unseen.floor
@@ -105,6 +94,24 @@ def conclude(state: WindowSearch) -> Discovery:
         seconds=state.seconds, moves=state.made,
         failed=state.failed, recover=partial(recover_over_horizon, model),
     )  # fmt: skip
+
+
+def decide(
+    named: Sequence[NamedEffect], findings: Sequence[Finding], is_unexplained: bool
+) -> Verdict:
+    """Returns the verdict.
+
+    Args:
+        named: the accepted effects, with their confidence.
+        findings: what the final model leaves.
+        is_unexplained: whether the model errs by more than noise, and no effect says why.
+    """
+    if named and all(n.confidence >= EVEN_ODDS or n.one_of for n in named):
+        is_drawn = all(n.candidate.effect.is_curve for n in named)
+        return "unlisted effect" if is_drawn else "named"
+    if named or is_unexplained or any(f.kind in SUSPECT for f in findings):
+        return "unknown effect"
+    return "nothing missing"
 
 
 def _at_own_steps(state: WindowSearch) -> WindowSearch:
@@ -235,6 +242,11 @@ def _is_worse(state: WindowSearch) -> bool:
     if state.worse_fit is None or state.accepted:
         return False
     return rise(state.begun, state.worse_fit) > state.task.options.min_gap_share
+
+
+def _errs(model: WindowModel, needed: float, options: DiscoveryOptions) -> bool:
+    """Returns whether a model errs by more than noise and than errors of its inputs would make."""
+    return _is_off(model, options) and needed > options.max_input_error
 
 
 def _is_off(model: WindowModel, options: DiscoveryOptions) -> bool:

@@ -4,8 +4,8 @@ A factor that the TOML of a log gives turns the numbers of a file into those of 
 unit. A wrong one makes an output too large or too small, as a wrong unit does; but its cure is to
 correct the factor, and not to write a unit beside it.
 
-Where two mistakes are in one log (a sign that is turned, and another unit, an exchange or another
-sign), neither of the two readings explains it by itself, so that each alone would pass it.
+A log may have two mistakes: a turned sign together with a wrong unit, with exchanged columns, or
+with another turned sign. Neither reading explains such a log by itself.
 """
 
 from __future__ import annotations

@@ -19,7 +19,7 @@ TRUST = {  # what a user may know better than a check
     "start": "simulations begin where the model does, also where the log begins elsewhere",
     "steps": "the model's steps are fine enough",
     "time": "the log's time is in seconds",
-    "units": "the outputs are in the units that the log says",
+    "units": "the columns are in the units that the log says",
     "wiring": "the signs and the order of the columns are right",
 }
 

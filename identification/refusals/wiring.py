@@ -5,10 +5,11 @@ explains a right log badly too, and may explain a wrong reading better by chance
 motion larger makes every error of the model smaller beside it. So a log is refused only where the
 balance of forces says the same (`identification.refusals.balance`): no payload, gravity, friction
 or mass lets the log be explained as it is read nearly as well as otherwise. Where that balance
-cannot be had, the other reading must explain nearly all. Two mistakes in one log, a sign and a
-unit, an exchange or another sign, are looked for where no reading with one of them is far better,
-and only where the balance does not explain the log as it is read. These are many, so that a few
-windows of each are simulated first, and none of a log with very many columns. A motion that is too
+cannot be had, the other reading must explain nearly all. A log may have two mistakes: a turned sign
+together with a wrong unit, with exchanged columns, or with another turned sign. They are looked for
+where no reading with one of them is far better, and only where the balance does not explain the log
+as it is read. There are many pairs, so that a few windows of each are simulated first, and none of
+a log with very many columns. A motion that is too
 large for the forces of the drives is refused without any simulation.
 """
 

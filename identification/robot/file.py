@@ -6,7 +6,7 @@ free = ["M", "joint/slide.damping", "coulomb_friction.f_c@slide"]
 own = ["coulomb_friction.f_c@slide"] # of the free ones, those that differ from log to log
 horizon = 0.2                        # [s] to judge predictions over; a free run if not given
 every = 10                           # keep every n-th sample
-trust = ["wiring"]                   # judgements that are not to refuse a log: robot/trust.py
+trust = ["wiring"]                   # judgements that are not to refuse a log: refusals/trust.py
 [fixed]                              # values of effects' parameters that are not free
 "stribeck_friction.v_s" = 0.05
 [start]                              # entries of the initial state; else the log's, or the model's

@@ -3,8 +3,7 @@
     r_w(d_w) = [ C (y_w - ŷ_w(x̄_w ⊕ d_w)) ; -d_w/s ]        as `identification.windows.shooting`
 
 What the parameters make of the model and of the inputs is computed once, simulations are prepared
-once, and windows of several records may be simulated in one batch
-(`identification.windows.held`).
+once, and windows of several records may be simulated in one batch (`HeldRecords`).
 """
 
 from __future__ import annotations

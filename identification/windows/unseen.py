@@ -2,7 +2,7 @@
 
 The horizon is predicted first: what it refutes is not predicted over the other lengths. Both models
 begin each window at the state that explains it best, found by the same smoother. Gains of blocks of
-neighbouring windows (`identification.prediction.evidence`) are the sample of a t-test.
+neighbouring windows (`identification.windows.blocks`) are the sample of a t-test.
 """
 
 from __future__ import annotations

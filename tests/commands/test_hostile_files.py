@@ -38,7 +38,7 @@ def test_a_geometry_has_numbers_only(tmp_path):
 def test_what_is_no_toml_is_told_so(tmp_path, read, text):
     path = tmp_path / "some.toml"
     path.write_text(text)
-    with pytest.raises(InputError, match=r"is not TOML \(.{1,120}\); correct it there"):
+    with pytest.raises(InputError, match=r"is not TOML \(.{1,120}\); correct it, or give a"):
         read(path)
 
 

@@ -36,7 +36,7 @@ class FindingKind(StrEnum):
     WORSE_FIT = "worse fit"
 
 
-Evidence = (
+FindingEvidence = (
     evidence.WorstOutput
     | evidence.WorstInterval
     | evidence.MedianFrequency
@@ -57,7 +57,7 @@ Evidence = (
     | records_evidence.ShiftedRecord
     | records_evidence.WorseFit
 )
-EVIDENCE: dict[FindingKind, type[Evidence]] = {
+EVIDENCE: dict[FindingKind, type[FindingEvidence]] = {
     FindingKind.WORST_OUTPUT: evidence.WorstOutput,
     FindingKind.WORST_INTERVAL: evidence.WorstInterval,
     FindingKind.MEDIAN_FREQUENCY: evidence.MedianFrequency,
@@ -90,7 +90,7 @@ class Finding:
     """
 
     kind: FindingKind
-    evidence: Evidence
+    evidence: FindingEvidence
 
     def __post_init__(self) -> None:
         if not isinstance(self.evidence, EVIDENCE[self.kind]):
