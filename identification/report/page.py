@@ -142,12 +142,15 @@ def write_report(
         lstrip_blocks=True,
     )
     environment.filters["whole"] = whole_quantities
-    drawn = {} if drawings is None else drawings
     page = environment.get_template("report.html").render(
         title=title,
         file=Path(path).name,
         verdict=list(verdict),
-        sections=[_parts(section, number, drawn) for number, section in enumerate(sections, 1)],
+        sections=[
+            # Without drawings of an earlier page a figure that stands twice has names for each.
+            _parts(section, number, {} if drawings is None else drawings)
+            for number, section in enumerate(sections, 1)
+        ],
         mood={True: "good", False: "bad", None: "plain"}[good],
         footer="\n".join(filter(None, [footer, origin(data)])),
         dark=DARK,
