@@ -211,7 +211,7 @@ def rounded(found: Any) -> Any:
 def keep(name: str, now: dict[str, Any]) -> None:
     """Write an answer into the folder of those that are kept."""
     KEPT.mkdir(exist_ok=True)
-    text = json.dumps(rounded(now), indent=1, ensure_ascii=False)
+    text = json.dumps(rounded(now), ensure_ascii=False)  # a line: `differences` tells what changed
     (KEPT / f"{name}.json").write_text(text + "\n", encoding="utf-8")
 
 

@@ -24,7 +24,7 @@ import time
 from pathlib import Path
 from typing import Any
 
-from identification.folders import list_foreign
+from identification.made import list_content
 from identification.sweep.work import commit
 
 LATEST = 20.0  # [s] after the start; until then most commands read, fit, search, and draw
@@ -129,7 +129,7 @@ def interrupted(line: list[str], after: float, within: float) -> dict[str, Any] 
             and "Traceback" not in said
             and (not left or result is not None)
             and not drafts
-            and not list_foreign(out)
+            and not list_content(out).foreign
         )
         return {"right": right, "after": round(after, 3), "seconds": round(seconds, 3),
                 "code": process.returncode, "left": left + drafts,

@@ -40,11 +40,6 @@ _SHOWN = 3  # names in a message
 _RESULTS = ("result.json", "report.html", MADE)  # no folder may bear these names
 
 
-def list_foreign(folder: Path) -> list[str]:
-    """Returns the names of files in a folder that were not made there, or were changed since."""
-    return list_content(folder).foreign if folder.is_dir() else []
-
-
 def refuse_foreign(folder: Path) -> None:
     """Refuse a folder with files of others, which results could replace."""
     try:

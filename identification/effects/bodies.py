@@ -174,10 +174,7 @@ def body_numbers(
         tables = [(e, table_at([e], body.label, values, n)) for e in here]
         for k in range(n):
             _change(body, {field: row[k] for field, row in rows.items()}, tables, k)
-        for field, width in _WIDTHS.items():
-            for k in range(width or 1):
-                slot = Slot(field, (body.index,), k if width else None)
-                out.append((slot, rows[field][:, k]))
+        out += _slots(body.index, rows)
     return out
 
 
@@ -208,6 +205,7 @@ def _change(
 
 
 def _slots(b: int, rows: dict[str, np.ndarray]) -> Numbers:
+    """Returns the entries of a body that its rows (n, width) of numbers change."""
     return [
         (Slot(field, (b,), None if not width else k), rows[field][:, k])
         for field, width in _WIDTHS.items()

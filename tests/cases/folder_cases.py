@@ -1,6 +1,7 @@
 """Folders of results that are written and read in short."""
 
 from identification.folders import whole_folder
+from identification.made import list_content
 
 
 def content(folder):
@@ -14,3 +15,8 @@ def made(out, **texts):
     with whole_folder(out) as draft:
         for name, text in texts.items():
             (draft / name).write_text(text)
+
+
+def list_foreign(folder):
+    """The files of a folder that were not made there, or were changed since."""
+    return list_content(folder).foreign if folder.is_dir() else []

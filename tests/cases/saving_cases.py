@@ -18,11 +18,13 @@ from functools import cache
 from itertools import count
 from pathlib import Path
 
+from folder_cases import list_foreign
+
 from identification.commands import common
 from identification.commands.common import Output, conclude
 from identification.errors import InputError
 from identification.files import write_text
-from identification.folders import draft_of, list_foreign, refuse_foreign
+from identification.folders import draft_of, refuse_foreign
 
 CALLS = ("os.rename", "os.mkdir", "os.link", "os.remove", "os.rmdir", "os.chmod", "os.utime")
 WRITES = os.O_WRONLY | os.O_RDWR | os.O_CREAT

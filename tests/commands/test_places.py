@@ -4,11 +4,11 @@ import os
 
 import numpy as np
 import pytest
-from folder_cases import content, made
+from folder_cases import content, list_foreign, made
 
 from identification.__main__ import main as identification
 from identification.errors import InputError
-from identification.folders import MADE, list_foreign, whole_folder
+from identification.folders import MADE, whole_folder
 from identification.report.discovery_figures import gap_figure, rms_figure
 from identification.report.figures import compare_figure
 from identification.report.media import svg

@@ -13,11 +13,11 @@ from pathlib import Path
 import fake_discovery
 import numpy as np
 import pytest
-from folder_cases import content, made
+from folder_cases import content, list_foreign, made
 
 from identification.commands.common import Output, conclude, say_json
 from identification.errors import InputError
-from identification.folders import list_foreign, refuse_foreign, try_folder
+from identification.folders import refuse_foreign, try_folder
 from inca_mj.commands import filmed
 from inca_mj.commands.discover import Discover
 

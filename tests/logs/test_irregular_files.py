@@ -6,10 +6,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from folder_cases import list_foreign
 
 from identification import InputError, read_log
 from identification.files import read_archive, read_bytes, read_json, read_text, read_toml
-from identification.folders import MADE, list_foreign, whole_folder
+from identification.folders import MADE, whole_folder
 from identification.linear.export import load_system
 from identification.report.media import image_source, video_source
 from identification.sweep.config import axis
