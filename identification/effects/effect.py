@@ -138,6 +138,8 @@ class Effect:
             which then reads no parameter: what happens to a thing whichever effect looks at it.
         own: whether its size is each record's own, such as a shift of that record's time stamps;
             one record cannot tell it from what is the same in all.
+        is_among: whether it is felt only beside things on which it does not act, so that it never
+            acts at all of its places: sensors that are all late are inputs that come late.
         onset: where what it adds is multiplied by a course in time, that course.
         hooks: where it adds to the law of a robot, e.g. "force", and the njit function (state,
             parameters) that says what. None are needed where its sizes are paths into a model.
@@ -158,6 +160,7 @@ class Effect:
     needs: str = ""
     shares: bool = False
     own: bool = False
+    is_among: bool = False
     onset: Onset | None = None
     hooks: Mapping[str, Callable[..., Any]] = field(default_factory=dict, hash=False)
 

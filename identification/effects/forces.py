@@ -1,10 +1,12 @@
 """Forces on joints that do not come from friction, and all that changes with time t of the record.
 
     f =   f_0                                   constant force
+        - α f_g                                 gravity that is not what the model has
         - k q                                   spring
         - k_3 q³                                its hardening
         - c f_u³                                a drive that weakens where it pushes hard
         + a cos n q + b sin n q                 cogging
+        + f_t t                                 a force that drifts
         - d_t t v                               viscous friction that drifts
         - d_j r(t - t_j) v                      ... that jumps
         + f_p (r(t - t_0) - r(t - t_0 - t_p))   a push that begins and ends
@@ -14,7 +16,9 @@
 
     r(x) = clip(½ + x/w, 0, 1)                  from none to all within w about x = 0
 
-The letters are those of `identification.effects.friction`. Time is that of the record, from its
+The letters are those of `identification.effects.friction`. A drive that compensates gravity has α =
+1, a robot that is mounted upside down α = 2, one that stands where g is less, or on a slope, some α
+between. Time is that of the record, from its
 first sample on, also in its parts and in windows of it. A jump takes a short time w so that the
 outputs follow its time smoothly, and its time can be searched.
 """
@@ -36,6 +40,11 @@ EDGE = 0.02  # of the record: how long a jump takes, so that its time can be sea
 @njit
 def offset(s, p):
     return p[0]
+
+
+@njit
+def gravity_force(s, p):
+    return -p[0] * s.f_g
 
 
 @njit
@@ -77,6 +86,11 @@ def friction_jump(s, p):
 
 
 @njit
+def force_drift(s, p):
+    return p[0] * s.time
+
+
+@njit
 def viscous_friction_drift(s, p):
     return -p[0] * s.time * s.v
 
@@ -98,6 +112,11 @@ def force_effects(g: Group) -> list[Effect]:
     F, A = g.F, g.A
     return [
         g.force(offset, "f_0", "force: constant", g.size("f_0", 0.2 * F, g.f, "constant force")),
+        g.force(gravity_force, "-α f_g, f_g gravity's force",
+                "force: gravity's is not what the model has",
+                g.size("alpha", 2.0, "", "share of gravity's force that is missing: 1 where the"
+                       " drive compensates it, 2 where the robot hangs upside down"),
+                places=g.heavy),
         g.force(stiffness, "-k q", "spring: pulls back to zero",
                 g.size("k", 0.3 * F / A, f"{g.f}/{g.x}", "of a spring", 1)),
         g.force(hardening, "-k_3 q³", "spring: grows with the cube of the way",
@@ -125,6 +144,8 @@ def time_effects(g: Group) -> list[Effect]:
     return [
         g.friction(friction_drift, "at most f_t t more", "friction: Coulomb level drifts",
                    g.size("f_t", 0.3 * F / T, f"{g.f}/s", "growth with time")),
+        g.force(force_drift, "f_t t", "force: drifts",
+                g.size("f_t", 0.3 * F / T, f"{g.f}/s", "growth with time")),
         g.force(viscous_friction_drift, "-d_t t v", "friction: viscous, drifts",
                 g.size("d_t", drag / T, f"{g.f}/{g.x}", "growth with time")),
         g.friction(friction_jump, "at most f_j more from t_j on", "friction: Coulomb level jumps",

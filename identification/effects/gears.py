@@ -1,6 +1,6 @@
 """The states of a plant's joints, and the numbers of their gears in its model.
 
-row of a joint = (…, where θ and p stand, side, c, ε, J, ζ, c of friction, key, TAG)
+row of a joint = (…, where θ and p stand, side, c, ε, J, ζ, c of friction, d_m, key, TAG)
 armature - J                     the motor's inertia is moved from the joint, not added to it
 
 As a window knows them (s and w stay small where a gear becomes stiff):

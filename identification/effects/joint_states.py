@@ -61,11 +61,12 @@ class GearNumbers:
     zeta: np.ndarray
     side: np.ndarray
     slip: np.ndarray
+    drag: np.ndarray
 
     @property
     def columns(self) -> tuple[np.ndarray, ...]:
         """The columns in the order of a joint's row, from `SIDE` on."""
-        return self.side, self.c, self.gap, self.J, self.zeta, self.slip
+        return self.side, self.c, self.gap, self.J, self.zeta, self.slip, self.drag
 
     @property
     def is_geared(self) -> np.ndarray:
@@ -96,7 +97,7 @@ def gear_numbers(
     effects: Sequence[Effect], joint: str, inertia: float, values: Values, n: int
 ) -> GearNumbers:
     """Returns the numbers of a joint's gear; of two effects that tell J, ζ and side, the larger."""
-    series, slip = np.zeros((5, n)), np.zeros(n)
+    series, slip = np.zeros((6, n)), np.zeros(n)
     for effect in (e for e in effects if e.state):
         numbers = [_each(x, n) for x in numbers_at(effect, joint, values)]
         (law,) = effect.hooks.values()
@@ -105,11 +106,11 @@ def gear_numbers(
             slip = slip + told
             continue
         here, told = numbers[0] != 0, np.array([_each(x, n) for x in told])
-        series[:2] += told[:2]
+        series[[0, 1, 5]] += told[[0, 1, 5]]
         for k in (2, 3, 4):
             series[k] = np.maximum(series[k], np.where(here, told[k], 0.0))
-    c, gap, J, zeta, side = series
-    return GearNumbers(c=c, gap=gap, J=J, zeta=zeta, side=side, slip=slip)
+    c, gap, J, zeta, side, drag = series
+    return GearNumbers(c=c, gap=gap, J=J, zeta=zeta, side=side, slip=slip, drag=drag)
 
 
 def _each(x: float | np.ndarray, n: int) -> np.ndarray:

@@ -7,10 +7,12 @@
                     q(t - τ) - q            kind 1: it is read or sent too late
     jump            c where t ≥ t_s         counts are lost: a ramp that takes the time w
 
-A negative τ is always a time. What is plausible: a scale off by 5 % (a wrong gear ratio or count is
-a matter of units), a zero off by a tenth of the travel, a disc off its centre by a hundredth of its
-radius or two, 20 ms of lag. Each function takes the state of a sensor
-(`identification.native.reading.Reading`) and the effect's parameters, sizes first.
+A lag is never negative, because no sensor knows the future, and it is felt only beside sensors that
+are not late: what all of them have in common is a shift of the inputs. What is plausible: a scale
+off by 5 % (a wrong gear ratio or count is a matter of units), a zero off by a tenth of the travel,
+a disc off its centre by a hundredth of its radius or two, 20 ms of lag. Each function takes the
+state of a sensor (`identification.native.reading.Reading`) and the effect's parameters, sizes
+first.
 """
 
 from __future__ import annotations
@@ -24,7 +26,7 @@ import mujoco
 from numba import njit
 
 from identification.effects.axes import Axis, Kind
-from identification.effects.effect import Effect, Shape, Size, places
+from identification.effects.effect import Effect, Shape, Sign, Size, places
 from identification.effects.joint_group import prefix_of, with_kind
 from identification.native.element import Function
 from identification.native.reading import lagged_position, position_at
@@ -55,7 +57,7 @@ def encoder_eccentricity(s, p):
 @njit
 def encoder_lag(s, p):
     tau, kind = p
-    if kind == 0.0 and tau > 0.0:
+    if kind == 0.0:
         return lagged_position(s, tau) - s.q
     return position_at(s, s.time - tau) - s.q
 
@@ -83,7 +85,7 @@ def sensor_effects(
     both = {a.kind for a in positions.values()} == {*kinds}
     for kind in kinds:
         of_kind = {n: a for n, a in positions.items() if a.kind == kind}
-        for e in _of_positions(of_kind, kind, len(outputs) > 1) if of_kind else ():
+        for e in _of_positions(of_kind, kind, len(outputs)) if of_kind else ():
             phrase = with_kind(e.phrase, kind, both)
             out.append(replace(e, name=prefix_of(kind, both) + e.name, phrase=phrase))
     return tuple(e for e in out if e.places)
@@ -98,7 +100,7 @@ def _is_position(model: mujoco.MjModel, output: str) -> bool:
     return int(model.sensor(output).type[0]) == int(mujoco.mjtSensor.mjSENS_JOINTPOS)
 
 
-def _of_positions(sensors: dict[str, Axis], kind: Kind, with_lag: bool) -> list[Effect]:
+def _of_positions(sensors: dict[str, Axis], kind: Kind, outputs: int) -> list[Effect]:
     x = "rad" if kind == "hinge" else "m"
     far = OFFSET * max(a.travel for a in sensors.values())
     out = [_effect(encoder_offset, "y + c", "sensor: zero is displaced", sensors,
@@ -108,16 +110,16 @@ def _of_positions(sensors: dict[str, Axis], kind: Kind, with_lag: bool) -> list[
                            "sensor: its disc is off centre", sensors,
                            _size("a", x, ECCENTRICITY, "of the cosine"),
                            _size("b", x, ECCENTRICITY, "of the sine")))  # fmt: skip
-    if with_lag:
+    if outputs > 1:
         lag = _effect(encoder_lag, "q through a first-order lag τ, or q(t - τ)", "sensor: lags",
-                      sensors, _size("tau", "s", LAG, "lag behind the other sensors"),
-                      shapes=(KIND,))  # fmt: skip
+                      sensors, _size("tau", "s", LAG, "lag behind the other sensors", 1),
+                      shapes=(KIND,), is_among=outputs == len(sensors))  # fmt: skip
         out.append(replace(lag, places={where: at for where, at in lag.places.items() if at}))
     return out
 
 
-def _size(name: str, unit: str, largest: float, about: str) -> Size:
-    return Size(name, unit, largest, PROBE * largest, 0, about)
+def _size(name: str, unit: str, largest: float, about: str, sign: Sign = 0) -> Size:
+    return Size(name, unit, largest, PROBE * largest, sign, about)
 
 
 def _effect(

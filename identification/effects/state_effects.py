@@ -1,10 +1,12 @@
 """Effects of joints with states of their own: gears that swing or have a gap, friction that gives.
 
-    series   (c, ε, J, ζ, side)     of the motor behind the gear: compliance, half the gap, inertia,
-                                    damping ratio, and where the encoder sits (1: motor, 0: link)
+    series   (c, ε, J, ζ, side, d_m)  of the motor behind the gear: compliance, half the gap,
+                                    inertia, damping ratio, where the encoder sits (1: motor, 0:
+                                    link), and viscous friction of the motor
     slip     c                      compliance of the friction before it slips
 
     joint elasticity   c     gear backlash   ε; its teeth are stiff and hardly rebound
+    motor damping      d_m, beside a gear that gives
     presliding         c = 1/σ
 
 J = ρ I, I being the inertia that the joint's drive feels, ρ the motor's share. What these numbers
@@ -39,13 +41,18 @@ LINK = Shape("link", "", (0.0, 1.0), 0.0, 1.0, free=False, usual=0.0,
 @njit
 def joint_elasticity(s, p):
     c, rho, zeta, link = p
-    return c, 0.0, rho * s.inertia, zeta, 1.0 - link
+    return c, 0.0, rho * s.inertia, zeta, 1.0 - link, 0.0
 
 
 @njit
 def gear_backlash(s, p):
     eps, rho, link = p
-    return 0.0, eps, rho * s.inertia, 0.0, 1.0 - link
+    return 0.0, eps, rho * s.inertia, 0.0, 1.0 - link, 0.0
+
+
+@njit
+def motor_damping(s, p):
+    return 0.0, 0.0, 0.0, 0.0, 0.0, p[0]
 
 
 @njit
@@ -68,6 +75,10 @@ def state_effects(g: Group) -> list[Effect]:
                  Size("eps", g.x, GAPS * g.A, PROBE * GAPS * g.A, 1, "half the gap"),
                  shapes=(_share(g), LINK), probes=OPENS, places=g.plain,
                  reference="Nordin, Gutman 2002"),
+        g.effect("series", motor_damping, "-d_m ω on the motor behind a gear that gives",
+                 "friction: viscous, on the motor's side of the gear",
+                 g.size("d_m", 0.3 * g.F / g.V, f"{g.f} s/{g.x}", "damping of the motor", 1),
+                 places=g.plain, needs=g.prefix + joint_elasticity.__name__),
         g.effect("slip", presliding, "c dp/dt = v - |v| p/b, p the friction, b its largest",
                  "friction: gives before it slips",
                  Size("c", give, GIVES * g.A / g.F, PROBE * GIVES * g.A / g.F, 1, "compliance",

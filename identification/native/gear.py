@@ -2,7 +2,7 @@
 
 A motor behind the gear of a joint, at θ with the rate ω and the inertia J:
 
-    J dω/dt = f_m - τ,    dθ/dt = ω                 f_m: force of the joint's own drives
+    J dω/dt = f_m - τ,    dθ/dt = ω                 f_m: force of the joint's own drives - d_m ω
     the joint feels τ in place of its drives         δ = θ - q,  dδ/dt = ω - v
     τ = (δ - dz(δ))/c + d dδ/dt                      dz: dead zone of half width ε
     d = 2 ζ √(J/c)
@@ -71,6 +71,7 @@ GEAR = Element(
                 "compliance [rad/(N m)] or [m/N]", "half the gap [rad] or [m]",
                 "inertia of the motor [kg m²] or [kg]", "damping ratio",
                 "1 where the encoder sits on the motor's side, 0 on the link's",
+                "viscous friction of the motor, d_m [N m s/rad] or [N s/m]",
             ),
         ),
         Hook("slip", ("compliance of the friction that holds [rad/(N m)] or [m/N]",)),
@@ -78,10 +79,11 @@ GEAR = Element(
 )  # fmt: skip
 
 
-GEARS = 8  # numbers of a row behind the parameters:
+GEARS = 9  # numbers of a row behind the parameters:
 MOTOR, GRIP = 0, 1  # where θ and p stand among the activations, -1 where there is none
 SIDE = 2  # 1: the drive's own feedback sees θ, 0: it sees q
-COMPLIANCE, GAP, INERTIA, RATIO, SLIP = 3, 4, 5, 6, 7  # c, ε, J, ζ, and the friction's c
+# c, ε, J, ζ, the friction's c, and d_m
+COMPLIANCE, GAP, INERTIA, RATIO, SLIP, DRAG = 3, 4, 5, 6, 7, 8
 # κ h²/m and D h/m of what is far too stiff: a semi-implicit step halves what is left of δ and its
 # rate ((1 - z)² and 1 - z² for a double root z = 1/2), and teeth rebound by a quarter at most.
 SETTLED, DAMPED = 0.25, 0.75
@@ -139,14 +141,15 @@ def transmitted(load, delta, rate, gap, kappa, r, damping, h):
 
 @inlined
 def motor_force(m, d, j, gears):
-    """Returns f_m, the drives' force on the motor of joint j, and the gear's δ and its rate."""
+    """Returns f_m, the force on the motor of joint j before its gear, and the gear's δ and rate."""
     at = word(d, D.act) + 8 * np.int64(load_constant(gears + 8 * MOTOR))
     theta, omega = load_constant(at), load_constant(at + 8)
     q = double(d, D.qpos, integer(m, M.jnt_qposadr, j))
     v = double(d, D.qvel, integer(m, M.jnt_dofadr, j))
+    drag = load_constant(gears + 8 * DRAG) * omega
     if load_constant(gears + 8 * SIDE) != 0.0:
-        return drive_force(m, d, j, theta, omega), theta - q, omega - v
-    return drive_force(m, d, j, q, v), theta - q, omega - v
+        return drive_force(m, d, j, theta, omega) - drag, theta - q, omega - v
+    return drive_force(m, d, j, q, v) - drag, theta - q, omega - v
 
 
 @inlined

@@ -8,13 +8,16 @@ the best is scored again on all windows; some windows miss what happens seldom, 
 Where one size for all places and one place alone both fall short (friction under load at two
 joints of six), all places are scored together, each with a size of its own. Places whose own size
 is of a sign that physics does not admit, or not beyond its std, are then left out, and the others
-are scored again.
+are scored again. Of an effect that is felt only beside other things (`Effect.is_among`) the place
+of the smallest size is left out where all others stay: what all have in common is no part of it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+
+import numpy as np
 
 from identification.discovery.attempts import tell_lost
 from identification.discovery.candidates import list_common, list_single
@@ -173,12 +176,20 @@ def several_scores(
         for _ in range(MAX_LEAVING_ROUNDS):
             found = window_scores(fit, [_at(c, places)])
             keep = felt_places(found[0], places, c.effect, options) if found else []
+            if c.effect.is_among and len(keep) == len(_single(c.effect)):
+                keep = _without_least(found[0], keep)
             if found and keep == places:
                 out += found
             if keep == places or len(keep) < 2:
                 break
             places = keep
     return out
+
+
+def _without_least(score: WindowScore, places: Sequence[str]) -> list[str]:
+    """Returns the places of a score with a size for each of them but the one of the least size."""
+    least = int(np.argmin(np.abs(score.size)))
+    return [where for k, where in enumerate(places) if k != least]
 
 
 def felt_places(

@@ -1,6 +1,6 @@
 """A pendulum with a motor behind its gear, integrated by scipy from equations of its own.
 
-    M dv/dt = τ - d v - m g l sin q - friction        J dω/dt = u - τ        τ: see `Truth.spring`
+    M dv/dt = τ - d v - m g l sin q - friction     J dω/dt = u - τ - d_m ω     τ: see `Truth.spring`
 
 M is the link's inertia, J the motor's; the nominal model of `records_cases` has M + J in one piece.
 """
@@ -25,8 +25,8 @@ COULOMB = Parameter(
     name="coulomb_friction.f_c@hinge", value=F_C, unit="N m", where="effect", lower=0.0, upper=1.0
 )
 ELASTIC, BACKLASH = "joint_elasticity.c@hinge", "gear_backlash.eps@hinge"
-PRESLIDING = "presliding.c@hinge"
-STATES = ("joint_elasticity", "gear_backlash", "presliding")
+PRESLIDING, DRAG = "presliding.c@hinge", "motor_damping.d_m@hinge"
+STATES = ("joint_elasticity", "gear_backlash", "motor_damping", "presliding")
 WANTED = ("coulomb_friction", "stribeck_friction", *STATES)
 
 
@@ -42,6 +42,7 @@ class Truth:
         slip: compliance of the friction [rad/(N m)].
         f_c: Coulomb friction [N m]; with a compliance of zero it is smoothed.
         d: viscous friction [N m s/rad].
+        d_m: viscous friction of the motor [N m s/rad].
         weight: m g l [N m].
     """
 
@@ -52,6 +53,7 @@ class Truth:
     slip: float = 0.0
     f_c: float = 0.0
     d: float = 0.02
+    d_m: float = 0.0
     weight: float = WEIGHT
 
     def spring(self, delta: float, rate: float) -> float:
@@ -74,7 +76,13 @@ class Truth:
             a = (u + f) / WHOLE
             return [v, a, v, a, p_dot]
         tau = self.spring(theta - q, omega - v)
-        return [v, (tau + f) / (WHOLE - self.J), omega, (u - tau) / self.J, p_dot]
+        return [
+            v,
+            (tau + f) / (WHOLE - self.J),
+            omega,
+            (u - tau - self.d_m * omega) / self.J,
+            p_dot,
+        ]
 
 
 def moved(truth: Truth, log: Log, side: str = "motor", tight: float = 1e-9) -> np.ndarray:

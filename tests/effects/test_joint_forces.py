@@ -107,6 +107,7 @@ LAWS = [
     ("periodic_friction", (2.0, 3.0, 4.0), S, 2 * np.cos(1.2) + 3 * np.sin(1.2)),
     ("cogging", (2.0, 3.0, 4.0), S, 2 * np.cos(1.2) + 3 * np.sin(1.2)),
     ("offset", (1.0,), S, 1.0),
+    ("gravity_force", (0.7,), S, -2.1),
     ("stiffness", (4.0,), S, -1.2),
     ("hardening", (-5.0,), S, 5 * 0.3**3),
     ("torque_saturation", (0.01,), S, 3.43),
@@ -119,6 +120,7 @@ LAWS = [
     ("friction_jump", (0.4, 1.9, 0.1), S, 0.4),
     ("friction_jump", (0.4, 2.0, 0.1), S, 0.2),
     ("friction_jump", (0.4, 2.1, 0.1), S, 0.0),
+    ("force_drift", (0.4,), BACK, 0.8),
     ("viscous_friction_drift", (0.4,), BACK, 0.4),
     ("viscous_friction_jump", (0.4, 1.9, 0.1), S, -0.2),
     ("curve_speed", CURVE, S._replace(v_top=2.0), 6.0),
@@ -179,6 +181,23 @@ def test_on_an_arm_the_forces_are_those_of_qfrc_applied():
     limit = 2 * ends[1] - ends[0]
     error = np.abs(simulated[1:] - limit).max()
     assert error < 2e-4 < 0.02 < np.abs(simulated - run(plant, arm_log(u))).max()
+
+
+@pytest.mark.parametrize("alpha", [1.0, 2.0])
+def test_gravity_that_is_taken_away_is_that_of_another_model(alpha):
+    """By MuJoCo's own compensation in every body; or by its gravity turned round."""
+    floating = ARM.replace("<body ", '<body gravcomp="1" ')
+    other = mujoco.MjModel.from_xml_string(floating if alpha == 1.0 else ARM)
+    other.opt.gravity *= 1 if alpha == 1.0 else -1
+    data, u, samples = mujoco.MjData(other), steps(100, 2), []
+    for now in u:
+        samples.append(np.array(data.qpos))
+        data.ctrl[:] = now
+        mujoco.mj_step(other, data, nstep=10)
+    alike = run(arm(), arm_log(u), **{"gravity_force.alpha": alpha})
+    start = run(arm(), arm_log(u))
+    np.testing.assert_allclose(alike, samples, rtol=0, atol=1e-11)
+    assert np.abs(start - samples).max() > 0.1
 
 
 def applied(plant, values, model, inputs):

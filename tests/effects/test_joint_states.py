@@ -1,10 +1,13 @@
 """Elastic gears, gaps and presliding against analytic cases and against scipy's integration."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from joint_cases import run
 from records_cases import record
 from state_cases import (
+    DRAG,
     F_C,
     PRESLIDING,
     STEP,
@@ -18,7 +21,12 @@ from state_cases import (
 )
 
 from identification import InputError
-from identification.effects.state_effects import gear_backlash, joint_elasticity, presliding
+from identification.effects.state_effects import (
+    gear_backlash,
+    joint_elasticity,
+    motor_damping,
+    presliding,
+)
 from identification.model.predictor import Predictor
 from identification.model.rollout import State, rollout
 from identification.native.gear import Gear
@@ -41,8 +49,9 @@ def states_of(plant, values, start, samples, u=0.0, sampling=STEP):
 
 def test_the_laws_are_the_numbers_of_a_gear():
     s = Gear(inertia=2.0)
-    assert joint_elasticity(s, (0.1, 0.25, 0.05, 0.0)) == (0.1, 0.0, 0.5, 0.05, 1.0)
-    assert gear_backlash(s, (0.02, 0.25, 1.0)) == (0.0, 0.02, 0.5, 0.0, 0.0)
+    assert joint_elasticity(s, (0.1, 0.25, 0.05, 0.0)) == (0.1, 0.0, 0.5, 0.05, 1.0, 0.0)
+    assert gear_backlash(s, (0.02, 0.25, 1.0)) == (0.0, 0.02, 0.5, 0.0, 0.0, 0.0)
+    assert motor_damping(s, (0.3,)) == (0.0, 0.0, 0.0, 0.0, 0.0, 0.3)
     assert presliding(s, (0.3,)) == 0.3
 
 
@@ -86,6 +95,21 @@ def test_an_elastic_gear_is_that_of_another_integration_with_order_4(link):
     assert errors[0] < 1e-3
     assert errors[0] / errors[1] > 12
     assert errors[1] / errors[2] > 12
+
+
+@pytest.mark.parametrize("c", [0.03, 1e-6])
+def test_a_motor_that_is_damped_is_that_of_another_integration(c):
+    """Behind a gear that is as good as rigid, the damping is the joint's own."""
+    values = {**elastic(c), DRAG: 0.02}
+    truth = Truth(c=c, d_m=0.02) if c > 1e-3 else Truth(d=0.04)
+    damped = run(with_values(values, step=0.00125), LOG, **values)
+    expected = moved(truth, LOG)
+    plain = moved(replace(truth, d=0.02, d_m=0.0), LOG)
+    assert np.abs(plain - expected).max() > 0.05
+    assert np.abs(damped - expected).max() < 1e-4
+    alone = {DRAG: 0.02}
+    rigid = run(pendulum(0.0), LOG)
+    np.testing.assert_array_equal(run(pendulum(0.0).with_states_of(alone), LOG, **alone), rigid)
 
 
 def test_friction_that_gives_and_teeth_that_meet_converge_to_another_integration():

@@ -15,6 +15,7 @@ from identification.effects.effect import Candidate, Effect, Size
 from identification.effects.joint_plant import candidates, joint_plant
 from identification.model.parameter import Parameter
 from identification.model.predictor import Predictor
+from identification.prediction import screening
 from identification.prediction.discovery import WINDOWS
 from identification.prediction.extension import with_effect
 from identification.prediction.first_fit import begin
@@ -116,6 +117,26 @@ def several(sizes, std, places=("joint a", "joint b", "joint c")):
         candidate=Candidate(effect, next(iter(effect.places)), {}), size=np.array(sizes),
         std=np.array(std), fall=0.2, p_value=1e-6, along=np.zeros(0),
     )  # fmt: skip
+
+
+@pytest.mark.parametrize("is_among", [True, False])
+def test_what_all_places_have_in_common_is_no_part_of_an_effect_beside_others(
+    monkeypatch, is_among
+):
+    """All sensors that are late are inputs that are late: the least late one is the reference."""
+    sizes = dict(zip("abc", (0.06, 0.02, 0.05), strict=True))
+    effect = replace(EFFECT, is_among=is_among)
+
+    def scored(fit, asked):
+        ((c,),) = [asked]
+        at = [sizes[p[-1]] for p in places_of(c.where)]
+        return [replace(several(at, [0.001] * len(at), places_of(c.where)), candidate=c)]
+
+    monkeypatch.setattr(screening, "window_scores", scored)
+    single = replace(several((0.06,), (0.001,)), candidate=Candidate(effect, "joint a", {}))
+    (found,) = screening.several_scores(None, [single], DiscoveryOptions())
+    kept = ["joint a", "joint c"] if is_among else ["joint a", "joint b", "joint c"]
+    assert places_of(found.candidate.where) == kept
 
 
 @pytest.mark.parametrize(
