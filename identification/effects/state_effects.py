@@ -78,7 +78,7 @@ def state_effects(g: Group) -> list[Effect]:
         g.effect("series", motor_damping, "-d_m ω on the motor behind a gear that gives",
                  "friction: viscous, on the motor's side of the gear",
                  g.size("d_m", 0.3 * g.F / g.V, f"{g.f} s/{g.x}", "damping of the motor", 1),
-                 places=g.plain, needs=g.prefix + joint_elasticity.__name__),
+                 places=g.plain, needs=f"{g.prefix}joint_elasticity"),
         g.effect("slip", presliding, "c dp/dt = v - |v| p/b, p the friction, b its largest",
                  "friction: gives before it slips",
                  Size("c", give, GIVES * g.A / g.F, PROBE * GIVES * g.A / g.F, 1, "compliance",
