@@ -20,6 +20,7 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
         RUN, "adds two effects of which none is proven alone, because each hides the other",
     ),
     "add_deviants": (RUN, "makes effects of parts that deviate by more than parts do"),
+    "impossible_sizes": (BOTH, "names no effect of a size that physics forbids"),
     "drop_effects": (BOTH, "drops an effect that later ones have made needless"),
     "exchange_effects": (
         RUN, "puts a rival in the place of an effect, where the model with it is better",

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from math import pi
 
 import mujoco
 
 from identification.effects.axes import Axis, Kind
 from identification.effects.bodies import body_effects
 from identification.effects.curves import curve_effects
-from identification.effects.effect import Effect
+from identification.effects.effect import Effect, places
 from identification.effects.forces import force_effects, time_effects
 from identification.effects.friction import drag_effects, friction_effects
 from identification.effects.inputs import drives, input_effects
@@ -24,20 +26,40 @@ _OF_JOINTS = (
 )  # fmt: skip
 
 
+# Laws that grow with the angle itself. On a shaft that turns on and on an angle is no place: where
+# the runs go one way, it is the time or the direction by another name.
+OF_ANGLE = (
+    "stiffness", "hardening", "position_dependent_friction", "position_dependent_damping",
+    "curve_position",
+)  # fmt: skip
+MOST_TURNS = 3.0  # of a hinge in the records, for which these laws are candidates
+
+
 def all_effects(
-    spec: mujoco.MjSpec, axes: Sequence[Axis], log: Log, turns: Sequence[float] = TURNS
-) -> tuple[Effect, ...]:
-    """Returns every candidate of a robot."""
+    spec: mujoco.MjSpec, axes: Sequence[Axis], log: Log, turns: Sequence[float] = TURNS,
+    asked: Sequence[str] = (),
+) -> tuple[Effect, ...]:  # fmt: skip
+    """Returns every candidate of a robot.
+
+    Args:
+        spec: of the model.
+        axes: the joints.
+        log: with the inputs and the outputs.
+        turns: periods in a turn of a hinge that are tried.
+        asked: names of effects that act wherever they may, also on shafts that turn on and on.
+    """
     own = spec.copy().compile()
     return (
-        *joint_effects(axes, turns),
+        *joint_effects(axes, turns, asked),
         *body_effects(spec),
         *input_effects(drives(log)),
         *sensor_effects(own, log.output_names, axes),
     )
 
 
-def joint_effects(axes: Sequence[Axis], turns: Sequence[float] = TURNS) -> tuple[Effect, ...]:
+def joint_effects(
+    axes: Sequence[Axis], turns: Sequence[float] = TURNS, asked: Sequence[str] = ()
+) -> tuple[Effect, ...]:
     """Returns all candidates of some joints.
 
     Hinges and slides have units of their own; where a robot has both, the names of the slides'
@@ -49,14 +71,31 @@ def joint_effects(axes: Sequence[Axis], turns: Sequence[float] = TURNS) -> tuple
         axes: the joints.
         turns: periods in a turn of a hinge that are tried; a motor's are multiples of its poles
             and of its slots.
+        asked: names of effects that act wherever they may, also on shafts that turn on and on.
     """
     kinds: list[Kind] = ["hinge", "slide"]
     groups = [(kind, tuple(a for a in axes if a.kind == kind)) for kind in kinds]
     both = all(group for _, group in groups)
-    return tuple(
-        effect
+    every = (
+        effect if effect.name in asked else _without(effect, turning(group))
         for kind, group in groups if group
         for make in _OF_JOINTS
         for effect in make(Group(kind, group, turns, both))
-        if effect.places
     )  # fmt: skip
+    return tuple(effect for effect in every if effect.places)
+
+
+def turning(axes: Iterable[Axis]) -> tuple[Axis, ...]:
+    """Returns the hinges that turn on and on in the records."""
+    return tuple(a for a in axes if a.kind == "hinge" and a.travel > MOST_TURNS * 2 * pi)
+
+
+def _without(effect: Effect, turns_on: Sequence[Axis]) -> Effect:
+    """Returns an effect without places at shafts that turn on, if it grows with the angle."""
+    if effect.name not in OF_ANGLE or not turns_on:
+        return effect
+    left_out = {f"@{a.joint}" for a in turns_on}
+    named = [at[1:] for at in effect.places.values() if at and at not in left_out]
+    alike = "" in effect.places.values()
+    kept = places("joint", tuple(named))
+    return replace(effect, places={w: at for w, at in kept.items() if at or alike})

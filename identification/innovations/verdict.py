@@ -13,7 +13,9 @@ from identification.discovery.attempts import listed_once
 from identification.discovery.effect_results import NamedEffect, RejectedEffect, Unlogged
 from identification.discovery.findings.finding import Finding, FindingKind
 from identification.discovery.free_run import FreeRun
+from identification.discovery.impossible import Impossible, find_impossible
 from identification.discovery.options import DiscoveryOptions
+from identification.discovery.passes import uses
 from identification.discovery.result import Discovery, Verdict, closed_share
 from identification.estimation.metrics import by_unit
 from identification.innovations.confidence import name_effects
@@ -141,7 +143,10 @@ def conclude(state: InnovationSearch) -> Discovery:
     limit = options.left_confidence if findings or beside else options.max_confidence
     share = explained if findings else 1.0
     every = name_effects(task, state.accepted, model, state.sensitivities, share, limit)
-    named = tuple(n for n in every if n.odds >= options.min_confidence)
+    forbidden = _forbidden(state, every)
+    named = tuple(
+        n for n in every if n.odds >= options.min_confidence and not forbidden[n.name, n.where]
+    )
     verdict = decide(named, findings, explained, model, options)
     if every and not named:
         verdict = "unknown effect"
@@ -149,8 +154,12 @@ def conclude(state: InnovationSearch) -> Discovery:
         named, model, scores = (), nominal, state.nominal_scores
     unnamed = [n for n in every if n not in named]
     refused = (
-        RejectedEffect(n.candidate, n.parameters, n.bic_gain, n.proof, n.outside) for n in unnamed
-    )
+        RejectedEffect(
+            n.candidate, n.parameters, n.bic_gain, n.proof, n.outside,
+            doubt=forbidden[n.name, n.where],
+        )
+        for n in unnamed
+    )  # fmt: skip
     rejected = listed_once((*refused, *state.rejected))
     proven = (r for r in rejected if r.bic_gain > 0 and is_proven(r.proof, options))
     is_random = not _has(findings, FindingKind.STRUCTURED_INPUT_ERROR)
@@ -175,6 +184,19 @@ def conclude(state: InnovationSearch) -> Discovery:
         recover=partial(recover_force, model.refit),
     )  # fmt: skip
     return replace(found, share=closed_share(found))
+
+
+def _forbidden(
+    state: InnovationSearch, every: Sequence[NamedEffect]
+) -> dict[tuple[str, str], Impossible | None]:
+    """Returns what physics forbids of each effect, by its name and its place."""
+    task, fit, before = state.task, state.model.refit, state.nominal.refit
+    if not uses(task.options, "impossible_sizes"):
+        return {(n.name, n.where): None for n in every}
+    logs, guessed = [fit.point.log], task.nominal_model.guessed
+    return {
+        (n.name, n.where): find_impossible(n.candidate, fit, before, logs, guessed) for n in every
+    }
 
 
 def _unlogged(fit: Refit) -> Unlogged:

@@ -14,6 +14,7 @@ from functools import partial
 import numpy as np
 
 from identification.discovery.attempts import attempt_each, refuse_infinite
+from identification.discovery.impossible import find_impossible
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.passes import uses
 from identification.effects.effect import Candidate
@@ -43,7 +44,7 @@ from identification.windows.records import Record
 from identification.windows.unseen import Unseen, compare
 
 STRONG_BIC = 10.0  # "very strong evidence" of one law against another (Kass and Raftery 1995)
-REFUTED: tuple[Doubt, ...] = ("numbers", "chance")  # by windows of the horizon alone
+REFUTED: tuple[Doubt, ...] = ("numbers", "chance", "differ")  # by windows of the horizon alone
 
 
 def refit_contenders(
@@ -54,6 +55,7 @@ def refit_contenders(
     options: DiscoveryOptions,
     progress: Progress,
     worse_fit: Unseen | None = None,
+    guessed: Sequence[str] = (),
 ) -> tuple[WindowModel, tuple[Contender, ...]]:
     """Refit the contenders of a round, the best first: proven ones before others, by evidence.
 
@@ -61,7 +63,7 @@ def refit_contenders(
     proven against that fit, and be no worse than these values: it says why the fit went wrong.
     Laws with fewer numbers that act as the best one does are refitted too. A law with fewer numbers
     comes before the best one where resamples cannot tell them apart and the evidence does not
-    speak very strongly.
+    speak very strongly. Of the values under `guessed` nobody said what is known of them.
 
     Returns:
         The model without them, its windows at the best states that any of them found, and they.
@@ -86,7 +88,11 @@ def refit_contenders(
         best = tuple(children)
         if crosses:
             parent, best = at_their_best(parent, children, horizon, confirm)
-        each = {k: _judged(parent, c, refits, options, worse_fit) for k, c in enumerate(best)}
+
+        def judged(c: WindowModel) -> Contender:
+            return _judged(parent, c, refits, options, worse_fit, guessed)
+
+        each = {k: judged(c) for k, c in enumerate(best)}
         # the other lengths decide nothing where the horizon itself refutes
         some = [k for k, c in each.items() if c.doubt not in REFUTED]
         some_models = [best[k] for k in some]
@@ -95,7 +101,7 @@ def refit_contenders(
             if c is None:
                 del each[k]
             else:
-                each[k] = _judged(parent, c, refits, options, worse_fit)
+                each[k] = judged(c)
         return parent, [*each.values()]
 
     children = refit(_near_best(_begun(model, chosen, scores), options))
@@ -155,7 +161,7 @@ def _refit(
 
 def _judged(
     model: WindowModel, new: WindowModel, refits: int, options: DiscoveryOptions,
-    worse_fit: Unseen | None,
+    worse_fit: Unseen | None, guessed: Sequence[str],
 ) -> Contender:  # fmt: skip
     """Returns the contender of a model with one more effect: what speaks for it, and against it."""
     c = new.candidates[-1]
@@ -172,10 +178,24 @@ def _judged(
         doubt = "size"
     if doubt is None and is_at_bound(new):
         doubt = "bound"
+    if doubt is None and uses(options, "impossible_sizes"):
+        logs = [p.predictor.log for p in new.fit.problem.parts]
+        doubt = find_impossible(c, new, model, logs, guessed)
+    if doubt in REFUTED and _explains_fitted(model, new, options):
+        doubt = "differ"
     return Contender(
         model=new, prediction=found, gains=gains, numbers=numbers, criterion=gain,
         doubt=doubt,
     )  # fmt: skip
+
+
+def _explains_fitted(model: WindowModel, new: WindowModel, options: DiscoveryOptions) -> bool:
+    """Returns whether a model explains fitted records that unseen ones contradict.
+
+    Then the records differ in something that the effect stands for, and its gain is no luck.
+    """
+    falls = 1 - new.fit.cost / model.fit.cost
+    return falls > options.min_gap_share and _is_worse(new.unseen, model.unseen, options)
 
 
 def _is_worse(new: Unseen, old: Unseen, options: DiscoveryOptions) -> bool:

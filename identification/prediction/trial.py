@@ -25,6 +25,7 @@ from typing import Literal
 import numpy as np
 
 from identification.discovery.fitted import BOUND_TOLERANCE
+from identification.discovery.impossible import Impossible
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate
 from identification.effects.joint_group import SLIDE
@@ -33,14 +34,17 @@ from identification.prediction.model import WindowModel
 from identification.prediction.scores import WindowScore
 from identification.windows.unseen import Prediction
 
-Doubt = Literal[
-    "numbers", "chance", "lengths", "record", "little", "size", "bound", "exchange", "curve",
-    "drawn",
-]  # fmt: skip
+Doubt = (
+    Literal[
+        "numbers", "chance", "lengths", "record", "little", "size", "bound", "exchange", "curve",
+        "drawn", "differ",
+    ]
+    | Impossible
+)  # fmt: skip
 # Of what an effect explained: one that still explains as much beside another is missing too.
 OWN_SHARE = 0.5
 # By what was measured, or by what is believed of its size.
-CONTRADICTED: tuple[Doubt, ...] = ("lengths", "record", "bound", "exchange")
+CONTRADICTED: tuple[Doubt, ...] = ("lengths", "record", "bound", "exchange", "differ")
 TWINS = {"offset": "asymmetric_friction", "asymmetric_friction": "offset"}
 LEVEL = "coulomb_friction.f_c"
 

@@ -23,6 +23,7 @@ from identification.discovery.effect_results import (
     Rival,
 )
 from identification.discovery.findings.finding import Finding, FindingKind
+from identification.discovery.impossible import IMPOSSIBLE
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.result import Discovery, Verdict
 from identification.effects.effect import Candidate
@@ -153,18 +154,21 @@ def _named(state: WindowSearch, accepted: Contender, limit: float) -> NamedEffec
     final = state.model if is_final else accepted.model
     twin = find_twin(final, mine)
     others = [o for o in others if o.candidate.effect.name != twin]  # the same is no rival
-    near = [accepted, *others]
-    shares = compute_confidence(evidences(near))
+    # What physics forbids takes its share of the odds, and is no other name.
+    possible = [o for o in others if o.doubt not in IMPOSSIBLE]
+    forbidden = [o for o in others if o.doubt in IMPOSSIBLE]
+    shares = compute_confidence(evidences([accepted, *possible, *forbidden]))
+    own, of_rivals = shares[0], shares[1 : 1 + len(possible)]
     candidate, parameters = _fitted(final, mine)
     return NamedEffect(
-        candidate=candidate, parameters=parameters, confidence=min(limit, float(shares[0])),
+        candidate=candidate, parameters=parameters, confidence=min(limit, float(own)),
         rivals=tuple(
             _rival(o, float(share))
-            for o, share in zip(others, shares[1:], strict=True)
+            for o, share in zip(possible, of_rivals, strict=True)
             if share > MIN_LISTED_CONFIDENCE
         ),
         compared=len(others),
-        one_of=bool(shares[1:].size and shares[1:].max() > options.set_confidence),
+        one_of=bool(max(of_rivals, default=0.0) > options.set_confidence),
         evidence=accepted.criterion, proof=_proof(state, accepted.prediction),
         same_as=next((e for e in state.task.effects if e.name == twin), None),
     )  # fmt: skip

@@ -74,6 +74,13 @@ DOUBTS = {
     " them on average",
     "drawn": "a curve of the data at the same joint does the same, and more",
     "curve": "it was found beside a curve of the data, which leaves what its nodes cannot draw",
+    "differ": "it explains what was fitted and makes unseen records much worse, so that the records"
+    " differ in something that it stands for",
+    "mass": "the body would lose half or more of the mass that the model's file says, which no"
+    " error of a drawing does",
+    "gain": "the gain would leave 0.5 to 1.5 times its value within a record",
+    "command": "the outputs would move before their servo is told to",
+    "known": "a value of the model would lie more than 3 std from what is said to be known of it",
 }
 
 
@@ -151,6 +158,8 @@ def _rejected(rejected: RejectedEffect, plant: Plant) -> str:
     proof, outside = rejected.proof, rejected.outside
     turn = "falls" if proof.fall >= 0 else "rises"
     doubt = f"; {DOUBTS[rejected.doubt]}" if rejected.doubt else ""
+    if rejected.doubt == "differ" and proof.disagrees:
+        doubt += f" (worse: {', '.join(proof.disagrees)})"
     instead = f"; instead of it, {describe_outside(outside)}" if outside is not None else ""
     return (
         f"{describe_there(rejected.candidate, plant)}: {describe_sizes(rejected)};"

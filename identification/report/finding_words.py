@@ -7,6 +7,7 @@ from typing import Any
 
 from identification.discovery.findings import evidence, records_evidence
 from identification.discovery.findings.finding import Finding, FindingKind
+from identification.discovery.impossible import IMPOSSIBLE
 from identification.quantities import alike, probability, quantity
 from identification.report.effect_words import (
     DOUBTS,
@@ -192,7 +193,8 @@ def _remaining_error(e: records_evidence.RemainingError) -> str:
 def _unproven_effect(e: records_evidence.UnprovenEffect) -> str:
     return (
         f"{without_colon(e.phrase)}, {e.where}, predicts unseen data better on average (mean"
-        f" square {-100 * e.fall:+z.0f} %, t = {e.t:z.1f}), but is not proven: {DOUBTS[e.doubt]}"
+        f" square {-100 * e.fall:+z.0f} %, t = {e.t:z.1f}), but is not"
+        f" {'believed' if e.doubt in IMPOSSIBLE else 'proven'}: {DOUBTS[e.doubt]}"
     )
 
 

@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from identification.discovery.nominal_model import NominalModel
-from identification.effects.axes import axes, reach
-from identification.effects.catalogue import TURNS, all_effects
+from identification.effects.axes import Axis, axes, reach
+from identification.effects.catalogue import OF_ANGLE, TURNS, all_effects, turning
 from identification.effects.effect import Effect
 from identification.effects.joint_plant import JointPlant, candidates, joint_plant
 from identification.effects.named import unknown_effect
@@ -83,6 +83,7 @@ class Robot:
         return NominalModel(
             plant, file.free, self.std, file.horizon, file.own, self.mean, file.own_values,
             groups=groups, scattering=() if file.horizon else tuple(groups),
+            guessed=tuple(n for n in file.free if "known" not in file.records.get(n, {})),
         )  # fmt: skip
 
     @property
@@ -116,6 +117,19 @@ class Robot:
         parameters = self.plant.parameters
         logs = (self.log, *self.others, *self.records, log)
         return {n: log.values.get(n, parameters[n].value) for each in logs for n in each.values}
+
+
+def _said_of_turning(known: Sequence[Axis], only: Sequence[str]) -> tuple[str, ...]:
+    """Returns a sentence where laws of the angle are no candidates; none where they are asked."""
+    on_and_on = turning(known)
+    if not on_and_on or {*OF_ANGLE} & {*only}:
+        return ()
+    how = listed(f"{a.joint} ({a.travel / (2 * np.pi):.0f} times)" for a in on_and_on)
+    return (
+        f"Laws that grow with the angle ({listed(OF_ANGLE)}) are no candidates at {how}, which"
+        " turns on and on in these logs: there an angle is no place. Name them under effects.only"
+        " to try them all the same.",
+    )
 
 
 def read_robot_log(file: RobotFile, path: str | Path) -> Log:
@@ -183,7 +197,8 @@ def robot_of(
     known = tuple(a for a in known if not file.joints or a.joint in file.joints)
     # A free swing that is fitted together with driven logs says nothing of what inputs do.
     driven = next((each for each in (log, *others) if each.inputs.any()), log)
-    effects = all_effects(spec, known, driven, file.turns or TURNS)
+    effects = all_effects(spec, known, driven, file.turns or TURNS, file.only)
+    said += _said_of_turning(known, file.only)
     for name in file.only:
         if name not in {e.name for e in effects}:
             where = f"effect under effects.only in {file.path}:"
