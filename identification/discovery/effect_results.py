@@ -221,6 +221,29 @@ class RejectedEffect(OfCandidate):
     confidence: float = 0.0
 
 
+@dataclass(frozen=True)
+class RecordDifference(OfCandidate):
+    """Something that differs between records, counted for each by itself: it is no effect.
+
+    Attributes:
+        candidate: what it is, with a size of each record.
+        values: value and std by name, `size [record]` [unit].
+        unit: of them.
+    """
+
+    candidate: Candidate
+    values: Mapping[str, tuple[float, float]]
+    unit: str
+
+    @property
+    def spread(self) -> float:
+        """How far the values of two records are apart at most [unit]."""
+        each: dict[str, list[float]] = {}
+        for name, (value, _) in self.values.items():
+            each.setdefault(name.partition(" [")[0], []).append(value)
+        return max(max(values) - min(values) for values in each.values())
+
+
 @dataclass(frozen=True, kw_only=True)
 class NamedEffect(OfCandidate):
     """An effect that is missing from the nominal model.

@@ -26,6 +26,7 @@ from identification.discovery.effect_results import (
     Gap,
     Hidden,
     NamedEffect,
+    RecordDifference,
     RecordError,
     RejectedEffect,
     Rival,
@@ -95,6 +96,8 @@ class Discovery(Shown):
         findings: what the final model leaves unexplained; empty when it explains all.
         shifts: of records whose inputs look shifted in time against their outputs; empty for a
             free run.
+        differences: what differs between records and is counted for each by itself, such as the
+            zero of a sensor; likewise.
         repeats: names of the records that confirm, but whose motion is that of a fitted record or
             of one that confirms before them; likewise.
         seconds: wall time by stage [s].
@@ -137,6 +140,7 @@ class Discovery(Shown):
     hidden: tuple[Hidden, ...] = ()
     findings: tuple[Finding, ...]
     shifts: tuple[ShiftedRecord, ...] = ()
+    differences: tuple[RecordDifference, ...] = ()
     repeats: tuple[str, ...] = ()
     seconds: Mapping[str, float]
     failed: tuple[Failed, ...] = ()

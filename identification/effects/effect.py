@@ -12,7 +12,7 @@ what it acts on and of the tuple of its parameters, sizes first. With sizes of z
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import KW_ONLY, dataclass, field
+from dataclasses import KW_ONLY, dataclass, field, replace
 from functools import cached_property
 from inspect import signature
 from typing import Any, Literal
@@ -138,6 +138,9 @@ class Effect:
             which then reads no parameter: what happens to a thing whichever effect looks at it.
         own: whether its size is each record's own, such as a shift of that record's time stamps;
             one record cannot tell it from what is the same in all.
+        of_records: the effect in words where each record has a size of its own, as the zero of an
+            encoder has that is set before each record; "" where that is no candidate. It is then
+            told and no name (`in_each_record`).
         is_among: whether it is felt only beside things on which it does not act, so that it never
             acts at all of its places: sensors that are all late are inputs that come late.
         onset: where what it adds is multiplied by a course in time, that course.
@@ -160,6 +163,7 @@ class Effect:
     needs: str = ""
     shares: bool = False
     own: bool = False
+    of_records: str = ""
     is_among: bool = False
     onset: Onset | None = None
     hooks: Mapping[str, Callable[..., Any]] = field(default_factory=dict, hash=False)
@@ -172,6 +176,11 @@ class Effect:
     def is_curve(self) -> bool:
         """Tells whether it is no law but a curve drawn from the data."""
         return self.name.startswith(CURVE)
+
+    @property
+    def is_of_records(self) -> bool:
+        """Tells whether it is a difference between records, which is told and is no name."""
+        return self.own and bool(self.of_records)
 
     @property
     def state(self) -> str:
@@ -303,6 +312,15 @@ def effect_parameters(effect: Effect) -> tuple[Parameter, ...]:
         for shape in effect.shapes
     )  # fmt: skip
     return (*sizes, *shapes)
+
+
+BY_RECORD = " by record"  # behind a place, in words
+
+
+def in_each_record(effect: Effect) -> Effect:
+    """Returns an effect with a size for each record, at single places: another way to free it."""
+    single = {where + BY_RECORD: suffix for where, suffix in effect.places.items() if suffix}
+    return replace(effect, own=True, phrase=effect.of_records, places=single)
 
 
 def places(kind: str, names: tuple[str, ...]) -> dict[str, str]:

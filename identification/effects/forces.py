@@ -111,7 +111,8 @@ def force_effects(g: Group) -> list[Effect]:
     """Returns forces of position and drive; those without a place are left out by the caller."""
     F, A = g.F, g.A
     return [
-        g.force(offset, "f_0", "force: constant", g.size("f_0", 0.2 * F, g.f, "constant force")),
+        g.force(offset, "f_0", "force: constant", g.size("f_0", 0.2 * F, g.f, "constant force"),
+                of_records="force: constant, and differs between the records"),
         g.force(gravity_force, "-α f_g, f_g gravity's force",
                 "force: gravity's is not what the model has",
                 g.size("alpha", 2.0, "", "share of gravity's force that is missing: 1 where the"

@@ -104,7 +104,8 @@ def _of_positions(sensors: dict[str, Axis], kind: Kind, outputs: int) -> list[Ef
     x = "rad" if kind == "hinge" else "m"
     far = OFFSET * max(a.travel for a in sensors.values())
     out = [_effect(encoder_offset, "y + c", "sensor: zero is displaced", sensors,
-                   _size("c", x, far, "of its zero"))]  # fmt: skip
+                   _size("c", x, far, "of its zero"),
+                   of_records="sensor: its zero differs between the records")]  # fmt: skip
     if kind == "hinge":
         out.append(_effect(encoder_eccentricity, "y + a cos q + b sin q",
                            "sensor: its disc is off centre", sensors,

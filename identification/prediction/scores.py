@@ -155,11 +155,14 @@ class _Base:
         Their steps are as small as those of the free parameters: where joints stick, a large one
         shows something else.
         """
-        S = np.vstack(self._columns(group, IMITATION_STEP))
-        size = np.linalg.norm(S, axis=0)
-        left = np.linalg.norm(S - self.free @ (self.free.T @ S), axis=0)
-        each = np.split(left < share * size, np.cumsum([len(c.sizes) for c in group])[:-1])
-        return [c for c, own in zip(group, each, strict=True) if own.all()]
+        columns, out, end = self._columns(group, IMITATION_STEP), [], 0
+        for c in group:
+            each = [S[:, end : end + len(c.sizes)] for S in columns]
+            S, end = block_diag(*each) if c.effect.own else np.vstack(each), end + len(c.sizes)
+            left = np.linalg.norm(S - self.free @ (self.free.T @ S), axis=0)
+            if np.all(left < share * np.linalg.norm(S, axis=0)):
+                out.append(c)
+        return out
 
     def _columns(self, group: Sequence[Candidate], share: float = 1.0) -> list[np.ndarray]:
         """Returns -∂r/∂η of the sizes of candidates, without the states' part, (rows, k) a record.

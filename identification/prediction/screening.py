@@ -10,6 +10,9 @@ joints of six), all places are scored together, each with a size of its own. Pla
 is of a sign that physics does not admit, or not beyond its std, are then left out, and the others
 are scored again. Of an effect that is felt only beside other things (`Effect.is_among`) the place
 of the smallest size is left out where all others stay: what all have in common is no part of it.
+
+What differs between records, such as a zero that is set before each of them, is a candidate with a
+size of each record where several are fitted.
 """
 
 from __future__ import annotations
@@ -23,7 +26,7 @@ from identification.discovery.attempts import tell_lost
 from identification.discovery.candidates import list_common, list_single
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.passes import uses
-from identification.effects.effect import Candidate, Effect, Size
+from identification.effects.effect import Candidate, Effect, Size, in_each_record
 from identification.prediction.contenders import is_plausible, is_significant
 from identification.prediction.first_fit import picks, thinned, thinned_moves, thinned_tangents
 from identification.prediction.model import WindowModel
@@ -81,6 +84,8 @@ def some_windows(fit: WindowFit) -> WindowFit:
 
 def _listed(model: WindowModel, effects: Sequence[Effect]) -> list[Candidate]:
     """Returns all shapes of what the model lacks, at all places together and at each of them."""
+    if len(model.fit.problem.parts) > 1:
+        effects = [*effects, *(in_each_record(e) for e in effects if e.of_records)]
     has = {c.key for c in model.candidates}
     everywhere = {c.effect.name for c in model.candidates if not c.effect.places[c.where]}
     common = list_common([e for e in effects if e.name not in everywhere])
@@ -166,10 +171,11 @@ def several_scores(
         significant: scores that are beyond chance and plausible, the best first.
         options: what a size must be to count.
     """
-    first: dict[str, Candidate] = {}
+    first: dict[tuple[str, bool], Candidate] = {}
     for s in significant:
-        if not s.candidate.effect.own and len(_single(s.candidate.effect)) > 1:
-            first.setdefault(s.candidate.effect.name, s.candidate)
+        effect = s.candidate.effect
+        if len(_single(effect)) > 1 and effect.own == effect.is_of_records:
+            first.setdefault((effect.name, effect.own), s.candidate)
     out: list[WindowScore] = []
     for c in [*first.values()][:MAX_SPREAD_EFFECTS]:
         places = _single(c.effect)
@@ -196,16 +202,12 @@ def felt_places(
     score: WindowScore, places: Sequence[str], effect: Effect, options: DiscoveryOptions
 ) -> list[str]:
     """Returns places where all sizes are plausible in sign and magnitude, and beyond their std."""
-    m = len(effect.sizes)
-    out = []
-    for k, where in enumerate(places):
-        own = zip(
-            score.size[m * k : m * (k + 1)], score.std[m * k : m * (k + 1)], effect.sizes,
-            strict=True,
-        )  # fmt: skip
-        if all(is_felt(v, std, z, options) for v, std, z in own):
-            out.append(where)
-    return out
+    sizes = effect.sizes * (len(score.size) // len(effect.sizes))
+    pairs = zip(score.size, score.std, sizes, strict=True)
+    felt = np.array([is_felt(*each, options) for each in pairs])
+    whole = np.asarray(felt.reshape(-1, len(places), len(effect.sizes)).all(axis=2))
+    # in any record, where sizes are each record's own
+    return [where for k, where in enumerate(places) if whole[:, k].any()]
 
 
 def is_felt(value: float, std: float, size: Size, options: DiscoveryOptions) -> bool:

@@ -189,6 +189,11 @@ def _judged(
     )  # fmt: skip
 
 
+def _against(c: Contender) -> float:
+    """Returns what a difference between records must have more of evidence than a law."""
+    return STRONG_BIC if c.candidate.effect.is_of_records else 0.0
+
+
 def _explains_fitted(model: WindowModel, new: WindowModel, options: DiscoveryOptions) -> bool:
     """Returns whether a model explains fitted records that unseen ones contradict.
 
@@ -204,8 +209,12 @@ def _is_worse(new: Unseen, old: Unseen, options: DiscoveryOptions) -> bool:
 
 
 def _ranked(found: Sequence[Contender], options: DiscoveryOptions) -> tuple[Contender, ...]:
-    """Returns contenders in the order of `refit_contenders`."""
-    out = sorted(found, key=lambda c: (not c.is_proven, -c.criterion))
+    """Returns contenders in the order of `refit_contenders`.
+
+    A difference between records comes before a proven law only where the evidence for it is very
+    strong: with numbers of each record it explains much that a law of all of them is.
+    """
+    out = sorted(found, key=lambda c: (not c.is_proven, -c.criterion + _against(c)))
     for c in tuple(out[1:]):
         best = out[0]
         apart = best.criterion - c.criterion

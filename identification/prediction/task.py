@@ -56,7 +56,8 @@ class WindowSearch(SearchState):
     def room(self) -> int:
         """Returns how many effects more may be named."""
         options = self.task.options
-        return int(min(options.max_effects, options.max_horizon_effects)) - len(self.accepted)
+        names = [a for a in self.accepted if not a.candidate.effect.is_of_records]
+        return int(min(options.max_effects, options.max_horizon_effects)) - len(names)
 
 
 # The model of a move that finishes a search, its effects, and those that it lost, which are in

@@ -19,6 +19,7 @@ from identification.discovery.effect_results import (
     Gap,
     NamedEffect,
     Proof,
+    RecordDifference,
     RejectedEffect,
     Rival,
 )
@@ -31,7 +32,7 @@ from identification.logs.joined import REPLAYED, replayed_share
 from identification.logs.log import Log
 from identification.prediction.clocks import record_shifts
 from identification.prediction.evidence import compute_confidence
-from identification.prediction.extension import at_own_steps
+from identification.prediction.extension import at_own_steps, refitted
 from identification.prediction.model import WindowModel
 from identification.prediction.record_errors import error_unit, errors_by_unit, record_errors
 from identification.prediction.recovery import recover_over_horizon
@@ -56,13 +57,15 @@ def conclude(state: WindowSearch) -> Discovery:
         state: the finished state.
     """
     state = _at_own_steps(state)
-    task, nominal, model = state.task, state.nominal, state.model
+    task, model = state.task, state.model
     options = task.options
     rejected = listed_once([_rejected(state, c) for c in state.rejected])
     shifts = record_shifts(task, model)
     findings = find_remaining(state, rejected, shifts)
     limit = options.left_confidence if findings else options.max_confidence
-    named = tuple(_named(state, a, limit) for a in state.accepted)
+    differ = [a for a in state.accepted if a.candidate.effect.is_of_records]
+    named = tuple(_named(state, a, limit) for a in state.accepted if a not in differ)
+    nominal = _with_differences(state, differ)
     # Beside a model with effects that diverges there, the nominal one tells it.
     needed = attempt(None, partial(needed_input_error, model.fit, model.unseen.floor))
     if needed is None:
@@ -91,7 +94,9 @@ def conclude(state: WindowSearch) -> Discovery:
         # Values with which a search began, because its fit was worse, lie inside their bounds.
         at_bound=tuple(n for n in model.at_bound if n in nominal.fit.problem.names),
         scores=state.nominal_scores, remaining=state.scores if named else state.nominal_scores,
-        findings=findings, shifts=shifts, repeats=_repeats(task.records),
+        findings=findings, shifts=shifts,
+        differences=tuple(_difference(state.model, a) for a in differ),
+        repeats=_repeats(task.records),
         seconds=state.seconds, moves=state.made,
         failed=state.failed, recover=partial(recover_over_horizon, model),
     )  # fmt: skip
@@ -113,6 +118,25 @@ def decide(
     if named or is_unexplained or any(f.kind in SUSPECT for f in findings):
         return "unknown effect"
     return "nothing missing"
+
+
+def _with_differences(state: WindowSearch, differ: Sequence[Contender]) -> WindowModel:
+    """Returns the nominal model with the differences between records that the final one has."""
+    if not differ or len(differ) == len(state.accepted):
+        return state.model if differ else state.nominal
+    found = [a.candidate for a in differ]
+    kept = [c for c in state.model.candidates if c.key in {d.key for d in found}]
+    bare = refitted(state.model, kept, state.task.nominal_model, state.task.confirm)
+    return bare or state.nominal
+
+
+def _difference(model: WindowModel, a: Contender) -> RecordDifference:
+    """Returns what each record has for itself of an effect."""
+    candidate, parameters = _fitted(model, a.candidate)
+    (unit,) = {unit for _, _, unit in parameters.values()}
+    return RecordDifference(
+        candidate, {name: (value, std) for name, (value, std, _) in parameters.items()}, unit
+    )
 
 
 def _at_own_steps(state: WindowSearch) -> WindowSearch:

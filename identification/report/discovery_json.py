@@ -49,6 +49,12 @@ def discovery_to_json(found: Discovery) -> dict[str, Any]:
              "after_by_unit": plain(e.after_by_unit) or None}
             for e in found.errors
         ],
+        "differences": [
+            {**plain_fields(d, "name", "where", "spread"),
+             "parameters": {n: plain({"value": v, "std": std, "unit": d.unit})
+                            for n, (v, std) in d.values.items()}}
+            for d in found.differences
+        ],
         **plain_fields(found, "shifts", "repeats", "horizon"),
         "timestep": dict(zip(("simulated", "model"), steps_of(found.nominal.plant), strict=True)),
         "input_error": plain(found.input_error),

@@ -7,7 +7,12 @@ from math import inf, isfinite
 from identification.discovery.findings.finding import FindingKind
 from identification.discovery.result import Discovery
 from identification.quantities import held, quantity
-from identification.report.effect_words import describe_chance, describe_effect, phrase
+from identification.report.effect_words import (
+    describe_chance,
+    describe_effect,
+    difference_sentences,
+    phrase,
+)
 from identification.report.error_words import change_words, describe_scale, error_words
 from identification.report.finding_words import describe_finding, sentence
 from identification.report.named_words import named_sentences
@@ -22,7 +27,8 @@ NO_ERROR = 1e-3  # of the inputs' rms: less is not told from none
 def discovery_verdict(found: Discovery) -> list[str]:
     """Returns sentences: the verdict first, then what supports it."""
     bounds = bound_sentences(found.final.plant.parameters, found.at_bound)
-    return [*_verdict(found), *bounds, *describe_scale(found.outputs, found.scale)]
+    differ = difference_sentences(found)
+    return [*_verdict(found), *differ, *bounds, *describe_scale(found.outputs, found.scale)]
 
 
 def _verdict(found: Discovery) -> list[str]:

@@ -130,6 +130,19 @@ def describe_sizes(found: NamedEffect | RejectedEffect) -> str:
     )
 
 
+def difference_sentences(found: Discovery) -> list[str]:
+    """Returns a sentence on each thing that differs between records and is no effect."""
+    from identification.effects.effect import BY_RECORD  # slow to import
+
+    return [
+        f"{phrase(d.candidate.effect).capitalize()}, {d.candidate.where.replace(BY_RECORD, '')}: by"
+        f" {quantity(d.spread, unit=d.unit)} between two of them at most"
+        f" ({', '.join(f'{n} = {quantity(v, s, d.unit)}' for n, (v, s) in d.values.items())})."
+        " Each record has its own in the model; it is no effect of the robot."
+        for d in found.differences
+    ]
+
+
 def describe_rejected(found: Discovery) -> tuple[str, list[str]]:
     """Returns the effects that were refitted and not accepted: a title and a line each.
 

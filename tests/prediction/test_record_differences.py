@@ -1,0 +1,102 @@
+"""What differs between records is told, and neither named nor in the way of what is missing."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from records_cases import FREE, nominal_model, pendulum, record
+from test_contenders import OPTIONS, contender, effect
+
+from identification.discovery.findings.finding import FindingKind
+from identification.effects.effect import Candidate, in_each_record
+from identification.effects.joint_plant import candidates
+from identification.prediction.discovery import discover_records
+from identification.prediction.scores import WindowScore
+from identification.prediction.screening import at_several, felt_places
+from identification.prediction.selection import STRONG_BIC, _ranked
+from identification.report.discovery_json import discovery_to_json
+from identification.report.discovery_report import discovery_text
+
+FEW = ("offset", "stiffness", "encoder_offset", "coulomb_friction")
+ZEROS, PUSHES = (0.08, -0.07, 0.05, -0.09), (0.03, -0.02, 0.01, -0.04)
+
+
+@cache
+def found(each):
+    """A search over four records, each of which has values of its own."""
+    logs = [record(k + 1, 400, dict(own), plant=pendulum()) for k, own in enumerate(each)]
+    effects = [e for e in candidates(pendulum(), FREE) if e.name in FEW]
+    return discover_records(nominal_model(), logs[:2], logs[2:], effects)
+
+
+def of_each(name, values):
+    return tuple(((name, value),) for value in values)
+
+
+@pytest.mark.parametrize(
+    ("name", "values", "said"),
+    [
+        ("encoder_offset.c@angle", ZEROS, "its zero differs between the records, sensor angle: by"),
+        ("offset.f_0@hinge", PUSHES, "constant, and differs between the records, joint hinge: by"),
+    ],
+)
+def test_a_value_of_each_record_is_told_and_nothing_is_missing(name, values, said):
+    answer = found(of_each(name, values))
+    assert answer.verdict == "nothing missing"
+    assert answer.named == answer.findings == ()
+    (told,) = answer.differences
+    assert told.candidate.sizes == (name,)
+    for (value, std), true in zip(told.values.values(), values, strict=True):
+        assert value == pytest.approx(true, abs=max(5 * std, 5e-3 * abs(true)))
+    assert told.spread == pytest.approx(max(values) - min(values), rel=0.03)
+    assert said in discovery_text(answer)
+    (kept,) = discovery_to_json(answer)["differences"]
+    assert len(kept["parameters"]) == 4
+    assert answer.before.rms < 1.1 * answer.noise_rms
+
+
+@pytest.mark.parametrize(
+    ("name", "size", "right"),
+    [("offset.f_0@hinge", 0.04, "offset"), ("stiffness.k@hinge", 0.1, "stiffness")],
+)
+def test_what_all_records_have_is_named_and_not_hidden_by_values_of_each(name, size, right):
+    answer = found(of_each(name, (size,) * 4))
+    assert answer.verdict == "named"
+    assert [n.name for n in answer.named] == [right]
+    ((value, std, _),) = answer.named[0].parameters.values()
+    assert value == pytest.approx(size, abs=max(5 * std, 0.02 * size))
+    assert answer.differences == ()
+
+
+def test_friction_beside_zeros_that_differ_is_named_and_the_zeros_are_told():
+    name = "coulomb_friction.f_c@hinge"
+    each = tuple((("encoder_offset.c@angle", c), (name, 0.06)) for c in ZEROS)
+    answer = found(each)
+    assert [n.name for n in answer.named] == ["coulomb_friction"]
+    assert [d.candidate.sizes for d in answer.differences] == [("encoder_offset.c@angle",)]
+    assert not [f for f in answer.findings if f.kind == FindingKind.UNPROVEN_EFFECT]
+
+
+@pytest.mark.parametrize("ahead", [0.9, 1.1])
+def test_a_difference_comes_before_a_law_only_where_the_evidence_is_very_strong(ahead):
+    differs = in_each_record(replace(effect("zero"), of_records="its zero differs"))
+    law, own = contender(effect("law"), 1.0), contender(differs, 1.0)
+    law, own = replace(law, criterion=50.0), replace(own, criterion=50.0 + ahead * STRONG_BIC)
+    first, _ = _ranked((law, own), OPTIONS)
+    assert first is (own if ahead > 1 else law)
+    unproven = replace(law, doubt="chance")
+    assert _ranked((unproven, own), OPTIONS)[0] is own
+
+
+def test_a_place_is_felt_in_any_record_and_sizes_are_those_of_one_record_after_the_other():
+    three = replace(effect("zero"), places={f"joint {x}": f"@{x}" for x in "abc"}, of_records="z")
+    differs = in_each_record(three)
+    places = [*differs.places]
+    several = at_several(differs, places)
+    score = WindowScore(
+        candidate=Candidate(several, next(iter(several.places)), {}),
+        size=np.array([0.5, 0.0, 0.0, 0.0, 0.0, 0.5]), std=np.full(6, 0.1), fall=0.2, p_value=1e-9,
+        along=np.zeros(0),
+    )  # fmt: skip
+    assert felt_places(score, places, differs, OPTIONS) == [places[0], places[2]]
