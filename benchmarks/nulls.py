@@ -65,9 +65,8 @@ def row_of(folder: Path) -> dict[str, Any]:
         "about": told["about"], "digest": told["digest"], "is_search": is_search,
         "worlds": len(done), "failed": len(records) - len(done), "false_names": sum(named),
         "silent": sum(r["verdict"] == "nothing missing" for r in done) if is_search else None,
-        "below_5_percent": None if is_search else
-        [float(np.mean([r[name] for r in done])) for name in ("below_5_percent",
-                                                              "below_5_percent_blocks")],
+        "below_5_percent":
+        None if is_search else float(np.mean([r["below_5_percent"] for r in done])),
         "median_seconds": float(np.median(seconds)), "all_seconds": float(np.sum(seconds)),
         "memory": max(r["run.memory"] for r in done),
         "day": datetime.fromtimestamp(max(ended), UTC).date().isoformat(),
@@ -79,7 +78,7 @@ def page(rows: Sequence[dict[str, Any]]) -> str:
     """The page, from all rows."""
     lines = [
         HEAD,
-        "| sweep | worlds | a false name | nothing missing | p below 5 %, by noise and by blocks |"
+        "| sweep | worlds | a false name | nothing missing | p below 5 % |"
         " processor time of one, of all | memory | day, code |",
         "|---|---|---|---|---|---|---|---|",
     ]  # fmt: skip
@@ -89,7 +88,7 @@ def page(rows: Sequence[dict[str, Any]]) -> str:
             f"| {row['about']} | {n}{', failed ' + str(row['failed']) if row['failed'] else ''}"
             f" | {_rate(row['false_names'], n)}"
             f" | {'-' if row['silent'] is None else _rate(row['silent'], n)}"
-            f" | {'-' if below is None else ' and '.join(f'{100 * x:.1f} %' for x in below)}"
+            f" | {'-' if below is None else f'{100 * below:.1f} %'}"
             f" | {row['median_seconds']:.2g} s, {row['all_seconds'] / 60:.0f} min"
             f" | {row['memory'] / 2**30:.1f} GB | {row['day']}, {'; '.join(row['code'])} |"
         )

@@ -31,6 +31,17 @@ def student_above(t: float, freedom: float) -> float:
     return float(special.stdtr(freedom, -t))
 
 
+def noncentral_student_above(t: float, freedom: float, moved: Any) -> Any:
+    """Returns the chance that Student's t of a noncentrality `moved` exceeds t; elementwise."""
+    # beyond 30 the chance is 0 or 1 for any t that a test asks for, and scipy has no number
+    return 1.0 - special.nctdtr(freedom, np.clip(moved, -30.0, 30.0), t)
+
+
+def student_level(chance: float, freedom: float) -> float:
+    """Returns the t that Student's t of some degrees of freedom exceeds with a chance."""
+    return -float(special.stdtrit(freedom, chance))
+
+
 def normal_above(z: Any) -> Any:
     """Returns the chance that a standard normal number exceeds z; elementwise."""
     return special.ndtr(-np.asarray(z))

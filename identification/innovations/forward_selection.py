@@ -42,7 +42,6 @@ from identification.innovations.scoring.scores import Score
 from identification.innovations.scoring.sensitivities import compute_sensitivities
 from identification.innovations.scoring.significance import (
     is_plausible,
-    select_plausible,
     select_significant,
 )
 from identification.innovations.shapes import begin_anew, improve_shape
@@ -144,17 +143,13 @@ def _sharpen(
 ) -> tuple[Score, ...]:
     """Returns scores of the likely candidates at more values of their shapes, as a refit asks.
 
-    What jumps acts in a few blocks, and at a wrong time it leaves as much in one of them as it
-    explains: the score is then far beyond chance by the noise model and not by the blocks. It must
-    not stand back behind another candidate at a better time. A sensor that jumps is scored where
-    the outputs jump.
+    What jumps explains less at a wrong time, and must not stand back behind another candidate at a
+    better time. A sensor that jumps is scored where the outputs jump.
     """
-    likely = [s for s in scores if s.p_value * len(scores) < options.significance]
-    ranked = (select_significant(scores, options), select_plausible(likely, options))
-    near = {id(s): s for some in ranked for s in _select_contenders(some, options)}
+    near = _select_contenders(select_significant(scores, options), options)
     finer: list[Candidate] = []
     if uses(options, "finer_shapes"):
-        finer += [c for s in near.values() for c in list_between(s.candidate)]
+        finer += [c for s in near for c in list_between(s.candidate)]
     if uses(options, "jumps_at_outliers"):
         every, log = [s.candidate for s in scores], model.refit.point.log
         finer += list_at_outliers(every, model.innovations, log, options)

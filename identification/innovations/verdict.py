@@ -9,6 +9,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 
+import numpy as np
+
 from identification.discovery.attempts import listed_once
 from identification.discovery.effect_results import NamedEffect, RejectedEffect, Unlogged
 from identification.discovery.findings.finding import Finding, FindingKind
@@ -30,13 +32,10 @@ from identification.innovations.fitted_model import FittedModel, is_proven, scor
 from identification.innovations.input_error import find_input_error, find_input_hold
 from identification.innovations.proof import prove
 from identification.innovations.recovery import recover_force
+from identification.innovations.scoring.detection import list_detectable
 from identification.innovations.scoring.scores import Score
 from identification.innovations.scoring.sensitivities import compute_sensitivities
-from identification.innovations.scoring.significance import (
-    correct_p_value,
-    list_detectable,
-    list_hidden,
-)
+from identification.innovations.scoring.significance import correct_p_value, list_hidden
 from identification.innovations.state import InnovationSearch
 from identification.kalman.refit import Refit
 
@@ -178,7 +177,7 @@ def conclude(state: InnovationSearch) -> Discovery:
         at_bound=tuple(list_at_bound(model.refit, nominal.refit.point.space.names)),
         scores=state.nominal_scores, remaining=scores, scored_by="gain",
         next_best=_next(scores) if named and not rejected else None,
-        detectable=list_detectable(scores, options),
+        detectable=list_detectable(scores, _unseen_share(state.model), options),
         hidden=list_hidden(scores, model.refit.level, options), findings=findings,
         seconds=state.seconds, failed=state.failed, moves=state.made, run=run,
         recover=partial(recover_force, model.refit),
@@ -197,6 +196,12 @@ def _forbidden(
     return {
         (n.name, n.where): find_impossible(n.candidate, fit, before, logs, guessed) for n in every
     }
+
+
+def _unseen_share(model: FittedModel) -> float:
+    """Returns the number of unseen samples over that of fitted ones."""
+    seen = model.validation.seen
+    return float(np.sum(~seen) / np.sum(seen))
 
 
 def _unlogged(fit: Refit) -> Unlogged:

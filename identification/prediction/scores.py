@@ -4,9 +4,9 @@
     η̂_j = (S⊥ᵀS⊥)⁻¹ S⊥ᵀ r⊥                    the size, at once
     fall_j = 1 - ‖r⊥ - S⊥ η̂_j‖²/‖r⊥‖²          share of the residual's square that it takes away
     Δq_j = -(FᵀF)⁻¹ FᵀS_j η̂_j                  how the free parameters go along, F: their columns
-    W_j = η̂ᵀ H (Σ_b g_b g_bᵀ)⁻¹ H η̂ ~ m F(m, B - m),   g_b = Σ_{w in b} S⊥ᵀ(r⊥ - S⊥ η̂),  H = S⊥ᵀS⊥
 
-W needs no noise model: blocks of windows are its sample (White 1980).
+The chance of a score and the std of its size are those of a test by blocks of windows, which needs
+no noise model (`identification.estimation.block_test`).
 """
 
 from __future__ import annotations
@@ -14,13 +14,22 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from itertools import pairwise
 
 import numpy as np
 from scipy.linalg import block_diag
 
-from identification.chances import f_above
 from identification.discovery.attempts import attempt, refuse_infinite
 from identification.effects.effect import Candidate
+from identification.estimation.block_test import (
+    Common,
+    Scatter,
+    common_scatter,
+    covariance,
+    make_blocks,
+    p_values,
+    scatter_of,
+)
 from identification.model.coordinates import coordinates
 from identification.model.parameter import ParameterSet
 from identification.prediction.joint_states import rows_for
@@ -75,7 +84,7 @@ def window_scores(fit: WindowFit, candidates: Sequence[Candidate]) -> tuple[Wind
         candidates: which; their sizes are zero in the fit.
     """
     base = _Base(fit)
-    out: list[WindowScore] = []
+    out: list[tuple[WindowScore, Scatter]] = []
     groups = [*_groups(candidates)]
     for group in counted(groups, "groups of candidates", len(groups)):
         found = attempt(None, partial(base.scores, group))
@@ -83,7 +92,15 @@ def window_scores(fit: WindowFit, candidates: Sequence[Candidate]) -> tuple[Wind
             each = (attempt(None, partial(base.scores, [one])) for one in group)
             found = [s for scores in each if scores for s in scores]
         out += found
-    return tuple(sorted(out, key=lambda s: -s.fall))
+    common = common_scatter([scatter for _, scatter in out])
+    judged = (_judged(score, scatter, common) for score, scatter in out)
+    return tuple(sorted(judged, key=lambda s: -s.fall))
+
+
+def _judged(score: WindowScore, scatter: Scatter, common: Common) -> WindowScore:
+    """Returns a score with its chance and std, which depend on how all candidates scatter."""
+    std = np.sqrt(np.maximum(np.diag(covariance(scatter, common)[0]), 0.0))
+    return replace(score, std=std, p_value=float(p_values(scatter, common)[0]))
 
 
 def find_imitated(fit: WindowFit, scores: Sequence[WindowScore]) -> set[tuple[str, str]]:
@@ -133,12 +150,17 @@ class _Base:
         below = fit.problem.prior.against(fit.q)[:, None]
         r = np.vstack([r.reshape(-1, 1) for _, r in each] + [below])
         self.r = self._without_base(r)[:, 0]
-        self.rows = [r.shape for _, r in each]  # (W, m) a record
+        # Rows of neighbouring windows, and those of the priors.
+        windows = np.concatenate([np.full(W, m) for W, m in (r.shape for _, r in each)])
+        some = np.array_split(windows, min(STD_BLOCKS, len(windows)))
+        edges = np.cumsum([0, *(int(n.sum()) for n in some), len(below)])
+        self.blocks = [slice(*pair) for pair in pairwise(edges.tolist())]
 
     def _without_base(self, columns: np.ndarray) -> np.ndarray:
         return np.asarray(columns - self.Q @ (self.Q.T @ columns))
 
-    def scores(self, group: Sequence[Candidate]) -> list[WindowScore]:
+    def scores(self, group: Sequence[Candidate]) -> list[tuple[WindowScore, Scatter]]:
+        """Returns candidates with what they explain and its scatter, without chance and std."""
         columns = self._columns(group)
         ends = np.cumsum([len(c.sizes) for c in group])
         out = []
@@ -205,37 +227,33 @@ class _Base:
             out.append(S.reshape(-1, len(probes)))
         return out
 
-    def _score(self, candidate: Candidate, columns: np.ndarray) -> WindowScore:
+    def _score(self, candidate: Candidate, columns: np.ndarray) -> tuple[WindowScore, Scatter]:
         S = self._without_base(columns)
         norm = np.linalg.norm(S, axis=0)
-        unit = S / np.where(norm > 0, norm, 1.0)
-        H = unit.T @ unit
-        size = np.linalg.lstsq(H, unit.T @ self.r, rcond=1e-12)[0]
-        left = self.r - unit @ size
-        fall = 1 - float(left @ left) / max(float(self.r @ self.r), 1e-300)
-        g = self._by_blocks(unit * left[:, None])
-        spread = g.T @ g
-        B, m = len(g), len(size)
-        moved = H @ size
-        wald = float(moved @ np.linalg.pinv(spread, rcond=1e-12, hermitian=True) @ moved)
-        p = float(f_above(wald * (B - m) / (B * m), m, B - m)) if m < B else 1.0
-        inverse = np.linalg.pinv(H, rcond=1e-12, hermitian=True)
-        std = np.sqrt(np.maximum(np.diag(inverse @ spread @ inverse), 0.0))
         back = np.where(norm > 0, 1 / np.where(norm > 0, norm, 1.0), 0.0)
-        along = np.linalg.lstsq(self.R, self.Q.T @ (columns @ (size * back)), rcond=1e-8)[0]
-        return WindowScore(
-            candidate=candidate, size=size * back, std=std * back, fall=fall, p_value=p,
+        H = (S * back).T @ (S * back)
+        unit = np.linalg.lstsq(H, (S * back).T @ self.r, rcond=1e-12)[0]
+        size = unit * back
+        left = self.r - S @ size
+        fall = 1 - float(left @ left) / max(float(self.r @ self.r), 1e-300)
+        along = np.linalg.lstsq(self.R, self.Q.T @ (columns @ size), rcond=1e-8)[0]
+        score = WindowScore(
+            candidate=candidate, size=size, std=np.full(len(size), np.nan), fall=fall, p_value=1.0,
             along=-along / self.scale,
         )  # fmt: skip
+        variance = max(float(left @ left), 1e-300) / len(left)
+        return score, self._scatter(candidate, S, variance)
 
-    def _by_blocks(self, rows: np.ndarray) -> np.ndarray:
-        """Returns sums of rows over blocks of windows, shape (B, k)."""
-        windows, done = [], 0
-        for W, m in self.rows:
-            windows.append(rows[done : done + W * m].reshape(W, m, -1).sum(axis=1))
-            done += W * m
-        each = np.concatenate(windows)
-        return np.array([b.sum(axis=0) for b in np.array_split(each, min(STD_BLOCKS, len(each)))])
+    def _scatter(self, candidate: Candidate, S: np.ndarray, variance: float) -> Scatter:
+        """Returns the scatter of a candidate's sizes over blocks of windows."""
+        parts = [(S[rows], self.Q[rows], self.r[rows]) for rows in self.blocks]
+        G = np.array([X.T @ X for X, _, _ in parts])[:, None]
+        Z = np.array([Q.T @ X for X, Q, _ in parts])[:, :, None]
+        a = np.array([X.T @ r for X, _, r in parts])[:, None]
+        signs = [size.sign for size in candidate.effect.sizes]
+        signs *= S.shape[1] // len(signs)  # of each record where they are its own
+        blocks = make_blocks(G, Z)
+        return scatter_of(blocks, a, np.array([variance]), np.array([signs]))
 
 
 def inside(parameters: ParameterSet, names: Sequence[str], values: np.ndarray) -> np.ndarray:

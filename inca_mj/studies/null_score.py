@@ -71,12 +71,10 @@ def null_score(settings: NullSettings, seed: Seed) -> dict[str, Any]:
     refit = replace(fit, point=drawn, level=level, priors=replace(fit.priors, mean=point.q))
     scores = score(refit, sensitivities, options)
     names = named(scores)
-    p, blocks = (np.array([getattr(s, n) for s in scores]) for n in ("p_value", "block_p_value"))
+    p = np.array([s.p_value for s in scores])
     return {
         "false_name": bool(names), "names": names, "candidates": len(scores),
-        "smallest_p": float(p.min()), "smallest_block_p": float(blocks.min()),
-        "below_5_percent": float(np.mean(p < LEVEL)),
-        "below_5_percent_blocks": float(np.mean(blocks < LEVEL)),
+        "smallest_p": float(p.min()), "below_5_percent": float(np.mean(p < LEVEL)),
         "noise_ratio": float(level.noise.ratio), "sigma": float(level.sigma),
         "disturbance": float(np.sqrt(max(0.0, np.mean(e**2) - level.sigma**2))),
     }  # fmt: skip
@@ -122,19 +120,15 @@ def null_findings(records: Sequence[Record]) -> Findings:
     for coloured in sorted({r["set.coloured"] for r in records}):
         mine = [r for r in records if r["set.coloured"] is coloured]
         false = wilson(sum(r["false_name"] for r in mine), len(mine))
-        below = [
-            float(np.mean([r[n] for r in mine]))
-            for n in ("below_5_percent", "below_5_percent_blocks")
-        ]
+        below = float(np.mean([r["below_5_percent"] for r in mine]))
         names = Counter(name for r in mine for name in r["names"])
         words = "and an unlogged error of the currents" if coloured else "encoders only"
         found["coloured" if coloured else "white"] = {
-            "a_false_name": false, "below_5_percent": below[0],
-            "below_5_percent_blocks": below[1], "names": dict(names.most_common()),
+            "a_false_name": false, "below_5_percent": below, "names": dict(names.most_common()),
         }  # fmt: skip
-        rows.append((words, said(false), *(f"{100 * share:.2g} %" for share in below),
+        rows.append((words, said(false), f"{100 * below:.2g} %",
                      ", ".join(f"{n} ({k})" for n, k in names.most_common(8))))  # fmt: skip
-    head = ("noise", "a false name", "scores below p = 5 %", "by blocks", "names")
+    head = ("noise", "a false name", "scores below p = 5 %", "names")
     sentences = [f"{row[0]}: a false name in {row[1]}." for row in rows]
     return Findings(found, [Section("false names", table=Table(head, tuple(rows)))], sentences)
 
@@ -147,9 +141,7 @@ NULL_SCORE = Method(
         "names": Column(list[str], "those that are, as effect, place"),
         "candidates": Column(int, "how many were scored"),
         "smallest_p": Column(float, "the smallest p-value"),
-        "smallest_block_p": Column(float, "the smallest p-value by blocks"),
         "below_5_percent": Column(float, "share of p-values below 5 %"),
-        "below_5_percent_blocks": Column(float, "the same by blocks"),
         "noise_ratio": Column(float, "of the noise model: input error over sensors' noise"),
         "sigma": Column(float, "noise of the sensors by the noise model [rad]"),
         "disturbance": Column(float, "what else the residual has [rad]"),

@@ -138,7 +138,7 @@ def found(verdict="named", *, one_of=False, unexplained=False, several=False) ->
 def score_of(candidate: Candidate, size: float, gain: float) -> Score:
     return Score(
         candidate=candidate, size=np.array([size]), std=np.array([size / 9]), gain=gain,
-        p_value=1e-9, block_p_value=1e-6, identifiable=0.5, level=_level(),
+        p_value=1e-6, identifiable=0.5, level=_level(),
     )  # fmt: skip
 
 

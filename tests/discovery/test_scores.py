@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from discovery_cases import covariance, linear_plant, point_of, scored, sensitivity
-from scipy.stats import chi2, kstest
+from scipy.stats import kstest
 
 from identification.innovations.scoring.scores import RATIO_FACTORS
 from identification.kalman.noise_fit import NoiseLevel
@@ -53,9 +53,6 @@ def test_gain_size_and_std_are_those_of_brute_force(seed, ratio):
     np.testing.assert_allclose(s.size, with_it[2][P:], rtol=1e-8)
     H = np.linalg.inv(with_it[3].T @ with_it[3])[P:, P:]
     np.testing.assert_allclose(s.std, np.sqrt(np.diag(H) * with_it[1] / n), rtol=1e-8)
-    k = int(np.argmax([b[0] for b in best["without"]]))
-    fall = (best["without"][k][1] - best["with"][k][1]) / (best["without"][k][1] / n)
-    assert s.p_value == pytest.approx(chi2.sf(fall, 2), rel=1e-6)
     assert s.level.sigma == pytest.approx(np.sqrt(with_it[1] / n), rel=1e-8)
 
 
@@ -65,7 +62,7 @@ def test_mixing_the_base_columns_and_scaling_the_effect_change_no_gain():
     level, free = NoiseLevel(noise, 1.0, 0.0), np.zeros(P)
     (one,) = scored(point_of(plant, e, J), level, free, [sensitivity(S)])
     (two,) = scored(point_of(plant, e, J @ M), level, free, [sensitivity(1e3 * S)])
-    for name in ("gain", "p_value", "block_p_value", "identifiable"):
+    for name in ("gain", "p_value", "identifiable"):
         assert getattr(two, name) == pytest.approx(getattr(one, name), rel=1e-6), name
     np.testing.assert_allclose(1e3 * two.size, one.size, rtol=1e-7)
 
@@ -91,8 +88,7 @@ def test_an_effect_of_the_wrong_sign_gains_nothing():
     assert right.size[0] > 0
     assert right.gain > 5
     assert wrong.gain == pytest.approx(0, abs=1e-9)
-    assert wrong.p_value >= 0.5
-    assert wrong.block_p_value == 1
+    assert wrong.p_value == 1
 
 
 @pytest.mark.parametrize("ratio", [0.0, 1.0])
@@ -107,11 +103,9 @@ def test_chances_are_uniform_where_nothing_is_missing(ratio):
     J = np.cos(t * rng.uniform(0, 0.3, (NY, P)) + rng.uniform(0, 6, (NY, P)))
     S = np.cos(t * rng.uniform(0, 0.6, (NY, 12)) + rng.uniform(0, 6, (NY, 12)))
     six = [sensitivity(S[..., k : k + 2], name=f"e{k}") for k in range(0, 12, 2)]
-    p, blocks = [], []
+    p = []
     for _ in range(40):
         e = (factor @ rng.standard_normal(samples * NY)).reshape(samples, NY)
         found = scored(point_of(plant, e, J), NoiseLevel(noise, 1.0, 0.0), np.zeros(P), six)
         p += [s.p_value for s in found]
-        blocks += [s.block_p_value for s in found]
     assert kstest(p, "uniform").pvalue > 0.01
-    assert kstest(blocks, "uniform").pvalue > 0.01

@@ -3,9 +3,13 @@
 import numpy as np
 import pytest
 from discovery_cases import OPTIONS, STEP, linear_plant, point_of, scored, sensitivity
-from scipy.stats import chi2
-from scipy.stats import f as f_distribution
 
+from identification.estimation.block_test import (
+    common_scatter,
+    make_blocks,
+    p_values,
+    scatter_of,
+)
 from identification.innovations.scoring import scores as module
 from identification.innovations.scoring.scores import MIN_SCORE_SAMPLES, RATIO_FACTORS
 from identification.kalman.noise_fit import NoiseLevel
@@ -26,7 +30,7 @@ def candidates(rng, J):
 
 
 def slow_score(plant, noise, e, J, s):
-    """Gain, size, std, p-values, identifiable share and noise of one candidate."""
+    """Gain, size, std, identifiable share and noise of one candidate, and its scatter by blocks."""
     m, signs = s.S.shape[2], [size.sign for size in s.candidate.effect.sizes]
     n, found = e.size, []
     for share in RATIO_FACTORS if noise.ratio else (1.0,):
@@ -47,27 +51,28 @@ def slow_score(plant, noise, e, J, s):
         def likely(q, filter_=filter_):
             return -0.5 * (n * np.log(q / n) + filter_.log_determinant)
 
-        left = (S[:n] * (r - S @ size)[:n, None]).reshape(N, NY, m).sum(axis=1)
-        found.append((likely(squares), likely(r @ r), squares, r @ r, size, H, left, refused, raw))
+        found.append((likely(squares), likely(r @ r), squares, size, H, (r, S, F), raw))
     k, null = (max(range(len(found)), key=lambda i, of=of: found[i][of]) for of in (0, 1))
-    likely, _, squares, _, size, H, left, refused, _ = found[k]
-    half = 0.5 if m == 1 and signs[0] != 0 else 1.0
+    likely, _, squares, size, H, (r, S, F), _ = found[k]
     B = min(OPTIONS.score_blocks, N // MIN_SCORE_SAMPLES)
-    starts = np.linspace(0, N, B, endpoint=False).astype(int)
-    g, moved = np.add.reduceat(left, starts, axis=0), H @ size
-    W = moved @ np.linalg.pinv(g.T @ g, rcond=1e-12, hermitian=True) @ moved
-    by_blocks = half * f_distribution.sf(W * (B - m) / (B * m), m, B - m)
-    fall = (found[null][3] - found[null][2]) / (found[null][3] / n)
+    block = np.repeat(
+        np.searchsorted(np.linspace(0, N, B, endpoint=False), np.arange(N), "right"), NY
+    )
+    block = np.append(block, np.full(P, B + 1))  # the priors
+    Q = np.linalg.svd(F, full_matrices=False)[0]
+    parts = [(r[block == b], S[block == b], Q[block == b]) for b in range(1, B + 2)]
+    G = np.array([X.T @ X for _, X, _ in parts])[:, None]
+    Z = np.array([q.T @ X for _, X, q in parts])[:, :, None]
+    a = np.array([X.T @ e for e, X, _ in parts])[:, None]
+    scatter = scatter_of(make_blocks(G, Z), a, np.array([squares / n]), np.array([signs]))
     H = np.linalg.pinv(H, rcond=1e-12, hermitian=True)
     return {
         "gain": 2 * (likely - found[null][1]),
         "size": size,
         "std": np.sqrt(np.diag(H) * squares / n),
-        "p_value": half * chi2.sf(fall, m),
-        "block_p_value": 1.0 if refused else by_blocks,
-        "identifiable": np.trace(found[null][5]) / max(found[null][8], 1e-300),
+        "identifiable": np.trace(found[null][4]) / max(found[null][6], 1e-300),
         "ratio": noise.ratio * RATIO_FACTORS[k],
-    }
+    }, scatter
 
 
 @pytest.mark.parametrize("together", [2, 128])
@@ -84,8 +89,11 @@ def test_every_score_is_that_of_the_slow_way(seed, ratio, missing, together, mon
     found = scored(point_of(plant, e, J), NoiseLevel(noise, SIGMA, 0.0), PRIOR, every, MEAN)
     assert [s.gain for s in found] == sorted((s.gain for s in found), reverse=True)
     of = {s.candidate.effect.name: s for s in found}
-    for one in every:
-        s, slow = of[one.candidate.effect.name], slow_score(plant, noise, e, J, one)
+    slowly = [slow_score(plant, noise, e, J, one) for one in every]
+    common = common_scatter([scatter for _, scatter in slowly], least=1.0)
+    for one, (slow, scatter) in zip(every, slowly, strict=True):
+        s = of[one.candidate.effect.name]
+        slow["p_value"] = p_values(scatter, common)[0]
         if slow["identifiable"] < 1e-9 and one.S.any():  # what is left of it is rounding
             assert s.identifiable < 1e-9
             continue

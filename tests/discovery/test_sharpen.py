@@ -19,10 +19,10 @@ JUMP = Effect(
 OTHER = replace(JUMP, name="other")
 
 
-def score(p, blocks, gain=100.0, t_s=2.0, effect=JUMP):
+def score(p, gain=100.0, t_s=2.0, effect=JUMP):
     return SimpleNamespace(
         candidate=Candidate(effect, "joint", {"t_s": t_s} if effect.shapes else {}),
-        size=np.array([0.5]), gain=gain, p_value=p, block_p_value=blocks,
+        size=np.array([0.5]), gain=gain, p_value=p,
     )  # fmt: skip
 
 
@@ -42,14 +42,14 @@ def sharpened(monkeypatch):
     return of
 
 
-def test_what_only_the_blocks_refuse_is_scored_between_its_neighbours(sharpened):
-    assert sharpened(score(1e-30, 0.5)) == [1.5, 2.0, 2.5, 3.0, 3.5]
+def test_what_is_beyond_chance_is_scored_between_its_neighbours(sharpened):
+    assert sharpened(score(1e-30)) == [1.5, 2.0, 2.5, 3.0, 3.5]
 
 
 def test_what_is_chance_or_has_no_times_is_not(sharpened):
-    assert sharpened(score(0.5, 0.5)) == []
-    assert sharpened(score(1e-30, 0.5, gain=-1.0)) == []
-    assert sharpened(score(1e-30, 0.5, effect=replace(JUMP, shapes=()))) == []
+    assert sharpened(score(0.5)) == []
+    assert sharpened(score(1e-30, gain=-1.0)) == []
+    assert sharpened(score(1e-30, effect=replace(JUMP, shapes=()))) == []
 
 
 def test_no_time_of_one_is_compared_with_a_better_time_of_another(monkeypatch):
@@ -57,11 +57,11 @@ def test_no_time_of_one_is_compared_with_a_better_time_of_another(monkeypatch):
     gains = {"jump": 900.0, "other": 500.0}
 
     def anew(model, some, options):
-        return [score(1e-99, 1e-99, gains[c.effect.name], c.shape["t_s"], c.effect) for c in some]
+        return [score(1e-99, gains[c.effect.name], c.shape["t_s"], c.effect) for c in some]
 
     monkeypatch.setattr(forward_selection, "compute_sensitivities", lambda point, some: some)
     monkeypatch.setattr(forward_selection, "score_candidates", anew)
-    begun = (score(1e-30, 1e-30, 100.0), score(1e-30, 0.5, 95.0, effect=OTHER))
+    begun = (score(1e-30, 100.0), score(1e-30, 95.0, effect=OTHER))
     model = SimpleNamespace(
         refit=SimpleNamespace(point=SimpleNamespace(log=None)), innovations=None
     )

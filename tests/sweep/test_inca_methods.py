@@ -119,13 +119,13 @@ def test_an_excitation_is_the_information_of_its_robot():
 def test_false_names_are_counted_by_noise():
     rows = [
         {"set.coloured": coloured, "false_name": k == 0 and coloured, "names": ["a, b"] * (k == 0),
-         "below_5_percent": 0.05, "below_5_percent_blocks": 0.1}
+         "below_5_percent": 0.05 if coloured else 0.1}
         for coloured in (False, True) for k in range(4)
     ]  # fmt: skip
     found = null_findings(rows).record
     assert found["white"]["a_false_name"]["hits"] == 0
     assert found["coloured"]["a_false_name"]["value"] == 0.25
-    assert found["coloured"]["below_5_percent_blocks"] == pytest.approx(0.1)
+    assert found["coloured"]["below_5_percent"] == pytest.approx(0.05)
 
 
 def test_scores_are_counted_by_effect():

@@ -1,13 +1,11 @@
 """Residual and sensitivities under one noise, with the free parameters projected out.
 
     r⊥ = r - Φ (ΦᵀΦ + P)⁻¹ Φᵀ r        whitened; the priors P enter as further measurements
-    H = S⊥ᵀS⊥,   b = S⊥ᵀE⊥,   and the same of each block of samples:   G_b,  a_b
+    H = S⊥ᵀS⊥,   b = S⊥ᵀE⊥,   and of each block of samples:   G_b, a_b, Z_b = (ΦᵀΦ + P)^-½ Φ_bᵀS⊥_b
     b = Sᵀu,   u = Wᵀ E⊥               W: the whitening filter; no sensitivity is whitened for it
 
-The chance of a score by the scatter over B blocks needs no noise model. It is a Wald test of m
-sizes with the candidate in the model (White 1980):
-
-    W = η̂ᵀ H (Σ_b g_b g_bᵀ)⁻¹ H η̂,   g_b = a_b - G_b η̂,   W (B - m)/(B m) ~ F(m, B - m)
+The priors are a block of their own. What blocks tell of the chance of a score is told in
+`identification.estimation.block_test`.
 
 A candidate has few sizes. Of its sensitivities nothing is needed but products of few columns, never
 a product with those of another candidate.
@@ -20,7 +18,6 @@ from itertools import pairwise
 
 import numpy as np
 
-from identification.chances import f_above
 from identification.kalman.noise_model import Noise, whiten
 from identification.kalman.refit import Refit
 
@@ -36,8 +33,9 @@ class Products:
         raw: sum of squares before the projection, shape (J,).
         H: shape (J, m, m).
         b: shape (J, m).
-        G: of each block, shape (B, J, m, m).
-        a: of each block, shape (B, J, m).
+        G: of each block and of the priors, shape (B + 1, J, m, m).
+        a: likewise, shape (B + 1, J, m).
+        Z: likewise, shape (B + 1, p, J, m).
     """
 
     raw: np.ndarray
@@ -45,6 +43,7 @@ class Products:
     b: np.ndarray
     G: np.ndarray
     a: np.ndarray
+    Z: np.ndarray
 
 
 class Projection:
@@ -96,41 +95,19 @@ class Projection:
         raw = np.einsum("ij,ij->j", W, W).reshape(J, m).sum(axis=1)
         C = self._coefficients(self._F.T @ W)
         W -= self._F @ C
-        e, X = self._e, W.reshape(-1, J, m)
+        e, F, half = self._e, self._F, self._V / np.sqrt(self._w)
+        below = -self._ridge[:, None] * C
         rows = [slice(*pair) for pair in pairwise([*(ny * starts), len(e)])]
-        a = np.stack([e[some] @ W[some] for some in rows]).reshape(-1, J, m)
-        G = np.stack([_gram(X[some]) for some in rows])
-        below = (-self._ridge[:, None] * C).reshape(-1, J, m)
-        b = a.sum(axis=0) + np.einsum("p,pjm->jm", self._below, below)
-        return Products(raw, G.sum(axis=0) + _gram(below), b, G, a)
+        parts = [*((e[some], F[some], W[some]) for some in rows),
+                 (self._below, np.diag(self._ridge), below)]  # fmt: skip
+        a = np.stack([r @ X for r, _, X in parts]).reshape(-1, J, m)
+        G = np.stack([_gram(X.reshape(-1, J, m)) for _, _, X in parts])
+        Z = np.stack([half.T @ (Φ.T @ X) for _, Φ, X in parts]).reshape(len(parts), -1, J, m)
+        return Products(raw, G.sum(axis=0), a.sum(axis=0), G, a, Z)
 
     def _coefficients(self, FtX: np.ndarray) -> np.ndarray:
         """Returns (ΦᵀΦ + P)⁻¹ ΦᵀX; the shortest where outputs do not feel every direction."""
         return np.asarray((self._V / self._w) @ (self._V.T @ FtX))
-
-
-def compute_block_p_values(products: Products, size: np.ndarray, signs: np.ndarray) -> np.ndarray:
-    """Returns p-values of the Wald test by blocks, shape (J,).
-
-    Args:
-        products: of J candidates.
-        size: η̂, shape (J, m).
-        signs: of their sizes, shape (J, m); 0 where physics admits both.
-    """
-    m, blocks = signs.shape[1], len(products.a)
-    g = products.a - np.einsum("bjpq,jq->bjp", products.G, size)
-    moved = np.einsum("jpq,jq->jp", products.H, size)
-    spread = np.einsum("bjp,bjq->jpq", g, g)
-    inverse = np.linalg.pinv(spread, rcond=1e-12, hermitian=True)
-    W = np.einsum("jp,jpq,jq->j", moved, inverse, moved)
-    p = f_above(W * (blocks - m) / (blocks * m), m, blocks - m)
-    p = np.where(is_one_sided(signs), p / 2, p)
-    return np.where(is_refused(size, signs), 1.0, p)
-
-
-def is_one_sided(signs: np.ndarray) -> np.ndarray:
-    """Returns which candidates have one size of which physics admits one sign only, shape (J,)."""
-    return np.asarray((signs.shape[1] == 1) & (signs[:, 0] != 0))
 
 
 def is_refused(size: np.ndarray, signs: np.ndarray) -> np.ndarray:

@@ -6,12 +6,9 @@
     LR_j = 2 max_ρ log L_j(ρ) - 2 max_ρ log L_0(ρ)       the gain
 
 Each candidate is judged with the noise that is the most likely *with it*, because a missing effect
-looks like input noise as long as the model lacks it. The p-value takes the noise of the nominal
-model,
-
-    p_j = P(χ²_m > η̂ᵀ S⊥ᵀS⊥ η̂/σ²)          halved where physics admits one sign only,
-
-and is checked by a test that needs no noise model (`blocks`).
+looks like input noise as long as the model lacks it. Its chance is that of a test by blocks
+(`identification.estimation.block_test`), in which candidates scatter no less than the noise model
+says.
 
 All columns are whitened by the nominal noise and by the largest one, which mostly are the same. The
 covariance V of another, smaller ρ is less, so that H(ρ) is no less than that of the largest, and
@@ -24,19 +21,23 @@ Only where this bound comes near the best noise yet, columns are whitened by ρ 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
 
-from identification.chances import chi2_above
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate
+from identification.estimation.block_test import (
+    Scatter,
+    common_scatter,
+    make_blocks,
+    p_values,
+    scatter_of,
+)
 from identification.innovations.scoring.projection import (
     Products,
     Projection,
-    compute_block_p_values,
-    is_one_sided,
     is_refused,
 )
 from identification.innovations.scoring.sensitivities import Sensitivity
@@ -59,8 +60,8 @@ class Score:
         size: η̂, shape (m,), in the units of its sizes.
         std: of η̂, under the noise with the candidate, shape (m,).
         gain: LR_j.
-        p_value: chance that as much is explained by luck, by the noise model.
-        block_p_value: the same by blocks.
+        p_value: chance that as much is explained by luck.
+        freedom: degrees of freedom of that chance.
         identifiable: share of its sensitivity that re-tuning cannot imitate, 0 to 1.
         level: the noise with the candidate.
     """
@@ -70,9 +71,9 @@ class Score:
     std: np.ndarray
     gain: float
     p_value: float
-    block_p_value: float
     identifiable: float
     level: NoiseLevel
+    freedom: float = np.inf
 
     @property
     def explains(self) -> float:
@@ -94,7 +95,8 @@ def score(
     with one_blas_thread():
         scorer = _scorer(fit, blocks)
         scorer.add([s for s in sensitivities if id(s) not in scorer.known])
-    return tuple(sorted((scorer.known[id(s)][1] for s in sensitivities), key=lambda s: -s.gain))
+        found = scorer.scores(sensitivities)
+    return tuple(sorted(found, key=lambda s: -s.gain))
 
 
 @lru_cache(maxsize=1)
@@ -143,17 +145,35 @@ class _Best:
         to, took = places[better], np.flatnonzero(better)
         for name in ("level", "likely", "squares", "size"):
             getattr(self, name)[to] = getattr(other, name)[took]
-        for name, axis in (("H", 0), ("G", 1), ("a", 1)):
+        for name, axis in (("H", 0), ("G", 1), ("a", 1), ("Z", 2)):
             mine, its = getattr(self.products, name), getattr(other.products, name)
             np.moveaxis(mine, axis, 0)[to] = np.moveaxis(its, axis, 0)[took]
 
 
+@dataclass(frozen=True)
+class _Known:
+    """A candidate that is scored, but for its chance, which depends on what others scatter.
+
+    Attributes:
+        sensitivity: of the candidate, which is kept so that its identity is no other's.
+        score: with a chance of 1.
+        scatter: of the candidates that were scored with it.
+        place: its own one among them.
+    """
+
+    sensitivity: Sensitivity
+    score: Score
+    scatter: Scatter
+    place: int
+
+
 class _Scorer:
-    """Scores of candidates on a fit, by the identity of their sensitivities, which are kept."""
+    """Scores of candidates on a fit, by the identity of their sensitivities."""
 
     def __init__(self, levels: Sequence[Projection], starts: np.ndarray) -> None:
         self.levels, self.starts = levels, starts
-        self.known: dict[int, tuple[Sensitivity, Score]] = {}
+        self.known: dict[int, _Known] = {}
+        self.scatters: list[Scatter] = []
         self.without = np.array([float(p.log_likelihood(np.array(p.rest))) for p in levels])
         self.null = int(self.without.argmax())
         self.largest = int(np.argmax([p.noise.ratio for p in levels]))
@@ -162,25 +182,40 @@ class _Scorer:
         """Score candidates that are not known yet."""
         places = [some for m in _numbers(new) for some in _groups(new, m)]
         groups = [[new[j] for j in some] for some in places]
-        found = run_parts(self._scores, groups)
-        for some, scores in zip(groups, found, strict=True):
-            self.known |= {id(s): (s, one) for s, one in zip(some, scores, strict=True)}
+        for found in run_parts(self._scored, groups):
+            self.scatters.append(found[0].scatter)
+            self.known |= {id(k.sensitivity): k for k in found}
 
-    def _scores(self, some: Sequence[Sensitivity]) -> list[Score]:
-        """Returns the scores of candidates that have the same number of sizes, in their order."""
+    def scores(self, sensitivities: Sequence[Sensitivity]) -> list[Score]:
+        """Returns the scores of known candidates; all that are known tell how they scatter."""
+        common = common_scatter(self.scatters, least=1.0)
+        chances: dict[int, np.ndarray] = {}
+        out = []
+        for known in (self.known[id(s)] for s in sensitivities):
+            scatter = known.scatter
+            if id(scatter) not in chances:
+                chances[id(scatter)] = p_values(scatter, common)
+            freedom = common.freedom + float(scatter.blocks.freedom[known.place])
+            chance = float(chances[id(scatter)][known.place])
+            out.append(replace(known.score, p_value=chance, freedom=freedom))
+        return out
+
+    def _scored(self, some: Sequence[Sensitivity]) -> list[_Known]:
+        """Returns candidates that have the same number of sizes, scored, in their order."""
         S = np.stack([s.S for s in some], axis=2)
         signs = np.array([[size.sign for size in s.candidate.effect.sizes] for s in some])
         null = self._try(self.null, S, signs)
         first = null if self.largest == self.null else self._try(self.largest, S, signs)
         bound = self._bound(S, first.products)
-        p_value, identifiable = self._under_null(null, signs)
+        own = np.trace(null.products.H, axis1=1, axis2=2)
+        identifiable = own / np.maximum(null.products.raw, 1e-300)
         best, every = null, np.arange(len(some))
         best.improve(every, first)
         for k in range(len(self.levels)):
             near = every[2 * (bound[k] - best.likely) > -LIKELIHOOD_ROUNDING]
             if k not in (self.null, self.largest) and near.size:
                 best.improve(near, self._try(k, S[:, :, near], signs[near]))
-        return self._made(some, best, signs, p_value, identifiable)
+        return self._made(some, best, signs, identifiable)
 
     def _try(self, k: int, S: np.ndarray, signs: np.ndarray) -> _Best:
         """Returns what candidates explain under a noise."""
@@ -212,31 +247,24 @@ class _Scorer:
         squares = np.maximum(rest - fall, 1e-12 * rest)
         return np.stack([p.log_likelihood(s) for p, s in zip(self.levels, squares, strict=True)])
 
-    def _under_null(self, null: _Best, signs: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Returns p-values, and the share of the sensitivities that re-tuning cannot imitate."""
-        level, m = self.levels[self.null], signs.shape[1]
-        statistic = (level.rest - null.squares) / (level.rest / level.samples)
-        p = chi2_above(statistic, m) * np.where(is_one_sided(signs), 0.5, 1.0)
-        own = np.trace(null.products.H, axis1=1, axis2=2)
-        return p, own / np.maximum(null.products.raw, 1e-300)
-
     def _made(
-        self, some: Sequence[Sensitivity], best: _Best, signs: np.ndarray, p_value: np.ndarray,
-        identifiable: np.ndarray,
-    ) -> list[Score]:  # fmt: skip
-        samples = self.levels[0].samples
-        sigma, nominal = np.sqrt(best.squares / samples), self.without.max()
-        inverse = np.linalg.pinv(best.products.H, rcond=1e-12, hermitian=True)
-        std = sigma[:, None] * np.sqrt(np.diagonal(inverse, axis1=1, axis2=2))
-        blocks = compute_block_p_values(best.products, best.size, signs)
-        return [
+        self, some: Sequence[Sensitivity], best: _Best, signs: np.ndarray, identifiable: np.ndarray
+    ) -> list[_Known]:
+        samples, products = self.levels[0].samples, best.products
+        variance, nominal = best.squares / samples, self.without.max()
+        inverse = np.linalg.pinv(products.H, rcond=1e-12, hermitian=True)
+        std = np.sqrt(variance[:, None] * np.diagonal(inverse, axis1=1, axis2=2))
+        scatter = scatter_of(make_blocks(products.G, products.Z), products.a, variance, signs)
+        scores = (
             Score(
                 candidate=s.candidate, size=best.size[j], std=std[j],
-                gain=float(2 * (best.likely[j] - nominal)), p_value=float(p_value[j]),
-                block_p_value=float(blocks[j]), identifiable=float(identifiable[j]),
+                gain=float(2 * (best.likely[j] - nominal)), p_value=1.0,
+                identifiable=float(identifiable[j]),
                 level=NoiseLevel(
-                    self.levels[best.level[j]].noise, float(sigma[j]), float(best.likely[j])
+                    self.levels[best.level[j]].noise, float(np.sqrt(variance[j])),
+                    float(best.likely[j]),
                 ),
             )
             for j, s in enumerate(some)
-        ]  # fmt: skip
+        )  # fmt: skip
+        return [_Known(*one, scatter, j) for j, one in enumerate(zip(some, scores, strict=True))]

@@ -1,7 +1,6 @@
-"""Which scores are beyond chance, what a log would have shown, and what the noise may hide.
+"""Which scores are beyond chance, and what the noise may hide.
 
     chance of the best of n candidates <= n p
-    found with probability 0.9 where (η/std)² = DETECTION_NONCENTRALITY
     most  = |η̂| + 1.96 std(η̂)            η̂ as it would be fitted, with the noise most likely then
     taken = 1 - (ρ_j σ_j)²/(ρ σ)²         share of the power of the inputs' error
 
@@ -17,15 +16,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from identification.chances import normal_level
-from identification.discovery.effect_results import Detectable, Hidden
+from identification.discovery.effect_results import Hidden
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate
 from identification.innovations.scoring.scores import Score
 from identification.kalman.noise_fit import NoiseLevel
 
-# (4.6 + 1.3)² of a noncentral F: t = 4.6 is what the blocks demand at a chance of 0.01 over 200
-# candidates, and 1.3 is the normal quantile of 0.9.
-DETECTION_NONCENTRALITY = 35.0
 NORMAL_QUANTILE = normal_level(0.025)  # of a two-sided interval of 95 %
 
 
@@ -102,44 +98,7 @@ def find_oversized(
 
 def correct_p_value(s: Score, count: int) -> float:
     """Returns the chance that one of `count` candidates scores as high by luck (Bonferroni)."""
-    return min(1.0, max(s.p_value, s.block_p_value) * count)
-
-
-def list_detectable(scores: Sequence[Score], options: DiscoveryOptions) -> tuple[Detectable, ...]:
-    """Returns the smallest size of each effect that would have been found, ordered by name.
-
-    An effect that acts on all places at once is judged there, with the shape of its best score.
-    Another one is judged at the place and shape where it is hardest to find.
-
-    Args:
-        scores: of all candidates on the final model, the best first.
-        options: the sizes that are believed.
-    """
-    chosen: dict[str, Score] = {}
-    for s in scores:
-        name = s.candidate.effect.name
-        chosen[name] = _harder(s, chosen.get(name, s))
-    out = []
-    for _, s in sorted(chosen.items()):
-        for size, std in zip(s.candidate.effect.sizes, s.std, strict=True):
-            smallest = float(np.sqrt(DETECTION_NONCENTRALITY) * std)
-            largest = options.size_factor * size.largest
-            is_testable = np.isfinite(smallest) and 0 < smallest <= largest
-            out.append(
-                Detectable(s.candidate, size.name, smallest if is_testable else np.inf, size.unit)
-            )
-    return tuple(out)
-
-
-def _harder(s: Score, before: Score) -> Score:
-    """Returns the one of two scores that is on all places, else the one that is harder to find."""
-    if _is_everywhere(s) != _is_everywhere(before):
-        return s if _is_everywhere(s) else before
-    return before if _is_everywhere(s) or s.std.max() <= before.std.max() else s
-
-
-def _is_everywhere(s: Score) -> bool:
-    return not s.candidate.effect.places[s.candidate.where]
+    return min(1.0, s.p_value * count)
 
 
 def list_hidden(
