@@ -2,7 +2,7 @@
 
     δ ~ N(0, 1),   x = η/std(η̂),   x + δ = η̂/std(η̂)
     scored     |x + δ| > t_n                    a chance of α/n on each of two sides, n candidates
-    proven     t > t_k        Student's t of the gain of η̂ over blocks of samples that no fit saw, of
+    proven     t > t_k        Student's t of the gain of η̂ over blocks of unseen samples, of
                noncentrality √r (x² - δ²)/(2|x + δ|); they weigh r of those that were fitted
     found      both, in 9 logs of 10
 
