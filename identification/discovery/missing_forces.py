@@ -76,7 +76,8 @@ def estimate_missing_forces(fit: Refit) -> tuple[MissingForce, ...]:
     Ts, time, out, done = point.log.sampling_time, START_CORRELATION_TIME, [], 0
     known = point.e, point.J, fit.priors.weight, Ts
     with one_blas_thread():
-        none = fit_noise(plant, *known, levels=(0.0,), fine=False)
+        sensors = fit.level.noise.outputs
+        none = fit_noise(plant, *known, levels=(0.0,), fine=False, outputs=sensors)
         for where, of, names, units in groups:
             B = plant.B[:, :, done : done + len(of)]
             done += len(of)
@@ -85,7 +86,7 @@ def estimate_missing_forces(fit: Refit) -> tuple[MissingForce, ...]:
             each = [compute_unit_ratio(LinearPlant(plant.A, b[:, :, None], plant.C), Ts, time)
                     for b in np.moveaxis(B, 2, 0)]  # fmt: skip
             mine = LinearPlant(plant.A, B * each, plant.C)
-            level = fit_noise(mine, *known, fine=False)
+            level = fit_noise(mine, *known, fine=False, outputs=sensors)
             force, part = smooth(mine, level.noise, point.e, Ts)
             out.append(
                 MissingForce(
@@ -150,7 +151,7 @@ def locate_error(fit: Refit, forces: Sequence[MissingForce]) -> tuple[Finding, .
 def _worst_output(fit: Refit) -> WorstOutput:
     log, e = fit.point.log, fit.point.e
     rms = np.sqrt(np.mean(e**2, axis=0))
-    scale, noise = np.ones(len(rms)), np.full(len(rms), fit.level.sigma)
+    scale, noise = np.ones(len(rms)), fit.level.of_outputs(len(rms))
     if len({log.units.get(n, "") for n in log.output_names}) > 1:
         # Errors of unlike outputs compare relative to the outputs' own motion.
         scale, noise = np.std(log.outputs, axis=0), noise_floor(log.outputs)

@@ -72,6 +72,7 @@ class Discovery(Shown):
             its error is divided in a mean square; None where 1 counts alike in all outputs.
         noise_rms: rms of the sensors' noise over all outputs, in `unit`.
         noise_by_unit: the same by the outputs' units, each in it.
+        noise_by_output: std of each sensor's noise by output, in its unit; empty over a horizon.
         disturbance_rms: rms of what unlogged input errors do to the free run, by the noise model,
             in `unit`; zero where these errors are not random, and over a horizon.
         disturbance_by_unit: the same by the outputs' units, each in it.
@@ -122,6 +123,7 @@ class Discovery(Shown):
     scale: np.ndarray | None = None
     noise_rms: float
     noise_by_unit: Mapping[str, float] = field(default_factory=dict)
+    noise_by_output: Mapping[str, float] = field(default_factory=dict)
     disturbance_rms: float = 0.0
     disturbance_by_unit: Mapping[str, float] = field(default_factory=dict)
     input_error: float

@@ -10,8 +10,7 @@
 A residual may well depend on its own past (coloured noise) while the model is right; one that
 depends on the input shows a wrong model. Innovations are white where the model is right. The noise
 model takes a missing effect that no candidate explains for an error of the inputs. The part of it
-that is not random (a line of the spectrum, correlation between samples, one output with a larger
-variance) remains in the innovations.
+that is not random (a line of the spectrum, correlation between samples) remains in the innovations.
 """
 
 from __future__ import annotations
@@ -62,8 +61,6 @@ class InnovationTests:
         p_line: p-value of the strongest spectral line of all channels.
         channel: index of the output on which that line has the most power.
         frequency: of that line [Hz].
-        p_louder: p-value of the test that all channels have the same variance.
-        loudest: index of the output with the largest variance.
     """
 
     p_correlation: float
@@ -71,8 +68,6 @@ class InnovationTests:
     p_line: float
     channel: int
     frequency: float
-    p_louder: float
-    loudest: int
 
     def is_correlated(self, level: float, least_share: float) -> bool:
         """Returns whether samples are correlated beyond chance, and by enough to matter."""
@@ -89,23 +84,18 @@ def innovation_tests(E: np.ndarray, sampling_time: float) -> InnovationTests:
     n, ny = E.shape
     white = whiteness(E)
     E = E - E.mean(axis=0)
-    power = np.mean(E**2, axis=0)
     I = np.abs(np.fft.rfft(E, axis=0)[1 : (n + 1) // 2]) ** 2
     share = I / I.sum(axis=0)
     M = len(I)
     at, sharp = np.unravel_index(int(share.argmax()), share.shape)
     line = ny * M * (1 - share[at, sharp]) ** (M - 1)
     channel = int(I[at].argmax())  # the line has the most power on the output that it comes from
-    ratio = power / power.mean()
-    louder = float(n / 2 * np.sum((ratio - 1) ** 2))
     return InnovationTests(
         p_correlation=white.p_value,
         predictable=white.predictable,
         p_line=float(min(1.0, line)),
         channel=channel,
         frequency=float((at + 1) / (n * sampling_time)),
-        p_louder=float(chi2_above(louder, ny - 1)) if ny > 1 else 1.0,
-        loudest=int(ratio.argmax()),
     )
 
 

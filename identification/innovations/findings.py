@@ -21,7 +21,6 @@ from identification.discovery.findings.evidence import (
     CorrelatedInnovations,
     DoubtfulEffect,
     LargeInputError,
-    NoisyOutput,
     OversizedEffect,
     ParametersAtLimit,
     RobotChange,
@@ -56,9 +55,6 @@ def find_structure(model: FittedModel, options: DiscoveryOptions) -> tuple[Findi
     if white.p_line < options.structure_level:
         line = SpectralLine(log.output_names[white.channel], white.frequency, white.p_line)
         out.append(Finding(FindingKind.SPECTRAL_LINE, line))
-    if white.p_louder < options.structure_level:
-        noisy = NoisyOutput(log.output_names[white.loudest], white.p_louder)
-        out.append(Finding(FindingKind.NOISY_OUTPUT, noisy))
     if white.is_correlated(options.structure_level, options.min_structure_share):
         correlated = CorrelatedInnovations(white.predictable, white.p_correlation)
         out.append(Finding(FindingKind.CORRELATED_INNOVATIONS, correlated))

@@ -78,7 +78,7 @@ class Validation:
     def noise(self) -> np.ndarray:
         """Rms of the fitted samples' innovations, of each output, shape (ny,), in its unit."""
         E = self.innovations[self.seen]
-        return np.asarray(self.refit.level.sigma * np.sqrt(np.mean(E**2, axis=0)))
+        return np.asarray(self.refit.level.sigma * self.filter.s * np.sqrt(np.mean(E**2, axis=0)))
 
     @property
     def gap(self) -> Gap:
@@ -102,9 +102,9 @@ def validate(fit: Refit, log: Log) -> Validation:
     with one_blas_thread():
         filter_ = build_whitener(point.linear, fit.level.noise, log.sampling_time)
         E = filter_(point.e) / fit.level.sigma
-        nu, ratio = point.linear.B.shape[2], fit.level.noise.ratio
         measured, judged = log.outputs[~seen], point.e[~seen]
-        moved = propagate_input_error(filter_.A, filter_.C, ratio, nu)
+        variances = fit.level.noise.of_inputs(point.linear.B.shape[2]) ** 2
+        moved = propagate_input_error(filter_.A, filter_.C, variances)
         moved = moved[~seen] if moved.size else moved
     disturbances = np.zeros(log.outputs.shape[1])
     if moved.size:
@@ -115,19 +115,19 @@ def validate(fit: Refit, log: Log) -> Validation:
     )  # fmt: skip
 
 
-def propagate_input_error(A: np.ndarray, C: np.ndarray, ratio: float, nu: int) -> np.ndarray:
+def propagate_input_error(A: np.ndarray, C: np.ndarray, variances: np.ndarray) -> np.ndarray:
     """Returns the variance over σ² that input errors cause in a free run, shape (N, ny).
 
     Args:
         A: transitions of the state of plant and input error, shape (N-1, nz, nz).
         C: outputs from that state, shape (ny, nz).
-        ratio: std of an input error over that of the sensors.
-        nu: number of inputs.
+        variances: of the error of each input over σ², shape (nu,).
     """
     if not A.size:
         return np.zeros((0, len(C)))
     P = np.zeros(A.shape[1:])
-    P[-nu:, -nu:] = ratio**2 * np.eye(nu)
+    nu = len(variances)
+    P[-nu:, -nu:] = np.diag(variances)
     moved = propagate(A, C, P, 1 - A[:, -1, -1] ** 2)
     return np.vstack([np.zeros(len(C)), moved])
 

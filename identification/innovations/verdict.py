@@ -169,6 +169,7 @@ def conclude(state: InnovationSearch) -> Discovery:
         nearest=next(proven, None), unexplained=bool(findings or unnamed or (named and beside)),
         share=None, unit=log.output_unit, noise_rms=model.refit.level.sigma,
         noise_by_unit=by_unit(model.validation.noise, log),
+        noise_by_output=dict(zip(log.output_names, model.validation.noise.tolist(), strict=True)),
         disturbance_rms=model.validation.disturbance if is_random else 0.0,
         disturbance_by_unit={u: s if is_random else 0.0 for u, s in disturbed.items()},
         input_error=model.refit.relative_input_error, unlogged=_unlogged(model.refit),

@@ -122,7 +122,7 @@ def estimate_innovations(
         space=space,
         start=first,
         q=end.point.q,
-        whitener=np.eye(part.outputs.shape[1]) / end.level.sigma,
+        whitener=np.diag(1 / end.level.of_outputs(part.outputs.shape[1])),
         weight=np.ones_like(part.outputs),
         options=weights,
         evaluations=taken + 1,
@@ -133,7 +133,7 @@ def estimate_innovations(
     fit = assess(ends, log)
     with one_blas_thread():
         filter_ = build_whitener(end.point.linear, end.level.noise, part.sampling_time)
-        E = filter_(end.point.e)
+        E = filter_.s * filter_(end.point.e)
     if status != "stopped":  # else nobody waits for std, nor for unseen data
         fit, E = _of_innovations(end, fit, filter_, E), compute_innovations(end, log)
     fit = replace(fit, estimate=replace(ends, seconds=time.perf_counter() - began))
@@ -164,7 +164,7 @@ def compute_innovations(end: Refit, whole: Log) -> np.ndarray:
     longer = extend_point(end.point, whole)
     with one_blas_thread():
         filter_ = build_whitener(longer.linear, end.level.noise, whole.sampling_time)
-        return filter_(longer.e)
+        return np.asarray(filter_.s * filter_(longer.e))
 
 
 def _of_innovations(end: Refit, fit: Fit, filter_: Whitener, E: np.ndarray) -> Fit:

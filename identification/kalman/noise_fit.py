@@ -4,12 +4,13 @@
 
 E and Φ are the whitened residual and sensitivities; c is the small change of the parameters, held
 by their priors, that fits best. ρ is searched on a scale that the plant gives: at ρ₀ the inputs'
-error moves the outputs by as much as the sensors' noise.
+error moves the outputs by as much as the sensors' noise. How the noise is shared out among sensors
+and inputs is found with c held, which never lowers L (`noise_shares`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass
 from math import isclose
 from threading import Lock
@@ -18,6 +19,7 @@ import numpy as np
 
 from identification.kalman.linear import LinearPlant
 from identification.kalman.noise_model import Noise, Whitened, augment, keep, whiten
+from identification.kalman.noise_shares import share_noise
 from identification.kalman.recursion import propagate
 from identification.pool import one_blas_thread, run_parts, split
 
@@ -38,8 +40,8 @@ class NoiseLevel:
     """A noise and the likelihood of a residual under it.
 
     Attributes:
-        noise: ρ and τ.
-        sigma: σ, std of the sensors' noise, in the outputs' unit.
+        noise: ρ and τ, and the shares of sensors and inputs.
+        sigma: σ, rms of the sensors' noise over all outputs, in their unit.
         log_likelihood: of the residual, up to a constant that depends on the log only.
     """
 
@@ -49,8 +51,12 @@ class NoiseLevel:
 
     @property
     def input_std(self) -> float:
-        """ρ σ: std of the unlogged error of the inputs, in the inputs' unit."""
+        """ρ σ: rms of the unlogged error over all inputs, in their unit."""
         return self.noise.ratio * self.sigma
+
+    def of_outputs(self, ny: int) -> np.ndarray:
+        """Returns σ s: std of the noise of each sensor, in its unit, shape (ny,)."""
+        return self.sigma * self.noise.of_outputs(ny)
 
 
 def compute_unit_ratio(plant: LinearPlant, sampling_time: float, time: float) -> float:
@@ -67,13 +73,19 @@ def evaluate_noise(white: Whitened, e: np.ndarray, prior: np.ndarray) -> NoiseLe
         e: shape (N, ny).
         prior: 1/std of each parameter's prior, shape (p,).
     """
+    sigma, _ = _adjust(white, e, prior)
+    log_likelihood = -0.5 * (2 * e.size * np.log(sigma) + white.filter.log_determinant)
+    return NoiseLevel(white.noise, float(sigma), float(log_likelihood))
+
+
+def _adjust(white: Whitened, e: np.ndarray, prior: np.ndarray) -> tuple[float, np.ndarray]:
+    """Returns σ and c, the best small change of the parameters, shape (p,)."""
     E, F = white.filter(e).ravel(), white.F
     sigma, b = np.sqrt(E @ E / E.size), F.T @ E
     for _ in range(2):  # the weight of the prior depends on σ
         c = _solve(white.H + np.diag((prior * sigma) ** 2), b)
         sigma = np.sqrt(np.sum((E - F @ c) ** 2) / E.size)
-    log_likelihood = -0.5 * (2 * E.size * np.log(sigma) + white.filter.log_determinant)
-    return NoiseLevel(white.noise, float(sigma), float(log_likelihood))
+    return float(sigma), c
 
 
 def _solve(H: np.ndarray, b: np.ndarray) -> np.ndarray:
@@ -94,6 +106,8 @@ def fit_noise(
     fine: bool = True,
     levels: Sequence[float] = FIRST_LEVELS,
     largest: float = np.inf,
+    outputs: tuple[float, ...] = (),
+    kinds: Sequence[Hashable] = (),
 ) -> NoiseLevel:
     """Returns the most likely noise of a residual; what it whitens of J is kept (see `whiten`).
 
@@ -104,10 +118,15 @@ def fit_noise(
         prior: 1/std of each parameter's prior, shape (p,).
         sampling_time: [s].
         near: the noise of a point nearby, to begin at, where one is known.
-        fine: whether ρ and τ are refined by a pattern search, or only chosen from the grid.
+        fine: whether shares are estimated and ρ and τ refined by a pattern search, or ρ is only
+            chosen from the grid. A model far from the data would else take an output that it fails
+            to predict for one of much noise, and stay far from it.
         levels: the grid of ρ/ρ₀ where no noise is known.
         largest: largest error of the inputs that is believed on the grid, in the inputs' unit.
+        outputs: shares of the sensors where no noise is known.
+        kinds: see `share_noise`.
     """
+    outputs = outputs if near is None else near.noise.outputs
     likeliest = _Likeliest()
     with one_blas_thread():
 
@@ -117,6 +136,12 @@ def fit_noise(
             if level.input_std <= largest or fine:
                 likeliest.update(level, white)
             return level
+
+        def shared(best: NoiseLevel) -> NoiseLevel:
+            if e.shape[1] == 1:
+                return best
+            white = likeliest.find(best) or whiten(plant, J, best.noise, sampling_time)
+            return _best([best, at(share_level(white, e, prior, sampling_time, kinds))])
 
         def believed(noise: Noise, factors: Sequence[float]) -> list[NoiseLevel]:
             each = [noise.scaled(f) for f in factors]
@@ -131,12 +156,14 @@ def fit_noise(
                 found += believed(near.noise, NEARBY_FACTORS[2:])
         if len(found) < 2:  # no noise is known nearby, or only that of ρ = 0 is believed
             time = START_CORRELATION_TIME
-            unit = Noise(compute_unit_ratio(plant, sampling_time, time), time)
+            unit = Noise(compute_unit_ratio(plant, sampling_time, time), time, outputs)
             silent = near is not None and not near.noise.ratio
             found = believed(unit, SILENT_LEVELS if silent and not fine else levels)
         best = _best(found)
         times = sampling_time / 3, MAX_CORRELATION_TIME  # below the first it is white
-        best = refine_noise(best, at, times) if fine and best.noise.ratio else best
+        if fine:
+            best = shared(best)
+            best = shared(refine_noise(best, at, times)) if best.noise.ratio else best
     likeliest.keep(best)
     return best
 
@@ -155,10 +182,24 @@ class _Likeliest:
             if self._level is None or level.log_likelihood > self._level.log_likelihood:
                 self._level, self._white = level, white
 
+    def find(self, best: NoiseLevel) -> Whitened | None:
+        """Returns them if they are those of the noise that was chosen."""
+        white = self._white
+        return white if white is not None and white.noise == best.noise else None
+
     def keep(self, best: NoiseLevel) -> None:
         """Keep them if they are those of the noise that was chosen."""
-        if self._white is not None and self._white.noise == best.noise:
-            keep(self._white)
+        if (white := self.find(best)) is not None:
+            keep(white)
+
+
+def share_level(
+    white: Whitened, e: np.ndarray, prior: np.ndarray, sampling_time: float,
+    kinds: Sequence[Hashable] = (),
+) -> Noise:  # fmt: skip
+    """Returns the noise of whitened sensitivities with its likeliest shares; see `fit_noise`."""
+    rest = e - white.J @ _adjust(white, e, prior)[1]
+    return share_noise(white.plant, white.noise, rest, sampling_time, kinds).noise
 
 
 def refine_noise(

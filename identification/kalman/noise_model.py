@@ -1,16 +1,21 @@
 """The noise model of sensors and unlogged input errors, its whitening filter and its smoother.
 
     δx_{k+1} = A_k δx_k + B_k w_k          w: unlogged error of each input
-    w_{k+1}  = a w_k + √(1-a²) ρ ν_k        of std ρ σ, correlation time τ, a = exp(-T_s/τ)
-    e_k      = C δx_k + σ v_k               v, ν: white, of unit variance
+    w_{k+1}  = a w_k + √(1-a²) ρ g ν_k      of std ρ σ, correlation time τ, a = exp(-T_s/τ)
+    e_k      = C δx_k + σ s v_k             v, ν: white, of unit variance
+
+The shares s of the sensors and g of the inputs have the mean square 1, so that σ and ρ σ are the
+rms over all of them (`noise_shares` estimates them).
 
 The Kalman filter W of this model turns residuals into innovations, which are white where the model
 is right (Kailath 1968). With the same filter applied to residuals and sensitivities, F = W Φ and
 H = FᵀF, generalised least squares and likelihoods are as simple as with white noise. σ scales
-everything and is estimated last. The most likely w, given a whole log, is that of the smoother:
+everything and is estimated last. Innovations of every output come out of the filter with the std σ,
+so that whoever divides by σ needs no s. The most likely w, given a whole log, is that of the
+smoother:
 
-    u = Wᵀ W e,    e - u = C ẑ,    r_k = (A_k - A_k K_k C)ᵀ r_{k+1} + Cᵀ S_k⁻¹ ε_k
-    ŵ_{k+1} = a ŵ_k + q_k r_{k+1},    ŵ_0 = ρ² r_0      of r the part that belongs to w
+    u = Wᵀ W e,    e - s² u = C ẑ,    r_k = (A_k - A_k K_k C)ᵀ r_{k+1} + Cᵀ S_k⁻¹ ε_k
+    ŵ_{k+1} = a ŵ_k + q_k r_{k+1},    ŵ_0 = (ρ g)² r_0      of r the part that belongs to w
 
 z = (x, w) (Durbin and Koopman 2012, section 4.6). Nothing but vectors is propagated: the
 covariances of the filter and of the smoother are not needed.
@@ -19,7 +24,7 @@ covariances of the filter and of the smoother are not needed.
 from __future__ import annotations
 
 from collections import deque
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 
 import numpy as np
@@ -33,23 +38,35 @@ _kept: deque[Whitened] = deque(maxlen=KEPT_POINTS)
 
 @dataclass(frozen=True)
 class Noise:
-    """The two numbers of the noise model beside σ.
+    """The numbers of the noise model beside σ.
 
     Attributes:
         ratio: ρ, std of the inputs' error over σ [unit of the input per unit of the output].
         time: τ, correlation time of the inputs' error [s].
+        outputs: s, std of the noise of each sensor over σ; none where all are alike.
+        inputs: g, std of the error of each input over ρ σ; none where all are alike.
     """
 
     ratio: float
     time: float
+    outputs: tuple[float, ...] = ()
+    inputs: tuple[float, ...] = ()
+
+    def of_outputs(self, ny: int) -> np.ndarray:
+        """Returns s, shape (ny,)."""
+        return np.array(self.outputs or (1.0,) * ny)
+
+    def of_inputs(self, nu: int) -> np.ndarray:
+        """Returns ρ g, std of the error of each input over σ, shape (nu,)."""
+        return self.ratio * np.array(self.inputs or (1.0,) * nu)
 
     def scaled(self, factor: float) -> Noise:
         """Returns the same noise with ρ multiplied by a factor."""
-        return Noise(self.ratio * factor, self.time)
+        return replace(self, ratio=self.ratio * factor)
 
     def lasting(self, time: float) -> Noise:
         """Returns a noise of another τ [s] and the same ρ²τ, to which a slow plant responds."""
-        return Noise(self.ratio * (self.time / time) ** 0.5, time)
+        return replace(self, ratio=self.ratio * (self.time / time) ** 0.5, time=time)
 
 
 @dataclass(frozen=True)
@@ -57,8 +74,10 @@ class Whitener:
     """A whitening filter; residuals and sensitivities pass the same one.
 
     Attributes:
-        A: transitions of the state z = (x, w) of plant and input error, shape (N-1, nz, nz).
+        A: transitions of the state z = (x, w) of plant and input error, shape (N-1, nz, nz); empty
+            where the inputs have no error.
         C: outputs from that state, shape (ny, nz).
+        s: std of the noise of each sensor over σ, shape (ny,).
         K: Kalman gains, shape (N, nz, ny).
         L: inverted Cholesky factors of the innovations' covariances over σ², shape (N, ny, ny).
         log_determinant: Σ log det of the covariances over σ².
@@ -66,6 +85,7 @@ class Whitener:
 
     A: np.ndarray
     C: np.ndarray
+    s: np.ndarray
     K: np.ndarray
     L: np.ndarray
     log_determinant: float
@@ -73,23 +93,28 @@ class Whitener:
     def __call__(self, e: np.ndarray) -> np.ndarray:
         """Returns innovations of e, shape (n, ny) or (n, ny, p), n <= N samples, of std σ each."""
         if not self.A.size:
-            return np.array(e)
+            return np.asarray(e / self.s.reshape(-1, *(1,) * (e.ndim - 2)))
         columns = e.reshape(*e.shape[:2], -1)
         return filter_innovations(self.A, self.C, self.K, self.L, columns).reshape(e.shape)
 
     def transposed(self, E: np.ndarray) -> np.ndarray:
         """Returns x with x · e = E · (innovations of e) for any residual e; shape (n, ny) both."""
         if not self.A.size:
-            return np.array(E)
+            return np.asarray(E / self.s)
         return transpose_filter(self.A, self.C, self.K, self.L, E)[0]
 
 
 def build_whitener(plant: LinearPlant, noise: Noise, sampling_time: float) -> Whitener:
     """Returns the whitening filter of a noise; its first state counts as known."""
+    s = noise.of_outputs(len(plant.C))
+    samples = len(plant.A) + 1
+    log_determinant = 2 * samples * float(np.log(s).sum())
     if noise.ratio == 0:
-        return Whitener(np.empty((0, 0, 0)), plant.C, np.empty(0), np.empty(0), 0.0)
+        nothing = np.empty(0)
+        return Whitener(np.empty((0, 0, 0)), plant.C, s, nothing, nothing, log_determinant)
     A, C, P, share = augment(plant, noise, sampling_time)
-    return Whitener(A, C, *filter_gains(A, C, P, share))
+    K, L, of_scaled = filter_gains(A, C / s[:, None], P, share)
+    return Whitener(A, C, s, K / s, L / s, of_scaled + log_determinant)
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,16 +172,16 @@ def smooth(
     n, nu = len(e), plant.B.shape[2]
     if noise.ratio == 0:
         return np.zeros((n, nu)), np.zeros_like(e)
-    A, C, P, share = augment(plant, noise, sampling_time)
-    K, L, _ = filter_gains(A, C, P, share)
-    E = filter_innovations(A, C, K, L, e[..., None])[..., 0]
-    u, r = transpose_filter(A, C, K, L, E)
-    fresh = noise.ratio**2 * np.concatenate([[1.0], share])[:, None] * r[:, -nu:]
+    filter_ = build_whitener(plant, noise, sampling_time)
+    A, C, s = filter_.A, filter_.C, filter_.s
+    u, r = transpose_filter(A, C, filter_.K, filter_.L, filter_(e))
+    a = A[:, -1, -1]
+    fresh = noise.of_inputs(nu) ** 2 * np.concatenate([[1.0], 1 - a**2])[:, None] * r[:, -nu:]
     w = np.empty((n, nu))
     w[0] = now = fresh[0]
-    for k, a in enumerate(A[:, -1, -1]):
-        w[k + 1] = now = a * now + fresh[k + 1]
-    return w, e - u
+    for k in range(n - 1):
+        w[k + 1] = now = a[k] * now + fresh[k + 1]
+    return w, e - s**2 * u
 
 
 def augment(
@@ -173,7 +198,7 @@ def augment(
     A, begins = _transitions(plant, a)
     C = np.hstack([plant.C, np.zeros((len(plant.C), nu))])
     P = np.zeros((nx + nu, nx + nu))
-    P[nx:, nx:] = noise.ratio**2 * np.eye(nu)
+    P[nx:, nx:] = np.diag(noise.of_inputs(nu) ** 2)
     return A, C, P, np.where(begins, 1.0, 1 - a**2)
 
 

@@ -21,8 +21,9 @@ from scipy.optimize import lsq_linear
 
 from identification.errors import DivergenceError, InputError
 from identification.estimation.levenberg_marquardt import KEPT_GAIN, SLOPE_ERROR, Cost, Criterion
+from identification.estimation.metrics import output_units
 from identification.estimation.priors import Priors, estimate_scatter
-from identification.kalman.noise_fit import NoiseLevel, fit_noise
+from identification.kalman.noise_fit import NoiseLevel, evaluate_noise, fit_noise, share_level
 from identification.kalman.noise_model import Whitener, keep, whiten
 from identification.kalman.point import Point, evaluate_point, is_costly, shift_point
 from identification.kalman.trajectory import Run
@@ -208,4 +209,20 @@ def estimate_noise(
 ) -> NoiseLevel:
     """Returns the most likely noise of a point's residual; see `fit_noise`."""
     linear, e, J, Ts = point.linear, point.e, point.J, point.log.sampling_time
-    return fit_noise(linear, e, J, priors.weight, Ts, near, fine, largest=largest)
+    kinds = [*output_units(point.log).values()] if fine else ()
+    return fit_noise(linear, e, J, priors.weight, Ts, near, fine, largest=largest, kinds=kinds)
+
+
+def share_out(point: Point, priors: Priors, level: NoiseLevel) -> NoiseLevel:
+    """Returns the level of a point's residual with its likeliest shares; see `noise_shares`."""
+    e, Ts = point.e, point.log.sampling_time
+    if e.shape[1] == 1:
+        return level
+    known = whiten(point.linear, point.J, level.noise, Ts)
+    noise = share_level(known, e, priors.weight, Ts, [*output_units(point.log).values()])
+    white = whiten(point.linear, point.J, noise, Ts)
+    shared = evaluate_noise(white, e, priors.weight)
+    if shared.log_likelihood <= level.log_likelihood:
+        return level
+    keep(white)
+    return shared

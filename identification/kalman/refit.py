@@ -22,7 +22,12 @@ from identification.estimation.residuals import innovation_tests
 from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.options import KalmanOptions
 from identification.kalman.point import Point, evaluate_point
-from identification.kalman.problem import Problem, estimate_noise, linearise_criterion
+from identification.kalman.problem import (
+    Problem,
+    estimate_noise,
+    linearise_criterion,
+    share_out,
+)
 from identification.model.predictor import Plant
 from identification.progress import Progress, counted
 
@@ -168,9 +173,10 @@ def descend(
 
     First the model approaches the data: a step counts as progress when likelihood or free run
     improve, under a noise that is chosen from a grid and bounded by `options.allowed_input_error`.
-    Then the noise is refined without that bound, and only the likelihood counts. This second part
-    is left out where the refined noise exceeds the bound and its innovations are not white; it ends
-    where a point, after the best small change of its parameters, stays below `least`.
+    Then the noise is refined without that bound and shared out among the sensors, and only the
+    likelihood counts. This second part is left out where the refined noise exceeds the bound and
+    its innovations are not white; it ends where a point, after the best small change of its
+    parameters, stays below `least`.
 
     Returns:
         Whether the search ended before it had used all steps.
@@ -213,8 +219,9 @@ def descend(
                 best = point, level
             most, nearest, idle = max(likely, most), min(off, nearest), 0 if better else idle + 1
         point, level = best
-    if point is not last:
-        yield point, level
+    shared = share_out(point, priors, level)  # what the last steps explain is no noise
+    if point is not last or shared is not level:
+        yield point, shared
     return steps > 0
 
 

@@ -38,6 +38,7 @@ def discovery_to_json(found: Discovery) -> dict[str, Any]:
         "gap": {
             **plain_fields(
                 found, "noise_rms", "disturbance_rms", noise_rms_by_unit="noise_by_unit",
+                noise_rms_by_output="noise_by_output",
                 disturbance_rms_by_unit="disturbance_by_unit",
             ),
             "before": plain_fields(found.before, *GAP),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import inf, isfinite
+from math import hypot, inf, isfinite
 
 from identification.discovery.findings.finding import FindingKind
 from identification.discovery.result import Discovery
@@ -21,6 +21,7 @@ from identification.report.untold_words import bound_sentences
 from identification.shown import verdict_of
 
 NO_ERROR = 1e-3  # of the inputs' rms: less is not told from none
+NOISIER = 1.5  # times the rms noise of the other outputs of its unit: more is told
 
 
 @verdict_of.register
@@ -28,7 +29,8 @@ def discovery_verdict(found: Discovery) -> list[str]:
     """Returns sentences: the verdict first, then what supports it."""
     bounds = bound_sentences(found.final.plant.parameters, found.at_bound)
     differ = difference_sentences(found)
-    return [*_verdict(found), *differ, *bounds, *describe_scale(found.outputs, found.scale)]
+    scale = describe_scale(found.outputs, found.scale)
+    return [*_verdict(found), *_noisier(found), *differ, *bounds, *scale]
 
 
 def _verdict(found: Discovery) -> list[str]:
@@ -43,6 +45,25 @@ def _verdict(found: Discovery) -> list[str]:
     elif found.hidden:
         said.append(f"Nothing else is missing that this log shows.{hiding(found.hidden)}")
     return said
+
+
+def _noisier(found: Discovery) -> list[str]:
+    """Returns a sentence on each output that is noisier than the others of its unit."""
+    out = []
+    for name, noise in found.noise_by_output.items():
+        unit = found.outputs[name]
+        others = [
+            s for other, s in found.noise_by_output.items()
+            if other != name and found.outputs[other] == unit
+        ]  # fmt: skip
+        rms = hypot(*others) / len(others) ** 0.5 if others else inf
+        if noise > NOISIER * rms > 0:
+            size = quantity(noise, unit=unit)
+            out.append(
+                f"The noise of {name} is {size}, {noise / rms:.2g} times that of the other outputs"
+                " of its unit; this is told as noise, and no effect is needed for it."
+            )
+    return out
 
 
 def _findings(found: Discovery) -> list[str]:

@@ -90,10 +90,6 @@ def _spectral_line(e: evidence.SpectralLine) -> str:
     )
 
 
-def _noisy_output(e: evidence.NoisyOutput) -> str:
-    return f"the output {e.output} is noisier than the others (chance {probability(e.p_value)})"
-
-
 def _correlated_innovations(e: evidence.CorrelatedInnovations) -> str:
     return (
         f"the innovations are not white: {100 * e.share:.0f} % of their power follows from the"
@@ -205,7 +201,6 @@ WORDS: dict[FindingKind, Callable[[Any], str]] = {
     FindingKind.MISSING_FORCE: _missing_force,
     FindingKind.INPUT_HOLD: _input_hold,
     FindingKind.SPECTRAL_LINE: _spectral_line,
-    FindingKind.NOISY_OUTPUT: _noisy_output,
     FindingKind.CORRELATED_INNOVATIONS: _correlated_innovations,
     FindingKind.PARAMETERS_AT_LIMIT: _parameters_at_limit,
     FindingKind.LARGE_INPUT_ERROR: _large_input_error,

@@ -52,14 +52,16 @@ def response(plant):
 def coloured(samples, nu, noise, sampling_time=STEP):
     """Covariance of the inputs' error over σ², shape (N nu, N nu)."""
     lag = np.abs(np.subtract.outer(np.arange(samples), np.arange(samples)))
-    return noise.ratio**2 * np.kron(np.exp(-lag * sampling_time / noise.time), np.eye(nu))
+    each = np.diag(noise.of_inputs(nu) ** 2)
+    return np.kron(np.exp(-lag * sampling_time / noise.time), each)
 
 
 def covariance(plant, noise):
     """Of the stacked residual over σ², the slow and obvious way."""
     T = response(plant)
     n, nu = len(plant.B) + 1, plant.B.shape[2]
-    return np.eye(len(T)) + T @ coloured(n, nu, noise) @ T.T
+    sensors = np.tile(noise.of_outputs(len(plant.C)) ** 2, n)
+    return np.diag(sensors) + T @ coloured(n, nu, noise) @ T.T
 
 
 def effect(sign=0, m=1, largest=10.0):

@@ -15,7 +15,6 @@ EVIDENCE_OF = {
     ),
     FindingKind.INPUT_HOLD: evidence.InputHold("foh", "A", 2e-3, 0.05),
     FindingKind.SPECTRAL_LINE: evidence.SpectralLine("angle_2", 2.3, 3e-9),
-    FindingKind.NOISY_OUTPUT: evidence.NoisyOutput("angle_7", 2e-6),
     FindingKind.CORRELATED_INNOVATIONS: evidence.CorrelatedInnovations(0.26, 1e-20),
     FindingKind.PARAMETERS_AT_LIMIT: evidence.ParametersAtLimit(("b_v", "J")),
     FindingKind.LARGE_INPUT_ERROR: evidence.LargeInputError("A", 0.09, 0.35, 0.12),

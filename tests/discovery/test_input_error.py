@@ -28,6 +28,7 @@ from identification.innovations.shapes import is_structured
 from identification.kalman.noise_model import Noise, build_whitener
 from identification.model.plant import ModelPlant
 from identification.model.predictor import Predictor
+from identification.report.discovery_report import discovery_text
 
 N = 1000
 
@@ -47,7 +48,7 @@ CARTS = """<mujoco>
 SPRING = Effect("spring", "-k x", (Size("k", "N/m", 30.0, 1e-2, 1),), places={"joint": ""})
 
 
-def carts(crosstalk, seed):
+def carts(crosstalk, seed, sensors=(SENSOR, SENSOR)):
     """Two carts, the second of which feels a share of the force on the first, and their log."""
     records = tuple(
         Parameter(name=f"{n}_{w}", value=v, unit="", where=f"{kind}/{w}.{n}",
@@ -67,7 +68,7 @@ def carts(crosstalk, seed):
     y = Predictor(plant, Log(time=time, inputs=u + error, outputs=0 * u, **names), ()).predict(
         np.empty((1, 0))
     )[0]
-    y += SENSOR * np.random.default_rng(seed).standard_normal(y.shape)
+    y += sensors * np.random.default_rng(seed).standard_normal(y.shape)
     log = Log(
         time=time,
         inputs=u,
@@ -144,6 +145,15 @@ def test_crosstalk_is_an_unknown_effect_and_no_noise():
     quiet = discover(*carts(0.0, 2), (SPRING,))
     assert quiet.verdict == "nothing missing"
     assert quiet.disturbance_rms > 0
+
+
+def test_a_noisy_sensor_is_told_with_its_noise_and_no_effect_is_missing():
+    sensors = SENSOR * np.array([1.0, 2.4])
+    answer = discover(*carts(0.0, 2, sensors), (SPRING,))
+    assert answer.verdict == "nothing missing"
+    # log σ of 500 samples has the std 0.03, of which errors of the inputs take a part.
+    assert [*answer.noise_by_output.values()] == pytest.approx(sensors, rel=0.12)
+    assert "The noise of y is 2." in discovery_text(answer)
 
 
 def moved_along(robot, samples, law, seed=2):

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 from discovery_cases import STEP, linear_plant, point_of
-from scipy.stats import kstest
 
 from identification.estimation.priors import MIN_STD_SHARE, Priors
 from identification.estimation.residuals import innovation_tests
@@ -21,7 +20,6 @@ def white(seed):
 
 def test_chances_are_uniform_under_white_innovations():
     found = [innovation_tests(white(seed), H) for seed in range(300)]
-    assert kstest([w.p_louder for w in found], "uniform").pvalue > 0.01
     lines, correlation = (
         np.array([getattr(w, name) for w in found]) for name in ("p_line", "p_correlation")
     )
@@ -42,14 +40,6 @@ def test_a_sine_is_found_at_its_frequency_and_channel():
     assert w.p_line < 1e-6
     assert w.channel == channel
     assert w.frequency == pytest.approx(frequency, abs=1 / (N * H))
-
-
-def test_a_loud_channel_is_found():
-    E = white(2)
-    E[:, 5] *= 1.4
-    w = innovation_tests(E, H)
-    assert w.p_louder < 1e-6
-    assert w.loudest == 5
 
 
 def test_colour_is_found():

@@ -24,7 +24,6 @@ SAYS = {
     FindingKind.MISSING_FORCE: "0.0049 N and 0.00031 N m rms on platform would explain 97 %",
     FindingKind.INPUT_HOLD: 'err by only 2 mA rms and not by 50 mA (write hold = "foh"',
     FindingKind.SPECTRAL_LINE: "of angle_2 have a line at 2.30 Hz that no candidate explains (ch",
-    FindingKind.NOISY_OUTPUT: "the output angle_7 is noisier than the others (chance 2e-06)",
     FindingKind.CORRELATED_INNOVATIONS: "26 % of their power follows from the samples before",
     FindingKind.PARAMETERS_AT_LIMIT: "the parameters b_v and J end at the limit of what",
     FindingKind.LARGE_INPUT_ERROR: "err by 90 mA rms beside what the log says, 35 % of their own",

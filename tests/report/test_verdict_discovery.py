@@ -47,6 +47,16 @@ def test_input_errors_that_cannot_be_believed_are_no_noise(verdict, input_error,
     assert disturbed.floor_rms == pytest.approx(hypot(NOISE, 0.05) if counts else NOISE)
 
 
+def test_a_sensor_is_called_noisy_beside_those_of_its_unit_only() -> None:
+    names = [*found().outputs]
+    alike = dict.fromkeys(names, NOISE)
+    assert len(discovery_verdict(replace(found(), noise_by_output=alike))) == 3
+    loud = discovery_verdict(replace(found(), noise_by_output={**alike, names[1]: 2.4 * NOISE}))
+    assert len(loud) == 4
+    assert loud[-1].startswith(f"The noise of {names[1]} is ")
+    assert "2.4 times that of the other outputs of its unit" in loud[-1]
+
+
 def test_look_alikes_are_a_set() -> None:
     first = discovery_verdict(found(one_of=True))[0]
     assert first.startswith("Missing from the model is one of these, which the data do not surely")

@@ -108,19 +108,6 @@ class SpectralLine:
 
 
 @dataclass(frozen=True)
-class NoisyOutput:
-    """An output whose innovations have a larger variance than the others'.
-
-    Attributes:
-        output: its name.
-        p_value: of the test that all variances are the same.
-    """
-
-    output: str
-    p_value: float
-
-
-@dataclass(frozen=True)
 class CorrelatedInnovations:
     """Innovations that are not white.
 

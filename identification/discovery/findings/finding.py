@@ -21,7 +21,6 @@ class FindingKind(StrEnum):
     MISSING_FORCE = "missing force"
     INPUT_HOLD = "input hold"
     SPECTRAL_LINE = "spectral line"
-    NOISY_OUTPUT = "noisy output"
     CORRELATED_INNOVATIONS = "correlated innovations"
     PARAMETERS_AT_LIMIT = "parameters at limit"
     LARGE_INPUT_ERROR = "large input error"
@@ -43,7 +42,6 @@ FindingEvidence = (
     | evidence.ForceEvidence
     | evidence.InputHold
     | evidence.SpectralLine
-    | evidence.NoisyOutput
     | evidence.CorrelatedInnovations
     | evidence.ParametersAtLimit
     | evidence.LargeInputError
@@ -64,7 +62,6 @@ EVIDENCE: dict[FindingKind, type[FindingEvidence]] = {
     FindingKind.MISSING_FORCE: evidence.ForceEvidence,
     FindingKind.INPUT_HOLD: evidence.InputHold,
     FindingKind.SPECTRAL_LINE: evidence.SpectralLine,
-    FindingKind.NOISY_OUTPUT: evidence.NoisyOutput,
     FindingKind.CORRELATED_INNOVATIONS: evidence.CorrelatedInnovations,
     FindingKind.PARAMETERS_AT_LIMIT: evidence.ParametersAtLimit,
     FindingKind.LARGE_INPUT_ERROR: evidence.LargeInputError,

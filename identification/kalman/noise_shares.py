@@ -1,0 +1,133 @@
+"""How the noise is shared out: σ s_i of each sensor, and ρ σ g_j of each input.
+
+    Ω = Σ_i σ² s_i² I_i + Σ_j (ρ σ g_j)² T_j        covariance of the residual e of a free run
+    x = Ω⁻¹ e,    q_i = xᵀ I_i x,    t_i = tr(Ω⁻¹ I_i)        of an input T_j in place of I_i
+    s_i² ← s_i² (q_i/t_i)^½        and likewise (ρ g_j)²
+
+I_i picks the samples of sensor i, and T_j is what errors of input j, of one variance, do to the
+outputs. Each such step raises the likelihood, as it minimises a bound that touches it (Zhou, Hu,
+Zhou and Lange 2019, "MM algorithms for variance components models"; at its fixed point the
+derivatives 2 ∂log L/∂σ_i² = q_i - t_i are zero). The power 1 in place of ½ has the same fixed point
+and comes there in fewer steps; it is taken as long as the likelihood rises with it.
+
+A smoother gives all q and t in one pass back over the log, without a matrix of the log's length.
+A sensor that rests has no residual. A least share keeps it from being taken for one without noise.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from identification.kalman.linear import LinearPlant
+from identification.kalman.noise_model import Noise, build_whitener
+from identification.kalman.recursion import information, transpose_filter
+
+POWERS = (1.0, 0.5)  # of q/t: the quick one, and the one that raises the likelihood always
+MAX_STEPS = 40
+END_RISE = 0.02  # of a log likelihood in one step: about as much again is still to come
+# Of the rms noise of outputs of the same unit. One of a count of an encoder that stands still is
+# far less, and the residual of such an output is an error of the model and not of the encoder.
+LEAST_SHARE = 0.05
+
+
+@dataclass(frozen=True)
+class Shared:
+    """A noise and what the likelihood of a fixed residual says of it.
+
+    Attributes:
+        noise: the noise.
+        log_likelihood: with the likeliest σ, up to a constant that depends on the log only.
+        sensors: q_i/t_i of each sensor, shape (ny,).
+        inputs: q_j/t_j of each input, shape (nu,); empty where they have no error.
+        input: the same of all inputs together, 1 where they have no error.
+    """
+
+    noise: Noise
+    log_likelihood: float
+    sensors: np.ndarray
+    inputs: np.ndarray
+    input: float
+
+
+def share_noise(
+    plant: LinearPlant,
+    noise: Noise,
+    e: np.ndarray,
+    sampling_time: float,
+    kinds: Sequence[Hashable] = (),
+    each_input: bool = False,
+) -> Shared:
+    """Returns the likeliest shares of a noise, τ held.
+
+    Args:
+        plant: the linearised plant.
+        noise: where the steps begin.
+        e: residual, shape (N, ny).
+        sampling_time: [s].
+        kinds: of each output, such as its unit; only those of one kind compare. All do without any.
+        each_input: whether each input has a share of its own, or all have that of `noise`.
+    """
+    kinds = tuple(kinds) or (None,) * e.shape[1]
+    best = judge_shares(plant, noise, e, sampling_time)
+    for _ in range(MAX_STEPS):
+        for power in POWERS:
+            moved = _moved(best, power, kinds, each_input)
+            new = judge_shares(plant, moved, e, sampling_time)
+            rise = new.log_likelihood - best.log_likelihood
+            if rise > 0:
+                best = new
+                break
+        if rise < END_RISE:
+            break
+    return best
+
+
+def judge_shares(
+    plant: LinearPlant, noise: Noise, e: np.ndarray, sampling_time: float
+) -> Shared:  # fmt: skip
+    """Returns the likelihood of a residual (N, ny) under a noise, and q/t of each of its parts."""
+    nu = plant.B.shape[2]
+    filter_ = build_whitener(plant, noise, sampling_time)
+    E = filter_(e)
+    squares = float(np.mean(E**2))  # σ²
+    log_likelihood = -0.5 * (E.size * np.log(squares) + filter_.log_determinant)
+    if not filter_.A.size:
+        sensors = np.mean(E**2, axis=0) / squares
+        return Shared(noise, float(log_likelihood), sensors, np.empty(0), 1.0)
+    system = filter_.A, filter_.C, filter_.K, filter_.L
+    x, r = transpose_filter(*system, E)
+    V, N = information(*system)
+    fresh = np.concatenate([[1.0], 1 - filter_.A[:, -1, -1] ** 2])  # of w in each sample
+    q, t = (fresh @ part[:, -nu:] for part in (r**2 / squares, N))
+    of_inputs = noise.of_inputs(nu) ** 2
+    return Shared(
+        noise=noise,
+        log_likelihood=float(log_likelihood),
+        sensors=np.sum(x**2, axis=0) / squares / V.sum(axis=0),
+        inputs=q / t,
+        input=float(of_inputs @ q / (of_inputs @ t)),
+    )
+
+
+def _moved(
+    now: Shared, power: float, kinds: Sequence[Hashable], each_input: bool
+) -> Noise:  # fmt: skip
+    """Returns the noise after a step, its shares of the mean square 1 again."""
+    noise, ny, nu = now.noise, len(now.sensors), len(now.inputs)
+    variances = noise.of_outputs(ny) ** 2 * now.sensors**power
+    for kind in dict.fromkeys(kinds):
+        mine = np.array([k == kind for k in kinds])
+        least = LEAST_SHARE**2 * variances[mine].mean()
+        variances[mine] = np.maximum(variances[mine], least)
+    scale = variances.mean()
+    outputs = tuple(np.sqrt(variances / scale).tolist()) if ny > 1 else ()
+    of_inputs = noise.of_inputs(nu) ** 2
+    of_inputs = of_inputs * (now.inputs if each_input else now.input) ** power / scale
+    if not of_inputs.any():
+        return replace(noise, outputs=outputs)
+    ratio = float(np.sqrt(of_inputs.mean()))
+    inputs = tuple((np.sqrt(of_inputs) / ratio).tolist()) if each_input else noise.inputs
+    return replace(noise, ratio=ratio, outputs=outputs, inputs=inputs)
