@@ -264,6 +264,8 @@ class NamedEffect(OfCandidate):
             beside the named effects.
         same_as: the effect that is the same force by another name, so that no record tells which
             it is (`identification.prediction.trial`); None where there is none.
+        smooth_share: of what it and smooth forces of its joint could explain, the share that it
+            explains (`identification.discovery.smooth_force`); None where that is not known.
     """
 
     candidate: Candidate
@@ -279,6 +281,7 @@ class NamedEffect(OfCandidate):
     advice: str = ""
     outside: Outside | None = None
     same_as: Effect | None = None
+    smooth_share: float | None = None
 
     @property
     def odds(self) -> float:

@@ -66,6 +66,8 @@ class Discovery(Shown):
         unexplained: whether something is left that no named effect explains.
         share: of the mean square above the noise on unseen data, how much the named effects take
             away; None where nothing is above it.
+        smooth_share: of what they and smooth forces at all joints could explain of the fitted
+            windows, the share that they explain; None where that is not known.
         horizon: over which records were predicted [s]; None for a free run.
         unit: of errors and noise over all outputs; "" where these have several units, or none.
         scale: rms error of each output under the nominal model, shape (ny,), in its unit, by which
@@ -118,6 +120,7 @@ class Discovery(Shown):
     nearest: RejectedEffect | None = None
     unexplained: bool
     share: float | None
+    smooth_share: float | None = None
     horizon: float | None = None
     unit: str
     scale: np.ndarray | None = None

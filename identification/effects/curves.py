@@ -38,6 +38,8 @@ from identification.effects.joint_group import Group
 from identification.native.element import Function
 
 NODES = 8
+# How the names of curves end that depend on their own joint.
+OF_JOINT = ("_speed", "_load", "_position", "_time")
 
 
 def _bending() -> tuple[tuple[float, ...], ...]:

@@ -103,6 +103,29 @@ def _judged(score: WindowScore, scatter: Scatter, common: Common) -> WindowScore
     return replace(score, std=std, p_value=float(p_values(scatter, common)[0]))
 
 
+def condensed(
+    fit: WindowFit, candidates: Sequence[Candidate]
+) -> tuple[np.ndarray, np.ndarray, float]:
+    """Returns what blocks of windows tell of many sizes at once, whose effects have no states.
+
+    Args:
+        fit: the model without them.
+        candidates: which, with k sizes in all.
+
+    Returns:
+        S⊥ᵀS⊥ and S⊥ᵀr⊥ of each block, shapes (B, k, k) and (B, k), and ‖r⊥‖².
+
+    Raises:
+        DivergenceError: one of them cannot be simulated.
+    """
+    base = _Base(fit)
+    columns = np.hstack([np.vstack(base.columns(group)) for group in _groups(candidates)])
+    S = base.without_base(np.vstack([columns, np.zeros((len(fit.q), columns.shape[1]))]))
+    G = np.array([S[rows].T @ S[rows] for rows in base.blocks])
+    a = np.array([S[rows].T @ base.r[rows] for rows in base.blocks])
+    return G, a, float(base.r @ base.r)
+
+
 def find_imitated(fit: WindowFit, scores: Sequence[WindowScore]) -> set[tuple[str, str]]:
     """Returns effects, with their places, that free parameters imitate: the same by another name.
 
@@ -149,19 +172,19 @@ class _Base:
         self.free = np.linalg.qr(F[: len(F) - p] / self.scale)[0]
         below = fit.problem.prior.against(fit.q)[:, None]
         r = np.vstack([r.reshape(-1, 1) for _, r in each] + [below])
-        self.r = self._without_base(r)[:, 0]
+        self.r = self.without_base(r)[:, 0]
         # Rows of neighbouring windows, and those of the priors.
         windows = np.concatenate([np.full(W, m) for W, m in (r.shape for _, r in each)])
         some = np.array_split(windows, min(STD_BLOCKS, len(windows)))
         edges = np.cumsum([0, *(int(n.sum()) for n in some), len(below)])
         self.blocks = [slice(*pair) for pair in pairwise(edges.tolist())]
 
-    def _without_base(self, columns: np.ndarray) -> np.ndarray:
+    def without_base(self, columns: np.ndarray) -> np.ndarray:
         return np.asarray(columns - self.Q @ (self.Q.T @ columns))
 
     def scores(self, group: Sequence[Candidate]) -> list[tuple[WindowScore, Scatter]]:
         """Returns candidates with what they explain and its scatter, without chance and std."""
-        columns = self._columns(group)
+        columns = self.columns(group)
         ends = np.cumsum([len(c.sizes) for c in group])
         out = []
         for c, end in zip(group, ends, strict=True):
@@ -177,7 +200,7 @@ class _Base:
         Their steps are as small as those of the free parameters: where joints stick, a large one
         shows something else.
         """
-        columns, out, end = self._columns(group, IMITATION_STEP), [], 0
+        columns, out, end = self.columns(group, IMITATION_STEP), [], 0
         for c in group:
             each = [S[:, end : end + len(c.sizes)] for S in columns]
             S, end = block_diag(*each) if c.effect.own else np.vstack(each), end + len(c.sizes)
@@ -186,7 +209,7 @@ class _Base:
                 out.append(c)
         return out
 
-    def _columns(self, group: Sequence[Candidate], share: float = 1.0) -> list[np.ndarray]:
+    def columns(self, group: Sequence[Candidate], share: float = 1.0) -> list[np.ndarray]:
         """Returns -∂r/∂η of the sizes of candidates, without the states' part, (rows, k) a record.
 
         Args:
@@ -228,7 +251,7 @@ class _Base:
         return out
 
     def _score(self, candidate: Candidate, columns: np.ndarray) -> tuple[WindowScore, Scatter]:
-        S = self._without_base(columns)
+        S = self.without_base(columns)
         norm = np.linalg.norm(S, axis=0)
         back = np.where(norm > 0, 1 / np.where(norm > 0, norm, 1.0), 0.0)
         H = (S * back).T @ (S * back)

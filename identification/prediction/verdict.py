@@ -39,6 +39,7 @@ from identification.prediction.recovery import recover_over_horizon
 from identification.prediction.remaining import find_remaining, needed_input_error
 from identification.prediction.task import WindowSearch
 from identification.prediction.trial import Contender, evidences, find_twin
+from identification.prediction.yardstick import Yardstick, measure
 from identification.windows.records import Record
 from identification.windows.unseen import Prediction, Unseen, rise
 
@@ -64,7 +65,8 @@ def conclude(state: WindowSearch) -> Discovery:
     findings = find_remaining(state, rejected, shifts)
     limit = options.left_confidence if findings else options.max_confidence
     differ = [a for a in state.accepted if a.candidate.effect.is_of_records]
-    named = tuple(_named(state, a, limit) for a in state.accepted if a not in differ)
+    stick = attempt(None, partial(measure, model, task.effects))
+    named = tuple(_named(state, a, limit, stick) for a in state.accepted if a not in differ)
     nominal = _with_differences(state, differ)
     # Beside a model with effects that diverges there, the nominal one tells it.
     needed = attempt(None, partial(needed_input_error, model.fit, model.unseen.floor))
@@ -76,11 +78,13 @@ def conclude(state: WindowSearch) -> Discovery:
     floor = model.unseen.floor
     before, after = (float(np.mean(np.concatenate(m.unseen.at_horizon))) for m in (nominal, model))
     above = before - min(floor, after)
+    smooth = stick.share(nominal.fit.cost, model.fit.cost) if stick and named else None
     log = task.records[0].log
     scale, unit = error_unit(log, nominal.scale)
     return Discovery(
         records=task.records, options=options, horizon=task.horizon, verdict=verdict, named=named,
         rejected=rejected, share=float((before - after) / above) if above > 0 else 0.0,
+        smooth_share=smooth,
         unexplained=verdict != "nothing missing" and (bool(findings) or not named),
         noise_rms=scale * float(np.sqrt(floor)), unit=unit, scale=nominal.scale,
         input_error=needed, noise_by_unit=errors_by_unit(model.unseen.noise, nominal.scale, log),
@@ -163,13 +167,16 @@ def _repeats(records: Sequence[Record]) -> tuple[str, ...]:
     return tuple(repeats)
 
 
-def _named(state: WindowSearch, accepted: Contender, limit: float) -> NamedEffect:
+def _named(
+    state: WindowSearch, accepted: Contender, limit: float, stick: Yardstick | None
+) -> NamedEffect:
     """Returns an accepted effect at the values of the final model, with its rivals.
 
     Args:
         state: the finished state.
         accepted: the effect.
         limit: the upper limit of the confidence.
+        stick: what smooth forces would still explain; None where it is not known.
     """
     options, mine = state.task.options, accepted.candidate
     is_final = any(c.key == mine.key for c in state.model.candidates)
@@ -195,6 +202,7 @@ def _named(state: WindowSearch, accepted: Contender, limit: float) -> NamedEffec
         one_of=bool(max(of_rivals, default=0.0) > options.set_confidence),
         evidence=accepted.criterion, proof=_proof(state, accepted.prediction),
         same_as=next((e for e in state.task.effects if e.name == twin), None),
+        smooth_share=stick.share_of(mine, accepted.prediction.fall) if stick else None,
     )  # fmt: skip
 
 

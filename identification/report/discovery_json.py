@@ -21,7 +21,10 @@ from identification.windows.coarse import steps_of
 
 GAP = ("rms", "fit_percent", "rms_by_unit")
 PROOF = ("test", "t", "chance", "gain", "share", "fall", "falls", "records")
-NAMED = ("confidence", "compared", "one_of", "bic_gain", "evidence", "retuned", "outside")
+NAMED = (
+    "confidence", "compared", "one_of", "bic_gain", "evidence", "retuned", "outside",
+    "smooth_share",
+)  # fmt: skip
 REJECTED = ("name", "where", "confidence", "bic_gain", "evidence", "doubt", "outside")
 
 
@@ -34,7 +37,7 @@ def discovery_to_json(found: Discovery) -> dict[str, Any]:
         "rejected": [
             {**_rejected_to_json(r), **_called(r.candidate, plant)} for r in found.rejected
         ],
-        **plain_fields(found, "failed", "unexplained", "share"),
+        **plain_fields(found, "failed", "unexplained", "share", "smooth_share"),
         "gap": {
             **plain_fields(
                 found, "noise_rms", "disturbance_rms", noise_rms_by_unit="noise_by_unit",

@@ -214,4 +214,17 @@ def _proof(found: Discovery) -> str:
         nearly = found.share > 0.995 and found.times_noise(found.after) > 1
         closed = "more than 99" if nearly else f"{100 * found.share:z.0f}"
         said += f" That is {closed} % of the power that was above the noise."
-    return said
+    return f"{said}{_smooth(found)}"
+
+
+def _smooth(found: Discovery) -> str:
+    """Returns a sentence on what the named effects explain of what smooth forces could."""
+    if found.smooth_share is None:
+        return ""
+    is_one, share = len(found.named) == 1, found.smooth_share
+    who, whom = ("This effect explains", "it") if is_one else ("These effects explain", "they")
+    explained = "more than 99" if share > 0.99 else f"{100 * share:.0f}"
+    return (
+        f" {who} {explained} % of what {whom} and any smooth forces of rate, position, drive and"
+        " time at the joints could explain together."
+    )

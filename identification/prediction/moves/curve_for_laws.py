@@ -17,11 +17,11 @@ from identification.discovery.attempts import attempt
 from identification.prediction.contenders import count_numbers
 from identification.prediction.evidence import all_gains, count_windows, evidence
 from identification.prediction.extension import refitted
-from identification.prediction.moves.drop_drawn_laws import ON_JOINTS
 from identification.prediction.screening import places_of, score_all
 from identification.prediction.selection import refit_contenders
 from identification.prediction.task import Change, WindowSearch
 from identification.prediction.trial import Contender
+from identification.prediction.yardstick import ON_JOINTS
 from identification.progress import Progress
 
 

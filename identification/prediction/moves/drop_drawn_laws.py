@@ -20,9 +20,8 @@ from identification.prediction.model import WindowModel
 from identification.prediction.screening import places_of
 from identification.prediction.task import Change, WindowSearch
 from identification.prediction.trial import OWN_SHARE, Contender
+from identification.prediction.yardstick import ON_JOINTS
 from identification.progress import Progress
-
-ON_JOINTS = {"force", "friction"}  # hooks of what a curve, which is a force, may do as well
 
 
 def drop_drawn_laws(state: WindowSearch, progress: Progress) -> Change:
