@@ -52,6 +52,9 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
     "values_of_start": (
         HORIZON, "begins at the given values where fitted ones predict unseen records worse",
     ),
+    "finer_steps": (
+        HORIZON, "goes on with finer steps where those of the simulation may make an effect",
+    ),
     "drop_places": (
         HORIZON, "drops places at which an effect that has several does nothing after all",
     ),

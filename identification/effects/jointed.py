@@ -56,8 +56,8 @@ class JointPlant:
         axes: the joints that may have effects, in the order of `joints`.
         states: states of joints that some effects need.
         leaves_out: whether effects whose states it lacks are left out, and not refused.
-        steps: the steps of the user's model that one step of a simulation takes; states of joints
-            take the user's own steps.
+        steps: the steps of the user's model that one step of a simulation takes, or the share of
+            one; states of joints take no longer steps than the user's own.
         slope_steps: likewise in simulations for slopes, a multiple of `steps`.
     """
 
@@ -69,8 +69,8 @@ class JointPlant:
     axes: tuple[Axis, ...]
     states: tuple[JointState, ...] = ()
     leaves_out: bool = False
-    steps: int = 1
-    slope_steps: int = 1
+    steps: float = 1
+    slope_steps: float = 1
 
     def __post_init__(self) -> None:
         known = {p.name for p in self.bare.parameters}
@@ -100,10 +100,10 @@ class JointPlant:
     def model(self) -> mujoco.MjModel:
         """The compiled model at its nominal values."""
         numbers = self._bodies((), np.empty((1, 0)), [])
-        steps = 1 if self.states else self.steps
+        steps = self._taken(self.steps)
         if not numbers and steps == 1:
             return self.bare.model
-        model = copy.copy(self.bare.model)
+        model = self._stopping(copy.copy(self.bare.model), min(1, steps))
         model.opt.timestep *= steps
         for slot, values in numbers:
             write(model, slot, float(values[0]))
@@ -113,17 +113,22 @@ class JointPlant:
     @cached_property
     def smooth(self) -> mujoco.MjModel:
         """The model for slopes: its friction stops joints more gently, its steps may be longer."""
-        steps = 1 if self.states else max(self.steps, self.slope_steps)
+        steps = self._taken(max(self.steps, self.slope_steps))
         model = copy.copy(self.model)
         model.opt.timestep = steps * self.bare.model.opt.timestep
-        return self._stopping(model, max(GENTLE, steps))
+        return self._stopping(model, max(GENTLE, steps) / min(1, self.steps))
+
+    def _taken(self, steps: float) -> float:
+        """Returns the steps of the user's model that are taken at once, where states allow it."""
+        return min(1, steps) if self.states else steps
 
     def with_step(self, factor: float) -> JointPlant:
         """Returns the same plant with another step of the model; joints stop in as many steps.
 
         Args:
-            factor: new step over the old one.
+            factor: new step over the old one, the model's or a finer one that is taken.
         """
+        factor *= min(1, self.steps)
         model = copy.copy(self.bare.model)
         model.opt.timestep *= factor
         bare = replace(self.bare, model=self._stopping(model, factor))
@@ -131,6 +136,8 @@ class JointPlant:
 
     def _stopping(self, model: mujoco.MjModel, factor: float) -> mujoco.MjModel:
         """Returns the model itself, changed: its joints take so many times as long to stop."""
+        if factor == 1:
+            return model
         column = int(model.nuser_jnt) - self.layout.entries + STOP
         for joint in self.joints:
             model.jnt_user[int(model.joint(joint).id), column] *= factor

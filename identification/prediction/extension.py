@@ -15,6 +15,7 @@ from identification.discovery.nominal_model import NominalModel
 from identification.effects.effect import Candidate
 from identification.effects.jointed import JointPlant
 from identification.model.predictor import Plant
+from identification.model.protocol import FINER
 from identification.prediction.first_fit import REFIT_TOLERANCE, Begun, shapes_of
 from identification.prediction.model import WindowModel, predict_fitted
 from identification.windows.fit import solve
@@ -76,11 +77,37 @@ def with_fitting_steps(
     Raises:
         DivergenceError: it cannot be simulated with other steps.
     """
+    if _steps(model.plant) <= 1:
+        return model
     fit = model.fit
     task = with_longer_steps(fit.problem, fit.q, fit.moves)
     if _steps(task.plant) >= _steps(model.plant):
         return model
     return _refitted(model, task, horizon, confirm)
+
+
+def with_finer_steps(
+    model: WindowModel, horizon: float, confirm: Sequence[Record]
+) -> WindowModel | None:
+    """Returns the model refitted with finer steps: the user's own, or else a quarter of these.
+
+    Args:
+        model: fitted.
+        horizon: [s].
+        confirm: records that no fit may see.
+
+    Returns:
+        None where its steps are as fine already, or cannot be changed.
+
+    Raises:
+        DivergenceError: it cannot be simulated with these steps.
+    """
+    problem, plant = model.fit.problem, model.plant
+    if not isinstance(plant, JointPlant) or plant.steps < 1:
+        return None
+    own = replace(plant, steps=1 if plant.steps > 1 else 1 / FINER, slope_steps=1)
+    parts = (replace(p, predictor=replace(p.predictor, plant=own)) for p in problem.parts)
+    return _refitted(model, replace(problem, parts=tuple(parts)), horizon, confirm)
 
 
 def at_own_steps(model: WindowModel, horizon: float, confirm: Sequence[Record]) -> WindowModel:
@@ -113,7 +140,7 @@ def _refitted(
     return replace(model, fit=found, unseen=seen)
 
 
-def _steps(plant: Plant) -> int:
+def _steps(plant: Plant) -> float:
     """Returns how many steps of the user's model are one step of a simulation."""
     return plant.steps if isinstance(plant, JointPlant) else 1
 

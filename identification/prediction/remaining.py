@@ -34,6 +34,7 @@ from identification.discovery.findings.records_evidence import (
 from identification.effects.named import phrase_there
 from identification.model.predictor import Plant
 from identification.prediction.clocks import told_shifts
+from identification.prediction.model import WindowModel
 from identification.prediction.task import WindowSearch
 from identification.windows.fit import WindowFit
 from identification.windows.shooting import Shooting, Tangent
@@ -65,6 +66,8 @@ def find_remaining(
     places: set[tuple[str, str]] = set()  # each is told once, as it did best
     for r in rejected if left else ():
         seen = r.proof
+        if r.doubt == "steps":  # they are told, and are nothing that is missing
+            continue
         if seen.is_everywhere and seen.fall > 0 and seen.t > state.task.options.min_proof_t:
             unproven = _unproven(r, state.model.plant)
             if (unproven.name, unproven.where) not in places:
@@ -80,12 +83,19 @@ def find_remaining(
 
 def _error_left(state: WindowSearch) -> RemainingError | None:
     """Returns the error above the sensors' noise; None where the noise alone explains it."""
-    options, ratio = state.task.options, noise_ratio(state)
-    names, ratios = state.task.records[0].log.output_names, output_ratios(state.model.unseen)
+    options, share = state.task.options, left_by_steps(state.model)
+    ratio, ratios = share * noise_ratio(state), share * output_ratios(state.model.unseen)
+    names = state.task.records[0].log.output_names
     worst = int(np.argmax(ratios))
     if len(names) > 1 and ratios[worst] > max(MAX_OUTPUT_RATIO, ratio):
         return RemainingError(float(ratios[worst]), names[worst])
     return RemainingError(ratio) if ratio > 1 + options.min_gap_share else None
+
+
+def left_by_steps(model: WindowModel) -> float:
+    """Returns the share of a model's rms error that finer steps would leave: 1 where all of it."""
+    error = model.finer.error
+    return min(1.0, error) if np.isfinite(error) else 1.0
 
 
 def output_ratios(unseen: Unseen) -> np.ndarray:

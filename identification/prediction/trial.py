@@ -37,7 +37,7 @@ from identification.windows.unseen import Prediction
 Doubt = (
     Literal[
         "numbers", "chance", "lengths", "record", "little", "size", "bound", "exchange", "curve",
-        "drawn", "differ",
+        "drawn", "differ", "steps",
     ]
     | Impossible
 )  # fmt: skip

@@ -36,7 +36,7 @@ from identification.prediction.extension import at_own_steps, refitted
 from identification.prediction.model import WindowModel
 from identification.prediction.record_errors import error_unit, errors_by_unit, record_errors
 from identification.prediction.recovery import recover_over_horizon
-from identification.prediction.remaining import find_remaining, needed_input_error
+from identification.prediction.remaining import find_remaining, left_by_steps, needed_input_error
 from identification.prediction.task import WindowSearch
 from identification.prediction.trial import Contender, evidences, find_twin
 from identification.prediction.yardstick import Yardstick, measure
@@ -286,8 +286,8 @@ def _errs(model: WindowModel, needed: float, options: DiscoveryOptions) -> bool:
 
 
 def _is_off(model: WindowModel, options: DiscoveryOptions) -> bool:
-    """Returns whether a model errs on unseen records by more than the sensors' noise."""
-    square = float(np.mean(np.concatenate(model.unseen.at_horizon)))
+    """Returns whether a model errs on unseen records by more than sensors' noise and steps make."""
+    square = float(np.mean(np.concatenate(model.unseen.at_horizon))) * left_by_steps(model) ** 2
     return square > model.unseen.floor * (1 + options.min_gap_share)
 
 

@@ -76,6 +76,7 @@ DOUBTS = {
     "curve": "it was found beside a curve of the data, which leaves what its nodes cannot draw",
     "differ": "it explains what was fitted and makes unseen records much worse, so that the records"
     " differ in something that it stands for",
+    "steps": "the steps of the simulation make half of what it explains, or more",
     "mass": "the body would lose half or more of the mass that the model's file says, which no"
     " error of a drawing does",
     "gain": "the gain would leave 0.5 to 1.5 times its value within a record",

@@ -106,7 +106,7 @@ def step_sentences(
 
     taken, own = steps or steps_of(model.plant)
     changed = _changed(model, words or {})
-    if taken <= own and not changed:
+    if taken == own and not changed:
         return []
     model_step, finer = quantity(own, unit="s"), own / FINER
     said = f"Simulations took steps of {model_step}, as the model says."
@@ -119,6 +119,12 @@ def step_sentences(
         )
         if is_last_own:
             said += " The last fit took the steps of the model."
+    if taken < own:
+        return [
+            f"Simulations took steps of {quantity(taken, unit='s')} where the model has"
+            f" {model_step}: those of the model made what an effect would explain, or moved its"
+            f' size. Write timestep="{taken:.6g}" into the <option> of the model.'
+        ]
     if model.finer is None or not model.finer.is_known:
         return [said]
     said += (

@@ -77,7 +77,7 @@ def with_longest_slope_steps(
     some = [np.unique(np.linspace(0, len(move) - 1, count).astype(int)) for move in d]
     few = [part.rows(at) for part, at in zip(parts, some, strict=True)]
 
-    def slopes(n: int) -> list[np.ndarray]:
+    def slopes(n: float) -> list[np.ndarray]:
         each = zip(_of(few, replace(plant, slope_steps=n)), q, d, some, strict=True)
         return [_columns(part, one, move[at]) for part, one, move, at in each]
 

@@ -272,7 +272,7 @@ def with_own_steps(problem_: Problem) -> Problem:
         problem_: of one plant.
     """
     plant = problem_.plant
-    if not isinstance(plant, JointPlant) or plant.steps == 1:
+    if not isinstance(plant, JointPlant) or plant.steps <= 1:
         return problem_
     own = replace(plant, steps=1)
     parts = (replace(p, predictor=replace(p.predictor, plant=own)) for p in problem_.parts)

@@ -1,6 +1,6 @@
 """Which candidates are refitted, and which comes first."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -16,6 +16,7 @@ from identification.effects.effect import Candidate, Effect, Shape, Size
 from identification.effects.joint_plant import candidates
 from identification.model.parameter import Parameter, ParameterSet
 from identification.model.predictor import Predictor
+from identification.prediction import verdict
 from identification.prediction.contenders import count_numbers, list_contenders, list_simpler
 from identification.prediction.evidence import compute_confidence, evidence
 from identification.prediction.scores import WindowScore
@@ -208,3 +209,26 @@ def test_a_twin_is_told_only_below_the_level(name: str, share: float) -> None:
     values = {f"{LEVEL}@hinge": LEVEL_THERE, candidate.sizes[0]: share * LEVEL_THERE}
     model = SimpleNamespace(plant=pendulum(), values=values, fit=SimpleNamespace(shared={}))
     assert find_twin(model, candidate) == (TWINS[name] if share < 1 else "")
+
+
+@pytest.mark.parametrize(("doubt", "gain"), [("mass", 1.0), ("chance", 1.0), ("mass", 0.1)])
+def test_what_physics_forbids_takes_its_share_of_the_odds_and_is_no_other_name(
+    monkeypatch, doubt, gain
+):
+    """Where it is likelier than a possible law, that is below even odds and no name."""
+    law = contender(effect("law"), 0.5)
+    rival = replace(contender(effect("rival"), gain), doubt=doubt)
+    monkeypatch.setattr(verdict, "find_twin", lambda model, mine: "")
+    monkeypatch.setattr(verdict, "_fitted", lambda model, c: (c, {}))
+    monkeypatch.setattr(verdict, "_proof", lambda state, seen: None)
+    monkeypatch.setattr(verdict, "_rival", lambda o, share: o.candidate.effect.name)
+    state = SimpleNamespace(
+        task=SimpleNamespace(options=OPTIONS, effects=()), model=SimpleNamespace(candidates=())
+    )
+    named = verdict._named(state, replace(law, alternatives=(rival,)), 0.95)
+    assert (named.confidence < 0.01) == (gain > 0.5)
+    is_possible = doubt == "chance"
+    assert named.rivals == (("rival",) if is_possible else ())
+    assert named.one_of == is_possible
+    expected = "named" if is_possible or gain < 0.5 else "unknown effect"
+    assert verdict.decide([named], (), False) == expected

@@ -78,6 +78,22 @@ def test_friction_beside_zeros_that_differ_is_named_and_the_zeros_are_told():
     assert not [f for f in answer.findings if f.kind == FindingKind.UNPROVEN_EFFECT]
 
 
+def test_what_explains_fitted_records_and_worsens_unseen_ones_says_that_records_differ():
+    zeros = (0.08, 0.08, -0.08, -0.08)
+    logs = [record(k, 400, {"encoder_offset.c@angle": c}, plant=pendulum())
+            for k, c in enumerate(zeros, 1)]  # fmt: skip
+    (zero,) = [e for e in candidates(pendulum(), FREE) if e.name == "encoder_offset"]
+    alike = replace(zero, of_records="")  # a zero that is the same in all records
+    answer = discover_records(nominal_model(), logs[:2], logs[2:], [alike])
+    assert answer.verdict == "unknown effect"
+    (tried,) = answer.rejected
+    assert tried.doubt == "differ"
+    assert tried.proof.disagrees == ("record 3", "record 4")
+    said = discovery_text(answer)
+    assert "the records differ in something that it stands for (worse: record 3, record 4)" in said
+    assert "may be luck" not in said
+
+
 @pytest.mark.parametrize("ahead", [0.9, 1.1])
 def test_a_difference_comes_before_a_law_only_where_the_evidence_is_very_strong(ahead):
     differs = in_each_record(replace(effect("zero"), of_records="its zero differs"))

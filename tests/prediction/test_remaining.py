@@ -23,21 +23,26 @@ DOUBTFUL = SimpleNamespace(
 SHIFT = ShiftedRecord(record="a", shift=7e-4, std=1e-4, fall=0.06, chance=1e-4)
 
 
-def kinds(monkeypatch, ratio, floor=4e-6, accepted=(), rejected=(DOUBTFUL,)):
-    """What is found where the rms on unseen windows is `ratio` times that of the noise."""
+def kinds(monkeypatch, ratio, floor=4e-6, accepted=(), rejected=(DOUBTFUL,), finer=np.nan):
+    """What is found where the rms on unseen windows is `ratio` times that of the noise.
+
+    Finer steps leave the share `finer` of it.
+    """
     monkeypatch.setattr(remaining, "different_records", lambda state: [])
     squares = ratio**2 * floor * np.array([0.5, 1.5])
     unseen = SimpleNamespace(
         at_horizon=(squares[:1], squares[1:]), floor=floor, noise=np.array([floor]),
         of_outputs=(squares[:1, None], squares[1:, None]),
     )  # fmt: skip
-    return [f.kind for f in remaining.find_remaining(state_of(unseen, accepted), rejected, [SHIFT])]
+    state = state_of(unseen, accepted, finer=finer)
+    return [f.kind for f in remaining.find_remaining(state, rejected, [SHIFT])]
 
 
-def state_of(unseen, accepted, outputs=("x",)):
-    log = SimpleNamespace(output_names=outputs)
+def state_of(unseen, accepted, outputs=("x",), finer=np.nan):
+    log, steps = SimpleNamespace(output_names=outputs), SimpleNamespace(error=finer)
     return SimpleNamespace(
-        worse_fit=None, accepted=accepted, model=SimpleNamespace(unseen=unseen, plant=None),
+        worse_fit=None, accepted=accepted,
+        model=SimpleNamespace(unseen=unseen, plant=None, finer=steps),
         task=SimpleNamespace(options=OPTIONS, records=2 * (SimpleNamespace(log=log),)),
     )  # fmt: skip
 
@@ -70,6 +75,15 @@ def test_above_the_noise_a_doubt_and_a_shift_are_told(monkeypatch):
     assert kinds(monkeypatch, LEAST + 0.01) == doubts
     left = kinds(monkeypatch, LEAST + 0.01, accepted=("an effect",))
     assert left == [doubts[0], FindingKind.REMAINING_ERROR, doubts[1]]
+
+
+def test_what_the_steps_of_the_simulation_make_is_nothing_that_is_left(monkeypatch):
+    doubts = [FindingKind.UNPROVEN_EFFECT, FindingKind.SHIFTED_RECORD]
+    assert kinds(monkeypatch, 1.2 * LEAST, finer=0.8) == []
+    assert kinds(monkeypatch, 1.2 * LEAST, finer=0.9) == doubts
+    assert kinds(monkeypatch, LEAST - 0.01, finer=1.5) == []  # they make no more than there is
+    made = SimpleNamespace(**{**vars(DOUBTFUL), "doubt": "steps"})
+    assert kinds(monkeypatch, 1.2 * LEAST, rejected=(made,)) == doubts[1:]
 
 
 BEFORE, AFTER = (SimpleNamespace(fit=SimpleNamespace(cost=cost)) for cost in (100.0, 50.0))

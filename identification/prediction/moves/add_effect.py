@@ -1,11 +1,14 @@
 """The effect that explains most is added, where unseen records prove it.
 
 It must also hold where the fitted and the unseen records exchange their roles
-(`identification.prediction.exchange`), and be simulated with steps that its own error allows.
+(`identification.prediction.exchange`), and be simulated with steps that its own error allows. Where
+the steps themselves may make it (`identification.prediction.finer_steps`), it is asked again with
+finer ones.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -14,12 +17,19 @@ from identification.discovery.moves import Watch
 from identification.discovery.passes import uses
 from identification.prediction.exchange import exchanged, without_contradicted
 from identification.prediction.extension import with_fitting_steps
+from identification.prediction.finer_steps import (
+    at_finer_steps,
+    is_made_by_steps,
+    is_of_steps,
+)
 from identification.prediction.model import WindowModel
 from identification.prediction.screening import score_all
 from identification.prediction.selection import refit_contenders
 from identification.prediction.task import WindowSearch
 from identification.prediction.trial import Contender, find_rivals
 from identification.progress import Progress
+from identification.quantities import quantity
+from identification.windows.coarse import steps_of
 
 
 def add_effect(state: WindowSearch, progress: Progress) -> WindowSearch:
@@ -31,6 +41,18 @@ def add_effect(state: WindowSearch, progress: Progress) -> WindowSearch:
     )  # fmt: skip
     nominal = state.nominal if state.accepted else parent
     state = replace(state, model=parent, nominal=nominal)
+    if _may_be_of_steps(state, tried):
+        watch.stop("refits")
+        finer = at_finer_steps(state)
+        if finer is not None:
+            c, (taken, own) = tried[0].candidate, steps_of(finer.model.plant)
+            progress(
+                f"{c.effect.name}, {c.where}: the steps of the simulation may make it; the search"
+                f" goes on with steps of {quantity(taken, unit='s')} where the model has"
+                f" {quantity(own, unit='s')}"
+            )
+            return add_effect(replace(finer, seconds=watch.seconds), progress)
+        tried = _without_made(state, tried)
     model = None
     while model is None:  # a model that its own steps let diverge is none: the next one is asked
         tried, other_side = _checked(state, tried, progress)
@@ -50,6 +72,25 @@ def add_effect(state: WindowSearch, progress: Progress) -> WindowSearch:
         state, model=model, accepted=accepted, scores=scores, rejected=(), seconds=watch.seconds,
         exchanged=other_side,
     )  # fmt: skip
+
+
+def _may_be_of_steps(state: WindowSearch, tried: Sequence[Contender]) -> bool:
+    """Returns whether finer steps are to be asked of the effect that is to be accepted.
+
+    Values that no fit found have no finer fit.
+    """
+    is_fitted = state.worse_fit is None or bool(state.accepted)
+    is_asked = is_fitted and uses(state.task.options, "finer_steps")
+    is_proven = bool(tried) and tried[0].is_proven
+    return is_asked and is_proven and is_of_steps(state.model, tried[0])
+
+
+def _without_made(state: WindowSearch, tried: Sequence[Contender]) -> tuple[Contender, ...]:
+    """Returns contenders, those unproven and behind the others that the finest steps still make."""
+    is_made = [c.is_proven and is_made_by_steps(state.model, c) for c in tried]
+    rest = [c for c, made in zip(tried, is_made, strict=True) if not made]
+    made = [replace(c, doubt="steps") for c, made in zip(tried, is_made, strict=True) if made]
+    return (*rest, *made)
 
 
 def _checked(
