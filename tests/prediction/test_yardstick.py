@@ -1,0 +1,76 @@
+"""The share that a law explains of what smooth forces could is one for the law that is missing."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+from records_cases import FREE, HORIZON, nominal_model, pendulum, records
+from scipy.optimize import lsq_linear
+
+from identification.discovery.candidates import list_common
+from identification.effects.joint_plant import candidates
+from identification.prediction.extension import with_effect
+from identification.prediction.first_fit import begin
+from identification.prediction.nominal_fit import fit_nominal
+from identification.prediction.scores import condensed, window_scores
+from identification.prediction.yardstick import measure
+from identification.windows.records import as_records
+
+EFFECTS = candidates(pendulum(), FREE)
+
+
+@cache
+def logs():
+    made = records(4, {"coulomb_friction.f_c@hinge": 0.02}, samples=300)
+    return as_records(made[:2], made[2:])
+
+
+@cache
+def rubbed():
+    return fit_nominal(nominal_model(), logs())
+
+
+def listed(name):
+    return list_common([e for e in EFFECTS if e.name == name])
+
+
+def with_law(name):
+    model = rubbed()
+    best = window_scores(model.fit, listed(name))[0]
+    confirm = [r for r in logs() if r.role == "confirm"]
+    return with_effect(model, begin(model, [best]), HORIZON, confirm)
+
+
+def test_sums_by_blocks_give_the_fall_of_a_curve():
+    (candidate,) = listed("curve_speed")
+    G, a, square = condensed(rubbed().fit, [candidate])
+    c = lsq_linear(G.sum(axis=0), a.sum(axis=0)).x
+    (score,) = window_scores(rubbed().fit, [candidate])
+    assert a.sum(axis=0) @ c / square == pytest.approx(score.fall, rel=1e-6)
+    np.testing.assert_allclose(G, np.swapaxes(G, 1, 2))
+
+
+def test_the_law_that_is_missing_leaves_nothing_to_a_smooth_force_and_a_neighbour_does():
+    before = rubbed()
+    share, left = {}, {}
+    for name in ("coulomb_friction", "sublinear_friction"):
+        after = with_law(name)
+        stick = measure(after, EFFECTS)
+        share[name] = stick.share(before.fit.cost, after.fit.cost)
+        left[name] = stick.every
+        fall = 1 - after.fit.cost / before.fit.cost
+        of_law = stick.share_of(after.candidates[-1], fall)
+        assert of_law == pytest.approx(share[name], abs=0.02)  # there is one joint
+    assert share["coulomb_friction"] > 0.999
+    assert left["coulomb_friction"] < 0.01
+    assert share["sublinear_friction"] < 0.998
+    assert left["sublinear_friction"] > 0.03
+
+
+def test_what_is_no_law_of_a_joint_has_no_share():
+    stick = measure(rubbed(), EFFECTS)
+    assert stick.share_of(listed("delay")[0], 0.5) is None
+
+
+def test_without_curves_there_is_no_yardstick():
+    assert measure(rubbed(), [e for e in EFFECTS if not e.is_curve]) is None
