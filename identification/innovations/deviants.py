@@ -114,7 +114,7 @@ def accept_deviants(
         proof = prove(parent.validation, best.validation, task.options)
         gain = best.negative_bic - parent.negative_bic
         progress(f"{candidate.effect.name}, {candidate.where}: deviates, gain {gain:z.0f}")
-        if gain > 0 and is_confirmed(proof, task.options):
+        if gain > 0 and is_confirmed(proof, task.options, len(candidates)):
             kept.insert(0, (candidate, proof, gain))
         else:
             best, bound = parent, tighter

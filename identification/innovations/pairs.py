@@ -59,10 +59,10 @@ def find_pair(
         return ()
     proof = prove(alone.validation, pair.validation, options)
     together = prove(model.validation, pair.validation, options)
-    if is_confirmed(proof, options) and is_confirmed(together, options):
+    tried = len(second.alternatives) + 2  # with the first
+    if all(is_confirmed(p, options, tried) for p in (proof, together)):
         return AcceptedEffect(first, proof, first.negative_bic - model.negative_bic, ()), second
     instead, gain = prove(model.validation, alone.validation, options), _gain(model, alone)
-    tried = len(second.alternatives) + 2  # with the first
     if gain > _gain(model, first) and is_confirmed(instead, options, tried):
         return (AcceptedEffect(alone, instead, gain, (first,)),)
     return ()

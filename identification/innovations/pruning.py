@@ -68,7 +68,8 @@ def exchange(
     kept = list(accepted)
     for i, old in enumerate(kept if len(kept) > 1 else ()):
         rest = tuple(c for c in model.candidates if c is not old.candidate)
-        for rival, start in _list_rivals(task, old, rest, model, sensitivities):
+        rivals = [*_list_rivals(task, old, rest, model, sensitivities)]
+        for rival, start in rivals:
             if any(rival.effect.name == c.effect.name for c in rest):
                 continue
             begin = {**model.refit.point.values, **start}
@@ -78,7 +79,8 @@ def exchange(
             if new is None:
                 continue
             proof = prove(nominal.validation, new.validation, task.options)
-            if new.negative_bic > model.negative_bic and is_confirmed(proof, task.options):
+            is_likelier = new.negative_bic > model.negative_bic
+            if is_likelier and is_confirmed(proof, task.options, len(rivals)):
                 alternatives = (replace(model, candidates=(*rest, old.candidate)),)
                 gain = old.gain + new.negative_bic - model.negative_bic
                 kept[i] = AcceptedEffect(new, old.proof, gain, alternatives)
