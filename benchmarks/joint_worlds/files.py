@@ -7,10 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from joint_worlds.robot import JointRobot
+from joint_worlds.robot import KNOWN, JointRobot
 from joint_worlds.world import World
-
-KNOWN = 0.2  # what is said to be known of a free parameter; it is off by 0.1 at most
 
 
 def robot_toml(world: World) -> str:
@@ -40,7 +38,7 @@ def truth_of(world: World) -> dict[str, object]:
     return {
         "robot": world.robot.name, "effect": world.effect, "names": list(world.names),
         "joint": world.joint, "places": list(world.places), "curve": world.curve,
-        "size": world.size,
+        "size": world.size, "also": world.also,
         "shape": world.shape, "ratio": world.ratio,
         "parameters": world.truth, "push": world.push,
         "references": [r.kind for r in world.records],

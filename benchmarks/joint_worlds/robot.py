@@ -12,6 +12,7 @@ from joint_worlds import slots as at
 from joint_worlds.slots import plain_joints
 
 SPREAD = 0.10  # the truth is within so much of what is known
+KNOWN = 0.2  # what is said to be known of a free parameter
 PRESLIDING = 0.1  # a joint that friction holds moves by so much of the sensor's noise
 
 

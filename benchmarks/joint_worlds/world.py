@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import zlib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+from departures import CONTROLLERS, EITHER_HALF, MISTUNED, POWERS, Departure
 
-from inca_mj.studies.worlds.sensor import coloured
 from joint_worlds import slots as at
-from joint_worlds.hidden import EVERY, NULL, Habits, Shape
+from joint_worlds.hidden import EVERY, NULL, UNLISTED, Habits, Shape
 from joint_worlds.motion import ROBOTS, closed_loop, terms
 from joint_worlds.reference import KINDS, reference
-from joint_worlds.robot import PRESLIDING, SPREAD, Free, JointRobot
+from joint_worlds.robot import KNOWN, PRESLIDING, SPREAD, Free, JointRobot
 from joint_worlds.seen import Numbers, logged, ratio
 
 RATIOS = (3.0, 10.0)  # of an effect over the sensors' noise
@@ -21,7 +21,12 @@ NEAR = 0.15  # the ratio may miss the drawn one by so much
 TRIES = 4
 CONTROLLER = 0.2  # the controller's numbers are off by up to so much
 PUSH = (0.002, 0.01)  # unlogged torque, rms over the rms of the input
+USUAL = Departure(name="usual", about="nothing departs")
 OFTEN = 0.98  # share of the samples below the force that a limit is counted by
+# Other names of a friction whose power is drawn.
+OTHER_POWER = {"sublinear_friction": ("quadratic_friction",)}
+JUMP = (0.05, 0.2)  # of a force that jumps, over the largest force of its drive
+JUMPED = "offset"  # what such a force is once it has jumped
 COLOUR = (0.02, 0.1)  # its correlation time [s]
 
 
@@ -52,6 +57,7 @@ class World:
         free: parameters that are not known exactly; `truth` has their true values by name.
         coulomb: whether the nominal model has Coulomb friction.
         push: unlogged torque over the input, rms.
+        also: the name of a second effect; "" where there is none.
         records: the one to fit and the one that confirms.
     """
 
@@ -68,6 +74,7 @@ class World:
     truth: dict[str, float]
     coulomb: bool
     push: float
+    also: str = ""
     records: tuple[Record, Record]
 
 
@@ -79,9 +86,12 @@ class UnseenError(Exception):
 class _Control:
     p: np.ndarray
     computed: bool
+    bandwidth: float
 
 
-def make_world(name: str, effect: str, seed: int, duration: float = 20.0) -> World:
+def make_world(
+    name: str, effect: str, seed: int, duration: float = 20.0, departure: Departure = USUAL
+) -> World:
     """Draw a world and simulate its records.
 
     Args:
@@ -89,6 +99,7 @@ def make_world(name: str, effect: str, seed: int, duration: float = 20.0) -> Wor
         effect: a name of `EVERY`, or "nothing".
         seed: of all that is drawn.
         duration: of a record [s].
+        departure: from what is usual.
 
     Raises:
         UnseenError: the largest size of the effect shows less than `LEAST`.
@@ -103,10 +114,16 @@ def make_world(name: str, effect: str, seed: int, duration: float = 20.0) -> Wor
         base.joints[:, at.COULOMB] = 0.0
     for f in free:
         base = base.moved(f, rng.uniform(1 - SPREAD, 1 + SPREAD))
-    control = _Control(robot.plain()[0], bool(rng.integers(2)))
+        if departure.spread > 1:
+            far = departure.spread * KNOWN * float(np.clip(rng.normal(), -2, 2))
+            base = base.moved(f, np.exp(far))
+    mistuned = MISTUNED if departure.is_mistuned else CONTROLLER
+    control = _Control(robot.plain()[0], bool(rng.integers(2)), robot.bandwidth)
     for f in robot.free:
-        control.p[f.number] *= rng.uniform(1 - CONTROLLER, 1 + CONTROLLER)
+        control.p[f.number] *= rng.uniform(1 - mistuned, 1 + mistuned)
     kinds = rng.choice(KINDS, 2, replace=False)
+    if departure.is_mistuned:
+        control = replace(control, bandwidth=robot.bandwidth * rng.uniform(*CONTROLLERS))
     count = round(duration / robot.sampling_time)
     aims = [
         reference(str(kind), np.array(robot.travel), np.array(robot.speed), robot.sampling_time,
@@ -115,52 +132,105 @@ def make_world(name: str, effect: str, seed: int, duration: float = 20.0) -> Wor
     ]  # fmt: skip
     still = _quiet(robot, base, control, aims[0])
     share = float(rng.uniform(*PUSH))
+    own = [still[1], still[1] if departure is USUAL else _quiet(robot, base, control, aims[1])[1]]
     pushes = [
-        share
-        * still[1].std(axis=0)
-        * coloured((count, robot.n), robot.sampling_time, 1.0, rng.uniform(*COLOUR), rng)
-        for _ in aims
+        departure.error(
+            u, robot.sampling_time, share * still[1].std(axis=0), rng.uniform(*COLOUR), rng
+        )
+        for u in own
     ]
     places: tuple[str, ...] = ()
-    curve = ""
+    curve, also, names = "", "", hidden.names(robot) if hidden else (NULL,)
     true, size, shape, shown, joint = base, 0.0, {}, 0.0, ""
+    scene = _Scene(robot, base, free, control, aims[0], still, pushes[0], departure)
     if hidden is not None:
-        j = int(rng.choice(hidden.joints(robot)))
-        joint, places = robot.joints[j], hidden.places(robot, j)
-        curve = hidden.drawn_as(j) or hidden.curve
-        habits = Habits(
-            float(np.abs(still[1][:, j]).max()), float(np.abs(still[0][:, 1, j]).max()),
-            float(np.abs(still[0][:, 0, j]).max()), robot.coulomb[j], robot.damping[j],
-            float(np.quantile(np.abs(still[1][:, j]), OFTEN)),
-        )  # fmt: skip
-        shape, target = hidden.shape(habits, rng), float(np.exp(rng.uniform(*np.log(RATIOS))))
-        most = hidden.largest(habits)
-        size, tried = 0.2 * most, 0.0
-        for _ in range(TRIES):
-            true, tried = with_effect(robot, base, effect, j, size, shape), size
-            motion = _quiet(robot, true, control, aims[0])
-            shown = ratio(robot, true, base, free, *motion, pushes[0])
-            if abs(shown / target - 1) < NEAR or (size == most and shown < target):
-                break
-            size = min(most, size * float(np.clip(target / max(shown, 1e-9), 0.05, 20)))
-        size = tried
-        if shown < LEAST:
-            raise UnseenError(f"{effect} of {robot.name} shows {shown:.2g} times the noise at most")
+        chosen = _sized(scene, effect, rng)
+        true, size, shape, shown = chosen.true, chosen.size, chosen.shape, chosen.shown
+        joint, places = robot.joints[chosen.j], hidden.places(robot, chosen.j)
+        curve = hidden.drawn_as(chosen.j) or hidden.curve
+    if departure.hides == "powers":
+        names = (*dict.fromkeys((*names, *OTHER_POWER.get(effect, ()))),)
+    if departure.hides == "unlisted":
+        also = str(rng.choice([n for n, h in UNLISTED.items() if n != effect and h.joints(robot)]))
+        second = _sized(scene, also, rng)
+        true = with_effect(robot, true, also, second.j, second.size, second.shape)
+    if departure.hides == "jumps":
+        j = int(rng.integers(robot.n))
+        joint, places, names = robot.joints[j], (robot.joints[j],), (JUMPED,)
+        size = float(rng.uniform(*JUMP) * np.abs(still[1][:, j]).max() * rng.choice([-1.0, 1.0]))
+        begun = round(count * rng.uniform(*EITHER_HALF)) + count * int(rng.integers(2))
+        for k, push in enumerate(pushes):
+            push[max(0, begun - k * count) :, j] += size
     try:
         records = [
-            _record(robot, true, control, aim, str(kind), push, rng)
+            _record(robot, true, control, aim, str(kind), push, departure, rng)
             for kind, aim, push in zip(kinds, aims, pushes, strict=True)
         ]
     except np.linalg.LinAlgError:  # of a state that left the finite numbers
         raise UnseenError(f"{effect} of {robot.name}: its controller does not hold it") from None
     return World(
-        robot=robot, effect=effect, names=hidden.names(robot) if hidden else (NULL,), joint=joint,
+        robot=robot, effect=effect, names=names, also=also, joint=joint,
         places=places, curve=curve,
         size=size, shape=shape, ratio=shown, free=free, coulomb="coulomb" not in known,
         truth={f.name: float(base.p[f.number] if f.number is not None else base.joints[f.slot])
                for f in free},
         push=share, records=(records[0], records[1]),
     )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class _Scene:
+    """What the size of an effect is counted in: a robot without it, and its motion."""
+
+    robot: JointRobot
+    base: Numbers
+    free: tuple[Free, ...]
+    control: _Control
+    aim: np.ndarray
+    still: tuple[np.ndarray, np.ndarray]
+    push: np.ndarray
+    departure: Departure
+
+
+@dataclass(frozen=True)
+class _Chosen:
+    """An effect on joint j of a size that shows, and the robot with it."""
+
+    true: Numbers
+    j: int
+    size: float
+    shape: Shape
+    shown: float
+
+
+def _sized(scene: _Scene, effect: str, rng: np.random.Generator) -> _Chosen:
+    """Draws an effect, and a size of it that shows as much as is drawn.
+
+    Raises:
+        UnseenError: the largest size shows less than `LEAST`.
+    """
+    robot, base, still, hidden = scene.robot, scene.base, scene.still, EVERY[effect]
+    j = int(rng.choice(hidden.joints(robot)))
+    habits = Habits(
+        float(np.abs(still[1][:, j]).max()), float(np.abs(still[0][:, 1, j]).max()),
+        float(np.abs(still[0][:, 0, j]).max()), robot.coulomb[j], robot.damping[j],
+        float(np.quantile(np.abs(still[1][:, j]), OFTEN)),
+    )  # fmt: skip
+    shape, target = hidden.shape(habits, rng), float(np.exp(rng.uniform(*np.log(RATIOS))))
+    if scene.departure.hides == "powers":
+        shape = {**shape, "p": float(rng.uniform(*POWERS))}
+    most = hidden.largest(habits)
+    size, tried, shown, true = 0.2 * most, 0.0, 0.0, base
+    for _ in range(TRIES):
+        true, tried = with_effect(robot, base, effect, j, size, shape), size
+        motion = _quiet(robot, true, scene.control, scene.aim)
+        shown = ratio(robot, true, base, scene.free, *motion, scene.push)
+        if abs(shown / target - 1) < NEAR or (size == most and shown < target):
+            break
+        size = min(most, size * float(np.clip(target / max(shown, 1e-9), 0.05, 20)))
+    if shown < LEAST:
+        raise UnseenError(f"{effect} of {robot.name} shows {shown:.2g} times the noise at most")
+    return _Chosen(true, j, tried, shape, shown)
 
 
 def held_base(robot: JointRobot) -> Numbers:
@@ -195,7 +265,7 @@ def _quiet(
     """States and inputs of a motion without any noise."""
     nothing = np.zeros(aim.shape[1:])
     states, u, _ = closed_loop(
-        robot.code, numbers.p, numbers.joints, control.p, control.computed, robot.bandwidth, aim,
+        robot.code, numbers.p, numbers.joints, control.p, control.computed, control.bandwidth, aim,
         nothing, np.zeros(robot.n), nothing, robot.sampling_time / robot.substeps, robot.substeps,
     )  # fmt: skip
     return states, u
@@ -203,12 +273,13 @@ def _quiet(
 
 def _record(
     robot: JointRobot, numbers: Numbers, control: _Control, aim: np.ndarray, kind: str,
-    push: np.ndarray, rng: np.random.Generator,
+    push: np.ndarray, departure: Departure, rng: np.random.Generator,
 ) -> Record:  # fmt: skip
     """A motion as it is logged; push: unlogged torque, shape (N, n)."""
-    h, errors = robot.sampling_time, rng.normal(size=push.shape) * robot.white
+    h = robot.sampling_time
+    errors = departure.noise((len(push), robot.n), np.array(robot.white), rng)
     states, u, _ = closed_loop(
-        robot.code, numbers.p, numbers.joints, control.p, control.computed, robot.bandwidth, aim,
+        robot.code, numbers.p, numbers.joints, control.p, control.computed, control.bandwidth, aim,
         errors, robot.steps, push, h / robot.substeps, robot.substeps,
     )  # fmt: skip
     y = logged(robot, numbers.joints, states) + errors

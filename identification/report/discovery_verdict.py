@@ -48,8 +48,13 @@ def _verdict(found: Discovery) -> list[str]:
 
 
 def _noisier(found: Discovery) -> list[str]:
-    """Returns a sentence on each output that is noisier than the others of its unit."""
-    out = []
+    """Returns a sentence on each output that is noisier than the others of its unit.
+
+    Where something is missing that nothing explains, it may be what makes that noise.
+    """
+    out: list[str] = []
+    if found.verdict == "unknown effect":
+        return out
     for name, noise in found.noise_by_output.items():
         unit = found.outputs[name]
         others = [
@@ -61,7 +66,7 @@ def _noisier(found: Discovery) -> list[str]:
             size = quantity(noise, unit=unit)
             out.append(
                 f"The noise of {name} is {size}, {noise / rms:.2g} times that of the other outputs"
-                " of its unit; this is told as noise, and no effect is needed for it."
+                " of its unit."
             )
     return out
 

@@ -55,6 +55,8 @@ def test_a_sensor_is_called_noisy_beside_those_of_its_unit_only() -> None:
     assert len(loud) == 4
     assert loud[-1].startswith(f"The noise of {names[1]} is ")
     assert "2.4 times that of the other outputs of its unit" in loud[-1]
+    missing = replace(found("unknown effect"), noise_by_output={**alike, names[1]: 2.4 * NOISE})
+    assert "The noise of" not in " ".join(discovery_verdict(missing))
 
 
 def test_look_alikes_are_a_set() -> None:
