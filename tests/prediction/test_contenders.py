@@ -225,7 +225,7 @@ def test_what_physics_forbids_takes_its_share_of_the_odds_and_is_no_other_name(
     state = SimpleNamespace(
         task=SimpleNamespace(options=OPTIONS, effects=()), model=SimpleNamespace(candidates=())
     )
-    named = verdict._named(state, replace(law, alternatives=(rival,)), 0.95)
+    named = verdict._named(state, replace(law, alternatives=(rival,)), 0.95, None)
     assert (named.confidence < 0.01) == (gain > 0.5)
     is_possible = doubt == "chance"
     assert named.rivals == (("rival",) if is_possible else ())
