@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from score_tests import RESULT, table
 
 from identification.sweep.statistics import wilson
 
@@ -92,7 +93,24 @@ def page(rows: Sequence[dict[str, Any]]) -> str:
             f" | {row['median_seconds']:.2g} s, {row['all_seconds'] / 60:.0f} min"
             f" | {row['memory'] / 2**30:.1f} GB | {row['day']}, {'; '.join(row['code'])} |"
         )
-    return "\n".join([*lines, ""])
+    return "\n".join([*lines, "", *_score_tests(), ""])
+
+
+def _score_tests() -> list[str]:
+    """Returns the part on the test by blocks, where it was measured."""
+    if not RESULT.exists():
+        return []
+    result = json.loads(RESULT.read_text(encoding="utf-8"))
+    return [
+        "## The test by blocks",
+        "",
+        "Candidates that act in some of 40 blocks, in noise alone. In brackets: how many"
+        " chances were so small. Before, a candidate that acts in one block was beyond chance"
+        " nearly always, because a test by blocks alone knows no scatter of that block"
+        f" (`python benchmarks/score_tests.py`, {result['commit']}).",
+        "",
+        *table(result),
+    ]
 
 
 def _rate(hits: int, of: int) -> str:
