@@ -45,11 +45,10 @@ def add_effect(state: WindowSearch, progress: Progress) -> WindowSearch:
         watch.stop("refits")
         finer = at_finer_steps(state)
         if finer is not None:
-            c, (taken, own) = tried[0].candidate, steps_of(finer.model.plant)
+            c, (taken, _) = tried[0].candidate, steps_of(finer.model.plant)
             progress(
                 f"{c.effect.name}, {c.where}: the steps of the simulation may make it; the search"
-                f" goes on with steps of {quantity(taken, unit='s')} where the model has"
-                f" {quantity(own, unit='s')}"
+                f" goes on with steps of {quantity(taken, unit='s')}"
             )
             return add_effect(replace(finer, seconds=watch.seconds), progress)
         tried = _without_made(state, tried)
