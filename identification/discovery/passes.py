@@ -52,6 +52,9 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
     "values_of_start": (
         HORIZON, "begins at the given values where fitted ones predict unseen records worse",
     ),
+    "record_differences": (
+        HORIZON, "tells zeros of sensors and constant forces that differ between records",
+    ),
     "finer_steps": (
         HORIZON, "goes on with finer steps where those of the simulation may make an effect",
     ),

@@ -50,7 +50,7 @@ def score_all(
         effects: the candidates.
         options: what is beyond chance, and what is promising.
     """
-    listed = _listed(model, effects)
+    listed = _listed(model, effects, options)
     is_many = len(listed) > MAX_SCORED
     few = window_scores(some_windows(model.fit) if is_many else model.fit, listed)
     promising = _promising(few, options)
@@ -82,9 +82,11 @@ def some_windows(fit: WindowFit) -> WindowFit:
     )  # fmt: skip
 
 
-def _listed(model: WindowModel, effects: Sequence[Effect]) -> list[Candidate]:
+def _listed(
+    model: WindowModel, effects: Sequence[Effect], options: DiscoveryOptions
+) -> list[Candidate]:
     """Returns all shapes of what the model lacks, at all places together and at each of them."""
-    if len(model.fit.problem.parts) > 1:
+    if len(model.fit.problem.parts) > 1 and uses(options, "record_differences"):
         effects = [*effects, *(in_each_record(e) for e in effects if e.of_records)]
     has = {c.key for c in model.candidates}
     everywhere = {c.effect.name for c in model.candidates if not c.effect.places[c.where]}
