@@ -1,12 +1,13 @@
 """How often a discovery names what a pendulum, a cart and two arms hide; rows, rates, a page.
 
     python benchmarks/hidden_joints.py [--robot pendulum] [--effect delay] [--count 3] [--seed 1]
+                                       [--processes 2]
     python benchmarks/hidden_joints.py --only-page            the page anew, from the rows
     python benchmarks/hidden_joints.py --write FOLDER         worlds as files, without discovery
 
 Each world (`joint_worlds`) is fitted on one record and judged on another. A finished world is one
-line of RESULTS/ROBOT.jsonl and is not done again. For every effect of a robot there are as many
-worlds without any effect as `--nulls` says.
+line of RESULTS and is not done again by the same search. For every effect of a robot there are as
+many worlds without any effect as `--nulls` says. The page is of one search (`rows`).
 """
 
 from __future__ import annotations
@@ -25,9 +26,10 @@ from joint_worlds.files import truth_of, write_world
 from joint_worlds.hidden import NULL, effects_of
 from joint_worlds.motion import ROBOTS
 from joint_worlds.world import UnseenError, make_world
+from rows import Row, answered, of_newest, rows_of, write_part
 
 HERE = Path(__file__).parent
-RESULTS = HERE / "results" / "hidden_joints"
+RESULTS = HERE / "results" / "hidden_joints.jsonl"
 PAGE = HERE.parent / "docs" / "benchmarks.md"
 BEGIN, END = "<!-- hidden joints: begin -->\n", "<!-- hidden joints: end -->\n"
 
@@ -36,12 +38,11 @@ def study(
     robot: str, effect: str, seed: int, way: str, duration: float, without: tuple[str, ...] = ()
 ) -> dict[str, Any]:
     """One world from its making to its answer; an error is a row too."""
-    key = {"key": f"{robot}/{effect}/{seed}/{way}"}
     try:
         world = make_world(robot, effect, seed, duration)
     except UnseenError as error:
-        return {**key, "unseen": str(error)}
-    row = {**key, "truth": truth_of(world)}
+        return {"unseen": str(error)}
+    row: dict[str, Any] = {"truth": truth_of(world)}
     begin, wall = time.process_time(), time.perf_counter()
     try:
         with tempfile.TemporaryDirectory() as folder:
@@ -83,9 +84,11 @@ def answer(toml: Path, a: Path, b: Path, way: str, without: tuple[str, ...] = ()
              "confidence": n.confidence, "one_of": n.one_of,
              "same_as": n.same_as.name if n.same_as else None,
              "rivals": [rival.name for rival in n.rivals],
+             "smooth_share": n.smooth_share,
              "sizes": {name: p[0] for name, p in n.parameters.items()}}
             for n in found.named
         ],
+        "smooth_share": found.smooth_share,
         "scores": [[s.candidate.effect.name, s.candidate.where] for s in found.scores[:5]],
         "errors": {"written": written.before, "fit": error.before, "discover": error.after},
         "fitted": fitted, "fit_seconds": between - begin, "discover_seconds": end - between,
@@ -103,20 +106,7 @@ def tasks(given: argparse.Namespace) -> list[tuple[str, str, int]]:
     return out
 
 
-def rows_of(folder: Path) -> list[dict[str, Any]]:
-    """Rows of earlier runs, the last of each world."""
-    rows: dict[str, dict[str, Any]] = {}
-    for path in sorted(folder.glob("*.jsonl")):
-        for line in path.read_text().splitlines():
-            try:
-                row = json.loads(line)
-            except json.JSONDecodeError:  # an interrupted line
-                continue
-            rows[row["key"]] = row
-    return list(rows.values())
-
-
-def told(row: dict[str, Any]) -> str:
+def told(row: Row) -> str:
     """A row in a line."""
     if "verdict" not in row:
         return f"{row['key']}: {row.get('unseen') or row['error']}"
@@ -137,6 +127,7 @@ def main() -> int:
     add("--seed", type=int, default=1)
     add("--duration", type=float, default=20.0, help="of a record [s]")
     add("--way", choices=("records", "log"), default="records", help="of a discovery")
+    add("--processes", type=int, default=1)
     add("--out", type=Path, default=RESULTS)
     add("--page", type=Path, default=PAGE)
     add("--again", action="store_true", help="do worlds again that met an error")
@@ -149,39 +140,28 @@ def main() -> int:
         print(f"unknown effect {min(unknown)!r}; known: {', '.join(sorted(known))}",
               file=sys.stderr)  # fmt: skip
         return 2
-    given.out.mkdir(parents=True, exist_ok=True)
-    done = {r["key"] for r in rows_of(given.out) if not (given.again and "error" in r)}
-    for robot, effect, seed in [] if given.only_page else tasks(given):
-        if effect != NULL and effect not in effects_of(ROBOTS[robot]):
-            continue
-        if given.write is not None:
+    asked = {
+        f"{robot}/{effect}/{seed}/{given.way}": (robot, effect, seed, given.way, given.duration)
+        for robot, effect, seed in tasks(given)
+        if effect == NULL or effect in effects_of(ROBOTS[robot])
+    }
+    if given.write is not None:
+        for robot, effect, seed, *_ in asked.values():
             try:
                 folder = given.write / f"{robot}_{effect}_{seed}"
                 write_world(make_world(robot, effect, seed, given.duration), folder)
                 print(folder, flush=True)
             except UnseenError as error:
                 print(f"{robot}/{effect}/{seed}: {error}", flush=True)
-        elif f"{robot}/{effect}/{seed}/{given.way}" not in done:
-            row = study(robot, effect, seed, given.way, given.duration)
-            with (given.out / f"{robot}.jsonl").open("a") as file:
-                file.write(json.dumps(row) + "\n")
-            print(told(row), file=sys.stderr, flush=True)
-    if given.write is None:
-        rows = [r for r in rows_of(given.out) if r["key"].endswith("/" + given.way)]
-        print(json.dumps(summary(rows)))
-        write_page(given.page, section(rows))
+        return 0
+    rows = (
+        rows_of(given.out) if given.only_page
+        else answered(study, asked, given.out, told, given.processes, given.again)
+    )  # fmt: skip
+    mine = [r for r in (of_newest(rows) if rows else []) if r["key"].endswith("/" + given.way)]
+    print(json.dumps(summary(mine)))
+    write_part(given.page, BEGIN, END, section(mine))
     return 0
-
-
-def write_page(path: Path, text: str) -> None:
-    """Put the section into its page, in place of an earlier one or at the end."""
-    page = path.read_text(encoding="utf-8") if path.exists() else ""
-    if BEGIN in page:
-        head, _, rest = page.partition(BEGIN)
-        page = head + BEGIN + text + END + rest.partition(END)[2]
-    else:
-        page = page.rstrip("\n") + "\n\n" + BEGIN + text + END
-    path.write_text(page, encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -211,8 +211,9 @@ def section(rows: Sequence[Row]) -> str:
     lines += [
         f"| processor time of fit and discovery: median, longest | {times} |",
         "",
-        f"{found['worlds']} worlds; {found['failed']} more met an error, and {found['unseen']}"
-        " could not be made because no size shows enough.",
+        f"{found['worlds']} worlds of the search of {rows[-1].get('commit') if rows else 'none'};"
+        f" {found['failed']} more met an error, and {found['unseen']} could not be made because no"
+        " size shows enough.",
         "",
         "| hidden | first name or verdict |",
         "|---|---|",

@@ -13,22 +13,19 @@ from __future__ import annotations
 
 import argparse
 import json
-import os
 import sys
 import tempfile
 import time
 import traceback
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
-from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from departures import DEPARTURES, Departure
+from rows import Row, answered, of_newest, rows_of, write_part
 
 from identification.sweep.statistics import rate, said
-from identification.sweep.work import commit
 
 HERE = Path(__file__).parent
 RESULTS = HERE / "results" / "wrong_worlds.jsonl"
@@ -40,7 +37,6 @@ FIRST_SEED = 7_000_000
 DURATION = {INCA: 10.0, "pendulum": 12.0, "cart": 12.0, "two_link": 12.0}  # of a record [s]
 # What `powers` hides in robots of joints: a power of their laws is free.
 WITH_POWERS = ("sublinear_friction", "stribeck_friction")
-Row = Mapping[str, Any]
 
 
 def tasks(departures: Sequence[str], count: int) -> list[tuple[str, str, bool, int]]:
@@ -63,11 +59,10 @@ def key_of(departure: str, robot: str, is_null: bool, seed: int) -> str:
     return f"{departure}/{robot}/{'nothing' if is_null else 'something'}/{seed}"
 
 
-def study(code: str, departure: str, robot: str, is_null: bool, seed: int) -> dict[str, Any]:
+def study(departure: str, robot: str, is_null: bool, seed: int) -> dict[str, Any]:
     """Returns a row: a world from its making to its answer; an error is a row too.
 
     Args:
-        code: the commit that answers.
         departure: its name.
         robot: its name.
         is_null: whether nothing is hidden.
@@ -77,10 +72,7 @@ def study(code: str, departure: str, robot: str, is_null: bool, seed: int) -> di
 
     from identification.errors import InputError
 
-    row: dict[str, Any] = {
-        "key": key_of(departure, robot, is_null, seed), "departure": departure, "robot": robot,
-        "is_null": is_null, "commit": code,
-    }  # fmt: skip
+    row: dict[str, Any] = {"departure": departure, "robot": robot, "is_null": is_null}
     begin = time.process_time()
     ask = inca if robot == INCA else joints
     try:
@@ -239,28 +231,6 @@ def section(rows: Sequence[Row]) -> str:
     return "\n".join([*lines, ""])
 
 
-def rows_of(path: Path) -> list[dict[str, Any]]:
-    """Returns the rows of earlier runs."""
-    if not path.exists():
-        return []
-    lines = path.read_text(encoding="utf-8").splitlines()
-    return [json.loads(line) for line in lines if line.endswith("}")]  # else it was interrupted
-
-
-def of_one_commit(rows: Sequence[Row]) -> list[Row]:
-    """Returns the rows of the commit that answered last."""
-    return [r for r in rows if r["commit"] == rows[-1]["commit"]]
-
-
-def write_page(path: Path, text: str) -> None:
-    """Put the part into its page, in place of the earlier one."""
-    page = path.read_text(encoding="utf-8")
-    head, begun, rest = page.partition(BEGIN)
-    if not begun:
-        raise ValueError(f"{path} has no line {BEGIN.strip()!r}; put it where the part shall stand")
-    path.write_text(head + BEGIN + text + END + rest.partition(END)[2], encoding="utf-8")
-
-
 def told(row: Row) -> str:
     """Returns a row in a line."""
     if "verdict" not in row:
@@ -283,22 +253,14 @@ def main() -> int:
     add("--page", type=Path, default=PAGE)
     add("--only-page", action="store_true")
     given = parser.parse_args()
-    # Rows and page are files of the checkout too, and change while this runs.
-    code, rows = commit().removesuffix("-dirty"), rows_of(given.out)
-    done = {r["key"] for r in rows if r["commit"] == code}
-    asked = [] if given.only_page else tasks(given.departure, given.count)
-    left = [t for t in asked if t[1] in given.robot and key_of(*t) not in done]
-    os.environ.setdefault("OMP_NUM_THREADS", "1")  # of the processes that are started
-    with ProcessPoolExecutor(given.processes, get_context("spawn")) as pool:
-        for future in as_completed([pool.submit(study, code, *task) for task in left]):
-            row = future.result()
-            rows.append(row)
-            with given.out.open("a", encoding="utf-8") as file:
-                file.write(json.dumps(row) + "\n")
-            print(told(row), file=sys.stderr, flush=True)
-    mine = of_one_commit(rows) if rows else []
+    some = {key_of(*t): t for t in tasks(given.departure, given.count) if t[1] in given.robot}
+    rows = (
+        rows_of(given.out) if given.only_page
+        else answered(study, some, given.out, told, given.processes)
+    )  # fmt: skip
+    mine = of_newest(rows) if rows else []
     print(json.dumps(summary([r for r in mine if "verdict" in r])))
-    write_page(given.page, section(mine))
+    write_part(given.page, BEGIN, END, section(mine))
     return 0
 
 
