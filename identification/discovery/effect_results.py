@@ -6,7 +6,8 @@
 k numbers are added by the effect. A search along a free run has the first, one over a horizon the
 second (`identification.prediction.evidence`); they compare effects of one search only.
 
-An effect is proven by samples that no fit has seen. Along a free run flips of the signs of their
+An effect is proven by samples that no fit has seen, and told of others of which neither a fit nor
+the search knows (`identification.logs.parts`). Along a free run flips of the signs of their
 blocks must be as seldom as a t above `min_proof_t` is for normal gains (3 % with 20 blocks), paid
 for by the number of tries where it is the last of several. Over a horizon Student's t of the blocks
 must exceed `min_proof_t`, and its chance times the number of refits stay below `significance` (1 %
@@ -47,6 +48,8 @@ class Proof:
         is_everywhere: whether windows of every length are predicted better.
         agrees: names of the records whose unseen samples it makes likelier.
         disagrees: names of the records whose unseen samples it makes less likely, beyond chance.
+        untouched: the same on samples on which the search has not decided, where this proof is of
+            those on which it has (`identification.logs.parts`); None where it is of the former.
     """
 
     test: Test = "flips of signs"
@@ -62,6 +65,12 @@ class Proof:
     is_everywhere: bool = True
     agrees: tuple[str, ...] = ()
     disagrees: tuple[str, ...] = ()
+    untouched: Proof | None = None
+
+    @property
+    def told(self) -> Proof:
+        """The proof whose numbers are told: on samples on which the search has not decided."""
+        return self.untouched or self
 
 
 @dataclass(frozen=True)
@@ -203,7 +212,7 @@ class RejectedEffect(OfCandidate):
         candidate: the effect.
         parameters: its sizes and shapes by name: value, std, unit.
         bic_gain: by how much it raises the negative BIC on the fitted samples; NaN over a horizon.
-        proof: what it does for unseen samples.
+        proof: what it does for unseen samples, which decided, and for those that are told of.
         outside: something like it that no catalogue lists and that is likelier, where it was.
         evidence: what speaks for it over all windows; NaN for a free run.
         doubt: why it is not proven, a word of `identification.prediction.trial.Doubt`; None where
@@ -257,7 +266,7 @@ class NamedEffect(OfCandidate):
         one_of: whether the data cannot tell it from its first rival.
         bic_gain: by how much it raises the negative BIC on the fitted samples; NaN over a horizon.
         evidence: what speaks for it over all windows; NaN for a free run.
-        proof: what it does for unseen samples.
+        proof: what it does for unseen samples, which decided, and for those that are told of.
         retuned: the explanation without an effect; None where it was not computed.
         advice: the experiment that would tell it from its first rival, in a sentence.
         outside: something like it that no catalogue lists; None where no curve explains anything

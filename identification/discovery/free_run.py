@@ -21,8 +21,9 @@ from identification.discovery.missing_forces import (
 )
 from identification.estimation.metrics import rms_by_unit
 from identification.kalman.refit import Refit
-from identification.logs.joined import Record, records_of, rows_of
-from identification.logs.log import Log, halves
+from identification.logs.joined import Record, Role, records_of, rows_of
+from identification.logs.log import Log
+from identification.logs.parts import Parts
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,6 +36,7 @@ class FreeRun:
         final: the fit with the named effects.
         before: y - ŷ of the nominal fit, shape (N, ny), in the outputs' units.
         after: the same of the final fit.
+        parts: of the samples that no fit has seen; None where the search told none apart.
     """
 
     log: Log
@@ -42,13 +44,18 @@ class FreeRun:
     final: Refit
     before: np.ndarray
     after: np.ndarray
+    parts: Parts | None = None
 
     @property
     def unseen(self) -> np.ndarray:
         """Which samples no fit has seen, shape (N,); all of them where every one was fitted."""
-        start, end = (self.log.splits or halves(self.log))["estimation"]
-        unseen = (self.log.time < start) | (self.log.time >= end)
+        unseen = ~rows_of(self.log, "estimation")
         return unseen if unseen.any() else ~unseen
+
+    @property
+    def told(self) -> np.ndarray:
+        """Which samples the errors are told of: those that the search has not used either, (N,)."""
+        return self.unseen if self.parts is None else self.parts.report
 
     def missing_forces(self) -> tuple[MissingForce, ...]:
         """Returns the forces that the nominal model lacks, by where they act."""
@@ -63,20 +70,23 @@ class FreeRun:
         """The records with their roles."""
         logs = [log for _, log in records_of(self.log)]
         unseen = [bool((~rows_of(log, "estimation")).any()) for log in logs]
-        confirms = [is_unseen and not all(unseen) for is_unseen in unseen]
-        pairs = zip(logs, confirms, strict=True)
-        return tuple(Record(log, "confirm" if confirm else "fit") for log, confirm in pairs)
+        out, begun = [], 0
+        for log, is_unseen in zip(logs, unseen, strict=True):
+            rows = slice(begun, begun := begun + len(log))
+            parts = self.parts.between(rows) if self.parts and is_unseen else None
+            role: Role = "confirm" if is_unseen and not all(unseen) else "fit"
+            out.append(Record(log, role, parts=parts))
+        return tuple(out)
 
     @property
     def errors(self) -> tuple[RecordError, ...]:
-        """The errors of both fits on the unseen samples of each record; NaN where it has none."""
+        """The errors of both fits on what is told of each record; NaN where all was fitted."""
         out, begun = [], 0
         for record in self.records:
-            log, rows = record.log, slice(begun, begun + len(record.log))
-            begun += len(log)
-            unseen = ~rows_of(log, "estimation")
-            each = [e[rows][unseen] for e in (self.before, self.after)]
-            before, after = (float(np.sqrt(np.mean(e**2))) if unseen.any() else nan for e in each)
-            told = [rms_by_unit(e, log) if unseen.any() else {} for e in each]
-            out.append(RecordError(log.name, record.role, before, after, *told))
+            log, rows = record.log, slice(begun, begun := begun + len(record.log))
+            told = ~rows_of(log, "estimation") if self.parts is None else self.parts.report[rows]
+            each = [e[rows][told] for e in (self.before, self.after)]
+            before, after = (float(np.sqrt(np.mean(e**2))) if told.any() else nan for e in each)
+            by_unit = [rms_by_unit(e, log) if told.any() else {} for e in each]
+            out.append(RecordError(log.name, record.role, before, after, *by_unit))
         return tuple(out)

@@ -16,6 +16,9 @@ from identification.errors import InputError, unknown_name
 RUN, HORIZON, BOTH = "free run", "horizon", "both"  # which search makes a pass
 # By the name that leaves it out: which search makes it, and what it does.
 PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
+    "untouched_part": (
+        BOTH, "keeps blocks of what no fit sees from the search too, and tells errors of these",
+    ),
     "add_pair": (
         RUN, "adds two effects of which none is proven alone, because each hides the other",
     ),

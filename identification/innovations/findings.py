@@ -90,8 +90,8 @@ def find_doubtful_effect(
     """
     wanted = [
         r for r in rejected
-        if is_relevant(r.proof, options)
-        and (r.bic_gain > 0 < r.proof.gain or is_far_likelier(r.candidate, r.bic_gain, samples))
+        if is_relevant(told := r.proof.told, options)
+        and (r.bic_gain > 0 < told.gain or is_far_likelier(r.candidate, r.bic_gain, samples))
     ]  # fmt: skip
     return tuple(Finding(FindingKind.DOUBTFUL_EFFECT, DoubtfulEffect(r)) for r in wanted[:1])
 
@@ -120,23 +120,26 @@ def find_oversized_effect(
 def find_robot_change(validation: Validation, options: DiscoveryOptions) -> tuple[Finding, ...]:
     """Returns a change of the robot if unseen innovations are larger beyond chance; else nothing.
 
+    Only samples count on which the search has not decided.
+
     Args:
         validation: the prediction of the whole log by a fitted model.
         options: what is beyond chance, and large enough to matter.
     """
-    seen, E = validation.seen, validation.innovations
-    fitted, blocks = E[seen], options.proof_blocks
-    if not _is_larger(fitted, E[~seen], options):
+    told, E = validation.parts.report, validation.innovations
+    fitted, blocks = E[validation.seen], options.proof_blocks
+    if not _is_larger(fitted, E[told], options):
         return ()
     # A small change of a parameter may make the simulation diverge.
     explained = attempt(None, partial(_explain, validation))
     remaining = E if explained is None else E - explained
-    unseen = remaining[~seen]
+    unseen = remaining[told]
     if not _is_larger(fitted, unseen, options):
         return ()
     ratio = _power(unseen).mean() / _power(fitted).mean()
-    onset = find_onset(_power(fitted), _power(unseen), blocks)
-    time = validation.log.time[~seen][onset]
+    rest = ~validation.seen  # all of them, or the time would be known to a few blocks only
+    onset = find_onset(_power(fitted), _power(remaining[rest]), blocks)
+    time = validation.log.time[rest][onset]
     evidence = RobotChange(float(np.sqrt(ratio)), float(time))
     return (Finding(FindingKind.ROBOT_CHANGE, evidence),)
 

@@ -110,7 +110,7 @@ def fit_model(
     nearby = None if near is None else near.refit
     part = log.part("estimation")
     fit = fit_with_effects(model, part, candidates, start, options, steps, nearby, least=least)
-    return FittedModel(candidates, fit, validate(fit, log))
+    return FittedModel(candidates, fit, validate(fit, log, task.parts))
 
 
 def try_fit(
@@ -137,7 +137,7 @@ def try_fit(
 
     def evaluate() -> FittedModel:
         model = fit_model(task, candidates, start, near, steps, least)
-        refuse_infinite(model.negative_bic, model.validation.rms, model.innovations)
+        refuse_infinite(model.negative_bic, model.validation.rms("select"), model.innovations)
         return model
 
     return attempt(tried, evaluate)

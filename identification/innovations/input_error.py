@@ -3,6 +3,7 @@
     w_k = Σ_i g_i r_i(k),   δx_{k+1} = A_k δx_k + B_k w_k,   S_i = C δx for g_i = 1
     (δ̂, ĝ) = argmin ‖E - F δ - S g‖² + Σ ((q_j + δ_j - q̄_j)/s_j)² + ‖g‖²       fitted samples
     Δ_b = ½ Σ_{k in b} ‖E_k‖² - ‖E_k - F_k δ̂ - S_k ĝ‖²                blocks b of unseen samples
+                                                                       of one part
 
 The noise model takes every error of the inputs for random. An error that follows inputs, outputs or
 rates predicts unseen samples; a random one does not. Each regressor r_i has the rms of the error
@@ -17,7 +18,7 @@ is no effect of a robot.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache, partial
 
@@ -32,6 +33,7 @@ from identification.kalman.noise_model import Whitener
 from identification.kalman.point import evaluate_point, evaluate_sensitivities
 from identification.kalman.problem import estimate_noise
 from identification.kalman.refit import Refit
+from identification.logs.parts import Part
 from identification.pool import one_blas_thread
 
 HOLDS = ("foh", "zoh")  # straight lines, steps
@@ -72,7 +74,9 @@ class FamilyFit:
     error: np.ndarray
 
 
-def find_input_error(validation: Validation, options: DiscoveryOptions) -> tuple[Finding, ...]:
+def find_input_error(
+    validation: Validation, options: DiscoveryOptions, part: Part = "select"
+) -> tuple[Finding, ...]:
     """Returns what the inputs' error follows, beyond chance and by enough to matter; else nothing.
 
     Each family of errors is a test of its own.
@@ -80,9 +84,10 @@ def find_input_error(validation: Validation, options: DiscoveryOptions) -> tuple
     Args:
         validation: the prediction of the whole log by a fitted model.
         options: what is beyond chance, and large enough to matter.
+        part: of the unseen samples, on which it is judged.
     """
     found = [
-        f for f in fit_families(validation, options)
+        f for f in fit_families(validation, options)[part]
         if f.p_value < options.structure_level
         and max(f.share, f.fall) > options.min_structure_share
     ]  # fmt: skip
@@ -101,25 +106,30 @@ def find_input_error(validation: Validation, options: DiscoveryOptions) -> tuple
 
 
 @lru_cache(maxsize=4)  # the model that is tested for structure is often judged again at the end
-def fit_families(validation: Validation, options: DiscoveryOptions) -> tuple[FamilyFit, ...]:
-    """Returns how well each family predicts; nothing without an error of the inputs, or an input.
+def fit_families(
+    validation: Validation, options: DiscoveryOptions
+) -> Mapping[Part, tuple[FamilyFit, ...]]:
+    """Returns how well each family predicts each part of the unseen samples.
+
+    There is nothing to predict without an error of the inputs, or an input.
 
     Args:
         validation: the prediction of the whole log by a fitted model.
         options: the number of blocks.
     """
+    nothing: dict[Part, tuple[FamilyFit, ...]] = {"select": (), "report": ()}
     if not (validation.filter.A.size and validation.log.inputs.shape[1]):
-        return ()
+        return nothing
     fit = validation.refit
     # A small change of a parameter may make the simulation diverge.
     J = attempt(None, partial(evaluate_sensitivities, fit.point, validation.log))
     if J is None:
-        return ()
+        return nothing
     with one_blas_thread():
         F = validation.filter(J) / fit.level.sigma
         families = list_families(validation, ERROR_KNOTS)
         each = [_fit_family(validation, J, F, f, options.proof_blocks) for f in families]
-    return tuple(each)
+    return {part: tuple(fits[part] for fits in each) for part in nothing}
 
 
 def list_families(validation: Validation, knots: int) -> Iterator[ErrorFamily]:
@@ -191,7 +201,8 @@ def simulate_response(filter_: Whitener, r: np.ndarray) -> np.ndarray:
 
 def _fit_family(
     validation: Validation, J: np.ndarray, F: np.ndarray, family: ErrorFamily, blocks: int
-) -> FamilyFit:
+) -> dict[Part, FamilyFit]:
+    """Returns how well a family that is fitted to the fitted samples predicts each other part."""
     fit, E, seen, p = validation.refit, validation.innovations, validation.seen, J.shape[2]
     r = fit.level.input_std * family.r
     moved = simulate_response(validation.filter, r)
@@ -203,18 +214,24 @@ def _fit_family(
     scale = 1 / (np.linalg.norm(rows, axis=0) + 1e-300)
     rows *= scale
     δg = scale * np.linalg.lstsq(rows.T @ rows, rows.T @ target, rcond=1e-12)[0]
-    before, after = E[~seen], E[~seen] - X[~seen] @ δg
-    fewer = np.sum(before**2 - after**2, axis=1) / 2
-    gains = np.array([part.mean() for part in np.array_split(fewer, blocks)])
-    free = validation.e[~seen]
-    remaining = free - np.concatenate([J, moved], axis=2)[~seen] @ δg
-    return FamilyFit(
-        name=family.name,
-        p_value=flip_chance(gains),
-        share=1 - float(np.sum(after**2) / np.sum(before**2)),
-        fall=1 - float(np.sum(remaining**2) / np.sum(free**2)),
-        error=np.sqrt(np.mean((r @ δg[p:]) ** 2, axis=0)),
-    )
+    error = np.sqrt(np.mean((r @ δg[p:]) ** 2, axis=0))
+
+    def predict(part: Part) -> FamilyFit:
+        rows = validation.parts.rows(part)
+        before, after = E[rows], E[rows] - X[rows] @ δg
+        fewer = np.sum(before**2 - after**2, axis=1) / 2
+        gains = np.array([block.mean() for block in np.array_split(fewer, blocks)])
+        free = validation.e[rows]
+        remaining = free - np.concatenate([J[rows], moved[rows]], axis=2) @ δg
+        return FamilyFit(
+            name=family.name,
+            p_value=flip_chance(gains),
+            share=1 - float(np.sum(after**2) / np.sum(before**2)),
+            fall=1 - float(np.sum(remaining**2) / np.sum(free**2)),
+            error=error,
+        )
+
+    return {"select": predict("select"), "report": predict("report")}
 
 
 def find_input_hold(fit: Refit) -> tuple[Finding, ...]:

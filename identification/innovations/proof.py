@@ -6,6 +6,9 @@
     chance = P(Σ_b s_b Δ_b >= Σ_b Δ_b)        s_b = ±1, all choices equally likely
     share = (rms²(without) - rms²(with))/(rms²(without) - σ² - d²)
 
+All of it is of one part of the unseen samples (`identification.logs.parts`): a search decides on
+`select`, and `report` is told.
+
 The chance decides, and not t: an effect that acts only at times gains much in few blocks and a
 little in the others, and that skew makes t small although every block gains. Flips of the signs
 need no normal distribution. Both residuals pass the filter of the model without the effect, so that
@@ -16,13 +19,14 @@ is what input errors do to it.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from identification.chances import student_above
 from identification.discovery.effect_results import Gap, Proof
 from identification.discovery.options import DiscoveryOptions
+from identification.discovery.passes import uses
 from identification.estimation.metrics import fit_percent, rms_by_unit
 from identification.kalman.noise_model import Whitener, build_whitener
 from identification.kalman.point import extend_point
@@ -30,6 +34,7 @@ from identification.kalman.recursion import propagate
 from identification.kalman.refit import Refit
 from identification.logs.joined import records_of, rows_of
 from identification.logs.log import Log
+from identification.logs.parts import Part, Parts, autocorrelation_time, divide, join
 from identification.pool import one_blas_thread
 
 MIN_PROOF_SAMPLES = 5  # of a block of unseen samples
@@ -48,10 +53,8 @@ class Validation:
         innovations: whitened residual in units of σ, shape (N, ny).
         filter: the whitening filter.
         seen: true for the samples that were fitted, shape (N,).
-        disturbances: rms of what input errors do to the judged error of each output, shape (ny,),
-            in its unit.
-        measured: outputs of the unseen samples that are judged, shape (n, ny).
-        judged: their error, of the free run or of the windows, shape (n, ny).
+        parts: the samples on which the search decides, and those that are told of.
+        moved: variance over σ² that input errors cause in the free run, shape (N, ny).
     """
 
     refit: Refit
@@ -60,19 +63,21 @@ class Validation:
     innovations: np.ndarray
     filter: Whitener
     seen: np.ndarray
-    disturbances: np.ndarray
-    measured: np.ndarray
-    judged: np.ndarray
+    parts: Parts
+    moved: np.ndarray
 
-    @property
-    def rms(self) -> float:
-        """Rms of the judged error, over all outputs."""
-        return float(np.sqrt(np.mean(self.judged**2)))
+    def rms(self, part: Part) -> float:
+        """Returns the rms of the free run's error on a part, over all outputs."""
+        return float(np.sqrt(np.mean(self.e[self.parts.rows(part)] ** 2)))
 
-    @property
-    def disturbance(self) -> float:
-        """Rms of what input errors do to the judged error, over all outputs, in their unit."""
-        return float(np.sqrt(np.mean(self.disturbances**2)))
+    def disturbances(self, part: Part) -> np.ndarray:
+        """Returns the rms of what input errors do to each output there, (ny,), in its unit."""
+        share = self.moved[self.parts.rows(part)].mean(axis=0)
+        return np.asarray(self.refit.level.sigma * np.sqrt(share))
+
+    def disturbance(self, part: Part) -> float:
+        """Returns the same over all outputs."""
+        return float(np.sqrt(np.mean(self.disturbances(part) ** 2)))
 
     @property
     def noise(self) -> np.ndarray:
@@ -82,17 +87,19 @@ class Validation:
 
     @property
     def gap(self) -> Gap:
-        """The judged error as a gap."""
-        percent = fit_percent(self.measured, self.measured - self.judged)
-        return Gap(self.rms, percent, rms_by_unit(self.judged, self.log))
+        """The error of the free run on the samples that are told of."""
+        told = self.parts.report
+        y, e = self.log.outputs[told], self.e[told]
+        return Gap(self.rms("report"), fit_percent(y, y - e), rms_by_unit(e, self.log))
 
 
-def validate(fit: Refit, log: Log) -> Validation:
+def validate(fit: Refit, log: Log, parts: Parts | None = None) -> Validation:
     """Predict a whole log with a fit.
 
     Args:
         fit: of the log's part `estimation`.
         log: the whole log.
+        parts: of the samples that are not fitted; None where nothing has been told apart.
 
     Raises:
         DivergenceError: the model cannot be simulated over the whole log.
@@ -102,17 +109,31 @@ def validate(fit: Refit, log: Log) -> Validation:
     with one_blas_thread():
         filter_ = build_whitener(point.linear, fit.level.noise, log.sampling_time)
         E = filter_(point.e) / fit.level.sigma
-        measured, judged = log.outputs[~seen], point.e[~seen]
         variances = fit.level.noise.of_inputs(point.linear.B.shape[2]) ** 2
         moved = propagate_input_error(filter_.A, filter_.C, variances)
-        moved = moved[~seen] if moved.size else moved
-    disturbances = np.zeros(log.outputs.shape[1])
-    if moved.size:
-        disturbances = fit.level.sigma * np.sqrt(moved.mean(axis=0))
     return Validation(
         refit=fit, log=log, e=point.e, innovations=E, filter=filter_, seen=seen,
-        disturbances=disturbances, measured=measured, judged=judged,
+        parts=parts or Parts(~seen, ~seen, 0),
+        moved=moved if moved.size else np.zeros_like(point.e),
     )  # fmt: skip
+
+
+def divide_unseen(validation: Validation, options: DiscoveryOptions) -> Parts:
+    """Returns the parts of the unseen samples of each record, by the memory of the fitted ones.
+
+    Args:
+        validation: of the model without effects.
+        options: whether a part is kept that the search does not use.
+    """
+    squares, begun = np.sum(validation.innovations**2, axis=1), 0
+    fitted, unseen = [], []
+    for _, record in records_of(validation.log):
+        rows = slice(begun, begun := begun + len(record))
+        unseen.append(~validation.seen[rows])
+        fitted.append(squares[rows][validation.seen[rows]])
+    memory = autocorrelation_time([x for x in fitted if len(x)])
+    keep = uses(options, "untouched_part")
+    return join([divide(rows, MIN_PROOF_SAMPLES, memory, keep) for rows in unseen])
 
 
 def propagate_input_error(A: np.ndarray, C: np.ndarray, variances: np.ndarray) -> np.ndarray:
@@ -133,7 +154,9 @@ def propagate_input_error(A: np.ndarray, C: np.ndarray, variances: np.ndarray) -
 
 
 def prove(without: Validation, with_it: Validation, options: DiscoveryOptions) -> Proof:
-    """Returns how much better the second of two fits predicts the unseen samples.
+    """Returns how much better the second of two fits predicts the unseen samples that decide.
+
+    What is to be told of it, on the other ones, is its `told`.
 
     Args:
         without: the model without an effect.
@@ -143,33 +166,47 @@ def prove(without: Validation, with_it: Validation, options: DiscoveryOptions) -
     with one_blas_thread():
         E = without.filter(with_it.e) / without.refit.level.sigma
     fewer = np.sum(without.innovations**2 - E**2, axis=1) / 2
-    gain = fewer[~with_it.seen]
+    decided, told = (
+        _prove_on(part, fewer, without, with_it, options) for part in ("select", "report")
+    )
+    return replace(decided, untouched=told)
+
+
+def _prove_on(
+    part: Part, fewer: np.ndarray, without: Validation, with_it: Validation,
+    options: DiscoveryOptions,
+) -> Proof:  # fmt: skip
+    """Returns the proof on one part, from the gain of each sample of the log, (N,)."""
+    gain = fewer[with_it.parts.rows(part)]
     blocks = _blocks(gain, options)
     least = 2 * MIN_PROOF_SAMPLES
-    each = [(name, part) for name, part in _by_record(with_it, fewer) if len(part) >= least]
-    floor = with_it.refit.level.sigma**2 + with_it.disturbance**2
-    above = without.rms**2 - min(floor, with_it.rms**2)
-    closed = without.rms**2 - with_it.rms**2
-    sensed = without.rms**2 - min(with_it.refit.level.sigma, with_it.rms) ** 2
+    each = [(name, part) for name, part in _by_record(with_it, fewer, part) if len(part) >= least]
+    floor = with_it.refit.level.sigma**2 + with_it.disturbance(part) ** 2
+    before, after = (v.rms(part) ** 2 for v in (without, with_it))
+    above = before - min(floor, after)
+    closed = before - after
+    sensed = before - min(with_it.refit.level.sigma**2, after)
     return Proof(
         gain=float(gain.sum()),
         t=_t(blocks),
         chance=flip_chance(blocks),
         blocks=len(blocks),
         share=float(closed / above) if above > 0 else 0.0,
-        fall=float(closed / without.rms**2),
+        fall=float(closed / before),
         above=float(closed / sensed) if sensed > 0 else 0.0,
         agrees=tuple(name for name, part in each if part.sum() > 0),
         disagrees=tuple(name for name, part in each if is_beyond(-_blocks(part, options), options)),
     )
 
 
-def _by_record(validation: Validation, gain: np.ndarray) -> Iterator[tuple[str, np.ndarray]]:
-    """Yields the name of each record and the gains of its unseen samples."""
-    begun = 0
+def _by_record(
+    validation: Validation, gain: np.ndarray, part: Part
+) -> Iterator[tuple[str, np.ndarray]]:
+    """Yields the name of each record and the gains of a part of its unseen samples."""
+    begun, inside = 0, validation.parts.rows(part)
     for _, record in records_of(validation.log):
         rows = slice(begun, begun := begun + len(record))
-        yield record.name, gain[rows][~validation.seen[rows]]
+        yield record.name, gain[rows][inside[rows]]
 
 
 def is_beyond(blocks: np.ndarray, options: DiscoveryOptions) -> bool:

@@ -26,6 +26,7 @@ from identification.innovations.fitted_model import (
 from identification.innovations.forward_selection import select_effect
 from identification.innovations.kinds import improve_kinds
 from identification.innovations.pairs import find_pair
+from identification.innovations.proof import divide_unseen
 from identification.innovations.pruning import exchange, without_needless
 from identification.innovations.scoring.scores import Score
 from identification.innovations.scoring.sensitivities import Sensitivity, compute_sensitivities
@@ -65,8 +66,11 @@ def first_state(task: DiscoveryTask, progress: Progress) -> InnovationSearch:
     refuse_without_effect(nominal.refit.point.J, task.nominal_model.names, task.log)
     if task.nominal_model.scattering:
         task, nominal = _with_scatter(task, nominal)
+    parts = divide_unseen(nominal.validation, task.options)
+    task = replace(task, parts=parts)
+    nominal = replace(nominal, validation=replace(nominal.validation, parts=parts))
     watch.stop("nominal fit")
-    progress(f"nominal fit: {held(1e3 * nominal.validation.rms)}e-3 on unseen data")
+    progress(f"nominal fit: {held(1e3 * nominal.validation.rms('select'))}e-3 on unseen data")
     with collected(progress) as failed:
         sensitivities = _compute_all_sensitivities(task, nominal, ())
     watch.stop("sensitivities")

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from identification.discovery.moves import Task
-from identification.logs.joined import Log
+from identification.logs.log import Log
+from identification.logs.parts import Parts
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -14,6 +15,8 @@ class DiscoveryTask(Task):
 
     Attributes:
         log: its part `estimation` (or first half) is fitted; the rest is unseen and confirms.
+        parts: of what is unseen; None before the nominal fit, whose memory says how long they are.
     """
 
     log: Log
+    parts: Parts | None = None

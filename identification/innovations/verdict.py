@@ -55,7 +55,7 @@ def find_remaining(state: InnovationSearch) -> tuple[Finding, ...]:
     findings = (
         *find_structure(model, options),
         *find_robot_change(model.validation, options),
-        *find_input_error(model.validation, options),
+        *find_input_error(model.validation, options, "report"),
         *(() if named else find_doubtful_effect(state.rejected, samples, options)),
         *_find_oversized(state, named),
     )
@@ -94,7 +94,7 @@ def compute_explained_share(
         findings: what the model leaves unexplained.
         options: how large an error of the inputs is noise.
     """
-    proof = prove(nominal.validation, model.validation, options)
+    proof = prove(nominal.validation, model.validation, options).told
     is_random = not _has(findings, FindingKind.STRUCTURED_INPUT_ERROR)
     is_noise = is_random and model.refit.relative_input_error <= options.allowed_input_error
     return proof.share if is_noise else proof.above
@@ -162,15 +162,17 @@ def conclude(state: InnovationSearch) -> Discovery:
     rejected = listed_once((*refused, *state.rejected))
     proven = (r for r in rejected if r.bic_gain > 0 and is_proven(r.proof, options))
     is_random = not _has(findings, FindingKind.STRUCTURED_INPUT_ERROR)
-    disturbed = by_unit(model.validation.disturbances, log)
-    run = FreeRun(log, nominal.refit, model.refit, nominal.validation.e, model.validation.e)
+    disturbed = by_unit(model.validation.disturbances("report"), log)
+    run = FreeRun(
+        log, nominal.refit, model.refit, nominal.validation.e, model.validation.e, task.parts
+    )
     found = Discovery(
         records=run.records, options=options, verdict=verdict, named=named, rejected=rejected,
         nearest=next(proven, None), unexplained=bool(findings or unnamed or (named and beside)),
         share=None, unit=log.output_unit, noise_rms=model.refit.level.sigma,
         noise_by_unit=by_unit(model.validation.noise, log),
         noise_by_output=dict(zip(log.output_names, model.validation.noise.tolist(), strict=True)),
-        disturbance_rms=model.validation.disturbance if is_random else 0.0,
+        disturbance_rms=model.validation.disturbance("report") if is_random else 0.0,
         disturbance_by_unit={u: s if is_random else 0.0 for u, s in disturbed.items()},
         input_error=model.refit.relative_input_error, unlogged=_unlogged(model.refit),
         before=nominal.validation.gap, after=model.validation.gap, errors=run.errors,
@@ -178,7 +180,7 @@ def conclude(state: InnovationSearch) -> Discovery:
         at_bound=tuple(list_at_bound(model.refit, nominal.refit.point.space.names)),
         scores=state.nominal_scores, remaining=scores, scored_by="gain",
         next_best=_next(scores) if named and not rejected else None,
-        detectable=list_detectable(scores, _unseen_share(state.model), options),
+        detectable=list_detectable(scores, _deciding_share(state.model), options),
         hidden=list_hidden(scores, model.refit.level, options), findings=findings,
         seconds=state.seconds, failed=state.failed, moves=state.made, run=run,
         recover=partial(recover_force, model.refit),
@@ -199,10 +201,10 @@ def _forbidden(
     }
 
 
-def _unseen_share(model: FittedModel) -> float:
-    """Returns the number of unseen samples over that of fitted ones."""
-    seen = model.validation.seen
-    return float(np.sum(~seen) / np.sum(seen))
+def _deciding_share(model: FittedModel) -> float:
+    """Returns the number of unseen samples on which a proof decides over that of fitted ones."""
+    deciding, seen = model.validation.parts.select, model.validation.seen
+    return float(np.sum(deciding) / np.sum(seen))
 
 
 def _unlogged(fit: Refit) -> Unlogged:

@@ -27,6 +27,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from identification.errors import InputError, unknown_name
 from identification.logs.log import Log, halves
 from identification.logs.noise import noise_floor
+from identification.logs.parts import Parts
 from identification.logs.sampling import grid, rows_between
 
 REPLAYED = 0.95  # R above which a log says little beside the others
@@ -44,11 +45,13 @@ class Record:
         log: what was measured.
         role: "fit" or "confirm".
         values: values of the plant's parameters that hold for this record alone, by name.
+        parts: of what no fit sees of it, in a search; None where nothing is told apart.
     """
 
     log: Log
     role: Role
     values: Mapping[str, float] = field(default_factory=dict)
+    parts: Parts | None = None
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -1,4 +1,4 @@
-"""The evidence for a law against others in its place: all windows, fitted and unseen.
+"""The evidence for a law against others in its place: fitted windows, and unseen that decide.
 
     E_c = n_y W mean_b g_cb - k_c ln W
     P_c = mean over resamples of the blocks of exp(E_c/2) / Σ_k exp(E_k/2)
@@ -24,18 +24,18 @@ RESAMPLES = 2000  # of the blocks: a probability is then known to a hundredth
 
 
 def all_gains(without: WindowModel, with_it: WindowModel) -> np.ndarray:
-    """Returns g of the blocks of all fitted windows, then of all unseen ones, shape (B,)."""
+    """Returns g of the blocks of fitted windows, then of unseen ones that decide, shape (B,)."""
     before, after = (
-        [*scaled_squares(m.fit.errors, without.scale), *m.unseen.at_horizon]
+        [*scaled_squares(m.fit.errors, without.scale), *m.unseen.select.at_horizon]
         for m in (without, with_it)
     )
     return np.concatenate(block_gains(before, after, without.unseen.floor))
 
 
 def count_windows(model: WindowModel) -> int:
-    """Returns the number of windows of the horizon of all records, fitted and unseen."""
+    """Returns the number of windows of the horizon, fitted ones and unseen ones that decide."""
     fitted = sum(len(p.cut.starts) for p in model.fit.problem.parts)
-    return fitted + sum(len(s) for s in model.unseen.at_horizon)
+    return fitted + sum(len(s) for s in model.unseen.select.at_horizon)
 
 
 def evidence(

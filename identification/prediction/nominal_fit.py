@@ -40,6 +40,31 @@ MAX_SCALE_FITS = 6  # until it is settled
 def fit_nominal(
     nominal_model: NominalModel, records: Sequence[Record], progress: Progress | None = None
 ) -> WindowModel:
+    """Fit a model without effects to some records, and predict the others; see `fit_alone`."""
+    found, scale = fit_alone(nominal_model, records, progress)
+    return predicted(found, scale, records, float(nominal_model.horizon or 0.0))
+
+
+def predicted(
+    found: WindowFit, scale: np.ndarray, records: Sequence[Record], horizon: float
+) -> WindowModel:
+    """Returns the model of a fit without effects, with its errors on the records that confirm.
+
+    Args:
+        found: the fit.
+        scale: s of each output, shape (ny,), in its unit.
+        records: to fit and to confirm.
+        horizon: [s].
+    """
+    confirm = [r for r in records if r.role == "confirm"]
+    plant = found.problem.plant
+    seen = predict_fitted(plant, confirm, horizon, scale, found, {})
+    return WindowModel((), found, seen, scale)
+
+
+def fit_alone(
+    nominal_model: NominalModel, records: Sequence[Record], progress: Progress | None = None
+) -> tuple[WindowFit, np.ndarray]:
     """Fit a model without effects, over windows that grow to its horizon.
 
     The scale of the errors, against which priors count, is that of the fit itself: fits are
@@ -48,8 +73,11 @@ def fit_nominal(
     Args:
         nominal_model: the model; its plant's own values are where the search begins, and the
             priors' means where it says no other.
-        records: to fit and to confirm.
+        records: of which those to fit are fitted.
         progress: is told one line per linearisation.
+
+    Returns:
+        The fit, and s of each output, shape (ny,), in its unit.
 
     Raises:
         InputError: there is no horizon, windows do not fit a record, or a start lies on a bound.
@@ -87,8 +115,7 @@ def fit_nominal(
         scale = _rms(found)
         if np.all(np.abs(np.log(scale / old)) < SETTLED_CHANGE):
             break
-    confirm = [r for r in records if r.role == "confirm"]
-    return WindowModel((), found, predict_fitted(task.plant, confirm, horizon, old, found, {}), old)
+    return found, old
 
 
 def _of(length: float, scale: int, progress: Progress | None) -> Progress | None:

@@ -61,13 +61,14 @@ def record_errors(
     Args:
         records: of both roles, in the order of the errors of each.
         scale: s of each output, shape (ny,), in its unit.
-        unseen: errors of both models on the records that confirm.
+        unseen: errors of both models on the records that confirm, of which what is kept for the
+            report is told.
         fitted: errors of both models on the records that were fitted.
     """
     squares = [[np.mean((e / scale) ** 2, axis=1) for e in each] for each in fitted]
     pairs = {
         "fit": zip(*squares, strict=True),
-        "confirm": zip(*(u.of_outputs for u in unseen), strict=True),
+        "confirm": zip(*(u.report.of_outputs for u in unseen), strict=True),
     }
     out = []
     for record in records:

@@ -7,6 +7,7 @@ and sensitivity without what the state of a window makes up for; n: readings les
 they tell, σ: the sensors' noise. No log has exact inputs: a drive's current or a commanded torque
 is good to some per cent. What so small an error of the inputs makes is no reason to seek an effect.
 
+All of it is of the windows on which the search has not decided (`identification.logs.parts`).
 Where the error at the horizon is that of the sensors, nothing is left that an effect or a shift of
 a record could explain. Among many that are tried one gains by luck, so that such a doubt counts
 only where more than `min_gap_share` is left above the sensors' noise. One output may err while the
@@ -60,15 +61,15 @@ def find_remaining(
     """
     out: list[Finding] = []
     if state.worse_fit is not None:
-        worse = WorseFit(rise(state.begun, state.worse_fit))
+        worse = WorseFit(rise(state.begun.report, state.worse_fit.report))
         out.append(Finding(FindingKind.WORSE_FIT, worse))
     left = _error_left(state)
     places: set[tuple[str, str]] = set()  # each is told once, as it did best
     for r in rejected if left else ():
-        seen = r.proof
         if r.doubt == "steps":  # they are told, and are nothing that is missing
             continue
-        if seen.is_everywhere and seen.fall > 0 and seen.t > state.task.options.min_proof_t:
+        seen, has_fallen = r.proof, r.proof.told.fall > 0
+        if seen.is_everywhere and has_fallen and seen.t > state.task.options.min_proof_t:
             unproven = _unproven(r, state.model.plant)
             if (unproven.name, unproven.where) not in places:
                 out.append(Finding(FindingKind.UNPROVEN_EFFECT, unproven))
@@ -84,7 +85,7 @@ def find_remaining(
 def _error_left(state: WindowSearch) -> RemainingError | None:
     """Returns the error above the sensors' noise; None where the noise alone explains it."""
     options, share = state.task.options, left_by_steps(state.model)
-    ratio, ratios = share * noise_ratio(state), share * output_ratios(state.model.unseen)
+    ratio, ratios = share * noise_ratio(state), share * output_ratios(state.model.unseen.report)
     names = state.task.records[0].log.output_names
     worst = int(np.argmax(ratios))
     if len(names) > 1 and ratios[worst] > max(MAX_OUTPUT_RATIO, ratio):
@@ -106,7 +107,7 @@ def output_ratios(unseen: Unseen) -> np.ndarray:
 
 def noise_ratio(state: WindowSearch) -> float:
     """Returns the final model's rms error on unseen records over that of the sensors' noise."""
-    unseen = state.model.unseen
+    unseen = state.model.unseen.report
     square = float(np.mean(np.concatenate(unseen.at_horizon)))
     return float(np.sqrt(square / unseen.floor)) if unseen.floor else np.inf
 
@@ -116,7 +117,7 @@ def different_records(state: WindowSearch) -> list[DifferentRecord]:
 
     The sample are logarithms of the windows' mean squares, and the records are paid for.
     """
-    unseen, options = state.model.unseen, state.task.options
+    unseen, options = state.model.unseen.report, state.task.options
     errors = {
         r.log.name: np.log(squares + unseen.floor)
         for r, squares in zip(state.task.confirm, unseen.at_horizon, strict=True)
@@ -143,7 +144,7 @@ def _unproven(r: RejectedEffect, plant: Plant) -> UnprovenEffect:
     c = r.candidate
     doubt = r.doubt or "chance"
     return UnprovenEffect(
-        c.effect.name, phrase_there(c, plant), c.where, r.proof.fall, r.proof.t, doubt
+        c.effect.name, phrase_there(c, plant), c.where, r.proof.told.fall, r.proof.t, doubt
     )
 
 

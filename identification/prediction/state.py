@@ -7,6 +7,8 @@ then drop effects and places, and what a curve of the data does
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from identification.discovery.attempts import collected
 from identification.discovery.moves import Move, Watch
 from identification.discovery.passes import uses
@@ -17,12 +19,13 @@ from identification.prediction.moves.drop_beside_curves import drop_beside_curve
 from identification.prediction.moves.drop_drawn_laws import drop_drawn_laws
 from identification.prediction.moves.drop_effects import drop_effects
 from identification.prediction.moves.drop_places import drop_places
-from identification.prediction.nominal_fit import as_begun, fit_nominal
+from identification.prediction.nominal_fit import as_begun, fit_alone, predicted
 from identification.prediction.screening import score_all
 from identification.prediction.task import RecordsTask, WindowSearch, finishing
 from identification.prediction.trial import find_doubt
 from identification.progress import Progress
 from identification.windows.blocks import count_blocks
+from identification.windows.dividing import divide_records
 from identification.windows.unseen import HORIZON, Unseen, compare, predict, rise
 
 FEWEST_BLOCKS = 3  # of unseen windows, whose scatter is known
@@ -50,7 +53,11 @@ def first_state(task: RecordsTask, progress: Progress) -> WindowSearch:
     """
     watch = Watch()
     base = task.nominal_model
-    nominal = fit_nominal(base, task.records, progress)
+    found, scale = fit_alone(base, task.records, progress)
+    if uses(task.options, "untouched_part"):
+        divided = divide_records(found.problem.plant, task.records, found, task.horizon, scale)
+        task = replace(task, records=divided)
+    nominal = predicted(found, scale, task.records, task.horizon)
     _refuse_few(nominal.unseen, task.horizon)
     begun = predict(nominal.plant, task.confirm, task.horizon, nominal.scale, {}, nominal.unseen,
                     lengths=HORIZON)  # fmt: skip
@@ -63,8 +70,8 @@ def first_state(task: RecordsTask, progress: Progress) -> WindowSearch:
         worse = nominal.unseen
         progress(
             "the fitted values predict unseen records worse (mean square"
-            f" {100 * rise(begun, worse):+z.0f} %) than those with which the fit began: these are"
-            " kept"
+            f" {100 * rise(begun.select, worse.select):+z.0f} %) than those with which the fit"
+            " began: these are kept"
         )
         nominal = as_begun(base, nominal, begun)
     watch.stop("nominal fit")

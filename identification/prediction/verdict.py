@@ -76,7 +76,9 @@ def conclude(state: WindowSearch) -> Discovery:
     if verdict == "unknown effect":
         rejected, named, model = listed_once([*map(_unnamed, named), *rejected]), (), nominal
     floor = model.unseen.floor
-    before, after = (float(np.mean(np.concatenate(m.unseen.at_horizon))) for m in (nominal, model))
+    before, after = (
+        float(np.mean(np.concatenate(m.unseen.report.at_horizon))) for m in (nominal, model)
+    )
     above = before - min(floor, after)
     smooth = stick.share(nominal.fit.cost, model.fit.cost) if stick and named else None
     log = task.records[0].log
@@ -200,14 +202,19 @@ def _named(
         ),
         compared=len(others),
         one_of=bool(max(of_rivals, default=0.0) > options.set_confidence),
-        evidence=accepted.criterion, proof=_proof(state, accepted.prediction),
+        evidence=accepted.criterion, proof=_proof(state, accepted),
         same_as=next((e for e in state.task.effects if e.name == twin), None),
         smooth_share=stick.share_of(mine, accepted.prediction.fall) if stick else None,
     )  # fmt: skip
 
 
-def _proof(state: WindowSearch, seen: Prediction) -> Proof:
-    """Returns what an effect does for the records that confirm."""
+def _proof(state: WindowSearch, effect: Contender) -> Proof:
+    """Returns what an effect does for the records that confirm: what decided, and what is told."""
+    seen = effect.prediction
+    return replace(_proof_of(state, seen), untouched=_proof_of(state, seen.told))
+
+
+def _proof_of(state: WindowSearch, seen: Prediction) -> Proof:
     names = [r.log.name for r in state.task.confirm]
     worse = [len(b) > 2 and mean_above_zero(-b)[1] < state.task.options.significance
              for b in seen.blocks]  # fmt: skip
@@ -224,7 +231,7 @@ def _rejected(state: WindowSearch, contender: Contender) -> RejectedEffect:
     """Returns an effect that was refitted and not accepted, at the values of its own model."""
     c = contender
     candidate, parameters = _fitted(c.model, c.candidate)
-    proof = _proof(state, c.prediction)
+    proof = _proof(state, c)
     return RejectedEffect(
         candidate, parameters, np.nan, proof, evidence=c.criterion, doubt=c.doubt
     )  # fmt: skip
@@ -277,7 +284,7 @@ def _is_worse(state: WindowSearch) -> bool:
     """Returns whether the fit worsens predictions enough to matter, and no effect explains why."""
     if state.worse_fit is None or state.accepted:
         return False
-    return rise(state.begun, state.worse_fit) > state.task.options.min_gap_share
+    return rise(state.begun.report, state.worse_fit.report) > state.task.options.min_gap_share
 
 
 def _errs(model: WindowModel, needed: float, options: DiscoveryOptions) -> bool:
@@ -287,11 +294,12 @@ def _errs(model: WindowModel, needed: float, options: DiscoveryOptions) -> bool:
 
 def _is_off(model: WindowModel, options: DiscoveryOptions) -> bool:
     """Returns whether a model errs on unseen records by more than sensors' noise and steps make."""
-    square = float(np.mean(np.concatenate(model.unseen.at_horizon))) * left_by_steps(model) ** 2
+    square = float(np.mean(np.concatenate(model.unseen.report.at_horizon))) * left_by_steps(model) ** 2
     return square > model.unseen.floor * (1 + options.min_gap_share)
 
 
 def _gap(unseen: Unseen, scale: np.ndarray, log: Log) -> Gap:
-    square = float(np.mean(np.concatenate(unseen.at_horizon)))
-    each = errors_by_unit(np.concatenate(unseen.of_outputs), scale, log)
+    told = unseen.report
+    square = float(np.mean(np.concatenate(told.at_horizon)))
+    each = errors_by_unit(np.concatenate(told.of_outputs), scale, log)
     return Gap(error_unit(log, scale)[0] * float(np.sqrt(square)), unseen.fit_percent, each)

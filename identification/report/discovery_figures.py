@@ -41,7 +41,7 @@ def gap_figures(found: Discovery, run: FreeRun) -> Figures:
 
 def where_figures(found: Discovery, run: FreeRun) -> Figures:
     """Returns figures of the errors of each output, and of the forces that are missing."""
-    before, after = (np.sqrt(np.mean(e[run.unseen] ** 2, axis=0)) for e in (run.before, run.after))
+    before, after = (np.sqrt(np.mean(e[run.told] ** 2, axis=0)) for e in (run.before, run.after))
     noise, unit = of_outputs(found.floor, run.log), found.unit
     scale, level = np.ones(len(noise)), float(noise.max())
     if len({*found.outputs.values()}) > 1 and noise.min() > 0:  # unlike outputs have no one axis

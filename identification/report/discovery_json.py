@@ -17,6 +17,7 @@ from identification.model.predictor import Plant
 from identification.quantities import plain, plain_fields
 from identification.report.finding_words import describe_finding
 from identification.report.named_words import curve_nodes
+from identification.report.parts_words import parts_to_json
 from identification.windows.coarse import steps_of
 
 GAP = ("rms", "fit_percent", "rms_by_unit")
@@ -59,6 +60,7 @@ def discovery_to_json(found: Discovery) -> dict[str, Any]:
                             for n, (v, std) in d.values.items()}}
             for d in found.differences
         ],
+        "parts": parts_to_json(found),
         **plain_fields(found, "shifts", "repeats", "horizon"),
         "timestep": dict(zip(("simulated", "model"), steps_of(found.nominal.plant), strict=True)),
         "input_error": plain(found.input_error),
@@ -109,8 +111,8 @@ def _named_to_json(named: NamedEffect, plant: Plant) -> dict[str, Any]:
         ],
         "same_as": named.same_as.name if named.same_as else None,
         "advice": named.advice or None,
-        "proof": _proof_to_json(named.proof),
-        **plain_fields(named.proof, "agrees", "disagrees"),
+        **_proofs_to_json(named.proof),
+        **plain_fields(named.proof.told, "agrees", "disagrees"),
     }
 
 
@@ -119,12 +121,13 @@ def _rejected_to_json(rejected: RejectedEffect) -> dict[str, Any]:
     return {
         **plain_fields(rejected, *REJECTED),
         "parameters": _parameters_to_json(rejected.parameters),
-        "proof": _proof_to_json(rejected.proof),
+        **_proofs_to_json(rejected.proof),
     }
 
 
-def _proof_to_json(proof: Proof) -> dict[str, Any]:
-    return plain_fields(proof, *PROOF)
+def _proofs_to_json(proof: Proof) -> dict[str, Any]:
+    """Returns the proof on samples that are told of, and that by which the search decided."""
+    return {"proof": plain_fields(proof.told, *PROOF), "decided": plain_fields(proof, *PROOF)}
 
 
 def _oversized_to_json(evidence: OversizedEffect) -> dict[str, Any]:

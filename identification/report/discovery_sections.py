@@ -25,6 +25,7 @@ from identification.report.fitted_values import (
     value_table,
 )
 from identification.report.page import Section, Table
+from identification.report.parts_words import parts_sentence
 from identification.report.shown_words import shown_lines, shown_rows, shown_sentences
 from identification.windows.coarse import steps_of
 
@@ -45,7 +46,7 @@ GAPS = {  # by what errors are of: what the gap on unseen data is
 }
 RECORDS = {  # likewise: the errors of records, on a page and in a terminal
     "free run": (
-        "Rms error of free runs over the unseen samples of each record.",
+        "Rms error of free runs over the unseen samples of each record that are told of.",
         "unseen samples of each record",
     ),
     "windows": (
@@ -73,17 +74,17 @@ def gap_section(found: Discovery) -> Section:
         times = held(ratio) if isfinite(ratio) else None
         rows.append((model, size, times, float(fit.mean()) if len(fit) else None))
         lines.append(f"  {when:<7}{rms}" + (f", {times} times the noise" if times else ""))
-    title = "error on unseen data:"
+    title, said = "error on unseen data:", parts_sentence(found)
     return Section(
         "The gap on unseen data",
-        GAPS[found.judged_by],
+        f"{GAPS[found.judged_by]} {said}",
         first=True,
         figures=cache(partial(gap_figures, found, run)) if run else (),
         table=Table(
             ("model", "rms", "times the noise", "mean fit [%]"),
             tuple(rows if found.named else rows[:1]),
         ),
-        plain="\n".join([title, *lines]) if found.named else title + lines[0][8:],
+        plain="\n".join([title, *lines] if found.named else [title + lines[0][8:]]) + f"\n{said}",
     )
 
 

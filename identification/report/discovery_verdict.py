@@ -16,10 +16,12 @@ from identification.report.effect_words import (
 from identification.report.error_words import change_words, describe_scale, error_words
 from identification.report.finding_words import describe_finding, sentence
 from identification.report.named_words import named_sentences
+from identification.report.parts_words import is_untouched
 from identification.report.shown_words import SHOWN, hiding, smallest, split_detectable
 from identification.report.untold_words import bound_sentences
 from identification.shown import verdict_of
 
+NOT_FITTED = "the fit has not seen, but on which the search has decided"
 NO_ERROR = 1e-3  # of the inputs' rms: less is not told from none
 NOISIER = 1.5  # times the rms noise of the other outputs of its unit: more is told
 
@@ -190,11 +192,12 @@ def _nearest(found: Discovery) -> list[str]:
     """Returns a sentence on what was refitted, is beyond chance, and is not named."""
     if (nearest := found.nearest) is None:
         return []
-    fall = 100 * nearest.proof.fall
+    told = nearest.proof.told
+    fall = 100 * told.fall
     turn = f"{'falls' if fall >= 0 else 'rises'} by {abs(fall):.2g} %"
     return [
         f"Nearest comes {describe_effect(nearest.candidate)}: it predicts each next unseen sample"
-        f" better ({describe_chance(nearest.proof)}), and with it the mean square of the free run"
+        f" better ({describe_chance(told)}), and with it the mean square of the free run"
         f" {turn}. It is too small to matter, or not the likeliest."
     ]
 
@@ -211,8 +214,9 @@ def _proof(found: Discovery) -> str:
     is_one = found.scale is not None or len(errors[0]) == 1  # else the square has no meaning
     nearly_all = "less by more than 99" if square < -0.995 else f"{100 * square:+z.0f}"
     percent = f" (mean square {nearly_all} %)" if is_one else ""
+    data = "neither the fit nor the search has used" if is_untouched(found) else NOT_FITTED
     said = (
-        f"On data that the fit has not seen, the error{of} falls {change} with {whom} in the"
+        f"On data that {data}, the error{of} falls {change} with {whom} in the"
         f" model{percent}; the noise is {noise}{made}."
     )
     if found.share is not None:

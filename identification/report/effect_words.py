@@ -169,24 +169,24 @@ def describe_rejected(found: Discovery) -> tuple[str, list[str]]:
 
 def _rejected(rejected: RejectedEffect, plant: Plant) -> str:
     """Returns a rejected effect with its sizes, what it would do, and what is against it."""
-    proof, outside = rejected.proof, rejected.outside
-    turn = "falls" if proof.fall >= 0 else "rises"
+    proof, outside, fall = rejected.proof, rejected.outside, rejected.proof.told.fall
+    turn = "falls" if fall >= 0 else "rises"
     doubt = f"; {DOUBTS[rejected.doubt]}" if rejected.doubt else ""
     if rejected.doubt == "differ" and proof.disagrees:
         doubt += f" (worse: {', '.join(proof.disagrees)})"
     instead = f"; instead of it, {describe_outside(outside)}" if outside is not None else ""
     return (
         f"{describe_there(rejected.candidate, plant)}: {describe_sizes(rejected)};"
-        f" {_fitted(rejected)}; on unseen ones {describe_chance(proof)}, and the mean square {turn}"
-        f" by {100 * abs(proof.fall):.3g} %{doubt}{instead}"
+        f" {_fitted(rejected)}; on unseen ones that decide {describe_chance(proof)}, and on those"
+        f" that are told of the mean square {turn} by {100 * abs(fall):.3g} %{doubt}{instead}"
     )
 
 
 def _fitted(found: NamedEffect | RejectedEffect) -> str:
-    """Returns what speaks for an effect: its gain on fitted samples, or over all windows."""
+    """Returns what speaks for an effect: its gain on fitted samples, or over windows."""
     if isfinite(found.bic_gain):
         return f"BIC gain {found.bic_gain:z.4g} on fitted samples"
-    return f"evidence {found.evidence:z.4g} of all windows"
+    return f"evidence {found.evidence:z.4g} of all windows that decide"
 
 
 def describe_chance(proof: Proof) -> str:
@@ -196,10 +196,10 @@ def describe_chance(proof: Proof) -> str:
 
 
 def describe_gains(named: NamedEffect) -> str:
-    """Returns in words what a named effect gains on fitted and on unseen samples."""
-    higher = f", log likelihood {named.proof.gain:+z.4g} on unseen ones"
-    unseen = higher if isfinite(named.proof.gain) else ""
-    return f"{_fitted(named)}{unseen} ({describe_chance(named.proof)})"
+    """Returns in words what a named effect gains on fitted samples, and on those told of."""
+    told = named.proof.told
+    higher = f" log likelihood {told.gain:+z.4g}," if isfinite(told.gain) else ""
+    return f"{_fitted(named)}; on unseen ones that are told of{higher} {describe_chance(told)}"
 
 
 def describe_outside(outside: Outside) -> str:

@@ -128,10 +128,10 @@ def _structured_input_error(e: evidence.StructuredInputError) -> str:
 
 
 def _doubtful_effect(e: evidence.DoubtfulEffect) -> str:
-    r = e.rejected
+    r, told = e.rejected, e.rejected.proof.told
     return (
         f"{describe_effect(r.candidate)}, {describe_sizes(r)}, explains the fitted samples"
-        f" beyond chance and {100 * r.proof.fall:z.0f} % of the error on unseen data, but is not"
+        f" beyond chance and {100 * told.fall:z.0f} % of the error on unseen data, but is not"
         f" proven there ({describe_chance(r.proof)})"
     )
 

@@ -185,7 +185,7 @@ def _agreement(found: Discovery, named: NamedEffect) -> str:
     names = [e.name for e in found.errors if e.role == "confirm"]
     names = names or [e.name for e in found.errors if len(found.errors) > 1]
     distinct = [name for name in names if name not in found.repeats]
-    helped = [name for name in distinct if name in named.proof.agrees]
+    helped = [name for name in distinct if name in named.proof.told.agrees]
     said = ""
     if distinct:
         what = "curve" if named.candidate.effect.is_curve else "named effect"
@@ -198,8 +198,8 @@ def _agreement(found: Discovery, named: NamedEffect) -> str:
         one = len(found.repeats) == 1
         said += f" {', '.join(found.repeats)} {'repeats' if one else 'repeat'} the motion of others"
         said += " and does not count." if one else " and do not count."
-    if named.proof.disagrees:
-        said += f" It raises the error on {', '.join(named.proof.disagrees)}, beyond chance."
+    if worse := named.proof.told.disagrees:
+        said += f" It raises the error on {', '.join(worse)}, beyond chance."
     return said
 
 

@@ -55,10 +55,10 @@ def confirm(robot: Robot, found: RobotFit | Discovery) -> tuple[Confirmation, ..
         return _over_free_run(robot, {}, found.values)
     if found.horizon is not None:
         return _of_discovery(robot, found)
-    after = collect_final_values(found)
+    after, told = collect_final_values(found), None if found.run is None else found.run.told
     if not found.named:
-        return _over_free_run(robot, {}, after)
-    return _over_free_run(robot, found.nominal.values, after, WITHOUT)
+        return _over_free_run(robot, {}, after, told=told)
+    return _over_free_run(robot, found.nominal.values, after, WITHOUT, told)
 
 
 def compare_values(
@@ -77,11 +77,17 @@ def _over_free_run(
     before: Mapping[str, float],
     after: Mapping[str, float],
     models: tuple[str, str] = (AS_WRITTEN, FITTED),
+    told: np.ndarray | None = None,
 ) -> tuple[Confirmation, ...]:
-    """Compares two sets of values on the records, or on the unseen part of the only log."""
+    """Compares two sets of values on the records, or on the unseen part of the only log.
+
+    Of what is unseen only the samples `told` count, (N,), on which a search has not decided.
+    """
     if not robot.records:
         log, part = robot.log, robot.log.part("validation")
         rows, given = np.isin(log.time, part.time), robot.values_of(log)
+        if told is not None and len(told) == len(rows):
+            rows = told
         errors = [_free_run(robot, log, {**values, **given})[rows] for values in (before, after)]
         return (_compared(part, errors, models),)
     kept = keep_of_robot(after, robot.plant.effects)

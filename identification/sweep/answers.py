@@ -80,8 +80,8 @@ def proof(found: Discovery) -> dict[str, Any]:
     above = found.before.rms**2 - min(noise, found.after.rms**2)
     closed = (found.before.rms**2 - found.after.rms**2) / above if above > 0 else None
     return {
-        "t": [float(n.proof.t) for n in found.named],
-        "share": [float(n.proof.share) for n in found.named],
+        "t": [float(n.proof.told.t) for n in found.named],
+        "share": [float(n.proof.told.share) for n in found.named],
         "gain": [float(n.bic_gain) for n in found.named],
         "gains": [float(s.explains) for s in found.scores[:5]],
         "disturbance": float(found.disturbance_rms), "gap_closed": closed,

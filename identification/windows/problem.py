@@ -18,6 +18,7 @@ import numpy as np
 from identification.effects.jointed import JointPlant
 from identification.errors import DivergenceError
 from identification.estimation.priors import Priors
+from identification.logs.parts import inside
 from identification.model.predictor import Plant, Predictor
 from identification.windows.coarse import (
     own_step,
@@ -29,7 +30,7 @@ from identification.windows.records import Record
 from identification.windows.settling import settle
 from identification.windows.shooting import Shooting, Tangent, tangent
 from identification.windows.unknowns import Unknowns
-from identification.windows.windows import first_states, spread, windows
+from identification.windows.windows import Windows, first_states, spread, windows
 
 # Steps of a simulation of all windows. More windows only make estimates finer than what is missing
 # from the model makes them wrong, and each of some hundred simulations takes as much longer.
@@ -209,10 +210,23 @@ def problem(
     for record in records:
         fixed = {n: v for n, v in {**values, **record.values}.items() if n not in space.names}
         predictor = Predictor(plant, record.log, space.names, fixed)
-        cut = spread(windows(record.log, length), most)
+        cut = spread(_windows_of(record, length), most)
         first = first_states(predictor, np.array([begun[n] for n in space.names]), cut)
         parts.append(Shooting(predictor, space, cut, first, np.diag(1 / scale), True))
     return Problem(tuple(parts), Unknowns(shared, own, tuple(r.log.name for r in records)))
+
+
+def _windows_of(record: Record, length: float) -> Windows:
+    """Returns the windows of a record that a fit may see, of a length [s].
+
+    A search fits the records that confirm too, to see its effects from the other side; what it
+    keeps for its report stays unseen there.
+
+    Raises:
+        InputError: there are none.
+    """
+    cut = windows(record.log, length)
+    return cut.rows(inside(record.parts, "select", cut.places))
 
 
 def most_windows(

@@ -3,12 +3,16 @@
 The horizon is predicted first: what it refutes is not predicted over the other lengths. Both models
 begin each window at the state that explains it best, found by the same smoother. Gains of blocks of
 neighbouring windows (`identification.windows.blocks`) are the sample of a t-test.
+
+A search decides on `select` and tells of `report` (`identification.logs.parts`): on the windows
+that lie wholly inside one of these parts of their record. A window on the border belongs to none.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -16,6 +20,7 @@ from identification.chances import mean_above_zero
 from identification.errors import InputError
 from identification.estimation.metrics import fit_percent
 from identification.logs.noise import noise_floor
+from identification.logs.parts import Part, Parts, inside
 from identification.model.coordinates import NOTHING
 from identification.model.predictor import Plant, Predictor
 from identification.windows.blocks import block_gains
@@ -44,7 +49,10 @@ class Unseen:
         noise: mean square of the sensors' noise in units of s², shape (ny,): of each output the
             median over the records; motion that is sampled slowly looks like noise, and an encoder
             that rests like none.
-        fit_percent: over windows of the horizon, of each output, shape (ny,) [%].
+        fit_percent: over windows of the horizon that are told of, of each output, shape (ny,) [%].
+        places: first sample of each window, and the one behind it, shape (W, 2), by length and
+            record.
+        parts: of each record; None where all of it both decides and is told of.
         own: by record, the parameters that it has for itself: value and std of each, from the
             values of its two halves.
     """
@@ -55,6 +63,8 @@ class Unseen:
     of_outputs: tuple[np.ndarray, ...]
     noise: np.ndarray
     fit_percent: np.ndarray
+    places: tuple[tuple[np.ndarray, ...], ...]
+    parts: tuple[Parts | None, ...]
     own: Mapping[str, Mapping[str, tuple[float, float]]] = field(default_factory=dict)
 
     def begun(self, length: float) -> tuple[Starts, ...]:
@@ -68,12 +78,45 @@ class Unseen:
         Args:
             other: of the same model, on the same records.
         """
-        pairs = {n: (u.squares[k], u.moves[k]) for u in (self, other)
-                 for k, n in enumerate(u.lengths)}  # fmt: skip
-        lengths = tuple(sorted(pairs))
+        each = {n: (u.squares[k], u.moves[k], u.places[k]) for u in (self, other)
+                for k, n in enumerate(u.lengths)}  # fmt: skip
+        lengths = tuple(sorted(each))
+        squares, moves, places = zip(*(each[n] for n in lengths), strict=True)
         return replace(
-            other if 1.0 in other.lengths else self, lengths=lengths,
-            squares=tuple(pairs[n][0] for n in lengths), moves=tuple(pairs[n][1] for n in lengths),
+            other if 1.0 in other.lengths else self,
+            lengths=lengths, squares=squares, moves=moves, places=places,
+        )  # fmt: skip
+
+    @cached_property
+    def select(self) -> Unseen:
+        """The errors on which a search decides."""
+        return self._of("select")
+
+    @cached_property
+    def report(self) -> Unseen:
+        """The errors that are told, on which no search has decided."""
+        return self._of("report")
+
+    def _of(self, part: Part) -> Unseen:
+        """Returns the errors of the windows that lie inside a part of their record."""
+        if not any(self.parts):
+            return self
+        kept_at = [
+            [inside(p, part, at) for p, at in zip(self.parts, places, strict=True)]
+            for places in self.places
+        ]
+
+        def kept(each: Sequence[np.ndarray], k: int) -> tuple[np.ndarray, ...]:
+            return tuple(x[at] for x, at in zip(each, kept_at[k], strict=True))
+
+        every = range(len(self.lengths))
+        return replace(
+            self,
+            squares=tuple(kept(self.squares[k], k) for k in every),
+            moves=tuple(kept(self.moves[k], k) for k in every),
+            places=tuple(kept(self.places[k], k) for k in every),
+            of_outputs=kept(self.of_outputs, self.lengths.index(1.0)),
+            parts=(None,) * len(self.parts),
         )  # fmt: skip
 
     @property
@@ -101,6 +144,7 @@ class Prediction:
             record that errs most, whatever the model, does not decide alone.
         record_falls: relative fall of the mean square by record, at the horizon.
         blocks: gain of each block of each record, at the horizon, shape (B,) a record.
+        untouched: the same on windows on which a search does not decide; None where it is of those.
     """
 
     t: float
@@ -112,6 +156,12 @@ class Prediction:
     typical_falls: tuple[float, ...]
     record_falls: tuple[float, ...]
     blocks: tuple[np.ndarray, ...]
+    untouched: Prediction | None = None
+
+    @property
+    def told(self) -> Prediction:
+        """The prediction whose numbers are told: on windows on which no search has decided."""
+        return self.untouched or self
 
     @property
     def records(self) -> tuple[float, ...]:
@@ -161,15 +211,13 @@ def predict(
         lengths = [n for n in lengths if _is_better_elsewhere(near, others, n)]
         if not lengths:
             return near
-    squares, moves, told = [], [], []
+    squares, moves, places, told = [], [], [], []
     percent, of_outputs = np.zeros(len(scale)), ()
     halves = [own_values(plant, r, horizon, scale, values, own or Own()) for r in records]
     for factor in lengths:
         try:
             length = factor * horizon
-            steps = MOST_STEPS if factor == 1.0 else MOST_STEPS // 3  # the others only agree or not
-            most = most_windows(plant, records, length, steps)
-            cuts = [spread(windows(r.log, length), most) for r in records]
+            cuts = cut_unseen(plant, records, length, is_horizon=factor == 1.0)
         except InputError:
             if factor == 1.0:
                 raise
@@ -178,20 +226,39 @@ def predict(
         each = _settled(plant, records, cuts, scale, values, halves, begun,
                         [o.begun(factor) for o in others if factor in o.lengths])  # fmt: skip
         if factor == 1.0:
-            measured = np.concatenate([c.outputs.reshape(-1, len(scale)) for c in cuts])
-            errors = np.concatenate([e.reshape(-1, len(scale)) for _, e in each])
+            at = [inside(r.parts, "report", c.places)
+                  for r, c in zip(records, cuts, strict=True)]  # fmt: skip
+            measured, errors = (
+                np.concatenate([x[k].reshape(-1, len(scale)) for x, k in zip(of, at, strict=True)])
+                for of in ([c.outputs for c in cuts], [e for _, e in each])
+            )
             percent = fit_percent(measured, measured - errors)
             of_outputs = tuple(np.mean((e / scale) ** 2, axis=1) for _, e in each)
         told.append(factor)
         moves.append(tuple(d for d, _ in each))
+        places.append(tuple(c.places for c in cuts))
         squares.append(tuple(np.mean((e / scale) ** 2, axis=(1, 2)) for _, e in each))
     noise = np.median([noise_floor(r.log.outputs) for r in records], axis=0)
     found = Unseen(
         lengths=tuple(told), squares=tuple(squares), moves=tuple(moves),
         of_outputs=of_outputs, noise=(noise / scale) ** 2, fit_percent=percent,
+        places=tuple(places), parts=tuple(r.parts for r in records),
         own={r.log.name: of_halves(*h) for r, h in zip(records, halves, strict=True)},
     )  # fmt: skip
     return found if near is None or not others else near.plus(found)
+
+
+def cut_unseen(
+    plant: Plant, records: Sequence[Record], length: float, is_horizon: bool
+) -> list[Windows]:
+    """Returns the windows of a length [s] over which records are predicted, a record each.
+
+    Raises:
+        InputError: no window fits a record.
+    """
+    # the others only agree or not
+    most = most_windows(plant, records, length, MOST_STEPS if is_horizon else MOST_STEPS // 3)
+    return [spread(windows(r.log, length), most) for r in records]
 
 
 def _is_better_elsewhere(own: Unseen, others: Sequence[Unseen], length: float) -> bool:
@@ -205,7 +272,16 @@ def _is_better_elsewhere(own: Unseen, others: Sequence[Unseen], length: float) -
 
 
 def compare(without: Unseen, with_it: Unseen) -> Prediction:
-    """Returns what the second of two models predicts better, over lengths that both have."""
+    """Returns what the second of two models predicts better, over lengths that both have.
+
+    It is of the windows on which a search decides; what is to be told of it is its `told`.
+    """
+    decided = _compare(without.select, with_it.select)
+    return replace(decided, untouched=_compare(without.report, with_it.report))
+
+
+def _compare(without: Unseen, with_it: Unseen) -> Prediction:
+    """Returns the same of all windows of two models."""
     falls, typical, gains = [], [], []
     lengths = [n for n in without.lengths if n in with_it.lengths]
     for length in lengths:

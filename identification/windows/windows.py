@@ -46,6 +46,11 @@ class Windows:
     outputs: np.ndarray
     starts: np.ndarray
 
+    @property
+    def places(self) -> np.ndarray:
+        """First sample of each window, and the one behind its last, shape (W, 2)."""
+        return np.column_stack([self.starts, self.starts + self.inputs.shape[1]])
+
     def rows(self, keep: np.ndarray) -> Windows:
         """Returns some of the windows, by mask or by index."""
         return Windows(self.inputs[keep], self.outputs[keep], self.starts[keep])

@@ -116,7 +116,7 @@ def test_a_random_error_goes_along_with_nothing():
     error = wander(N, 0.05, 0.1, seed=seed)
     model = fit_model(task(record(slider(mass=2.2, damping=2.7), N, seed, error)), (), {})
     assert model.refit.level.input_std > 0
-    assert len(fit_families(model.validation, OPTIONS)) == 4
+    assert {len(fits) for fits in fit_families(model.validation, OPTIONS).values()} == {4}
     assert find_input_error(model.validation, OPTIONS) == ()
     assert find_input_error(fit_model(carts_task(0.0, seed), (), {}).validation, OPTIONS) == ()
     assert not is_structured(model, OPTIONS)
@@ -127,7 +127,7 @@ def test_crosstalk_is_told_with_its_size_and_the_input_that_feels_it():
     (finding,) = find_input_error(model.validation, OPTIONS)
     assert finding.evidence.regressor == "other inputs"
     assert finding.evidence.input == "g"
-    best = max(fit_families(model.validation, OPTIONS), key=lambda f: f.share)
+    best = max(fit_families(model.validation, OPTIONS)["select"], key=lambda f: f.share)
     felt = 0.1 * np.std(model.validation.log.inputs[:, 0])
     assert best.error[1] == pytest.approx(felt, rel=0.2)
     assert best.error[0] < 0.5 * best.error[1]

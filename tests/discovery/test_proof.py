@@ -68,16 +68,16 @@ def test_the_unseen_samples_are_those_after_the_fitted_ones(sprung):
     np.testing.assert_array_equal(seen.seen, np.arange(len(log)) < first)
     fit = without.refit
     np.testing.assert_allclose(seen.e[:first], fit.point.e, atol=1e-12)
-    assert seen.rms == pytest.approx(np.sqrt(np.mean(seen.e[first:] ** 2)))
-    assert seen.gap.rms == seen.rms
+    assert seen.rms("report") == pytest.approx(np.sqrt(np.mean(seen.e[first:] ** 2)))
+    assert seen.gap.rms == seen.rms("report")
 
 
 def test_with_the_truth_the_free_run_errs_by_sensors_and_inputs(sprung):
     _, _, with_it = sprung
     seen = with_it.validation
     assert with_it.refit.level.sigma == pytest.approx(SENSOR, rel=0.15)
-    floor = np.hypot(with_it.refit.level.sigma, seen.disturbance)
-    assert 0.3 * floor < seen.rms < 3 * floor
+    floor = np.hypot(with_it.refit.level.sigma, seen.disturbance("report"))
+    assert 0.3 * floor < seen.rms("report") < 3 * floor
     assert STEP * len(seen.e) == pytest.approx(8.0)
 
 

@@ -108,7 +108,7 @@ def contender(e, gain, seed=0, numbers=1, is_proven=True):
     model = Model(
         (score(e, 0.5).candidate,),
         SimpleNamespace(problem=SimpleNamespace(parts=(windows,))),
-        SimpleNamespace(at_horizon=(np.zeros(40),)),
+        SimpleNamespace(select=SimpleNamespace(at_horizon=(np.zeros(40),))),
     )
     gains = gain + 0.1 * np.random.default_rng(seed).normal(size=20)
     return Contender(

@@ -17,7 +17,7 @@ SIZES = (Size("c", "N", 1.0, 0.1, about=""),)
 
 
 def model(square, *candidates):
-    unseen = SimpleNamespace(at_horizon=(np.array([square]),))
+    unseen = SimpleNamespace(select=SimpleNamespace(at_horizon=(np.array([square]),)))
     return SimpleNamespace(candidates=list(candidates), unseen=unseen, scale=np.ones(1))
 
 

@@ -17,7 +17,9 @@ DOUBTFUL = SimpleNamespace(
     candidate=SimpleNamespace(
         effect=SimpleNamespace(name="spring", phrase="spring", sizes=()), where="joint"
     ),
-    proof=SimpleNamespace(is_everywhere=True, fall=0.07, t=OPTIONS.min_proof_t + 0.4),
+    proof=SimpleNamespace(
+        is_everywhere=True, t=OPTIONS.min_proof_t + 0.4, told=SimpleNamespace(fall=0.07)
+    ),
     doubt="chance",
 )
 SHIFT = ShiftedRecord(record="a", shift=7e-4, std=1e-4, fall=0.06, chance=1e-4)
@@ -42,7 +44,7 @@ def state_of(unseen, accepted, outputs=("x",), finer=np.nan):
     log, steps = SimpleNamespace(output_names=outputs), SimpleNamespace(error=finer)
     return SimpleNamespace(
         worse_fit=None, accepted=accepted,
-        model=SimpleNamespace(unseen=unseen, plant=None, finer=steps),
+        model=SimpleNamespace(unseen=SimpleNamespace(report=unseen), plant=None, finer=steps),
         task=SimpleNamespace(options=OPTIONS, records=2 * (SimpleNamespace(log=log),)),
     )  # fmt: skip
 

@@ -25,7 +25,7 @@ def test_a_named_effect_is_said_with_size_place_confidence_and_proof() -> None:
     alone = replace(found().named[0], rivals=(), compared=0, confidence=0.9)
     alone = replace(found(), named=(alone,))
     assert "none of which was near enough to be refitted" in discovery_verdict(alone)[0]
-    assert "On data that the fit has not seen, the error falls from" in said[1]
+    assert "On data that neither the fit nor the search has used, the error falls from" in said[1]
     assert said[1].count("mrad") == 3
     assert said[2] == (
         "Nothing else is missing that this log shows. The fitted noise may still hide effects up"

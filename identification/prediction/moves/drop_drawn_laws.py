@@ -47,7 +47,7 @@ def drop_drawn_laws(state: WindowSearch, progress: Progress) -> Change:
 
 
 def _mean_square(model: WindowModel) -> float:
-    return float(np.mean(np.concatenate(model.unseen.at_horizon)))
+    return float(np.mean(np.concatenate(model.unseen.select.at_horizon)))
 
 
 def _explained(law: Contender) -> float:

@@ -1,0 +1,70 @@
+"""The parts of what no fit has seen, in words and as plain values (`identification.logs.parts`)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from identification.discovery.passes import uses
+from identification.discovery.result import Discovery
+from identification.logs.joined import Record
+from identification.quantities import held
+from identification.report.error_words import listed
+
+
+def parts_sentence(found: Discovery) -> str:
+    """Returns sentences that say of which part of the unseen data all errors are told."""
+    unseen = _unseen(found)
+    kept = [r for r in unseen if _is_kept(r)]
+    short = [r.log.name for r in unseen if not _is_kept(r)]
+    if not uses(found.options, "untouched_part"):
+        return "The search has decided on the same unseen data of which errors and gains are told."
+    said = []
+    if kept:
+        decided, told = (held(sum(_seconds(r)[k] for r in kept)) for k in ("select", "report"))
+        said.append(
+            "What no fit has seen lies in blocks in two parts: the search has decided on one"
+            f" ({decided} s), and errors and gains are told of the other ({told} s), which it has"
+            " not used."
+        )
+    if short:
+        one = len(short) == 1
+        said.append(
+            f"{listed(short)} {'is' if one else 'are'} too short to keep a part untouched: the"
+            " search has decided on the same data of which errors and gains are told, so that they"
+            " flatter what it names."
+        )
+    return " ".join(said)
+
+
+def is_untouched(found: Discovery) -> bool:
+    """Returns whether the search has decided on nothing of which errors and gains are told."""
+    return all(_is_kept(r) for r in _unseen(found))
+
+
+def parts_to_json(found: Discovery) -> list[dict[str, Any]]:
+    """Returns of each record with unseen data what is kept, and how long blocks and parts are."""
+    return [
+        {"file": r.log.name, "kept": _is_kept(r),
+         **(_seconds(r) if _is_kept(r) else dict.fromkeys(("block", "select", "report")))}
+        for r in _unseen(found)
+    ]  # fmt: skip
+
+
+def _unseen(found: Discovery) -> list[Record]:
+    """Returns the records of which a part is unseen."""
+    if found.run is None:
+        return [r for r in found.records if r.role == "confirm"]
+    return [r for r in found.records if r.parts is not None]
+
+
+def _is_kept(record: Record) -> bool:
+    return record.parts is not None and record.parts.is_kept
+
+
+def _seconds(record: Record) -> dict[str, float]:
+    """Returns the lengths of a block and of both parts of a record that is divided [s]."""
+    parts, h = record.parts, record.log.sampling_time
+    if parts is None:
+        return {}
+    rows = {"block": parts.block, "select": parts.select.sum(), "report": parts.report.sum()}
+    return {name: float(h * n) for name, n in rows.items()}
