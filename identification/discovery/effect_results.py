@@ -48,8 +48,8 @@ class Proof:
         is_everywhere: whether windows of every length are predicted better.
         agrees: names of the records whose unseen samples it makes likelier.
         disagrees: names of the records whose unseen samples it makes less likely, beyond chance.
-        untouched: the same on samples on which the search has not decided, where this proof is of
-            those on which it has (`identification.logs.parts`); None where it is of the former.
+        untouched: the same on samples on which the search has not decided, as it has on those of
+            this proof (`identification.logs.parts`); None where no such part is kept.
     """
 
     test: Test = "flips of signs"
@@ -69,7 +69,7 @@ class Proof:
 
     @property
     def told(self) -> Proof:
-        """The proof whose numbers are told: on samples on which the search has not decided."""
+        """The proof whose numbers are told: on untouched samples, where a part is kept."""
         return self.untouched or self
 
 

@@ -166,10 +166,10 @@ def prove(without: Validation, with_it: Validation, options: DiscoveryOptions) -
     with one_blas_thread():
         E = without.filter(with_it.e) / without.refit.level.sigma
     fewer = np.sum(without.innovations**2 - E**2, axis=1) / 2
-    decided, told = (
-        _prove_on(part, fewer, without, with_it, options) for part in ("select", "report")
-    )
-    return replace(decided, untouched=told)
+    decided = _prove_on("select", fewer, without, with_it, options)
+    if np.array_equal(with_it.parts.select, with_it.parts.report):
+        return decided
+    return replace(decided, untouched=_prove_on("report", fewer, without, with_it, options))
 
 
 def _prove_on(

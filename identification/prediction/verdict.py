@@ -211,7 +211,8 @@ def _named(
 def _proof(state: WindowSearch, effect: Contender) -> Proof:
     """Returns what an effect does for the records that confirm: what decided, and what is told."""
     seen = effect.prediction
-    return replace(_proof_of(state, seen), untouched=_proof_of(state, seen.told))
+    told = None if seen.untouched is None else _proof_of(state, seen.untouched)
+    return replace(_proof_of(state, seen), untouched=told)
 
 
 def _proof_of(state: WindowSearch, seen: Prediction) -> Proof:

@@ -177,8 +177,8 @@ def _rejected(rejected: RejectedEffect, plant: Plant) -> str:
     instead = f"; instead of it, {describe_outside(outside)}" if outside is not None else ""
     return (
         f"{describe_there(rejected.candidate, plant)}: {describe_sizes(rejected)};"
-        f" {_fitted(rejected)}; on unseen ones that decide {describe_chance(proof)}, and on those"
-        f" that are told of the mean square {turn} by {100 * abs(fall):.3g} %{doubt}{instead}"
+        f" {_fitted(rejected)}; on unseen data {describe_chance(proof)}; {_where_told(proof)} the"
+        f" mean square {turn} by {100 * abs(fall):.3g} %{doubt}{instead}"
     )
 
 
@@ -186,7 +186,7 @@ def _fitted(found: NamedEffect | RejectedEffect) -> str:
     """Returns what speaks for an effect: its gain on fitted samples, or over windows."""
     if isfinite(found.bic_gain):
         return f"BIC gain {found.bic_gain:z.4g} on fitted samples"
-    return f"evidence {found.evidence:z.4g} of all windows that decide"
+    return f"evidence {found.evidence:z.4g} of the windows that decide"
 
 
 def describe_chance(proof: Proof) -> str:
@@ -199,7 +199,12 @@ def describe_gains(named: NamedEffect) -> str:
     """Returns in words what a named effect gains on fitted samples, and on those told of."""
     told = named.proof.told
     higher = f" log likelihood {told.gain:+z.4g}," if isfinite(told.gain) else ""
-    return f"{_fitted(named)}; on unseen ones that are told of{higher} {describe_chance(told)}"
+    return f"{_fitted(named)}; {_where_told(named.proof)}{higher} {describe_chance(told)}"
+
+
+def _where_told(proof: Proof) -> str:
+    """Returns on which data something is told."""
+    return "on unseen data" if proof.untouched is None else "on untouched data"
 
 
 def describe_outside(outside: Outside) -> str:

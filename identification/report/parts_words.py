@@ -23,8 +23,8 @@ def parts_sentence(found: Discovery) -> str:
         decided, told = (held(sum(_seconds(r)[k] for r in kept)) for k in ("select", "report"))
         said.append(
             "What no fit has seen lies in blocks in two parts: the search has decided on one"
-            f" ({decided} s), and errors and gains are told of the other ({told} s), which it has"
-            " not used."
+            f" ({decided} s); the other ({told} s) is untouched, and errors and gains are told of"
+            " it."
         )
     if short:
         one = len(short) == 1
@@ -38,7 +38,8 @@ def parts_sentence(found: Discovery) -> str:
 
 def is_untouched(found: Discovery) -> bool:
     """Returns whether the search has decided on nothing of which errors and gains are told."""
-    return all(_is_kept(r) for r in _unseen(found))
+    unseen = _unseen(found)
+    return bool(unseen) and all(map(_is_kept, unseen))
 
 
 def parts_to_json(found: Discovery) -> list[dict[str, Any]]:

@@ -144,7 +144,7 @@ class Prediction:
             record that errs most, whatever the model, does not decide alone.
         record_falls: relative fall of the mean square by record, at the horizon.
         blocks: gain of each block of each record, at the horizon, shape (B,) a record.
-        untouched: the same on windows on which a search does not decide; None where it is of those.
+        untouched: the same on windows on which a search does not decide; None where none are kept.
     """
 
     t: float
@@ -160,7 +160,7 @@ class Prediction:
 
     @property
     def told(self) -> Prediction:
-        """The prediction whose numbers are told: on windows on which no search has decided."""
+        """The prediction whose numbers are told: on untouched windows, where some are kept."""
         return self.untouched or self
 
     @property
@@ -277,6 +277,8 @@ def compare(without: Unseen, with_it: Unseen) -> Prediction:
     It is of the windows on which a search decides; what is to be told of it is its `told`.
     """
     decided = _compare(without.select, with_it.select)
+    if not any(with_it.parts):
+        return decided
     return replace(decided, untouched=_compare(without.report, with_it.report))
 
 

@@ -25,7 +25,10 @@ def test_a_named_effect_is_said_with_size_place_confidence_and_proof() -> None:
     alone = replace(found().named[0], rivals=(), compared=0, confidence=0.9)
     alone = replace(found(), named=(alone,))
     assert "none of which was near enough to be refitted" in discovery_verdict(alone)[0]
-    assert "On data that neither the fit nor the search has used, the error falls from" in said[1]
+    assert (
+        "On data that the fit has not seen, but on which the search has decided, the error"
+        in said[1]
+    )
     assert said[1].count("mrad") == 3
     assert said[2] == (
         "Nothing else is missing that this log shows. The fitted noise may still hide effects up"
@@ -122,7 +125,8 @@ def test_what_was_tried_and_not_believed_is_told_with_its_size_and_why() -> None
     text = discovery_text(found())
     told = text[text.index("tried beside what is named, and not believed:") :]
     assert "all drives: tau = 250 ± 100 µs (delay)" in told
-    assert "t = -0.7, chance 0.75 by flips of signs, and the mean square rises by 0.2 %" in told
+    assert "on unseen data t = -0.7, chance 0.75 by flips of signs" in told
+    assert "on unseen data the mean square rises by 0.2 %" in told
     (kept,) = discovery_to_json(found())["rejected"]
     assert kept["parameters"]["tau"] == {"value": 2.5e-4, "std": 1e-4, "unit": "s"}
     assert kept["proof"]["fall"] == -0.002
