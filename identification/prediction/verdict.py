@@ -295,7 +295,9 @@ def _errs(model: WindowModel, needed: float, options: DiscoveryOptions) -> bool:
 
 def _is_off(model: WindowModel, options: DiscoveryOptions) -> bool:
     """Returns whether a model errs on unseen records by more than sensors' noise and steps make."""
-    square = float(np.mean(np.concatenate(model.unseen.report.at_horizon))) * left_by_steps(model) ** 2
+    square = (
+        float(np.mean(np.concatenate(model.unseen.report.at_horizon))) * left_by_steps(model) ** 2
+    )
     return square > model.unseen.floor * (1 + options.min_gap_share)
 
 
