@@ -6,18 +6,18 @@
 
     x_k = ‖E_k‖²        E: whitened residual of the fitted samples, or of fitted windows
     τ = 1 + 2 Σ_{k=1..M} ρ_k,    ρ: autocorrelation of x,    M: the smallest with M >= 5 τ(M)
-    L = max(unit, 3 τ, n/20), no longer than n/8, in whole units        n: samples that no fit sees
-    part of block b = report where s(b) is odd, else select       s: sum of the binary digits of b
+    L = max(unit, 3 τ, n/20), no longer than n/9, in whole units        n: samples that no fit sees
+    block b is report where s(b) = 2 mod 3, else select      s: sum of the digits of b to the base 3
 
 The best of many effects gains more on the samples by which it was chosen than on others, also where
 it is none. What is told of it must therefore be of others. τ is the time over which neighbours
 repeat one another, so that n samples tell as much as n/τ that do not (Sokal 1997, whose window M
-is). Blocks of L samples are given to the two parts in the order of Thue (1906) and Morse (1921):
-select, report, report, select, report, select, select, report. Each part has as many blocks, none
-has more than two in a row, and unlike a plain alternation the order has no period that a periodic
+is). Blocks of L samples are given to the two parts in the order of Thue (1906) and Morse (1921) in
+three letters, of which two select: two of three blocks decide, because half of them cost too many
+names (`docs/discovery.md`). Unlike every third block this order has no period that a periodic
 motion might share.
 
-What the model lacks looks like memory too. Blocks are therefore no longer than an eighth of a
+What the model lacks looks like memory too. Blocks are therefore no longer than a ninth of a
 record. A record with fewer than `FEWEST_BLOCKS` blocks keeps no part untouched: both are then all
 of it.
 """
@@ -36,9 +36,9 @@ WINDOW = 5.0  # of τ, over which autocorrelations are added (Sokal 1997)
 # Of τ. Sums over neighbouring blocks of a process with exponential memory then correlate by 0.1.
 MEMORIES = 3.0
 MOST_BLOCKS = 20  # of a record; more would only be shorter
-LEAST_BLOCKS = 8  # into which a record is cut if its units allow, whatever the memory
-FEWEST_BLOCKS = 4  # two of each part; with fewer none is kept untouched
-REPORT_EVERY = 2  # one of so many blocks is told of, the others decide
+LEAST_BLOCKS = 9  # into which a record is cut if its units allow, whatever the memory
+FEWEST_BLOCKS = 5  # two of them are told of; with fewer none is kept untouched
+REPORT_EVERY = 3  # one of so many blocks is told of, the others decide
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,6 +15,7 @@ from identification.logs.parts import (
     LEAST_BLOCKS,
     MEMORIES,
     MOST_BLOCKS,
+    REPORT_EVERY,
     Parts,
     autocorrelation_time,
     divide,
@@ -43,14 +44,13 @@ def test_every_unseen_sample_is_in_one_part_and_each_part_in_whole_blocks(n, uni
     assert not (edges % parts.block).any()
     blocks = n // parts.block
     assert blocks >= FEWEST_BLOCKS
-    shares = parts.select.sum(), parts.report.sum()
-    assert abs(int(shares[0]) - int(shares[1])) < 2 * parts.block
+    assert abs(parts.report.sum() - n / REPORT_EVERY) < 2 * parts.block
 
 
 @pytest.mark.parametrize("memory", [1.0, 30.0, 60.0, 1e6])
 def test_blocks_are_as_long_as_the_memory_asks_and_the_record_allows(memory):
-    block = divide(np.ones(2000, bool), 1, memory).block
-    assert block == np.clip(MEMORIES * memory, 2000 / MOST_BLOCKS, 2000 / LEAST_BLOCKS)
+    block = divide(np.ones(1800, bool), 1, memory).block
+    assert block == np.clip(MEMORIES * memory, 1800 / MOST_BLOCKS, 1800 / LEAST_BLOCKS)
 
 
 def test_neighbouring_blocks_of_a_process_with_memory_hardly_correlate():
@@ -79,19 +79,18 @@ def test_the_time_of_memory_is_that_of_a_process_on_paper(a):
 
 
 def test_no_periodic_motion_is_in_one_part_alone():
-    """Of a plain alternation a motion whose period is two blocks shows each part one half only."""
-    told = is_told(MOST_BLOCKS)
-    assert told.sum() == MOST_BLOCKS / 2
-    time = (np.arange(64 * MOST_BLOCKS) + 0.5) / 64  # in blocks
-    parts = np.repeat(2 * told - 1, 64)
-    plain = np.repeat(2 * (np.arange(MOST_BLOCKS) % 2) - 1, 64)
+    """Of every third block alone, a motion whose period is three shows always the same third."""
+    blocks = 27
+    assert is_told(blocks).sum() == blocks / REPORT_EVERY
+    time = (np.arange(64 * blocks) + 0.5) / 64  # in blocks
 
-    def apart(signs):
+    def apart(told):
+        at = np.repeat(told, 64)
         waves = (np.exp(2j * np.pi * time / period) for period in np.arange(1.5, 10, 0.05))
-        return max(abs(np.mean(signs * wave)) for wave in waves)
+        return max(abs(wave[at].mean() - wave[~at].mean()) for wave in waves)
 
-    assert apart(plain) > 0.6
-    assert apart(parts) < 0.45
+    assert apart(np.arange(blocks) % REPORT_EVERY == REPORT_EVERY - 1) > 1.2
+    assert apart(is_told(blocks)) < 0.9
 
 
 @given(st.data())

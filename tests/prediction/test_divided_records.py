@@ -91,17 +91,17 @@ def test_errors_in_the_part_that_is_kept_decide_nothing_and_are_told():
 
 
 def test_short_records_are_not_divided():
-    """Of two records of 12 windows six decide each, in three blocks: t of five asks too much."""
-    parts, model = divided(240)
+    """Of two records of 10 windows six decide each, in three blocks: t of five asks too much."""
+    parts, model = divided(200)
     assert all(r.parts is None for r in parts)
     assert model.unseen.select is model.unseen.report is model.unseen
-    assert len(model.unseen.report.at_horizon[0]) == 12
+    assert len(model.unseen.report.at_horizon[0]) == 10
 
 
 def test_blocks_of_windows_are_as_long_as_their_errors_repeat(monkeypatch):
-    told, found, scale = alone()
+    told, found, scale = alone(1000)
     assert HORIZON <= memory_of(found, scale) < 3 * HORIZON
-    for memory, windows in ((0.0, 2), (2 * HORIZON / MEMORIES, 2), (100.0, 4)):
+    for memory, windows in ((0.0, 2), (4 * HORIZON / MEMORIES, 4), (100.0, 6)):
         monkeypatch.setattr(dividing, "memory_of", lambda *_, τ=memory: τ)
         each = divide_records(found.problem.plant, told, found, HORIZON, scale)
         blocks = {r.parts.block for r in each if r.role == "confirm"}
