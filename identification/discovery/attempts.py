@@ -85,12 +85,14 @@ class Failed:
         diverged: whether a simulation diverged; else the values that were tried were refused, or
             equations could not be solved.
         reason: what the error said; "" where it said nothing.
+        dropped: whether it could be evaluated, and the search left it for that reason.
     """
 
     name: str
     where: str
     diverged: bool
     reason: str
+    dropped: bool = False
 
     @property
     def key(self) -> tuple[str, str]:
@@ -100,6 +102,8 @@ class Failed:
     @property
     def outcome(self) -> str:
         """The outcome, in words."""
+        if self.dropped:
+            return f"begun and left, because {self.reason}"
         what = "its simulation diverged" if self.diverged else "it could not be evaluated"
         return f"tried, and {what}" + (f": {self.reason}" if self.reason else "")
 
@@ -188,6 +192,16 @@ def tell_lost(asked: Iterable[Candidate], found: Iterable[Candidate]) -> None:
             _tell(candidate, True, "")
 
 
+def tell_dropped(candidate: Candidate, reason: str) -> None:
+    """Tell of a candidate that was begun and left, and why, so that no one misses it.
+
+    Args:
+        candidate: which.
+        reason: why, as a clause behind "because".
+    """
+    _tell(candidate, False, reason, dropped=True)
+
+
 def refuse_infinite(*numbers: float | np.ndarray) -> None:
     """Refuse the numbers of an evaluation that are not finite.
 
@@ -198,8 +212,8 @@ def refuse_infinite(*numbers: float | np.ndarray) -> None:
         raise DivergenceError(NOT_FINITE)
 
 
-def _tell(tried: Candidate | str, diverged: bool, reason: str) -> None:
+def _tell(tried: Candidate | str, diverged: bool, reason: str, dropped: bool = False) -> None:
     note = _NOTE.get()
     if note is not None:
         name, where = (tried, "") if isinstance(tried, str) else tried.key
-        note(Failed(name, where, diverged, reason))
+        note(Failed(name, where, diverged, reason, dropped))

@@ -13,7 +13,7 @@ from functools import partial
 
 import numpy as np
 
-from identification.discovery.attempts import attempt_each, refuse_infinite
+from identification.discovery.attempts import attempt_each, refuse_infinite, tell_dropped
 from identification.discovery.impossible import find_impossible
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.passes import uses
@@ -77,7 +77,7 @@ def refit_contenders(
         out = []
         for new in counted(attempt_each(tasks), "refits", len(each)):
             if isinstance(new, Begun):
-                progress(f"{_label(new.candidate)}: explains no more than without it")
+                tell_dropped(new.candidate, "its refit explains no more than the model without it")
             elif new is not None:
                 out.append(new)
         return out
@@ -134,6 +134,9 @@ def _near_best(begun: Sequence[Begun], options: DiscoveryOptions) -> list[Begun]
     each = [(_evidence_of_some(b), b) for b in begun]
     each.sort(key=lambda pair: -pair[0])
     least = min((e for e, _ in each[: options.max_refits]), default=0.0) - STRONG_BIC
+    for e, b in each:
+        if not e > least:
+            tell_dropped(b.candidate, "others explain far more of some of the windows")
     return [b for e, b in each if e > least]
 
 

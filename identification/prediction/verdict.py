@@ -14,7 +14,7 @@ from functools import partial
 import numpy as np
 
 from identification.chances import mean_above_zero
-from identification.discovery.attempts import attempt, listed_once
+from identification.discovery.attempts import Failed, attempt, listed_once
 from identification.discovery.effect_results import (
     Gap,
     NamedEffect,
@@ -104,7 +104,7 @@ def conclude(state: WindowSearch) -> Discovery:
         differences=tuple(_difference(state.model, a) for a in differ),
         repeats=_repeats(task.records),
         seconds=state.seconds, moves=state.made,
-        failed=state.failed, recover=partial(recover_over_horizon, model),
+        failed=_failed(state), recover=partial(recover_over_horizon, model),
     )  # fmt: skip
 
 
@@ -143,6 +143,12 @@ def _difference(model: WindowModel, a: Contender) -> RecordDifference:
     return RecordDifference(
         candidate, {name: (value, std) for name, (value, std, _) in parameters.items()}, unit
     )
+
+
+def _failed(state: WindowSearch) -> tuple[Failed, ...]:
+    """Returns what failed or was begun and left, but for what another round has refitted."""
+    refitted = {c.candidate.key for c in (*state.accepted, *state.rejected)}
+    return tuple(f for f in state.failed if not (f.dropped and f.key in refitted))
 
 
 def _at_own_steps(state: WindowSearch) -> WindowSearch:

@@ -23,6 +23,7 @@ from identification.report.page import Section, Table
 BEST, LISTED = 10, 6  # candidates with the best scores, in a figure and in a list
 MANY = 8  # lines on what failed; of more the count is told
 FAILED = "tried, and not possible to simulate"
+DROPPED = "begun, and left by the search"
 MEASURES = {  # of a score: what its bars are, their axis, and the title of the figure
     "gain": (
         "What each effect, at its best place and shape, would explain of the fitted nominal model's"
@@ -81,16 +82,19 @@ def rivals_section(found: Discovery) -> Section:
     if not rows and found.named:
         parts.append("No other explanation comes near those that are named.")
     title, tried = describe_rejected(found)
-    failed = failed_lines(found.failed)
+    others = {
+        FAILED: failed_lines([f for f in found.failed if not f.dropped]),
+        DROPPED: failed_lines([f for f in found.failed if f.dropped]),
+    }
     if tried:
         parts += [f"{title.capitalize()}:", *map(sentence, tried)]
-    if failed:
-        parts += [f"{FAILED.capitalize()}:", *failed]
+    for word, lines in others.items():
+        parts += [f"{word.capitalize()}:", *lines] if lines else []
     explained = "what each effect would explain at its best place, before it is fitted"
     scores = [describe_score(found, score) for score in best[:LISTED]]
     plain = [
         listed_below(title, tried),
-        listed_below(FAILED, failed),
+        *(listed_below(word, lines) for word, lines in others.items()),
         listed_below(explained, scores),
     ]
     return Section(
@@ -120,7 +124,7 @@ def describe_score(found: Discovery, score: Scored) -> str:
 
 
 def failed_lines(failed: Sequence[Failed]) -> list[str]:
-    """Returns a line for each candidate that failed, and one for those that are left out."""
+    """Returns a line for each candidate that failed or was left, and one for further ones."""
     lines = [
         f"{one.name.replace('_', ' ')}{f', {one.where}' if one.where else ''}: {one.outcome}"
         for one in failed[:MANY]

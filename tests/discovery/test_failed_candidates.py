@@ -14,7 +14,14 @@ from discovery_cases import EFFECTS, disturbed, searched, stepped, task
 from failing_cases import ERRORS, HOWS, Failing
 
 from identification.discovery import attempts
-from identification.discovery.attempts import Failed, attempt, attempt_each, collected, tell_lost
+from identification.discovery.attempts import (
+    Failed,
+    attempt,
+    attempt_each,
+    collected,
+    tell_dropped,
+    tell_lost,
+)
 from identification.effects.effect import Candidate
 from identification.errors import DivergenceError, InputError
 from identification.innovations import fitted_model, forward_selection, state
@@ -120,6 +127,19 @@ def test_a_failure_is_told_once_and_without_what_nobody_can_follow():
     assert failed == [Failed("spring", "joint", True, reason)]
     assert said == [f"spring, joint: tried, and its simulation diverged: {reason}"]
     assert attempt(candidate, fails) is None  # nobody listens
+
+
+def test_what_is_begun_and_left_is_told_with_why():
+    said = []
+    with collected(said.append) as failed:
+        tell_dropped(
+            Candidate(EFFECTS[0], "joint", {}), "others explain far more of some of the windows"
+        )
+    assert failed[0].dropped
+    assert not failed[0].diverged
+    assert said == [
+        "spring, joint: begun and left, because others explain far more of some of the windows"
+    ]
 
 
 def test_an_error_of_the_program_is_no_failed_candidate():

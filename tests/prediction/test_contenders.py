@@ -11,6 +11,7 @@ from numba import njit
 from records_cases import FREE, pendulum, record
 
 from identification.discovery.candidates import list_common
+from identification.discovery.attempts import collected
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate, Effect, Shape, Size
 from identification.effects.joint_plant import candidates
@@ -61,9 +62,11 @@ def names(scores):
 def begun(cost, numbers=3):
     """An effect that was fitted to some windows, with what decides whether it is refitted."""
     part = SimpleNamespace(cut=SimpleNamespace(outputs=np.zeros((1, 1, 1))))
+    of = SimpleNamespace(key=("law", f"{cost:.9g}"))
     return SimpleNamespace(
-        cost=cost, q=np.zeros(numbers), windows=100, task=SimpleNamespace(parts=(part,))
-    )
+        cost=cost, q=np.zeros(numbers), windows=100, task=SimpleNamespace(parts=(part,)),
+        candidate=of,
+    )  # fmt: skip
 
 
 def behind(best, evidence_lost):
@@ -76,8 +79,10 @@ def test_what_some_windows_cannot_tell_from_the_few_best_is_refitted_too():
     apart = [behind(1.0, 100.0 * k) for k in range(few)]  # each surely better than the next
     near = behind(apart[-1], 0.9 * STRONG_BIC)
     far = behind(apart[-1], 1.1 * STRONG_BIC)
-    kept = _near_best([begun(far), begun(near), *map(begun, apart)], OPTIONS)
+    with collected(lambda _: None) as left:
+        kept = _near_best([begun(far), begun(near), *map(begun, apart)], OPTIONS)
     assert [b.cost for b in kept] == [*apart, near]
+    assert [f.where for f in left] == [f"{far:.9g}"]
     assert _near_best([], OPTIONS) == []
 
 
