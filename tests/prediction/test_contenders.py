@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from numba import njit
 from records_cases import FREE, pendulum, record
 
-from identification.discovery.candidates import list_common
 from identification.discovery.attempts import collected
+from identification.discovery.candidates import list_common
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate, Effect, Shape, Size
 from identification.effects.joint_plant import candidates
