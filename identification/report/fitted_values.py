@@ -39,7 +39,11 @@ def value_table(found: Discovery) -> Table:
     like = _sizes(models, parameters)
     columns = [_words(m, parameters, like, is_begun and m is found.nominal) for m in models]
     words, rows = words_of(found), []
-    for name in dict.fromkeys(name for column in columns for name in column):
+    every = dict.fromkeys(name for column in columns for name in column)
+    # which kind it is, such as where an encoder sits, is said with the effect and is no estimate
+    kinds = {f"{n.name}.{s.name}" for n in found.named for s in n.candidate.effect.shapes
+             if not s.free}  # fmt: skip
+    for name in (n for n in every if n not in kinds):
         own = _of(name, parameters)
         first = NONE
         if own.where != "effect":
