@@ -212,6 +212,9 @@ HIDDEN: dict[str, Hidden] = {h.name: h for h in (
            put=put_into(at.ROOT, p=at.ROOT_POWER),
            shape=lambda h, rng: {"p": float(rng.uniform(0.3, 0.7))}),
     Hidden(name="hardening", largest=lambda h: 0.3 * h.force / h.travel**3, put=put_into(at.CUBE)),
+    # On one joint a free mass does the same.
+    Hidden(name="gravity_force", largest=lambda h: 1.0, put=put_into(at.FLOAT), heavy=True,
+           coupled=True),
     Hidden(name="offset", largest=lambda h: 0.2 * h.force, put=signed(put_into(at.PUSH)),
            shape=sign),
     Hidden(name="cogging", largest=lambda h: 0.2 * h.force, put=COG, shape=wave_of),

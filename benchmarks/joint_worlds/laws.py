@@ -19,7 +19,7 @@ is the sign and b that of its direction,
 
 Other forces on the joint:
 
-    -d v - d_a |v| - e v |v| - d_p sgn(v) |v|^p - k_3 q³ + f_0 + a cos nq + b sin nq
+    -d v - d_a |v| - e v |v| - d_p sgn(v) |v|^p - k_3 q³ + f_0 + a cos nq + b sin nq + α g
 
 Forces that are in no catalogue, so that no name is right:
 

@@ -47,7 +47,7 @@ def accelerations(code, p, joints, q, v, q0, z, tau, M, c, g, a):  # type: ignor
     for i in range(q.size):
         low = largest(joints[i], q[i], v[i], tau[i], g[i], -1.0)
         high = largest(joints[i], q[i], v[i], tau[i], g[i], 1.0)
-        a[i] = tau[i] - c[i] - g[i] + force(joints[i], q[i], v[i])
+        a[i] = tau[i] - c[i] - (1.0 - joints[i, at.FLOAT]) * g[i] + force(joints[i], q[i], v[i])
         o = i - 1 if i > 0 else q.size - 1 if q.size < 2 else 1
         a[i] += unlisted(joints[i], q[i], v[i], q[o], v[o])
         if joints[i, at.GIVE] > 0.0:

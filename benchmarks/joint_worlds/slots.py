@@ -28,7 +28,8 @@ GIVE = 31  # compliance of friction that gives before it slips
 # forces that are in no catalogue (`unlisted`)
 BUMP, BUMP_PLACE, BUMP_WIDTH, STOP, STOP_PLACE, FAST, FAST_SPEED = 32, 33, 34, 35, 36, 37, 38
 BESIDE, BESIDE_WAVES, BESIDE_PHASE, DRAG, RIPPLE, RIPPLE_WAVES = 39, 40, 41, 42, 43, 44
-SLOTS = 45
+FLOAT = 45  # share of gravity that the drive takes away
+SLOTS = 46
 
 
 def plain_joints(n: int) -> np.ndarray:
