@@ -13,7 +13,7 @@ from discovery_cases import (
     response,
     sensitivity,
 )
-from scipy.stats import kstest
+from scipy.stats import chi2, kstest
 
 from identification.innovations.scoring.scores import score
 from identification.kalman import noise_shares as module
@@ -113,8 +113,8 @@ def test_a_sensor_at_rest_is_not_one_without_noise():
     assert other[2] / other[0] == pytest.approx(1e-4, rel=0.3)  # of another unit
 
 
-def chances(rng, equal):
-    """Chances of candidates that are felt by the quiet sensor, where nothing is missing."""
+def gain(rng, equal):
+    """Gain of a candidate that is felt by the quiet sensor, where nothing is missing."""
     truth = Noise(0.0, 0.1, shared(1, LOUD))
     plant = linear_plant(rng, 60)
     J, S = rng.standard_normal((60, 2, 2)), rng.standard_normal((60, 2, 1))
@@ -122,11 +122,12 @@ def chances(rng, equal):
     e = drawn(plant, truth, rng)
     level = fit_noise(plant, e, J, np.zeros(2), STEP, fine=not equal, levels=(0.0,))
     fit = refit_at(point_of(plant, e, J), level, np.zeros(2))
-    return score(fit, [sensitivity(S)], OPTIONS)[0].p_value
+    return score(fit, [sensitivity(S)], OPTIONS)[0].gain
 
 
-def test_chances_of_scores_are_uniform_beside_a_noisy_sensor():
+def test_gains_follow_their_law_beside_a_noisy_sensor_and_not_with_one_noise_for_both():
+    """Twice the log likelihood of a size that is zero is χ² of one degree (Wilks 1938)."""
     rng = np.random.default_rng(5)
-    found = [chances(rng, equal=False) for _ in range(150)]
-    assert kstest(found, "uniform").pvalue > 0.01
-    assert kstest([chances(rng, equal=True) for _ in range(150)], "uniform").pvalue < 1e-4
+    found = [gain(rng, equal=False) for _ in range(150)]
+    assert kstest(found, chi2(1).cdf).pvalue > 0.01
+    assert kstest([gain(rng, equal=True) for _ in range(150)], chi2(1).cdf).pvalue < 1e-4
