@@ -204,7 +204,7 @@ def _fit_family(
 ) -> dict[Part, FamilyFit]:
     """Returns how well a family that is fitted to the fitted samples predicts each other part."""
     fit, E, seen, p = validation.refit, validation.innovations, validation.seen, J.shape[2]
-    r = fit.level.input_std * family.r
+    r = fit.level.of_inputs(family.r.shape[1])[:, None] * family.r
     moved = simulate_response(validation.filter, r)
     X = np.concatenate([F, validation.filter(moved) / fit.level.sigma], axis=2)
     weight = np.concatenate([fit.priors.weight, np.ones(r.shape[2])])

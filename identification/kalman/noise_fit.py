@@ -5,13 +5,14 @@
 E and Φ are the whitened residual and sensitivities; c is the small change of the parameters, held
 by their priors, that fits best. ρ is searched on a scale that the plant gives: at ρ₀ the inputs'
 error moves the outputs by as much as the sensors' noise. How the noise is shared out among sensors
-and inputs is found with c held, which never lowers L (`noise_shares`).
+and inputs is found with c held, which never lowers L (`noise_shares`). Inputs have shares of their
+own only where twice the log likelihood gains more than the price of their number by BIC.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import isclose
 from threading import Lock
 
@@ -57,6 +58,10 @@ class NoiseLevel:
     def of_outputs(self, ny: int) -> np.ndarray:
         """Returns σ s: std of the noise of each sensor, in its unit, shape (ny,)."""
         return self.sigma * self.noise.of_outputs(ny)
+
+    def of_inputs(self, nu: int) -> np.ndarray:
+        """Returns ρ σ g: std of the unlogged error of each input, in its unit, shape (nu,)."""
+        return self.sigma * self.noise.of_inputs(nu)
 
 
 def compute_unit_ratio(plant: LinearPlant, sampling_time: float, time: float) -> float:
@@ -137,11 +142,27 @@ def fit_noise(
                 likeliest.update(level, white)
             return level
 
+        def whitened(noise: Noise) -> Whitened:
+            return likeliest.find(noise) or whiten(plant, J, noise, sampling_time)
+
         def shared(best: NoiseLevel) -> NoiseLevel:
             if e.shape[1] == 1:
                 return best
-            white = likeliest.find(best) or whiten(plant, J, best.noise, sampling_time)
+            white = whitened(best.noise)
             return _best([best, at(share_level(white, e, prior, sampling_time, kinds))])
+
+        def of_each_input(best: NoiseLevel) -> NoiseLevel:
+            white, inputs = whitened(best.noise), plant.B.shape[2]
+            if inputs == 1:
+                return best
+            noise = share_level(white, e, prior, sampling_time, kinds, each_input=True)
+            new = whiten(plant, J, noise, sampling_time)
+            level = evaluate_noise(new, e, prior)
+            gain = 2 * (level.log_likelihood - best.log_likelihood)
+            if gain <= (inputs - 1) * np.log(len(e)):
+                return best
+            likeliest.update(level, new)
+            return level
 
         def believed(noise: Noise, factors: Sequence[float]) -> list[NoiseLevel]:
             each = [noise.scaled(f) for f in factors]
@@ -162,8 +183,10 @@ def fit_noise(
         best = _best(found)
         times = sampling_time / 3, MAX_CORRELATION_TIME  # below the first it is white
         if fine:
-            best = shared(best)
-            best = shared(refine_noise(best, at, times)) if best.noise.ratio else best
+            alike = at(replace(best.noise, inputs=())) if best.noise.inputs else best
+            best = shared(alike)
+            if best.noise.ratio:
+                best = of_each_input(shared(refine_noise(best, at, times)))
     likeliest.keep(best)
     return best
 
@@ -182,24 +205,24 @@ class _Likeliest:
             if self._level is None or level.log_likelihood > self._level.log_likelihood:
                 self._level, self._white = level, white
 
-    def find(self, best: NoiseLevel) -> Whitened | None:
-        """Returns them if they are those of the noise that was chosen."""
+    def find(self, noise: Noise) -> Whitened | None:
+        """Returns them if they are those of a noise."""
         white = self._white
-        return white if white is not None and white.noise == best.noise else None
+        return white if white is not None and white.noise == noise else None
 
     def keep(self, best: NoiseLevel) -> None:
         """Keep them if they are those of the noise that was chosen."""
-        if (white := self.find(best)) is not None:
+        if (white := self.find(best.noise)) is not None:
             keep(white)
 
 
 def share_level(
     white: Whitened, e: np.ndarray, prior: np.ndarray, sampling_time: float,
-    kinds: Sequence[Hashable] = (),
+    kinds: Sequence[Hashable] = (), each_input: bool = False,
 ) -> Noise:  # fmt: skip
-    """Returns the noise of whitened sensitivities with its likeliest shares; see `fit_noise`."""
+    """Returns the noise of whitened sensitivities with its likeliest shares; see `share_noise`."""
     rest = e - white.J @ _adjust(white, e, prior)[1]
-    return share_noise(white.plant, white.noise, rest, sampling_time, kinds).noise
+    return share_noise(white.plant, white.noise, rest, sampling_time, kinds, each_input).noise
 
 
 def refine_noise(

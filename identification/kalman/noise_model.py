@@ -64,6 +64,13 @@ class Noise:
         """Returns the same noise with ρ multiplied by a factor."""
         return replace(self, ratio=self.ratio * factor)
 
+    def calmed(self) -> Noise:
+        """Returns the same noise with no input's error above their median."""
+        each = self.of_inputs(len(self.inputs))
+        each = np.minimum(each, np.median(each))
+        ratio = float(np.sqrt(np.mean(each**2)))
+        return replace(self, ratio=ratio, inputs=tuple((each / ratio).tolist()))
+
     def lasting(self, time: float) -> Noise:
         """Returns a noise of another τ [s] and the same ρ²τ, to which a slow plant responds."""
         return replace(self, ratio=self.ratio * (self.time / time) ** 0.5, time=time)

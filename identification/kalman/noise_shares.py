@@ -12,6 +12,7 @@ and comes there in fewer steps; it is taken as long as the likelihood rises with
 
 A smoother gives all q and t in one pass back over the log, without a matrix of the log's length.
 A sensor that rests has no residual. A least share keeps it from being taken for one without noise.
+Nothing keeps an input from having no error.
 """
 
 from __future__ import annotations
@@ -26,8 +27,8 @@ from identification.kalman.noise_model import Noise, build_whitener
 from identification.kalman.recursion import information, transpose_filter
 
 POWERS = (1.0, 0.5)  # of q/t: the quick one, and the one that raises the likelihood always
-MAX_STEPS = 40
-END_RISE = 0.02  # of a log likelihood in one step: about as much again is still to come
+MAX_STEPS = 20
+END_RISE = 0.1  # of a log likelihood in one step: far less than any choice between models asks
 # Of the rms noise of outputs of the same unit. One of a count of an encoder that stands still is
 # far less, and the residual of such an output is an error of the model and not of the encoder.
 LEAST_SHARE = 0.05
@@ -107,7 +108,7 @@ def judge_shares(
         noise=noise,
         log_likelihood=float(log_likelihood),
         sensors=np.sum(x**2, axis=0) / squares / V.sum(axis=0),
-        inputs=q / t,
+        inputs=np.divide(q, t, out=np.ones(nu), where=t > 0),  # no output feels an input of t = 0
         input=float(of_inputs @ q / (of_inputs @ t)),
     )
 

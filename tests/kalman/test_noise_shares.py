@@ -15,10 +15,12 @@ from discovery_cases import (
 )
 from scipy.stats import chi2, kstest
 
+from identification.estimation.residuals import innovation_tests
 from identification.innovations.scoring.scores import score
 from identification.kalman import noise_shares as module
+from identification.kalman.linear import LinearPlant
 from identification.kalman.noise_fit import evaluate_noise, fit_noise
-from identification.kalman.noise_model import Noise, whiten
+from identification.kalman.noise_model import Noise, build_whitener, whiten
 from identification.kalman.noise_shares import LEAST_SHARE, judge_shares, share_noise
 
 LOUD = 2.4  # times the noise of the other sensor
@@ -89,6 +91,40 @@ def test_unequal_sensors_are_recovered_within_their_std():
         z.append(np.log(ratio) * np.sqrt(N))  # of a ratio of two
     assert abs(np.mean(z)) < 3 / np.sqrt(24)
     assert 0.7 < np.std(z) < 1.6
+
+
+def coupled(rng, samples=200):
+    """Three carts, each with a force and a sensor of its own."""
+    A = np.kron(np.eye(3), [[1, STEP], [0, 0.9]])
+    B = np.kron(np.eye(3), [[STEP**2 / 2], [STEP]])
+    every = (np.tile(M, (samples - 1, 1, 1)) for M in (A, B))
+    return LinearPlant(*every, np.kron(np.eye(3), [[1.0, 0.0]]))
+
+
+@pytest.mark.parametrize(("sizes", "are_told"), [((1, 1, 8), True), ((1, 1, 1), False)])
+def test_inputs_have_shares_of_their_own_where_the_data_ask_for_them(sizes, are_told):
+    ratios, white = [], []
+    for seed in range(6):
+        rng = np.random.default_rng(seed)
+        plant = coupled(rng)
+        e = drawn(plant, Noise(60.0, 0.05, (), shared(*sizes)), rng)
+        found = fit_noise(plant, e, rng.standard_normal((200, 3, 2)), np.zeros(2), STEP)
+        assert bool(found.noise.inputs) is are_told
+        each = found.noise.of_inputs(3)
+        ratios.append(np.log(each[2] / np.sqrt(np.mean(each[:2] ** 2))))
+        E = build_whitener(plant, found.noise, STEP)(e)
+        white.append(innovation_tests(E, STEP).p_correlation)
+    assert np.median(ratios) == pytest.approx(np.log(sizes[2]), abs=0.6)
+    assert min(white) > 1e-4  # with one ρ for all, a third of such logs is not white
+
+
+def test_an_input_that_no_output_feels_keeps_its_share():
+    rng = np.random.default_rng(7)
+    plant = coupled(rng, 60)
+    deaf = LinearPlant(plant.A, plant.B * [1.0, 1.0, 0.0], plant.C)
+    e = drawn(deaf, Noise(100.0, 0.05), rng)
+    found = share_noise(deaf, Noise(100.0, 0.05), e, STEP, each_input=True)
+    assert np.all(np.isfinite(found.noise.of_inputs(3)))
 
 
 def test_shares_are_never_less_likely_than_none():

@@ -22,7 +22,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import lru_cache, partial
 
 import numpy as np
 
@@ -103,8 +103,10 @@ def score(
 def _scorer(fit: Refit, blocks: int) -> _Scorer:
     """Returns what scores candidates on the last fit: a score does not depend on the others."""
     noise, samples = fit.level.noise, len(fit.point.e)
-    shares = RATIO_FACTORS if noise.ratio else (1.0,)
-    levels = run_parts(lambda share: Projection(fit, noise.scaled(share)), shares)
+    noises = [noise.scaled(share) for share in (RATIO_FACTORS if noise.ratio else (1.0,))]
+    # What is missing at one input makes the error of that input large, and no other's.
+    noises += [noise.calmed()] if noise.inputs and noise.calmed().ratio else []
+    levels = run_parts(partial(Projection, fit), noises)
     return _Scorer(levels, np.linspace(0, samples, blocks, endpoint=False).astype(int))
 
 
