@@ -118,6 +118,31 @@ def test_inputs_have_shares_of_their_own_where_the_data_ask_for_them(sizes, are_
     assert min(white) > 1e-4  # with one ρ for all, a third of such logs is not white
 
 
+def test_a_calmed_noise_is_no_larger_anywhere_and_of_no_input_above_the_median():
+    noise = Noise(2.0, 0.1, (), shared(1, 1.2, 9))
+    calm = noise.calmed().of_inputs(3)
+    np.testing.assert_allclose(calm, np.minimum(noise.of_inputs(3), noise.of_inputs(3)[1]))
+    assert np.mean(np.square(noise.calmed().inputs)) == pytest.approx(1)
+
+
+def test_what_is_missing_at_one_input_gains_as_much_as_with_one_error_for_all():
+    """Its input is taken for one that errs by more; its candidate is scored without that."""
+    rng = np.random.default_rng(9)
+    plant = coupled(rng)
+    push = np.zeros((200, 3))
+    push[:, 0] = np.sign(np.sin(np.arange(200) / 9))
+    S = (response(plant) @ push.ravel()).reshape(200, 3)
+    e = drawn(plant, Noise(10.0, 0.05), rng) + 100 * SIGMA * S
+    J, gains = rng.standard_normal((200, 3, 2)), []
+    found = fit_noise(plant, e, J, np.zeros(2), STEP)
+    assert found.noise.inputs
+    alike = fit_noise(plant, e, J, np.zeros(2), STEP, fine=False)
+    for level in (found, alike):
+        fit = refit_at(point_of(plant, e, J), level, np.zeros(2))
+        gains.append(score(fit, [sensitivity(S[..., None])], OPTIONS)[0].gain)
+    assert gains[0] > 0.4 * gains[1] > 20
+
+
 def test_an_input_that_no_output_feels_keeps_its_share():
     rng = np.random.default_rng(7)
     plant = coupled(rng, 60)
