@@ -18,6 +18,7 @@ from identification.model.predictor import Plant
 from identification.model.protocol import FINER
 from identification.prediction.first_fit import REFIT_TOLERANCE, Begun, shapes_of
 from identification.prediction.model import WindowModel, predict_fitted
+from identification.windows.coarse import steps_of
 from identification.windows.fit import solve
 from identification.windows.problem import (
     Problem,
@@ -103,9 +104,10 @@ def with_finer_steps(
         DivergenceError: it cannot be simulated with these steps.
     """
     problem, plant = model.fit.problem, model.plant
-    if not isinstance(plant, JointPlant) or plant.steps < 1:
+    taken, models = steps_of(plant)  # where joints have states, no longer ones are taken
+    if not isinstance(plant, JointPlant) or taken < models:
         return None
-    own = replace(plant, steps=1 if plant.steps > 1 else 1 / FINER, slope_steps=1)
+    own = replace(plant, steps=1 if taken > models else 1 / FINER, slope_steps=1)
     parts = (replace(p, predictor=replace(p.predictor, plant=own)) for p in problem.parts)
     return _refitted(model, replace(problem, parts=tuple(parts)), horizon, confirm)
 
