@@ -108,7 +108,9 @@ def test_inputs_have_shares_of_their_own_where_the_data_ask_for_them(sizes, are_
         rng = np.random.default_rng(seed)
         plant = coupled(rng)
         e = drawn(plant, Noise(60.0, 0.05, (), shared(*sizes)), rng)
-        found = fit_noise(plant, e, rng.standard_normal((200, 3, 2)), np.zeros(2), STEP)
+        found = fit_noise(
+            plant, e, rng.standard_normal((200, 3, 2)), np.zeros(2), STEP, each_input=True
+        )
         assert bool(found.noise.inputs) is are_told
         each = found.noise.of_inputs(3)
         ratios.append(np.log(each[2] / np.sqrt(np.mean(each[:2] ** 2))))
@@ -134,7 +136,7 @@ def test_what_is_missing_at_one_input_gains_as_much_as_with_one_error_for_all():
     S = (response(plant) @ push.ravel()).reshape(200, 3)
     e = drawn(plant, Noise(10.0, 0.05), rng) + 100 * SIGMA * S
     J, gains = rng.standard_normal((200, 3, 2)), []
-    found = fit_noise(plant, e, J, np.zeros(2), STEP)
+    found = fit_noise(plant, e, J, np.zeros(2), STEP, each_input=True)
     assert found.noise.inputs
     alike = fit_noise(plant, e, J, np.zeros(2), STEP, fine=False)
     for level in (found, alike):
