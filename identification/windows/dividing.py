@@ -23,9 +23,9 @@ from identification.windows.records import Record
 from identification.windows.unseen import LENGTHS, cut_unseen
 from identification.windows.windows import Windows
 
-# Of windows that decide, over all records; with fewer no part is kept. Student's t of 12 blocks asks
-# at 0.3 % for 1.2 times what it asks of many, and that of 8 for 1.4 times, beside the factor √1.5 of
-# fewer windows: the best of a few effects that just pass would be named for the likeliest one.
+# Of windows that decide, over all records; with fewer no part is kept. At 0.3 % Student's t of 12
+# blocks asks for 1.2 times what it asks of many, and that of 8 for 1.4 times, beside the factor
+# √1.5 of fewer windows: laws of equal evidence would pass or fail by luck, the likeliest too.
 MIN_DECIDING_BLOCKS = 12
 
 
