@@ -123,7 +123,8 @@ def divide_unseen(validation: Validation, options: DiscoveryOptions) -> Parts:
 
     Args:
         validation: of the model without effects.
-        options: whether a part is kept that the search does not use.
+        options: whether a part is kept that the search does not use, and the fewest samples that
+            must decide.
     """
     squares, begun = np.sum(validation.innovations**2, axis=1), 0
     fitted, unseen = [], []
@@ -132,8 +133,12 @@ def divide_unseen(validation: Validation, options: DiscoveryOptions) -> Parts:
         unseen.append(~validation.seen[rows])
         fitted.append(squares[rows][validation.seen[rows]])
     memory = autocorrelation_time([x for x in fitted if len(x)])
-    keep = uses(options, "untouched_part")
-    return join([divide(rows, MIN_PROOF_SAMPLES, memory, keep) for rows in unseen])
+    every, *kept = (
+        join([divide(rows, MIN_PROOF_SAMPLES, memory, keep) for rows in unseen])
+        for keep in (False, True)[: 1 + uses(options, "untouched_part")]
+    )
+    # What decides must be as much as a search asks of unseen samples at least.
+    return next((parts for parts in kept if parts.select.sum() >= options.min_samples), every)
 
 
 def propagate_input_error(A: np.ndarray, C: np.ndarray, variances: np.ndarray) -> np.ndarray:

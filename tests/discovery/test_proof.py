@@ -13,7 +13,7 @@ from scipy.stats import t as student
 
 from identification.effects.effect import Candidate
 from identification.innovations.fitted_model import fit_model
-from identification.innovations.proof import allowed_chance, flip_chance, prove
+from identification.innovations.proof import allowed_chance, divide_unseen, flip_chance, prove
 from identification.logs.joined import join_logs
 
 SPRING = Candidate(EFFECTS[0], "joint", {})
@@ -124,3 +124,16 @@ def test_normal_gains_without_mean_pass_as_often_as_allowed():
     assert allowed == pytest.approx(student.sf(2.0, 19))
     passed = np.mean([flip_chance(g) < allowed for g in rng.normal(size=(3000, 20))])
     assert abs(passed - allowed) < 4 * np.sqrt(allowed / 3000)
+
+
+def test_a_short_log_keeps_all_unseen_samples_for_the_search(sprung):
+    """Of 200 unseen samples two thirds would decide, and a search asks for 200 at least."""
+    _, without, _ = sprung
+    few = divide_unseen(without.validation, OPTIONS)
+    np.testing.assert_array_equal(few.select, few.report)
+    np.testing.assert_array_equal(few.select, ~without.validation.seen)
+    some = divide_unseen(without.validation, replace(OPTIONS, min_samples=100))
+    assert some.is_kept
+    np.testing.assert_array_equal(some.select | some.report, few.select)
+    left_out = replace(OPTIONS, min_samples=100, without=("untouched_part",))
+    np.testing.assert_array_equal(divide_unseen(without.validation, left_out).report, few.report)
