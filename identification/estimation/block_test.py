@@ -154,9 +154,12 @@ def common_scatter(scatters: Sequence[Scatter], least: float = 0.0) -> Common:
     traces = (np.trace(s.D, axis1=1, axis2=2) / np.maximum(s.blocks.rank, 1) for s in scatters)
     squares = np.concatenate([np.zeros(0), *traces])
     tells = (f >= MIN_FREEDOM) & (squares > 0)
-    if tells.sum() < MIN_SCATTERS:
-        return Common(0.0, max(1.0, least))
     f, squares = f[tells], squares[tells]
+    if len(f) < MIN_SCATTERS:
+        # Few do not tell how scatters differ. Where a noise model says the least that they scatter,
+        # it counts for as much as one of them.
+        known = float(f.mean()) if least > 0 and len(f) else 0.0
+        return Common(known, max(1.0, least))
     each = np.log(squares) - special.digamma(f / 2) + np.log(f / 2)
     half = _inverse_trigamma(float(each.var(ddof=1) - special.polygamma(1, f / 2).mean()))
     s2 = np.exp(each.mean() + special.digamma(half) - np.log(half))

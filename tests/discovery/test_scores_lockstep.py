@@ -53,7 +53,8 @@ def slow_score(plant, noise, e, J, s):
 
         found.append((likely(squares), likely(r @ r), squares, size, H, (r, S, F), raw))
     k, null = (max(range(len(found)), key=lambda i, of=of: found[i][of]) for of in (0, 1))
-    likely, _, squares, size, H, (r, S, F), _ = found[k]
+    likely, _, squares, size, H, *_ = found[k]
+    of_null, (r, S, F) = found[null][2], found[null][5]  # chances are those under its noise
     B = min(OPTIONS.score_blocks, N // MIN_SCORE_SAMPLES)
     block = np.repeat(
         np.searchsorted(np.linspace(0, N, B, endpoint=False), np.arange(N), "right"), NY
@@ -64,7 +65,7 @@ def slow_score(plant, noise, e, J, s):
     G = np.array([X.T @ X for _, X, _ in parts])[:, None]
     Z = np.array([q.T @ X for _, X, q in parts])[:, :, None]
     a = np.array([X.T @ e for e, X, _ in parts])[:, None]
-    scatter = scatter_of(make_blocks(G, Z), a, np.array([squares / n]), np.array([signs]))
+    scatter = scatter_of(make_blocks(G, Z), a, np.array([of_null / n]), np.array([signs]))
     H = np.linalg.pinv(H, rcond=1e-12, hermitian=True)
     return {
         "gain": 2 * (likely - found[null][1]),

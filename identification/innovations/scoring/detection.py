@@ -51,8 +51,10 @@ def smallest_ratio(
         found = np.where(z > t_n, noncentral_student_above(t_k, blocks, t), 0.0)
         return FOUND - float(WEIGHTS @ found) / float(WEIGHTS.sum())
 
-    most = 10 * (t_n + t_k / np.sqrt(unseen))
-    return float(brentq(short, 1.0, most, xtol=1e-3)) if np.isfinite(most) else np.inf
+    least, most = 0.01, 10 * (t_n + t_k / np.sqrt(unseen))
+    if not np.isfinite(most) or short(most) > 0:  # no size is proven by so few samples
+        return np.inf
+    return least if short(least) <= 0 else float(brentq(short, least, most, xtol=1e-3))
 
 
 def list_detectable(

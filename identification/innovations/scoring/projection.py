@@ -33,17 +33,11 @@ class Products:
         raw: sum of squares before the projection, shape (J,).
         H: shape (J, m, m).
         b: shape (J, m).
-        G: of each block and of the priors, shape (B + 1, J, m, m).
-        a: likewise, shape (B + 1, J, m).
-        Z: likewise, shape (B + 1, p, J, m).
     """
 
     raw: np.ndarray
     H: np.ndarray
     b: np.ndarray
-    G: np.ndarray
-    a: np.ndarray
-    Z: np.ndarray
 
 
 class Projection:
@@ -83,27 +77,44 @@ class Projection:
         log_determinant = self._filter.log_determinant
         return np.asarray(-0.5 * (n * np.log(squares / n) + log_determinant))
 
-    def products(self, S: np.ndarray, starts: np.ndarray) -> Products:
-        """Returns the products of some candidates.
+    def products(self, S: np.ndarray) -> Products:
+        """Returns the products of candidates with sensitivities S, shape (N, ny, J, m)."""
+        W, below, raw = self._projected(S)
+        X, J, m = W.reshape(len(W), *S.shape[2:]), *S.shape[2:]
+        b = (self._e @ W + self._below @ below).reshape(J, m)
+        return Products(raw, _gram(X) + _gram(below.reshape(-1, J, m)), b)
+
+    def by_blocks(
+        self, S: np.ndarray, starts: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Returns what blocks of samples, and the priors as one more, tell of candidates.
 
         Args:
             S: sensitivities, shape (N, ny, J, m).
             starts: the first sample of each block, shape (B,).
+
+        Returns:
+            G, Z and a, shapes (B + 1, J, m, m), (B + 1, p, J, m) and (B + 1, J, m).
         """
-        N, ny, J, m = S.shape
-        W = self._filter(S.reshape(N, ny, -1)).reshape(self.samples, -1)
-        raw = np.einsum("ij,ij->j", W, W).reshape(J, m).sum(axis=1)
-        C = self._coefficients(self._F.T @ W)
-        W -= self._F @ C
+        ny, J, m = S.shape[1:]
+        W, below, _ = self._projected(S)
         e, F, half = self._e, self._F, self._V / np.sqrt(self._w)
-        below = -self._ridge[:, None] * C
         rows = [slice(*pair) for pair in pairwise([*(ny * starts), len(e)])]
         parts = [*((e[some], F[some], W[some]) for some in rows),
                  (self._below, np.diag(self._ridge), below)]  # fmt: skip
         a = np.stack([r @ X for r, _, X in parts]).reshape(-1, J, m)
         G = np.stack([_gram(X.reshape(-1, J, m)) for _, _, X in parts])
         Z = np.stack([half.T @ (Φ.T @ X) for _, Φ, X in parts]).reshape(len(parts), -1, J, m)
-        return Products(raw, G.sum(axis=0), a.sum(axis=0), G, a, Z)
+        return G, Z, a
+
+    def _projected(self, S: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Returns S⊥, its rows of the priors, and sums of squares before the projection, (J,)."""
+        N, ny, J, m = S.shape
+        W = self._filter(S.reshape(N, ny, -1)).reshape(self.samples, -1)
+        raw = np.einsum("ij,ij->j", W, W).reshape(J, m).sum(axis=1)
+        C = self._coefficients(self._F.T @ W)
+        W -= self._F @ C
+        return W, -self._ridge[:, None] * C, raw
 
     def _coefficients(self, FtX: np.ndarray) -> np.ndarray:
         """Returns (ΦᵀΦ + P)⁻¹ ΦᵀX; the shortest where outputs do not feel every direction."""

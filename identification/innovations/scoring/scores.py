@@ -6,9 +6,9 @@
     LR_j = 2 max_ρ log L_j(ρ) - 2 max_ρ log L_0(ρ)       the gain
 
 Each candidate is judged with the noise that is the most likely *with it*, because a missing effect
-looks like input noise as long as the model lacks it. Its chance is that of a test by blocks
-(`identification.estimation.block_test`), in which candidates scatter no less than the noise model
-says.
+looks like input noise as long as the model lacks it. Its chance is that of a test by blocks under
+the noise of the nominal model (`identification.estimation.block_test`), in which candidates scatter
+no less than that noise says.
 
 All columns are whitened by the nominal noise and by the largest one, which mostly are the same. The
 covariance V of another, smaller ρ is less, so that H(ρ) is no less than that of the largest, and
@@ -147,9 +147,7 @@ class _Best:
         to, took = places[better], np.flatnonzero(better)
         for name in ("level", "likely", "squares", "size"):
             getattr(self, name)[to] = getattr(other, name)[took]
-        for name, axis in (("H", 0), ("G", 1), ("a", 1), ("Z", 2)):
-            mine, its = getattr(self.products, name), getattr(other.products, name)
-            np.moveaxis(mine, axis, 0)[to] = np.moveaxis(its, axis, 0)[took]
+        self.products.H[to] = other.products.H[took]
 
 
 @dataclass(frozen=True)
@@ -211,18 +209,19 @@ class _Scorer:
         bound = self._bound(S, first.products)
         own = np.trace(null.products.H, axis1=1, axis2=2)
         identifiable = own / np.maximum(null.products.raw, 1e-300)
+        scatter = self._scatter(S, signs, null.squares)
         best, every = null, np.arange(len(some))
         best.improve(every, first)
         for k in range(len(self.levels)):
             near = every[2 * (bound[k] - best.likely) > -LIKELIHOOD_ROUNDING]
             if k not in (self.null, self.largest) and near.size:
                 best.improve(near, self._try(k, S[:, :, near], signs[near]))
-        return self._made(some, best, signs, identifiable)
+        return self._made(some, best, scatter, identifiable)
 
     def _try(self, k: int, S: np.ndarray, signs: np.ndarray) -> _Best:
         """Returns what candidates explain under a noise."""
         level = self.levels[k]
-        products = level.products(S, self.starts)
+        products = level.products(S)
         inverse = np.linalg.pinv(products.H, rcond=1e-12, hermitian=True)
         size = np.einsum("jpq,jq->jp", inverse, products.b)
         fall = np.einsum("jp,jp->j", products.b, size)
@@ -249,14 +248,23 @@ class _Scorer:
         squares = np.maximum(rest - fall, 1e-12 * rest)
         return np.stack([p.log_likelihood(s) for p, s in zip(self.levels, squares, strict=True)])
 
+    def _scatter(self, S: np.ndarray, signs: np.ndarray, squares: np.ndarray) -> Scatter:
+        """Returns the scatter of candidates under the noise without them.
+
+        The likeliest noise with a candidate is chosen to make much of it, so that its chance under
+        that noise would be too small.
+        """
+        level = self.levels[self.null]
+        G, Z, a = level.by_blocks(S, self.starts)
+        return scatter_of(make_blocks(G, Z), a, squares / level.samples, signs)
+
     def _made(
-        self, some: Sequence[Sensitivity], best: _Best, signs: np.ndarray, identifiable: np.ndarray
+        self, some: Sequence[Sensitivity], best: _Best, scatter: Scatter, identifiable: np.ndarray
     ) -> list[_Known]:
         samples, products = self.levels[0].samples, best.products
         variance, nominal = best.squares / samples, self.without.max()
         inverse = np.linalg.pinv(products.H, rcond=1e-12, hermitian=True)
         std = np.sqrt(variance[:, None] * np.diagonal(inverse, axis1=1, axis2=2))
-        scatter = scatter_of(make_blocks(products.G, products.Z), products.a, variance, signs)
         scores = (
             Score(
                 candidate=s.candidate, size=best.size[j], std=std[j],
