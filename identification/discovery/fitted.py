@@ -90,10 +90,6 @@ class Fitted(Protocol):
         """Names of the free values that lie on a bound of the search."""
 
     @property
-    def distances(self) -> Mapping[str, float]:
-        """Distances of the free values from what was known of them before, by name [std]."""
-
-    @property
     def unlearned(self) -> Mapping[str, float]:
         """Std of each free value over the std that was known before; 0 where none was."""
 

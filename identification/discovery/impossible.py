@@ -3,13 +3,10 @@
     mass        Δm <= -m/2            a body would lose half of what the model's file says, or more
     gain        |α| T > 1/2           an input's gain would leave [1/2, 3/2] within a record
     command     τ < -T_s              outputs would move before their servo is told to
-    known       |q - q̄| > 3 σ         a value of the model would leave what is known of it
 
-m: mass of the body in the file; T: longest record, T_s: its sampling time; q̄, σ: what the user said
-to be known of a value that lies within 3 σ without the effect. A std that nobody said, the default
-of a robot's file, forbids nothing. Each of these sizes fits the data better than no effect, so that
-something is missing that acts like it: as long as it is likelier than what is possible, the latter
-is no name either.
+m: mass of the body in the file; T: longest record, T_s: its sampling time. Each of these sizes fits
+the data better than no effect, so that something is missing that acts like it: as long as it is
+likelier than what is possible, the latter is no name either.
 """
 
 from __future__ import annotations
@@ -26,25 +23,19 @@ from identification.logs.log import Log
 from identification.model.predictor import Plant
 from identification.model.tied import servo_kind
 
-Impossible = Literal["mass", "gain", "command", "known"]
+Impossible = Literal["mass", "gain", "command"]
 IMPOSSIBLE: tuple[Impossible, ...] = get_args(Impossible)
 MOST_LOST = 0.5  # of a mass: drawings leave out screws and cables, and no half of a body
 MOST_DRIFT = 0.5  # of a gain: warm magnets and amplifiers lose a tenth or two
-FAR = 3.0  # std of what was known: 0.3 % of a normal distribution
 
 
-def find_impossible(
-    candidate: Candidate, fit: Fitted, before: Fitted, logs: Sequence[Log],
-    guessed: Sequence[str] = (),
-) -> Impossible | None:  # fmt: skip
+def find_impossible(candidate: Candidate, fit: Fitted, logs: Sequence[Log]) -> Impossible | None:
     """Returns what physics forbids of an effect as it was fitted; None where it may be.
 
     Args:
         candidate: the effect.
         fit: with it.
-        before: without it.
         logs: that were fitted.
-        guessed: names of values of which nobody said what is known.
     """
     name, sizes = candidate.effect.name, [*_values(candidate, fit)]
     if name == "mass_mismatch" and any(v <= -MOST_LOST * m for v, m in _masses(sizes, fit.plant)):
@@ -53,10 +44,7 @@ def find_impossible(
     if name == "gain_drift" and any(abs(v) * longest > MOST_DRIFT for _, v in sizes):
         return "gain"
     is_early = name == "time_shift" and any(v < -logs[0].sampling_time for _, v in sizes)
-    if is_early and _are_servos(candidate, fit.plant):
-        return "command"
-    near = (n for n, d in before.distances.items() if d <= FAR and n not in guessed)
-    return "known" if any(fit.distances.get(n, 0.0) > FAR for n in near) else None
+    return "command" if is_early and _are_servos(candidate, fit.plant) else None
 
 
 def _values(candidate: Candidate, fit: Fitted) -> Iterator[tuple[str, float]]:

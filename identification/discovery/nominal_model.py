@@ -42,7 +42,6 @@ class NominalModel:
         deviants: by the name of a deviation, the effect and its place that it is when it is too
             large for scatter; of an effect of several sizes in their order.
         is_bounded: whether fits keep every member of a group within `max_scatter` std.
-        guessed: names of which nobody said what is known, so that their std is a default.
         held: by name, the least and the largest value that fits believe, in the parameter's unit.
 
     Raises:
@@ -62,7 +61,6 @@ class NominalModel:
     deviants: Mapping[str, tuple[str, str]] = field(default_factory=dict)
     is_bounded: bool = False
     held: Mapping[str, tuple[float, float]] = field(default_factory=dict)
-    guessed: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         if np.shape(self.std) != (len(self.names),):

@@ -192,13 +192,11 @@ def _forbidden(
     state: InnovationSearch, every: Sequence[NamedEffect]
 ) -> dict[tuple[str, str], Impossible | None]:
     """Returns what physics forbids of each effect, by its name and its place."""
-    task, fit, before = state.task, state.model.refit, state.nominal.refit
+    task, fit = state.task, state.model.refit
     if not uses(task.options, "impossible_sizes"):
         return {(n.name, n.where): None for n in every}
-    logs, guessed = [fit.point.log], task.nominal_model.guessed
-    return {
-        (n.name, n.where): find_impossible(n.candidate, fit, before, logs, guessed) for n in every
-    }
+    logs = [fit.point.log]
+    return {(n.name, n.where): find_impossible(n.candidate, fit, logs) for n in every}
 
 
 def _deciding_share(model: FittedModel) -> float:

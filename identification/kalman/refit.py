@@ -106,12 +106,6 @@ class Refit:
         return tuple(n for n, at in zip(space.names, on_bound, strict=True) if at)
 
     @property
-    def distances(self) -> dict[str, float]:
-        """Distances of the free parameters from what was known of them before, by name [std]."""
-        far = np.abs(self.priors.against(self.point.q))
-        return dict(zip(self.point.space.names, far.tolist(), strict=True))
-
-    @property
     def unlearned(self) -> dict[str, float]:
         """Std of each free parameter over the std that was known before; 0 where none was."""
         shares = (self.std * self.priors.weight).tolist()

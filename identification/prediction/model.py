@@ -68,12 +68,6 @@ class WindowModel:
         return {r: own for r, own in {**told, **fitted}.items() if own}
 
     @property
-    def distances(self) -> dict[str, float]:
-        """Distances of the free values from what was known of them, by name [std]."""
-        prior = self.fit.problem.prior
-        return dict(zip(prior.names, np.abs(prior.against(self.fit.q)).tolist(), strict=True))
-
-    @property
     def at_bound(self) -> tuple[str, ...]:
         """Names of the free values that lie on a bound."""
         on_bound = self.fit.problem.prior.space.on_bound(self.fit.q)

@@ -55,7 +55,6 @@ def refit_contenders(
     options: DiscoveryOptions,
     progress: Progress,
     worse_fit: Unseen | None = None,
-    guessed: Sequence[str] = (),
 ) -> tuple[WindowModel, tuple[Contender, ...]]:
     """Refit the contenders of a round, the best first: proven ones before others, by evidence.
 
@@ -63,7 +62,7 @@ def refit_contenders(
     proven against that fit, and be no worse than these values: it says why the fit went wrong.
     Laws with fewer numbers that act as the best one does are refitted too. A law with fewer numbers
     comes before the best one where resamples cannot tell them apart and the evidence does not
-    speak very strongly. Of the values under `guessed` nobody said what is known of them.
+    speak very strongly.
 
     Returns:
         The model without them, its windows at the best states that any of them found, and they.
@@ -90,7 +89,7 @@ def refit_contenders(
             parent, best = at_their_best(parent, children, horizon, confirm)
 
         def judged(c: WindowModel) -> Contender:
-            return _judged(parent, c, refits, options, worse_fit, guessed)
+            return _judged(parent, c, refits, options, worse_fit)
 
         each = {k: judged(c) for k, c in enumerate(best)}
         # the other lengths decide nothing where the horizon itself refutes
@@ -164,7 +163,7 @@ def _refit(
 
 def _judged(
     model: WindowModel, new: WindowModel, refits: int, options: DiscoveryOptions,
-    worse_fit: Unseen | None, guessed: Sequence[str],
+    worse_fit: Unseen | None,
 ) -> Contender:  # fmt: skip
     """Returns the contender of a model with one more effect: what speaks for it, and against it."""
     c = new.candidates[-1]
@@ -183,7 +182,7 @@ def _judged(
         doubt = "bound"
     if doubt is None and uses(options, "impossible_sizes"):
         logs = [p.predictor.log for p in new.fit.problem.parts]
-        doubt = find_impossible(c, new, model, logs, guessed)
+        doubt = find_impossible(c, new, logs)
     if doubt in REFUTED and _explains_fitted(model, new, options):
         doubt = "differ"
     return Contender(

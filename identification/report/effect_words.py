@@ -81,7 +81,6 @@ DOUBTS = {
     " error of a drawing does",
     "gain": "the gain would leave 0.5 to 1.5 times its value within a record",
     "command": "the outputs would move before their servo is told to",
-    "known": "a value of the model would lie more than 3 std from what is said to be known of it",
 }
 
 

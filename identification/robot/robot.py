@@ -83,7 +83,6 @@ class Robot:
         return NominalModel(
             plant, file.free, self.std, file.horizon, file.own, self.mean, file.own_values,
             groups=groups, scattering=() if file.horizon else tuple(groups),
-            guessed=tuple(n for n in file.free if "known" not in file.records.get(n, {})),
         )  # fmt: skip
 
     @property

@@ -9,7 +9,7 @@ import pytest
 from joint_cases import ARM, arm, arm_log, steps
 from records_cases import FREE, nominal_model, pendulum, records
 
-from identification.discovery.impossible import FAR, MOST_DRIFT, find_impossible
+from identification.discovery.impossible import MOST_DRIFT, find_impossible
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.axes import Axis
 from identification.effects.catalogue import MOST_TURNS, OF_ANGLE, joint_effects
@@ -30,14 +30,11 @@ def servos():
     return joint_plant(text, (), LOG)
 
 
-def asked(name, where, values, plant=None, distances=None, before=None, **more):
+def asked(name, where, values, plant=None):
     plant = plant or arm()
     effect = next(e for e in plant.effects if e.name == name)
-    fit, old = (
-        SimpleNamespace(plant=plant, told_values=values, distances=d or {})
-        for d in (distances, before)
-    )
-    return find_impossible(Candidate(effect, where, {}), fit, old, [LOG], **more)
+    fit = SimpleNamespace(plant=plant, told_values=values)
+    return find_impossible(Candidate(effect, where, {}), fit, [LOG])
 
 
 def test_a_body_keeps_more_than_half_of_the_mass_in_its_file():
@@ -62,15 +59,6 @@ def test_no_servo_is_followed_before_it_is_told_but_a_clock_may_be_early():
             assert asked("time_shift", "all inputs", {name: shift}, servos()) == expected
     within = {"time_shift.tau [record 1]": -0.5 * LOG.sampling_time}  # as stamps may be
     assert asked("time_shift", "all inputs", within, servos()) is None
-
-
-def test_what_is_known_of_a_value_forbids_and_a_default_does_not():
-    there, far = {"J": FAR + 0.1}, {"J": FAR + 3.0}
-    question = {"name": "offset", "where": "joint elbow", "values": {"offset.f_0@elbow": 1.0}}
-    assert asked(**question, distances=there, before={"J": 0.5}) == "known"
-    assert asked(**question, distances=there, before={"J": 0.5}, guessed=("J",)) is None
-    assert asked(**question, distances=far, before=there) is None  # it was far without the effect
-    assert asked(**question, distances={"offset.f_0@elbow": 9.0}, before={}) is None
 
 
 @cache
