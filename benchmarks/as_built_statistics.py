@@ -74,6 +74,8 @@ def _times(rows: Sequence[Row]) -> list[str]:
 def _discoveries(rows: Sequence[Row]) -> list[str]:
     done = [row for row in rows if "verdict" in row]
     lines = ["## Discovery", "", "    inca discover LOG... --spread usual", ""]
+    if not done:
+        lines += ["No robot has been answered by the present search.", ""]
     for key in sorted({(*records_of(row), row["key"].split("/")[3]) for row in done}):
         mine = [row for row in done if (*records_of(row), row["key"].split("/")[3]) == key]
         fitted, confirm, spread = key

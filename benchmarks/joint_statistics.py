@@ -198,6 +198,10 @@ def section(rows: Sequence[Row]) -> str:
         "",
         "    python benchmarks/hidden_joints.py",
         "",
+    ]
+    if not rows:
+        return "\n".join([*lines, "No world has been answered by the present search."]) + "\n"
+    lines += [
         "| | " + " | ".join(c.replace("_", " ") for c in columns) + " |",
         "|---" * (len(columns) + 1) + "|",
     ]
@@ -211,7 +215,7 @@ def section(rows: Sequence[Row]) -> str:
     lines += [
         f"| processor time of fit and discovery: median, longest | {times} |",
         "",
-        f"{found['worlds']} worlds of the search of {rows[-1].get('commit') if rows else 'none'};"
+        f"{found['worlds']} worlds of the search of {rows[-1].get('commit')};"
         f" {found['failed']} more met an error, and {found['unseen']} could not be made because no"
         " size shows enough.",
         "",

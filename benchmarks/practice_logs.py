@@ -182,7 +182,7 @@ def table(rows: Sequence[Row]) -> list[str]:
 
 def page(rows: Sequence[Row]) -> str:
     """The page."""
-    lines = [HEAD]
+    lines = [HEAD] if rows else [HEAD, "No log has been answered by the present search.\n"]
     for (spread, data), group in groupby(rows, lambda r: (r["spread"], r["log"].split("/")[0])):
         some = list(group)
         codes = ", ".join(sorted({r["code"].split(", ")[-1] for r in some}))

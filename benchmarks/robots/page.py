@@ -22,6 +22,9 @@ model begins each window at the state that explains it best. *Before* is the nom
 to the same records as the discovery; *after* is the model with what is named; the *published model*
 is the best of the models of others, made again from their equations and numbers and used on the
 same windows.
+
+Each robot's part says which commit recorded it. These are older searches than the present one,
+which may answer otherwise: the records have to be made again.
 """
 FIRST, LAST, BEGUN = "nominal, fitted", "with what is named", "as begun"
 

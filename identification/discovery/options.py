@@ -185,7 +185,7 @@ class DiscoveryOptions(KalmanOptions):
         "The upper limit where something is left that no name explains: a neighbour of what is left"
         " may have been named. In hidden worlds as built 16 of 18 such names were right, and 164 of"
         " 167 where nothing was left; this is (16 + 1)/(18 + 2).",
-        "worlds up to 9620 (docs/as_built.md), rule of succession", most=1.0,
+        "worlds up to 9620 of an older search, rule of succession", most=1.0,
     )  # fmt: skip
     set_confidence: float = option(
         0.2, "probability",
