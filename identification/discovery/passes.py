@@ -42,6 +42,9 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
     "exchange_roles": (
         HORIZON, "asks whether an effect holds where fitted and unseen records change places",
     ),
+    "losing_blocks": (
+        HORIZON, "lets a record contradict an effect only where its blocks lose on average too",
+    ),
     "simpler_laws": (HORIZON, "fits laws with fewer numbers that act as the best one does"),
     "several_places": (
         HORIZON, "scores an effect with a size of its own at each of several places",

@@ -20,7 +20,7 @@ from identification.prediction.crossing import at_their_best
 from identification.prediction.extension import MAX_LINEARISATIONS
 from identification.prediction.first_fit import REFIT_TOLERANCE
 from identification.prediction.model import WindowModel, predict_fitted
-from identification.prediction.trial import Contender
+from identification.prediction.trial import Contender, contradicts_a_record
 from identification.progress import Progress
 from identification.windows.fit import solve
 from identification.windows.problem import ROUGH_STEPS, Problem, no_moves, problem
@@ -99,7 +99,7 @@ def is_contradicted(without: WindowModel, with_it: WindowModel, options: Discove
         options: what matters.
     """
     found = compare(without.unseen, with_it.unseen)
-    return found.gain <= 0 or min(found.record_falls) <= -options.min_gap_share
+    return found.gain <= 0 or contradicts_a_record(found, options)
 
 
 def _begin(task: Problem, model: WindowModel) -> np.ndarray:

@@ -27,6 +27,7 @@ import numpy as np
 from identification.discovery.fitted import BOUND_TOLERANCE
 from identification.discovery.impossible import Impossible
 from identification.discovery.options import DiscoveryOptions
+from identification.discovery.passes import uses
 from identification.effects.effect import Candidate
 from identification.effects.joint_group import SLIDE
 from identification.prediction.evidence import count_windows, evidence
@@ -108,9 +109,27 @@ def find_doubt(found: Prediction, refits: int, options: DiscoveryOptions) -> Dou
         return "chance"
     if not found.is_everywhere:
         return "lengths"
-    if min(found.record_falls) <= -options.min_gap_share:
+    if contradicts_a_record(found, options):
         return "record"
     return None if min(found.typical_falls) > options.min_fall else "little"
+
+
+def contradicts_a_record(found: Prediction, options: DiscoveryOptions) -> bool:
+    """Returns whether a record is predicted worse: its mean square rises, and its blocks lose.
+
+    One window that begins badly may raise the mean square of a record by half though nearly all
+    of it is predicted better; the logarithms of its blocks tell. The sum of losses that are no
+    more than luck would not do instead: a record in which an effect does nothing loses little.
+
+    Args:
+        found: what is predicted better with an effect.
+        options: what is enough to matter.
+    """
+    is_asked = uses(options, "losing_blocks")
+    return any(
+        fall <= -options.min_gap_share and (gain < 0 or not is_asked)
+        for fall, gain in zip(found.record_falls, found.records, strict=True)
+    )
 
 
 def has_size(model: WindowModel, options: DiscoveryOptions) -> bool:

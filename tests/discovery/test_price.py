@@ -18,6 +18,8 @@ from identification.innovations.proof import flip_chance
 from identification.innovations.scoring.significance import select_significant
 from identification.prediction.contenders import list_contenders
 from identification.prediction.trial import find_doubt
+from identification.windows.blocks import block_gains
+from identification.windows.unseen import Prediction
 
 OPTIONS = DiscoveryOptions()
 DRAWS = 2000
@@ -76,6 +78,36 @@ def test_of_several_refits_along_a_free_run_one_is_proven_as_seldom_as_of_one(re
     assert is_rate(found, 0.031)  # Student's t above 2 with 19 degrees of freedom
 
 
+def prediction(blocks, record_falls, t=5.0, chance=1e-6):
+    """A gain over every length, of records with these blocks and falls."""
+    return Prediction(
+        t=t, chance=chance, gain=0.1, gains=(0.1,), fall=0.1, falls=(0.1,), typical_falls=(0.1,),
+        record_falls=record_falls, blocks=blocks,
+    )  # fmt: skip
+
+
+def test_a_window_that_begins_badly_seldom_lets_its_record_contradict_a_law():
+    """A law that halves the errors of 20 windows, of which one begins badly now and then."""
+    rng = np.random.default_rng(2)
+    found = {without: 0 for without in ((), ("losing_blocks",))}
+    for _ in range(DRAWS // 4):
+        before = np.exp(0.5 * rng.standard_normal(40))
+        after = 0.25 * before * np.exp(0.5 * rng.standard_normal(40))
+        after[rng.integers(40)] *= np.exp(6 * rng.uniform())
+        gains = block_gains([before], [after], 0.01)
+        seen = prediction(tuple(gains), (1 - after.mean() / before.mean(),))
+        for without in found:
+            options = DiscoveryOptions(without=without)
+            found[without] += find_doubt(seen, 1, options) == "record"
+    assert found[()] == 0
+    assert found["losing_blocks",] > 0.1 * DRAWS / 4
+
+
+def test_a_record_in_which_a_law_does_nothing_contradicts_it():
+    gains = (np.full(20, 3.0), np.full(20, -0.1))
+    assert find_doubt(prediction(gains, (0.9, -0.1)), 1, OPTIONS) == "record"
+
+
 @pytest.mark.parametrize("refits", [1, 3, 8])
 def test_of_several_refits_over_a_horizon_one_is_proven_as_seldom_as_of_one(refits):
     rng = np.random.default_rng(refits)
@@ -84,9 +116,7 @@ def test_of_several_refits_over_a_horizon_one_is_proven_as_seldom_as_of_one(refi
         each = []
         for b in gains(rng, refits):
             t, chance = mean_above_zero(b)
-            seen = SimpleNamespace(
-                t=t, chance=chance, is_everywhere=True, record_falls=(0.1,), typical_falls=(0.1,)
-            )
+            seen = prediction((b,), (0.1,), t, chance)
             each.append(find_doubt(seen, refits, OPTIONS) is None)
         found += any(each)
     assert is_rate(found, OPTIONS.significance)
