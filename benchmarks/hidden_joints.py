@@ -84,11 +84,14 @@ def answer(toml: Path, a: Path, b: Path, way: str, without: tuple[str, ...] = ()
              "confidence": n.confidence, "one_of": n.one_of,
              "same_as": n.same_as.name if n.same_as else None,
              "rivals": [rival.name for rival in n.rivals],
-             "smooth_share": n.smooth_share,
+             "smooth_share": n.smooth_share, "compared": n.compared, "fall": n.proof.fall,
+             "t": n.proof.t,
              "sizes": {name: p[0] for name, p in n.parameters.items()}}
             for n in found.named
         ],
         "smooth_share": found.smooth_share,
+        "findings": [f.kind.value for f in found.findings],
+        "rejected": [[r.candidate.effect.name, r.candidate.where, r.doubt] for r in found.rejected],
         "scores": [[s.candidate.effect.name, s.candidate.where] for s in found.scores[:5]],
         "errors": {"written": written.before, "fit": error.before, "discover": error.after},
         "fitted": fitted, "fit_seconds": between - begin, "discover_seconds": end - between,
