@@ -70,6 +70,9 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
     "curve_for_laws": (
         HORIZON, "puts one curve of the data in the place of several laws at a joint",
     ),
+    "unmask_neighbours": (
+        HORIZON, "puts a curve of the data in the place of a law that it predicts better than",
+    ),
     "drop_beside_curves": (HORIZON, "drops laws that were found only beside a curve of the data"),
     "drop_drawn_laws": (HORIZON, "drops a law whose work a later curve of the data does"),
 })  # fmt: skip

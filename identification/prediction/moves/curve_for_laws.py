@@ -1,28 +1,41 @@
-"""One curve of the data instead of several laws that were found at one joint.
+"""One curve of the data instead of the laws that were found at one joint.
 
 A cause that is in no catalogue may be put together from laws: a place where something catches, from
-a friction that differs by direction and a cogging. If one curve, in the place of all laws at the
-joint, has more evidence for it than they have, their cause is unlisted: they are told and not
-named. Laws that are there have the evidence of their few numbers, which a curve has not.
+a friction that differs by direction and a cogging. Or it gets the name of a neighbour: a brake that
+acts from a speed on, that of a friction which grows with the square of the speed. One curve is
+fitted in the place of all laws at the joint, and their cause is unlisted where it
+
+    has more evidence for it than several laws have, with the price of its many numbers, or
+    predicts unseen records better than a law beyond chance, which needs no price.
+
+A single law is asked only where a curve beside it may explain what it leaves. Laws that are there
+have the evidence of their few numbers, which a curve has not.
 """
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 
 from identification.discovery.attempts import attempt
+from identification.discovery.options import DiscoveryOptions
+from identification.discovery.passes import uses
 from identification.prediction.contenders import count_numbers
 from identification.prediction.evidence import all_gains, count_windows, evidence
 from identification.prediction.extension import refitted
+from identification.prediction.model import WindowModel
 from identification.prediction.screening import places_of, score_all
 from identification.prediction.selection import refit_contenders
 from identification.prediction.task import Change, WindowSearch
 from identification.prediction.trial import Contender
 from identification.prediction.yardstick import ON_JOINTS
 from identification.progress import Progress
+from identification.windows.unseen import compare
+
+# Chance of a curve beside a law, among all curves of its joint, below which the law is asked. It
+# only saves refits: unseen records decide.
+MAY_BE_NEIGHBOUR = 0.05
 
 
 def curve_for_laws(state: WindowSearch, progress: Progress) -> Change:
@@ -30,7 +43,7 @@ def curve_for_laws(state: WindowSearch, progress: Progress) -> Change:
     task, model, accepted = state.task, state.model, [*state.accepted]
     options, confirm = task.options, task.confirm
     curves, lost = [e for e in task.effects if e.is_curve], list[Contender]()
-    for where in _joints_of_several(accepted):
+    for where in _joints_of_laws(state):
         laws = [a for a in accepted if a.candidate.where == where and _is_law(a)]
         out = {a.candidate.key for a in laws}
         rest = [c for c in model.candidates if c.key not in out]
@@ -46,25 +59,44 @@ def curve_for_laws(state: WindowSearch, progress: Progress) -> Change:
         windows, outputs = count_windows(parent), len(parent.scale)
         numbers = sum(count_numbers(a.candidate) for a in laws)
         theirs = evidence([all_gains(parent, model)], [numbers], windows, outputs)[0, 0]
-        if tried and tried[0].is_proven and tried[0].criterion > theirs:
-            best = tried[0]
-            progress(f"{best.candidate.effect.name}, {where}: does what {len(laws)} laws do")
+        best = next(iter(tried), None)
+        if best is None or not best.is_proven:
+            continue
+        more = len(laws) > 1 and best.criterion > theirs
+        if more or _predicts_better(best, model, options):
+            counted_laws = "a law does" if len(laws) == 1 else f"{len(laws)} laws do"
+            progress(f"{best.candidate.effect.name}, {where}: does what {counted_laws}")
             model = best.model
             accepted = [*(a for a in accepted if a not in laws), best]
             lost += [replace(a, doubt="drawn") for a in laws]
     return model, tuple(accepted), tuple(lost)
 
 
-def _joints_of_several(accepted: Sequence[Contender]) -> list[str]:
-    """Returns the joints at which several laws and no curve were accepted."""
+def _predicts_better(curve: Contender, laws: WindowModel, options: DiscoveryOptions) -> bool:
+    """Returns whether unseen records are predicted better with a curve in the place of laws."""
+    found = compare(laws.unseen, curve.model.unseen)
+    return found.is_everywhere and found.chance < options.significance
+
+
+def _joints_of_laws(state: WindowSearch) -> list[str]:
+    """Returns the joints of several laws, or of one that may be a neighbour's, and of no curve."""
     curves = {
         place
-        for a in accepted
+        for a in state.accepted
         if a.candidate.effect.is_curve
         for place in places_of(a.candidate.where)
     }
-    count = Counter(a.candidate.where for a in accepted if _is_law(a))
-    return [where for where, n in count.items() if n > 1 and where not in curves]
+    count = Counter(a.candidate.where for a in state.accepted if _is_law(a))
+    return [where for where, n in count.items()
+            if where not in curves and (n > 1 or _may_be_neighbour(state, where))]  # fmt: skip
+
+
+def _may_be_neighbour(state: WindowSearch, where: str) -> bool:
+    """Returns whether a curve at a joint may explain what the model leaves."""
+    beside = [s.p_value for s in state.scores
+              if s.candidate.effect.is_curve and s.candidate.where == where]  # fmt: skip
+    is_asked = uses(state.task.options, "unmask_neighbours")
+    return is_asked and min(beside, default=1.0) * len(beside) < MAY_BE_NEIGHBOUR
 
 
 def _is_law(a: Contender) -> bool:
