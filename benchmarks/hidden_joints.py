@@ -23,7 +23,7 @@ from typing import Any
 
 from joint_statistics import section, summary
 from joint_worlds.files import truth_of, write_world
-from joint_worlds.hidden import NULL, effects_of
+from joint_worlds.hidden import NULL, THREE, effects_of
 from joint_worlds.motion import ROBOTS
 from joint_worlds.world import UnseenError, make_world
 from rows import Row, answered, of_newest, rows_of, write_part
@@ -89,7 +89,7 @@ def answer(toml: Path, a: Path, b: Path, way: str, without: tuple[str, ...] = ()
              "sizes": {name: p[0] for name, p in n.parameters.items()}}
             for n in found.named
         ],
-        "smooth_share": found.smooth_share,
+        "smooth_share": found.smooth_share, "unexplained": found.unexplained,
         "findings": [f.kind.value for f in found.findings],
         "rejected": [[r.candidate.effect.name, r.candidate.where, r.doubt] for r in found.rejected],
         "scores": [[s.candidate.effect.name, s.candidate.where] for s in found.scores[:5]],
@@ -103,7 +103,7 @@ def tasks(given: argparse.Namespace) -> list[tuple[str, str, int]]:
     out = []
     for k in range(max(given.count, given.nulls)):
         for robot in given.robot or ROBOTS:
-            effects = given.effect or (NULL, *effects_of(ROBOTS[robot]))
+            effects = given.effect or (NULL, THREE, *effects_of(ROBOTS[robot]))
             out += [(robot, e, given.seed + k) for e in effects
                     if k < (given.nulls if e == NULL else given.count)]  # fmt: skip
     return out
@@ -138,7 +138,7 @@ def main() -> int:
     add("--write", type=Path, help="a folder for the worlds; nothing is discovered")
     given = parser.parse_args()
     given.nulls = given.count if given.nulls is None else given.nulls
-    known = {NULL, *(e for r in ROBOTS.values() for e in effects_of(r))}
+    known = {NULL, THREE, *(e for r in ROBOTS.values() for e in effects_of(r))}
     if unknown := set(given.effect) - known:
         print(f"unknown effect {min(unknown)!r}; known: {', '.join(sorted(known))}",
               file=sys.stderr)  # fmt: skip
@@ -146,7 +146,7 @@ def main() -> int:
     asked = {
         f"{robot}/{effect}/{seed}/{given.way}": (robot, effect, seed, given.way, given.duration)
         for robot, effect, seed in tasks(given)
-        if effect == NULL or effect in effects_of(ROBOTS[robot])
+        if effect in (NULL, THREE) or effect in effects_of(ROBOTS[robot])
     }
     if given.write is not None:
         for robot, effect, seed, *_ in asked.values():

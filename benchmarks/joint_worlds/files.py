@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
@@ -39,6 +40,7 @@ def truth_of(world: World) -> dict[str, object]:
         "robot": world.robot.name, "effect": world.effect, "names": list(world.names),
         "joint": world.joint, "places": list(world.places), "curve": world.curve,
         "size": world.size, "also": world.also,
+        "acting": [asdict(a) for a in world.acting],
         "shape": world.shape, "ratio": world.ratio,
         "parameters": world.truth, "push": world.push,
         "references": [r.kind for r in world.records],

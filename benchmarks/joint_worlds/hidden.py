@@ -259,6 +259,7 @@ UNLISTED: dict[str, Hidden] = {h.name: h for h in (
 )}  # fmt: skip
 EVERY = {**HIDDEN, **UNLISTED}
 NULL = "nothing"
+THREE = "three"  # effects of the catalogue at once, each somewhere
 
 
 def effects_of(robot: JointRobot) -> tuple[str, ...]:

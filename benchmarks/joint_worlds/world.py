@@ -9,7 +9,7 @@ import numpy as np
 from departures import CONTROLLERS, EITHER_HALF, MISTUNED, POWERS, Departure
 
 from joint_worlds import slots as at
-from joint_worlds.hidden import EVERY, NULL, UNLISTED, Habits, Shape
+from joint_worlds.hidden import EVERY, HIDDEN, NULL, THREE, UNLISTED, Habits, Hidden, Shape
 from joint_worlds.motion import ROBOTS, closed_loop, terms
 from joint_worlds.reference import KINDS, reference
 from joint_worlds.robot import KNOWN, PRESLIDING, SPREAD, Free, JointRobot
@@ -27,6 +27,7 @@ OFTEN = 0.98  # share of the samples below the force that a limit is counted by
 OTHER_POWER = {"sublinear_friction": ("quadratic_friction",)}
 JUMP = (0.05, 0.2)  # of a force that jumps, over the largest force of its drive
 JUMPED = "offset"  # what such a force is once it has jumped
+SEVERAL = 3  # effects at once
 COLOUR = (0.02, 0.1)  # its correlation time [s]
 
 
@@ -37,6 +38,17 @@ class Record:
     kind: str
     inputs: np.ndarray
     outputs: np.ndarray
+
+
+@dataclass(frozen=True)
+class Acting:
+    """One of several effects: names that are right, where it acts, words of right places, size."""
+
+    effect: str
+    names: tuple[str, ...]
+    joint: str
+    places: tuple[str, ...]
+    size: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,6 +70,7 @@ class World:
         coulomb: whether the nominal model has Coulomb friction.
         push: unlogged torque over the input, rms.
         also: the name of a second effect; "" where there is none.
+        acting: the effects, where several of the catalogue act at once.
         records: the one to fit and the one that confirms.
     """
 
@@ -75,6 +88,7 @@ class World:
     coulomb: bool
     push: float
     also: str = ""
+    acting: tuple[Acting, ...] = ()
     records: tuple[Record, Record]
 
 
@@ -96,7 +110,7 @@ def make_world(
 
     Args:
         name: of the robot.
-        effect: a name of `EVERY`, or "nothing".
+        effect: a name of `EVERY`, "nothing", or "three" of the catalogue at once.
         seed: of all that is drawn.
         duration: of a record [s].
         departure: from what is usual.
@@ -106,8 +120,9 @@ def make_world(
     """
     robot = ROBOTS[name]
     rng = np.random.default_rng([seed, robot.code, zlib.crc32(effect.encode())])
+    several = _drawn(robot, rng) if effect == THREE else ()
     hidden = EVERY.get(effect)
-    known = hidden.known if hidden else ()
+    known = {k for h in (*several, *([hidden] if hidden else [])) for k in h.known}
     free = tuple(f for f in robot.all_free if f.kind not in known)
     base = held_base(robot)
     if "coulomb" in known:
@@ -148,6 +163,15 @@ def make_world(
         true, size, shape, shown = chosen.true, chosen.size, chosen.shape, chosen.shown
         joint, places = robot.joints[chosen.j], hidden.places(robot, chosen.j)
         curve = hidden.drawn_as(chosen.j) or hidden.curve
+    acting: tuple[Acting, ...] = ()
+    for one in several:
+        chosen = _sized(scene, one.name, rng)
+        j, size, shown = chosen.j, chosen.size, chosen.shown
+        true = with_effect(robot, true, one.name, j, size, chosen.shape)
+        mine = Acting(one.name, one.names(robot), robot.joints[j], one.places(robot, j), size)
+        acting = (*acting, mine)
+    if acting:
+        names = (*dict.fromkeys(n for a in acting for n in a.names),)
     if departure.hides == "powers":
         names = (*dict.fromkeys((*names, *OTHER_POWER.get(effect, ()))),)
     if departure.hides == "unlisted":
@@ -169,13 +193,24 @@ def make_world(
     except np.linalg.LinAlgError:  # of a state that left the finite numbers
         raise UnseenError(f"{effect} of {robot.name}: its controller does not hold it") from None
     return World(
-        robot=robot, effect=effect, names=names, also=also, joint=joint,
+        robot=robot, effect=effect, names=names, also=also, acting=acting, joint=joint,
         places=places, curve=curve,
         size=size, shape=shape, ratio=shown, free=free, coulomb="coulomb" not in known,
         truth={f.name: float(base.p[f.number] if f.number is not None else base.joints[f.slot])
                for f in free},
         push=share, records=(records[0], records[1]),
     )  # fmt: skip
+
+
+def _drawn(robot: JointRobot, rng: np.random.Generator) -> tuple[Hidden, ...]:
+    """Returns three effects of the catalogue, of which no two have a right name in common."""
+    out: list[Hidden] = []
+    for name in rng.permutation(sorted(HIDDEN)):
+        one = HIDDEN[str(name)]
+        taken = {n for o in out for n in o.names(robot)}
+        if len(out) < SEVERAL and one.joints(robot) and not taken & {*one.names(robot)}:
+            out.append(one)
+    return tuple(out)
 
 
 @dataclass(frozen=True)
