@@ -150,8 +150,8 @@ def _axis(model: mujoco.MjModel, log: Log, j: int, columns: dict[str, np.ndarray
     rates = columns["qvel"] if "qvel" in columns else _rate(way, h)
     speed, travel = float(np.abs(rates).max()), float(np.ptp(way))
     drives = drives_of(model, j)
-    force = sum(abs(_at_full(model, i)) * float(np.abs(log.inputs[:, _control(model, i)]).max())
-                for i in drives)  # fmt: skip
+    v = columns["qvel"] if "qvel" in columns else np.gradient(way, h)
+    force = sum(float(np.abs(_forces(model, i, log.inputs, way, v)).max()) for i in drives)
     dof = int(model.jnt_dofadr[j])
     if not force and travel > 0:
         force = float(model.dof_M0[dof]) * speed**2 / travel
@@ -198,9 +198,18 @@ def _control(model: mujoco.MjModel, i: int) -> int:
     return int(model.actuator_ctrladr[i])
 
 
-def _at_full(model: mujoco.MjModel, i: int) -> float:
-    """Returns the force of actuator i for a control of one."""
-    return float(model.actuator_gear[i, 0] * model.actuator_gainprm[i, 0])
+def _forces(
+    model: mujoco.MjModel, i: int, inputs: np.ndarray, q: np.ndarray, v: np.ndarray
+) -> np.ndarray:
+    """Returns the forces of actuator i on its joint, shape (N,): γ (k u + b_0 + b_1 γ q + b_2 γ v).
+
+    A servo's are far smaller than its command alone would make.
+    """
+    gear, gain = float(model.actuator_gear[i, 0]), float(model.actuator_gainprm[i, 0])
+    is_biased = int(model.actuator_biastype[i]) == int(mujoco.mjtBias.mjBIAS_AFFINE)
+    b_0, b_1, b_2 = model.actuator_biasprm[i, :3] if is_biased else np.zeros(3)
+    u = inputs[:, _control(model, i)]
+    return np.asarray(gear * (gain * u + b_0 + b_1 * gear * q + b_2 * gear * v))
 
 
 def _plain(model: mujoco.MjModel, i: int) -> bool:

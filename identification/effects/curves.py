@@ -3,7 +3,7 @@
     f(x) = Σ_k c_k Λ_k(x)             Λ_k: 1 at the node x_k, 0 at all others
 
     of speed        x = sgn(v) √(|v|/v_top),  nodes at ±¼, ±½, ±¾, ±1, and f(0) = 0
-    of the load     x = f_u/f_top,            the same nodes, and f(0) = 0
+    of the load     x = sgn(f_u) √(|f_u|/f_top),   the same nodes, and f(0) = 0
     of position     x = (q - q_mid)/q_far,    nodes evenly from -1 to 1
     of time         x = 2 t/t_end - 1,        the same nodes
     of a neighbour  x of position or of speed, of the joint before or behind it, with its nodes
@@ -15,8 +15,9 @@ between others it is the natural cubic spline, for hoses and springs do not. On 
     f = w c_k + u c_{k+1} + (w³ - w) s_k h²/6 + (u³ - u) s_{k+1} h²/6        (de Boor 1978, IV)
 
 A force that depends on a speed or on the drive alone is none at rest or without the drive: what
-would be left is a constant force, which is an effect by itself. Nodes of speed are dense where
-frictions bend. Beyond the last node a curve keeps its value. Each c_k is the force at its node.
+would be left is a constant force, which is an effect by itself. Nodes of speed and of the load are
+dense near zero: there frictions and dead zones bend, and there most of a motion is. Beyond the last
+node a curve keeps its value. Each c_k is the force at its node.
 
 A curve has eight sizes, so that a law that explains as much with fewer wins by its criterion. It
 acts on one joint, because each joint has a range of its own. What it depends on may be a neighbour:
@@ -83,20 +84,20 @@ def smooth(x, c):
 
 
 @njit
-def _of_speed(v, c):
-    """Returns the curve at a speed in units of the top speed."""
-    x = sqrt(abs(v))
-    return through_zero(x if v > 0.0 else -x, c)
+def _dense_near_zero(z, c):
+    """Returns the curve at a speed or a load in units of the largest one."""
+    x = sqrt(abs(z))
+    return through_zero(x if z > 0.0 else -x, c)
 
 
 @njit
 def curve_speed(s, p):
-    return _of_speed(s.v / s.v_top, p)
+    return _dense_near_zero(s.v / s.v_top, p)
 
 
 @njit
 def curve_load(s, p):
-    return through_zero(s.f_u / s.f_top, p)
+    return _dense_near_zero(s.f_u / s.f_top, p)
 
 
 @njit
@@ -117,12 +118,12 @@ def curve_behind(s, p):
 
 @njit
 def curve_speed_before(s, p):
-    return _of_speed(s.v_before, p) if s.v_before == s.v_before else 0.0
+    return _dense_near_zero(s.v_before, p) if s.v_before == s.v_before else 0.0
 
 
 @njit
 def curve_speed_behind(s, p):
-    return _of_speed(s.v_behind, p) if s.v_behind == s.v_behind else 0.0
+    return _dense_near_zero(s.v_behind, p) if s.v_behind == s.v_behind else 0.0
 
 
 @njit

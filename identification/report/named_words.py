@@ -65,12 +65,13 @@ def _nodes_at(word: str, joint: str, plant: JointPlant) -> Nodes:
     axis = every.get(neighbour(word, joint, plant), every[joint])
     x, steps = "rad" if axis.kind == "hinge" else "m", np.arange(1, NODES // 2 + 1) / (NODES // 2)
     even, signed = np.linspace(-1.0, 1.0, NODES), np.concatenate([-steps, steps])
+    dense = np.sign(signed) * signed**2  # near zero
     if word.startswith("speed"):
-        at = np.sign(signed) * signed**2 * axis.speed
+        at = dense * axis.speed
         return Nodes(joint, word, f"rate of {axis.joint}", f"{x}/s", at)
     if word == "load":
         unit = "N m" if axis.kind == "hinge" else "N"
-        return Nodes(joint, word, f"force of the drives of {joint}", unit, signed * axis.force)
+        return Nodes(joint, word, f"force of the drives of {joint}", unit, dense * axis.force)
     if word == "time":
         return Nodes(joint, word, "time", "s", (even + 1) / 2 * axis.duration)
     at = axis.middle + even * axis.travel / 2

@@ -1,5 +1,6 @@
 """The plant: names, places, what it refuses, and company in one process."""
 
+import mujoco
 import numpy as np
 import pytest
 from joint_cases import (
@@ -17,7 +18,7 @@ from joint_cases import (
 )
 
 from identification import InputError, Parameter
-from identification.effects.axes import Axis
+from identification.effects.axes import Axis, axes
 from identification.effects.catalogue import TURNS, joint_effects
 from identification.effects.joint_group import SLIDE
 from identification.effects.joint_plant import joint_plant
@@ -55,6 +56,19 @@ def test_axes_are_read_off_the_log_and_hinges_apart_from_slides():
     assert names["slide_offset"].sizes[0].unit == "N"
     assert names["offset"].sizes[0].unit == "N m"
     assert "slide_load_dependent_friction" not in names
+
+
+def test_the_largest_force_of_a_servo_is_what_it_gave_and_not_what_its_command_alone_would():
+    t = np.arange(400) * STEP
+    q = 0.3 * np.sin(3 * t)
+    motor = 'gear="5" ctrlrange="-3 3" ctrllimited="true"'
+    servo = 'gear="2" gainprm="40" biastype="affine" biasprm="0 -40 -3"'
+    model = mujoco.MjModel.from_xml_string(SLIDER.replace(motor, servo))
+    log = slider_log((2 * q + 0.01)[:, None], q[:, None])  # 0.01 before the lead of 2 q
+    (axis,) = axes(model, log)
+    force = 2 * (40 * (log.inputs[:, 0] - 2 * q) - 3 * 2 * 0.9 * np.cos(3 * t))
+    assert axis.force == pytest.approx(np.abs(force).max(), rel=1e-3)
+    assert axis.force < 0.4 * 2 * 40 * np.abs(log.inputs).max()
 
 
 def test_what_cannot_be_is_refused():
