@@ -28,6 +28,7 @@ OTHER_POWER = {"sublinear_friction": ("quadratic_friction",)}
 JUMP = (0.05, 0.2)  # of a force that jumps, over the largest force of its drive
 JUMPED = "offset"  # what such a force is once it has jumped
 SEVERAL = 3  # effects at once
+DRAWS = 12  # of several effects, until all of them show
 COLOUR = (0.02, 0.1)  # its correlation time [s]
 
 
@@ -120,6 +121,22 @@ def make_world(
     """
     robot = ROBOTS[name]
     rng = np.random.default_rng([seed, robot.code, zlib.crc32(effect.encode())])
+    for _ in range(DRAWS - 1 if effect == THREE else 0):  # some effects do not show on some robots
+        try:
+            return _world(robot, effect, rng, duration, departure)
+        except UnseenError:
+            continue
+    return _world(robot, effect, rng, duration, departure)
+
+
+def _world(
+    robot: JointRobot, effect: str, rng: np.random.Generator, duration: float, departure: Departure
+) -> World:
+    """Returns what `make_world` draws.
+
+    Raises:
+        UnseenError: the largest size of an effect shows less than `LEAST`.
+    """
     several = _drawn(robot, rng) if effect == THREE else ()
     hidden = EVERY.get(effect)
     known = {k for h in (*several, *([hidden] if hidden else [])) for k in h.known}
