@@ -22,6 +22,10 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
     "add_pair": (
         RUN, "adds two effects of which none is proven alone, because each hides the other",
     ),
+    "add_set": (HORIZON, "adds several effects that are proven together and not alone"),
+    "set_for_effects": (
+        HORIZON, "puts effects that are proven together in the place of those found one by one",
+    ),
     "add_deviants": (RUN, "makes effects of parts that deviate by more than parts do"),
     "impossible_sizes": (BOTH, "names no effect of a size that physics forbids"),
     "drop_effects": (BOTH, "drops an effect that later ones have made needless"),

@@ -11,7 +11,7 @@ no noise model (`identification.estimation.block_test`).
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import pairwise
@@ -104,13 +104,15 @@ def _judged(score: WindowScore, scatter: Scatter, common: Common) -> WindowScore
 
 
 def condensed(
-    fit: WindowFit, candidates: Sequence[Candidate]
+    fit: WindowFit, candidates: Sequence[Candidate], held: Collection[str] = ()
 ) -> tuple[np.ndarray, np.ndarray, float]:
-    """Returns what blocks of windows tell of many sizes at once, whose effects have no states.
+    """Returns what blocks of windows tell of many sizes at once.
 
     Args:
         fit: the model without them.
-        candidates: which, with k sizes in all.
+        candidates: which, with k sizes in all; none has a size of each record where there are
+            several.
+        held: free parameters of the fit that do not make room for them.
 
     Returns:
         S⊥ᵀS⊥ and S⊥ᵀr⊥ of each block, shapes (B, k, k) and (B, k), and ‖r⊥‖².
@@ -118,7 +120,7 @@ def condensed(
     Raises:
         DivergenceError: one of them cannot be simulated.
     """
-    base = _Base(fit)
+    base = _Base(fit, held)
     columns = np.hstack([np.vstack(base.columns(group)) for group in _groups(candidates)])
     S = base.without_base(np.vstack([columns, np.zeros((len(fit.q), columns.shape[1]))]))
     G = np.array([S[rows].T @ S[rows] for rows in base.blocks])
@@ -159,13 +161,14 @@ def _groups(candidates: Sequence[Candidate]) -> Iterator[list[Candidate]]:
 class _Base:
     """The residual of all windows with states and base parameters projected out."""
 
-    def __init__(self, fit: WindowFit) -> None:
+    def __init__(self, fit: WindowFit, held: Collection[str] = ()) -> None:
         self.fit = fit
         each = [t.projected for t in fit.tangents]
         p = len(fit.q)
         F = np.vstack(
             [S.reshape(S.shape[0] * S.shape[1], p) for S, _ in each] + [fit.problem.prior.rows]
         )
+        F = F[:, [name.partition(" [")[0] not in held for name in fit.problem.names]]
         scale = np.linalg.norm(F, axis=0)
         self.scale = np.where(scale > 0, scale, 1.0)
         self.Q, self.R = np.linalg.qr(F / self.scale)

@@ -88,10 +88,10 @@ def refit_contenders(
         if crosses:
             parent, best = at_their_best(parent, children, horizon, confirm)
 
-        def judged(c: WindowModel) -> Contender:
-            return _judged(parent, c, refits, options, worse_fit)
+        def judge_one(c: WindowModel) -> Contender:
+            return judged(parent, c, refits, options, worse_fit)
 
-        each = {k: judged(c) for k, c in enumerate(best)}
+        each = {k: judge_one(c) for k, c in enumerate(best)}
         # the other lengths decide nothing where the horizon itself refutes
         some = [k for k, c in each.items() if c.doubt not in REFUTED]
         some_models = [best[k] for k in some]
@@ -100,7 +100,7 @@ def refit_contenders(
             if c is None:
                 del each[k]
             else:
-                each[k] = judged(c)
+                each[k] = judge_one(c)
         return parent, [*each.values()]
 
     children = refit(_near_best(_begun(model, chosen, scores), options))
@@ -161,11 +161,19 @@ def _refit(
     return new
 
 
-def _judged(
+def judged(
     model: WindowModel, new: WindowModel, refits: int, options: DiscoveryOptions,
-    worse_fit: Unseen | None,
+    worse_fit: Unseen | None = None,
 ) -> Contender:  # fmt: skip
-    """Returns the contender of a model with one more effect: what speaks for it, and against it."""
+    """Returns the contender of a model with one more effect: what speaks for it, and against it.
+
+    Args:
+        model: without the effect.
+        new: with it, as the last of its candidates.
+        refits: how many effects were refitted, which chance has to pay for.
+        options: what matters.
+        worse_fit: errors of the fitted values, where those with which the fit began were better.
+    """
     c = new.candidates[-1]
     found = compare(worse_fit or model.unseen, new.unseen)
     gains = all_gains(model, new)
