@@ -62,11 +62,11 @@ def choose(
         a = a + G[:, :, of[j]] @ np.array([values[n] for n in listed[j].sizes])
     sizes = [size for c in listed for size in c.effect.sizes]
     columns = folded(
-        G, a, of, np.array([s.sign for s in sizes]),
+        G, a, [len(c.sizes) for c in listed], [f"{c.effect.name}, {c.where}" for c in listed],
+        np.array([s.sign for s in sizes]),
         np.array([options.size_factor * s.largest for s in sizes]),
     )  # fmt: skip
-    alike = [f"{c.effect.name}, {c.where}" for c in listed]
-    return tuple(listed[j] for j in select_set(columns, alike, most, first))
+    return tuple(listed[j] for j in select_set(columns, most, tuple(first)))
 
 
 def find_members(model: WindowModel, parent: WindowModel) -> list[Candidate]:
