@@ -23,8 +23,7 @@ from joint_worlds.robot import Free, JointRobot
 
 STEP = 0.02  # of a parameter, relative, for differences
 START = 3.0  # of a window's start, in σ
-COUNT = {"arm": 15}
-USUAL = 40  # windows
+WINDOWS = 15  # of a record, in which it is seen what an effect does
 
 
 @dataclass(frozen=True)
@@ -88,7 +87,7 @@ def ratio(
         push: unlogged torque as a log may have it, shape (N, n).
     """
     h, length = robot.sampling_time, round(robot.horizon / robot.sampling_time)
-    count = COUNT.get(robot.name, USUAL)
+    count = WINDOWS
     begins = np.linspace(length, len(u) - 2 * length, count).astype(int)
     y = logged(robot, true.joints, states)
     rate = (logged(robot, true.joints, states)[begins + 1] - y[begins - 1]) / (2 * h)
