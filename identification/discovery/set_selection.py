@@ -7,8 +7,9 @@
 A begins with the best of all pairs, because two effects may hide each other. It grows by the
 candidate with which the gain is the largest, and each member, and each two of them, then give way
 to others that gain more beside the rest, until none do (floating selection; Pudil, Novovičová,
-Kittler 1994). A member must gain more than its scatter over the folds (Stone 1974). A size must
-have the sign that physics gives it, beside the others.
+Kittler 1994). A member must gain on blocks that it was not fitted to (Stone 1974); whether that is
+beyond chance, unseen records have to tell. A size must have the sign that physics gives it, beside
+the others.
 """
 
 from __future__ import annotations
@@ -124,7 +125,7 @@ def select_set(columns: Columns, most: int, members: Set = ()) -> Set:
     chosen, gains = _exchanged(columns, members)
     while len(chosen) < most:
         more, found = columns.best([(*chosen, j) for j in range(count)])
-        if not _is_beyond(found, gains):
+        if not found.sum() > gains.sum():
             break
         chosen, gains = _exchanged(columns, more)
     while chosen:  # what the others do as well is left out
@@ -133,7 +134,7 @@ def select_set(columns: Columns, most: int, members: Set = ()) -> Set:
         if len(chosen) > 1:
             less, found = columns.best([(*chosen[:k], *chosen[k + 1 :])
                                         for k in range(len(chosen))])  # fmt: skip
-        if _is_beyond(gains, found):
+        if gains.sum() > found.sum():
             break
         chosen, gains = less, found
     return chosen
@@ -158,13 +159,3 @@ def _exchanged(columns: Columns, members: Set) -> tuple[Set, np.ndarray]:
         if set(members) == set(before):
             break
     return members, gains
-
-
-def _is_beyond(gains: np.ndarray, other: np.ndarray) -> bool:
-    """Returns whether a set gains more than another by more than their scatter over the folds."""
-    if not np.isfinite(gains).all():
-        return False
-    if not np.isfinite(other).all():
-        return True
-    more = gains - other
-    return bool(more.sum() > np.sqrt(len(more) * np.var(more, ddof=1)))

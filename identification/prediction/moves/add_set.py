@@ -39,6 +39,7 @@ from identification.progress import Progress
 from identification.windows.unseen import compare
 
 MAX_CHOICES = 4  # of a set, each about the model with the one before
+MAX_ROUNDS = 3  # of a choice, and of asking each of its members in its place
 
 Key = tuple[str, str]
 
@@ -63,8 +64,13 @@ def add_set(state: WindowSearch, progress: Progress) -> WindowSearch:
     task, watch = state.task, Watch(state.seconds)
     if state.room < 2 or not state.scores or not _is_left(state):
         return state
-    model = _with_set(state, progress)
-    model, places = _each_at_its_best(state, model, progress)
+    model, places = state.model, dict[Key, Place]()
+    for _ in range(MAX_ROUNDS):
+        chosen = _with_set(state, model, progress)
+        before = {c.key for c in chosen.candidates}
+        model, places = _each_at_its_best(state, chosen, progress)
+        if {c.key for c in model.candidates} == before:
+            break
     found = _proven(state, model, sum(len(p.tried) for p in places.values()), progress)
     watch.stop("refits")
     if not found:
@@ -113,9 +119,15 @@ def _is_left(state: WindowSearch) -> bool:
     return square > unseen.floor * (1 + state.task.options.min_gap_share) ** 2
 
 
-def _with_set(state: WindowSearch, progress: Progress) -> WindowModel:
-    """Returns the model refitted with the set that is chosen about itself, or without any."""
-    task, model = state.task, state.model
+def _with_set(state: WindowSearch, model: WindowModel, progress: Progress) -> WindowModel:
+    """Returns the model refitted with the set that is chosen about itself.
+
+    Args:
+        state: without the set.
+        model: where the choice begins.
+        progress: is told each set.
+    """
+    task, best = state.task, None
     for _ in range(MAX_CHOICES):
         members = find_members(model, state.model)
         chosen = choose(model, members, state.scores, task.options, state.room)
@@ -134,7 +146,15 @@ def _with_set(state: WindowSearch, progress: Progress) -> WindowModel:
         for c in chosen:
             if c.key not in has:
                 model = _with_one(state, model, c) or model
-    return model
+        best = model if best is None or _bic(model) < _bic(best) else best
+    return best or model
+
+
+def _bic(model: WindowModel) -> float:
+    """Returns BIC of a fit, of which a smaller value is better: N ln V + p ln N."""
+    fit = model.fit
+    samples = sum(p.cut.outputs.size for p in fit.problem.parts)
+    return float(samples * np.log(fit.cost) + len(fit.q) * np.log(samples))
 
 
 def _with_one(state: WindowSearch, model: WindowModel, candidate: Candidate) -> WindowModel | None:
@@ -250,6 +270,9 @@ def _with_rivals(
 ) -> Contender:
     """Returns a member with what was tried in its place and may be meant.
 
+    A rival gains as much less than the member as it did when both were refitted in this place: the
+    other members may have changed since.
+
     Args:
         member: of the set.
         place: what was tried there.
@@ -258,6 +281,11 @@ def _with_rivals(
     """
     if place is None:
         return member
+    own = next((o for o in place.tried if o.candidate.key == member.candidate.key), None)
+    if own is None:
+        return member
     others = [o for o in place.tried if o.candidate.key not in named]
     rivals = find_rivals(others, place.without, place.scores, member.model, scores)
-    return replace(member, alternatives=rivals)
+    return replace(member, alternatives=tuple(
+        replace(o, gains=member.gains + o.gains - own.gains) for o in rivals
+    ))  # fmt: skip

@@ -1,0 +1,76 @@
+"""Effects that hide each other: none is proven alone, and all are named together."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+from records_cases import FREE, nominal_model, pendulum, records
+
+from identification.discovery.candidates import list_common
+from identification.discovery.options import DiscoveryOptions
+from identification.effects.joint_plant import candidates
+from identification.prediction.discovery import discover_records
+from identification.prediction.extension import with_effect
+from identification.prediction.first_fit import begin
+from identification.prediction.nominal_fit import fit_nominal
+from identification.prediction.scores import condensed, window_scores
+from identification.windows.records import as_records
+
+NAMES = (
+    "offset", "asymmetric_friction", "quadratic_friction", "hardening", "stiffness",
+    "gravity_force", "sublinear_friction", "encoder_scale", "encoder_offset",
+)  # fmt: skip
+HIDDEN = {
+    "hardening.k_3@hinge": 0.1, "gravity_force.alpha@hinge": 0.3, "quadratic_friction.c@hinge": 0.02
+}  # fmt: skip
+
+
+def laws():
+    return [e for e in candidates(pendulum(), FREE) if e.name in NAMES]
+
+
+@cache
+def found(*without):
+    logs = records(4, HIDDEN, samples=400)
+    said = []
+    options = DiscoveryOptions(without=without)
+    return discover_records(
+        nominal_model(), logs[:2], logs[2:], laws(), said.append, options
+    ), said  # fmt: skip
+
+
+def test_three_effects_are_named_together_with_their_sizes():
+    discovery, said = found()
+    sizes = {n.candidate.effect.name: n.parameters for n in discovery.named}
+    assert {*sizes} == {name.partition(".")[0] for name in HIDDEN}, said
+    for name, true in HIDDEN.items():
+        ((value, std, _),) = sizes[name.partition(".")[0]].values()
+        assert value == pytest.approx(true, abs=max(4 * std, 0.1 * true))
+    assert discovery.moves[0] == "add_set"
+    assert all(n.proof.fall > 0 for n in discovery.named)
+
+
+def test_without_sets_they_are_not():
+    discovery, _ = found("add_set", "set_for_effects")
+    assert {n.name for n in discovery.named} != {name.partition(".")[0] for name in HIDDEN}
+
+
+def test_members_compete_for_their_places_as_if_they_were_not_there():
+    """Held sizes make no room: a member's column is what it was, and the residual with it too."""
+    logs = records(2, {"offset.f_0@hinge": 0.06}, samples=300)
+    every = as_records(logs[:1], logs[1:])
+    confirm = [r for r in every if r.role == "confirm"]
+    without = fit_nominal(nominal_model(), every)
+    (offset,) = list_common([e for e in laws() if e.name == "offset"])
+    with_it = with_effect(
+        without, begin(without, window_scores(without.fit, [offset])), 0.2, confirm
+    )
+    size = offset.sizes[0]
+    G, a, _ = condensed(with_it.fit, [offset], held={size})
+    hidden, *_ = condensed(with_it.fit, [offset])
+    assert hidden.sum() < 1e-6 * G.sum()
+    again = a.sum() + G.sum() * with_it.values[size]  # Sᵀ(r + S η)
+    assert again / G.sum() == pytest.approx(with_it.values[size], rel=0.02)
+    assert np.abs(a.sum()) < 0.02 * again
