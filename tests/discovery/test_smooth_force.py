@@ -78,7 +78,7 @@ def test_units_of_forces_and_of_errors_change_no_share():
     scale = np.repeat([1e-3, 50.0], NODES)
     two = find_smooth_force(*condensed(S * scale, 7 * e), (NODES, NODES))
     assert two.gain == pytest.approx(49 * one.gain, rel=1e-6)
-    np.testing.assert_allclose(two.c * scale, 7 * one.c, rtol=1e-4, atol=1e-9)
+    np.testing.assert_allclose(two.c * scale, 7 * one.c, rtol=1e-3, atol=1e-9)
 
 
 def test_nodes_that_no_sample_feels_have_no_force():

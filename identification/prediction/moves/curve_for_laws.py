@@ -62,8 +62,10 @@ def curve_for_laws(state: WindowSearch, progress: Progress) -> Change:
         best = next(iter(tried), None)
         if best is None or not best.is_proven:
             continue
-        more = len(laws) > 1 and best.criterion > theirs
-        if more or _predicts_better(best, model, options):
+        is_better = (
+            best.criterion > theirs if len(laws) > 1 else _predicts_better(best, model, options)
+        )
+        if is_better:
             counted_laws = "a law does" if len(laws) == 1 else f"{len(laws)} laws do"
             progress(f"{best.candidate.effect.name}, {where}: does what {counted_laws}")
             model = best.model
