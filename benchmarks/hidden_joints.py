@@ -90,6 +90,7 @@ def answer(toml: Path, a: Path, b: Path, way: str, without: tuple[str, ...] = ()
             for n in found.named
         ],
         "smooth_share": found.smooth_share, "unexplained": found.unexplained,
+        "input_error": found.input_error,
         "curves": [[s.candidate.effect.name, s.candidate.where, float(s.fall), float(s.p_value)]
                    for s in found.remaining if s.candidate.effect.is_curve],
         "findings": [f.kind.value for f in found.findings],
