@@ -50,23 +50,24 @@ def choose(
     listed.sort(key=lambda c: c.effect.state or "")  # those of one plant are simulated at once
     fit = model.fit if len(scores) <= MAX_SCORED else some_windows(model.fit)
     held = {n for c in members for n in (*c.free, *shapes_of(c))}
-    known = attempt(None, partial(condensed, fit, listed, held))
+    known = attempt(None, partial(condensed, fit, listed, held)) if listed else None
     if known is None:
         return tuple(members)
     G, a, _ = known
-    ends = np.cumsum([len(c.sizes) for c in listed])
-    of = [np.arange(end - len(c.sizes), end) for c, end in zip(listed, ends, strict=True)]
+    counts = [len(c.sizes) for c in listed]
+    ends = np.cumsum(counts)
     values = {**model.plant.parameters.values(), **model.fit.of_record(0)}
-    first = [j for j, c in enumerate(listed) if any(c is m for m in members)]
+    first = tuple(j for j, c in enumerate(listed) if any(c is m for m in members))
     for j in first:
-        a = a + G[:, :, of[j]] @ np.array([values[n] for n in listed[j].sizes])
+        mine = np.array([values[n] for n in listed[j].sizes])
+        a = a + G[:, :, ends[j] - counts[j] : ends[j]] @ mine
     sizes = [size for c in listed for size in c.effect.sizes]
     columns = folded(
-        G, a, [len(c.sizes) for c in listed], [f"{c.effect.name}, {c.where}" for c in listed],
+        G, a, counts, [f"{c.effect.name}, {c.where}" for c in listed],
         np.array([s.sign for s in sizes]),
         np.array([options.size_factor * s.largest for s in sizes]),
     )  # fmt: skip
-    return tuple(listed[j] for j in select_set(columns, most, tuple(first)))
+    return tuple(listed[j] for j in select_set(columns, most, first))
 
 
 def find_members(model: WindowModel, parent: WindowModel) -> list[Candidate]:

@@ -38,8 +38,8 @@ from identification.prediction.trial import Contender, find_doubt, find_rivals
 from identification.progress import Progress
 from identification.windows.unseen import compare
 
-MAX_CHOICES = 4  # of a set, each about the model with the one before
-MAX_ROUNDS = 3  # of a choice, and of asking each of its members in its place
+MAX_CHOICES = 3  # of a set, each about the model with the one before
+MAX_ROUNDS = 2  # of a choice, and of asking each of its members in its place
 
 Key = tuple[str, str]
 
@@ -127,7 +127,7 @@ def _with_set(state: WindowSearch, model: WindowModel, progress: Progress) -> Wi
         model: where the choice begins.
         progress: is told each set.
     """
-    task, best = state.task, None
+    task, best = state.task, model
     for _ in range(MAX_CHOICES):
         members = find_members(model, state.model)
         chosen = choose(model, members, state.scores, task.options, state.room)
@@ -146,8 +146,9 @@ def _with_set(state: WindowSearch, model: WindowModel, progress: Progress) -> Wi
         for c in chosen:
             if c.key not in has:
                 model = _with_one(state, model, c) or model
-        best = model if best is None or _bic(model) < _bic(best) else best
-    return best or model
+        is_first = not find_members(best, state.model)
+        best = model if is_first or _bic(model) < _bic(best) else best
+    return best
 
 
 def _bic(model: WindowModel) -> float:
