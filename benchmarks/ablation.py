@@ -1,6 +1,7 @@
 """What the passes of a search are worth: hidden worlds answered with and without some of them.
 
     python benchmarks/ablation.py [--robot pendulum cart] [--count 4] [--without begin_anew ...]
+    python benchmarks/ablation.py --effect three --without add_set set_for_effects
     python benchmarks/ablation.py --without plain       all passes at once but the forward selection
     python benchmarks/ablation.py --only-summary
 
@@ -22,8 +23,16 @@ from pathlib import Path
 from typing import Any
 
 from hidden_joints import study
-from joint_statistics import is_law_named, is_null, is_right_or_alike, is_unlisted
-from joint_worlds.hidden import NULL, effects_of
+from joint_statistics import (
+    count_found,
+    has_false_name,
+    is_law_named,
+    is_null,
+    is_of_several,
+    is_right_or_alike,
+    is_unlisted,
+)
+from joint_worlds.hidden import NULL, THREE, effects_of
 from joint_worlds.motion import ROBOTS
 from scipy.stats import binomtest
 
@@ -43,7 +52,12 @@ def passes_of(names: Sequence[str]) -> tuple[str, ...]:
 
 
 def is_good(row: Row) -> bool:
-    """Whether an answer is right: a null stays silent, and an unlisted force gets no law's name."""
+    """Whether an answer is right.
+
+    A null stays silent, an unlisted force gets no law's name, and several effects are all named.
+    """
+    if is_of_several(row):
+        return count_found(row) == len(row["truth"]["acting"]) and not has_false_name(row)
     if is_null(row):
         return bool(row["verdict"] == "nothing missing")
     return not is_law_named(row) if is_unlisted(row) else is_right_or_alike(row)
@@ -51,7 +65,10 @@ def is_good(row: Row) -> bool:
 
 KINDS: Mapping[str, Callable[[Row], bool]] = {
     "nothing is missing: silent": is_null,
-    "a listed effect: named first, or alike": lambda r: not is_null(r) and not is_unlisted(r),
+    "a listed effect: named first, or alike": lambda r: (
+        not (is_null(r) or is_unlisted(r) or is_of_several(r))
+    ),
+    "three effects: all named, and no other": is_of_several,
     "a force in no catalogue: no law named": is_unlisted,
 }
 
@@ -80,13 +97,16 @@ def summary(pairs: Sequence[Row]) -> str:
     ])  # fmt: skip
 
 
-def tasks(robots: Sequence[str], count: int, seed: int) -> list[tuple[str, str, int]]:
+def tasks(
+    robots: Sequence[str], effects: Sequence[str], count: int, seed: int
+) -> list[tuple[str, str, int]]:
     """Returns robots, effects and seeds, every effect once before any twice."""
     return [
         (robot, effect, seed + k)
         for k in range(count)
         for robot in robots
-        for effect in (NULL, *effects_of(ROBOTS[robot]))
+        for effect in (NULL, THREE, *effects_of(ROBOTS[robot]))
+        if not effects or effect in effects
     ]
 
 
@@ -102,6 +122,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     add = parser.add_argument
     add("--robot", nargs="+", choices=list(ROBOTS), default=["pendulum", "cart"])
+    add("--effect", nargs="+", default=[], help="of the project's names, nothing, or three")
     add("--count", type=int, default=4, help="worlds for each effect, and as many nulls")
     add("--seed", type=int, default=1000)
     add("--duration", type=float, default=12.0, help="of a record [s]")
@@ -113,7 +134,7 @@ def main() -> int:
     path.parent.mkdir(parents=True, exist_ok=True)
     done = {p["key"] for p in pairs_of(path)}
     for robot, effect, seed in (
-        [] if given.only_summary else tasks(given.robot, given.count, given.seed)
+        [] if given.only_summary else tasks(given.robot, given.effect, given.count, given.seed)
     ):
         key = f"{robot}/{effect}/{seed}"
         if key in done:
