@@ -163,6 +163,13 @@ def places_of(where: str) -> list[str]:
     return where.split(AND)
 
 
+def contains(more: Candidate, less: Candidate) -> bool:
+    """Returns whether a candidate is the same effect as another, at its places and at others."""
+    is_same = more.effect.name == less.effect.name
+    is_everywhere = not more.effect.places.get(more.where, more.where)
+    return is_same and (is_everywhere or {*places_of(less.where)} <= {*places_of(more.where)})
+
+
 def several_scores(
     fit: WindowFit, significant: Sequence[WindowScore], options: DiscoveryOptions
 ) -> list[WindowScore]:

@@ -37,6 +37,7 @@ from identification.prediction.model import WindowModel
 from identification.prediction.record_errors import error_unit, errors_by_unit, record_errors
 from identification.prediction.recovery import recover_over_horizon
 from identification.prediction.remaining import find_remaining, left_by_steps, needed_input_error
+from identification.prediction.screening import contains
 from identification.prediction.task import WindowSearch
 from identification.prediction.trial import Contender, evidences, find_twin
 from identification.prediction.yardstick import Yardstick, measure
@@ -193,9 +194,10 @@ def _named(
     final = state.model if is_final else accepted.model
     twin = find_twin(final, mine)
     others = [o for o in others if o.candidate.effect.name != twin]  # the same is no rival
-    # What physics forbids takes its share of the odds, and is no other name.
+    # What physics forbids takes its share of the odds, and is no other name. The same effect at
+    # more places is the same name: what it explains there is no reason to doubt this place.
     possible = [o for o in others if o.doubt not in IMPOSSIBLE]
-    forbidden = [o for o in others if o.doubt in IMPOSSIBLE]
+    forbidden = [o for o in others if o.doubt in IMPOSSIBLE and not contains(o.candidate, mine)]
     shares = compute_confidence(evidences([accepted, *possible, *forbidden]))
     own, of_rivals = shares[0], shares[1 : 1 + len(possible)]
     candidate, parameters = _fitted(final, mine)

@@ -16,6 +16,7 @@ from identification.effects.catalogue import MOST_TURNS, OF_ANGLE, joint_effects
 from identification.effects.effect import Candidate
 from identification.effects.joint_plant import candidates, joint_plant
 from identification.prediction.discovery import discover_records
+from identification.prediction.screening import contains
 from identification.report.discovery_report import discovery_text
 
 LOG = arm_log(steps(400, 2))  # 4 s
@@ -85,6 +86,19 @@ def test_a_mass_that_is_nearly_lost_is_no_name_and_is_told():
 def test_who_believes_it_gets_the_name():
     found = afloat(("impossible_sizes",))
     assert [n.name for n in found.named] == ["mass_mismatch"]
+
+
+def test_an_effect_at_more_places_is_the_same_effect_and_forbids_no_name_of_it():
+    mass = next(e for e in arm().effects if e.name == "mass_mismatch")
+    other = next(e for e in arm().effects if e.name == "stiffness")
+    lower, upper = (Candidate(mass, f"body {b}", {}) for b in ("lower", "upper"))
+    both = Candidate(mass, "body upper and body lower", {})
+    assert contains(both, lower)
+    assert not contains(lower, both)
+    assert not contains(upper, lower)
+    every, elbow = (Candidate(other, where, {}) for where in ("all joints", "joint elbow"))
+    assert contains(every, elbow)
+    assert not contains(every, lower)
 
 
 @pytest.mark.parametrize("turns", [0.9, 1.1])

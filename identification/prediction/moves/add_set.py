@@ -64,14 +64,15 @@ def add_set(state: WindowSearch, progress: Progress) -> WindowSearch:
     task, watch = state.task, Watch(state.seconds)
     if state.room < 2 or not state.scores or not _is_left(state):
         return state
-    model, places = state.model, dict[Key, Place]()
+    model, places, refits = state.model, dict[Key, Place](), 0
     for _ in range(MAX_ROUNDS):
         chosen = _with_set(state, model, progress)
         before = {c.key for c in chosen.candidates}
         model, places = _each_at_its_best(state, chosen, progress)
+        refits += sum(len(p.tried) for p in places.values())
         if {c.key for c in model.candidates} == before:
             break
-    found = _proven(state, model, sum(len(p.tried) for p in places.values()), progress)
+    found = _proven(state, model, refits, progress)
     watch.stop("refits")
     if not found:
         return replace(state, seconds=watch.seconds)
@@ -237,7 +238,8 @@ def _proven(
         if less is None:
             return ()
         model = less
-    is_proven = find_doubt(compare(parent.unseen, whole.unseen), refits, options) is None
+    seen = compare(parent.unseen, whole.unseen)
+    is_proven = find_doubt(seen, max(1, refits), options) is None
     return tuple(known) if is_proven and not _is_contradicted(state, parent, whole) else ()
 
 
