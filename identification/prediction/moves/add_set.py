@@ -29,6 +29,7 @@ from identification.prediction.exchange import exchanged, is_contradicted
 from identification.prediction.extension import refitted, with_effect, with_fitting_steps
 from identification.prediction.first_fit import begin
 from identification.prediction.model import WindowModel
+from identification.prediction.remaining import MAX_OUTPUT_RATIO
 from identification.prediction.scores import WindowScore, window_scores
 from identification.prediction.screening import score_all
 from identification.prediction.selection import judged, refit_contenders
@@ -114,10 +115,14 @@ def set_for_effects(state: WindowSearch, progress: Progress) -> WindowSearch:
 
 
 def _is_left(state: WindowSearch) -> bool:
-    """Returns whether the model errs by more than the sensors' noise where the search decides."""
-    unseen = state.model.unseen
-    square = float(np.mean(np.concatenate(unseen.select.at_horizon)))
-    return square > unseen.floor * (1 + state.task.options.min_gap_share) ** 2
+    """Returns whether the model errs so far above the sensors' noise that several may be missing.
+
+    It is asked of windows on which the search decides. A set takes as long as all that was before
+    it, and of a right model that errs by little more than noise there is nothing to find.
+    """
+    unseen = state.model.unseen.select
+    square = float(np.mean(np.concatenate(unseen.at_horizon)))
+    return square > unseen.floor * MAX_OUTPUT_RATIO**2
 
 
 def _with_set(state: WindowSearch, model: WindowModel, progress: Progress) -> WindowModel:
