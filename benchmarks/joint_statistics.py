@@ -221,6 +221,12 @@ ROWS = (
 )
 
 
+ABOUT_UNLISTED = (
+    "Forces that are in no catalogue (`benchmarks/joint_worlds/laws.py`): a place where",
+    "something catches (bump), a soft stop, a brake that acts from a speed on (fast), a torque",
+    "that follows the position (beside) or the speed (drag) of a neighbouring joint, and a",
+    "viscous friction that waves along the way (ripple), which no curve can draw.",
+)
 UNLISTED_ROWS = (
     ("law_named", "a law is named, which is wrong"),
     ("drawn", "drawn as a curve at the right joint, and no law is named"),
@@ -231,6 +237,11 @@ UNLISTED_ROWS = (
 )
 
 
+ABOUT_SEVERAL = (
+    "Three effects of the catalogue at once, each of which alone would show 3 to 10 times what",
+    "the true model errs by. An effect counts as named where its name, or the one that the",
+    "records cannot tell from it, is said at the right place.",
+)
 SEVERAL_ROWS = (
     ("all_found", "all three are named, each where it acts"),
     ("most_found", "two or three are"),
@@ -290,42 +301,22 @@ def section(rows: Sequence[Row]) -> str:
     lines += ["", "| confidence of the first name | right |", "|---|---|"]
     lines += [f"| {band} | {said(share)} |" for band, share in found["reliability"].items()]
     if found["unlisted"]["all"]["law_named"]["of"]:
-        lines += _unlisted_lines(found["unlisted"])
+        lines += _lines(ABOUT_UNLISTED, UNLISTED_ROWS, found["unlisted"])
     if found["several"]["all"]["all_found"]["of"]:
-        lines += _several_lines(found["several"])
+        lines += _lines(ABOUT_SEVERAL, SEVERAL_ROWS, found["several"])
     return "\n".join(lines) + "\n"
 
 
-def _several_lines(found: Mapping[str, Any]) -> list[str]:
-    """The part of the section on several effects at once."""
-    columns = [n for n in found if found[n]["all_found"]["of"]]
-    lines = [
-        "",
-        "Three effects of the catalogue at once, each of which alone would show 3 to 10 times what",
-        "the true model errs by. An effect counts as named where its name, or the one that the",
-        "records cannot tell from it, is said at the right place.",
-        "",
+def _lines(
+    about: Sequence[str], rows: Sequence[tuple[str, str]], found: Mapping[str, Any]
+) -> list[str]:
+    """Returns a part of the section: what it is about, and a table of rates by robot."""
+    first = rows[0][0]
+    columns = [n for n in found if found[n][first]["of"]]
+    return [
+        "", *about, "",
         "| | " + " | ".join(c.replace("_", " ") for c in columns) + " |",
         "|---" * (len(columns) + 1) + "|",
-    ]
-    for key, words in SEVERAL_ROWS:
-        lines.append(f"| {words} | " + " | ".join(said(found[c][key]) for c in columns) + " |")
-    return lines
-
-
-def _unlisted_lines(found: Mapping[str, Any]) -> list[str]:
-    """The part of the section on forces that are in no catalogue."""
-    columns = [n for n in found if found[n]["law_named"]["of"]]
-    lines = [
-        "",
-        "Forces that are in no catalogue (`benchmarks/joint_worlds/laws.py`): a place where",
-        "something catches (bump), a soft stop, a brake that acts from a speed on (fast), a torque",
-        "that follows the position (beside) or the speed (drag) of a neighbouring joint, and a",
-        "viscous friction that waves along the way (ripple), which no curve can draw.",
-        "",
-        "| | " + " | ".join(c.replace("_", " ") for c in columns) + " |",
-        "|---" * (len(columns) + 1) + "|",
-    ]
-    for key, words in UNLISTED_ROWS:
-        lines.append(f"| {words} | " + " | ".join(said(found[c][key]) for c in columns) + " |")
-    return lines
+        *(f"| {words} | " + " | ".join(said(found[c][key]) for c in columns) + " |"
+          for key, words in rows),
+    ]  # fmt: skip

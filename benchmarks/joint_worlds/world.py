@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from departures import CONTROLLERS, EITHER_HALF, MISTUNED, POWERS, Departure
 
+from identification.prediction.trial import TWINS
 from joint_worlds import slots as at
 from joint_worlds.hidden import EVERY, HIDDEN, NULL, THREE, UNLISTED, Habits, Hidden, Shape
 from joint_worlds.motion import ROBOTS, closed_loop, terms
@@ -220,11 +221,11 @@ def _world(
 
 
 def _drawn(robot: JointRobot, rng: np.random.Generator) -> tuple[Hidden, ...]:
-    """Returns three effects of the catalogue, of which no two have a right name in common."""
+    """Returns three effects of the catalogue, of which no two may be one force by two names."""
     out: list[Hidden] = []
     for name in rng.permutation(sorted(HIDDEN)):
         one = HIDDEN[str(name)]
-        taken = {n for o in out for n in o.names(robot)}
+        taken = {n for o in out for n in (*o.names(robot), TWINS.get(o.name, ""))}
         if len(out) < SEVERAL and one.joints(robot) and not taken & {*one.names(robot)}:
             out.append(one)
     return tuple(out)
