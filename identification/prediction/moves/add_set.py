@@ -60,19 +60,33 @@ class Place:
     tried: tuple[Contender, ...]
 
 
-def add_set(state: WindowSearch, progress: Progress) -> WindowSearch:
-    """Returns the state with several effects more, or as it is where none are proven together."""
+def add_set(
+    state: WindowSearch, progress: Progress, present: WindowModel | None = None
+) -> WindowSearch:
+    """Returns the state with several effects more, or as it is where none are proven together.
+
+    Args:
+        state: the state before.
+        progress: is told each set, and what is refitted in the places of its members.
+        present: the model that the set has to predict better than, on average over the blocks that
+            decide, before its members are asked in their places, which takes most of the time; that
+            of the state when None.
+    """
     task, watch = state.task, Watch(state.seconds)
     if state.room < 2 or not state.scores or not _is_left(state):
         return state
-    model, places, refits = state.model, dict[Key, Place](), 0
+    model, places, refits, asked = state.model, dict[Key, Place](), 0, list[set[Key]]()
     for _ in range(MAX_ROUNDS):
         chosen = _with_set(state, model, progress)
-        before = {c.key for c in chosen.candidates}
+        is_worse = not compare((present or state.model).unseen, chosen.unseen).t > 0
+        if is_worse or _keys(chosen) in asked:
+            break
+        asked.append(_keys(chosen))
         model, places = _each_at_its_best(state, chosen, progress)
         refits += sum(len(p.tried) for p in places.values())
-        if {c.key for c in model.candidates} == before:
+        if _keys(model) in asked:
             break
+        asked.append(_keys(model))
     found = _proven(state, model, refits, progress)
     watch.stop("refits")
     if not found:
@@ -99,7 +113,7 @@ def set_for_effects(state: WindowSearch, progress: Progress) -> WindowSearch:
     bare = replace(
         state, model=state.nominal, accepted=(), scores=state.nominal_scores, exchanged=None
     )
-    found = add_set(bare, progress)
+    found = add_set(bare, progress, state.model)
     old, new = ({a.candidate.key for a in s.accepted} for s in (state, found))
     if not new or new <= old:
         return replace(state, seconds=found.seconds)
@@ -112,6 +126,10 @@ def set_for_effects(state: WindowSearch, progress: Progress) -> WindowSearch:
     progress("together they explain more than the effects that were found one by one")
     lost = tuple(a for a in state.accepted if a.candidate.key not in new)
     return replace(found, rejected=(*lost, *state.rejected))
+
+
+def _keys(model: WindowModel) -> set[Key]:
+    return {c.key for c in model.candidates}
 
 
 def _is_left(state: WindowSearch) -> bool:
