@@ -84,13 +84,15 @@ def answer(toml: Path, a: Path, b: Path, way: str, without: tuple[str, ...] = ()
              "confidence": n.confidence, "one_of": n.one_of,
              "same_as": n.same_as.name if n.same_as else None,
              "rivals": [rival.name for rival in n.rivals],
-             "smooth_share": n.smooth_share, "compared": n.compared, "fall": n.proof.fall,
+             "smooth_share": n.smooth_share,
+             "neighbour": n.neighbour and [n.neighbour.axis, n.neighbour.share, n.neighbour.chance],
+             "compared": n.compared, "fall": n.proof.fall,
              "t": n.proof.t,
              "sizes": {name: p[0] for name, p in n.parameters.items()}}
             for n in found.named
         ],
         "smooth_share": found.smooth_share, "unexplained": found.unexplained,
-        "input_error": found.input_error,
+        "input_error": found.input_error, "times_noise": found.times_noise(found.after),
         "curves": [[s.candidate.effect.name, s.candidate.where, float(s.fall), float(s.p_value)]
                    for s in found.remaining if s.candidate.effect.is_curve],
         "findings": [f.kind.value for f in found.findings],

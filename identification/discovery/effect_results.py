@@ -253,6 +253,21 @@ class RecordDifference(OfCandidate):
         return max(max(values) - min(values) for values in each.values())
 
 
+@dataclass(frozen=True)
+class Neighbour:
+    """What a smooth force of what a law depends on would explain beside the law.
+
+    Attributes:
+        axis: name of the curve over what the law depends on.
+        share: of what the model leaves, what the force would take of samples that it has not seen.
+        chance: of as much by luck, paid for by the scales of the force that were tried.
+    """
+
+    axis: str
+    share: float
+    chance: float
+
+
 @dataclass(frozen=True, kw_only=True)
 class NamedEffect(OfCandidate):
     """An effect that is missing from the nominal model.
@@ -275,6 +290,8 @@ class NamedEffect(OfCandidate):
             it is (`identification.prediction.trial`); None where there is none.
         smooth_share: of what it and smooth forces of its joint could explain, the share that it
             explains (`identification.discovery.smooth_force`); None where that is not known.
+        neighbour: what a smooth force of what it depends on would explain beside it; None where
+            that is not known.
     """
 
     candidate: Candidate
@@ -291,6 +308,7 @@ class NamedEffect(OfCandidate):
     outside: Outside | None = None
     same_as: Effect | None = None
     smooth_share: float | None = None
+    neighbour: Neighbour | None = None
 
     @property
     def odds(self) -> float:

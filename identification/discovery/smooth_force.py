@@ -34,11 +34,13 @@ class SmoothForce:
 
     Attributes:
         gain: fall of the sum of squares of samples that it was not fitted to.
+        gains: the same of each block, shape (B,).
         ridges: ρ of each curve, shape (K,); infinite for one that explains nothing.
         c: forces at all nodes, by all samples, shape (k,).
     """
 
     gain: float
+    gains: np.ndarray
     ridges: np.ndarray
     c: np.ndarray
 
@@ -85,7 +87,11 @@ def find_smooth_force(G: np.ndarray, a: np.ndarray, nodes: Sequence[int]) -> Smo
                     best, most = tried, found
         if not most > before:
             break
-    return SmoothForce(most, best, fitted(every, b, best))
+    gains = np.zeros(len(a))
+    for f, (own, mine) in zip(folds, parts, strict=True):
+        c = fitted(every - own, b - mine, best)
+        gains[f] = 2 * a[f] @ c - (G[f] @ c) @ c
+    return SmoothForce(most, gains, best, fitted(every, b, best))
 
 
 def explained_share(before: float, after: float, gain: float) -> float | None:

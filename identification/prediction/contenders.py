@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from identification.discovery.options import DiscoveryOptions
+from identification.discovery.passes import uses
 from identification.effects.effect import Candidate
 from identification.prediction.scores import WindowScore
 
@@ -45,8 +46,9 @@ def _best_few(
     listed: Sequence[WindowScore], scores: Sequence[WindowScore], options: DiscoveryOptions
 ) -> list[WindowScore]:
     each: dict[tuple[str, str], WindowScore] = {}
+    level = refit_level(scores, options)
     for s in listed:
-        if is_significant(s, len(scores), options) and is_plausible(s, options):
+        if is_significant(s, level, options) and is_plausible(s, options):
             each.setdefault(s.candidate.key, s)
     out: list[WindowScore] = []
     best: dict[str, float] = {}
@@ -59,9 +61,28 @@ def _best_few(
     return out[:MAX_CONTENDERS]
 
 
-def is_significant(s: WindowScore, count: int, options: DiscoveryOptions) -> bool:
-    """Returns whether a score is beyond chance among `count` of them and large enough to matter."""
-    return s.p_value * count < options.significance and s.fall > options.min_fall
+def is_significant(s: WindowScore, level: float, options: DiscoveryOptions) -> bool:
+    """Returns whether a score is of less chance than a level, and large enough to matter."""
+    return s.p_value < level and s.fall > options.min_fall
+
+
+def refit_level(scores: Sequence[WindowScore], options: DiscoveryOptions) -> float:
+    """Returns the chance below which the effect of a score is refitted.
+
+    A refit is no proof, for unseen records decide, and a score about a model from which something
+    is missing is less sure than what is refitted. So one false refit is expected where nothing is
+    missing. Where a score is beyond chance among all, something is, and only its name is asked: the
+    right one may be a law whose score, by itself, is weak.
+
+    Args:
+        scores: of all candidates.
+        options: what is beyond chance.
+    """
+    strict = options.significance / max(1, len(scores))
+    if not uses(options, "weak_scores"):
+        return strict
+    is_missing = any(is_significant(s, strict, options) and is_plausible(s, options) for s in scores)
+    return options.significance if is_missing else 1.0 / max(1, len(scores))
 
 
 def is_plausible(s: WindowScore, options: DiscoveryOptions) -> bool:
@@ -82,12 +103,13 @@ def list_simpler(
         options: what is beyond chance.
     """
     each: dict[str, WindowScore] = {}
+    level = refit_level(scores, options)
     for s in scores:
         c = s.candidate
         is_alike = c.where == winner.where and {*c.effect.hooks} == {*winner.effect.hooks}
         if not (is_alike and count_numbers(c) < count_numbers(winner)):
             continue
-        if is_significant(s, len(scores), options) and is_plausible(s, options):
+        if is_significant(s, level, options) and is_plausible(s, options):
             each.setdefault(c.effect.name, s)
     return [*each.values()][:MAX_SIMPLER_LAWS]
 

@@ -103,9 +103,27 @@ def _judged(score: WindowScore, scatter: Scatter, common: Common) -> WindowScore
     return replace(score, std=std, p_value=float(p_values(scatter, common)[0]))
 
 
+@dataclass(frozen=True)
+class Condensed:
+    """What blocks of windows tell of k sizes; the last block are the priors of the parameters.
+
+    Attributes:
+        G: S⊥ᵀS⊥ of each block, shape (B, k, k).
+        a: S⊥ᵀr⊥ of each, shape (B, k).
+        squares: ‖r⊥‖² of each, shape (B,).
+        H: SᵀS of all, shape (k, k), without what states make up for, but with what the free
+            parameters do.
+    """
+
+    G: np.ndarray
+    a: np.ndarray
+    squares: np.ndarray
+    H: np.ndarray
+
+
 def condensed(
     fit: WindowFit, candidates: Sequence[Candidate], held: Collection[str] = ()
-) -> tuple[np.ndarray, np.ndarray, float]:
+) -> Condensed:
     """Returns what blocks of windows tell of many sizes at once.
 
     Args:
@@ -113,9 +131,6 @@ def condensed(
         candidates: which, with k sizes in all; none has a size of each record where there are
             several.
         held: free parameters of the fit that do not make room for them.
-
-    Returns:
-        S⊥ᵀS⊥ and S⊥ᵀr⊥ of each block, shapes (B, k, k) and (B, k), and ‖r⊥‖².
 
     Raises:
         DivergenceError: one of them cannot be simulated.
@@ -125,7 +140,8 @@ def condensed(
     S = base.without_base(np.vstack([columns, np.zeros((len(fit.q), columns.shape[1]))]))
     G = np.array([S[rows].T @ S[rows] for rows in base.blocks])
     a = np.array([S[rows].T @ base.r[rows] for rows in base.blocks])
-    return G, a, float(base.r @ base.r)
+    squares = np.array([base.r[rows] @ base.r[rows] for rows in base.blocks])
+    return Condensed(G, a, squares, columns.T @ columns)
 
 
 def find_imitated(fit: WindowFit, scores: Sequence[WindowScore]) -> set[tuple[str, str]]:

@@ -27,7 +27,7 @@ from identification.discovery.candidates import list_common, list_single
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.passes import uses
 from identification.effects.effect import Candidate, Effect, Size, in_each_record
-from identification.prediction.contenders import is_plausible, is_significant
+from identification.prediction.contenders import is_plausible, is_significant, refit_level
 from identification.prediction.first_fit import picks, thinned, thinned_moves, thinned_tangents
 from identification.prediction.model import WindowModel
 from identification.prediction.scores import WindowScore, find_imitated, window_scores
@@ -59,15 +59,16 @@ def score_all(
     best = [*window_scores(model.fit, promising), *rest] if is_many else few
     tell_lost(listed, (s.candidate for s in best))
     found = sorted(best, key=lambda s: -s.fall)
-    beyond = [
-        s for s in found if is_significant(s, len(found), options) and is_plausible(s, options)
-    ]
-    asked = [s for s in beyond if id(s.candidate) in again or not is_many]
+    plausible, level = [s for s in found if is_plausible(s, options)], refit_level(found, options)
+    asked = [s for s in plausible if is_significant(s, level, options)]
     if uses(options, "imitated_effects"):
+        asked = [s for s in asked if id(s.candidate) in again or not is_many]
         known = find_imitated(model.fit, asked)
-        found, beyond = (
-            [s for s in each if s.candidate.key not in known] for each in (found, beyond)
+        found, plausible = (
+            [s for s in each if s.candidate.key not in known] for each in (found, plausible)
         )
+    strict = options.significance / max(1, len(found))
+    beyond = [s for s in plausible if is_significant(s, strict, options)]
     is_each = uses(options, "several_places")
     several = several_scores(model.fit, beyond, options) if is_each else []
     return tuple(sorted((*found, *several), key=lambda s: -s.fall))

@@ -53,7 +53,7 @@ def choose(
     known = attempt(None, partial(condensed, fit, listed, held)) if listed else None
     if known is None:
         return tuple(members)
-    G, a, _ = known
+    G, a = known.G, known.a
     counts = [len(c.sizes) for c in listed]
     ends = np.cumsum(counts)
     values = {**model.plant.parameters.values(), **model.fit.of_record(0)}
@@ -73,11 +73,16 @@ def choose(
 def find_members(model: WindowModel, parent: WindowModel) -> list[Candidate]:
     """Returns the effects that a model has and its parent has not, with their fitted shapes."""
     old = {c.key for c in parent.candidates}
+    return with_fitted_shapes(model, [c for c in model.candidates if c.key not in old])
+
+
+def with_fitted_shapes(model: WindowModel, candidates: Sequence[Candidate]) -> list[Candidate]:
+    """Returns effects of a model with the shapes that were fitted."""
     values = {**model.plant.parameters.values(), **model.values}
     return [
         replace(c, shape={s.name: values[c.effect.parameter(s.name, c.where)]
                           for s in c.effect.shapes})
-        for c in model.candidates if c.key not in old
+        for c in candidates
     ]  # fmt: skip
 
 

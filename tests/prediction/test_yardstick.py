@@ -43,7 +43,8 @@ def with_law(name):
 
 def test_sums_by_blocks_give_the_fall_of_a_curve():
     (candidate,) = listed("curve_speed")
-    G, a, square = condensed(rubbed().fit, [candidate])
+    known = condensed(rubbed().fit, [candidate])
+    G, a, square = known.G, known.a, known.squares.sum()
     c = lsq_linear(G.sum(axis=0), a.sum(axis=0)).x
     (score,) = window_scores(rubbed().fit, [candidate])
     assert a.sum(axis=0) @ c / square == pytest.approx(score.fall, rel=1e-6)
