@@ -14,6 +14,7 @@ from identification.prediction.scores import WindowScore
 # In a round, fitted to some of the windows; the best `max_refits`, and those near, to all.
 MAX_CONTENDERS = 6
 MAX_CURVES = 3  # of the data, fitted in a round: of speed, of position, and of one thing more
+MAX_CHANCE = 0.05  # of a score, above which its effect is not refitted however few there are
 MAX_SIMPLER_LAWS = 2  # with fewer numbers, refitted beside the best one
 
 
@@ -82,7 +83,7 @@ def refit_level(scores: Sequence[WindowScore], options: DiscoveryOptions) -> flo
     if not uses(options, "weak_scores"):
         return strict
     is_missing = any(is_significant(s, strict, options) and is_plausible(s, options) for s in scores)
-    return options.significance if is_missing else 1.0 / max(1, len(scores))
+    return options.significance if is_missing else min(MAX_CHANCE, 1.0 / max(1, len(scores)))
 
 
 def is_plausible(s: WindowScore, options: DiscoveryOptions) -> bool:

@@ -38,7 +38,7 @@ from identification.windows.unseen import Prediction
 Doubt = (
     Literal[
         "numbers", "chance", "lengths", "record", "little", "size", "bound", "exchange", "curve",
-        "drawn", "differ", "steps",
+        "drawn", "differ", "steps", "neighbour",
     ]
     | Impossible
 )  # fmt: skip

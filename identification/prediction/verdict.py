@@ -2,7 +2,9 @@
 
 The confidence of a name is its share of the odds among its rivals, in the mean over resamples
 (`identification.prediction.evidence`). A name below even odds is no name, unless it is told with
-its look-alike: what was tried is then told, and the verdict is "unknown effect".
+its look-alike; nor is a law beside which a smooth force of what it depends on explains more, for
+the right one would not leave that (`identification.prediction.yardstick`). What was tried is then
+told, and the verdict is "unknown effect".
 """
 
 from __future__ import annotations
@@ -40,7 +42,7 @@ from identification.prediction.remaining import find_remaining, left_by_steps, n
 from identification.prediction.screening import contains
 from identification.prediction.task import WindowSearch
 from identification.prediction.trial import Contender, evidences, find_twin
-from identification.prediction.yardstick import Yardstick, measure
+from identification.prediction.yardstick import Yardstick, has_neighbours_name, measure
 from identification.windows.records import Record
 from identification.windows.unseen import Prediction, Unseen, rise
 
@@ -73,9 +75,11 @@ def conclude(state: WindowSearch) -> Discovery:
     needed = attempt(None, partial(needed_input_error, model.fit, model.unseen.floor))
     if needed is None:
         needed = needed_input_error(nominal.fit, nominal.unseen.floor)
-    verdict = decide(named, findings, _is_worse(state) or _errs(model, needed, options))
+    is_unexplained = _is_worse(state) or _errs(model, needed, options)
+    verdict = decide(named, findings, is_unexplained, options)
     if verdict == "unknown effect":
-        rejected, named, model = listed_once([*map(_unnamed, named), *rejected]), (), nominal
+        unnamed = [_unnamed(n, options) for n in named]
+        rejected, named, model = listed_once([*unnamed, *rejected]), (), nominal
     floor = model.unseen.floor
     before, after = (
         float(np.mean(np.concatenate(m.unseen.report.at_horizon))) for m in (nominal, model)
@@ -110,16 +114,20 @@ def conclude(state: WindowSearch) -> Discovery:
 
 
 def decide(
-    named: Sequence[NamedEffect], findings: Sequence[Finding], is_unexplained: bool
-) -> Verdict:
+    named: Sequence[NamedEffect], findings: Sequence[Finding], is_unexplained: bool,
+    options: DiscoveryOptions,
+) -> Verdict:  # fmt: skip
     """Returns the verdict.
 
     Args:
         named: the accepted effects, with their confidence.
         findings: what the final model leaves.
         is_unexplained: whether the model errs by more than noise, and no effect says why.
+        options: what is beyond chance, and enough to matter.
     """
-    if named and all(n.confidence >= EVEN_ODDS or n.one_of for n in named):
+    is_neighbour = any(has_neighbours_name(n.neighbour, options) for n in named)
+    is_sure = all(n.confidence >= EVEN_ODDS or n.one_of for n in named)
+    if named and is_sure and not is_neighbour:
         is_drawn = all(n.candidate.effect.is_curve for n in named)
         return "unlisted effect" if is_drawn else "named"
     if named or is_unexplained or any(f.kind in SUSPECT for f in findings):
@@ -247,12 +255,13 @@ def _rejected(state: WindowSearch, contender: Contender) -> RejectedEffect:
     )  # fmt: skip
 
 
-def _unnamed(named: NamedEffect) -> RejectedEffect:
+def _unnamed(named: NamedEffect, options: DiscoveryOptions) -> RejectedEffect:
     """Returns an effect that is told as tried, because its name is not sure."""
     n = named
     return RejectedEffect(
-        n.candidate, n.parameters, np.nan, n.proof, evidence=n.evidence, confidence=n.confidence
-    )
+        n.candidate, n.parameters, np.nan, n.proof, evidence=n.evidence, confidence=n.confidence,
+        doubt="neighbour" if has_neighbours_name(n.neighbour, options) else None,
+    )  # fmt: skip
 
 
 def _rival(contender: Contender, confidence: float) -> Rival:

@@ -23,6 +23,8 @@ import numpy as np
 
 from identification.chances import mean_above_zero
 from identification.discovery.candidates import list_common
+from identification.discovery.options import DiscoveryOptions
+from identification.discovery.passes import uses
 from identification.discovery.smooth_force import (
     RIDGES,
     SmoothForce,
@@ -79,6 +81,19 @@ class Yardstick:
             return None
         most = max(self.of_joint[j] for j in joints)
         return explained_share(1.0, 1.0 - fall, most * (1.0 - fall))
+
+
+def has_neighbours_name(neighbour: Neighbour | None, options: DiscoveryOptions) -> bool:
+    """Returns whether a law has the name of a neighbour of what is missing.
+
+    Args:
+        neighbour: what a smooth force would explain beside it; None where that is not known.
+        options: what is beyond chance, and enough to matter.
+    """
+    if neighbour is None or not uses(options, "neighbours_names"):
+        return False
+    is_beyond_chance = neighbour.chance < options.significance
+    return is_beyond_chance and neighbour.share > options.min_fall
 
 
 def measure(model: WindowModel, effects: Sequence[Effect]) -> Yardstick | None:

@@ -236,4 +236,4 @@ def test_what_physics_forbids_takes_its_share_of_the_odds_and_is_no_other_name(
     assert named.rivals == (("rival",) if is_possible else ())
     assert named.one_of == is_possible
     expected = "named" if is_possible or gain < 0.5 else "unknown effect"
-    assert verdict.decide([named], (), False) == expected
+    assert verdict.decide([named], (), False, OPTIONS) == expected

@@ -6,7 +6,8 @@ acts from a speed on, that of a friction which grows with the square of the spee
 fitted in the place of all laws at the joint, and their cause is unlisted where it
 
     has more evidence for it than several laws have, with the price of its many numbers, or
-    predicts unseen records better than a law beyond chance, which needs no price.
+    predicts unseen records better than a law beyond chance, which needs no price, or
+    is proven, where the law has a neighbour's name (`identification.prediction.yardstick`).
 
 A single law is asked only where a curve beside it may explain what it leaves. Laws that are there
 have the evidence of their few numbers, which a curve has not.
@@ -15,6 +16,7 @@ have the evidence of their few numbers, which a curve has not.
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Collection
 from dataclasses import replace
 from functools import partial
 
@@ -29,7 +31,7 @@ from identification.prediction.screening import places_of, score_all
 from identification.prediction.selection import refit_contenders
 from identification.prediction.task import Change, WindowSearch
 from identification.prediction.trial import Contender
-from identification.prediction.yardstick import ON_JOINTS
+from identification.prediction.yardstick import ON_JOINTS, has_neighbours_name, measure
 from identification.progress import Progress
 from identification.windows.unseen import compare
 
@@ -42,8 +44,9 @@ def curve_for_laws(state: WindowSearch, progress: Progress) -> Change:
     """Returns the state's model with a curve in place of several laws, if it has more evidence."""
     task, model, accepted = state.task, state.model, [*state.accepted]
     options, confirm = task.options, task.confirm
+    neighbours = _neighbours_names(state)
     curves, lost = [e for e in task.effects if e.is_curve], list[Contender]()
-    for where in _joints_of_laws(state):
+    for where in _joints_of_laws(state, neighbours):
         laws = [a for a in accepted if a.candidate.where == where and _is_law(a)]
         out = {a.candidate.key for a in laws}
         rest = [c for c in model.candidates if c.key not in out]
@@ -62,9 +65,11 @@ def curve_for_laws(state: WindowSearch, progress: Progress) -> Change:
         best = next(iter(tried), None)
         if best is None or not best.is_proven:
             continue
-        is_better = (
-            best.criterion > theirs if len(laws) > 1 else _predicts_better(best, model, options)
-        )
+        if len(laws) > 1:
+            is_better = best.criterion > theirs
+        else:
+            is_neighbour = laws[0].candidate.key in neighbours
+            is_better = is_neighbour or _predicts_better(best, model, options)
         if is_better:
             counted_laws = "a law does" if len(laws) == 1 else f"{len(laws)} laws do"
             progress(f"{best.candidate.effect.name}, {where}: does what {counted_laws}")
@@ -74,13 +79,20 @@ def curve_for_laws(state: WindowSearch, progress: Progress) -> Change:
     return model, tuple(accepted), tuple(lost)
 
 
+def _neighbours_names(state: WindowSearch) -> set[tuple[str, str]]:
+    """Returns laws that have the name of a neighbour of what is missing."""
+    stick = attempt(None, partial(measure, state.model, state.task.effects))
+    each = stick.beside.items() if stick else ()
+    return {key for key, n in each if has_neighbours_name(n, state.task.options)}
+
+
 def _predicts_better(curve: Contender, laws: WindowModel, options: DiscoveryOptions) -> bool:
     """Returns whether unseen records are predicted better with a curve in the place of laws."""
     found = compare(laws.unseen, curve.model.unseen)
     return found.is_everywhere and found.chance < options.significance
 
 
-def _joints_of_laws(state: WindowSearch) -> list[str]:
+def _joints_of_laws(state: WindowSearch, neighbours: Collection[tuple[str, str]]) -> list[str]:
     """Returns the joints of several laws, or of one that may be a neighbour's, and of no curve."""
     curves = {
         place
@@ -89,8 +101,9 @@ def _joints_of_laws(state: WindowSearch) -> list[str]:
         for place in places_of(a.candidate.where)
     }
     count = Counter(a.candidate.where for a in state.accepted if _is_law(a))
-    return [where for where, n in count.items()
-            if where not in curves and (n > 1 or _may_be_neighbour(state, where))]  # fmt: skip
+    doubtful = {where for _, where in neighbours}
+    return [where for where, n in count.items() if where not in curves
+            and (n > 1 or where in doubtful or _may_be_neighbour(state, where))]  # fmt: skip
 
 
 def _may_be_neighbour(state: WindowSearch, where: str) -> bool:
