@@ -276,7 +276,11 @@ def _sized(scene: _Scene, effect: str, rng: np.random.Generator) -> _Chosen:
     size, tried, shown, true = 0.2 * most, 0.0, 0.0, base
     for _ in range(TRIES):
         true, tried = with_effect(robot, base, effect, j, size, shape), size
-        motion = _quiet(robot, true, scene.control, scene.aim)
+        try:
+            motion = _quiet(robot, true, scene.control, scene.aim)
+        except np.linalg.LinAlgError:
+            held = f"{effect} of {robot.name}: its controller does not hold {size:.2g} of it"
+            raise UnseenError(held) from None
         shown = ratio(robot, true, base, scene.free, *motion, scene.push)
         if abs(shown / target - 1) < NEAR or (size == most and shown < target):
             break

@@ -82,7 +82,9 @@ def refit_level(scores: Sequence[WindowScore], options: DiscoveryOptions) -> flo
     strict = options.significance / max(1, len(scores))
     if not uses(options, "weak_scores"):
         return strict
-    is_missing = any(is_significant(s, strict, options) and is_plausible(s, options) for s in scores)
+    is_missing = any(
+        is_significant(s, strict, options) and is_plausible(s, options) for s in scores
+    )
     return options.significance if is_missing else min(MAX_CHANCE, 1.0 / max(1, len(scores)))
 
 

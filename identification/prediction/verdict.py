@@ -68,7 +68,7 @@ def conclude(state: WindowSearch) -> Discovery:
     findings = find_remaining(state, rejected, shifts)
     limit = options.left_confidence if findings else options.max_confidence
     differ = [a for a in state.accepted if a.candidate.effect.is_of_records]
-    stick = attempt(None, partial(measure, model, task.effects))
+    stick = attempt(None, partial(measure, model, task.effects)) if state.accepted else None
     named = tuple(_named(state, a, limit, stick) for a in state.accepted if a not in differ)
     nominal = _with_differences(state, differ)
     # Beside a model with effects that diverges there, the nominal one tells it.

@@ -23,6 +23,7 @@ import numpy as np
 
 from identification.chances import mean_above_zero
 from identification.discovery.candidates import list_common
+from identification.discovery.effect_results import Neighbour
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.passes import uses
 from identification.discovery.smooth_force import (
@@ -31,7 +32,6 @@ from identification.discovery.smooth_force import (
     explained_share,
     find_smooth_force,
 )
-from identification.discovery.effect_results import Neighbour
 from identification.effects.curves import OF_JOINT
 from identification.effects.effect import Candidate, Effect
 from identification.prediction.model import WindowModel

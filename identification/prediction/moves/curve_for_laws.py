@@ -44,7 +44,7 @@ def curve_for_laws(state: WindowSearch, progress: Progress) -> Change:
     """Returns the state's model with a curve in place of several laws, if it has more evidence."""
     task, model, accepted = state.task, state.model, [*state.accepted]
     options, confirm = task.options, task.confirm
-    neighbours = _neighbours_names(state)
+    neighbours = _neighbours_names(state) if any(map(_is_law, accepted)) else set()
     curves, lost = [e for e in task.effects if e.is_curve], list[Contender]()
     for where in _joints_of_laws(state, neighbours):
         laws = [a for a in accepted if a.candidate.where == where and _is_law(a)]
