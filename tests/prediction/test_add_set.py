@@ -11,11 +11,13 @@ from records_cases import FREE, nominal_model, pendulum, records
 from identification.discovery.candidates import list_common
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.joint_plant import candidates
-from identification.prediction.discovery import discover_records
+from identification.prediction.discovery import WINDOWS, discover_records
 from identification.prediction.extension import with_effect
 from identification.prediction.first_fit import begin
+from identification.prediction.moves import add_set
 from identification.prediction.nominal_fit import fit_nominal
 from identification.prediction.scores import condensed, window_scores
+from identification.prediction.task import RecordsTask
 from identification.windows.records import as_records
 
 NAMES = (
@@ -74,3 +76,19 @@ def test_members_compete_for_their_places_as_if_they_were_not_there():
     again = a.sum() + G.sum() * with_it.values[size]  # Sᵀ(r + S η)
     assert again / G.sum() == pytest.approx(with_it.values[size], rel=0.02)
     assert np.abs(a.sum()) < 0.02 * again
+
+
+def test_members_of_a_set_with_which_unseen_records_are_predicted_no_better_are_not_asked(
+    monkeypatch,
+):
+    logs = records(2, {"offset.f_0@hinge": 0.06}, samples=300)
+    every = as_records(logs[:1], logs[1:])
+    task = RecordsTask(
+        nominal_model=nominal_model(), records=every, effects=tuple(laws()),
+        options=DiscoveryOptions(without=("untouched_part",)),
+    )  # fmt: skip
+    state = WINDOWS.begin(task, lambda line: None)
+    monkeypatch.setattr(add_set, "_is_left", lambda state: True)
+    monkeypatch.setattr(add_set, "_with_set", lambda state, model, progress: state.model)
+    monkeypatch.setattr(add_set, "_each_at_its_best", None)
+    assert add_set.add_set(state, lambda line: None).accepted == ()

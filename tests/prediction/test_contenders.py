@@ -12,13 +12,19 @@ from records_cases import FREE, pendulum, record
 
 from identification.discovery.attempts import collected
 from identification.discovery.candidates import list_common
+from identification.discovery.effect_results import Neighbour
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate, Effect, Shape, Size
 from identification.effects.joint_plant import candidates
 from identification.model.parameter import Parameter, ParameterSet
 from identification.model.predictor import Predictor
 from identification.prediction import verdict
-from identification.prediction.contenders import count_numbers, list_contenders, list_simpler
+from identification.prediction.contenders import (
+    count_numbers,
+    list_contenders,
+    list_simpler,
+    refit_level,
+)
 from identification.prediction.evidence import compute_confidence, evidence
 from identification.prediction.scores import WindowScore
 from identification.prediction.selection import STRONG_BIC, _near_best, _ranked
@@ -88,6 +94,31 @@ def test_what_some_windows_cannot_tell_from_the_few_best_is_refitted_too():
 
 def test_chance_keeps_a_score_out():
     assert list_contenders([score(effect("e"), 0.5, p_value=0.5)], OPTIONS, 100) == []
+
+
+@pytest.mark.parametrize("count", [3, 100])
+def test_one_refit_by_luck_is_expected_where_nothing_is_missing(count):
+    """Chances of candidates are uniform then: the number of those below the level is one, or 5 %
+    of few."""
+    rng, refitted = np.random.default_rng(count), []
+    for _ in range(2000):
+        scores = [
+            score(effect(f"e{k}"), 0.5, p_value=p) for k, p in enumerate(rng.uniform(size=count))
+        ]
+        level = refit_level(scores, OPTIONS)
+        refitted.append(sum(s.p_value < level for s in scores))
+    assert np.mean(refitted) == pytest.approx(min(1.0, 0.05 * count), abs=0.15)
+
+
+def test_where_something_is_missing_a_weak_law_is_refitted_and_without_the_pass_it_is_not():
+    curve, weak = score(effect("curve_speed", 8), 0.9), score(effect("law"), 0.5, p_value=0.005)
+    others = [score(effect(f"e{k}"), 0.1, p_value=0.5) for k in range(100)]
+    names_of = names(list_contenders([curve, weak, *others], OPTIONS, 100))
+    assert names_of == ["law", "curve_speed"]
+    strict = DiscoveryOptions(without=("weak_scores",))
+    assert names(list_contenders([curve, weak, *others], strict, 100)) == ["curve_speed"]
+    assert list_contenders([weak, *others], OPTIONS, 100) == [weak]  # 0.5 of 101 by luck
+    assert list_contenders([weak, *others, *others], OPTIONS, 100) == []
 
 
 def test_simpler_laws_act_as_the_winner_does():
@@ -237,3 +268,5 @@ def test_what_physics_forbids_takes_its_share_of_the_odds_and_is_no_other_name(
     assert named.one_of == is_possible
     expected = "named" if is_possible or gain < 0.5 else "unknown effect"
     assert verdict.decide([named], (), False, OPTIONS) == expected
+    beside = replace(named, neighbour=Neighbour("curve_speed", 0.2, 1e-4))
+    assert verdict.decide([beside], (), False, OPTIONS) == "unknown effect"
