@@ -28,10 +28,11 @@ def pair(with_it, without):
         (row("delay", ["delay"]), True), (row("delay", ["lag"]), False), (row("delay", []), False),
         (row("tide", ["lag"], curve="curve_time"), False),
         (row("tide", ["curve_time"], curve="curve_time"), True),
-        (row("tide", [], curve="curve_time"), True),
+        (row("tide", [], curve="curve_time"), False),
+        ({**row("tide", [], curve="curve_time"), "verdict": "unknown effect"}, True),
     ],
 )  # fmt: skip
-def test_silence_a_right_name_and_no_laws_name_are_right(answer, good):
+def test_silence_a_right_name_and_what_is_called_unknown_or_drawn_are_right(answer, good):
     assert ablation.is_good(answer) is good
 
 
@@ -42,6 +43,17 @@ def test_only_worlds_that_one_search_alone_answers_right_count():
     cells = [cell.strip() for cell in told.strip("|").split("|")]
     assert cells[3:5] == ["6", "1"]
     assert float(cells[5]) == pytest.approx(2 * binom.cdf(1, 7, 0.5), rel=0.05)
+
+
+def test_a_world_in_which_no_move_that_is_left_out_did_anything_is_not_searched_again(monkeypatch):
+    asked = []
+    monkeypatch.setattr(ablation.hidden_joints, "study", lambda *task: asked.append(task) or {})
+    answer = {**row("delay", ["delay"]), "key": "cart/delay/3/records"}
+    for passes, is_moved in ((("add_set",), True), (("add_effect",), True), (("add_set",), False)):
+        pair = ablation.study(answer, 12.0, passes, is_moved)
+        assert pair["with"] is answer
+    assert [task[-1] for task in asked] == [("add_effect",), ("add_set",)]
+    assert asked[0][:5] == ("cart", "delay", 3, "records", 12.0)
 
 
 def test_the_plain_search_leaves_out_every_pass():
