@@ -84,6 +84,7 @@ def answer(toml: Path, a: Path, b: Path, way: str, without: tuple[str, ...] = ()
              "confidence": n.confidence, "one_of": n.one_of,
              "same_as": n.same_as.name if n.same_as else None,
              "rivals": [rival.name for rival in n.rivals],
+             "shares": [rival.confidence for rival in n.rivals],
              "smooth_share": n.smooth_share,
              "neighbour": n.neighbour and [n.neighbour.axis, n.neighbour.share, n.neighbour.chance],
              "compared": n.compared, "fall": n.proof.fall,
