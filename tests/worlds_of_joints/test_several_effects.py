@@ -61,4 +61,4 @@ def test_answers_are_counted_by_what_they_name_and_where():
         "all_found": (1, 7), "most_found": (2, 7), "false_name": (1, 7), "all_said": (2, 7),
         "drawn": (1, 7), "worse_than_fit": (0, 7),
     }  # fmt: skip
-    assert "| all three are named, each where it acts | 1 of 7" in section(rows)
+    assert "| all three are named, each where it acts, goal 60 % | 1 of 7" in section(rows)
