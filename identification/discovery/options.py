@@ -161,7 +161,7 @@ class DiscoveryOptions(KalmanOptions):
         "even odds", most=1.0,
     )  # fmt: skip
     max_input_error: float = option(
-        0.02, "of the inputs' own rms",
+        0.01, "of the inputs' own rms",
         "Over a horizon: an error of prediction that inputs make which are off by no more, constant"
         " over each window, is no reason to say that something is missing; currents and commanded"
         " torques are seldom better.",

@@ -29,7 +29,7 @@ from identification.prediction.exchange import exchanged, is_contradicted
 from identification.prediction.extension import refitted, with_effect, with_fitting_steps
 from identification.prediction.first_fit import begin
 from identification.prediction.model import WindowModel
-from identification.prediction.remaining import MAX_OUTPUT_RATIO
+from identification.prediction.remaining import MAX_OUTPUT_RATIO, needed_input_error
 from identification.prediction.scores import WindowScore, window_scores
 from identification.prediction.screening import score_all
 from identification.prediction.selection import judged, refit_contenders
@@ -133,14 +133,19 @@ def _keys(model: WindowModel) -> set[Key]:
 
 
 def _is_left(state: WindowSearch) -> bool:
-    """Returns whether the model errs so far above the sensors' noise that several may be missing.
+    """Returns whether the model errs by so much that several effects may be missing.
 
-    It is asked of windows on which the search decides. A set takes as long as all that was before
-    it, and of a right model that errs by little more than noise there is nothing to find.
+    That is far above the sensors' noise, on windows on which the search decides, and more than
+    inputs make that are off by what is usual. A set takes as long as all that was before it, and of
+    a right model that errs by little there is nothing to find.
     """
-    unseen = state.model.unseen.select
+    model, options = state.model, state.task.options
+    unseen = model.unseen.select
     square = float(np.mean(np.concatenate(unseen.at_horizon)))
-    return square > unseen.floor * MAX_OUTPUT_RATIO**2
+    if not square > unseen.floor * MAX_OUTPUT_RATIO**2:
+        return False
+    needed = attempt(None, partial(needed_input_error, model.fit, model.unseen.floor))
+    return needed is None or needed > options.max_input_error
 
 
 def _with_set(state: WindowSearch, model: WindowModel, progress: Progress) -> WindowModel:
