@@ -3,13 +3,13 @@
     python benchmarks/ablation.py --without weak_scores [--robot pendulum cart] [--processes 2]
     python benchmarks/ablation.py --without add_set set_for_effects --moved
     python benchmarks/ablation.py --without plain       all passes at once but the forward selection
-    python benchmarks/ablation.py --only-summary
+    python benchmarks/ablation.py --only-page       the page anew, from the rows
 
 Each world that `hidden_joints.py` has answered with the present search is answered anew by one that
-leaves out the passes. A pair of answers is a line of RESULTS/NAME.jsonl, where NAME says what is
-left out, and is not made again by the same search. The rates are those of `joint_statistics`; a
-change is judged by the worlds that only one of the two answers right (McNemar 1947: under no
-difference each of them is as likely as the other).
+leaves out the passes. Such an answer is a line of RESULTS/NAME.jsonl, where NAME says what is left
+out, and is not made again by the same search. The rates are those of `joint_statistics`; a change
+is judged by the worlds that only one of the two answers right (McNemar 1947: under no difference
+each of them is as likely as the other). The page has a table for each NAME.
 
 `--moved` is for moves: a world in which none of those that are left out changed the effects is
 answered alike without them, and is not searched again.
@@ -35,7 +35,7 @@ from joint_statistics import (
     is_unlisted,
 )
 from joint_worlds.motion import ROBOTS
-from rows import answered, of_newest, rows_of
+from rows import answered, of_newest, rows_of, write_part
 from scipy.stats import binomtest
 
 from identification.discovery.passes import PASSES
@@ -43,6 +43,7 @@ from identification.sweep.statistics import rate, said
 
 HERE = Path(__file__).parent
 RESULTS = HERE / "results" / "ablation"
+BEGIN, END = "<!-- ablation: begin -->\n", "<!-- ablation: end -->\n"
 PLAIN = "plain"  # the search with all passes left out; it adds one effect after another
 WHICH = ("with", "without")
 Row = Mapping[str, Any]
@@ -103,7 +104,7 @@ def summary(pairs: Sequence[Row]) -> str:
 
 
 def study(answer: Row, duration: float, passes: tuple[str, ...], is_moved: bool) -> dict[str, Any]:
-    """Returns a world's answer by the whole search, and by one without the passes.
+    """Returns a world's answer by a search without the passes.
 
     Args:
         answer: row of the whole search.
@@ -113,14 +114,46 @@ def study(answer: Row, duration: float, passes: tuple[str, ...], is_moved: bool)
     """
     robot, effect, seed, way = answer["key"].split("/")
     if is_moved and not {*passes} & {*answer["moves"]}:
-        return {"with": answer, "without": {**answer, "alike": True}}
-    without = hidden_joints.study(robot, effect, int(seed), way, duration, passes)
-    return {"with": answer, "without": without}
+        return {**answer, "alike": True}
+    return hidden_joints.study(robot, effect, int(seed), way, duration, passes)
 
 
-def told(pair: Row) -> str:
-    """A pair in a line."""
-    return " ".join([pair["key"], *(pair[w].get("verdict", "no answer") for w in WHICH)])
+def told(row: Row) -> str:
+    """A row in a line."""
+    return f"{row['key']} {row.get('verdict', 'no answer')}"
+
+
+def pairs_of(answers: Sequence[Row], rows: Sequence[Row]) -> list[Row]:
+    """Returns answers of the whole search, each with that of the search without passes.
+
+    Args:
+        answers: of the whole search.
+        rows: of the search without passes.
+    """
+    whole = {row["key"]: row for row in of_newest(answers)} if answers else {}
+    mine = [row for row in rows if row["key"] in whole]
+    return [
+        {"with": whole[row["key"]], "without": row}
+        for row in mine if row["commit"] == whole[row["key"]]["commit"]
+    ]  # fmt: skip
+
+
+def section(answers: Sequence[Row], folder: Path) -> str:
+    """The section of the page, Markdown.
+
+    Args:
+        answers: of the whole search.
+        folder: of the rows of searches without passes.
+    """
+    lines = ["## What passes of a search are worth", "",
+             "    python benchmarks/ablation.py --without PASS", ""]  # fmt: skip
+    tables = []
+    for path in sorted(folder.glob("*.jsonl")):
+        if pairs := pairs_of(answers, rows_of(path)):
+            names = " and ".join(f"`{name}`" for name in path.stem.split("+"))
+            tables.append(f"Without {names}, search of {pairs[-1]['with']['commit']}:\n\n"
+                          f"{summary(pairs)}\n")  # fmt: skip
+    return "\n".join([*lines, *(tables or ["None has been left out of the present search.\n"])])
 
 
 def main() -> int:
@@ -135,7 +168,8 @@ def main() -> int:
     add("--moved", action="store_true", help="only worlds in which one of the moves did something")
     add("--processes", type=int, default=1)
     add("--out", type=Path, default=RESULTS)
-    add("--only-summary", action="store_true")
+    add("--page", type=Path, default=hidden_joints.PAGE)
+    add("--only-page", action="store_true")
     given = parser.parse_args()
     path = given.out / f"{'+'.join(given.without)}.jsonl"
     answers = rows_of(given.answers)
@@ -145,11 +179,10 @@ def main() -> int:
         if "verdict" in row and row["truth"]["robot"] in given.robot
         and (not given.effect or row["truth"]["effect"] in given.effect)
     }  # fmt: skip
-    pairs = (
-        rows_of(path) if given.only_summary
-        else answered(study, asked, path, told, given.processes)
-    )  # fmt: skip
-    print(summary(of_newest(pairs) if pairs else []))
+    if not given.only_page:
+        answered(study, asked, path, told, given.processes)
+        print(summary(pairs_of(answers, rows_of(path))))
+    write_part(given.page, BEGIN, END, section(answers, given.out))
     return 0
 
 

@@ -1,5 +1,7 @@
 """A pass is judged by the worlds that only one of the two searches answers right."""
 
+import json
+
 import ablation
 import pytest
 from scipy.stats import binom
@@ -50,11 +52,26 @@ def test_a_world_in_which_no_move_that_is_left_out_did_anything_is_not_searched_
     monkeypatch.setattr(ablation.hidden_joints, "study", lambda *task: asked.append(task) or {})
     answer = {**row("delay", ["delay"]), "key": "cart/delay/3/records"}
     for passes, is_moved in ((("add_set",), True), (("add_effect",), True), (("add_set",), False)):
-        pair = ablation.study(answer, 12.0, passes, is_moved)
-        assert pair["with"] is answer
+        assert ablation.study(answer, 12.0, passes, is_moved).get("alike", False) == (not asked)
     assert [task[-1] for task in asked] == [("add_effect",), ("add_set",)]
     assert asked[0][:5] == ("cart", "delay", 3, "records", 12.0)
 
 
 def test_the_plain_search_leaves_out_every_pass():
     assert ablation.passes_of(["plain"]) == (*PASSES,)
+
+
+def test_only_answers_of_one_search_are_compared(tmp_path):
+    def of(commit, effect, names):
+        return {**row(effect, names), "key": f"cart/{effect}/1/records", "commit": commit}
+
+    answers = [of("new", "delay", ["delay"]), of("new", "lag", ["lag"])]
+    rows = [of("old", "lag", ["lag"]), of("new", "delay", []), of("new", "offset", ["offset"])]
+    (pair,) = ablation.pairs_of(answers, rows)
+    assert pair == {"with": answers[0], "without": rows[1]}
+    assert "None has been left out" in ablation.section(answers, tmp_path)
+    path = tmp_path / "add_set+begin_anew.jsonl"
+    path.write_text("".join(json.dumps(r) + "\n" for r in rows), encoding="utf-8")
+    told = ablation.section(answers, tmp_path)
+    assert "Without `add_set` and `begin_anew`, search of new" in told
+    assert "| a listed effect: named first, or alike | 1 of 1" in told
