@@ -103,19 +103,18 @@ def summary(pairs: Sequence[Row]) -> str:
     ])  # fmt: skip
 
 
-def study(answer: Row, duration: float, passes: tuple[str, ...], is_moved: bool) -> dict[str, Any]:
+def study(answer: Row, passes: tuple[str, ...], is_moved: bool) -> dict[str, Any]:
     """Returns a world's answer by a search without the passes.
 
     Args:
         answer: row of the whole search.
-        duration: of its records [s].
         passes: that are left out.
         is_moved: whether a world in which none of them changed the effects is answered alike.
     """
     robot, effect, seed, way = answer["key"].split("/")
     if is_moved and not {*passes} & {*answer["moves"]}:
         return {**answer, "alike": True}
-    return hidden_joints.study(robot, effect, int(seed), way, duration, passes)
+    return hidden_joints.study(robot, effect, int(seed), way, answer["duration"], passes)
 
 
 def told(row: Row) -> str:
@@ -163,7 +162,6 @@ def main() -> int:
     add("--robot", nargs="+", choices=list(ROBOTS), default=["pendulum", "cart"])
     add("--effect", nargs="+", default=[], help="of the project's names, nothing, or three")
     add("--answers", type=Path, default=hidden_joints.RESULTS, help="of the whole search")
-    add("--duration", type=float, default=12.0, help="of the records of these worlds [s]")
     add("--without", nargs="+", choices=[PLAIN, *PASSES], default=[PLAIN], metavar="PASS")
     add("--moved", action="store_true", help="only worlds in which one of the moves did something")
     add("--processes", type=int, default=1)
@@ -174,7 +172,7 @@ def main() -> int:
     path = given.out / f"{'+'.join(given.without)}.jsonl"
     answers = rows_of(given.answers)
     asked = {
-        row["key"]: (row, given.duration, passes_of(given.without), given.moved)
+        row["key"]: (row, passes_of(given.without), given.moved)
         for row in (of_newest(answers) if answers else [])
         if "verdict" in row and row["truth"]["robot"] in given.robot
         and (not given.effect or row["truth"]["effect"] in given.effect)

@@ -42,7 +42,7 @@ def study(
         world = make_world(robot, effect, seed, duration)
     except UnseenError as error:
         return {"unseen": str(error)}
-    row: dict[str, Any] = {"truth": truth_of(world)}
+    row: dict[str, Any] = {"truth": truth_of(world), "duration": duration}
     begin, wall = time.process_time(), time.perf_counter()
     try:
         with tempfile.TemporaryDirectory() as folder:

@@ -295,7 +295,8 @@ def section(rows: Sequence[Row]) -> str:
     lines += [
         f"| processor time of fit and discovery: median, longest | {times} |",
         "",
-        f"{found['worlds']} worlds of the search of {rows[-1].get('commit')};"
+        f"{found['worlds']} worlds of the search of {rows[-1].get('commit')}, with records of"
+        f" {_durations(rows)};"
         f" {found['failed']} more met an error, and {found['unseen']} could not be made because no"
         " size shows enough.",
         "",
@@ -311,6 +312,12 @@ def section(rows: Sequence[Row]) -> str:
     if found["several"]["all"]["all_found"]["of"]:
         lines += _lines(ABOUT_SEVERAL, SEVERAL_ROWS, found["several"])
     return "\n".join(lines) + "\n"
+
+
+def _durations(rows: Sequence[Row]) -> str:
+    """Returns how many worlds have records of which duration, in words."""
+    counts = Counter(r["duration"] for r in rows if "verdict" in r)
+    return " and ".join(f"{d:g} s ({n})" for d, n in sorted(counts.items()))
 
 
 def _lines(

@@ -24,7 +24,7 @@ GAP = ("rms", "fit_percent", "rms_by_unit")
 PROOF = ("test", "t", "chance", "gain", "share", "fall", "falls", "records")
 NAMED = (
     "confidence", "compared", "one_of", "bic_gain", "evidence", "retuned", "outside",
-    "smooth_share",
+    "smooth_share", "neighbour",
 )  # fmt: skip
 REJECTED = ("name", "where", "confidence", "bic_gain", "evidence", "doubt", "outside")
 

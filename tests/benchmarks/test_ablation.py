@@ -50,11 +50,11 @@ def test_only_worlds_that_one_search_alone_answers_right_count():
 def test_a_world_in_which_no_move_that_is_left_out_did_anything_is_not_searched_again(monkeypatch):
     asked = []
     monkeypatch.setattr(ablation.hidden_joints, "study", lambda *task: asked.append(task) or {})
-    answer = {**row("delay", ["delay"]), "key": "cart/delay/3/records"}
+    answer = {**row("delay", ["delay"]), "key": "cart/delay/3/records", "duration": 9.0}
     for passes, is_moved in ((("add_set",), True), (("add_effect",), True), (("add_set",), False)):
-        assert ablation.study(answer, 12.0, passes, is_moved).get("alike", False) == (not asked)
+        assert ablation.study(answer, passes, is_moved).get("alike", False) == (not asked)
     assert [task[-1] for task in asked] == [("add_effect",), ("add_set",)]
-    assert asked[0][:5] == ("cart", "delay", 3, "records", 12.0)
+    assert asked[0][:5] == ("cart", "delay", 3, "records", 9.0)
 
 
 def test_the_plain_search_leaves_out_every_pass():

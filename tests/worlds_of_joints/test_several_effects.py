@@ -27,6 +27,7 @@ def row(verdict, *named, unexplained=True):
                 "places": ["elbow", "u2"]}  # fmt: skip
 
     return {
+        "duration": 12.0,
         "truth": {
             "robot": "two_link", "effect": THREE, "names": [], "joint": "", "places": [],
             "curve": "", "size": 1.0, "parameters": {"coulomb_friction.f_c@elbow": 0.2},

@@ -48,6 +48,7 @@ def test_no_name_is_right_and_the_curve_that_draws_it_is_one_of_the_catalogue():
 
 def row(verdict, *named, curve="curve_speed"):
     return {
+        "duration": 12.0,
         "truth": {"robot": "cart", "effect": "fast", "names": [], "joint": "rail", "size": 1.0,
                   "places": ["rail"], "curve": curve, "parameters": {}},
         "verdict": verdict, "errors": {"fit": 2.0, "discover": 1.0, "written": 3.0},
