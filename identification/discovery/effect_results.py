@@ -259,8 +259,9 @@ class Neighbour:
 
     Attributes:
         axis: name of the curve over what the law depends on.
-        share: of what the model leaves, what the force would take of samples that it has not seen.
-        chance: of as much by luck, paid for by the scales of the force that were tried.
+        share: of what law and force explain together, what the force explains, of samples that it
+            was not fitted to, 0 to 1.
+        chance: of a gain as large by luck.
     """
 
     axis: str

@@ -33,16 +33,20 @@ class SmoothForce:
     """The best smooth force.
 
     Attributes:
-        gain: fall of the sum of squares of samples that it was not fitted to.
-        gains: the same of each block, shape (B,).
+        gains: fall of the sum of squares of each block, by a force that was not fitted to it, shape
+            (B,).
         ridges: ρ of each curve, shape (K,); infinite for one that explains nothing.
         c: forces at all nodes, by all samples, shape (k,).
     """
 
-    gain: float
     gains: np.ndarray
     ridges: np.ndarray
     c: np.ndarray
+
+    @property
+    def gain(self) -> float:
+        """Fall of the sum of squares of all blocks."""
+        return float(self.gains.sum())
 
 
 def find_smooth_force(G: np.ndarray, a: np.ndarray, nodes: Sequence[int]) -> SmoothForce:
@@ -91,7 +95,7 @@ def find_smooth_force(G: np.ndarray, a: np.ndarray, nodes: Sequence[int]) -> Smo
     for f, (own, mine) in zip(folds, parts, strict=True):
         c = fitted(every - own, b - mine, best)
         gains[f] = 2 * a[f] @ c - (G[f] @ c) @ c
-    return SmoothForce(most, gains, best, fitted(every, b, best))
+    return SmoothForce(gains, best, fitted(every, b, best))
 
 
 def explained_share(before: float, after: float, gain: float) -> float | None:

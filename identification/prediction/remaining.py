@@ -10,7 +10,8 @@ is good to some per cent. What so small an error of the inputs makes is no reaso
 All of it is of the windows on which the search has not decided (`identification.logs.parts`).
 Where the error at the horizon is that of the sensors, nothing is left that an effect or a shift of
 a record could explain. Among many that are tried one gains by luck, so that such a doubt counts
-only where more than `min_gap_share` is left above the sensors' noise. One output may err while the
+only where more than `min_gap_share` is left above the sensors' noise; that of an effect only where
+inputs would also have to err by more than `max_input_error`. One output may err while the
 others do not, and the mean over all outputs then hides it. So an output also counts by itself,
 where its error is more than `MAX_OUTPUT_RATIO` times its noise.
 """
@@ -50,14 +51,16 @@ MIN_COMPARED_RECORDS = 3  # of two nobody knows which one is different
 
 
 def find_remaining(
-    state: WindowSearch, rejected: Sequence[RejectedEffect], shifts: Sequence[ShiftedRecord]
-) -> tuple[Finding, ...]:
+    state: WindowSearch, rejected: Sequence[RejectedEffect], shifts: Sequence[ShiftedRecord],
+    needed: float,
+) -> tuple[Finding, ...]:  # fmt: skip
     """Returns what the final model leaves: errors above the sensors' noise, and doubtful effects.
 
     Args:
         state: the finished state.
         rejected: effects that were refitted and not proven.
         shifts: of records, of `identification.prediction.clocks`.
+        needed: error of the inputs that would make what is left, a share of their rms.
     """
     out: list[Finding] = []
     if state.worse_fit is not None:
@@ -65,7 +68,7 @@ def find_remaining(
         out.append(Finding(FindingKind.WORSE_FIT, worse))
     left = _error_left(state)
     places: set[tuple[str, str]] = set()  # each is told once, as it did best
-    for r in rejected if left else ():
+    for r in rejected if left and needed > state.task.options.max_input_error else ():
         if r.doubt == "steps":  # they are told, and are nothing that is missing
             continue
         seen, has_fallen = r.proof, r.proof.told.fall > 0

@@ -65,16 +65,16 @@ def conclude(state: WindowSearch) -> Discovery:
     options = task.options
     rejected = listed_once([_rejected(state, c) for c in state.rejected])
     shifts = record_shifts(task, model)
-    findings = find_remaining(state, rejected, shifts)
-    limit = options.left_confidence if findings else options.max_confidence
     differ = [a for a in state.accepted if a.candidate.effect.is_of_records]
-    stick = attempt(None, partial(measure, model, task.effects)) if state.accepted else None
-    named = tuple(_named(state, a, limit, stick) for a in state.accepted if a not in differ)
     nominal = _with_differences(state, differ)
     # Beside a model with effects that diverges there, the nominal one tells it.
     needed = attempt(None, partial(needed_input_error, model.fit, model.unseen.floor))
     if needed is None:
         needed = needed_input_error(nominal.fit, nominal.unseen.floor)
+    findings = find_remaining(state, rejected, shifts, needed)
+    limit = options.left_confidence if findings else options.max_confidence
+    stick = attempt(None, partial(measure, model, task.effects)) if state.accepted else None
+    named = tuple(_named(state, a, limit, stick) for a in state.accepted if a not in differ)
     is_unexplained = _is_worse(state) or _errs(model, needed, options)
     verdict = decide(named, findings, is_unexplained, options)
     if verdict == "unknown effect":
@@ -221,7 +221,7 @@ def _named(
         evidence=accepted.criterion, proof=_proof(state, accepted),
         same_as=next((e for e in state.task.effects if e.name == twin), None),
         smooth_share=stick.share_of(mine, accepted.prediction.fall) if stick else None,
-        neighbour=stick.beside.get(mine.key) if stick else None,
+        neighbour=stick.neighbour(mine, accepted.prediction.fall) if stick else None,
     )  # fmt: skip
 
 

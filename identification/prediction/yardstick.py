@@ -4,9 +4,10 @@ The smooth forces are the curves of rate, position, drive and time of each joint
 (`identification.discovery.smooth_force`). What they would explain beside a model is a moment of its
 linearisation over the fitted windows; blocks of windows judge it that it was not fitted to.
 
-A law has a neighbour's name where a smooth force of what the law itself depends on explains more
-beside it, beyond chance. The law depends on the one of rate, position, drive and time over which a
-curve comes closest to it:
+A law has a neighbour's name where a smooth force of what the law itself depends on explains much
+beside it, beyond chance. Much is meant of what both explain together: no law is right to the last
+per mille, and in a long record the least misfit is beyond chance. The law depends on the one of
+rate, position, drive and time over which a curve comes closest to it:
 
     y = S_l η                                  what the law does in the outputs
     R_x² = max_c 1 - ‖y - S_x c‖²/‖y‖²         share of it that a curve over x can do
@@ -26,12 +27,7 @@ from identification.discovery.candidates import list_common
 from identification.discovery.effect_results import Neighbour
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.passes import uses
-from identification.discovery.smooth_force import (
-    RIDGES,
-    SmoothForce,
-    explained_share,
-    find_smooth_force,
-)
+from identification.discovery.smooth_force import SmoothForce, explained_share, find_smooth_force
 from identification.effects.curves import OF_JOINT
 from identification.effects.effect import Candidate, Effect
 from identification.prediction.model import WindowModel
@@ -43,18 +39,34 @@ ON_JOINTS = {"force", "friction"}  # hooks of laws that a smooth force of a join
 
 
 @dataclass(frozen=True)
+class Beside:
+    """What a smooth force of what a law depends on would take of what the model leaves.
+
+    Attributes:
+        axis: name of the curve over what the law depends on.
+        left: share of the sum of squares that it would take.
+        chance: of as much by luck.
+    """
+
+    axis: str
+    left: float
+    chance: float
+
+
+@dataclass(frozen=True)
 class Yardstick:
     """What smooth forces would still explain beside a model, over what the model leaves.
 
     Attributes:
         every: share of the sum of squares that forces at all joints would take.
         of_joint: share that forces at one joint would take, by its name.
-        beside: what a force would take of what a law at a joint itself depends on, by its key.
+        beside: of each law of a force at joints, by its key, what a force of what it depends on
+            would take.
     """
 
     every: float
     of_joint: Mapping[str, float]
-    beside: Mapping[tuple[str, str], Neighbour]
+    beside: Mapping[tuple[str, str], Beside]
 
     def share(self, before: float, after: float) -> float | None:
         """Returns what a model explains of what it and smooth forces at all joints could.
@@ -75,12 +87,32 @@ class Yardstick:
         Returns:
             None for what is no law of a joint.
         """
-        hooks = {*candidate.effect.hooks}
         joints = [j for j in places_of(candidate.where) if j in self.of_joint]
-        if not hooks or not hooks <= ON_JOINTS or not joints:
+        if not acts_on_joints(candidate.effect) or not joints:
             return None
         most = max(self.of_joint[j] for j in joints)
         return explained_share(1.0, 1.0 - fall, most * (1.0 - fall))
+
+    def neighbour(self, candidate: Candidate, fall: float) -> Neighbour | None:
+        """Returns what a force of what an effect depends on would explain beside it.
+
+        Args:
+            candidate: the effect at its place.
+            fall: share of the sum of squares that it took away.
+
+        Returns:
+            None for what is no law of a joint.
+        """
+        found = self.beside.get(candidate.key)
+        if found is None:
+            return None
+        of_law = explained_share(1.0, 1.0 - fall, found.left * (1.0 - fall))
+        return Neighbour(found.axis, 0.0 if of_law is None else 1.0 - of_law, found.chance)
+
+
+def acts_on_joints(effect: Effect) -> bool:
+    """Returns whether an effect is a force at joints and nothing else, as a curve there may be."""
+    return bool(effect.hooks) and {*effect.hooks} <= ON_JOINTS
 
 
 def has_neighbours_name(neighbour: Neighbour | None, options: DiscoveryOptions) -> bool:
@@ -139,7 +171,8 @@ def measure(model: WindowModel, effects: Sequence[Effect]) -> Yardstick | None:
     every = of_joint[next(iter(joints))] if len(joints) == 1 else left(range(len(each)))
     values = {**model.plant.parameters.values(), **model.fit.of_record(0)}
     # The noise of a block; the last one are the priors, which no force explains.
-    noise = model.unseen.floor * sum(p.cut.outputs.size for p in fit.problem.parts) / len(squares)
+    samples = sum(p.cut.outputs.size for p in fit.problem.parts)
+    noise = model.unseen.floor * samples / (len(squares) - 1)
     beside = {}
     for law, mine in zip(laws, of_laws, strict=True):
         places = [*joints] if not law.effect.places.get(law.where, "@") else places_of(law.where)
@@ -157,10 +190,10 @@ def measure(model: WindowModel, effects: Sequence[Effect]) -> Yardstick | None:
             continue
         gains = force(own[axis]).gains[:-1]
         logs = np.log(squares[:-1] + noise) - np.log(squares[:-1] - gains + noise)
+        # Its scale has no price: a force that is not there loses on blocks it was not fitted to.
         chance = mean_above_zero(logs)[1] if logs.any() else 1.0
-        beside[law.key] = Neighbour(
-            axis, min(1.0, float(gains.sum() / squares.sum())), min(1.0, (len(RIDGES) - 1) * chance)
-        )
+        left_to_it = float(np.clip(gains.sum() / squares.sum(), 0.0, 1.0))
+        beside[law.key] = Beside(axis, left_to_it, chance)
     return Yardstick(every, of_joint, beside)
 
 
@@ -169,9 +202,8 @@ def _is_law(c: Candidate) -> bool:
 
     Its size must be free: it makes room for the curve beside it.
     """
-    hooks = {*c.effect.hooks}
     is_free = len(c.free) == len(c.sizes) and not c.effect.own
-    return bool(hooks) and hooks <= ON_JOINTS and not c.effect.is_curve and is_free
+    return acts_on_joints(c.effect) and not c.effect.is_curve and is_free
 
 
 def _solved(H: np.ndarray, of: np.ndarray, by: np.ndarray) -> np.ndarray:

@@ -25,10 +25,12 @@ DOUBTFUL = SimpleNamespace(
 SHIFT = ShiftedRecord(record="a", shift=7e-4, std=1e-4, fall=0.06, chance=1e-4)
 
 
-def kinds(monkeypatch, ratio, floor=4e-6, accepted=(), rejected=(DOUBTFUL,), finer=np.nan):
+def kinds(
+    monkeypatch, ratio, floor=4e-6, accepted=(), rejected=(DOUBTFUL,), finer=np.nan, needed=np.inf
+):
     """What is found where the rms on unseen windows is `ratio` times that of the noise.
 
-    Finer steps leave the share `finer` of it.
+    Finer steps leave the share `finer` of it. Inputs that err by `needed` would make it.
     """
     monkeypatch.setattr(remaining, "different_records", lambda state: [])
     squares = ratio**2 * floor * np.array([0.5, 1.5])
@@ -37,7 +39,7 @@ def kinds(monkeypatch, ratio, floor=4e-6, accepted=(), rejected=(DOUBTFUL,), fin
         of_outputs=(squares[:1, None], squares[1:, None]),
     )  # fmt: skip
     state = state_of(unseen, accepted, finer=finer)
-    return [f.kind for f in remaining.find_remaining(state, rejected, [SHIFT])]
+    return [f.kind for f in remaining.find_remaining(state, rejected, [SHIFT], needed)]
 
 
 def state_of(unseen, accepted, outputs=("x",), finer=np.nan):
@@ -60,7 +62,7 @@ def test_an_output_that_errs_is_told_whatever_the_others_do(monkeypatch, rms, ou
         floor=noise.mean() / (1 if output else told**2),
     )  # fmt: skip
     state = state_of(unseen, ("an effect",), ("x", "y"))
-    (found,) = remaining.find_remaining(state, (), ())
+    (found,) = remaining.find_remaining(state, (), (), np.inf)
     assert found.evidence.output == output
     assert found.evidence.noise_ratio == pytest.approx(told, rel=1e-3)
     np.testing.assert_allclose(remaining.output_ratios(unseen), [1.0, rms])
@@ -70,6 +72,14 @@ def test_an_output_that_errs_is_told_whatever_the_others_do(monkeypatch, rms, ou
 def test_at_the_noise_nothing_is_left_to_explain(monkeypatch, ratio):
     assert kinds(monkeypatch, ratio) == []
     assert kinds(monkeypatch, ratio, accepted=("an effect",)) == []
+
+
+def test_what_usual_errors_of_inputs_make_is_no_reason_to_believe_an_effect(monkeypatch):
+    usual = OPTIONS.max_input_error
+    told = [kinds(monkeypatch, 4.0, needed=times * usual) for times in (0.9, 1.1)]
+    assert FindingKind.UNPROVEN_EFFECT not in told[0]
+    assert FindingKind.UNPROVEN_EFFECT in told[1]
+    assert [FindingKind.UNPROVEN_EFFECT, *told[0]] == told[1]  # shifts of records do not change
 
 
 def test_above_the_noise_a_doubt_and_a_shift_are_told(monkeypatch):

@@ -31,7 +31,7 @@ from identification.prediction.screening import places_of, score_all
 from identification.prediction.selection import refit_contenders
 from identification.prediction.task import Change, WindowSearch
 from identification.prediction.trial import Contender
-from identification.prediction.yardstick import ON_JOINTS, has_neighbours_name, measure
+from identification.prediction.yardstick import acts_on_joints, has_neighbours_name, measure
 from identification.progress import Progress
 from identification.windows.unseen import compare
 
@@ -82,8 +82,10 @@ def curve_for_laws(state: WindowSearch, progress: Progress) -> Change:
 def _neighbours_names(state: WindowSearch) -> set[tuple[str, str]]:
     """Returns laws that have the name of a neighbour of what is missing."""
     stick = attempt(None, partial(measure, state.model, state.task.effects))
-    each = stick.beside.items() if stick else ()
-    return {key for key, n in each if has_neighbours_name(n, state.task.options)}
+    if stick is None:
+        return set()
+    each = ((a.candidate, stick.neighbour(a.candidate, a.prediction.fall)) for a in state.accepted)
+    return {c.key for c, n in each if has_neighbours_name(n, state.task.options)}
 
 
 def _predicts_better(curve: Contender, laws: WindowModel, options: DiscoveryOptions) -> bool:
@@ -116,5 +118,4 @@ def _may_be_neighbour(state: WindowSearch, where: str) -> bool:
 
 def _is_law(a: Contender) -> bool:
     """Returns whether a contender is a law of a force, which a curve may be as well."""
-    effect = a.candidate.effect
-    return not effect.is_curve and bool(effect.hooks) and {*effect.hooks} <= ON_JOINTS
+    return acts_on_joints(a.candidate.effect) and not a.candidate.effect.is_curve

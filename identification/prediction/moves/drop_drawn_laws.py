@@ -20,7 +20,7 @@ from identification.prediction.model import WindowModel
 from identification.prediction.screening import places_of
 from identification.prediction.task import Change, WindowSearch
 from identification.prediction.trial import OWN_SHARE, Contender
-from identification.prediction.yardstick import ON_JOINTS
+from identification.prediction.yardstick import acts_on_joints
 from identification.progress import Progress
 
 
@@ -32,7 +32,7 @@ def drop_drawn_laws(state: WindowSearch, progress: Progress) -> Change:
         curves = [c.candidate for c in accepted[k + 1 :] if c.candidate.effect.is_curve]
         drawn = {place for c in curves for place in places_of(c.where)}
         effect, mine = law.candidate.effect, {*places_of(law.candidate.where)}
-        if effect.is_curve or not mine <= drawn or not {*effect.hooks} <= ON_JOINTS:
+        if effect.is_curve or not mine <= drawn or not acts_on_joints(effect):
             continue
         rest = [c for c in model.candidates if c.key != law.candidate.key]
         without = refitted(model, rest, task.nominal_model, task.confirm)
