@@ -259,8 +259,8 @@ class Neighbour:
 
     Attributes:
         axis: name of the curve over what the law depends on.
-        share: of what law and force explain together, what the force explains, of samples that it
-            was not fitted to, 0 to 1.
+        share: of what the model leaves, what the force would take of samples that it was not fitted
+            to, 0 to 1.
         chance: of a gain as large by luck.
     """
 

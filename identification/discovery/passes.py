@@ -46,6 +46,9 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
     "weak_scores": (
         HORIZON, "refits effects whose scores may be luck, because unseen records decide",
     ),
+    "large_scores": (
+        HORIZON, "refits effects whose scores ask for too large a size: the refit judges the size",
+    ),
     "exchange_roles": (
         HORIZON, "asks whether an effect holds where fitted and unseen records change places",
     ),

@@ -89,10 +89,20 @@ def refit_level(scores: Sequence[WindowScore], options: DiscoveryOptions) -> flo
 
 
 def is_plausible(s: WindowScore, options: DiscoveryOptions) -> bool:
-    """Returns whether sizes have signs and magnitudes that physics admits."""
+    """Returns whether the sizes of a score have signs that physics admits.
+
+    Its magnitude is asked of the refit, whose bounds are those of physics. A score is linear, and
+    about parameters that went wrong because the effect is missing: a soft stop whose curve takes
+    away 79 % of an error seems to be five times as strong as it is.
+
+    Args:
+        s: the score.
+        options: whether a score of too large a size is refitted.
+    """
     sizes = s.candidate.effect.sizes
+    most = np.inf if uses(options, "large_scores") else options.size_factor
     pairs = zip(s.size, sizes * (len(s.size) // len(sizes)), strict=True)
-    return all(z.sign * v >= 0 and abs(v) <= options.size_factor * z.largest for v, z in pairs)
+    return all(z.sign * v >= 0 and abs(v) <= most * z.largest for v, z in pairs)
 
 
 def list_simpler(

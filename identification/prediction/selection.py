@@ -1,6 +1,6 @@
 """The next effect of a model: the best candidates are refitted, and unseen records decide.
 
-contenders    beyond chance by blocks, of a plausible size, and near the best score
+contenders    beyond chance by blocks, of a sign that physics admits, and near the best score
 proven        predicts unseen windows better: beyond chance, over every length, and by enough
 chosen        of the proven ones the one for which most speaks (`evidence`), or one with fewer
               numbers that all windows cannot tell from it

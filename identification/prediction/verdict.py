@@ -221,7 +221,7 @@ def _named(
         evidence=accepted.criterion, proof=_proof(state, accepted),
         same_as=next((e for e in state.task.effects if e.name == twin), None),
         smooth_share=stick.share_of(mine, accepted.prediction.fall) if stick else None,
-        neighbour=stick.neighbour(mine, accepted.prediction.fall) if stick else None,
+        neighbour=stick.beside.get(mine.key) if stick else None,
     )  # fmt: skip
 
 

@@ -4,10 +4,11 @@ The smooth forces are the curves of rate, position, drive and time of each joint
 (`identification.discovery.smooth_force`). What they would explain beside a model is a moment of its
 linearisation over the fitted windows; blocks of windows judge it that it was not fitted to.
 
-A law has a neighbour's name where a smooth force of what the law itself depends on explains much
-beside it, beyond chance. Much is meant of what both explain together: no law is right to the last
-per mille, and in a long record the least misfit is beyond chance. The law depends on the one of
-rate, position, drive and time over which a curve comes closest to it:
+A law has a neighbour's name where a smooth force of what the law itself depends on explains much of
+what is left beside it, beyond chance. No law is right to the last per mille, and in a long record
+the least misfit is beyond chance; but the right law does not leave `MOST_LEFT` to a force of its
+own kind. The law depends on the one of rate, position, drive and time over which a curve comes
+closest to it:
 
     y = S_l η                                  what the law does in the outputs
     R_x² = max_c 1 - ‖y - S_x c‖²/‖y‖²         share of it that a curve over x can do
@@ -36,21 +37,9 @@ from identification.prediction.screening import MAX_SCORED, places_of, some_wind
 from identification.prediction.set_choice import with_fitted_shapes
 
 ON_JOINTS = {"force", "friction"}  # hooks of laws that a smooth force of a joint may imitate
-
-
-@dataclass(frozen=True)
-class Beside:
-    """What a smooth force of what a law depends on would take of what the model leaves.
-
-    Attributes:
-        axis: name of the curve over what the law depends on.
-        left: share of the sum of squares that it would take.
-        chance: of as much by luck.
-    """
-
-    axis: str
-    left: float
-    chance: float
+# Of what a model leaves, all that a force of what its law depends on may explain beside it. Right
+# laws left less in hidden worlds, and neighbours beyond chance far more (docs/discovery.md).
+MOST_LEFT = 0.1
 
 
 @dataclass(frozen=True)
@@ -60,13 +49,12 @@ class Yardstick:
     Attributes:
         every: share of the sum of squares that forces at all joints would take.
         of_joint: share that forces at one joint would take, by its name.
-        beside: of each law of a force at joints, by its key, what a force of what it depends on
-            would take.
+        beside: what a force of what a law at joints depends on would take, by the law's key.
     """
 
     every: float
     of_joint: Mapping[str, float]
-    beside: Mapping[tuple[str, str], Beside]
+    beside: Mapping[tuple[str, str], Neighbour]
 
     def share(self, before: float, after: float) -> float | None:
         """Returns what a model explains of what it and smooth forces at all joints could.
@@ -93,22 +81,6 @@ class Yardstick:
         most = max(self.of_joint[j] for j in joints)
         return explained_share(1.0, 1.0 - fall, most * (1.0 - fall))
 
-    def neighbour(self, candidate: Candidate, fall: float) -> Neighbour | None:
-        """Returns what a force of what an effect depends on would explain beside it.
-
-        Args:
-            candidate: the effect at its place.
-            fall: share of the sum of squares that it took away.
-
-        Returns:
-            None for what is no law of a joint.
-        """
-        found = self.beside.get(candidate.key)
-        if found is None:
-            return None
-        of_law = explained_share(1.0, 1.0 - fall, found.left * (1.0 - fall))
-        return Neighbour(found.axis, 0.0 if of_law is None else 1.0 - of_law, found.chance)
-
 
 def acts_on_joints(effect: Effect) -> bool:
     """Returns whether an effect is a force at joints and nothing else, as a curve there may be."""
@@ -120,12 +92,12 @@ def has_neighbours_name(neighbour: Neighbour | None, options: DiscoveryOptions) 
 
     Args:
         neighbour: what a smooth force would explain beside it; None where that is not known.
-        options: what is beyond chance, and enough to matter.
+        options: what is beyond chance.
     """
     if neighbour is None or not uses(options, "neighbours_names"):
         return False
     is_beyond_chance = neighbour.chance < options.significance
-    return is_beyond_chance and neighbour.share > options.min_fall
+    return is_beyond_chance and neighbour.share > MOST_LEFT
 
 
 def measure(model: WindowModel, effects: Sequence[Effect]) -> Yardstick | None:
@@ -193,7 +165,7 @@ def measure(model: WindowModel, effects: Sequence[Effect]) -> Yardstick | None:
         # Its scale has no price: a force that is not there loses on blocks it was not fitted to.
         chance = mean_above_zero(logs)[1] if logs.any() else 1.0
         left_to_it = float(np.clip(gains.sum() / squares.sum(), 0.0, 1.0))
-        beside[law.key] = Beside(axis, left_to_it, chance)
+        beside[law.key] = Neighbour(axis, left_to_it, chance)
     return Yardstick(every, of_joint, beside)
 
 

@@ -121,6 +121,17 @@ def test_where_something_is_missing_a_weak_law_is_refitted_and_without_the_pass_
     assert list_contenders([weak, *others, *others], OPTIONS, 100) == []
 
 
+def test_a_score_that_asks_for_too_large_a_size_is_refitted_and_one_of_a_wrong_sign_is_not():
+    def sized(name, size, sign=0):
+        e = replace(effect(name), sizes=(Size("a", "N", 1.0, 0.01, sign),))
+        return replace(score(e, 0.8), size=np.array([size]))
+
+    large, wrong, usual = sized("large", 50.0), sized("wrong", -0.5, sign=1), sized("usual", 0.5)
+    assert names(list_contenders([large, wrong, usual], OPTIONS, 100)) == ["large", "usual"]
+    strict = DiscoveryOptions(without=("large_scores",))
+    assert names(list_contenders([large, wrong, usual], strict, 100)) == ["usual"]
+
+
 def test_simpler_laws_act_as_the_winner_does():
     rich = effect("rich", shapes=1)
     scores = [score(rich, 0.5), score(effect("force", hook="force"), 0.4),

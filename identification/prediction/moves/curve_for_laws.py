@@ -82,10 +82,8 @@ def curve_for_laws(state: WindowSearch, progress: Progress) -> Change:
 def _neighbours_names(state: WindowSearch) -> set[tuple[str, str]]:
     """Returns laws that have the name of a neighbour of what is missing."""
     stick = attempt(None, partial(measure, state.model, state.task.effects))
-    if stick is None:
-        return set()
-    each = ((a.candidate, stick.neighbour(a.candidate, a.prediction.fall)) for a in state.accepted)
-    return {c.key for c, n in each if has_neighbours_name(n, state.task.options)}
+    each = stick.beside.items() if stick else ()
+    return {key for key, n in each if has_neighbours_name(n, state.task.options)}
 
 
 def _predicts_better(curve: Contender, laws: WindowModel, options: DiscoveryOptions) -> bool:
