@@ -21,7 +21,8 @@ import traceback
 from pathlib import Path
 from typing import Any
 
-from joint_statistics import section, summary
+from joint_page import section
+from joint_statistics import summary
 from joint_worlds.files import truth_of, write_world
 from joint_worlds.hidden import NULL, THREE, effects_of
 from joint_worlds.motion import ROBOTS

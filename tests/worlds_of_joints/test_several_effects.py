@@ -1,7 +1,8 @@
 """Worlds of three effects at once: what acts in them, and how answers are counted."""
 
 import numpy as np
-from joint_statistics import count_found, has_false_name, is_all_said, section, summary
+from joint_page import section
+from joint_statistics import count_found, has_false_name, is_all_said, summary
 from joint_worlds.hidden import EVERY, THREE
 from joint_worlds.world import SEVERAL, make_world
 

@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from joint_statistics import is_drawn, is_drawn_over_its_cause, is_law_named, section, summary
+from joint_page import section
+from joint_statistics import is_drawn, is_drawn_over_its_cause, is_law_named, summary
 from joint_worlds import slots as at
 from joint_worlds.hidden import EVERY, UNLISTED
 from joint_worlds.laws import unlisted
