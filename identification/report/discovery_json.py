@@ -16,6 +16,7 @@ from identification.effects.effect import Candidate
 from identification.model.predictor import Plant
 from identification.quantities import plain, plain_fields
 from identification.report.finding_words import describe_finding
+from identification.report.horizon_gap import find_gap
 from identification.report.named_words import curve_nodes
 from identification.report.parts_words import parts_to_json
 from identification.windows.coarse import steps_of
@@ -83,9 +84,32 @@ def discovery_to_json(found: Discovery) -> dict[str, Any]:
              "rms": plain(np.sqrt(np.mean(m.force**2, axis=0)))}
             for m in found.missing_forces
         ],
+        "fails": _fails_to_json(found),
         **plain_fields(found, "options", "moves"),
         "stages": [{"stage": name, "seconds": t} for name, t in found.seconds.items()],
         "seconds": float(sum(found.seconds.values())),
+    }  # fmt: skip
+
+
+def _fails_to_json(found: Discovery) -> dict[str, Any] | None:
+    """Returns where the models fail over a horizon as plain values; None along a free run."""
+    gap = find_gap(found)
+    if gap is None:
+        return None
+    return {
+        "outputs": [plain_fields(o, "name", "unit", "before", "after", "noise")
+                    for o in gap.outputs],
+        "lengths": [plain_fields(n, "length", "before", "after") for n in gap.lengths],
+        "windows": [
+            {**plain_fields(w, "record", "output", "ratio"), "begin": float(w.time[0])}
+            for w in gap.windows
+        ],
+        "forces": [
+            {**plain_fields(f, "force", "std", "unit", "fall", "chance"),
+             **plain_fields(f.nodes, "joint", "depends_on", "reads", nodes="at",
+                            nodes_unit="unit")}
+            for f in gap.forces
+        ],
     }  # fmt: skip
 
 

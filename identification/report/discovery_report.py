@@ -19,6 +19,7 @@ from identification.report.discovery_sections import (
 )
 from identification.report.discovery_verdict import discovery_verdict
 from identification.report.effect_sections import added_section, rivals_section
+from identification.report.horizon_section import horizon_sections
 from identification.report.law import LAWS, law_sections
 from identification.report.page import Section, save_figures, write_report
 
@@ -35,6 +36,7 @@ def discovery_text(found: Discovery) -> str:
         parameters_section(found),
         *shifts_section(found),
         *where_section(found),
+        *horizon_sections(found),
         rivals_section(found),
         *unseen_section(found),
     ]
@@ -54,6 +56,7 @@ def discovery_sections(found: Discovery, files: str = "") -> list[Section]:
         *records_section(found),
         *law_sections(found),
         *where_section(found),
+        *horizon_sections(found),
         rivals_section(found),
         added_section(found, files),
         parameters_section(found),

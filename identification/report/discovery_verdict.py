@@ -15,6 +15,7 @@ from identification.report.effect_words import (
 )
 from identification.report.error_words import change_words, describe_scale, error_words
 from identification.report.finding_words import describe_finding, sentence
+from identification.report.horizon_words import needed_sentences
 from identification.report.named_words import named_sentences
 from identification.report.parts_words import is_untouched
 from identification.report.shown_words import SHOWN, hiding, smallest, split_detectable
@@ -74,8 +75,14 @@ def _noisier(found: Discovery) -> list[str]:
 
 
 def _findings(found: Discovery) -> list[str]:
-    """Returns a sentence on each thing that the final model leaves."""
-    return [sentence(describe_finding(finding)) for finding in found.findings]
+    """Returns a sentence on each thing that the final model leaves.
+
+    What effects that are not named would leave is no error of a model that is told of.
+    """
+    unnamed = found.verdict == "unknown effect"
+    told = [f for f in found.findings
+            if not (unnamed and f.kind is FindingKind.REMAINING_ERROR)]  # fmt: skip
+    return [sentence(describe_finding(finding)) for finding in told]
 
 
 def _off(found: Discovery) -> tuple[str, str, str]:
@@ -163,6 +170,7 @@ def _unknown(found: Discovery) -> str:
             f"Something is missing that none of the {tried} known effects surely explains: the"
             f" fitted model is {left} off{found.over} on unseen data{times}{needed}.",
             "It is not named here rather than named wrongly.",
+            *needed_sentences(found),
             *_findings(found),
             *(sentence(describe_finding(f)) for f in found.located),
         ]

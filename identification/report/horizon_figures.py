@@ -1,0 +1,94 @@
+"""Figures of where a model fails over a horizon: over time, in the worst windows, and by force."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from identification.quantities import held
+from identification.report.horizon_gap import FailedWindow, NeededForce, RecordWindows
+from identification.report.style import GREY, INK, MEASURED, SERIES, SIMULATED, literal, styled
+
+SURE = 1.96  # std on each side of 95 %
+WIDTH, PANEL = 7.0, 1.7  # [in] of a figure, and the height of a panel
+FAR = 10.0  # errors that differ by more are drawn on a logarithmic axis
+
+
+@styled
+def windows_over_time(records: Sequence[RecordWindows], is_named: bool) -> Figure:
+    """Returns a figure of the error of each window over time, one panel a record.
+
+    Args:
+        records: in the order of the panels.
+        is_named: whether the final model has effects, so that both models are drawn.
+    """
+    figure = Figure((WIDTH, 0.6 + PANEL * len(records)), layout="constrained")
+    panels = figure.subplots(len(records), 1, squeeze=False)[:, 0]
+    every = np.concatenate([e for r in records for e in (r.before, r.after)])
+    known = every[np.isfinite(every) & (every > 0)]
+    is_far = bool(len(known)) and known.max() > FAR * known.min()
+    for ax, r in zip(panels, records, strict=True):
+        label, colour = "nominal model, fitted", SIMULATED
+        if is_named:
+            ax.plot(r.time, r.before, ".", ms=4, color=colour, label=label)
+            label, colour = "with what was missing", MEASURED
+        ax.plot(r.time, r.after, ".", ms=4, color=colour, label=label)
+        ax.axhline(1.0, color=INK, ls="--", lw=1, label="noise of the sensors")
+        ax.set_title(literal(f"{r.name} ({r.role})"), loc="left", color=INK)
+        if is_far:
+            ax.set_yscale("log")
+            ax.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
+        else:
+            ax.set_ylim(bottom=0.0)
+    figure.supylabel("error of a window, times the noise", fontsize=9, color=INK)
+    panels[-1].set_xlabel("begin of the window [s]")
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside upper center", ncols=3)
+    return figure
+
+
+@styled
+def worst_windows(windows: Sequence[FailedWindow]) -> Figure:
+    """Returns a figure of measured and predicted motion in some windows, a panel each."""
+    rows = -(-len(windows) // 2)
+    figure = Figure((WIDTH, 0.6 + 2.1 * rows), layout="constrained")
+    axes = figure.subplots(rows, min(2, len(windows)), squeeze=False).ravel()
+    for ax, w in zip(axes, windows, strict=False):
+        ax.plot(w.time, w.measured, ".", ms=3, color=MEASURED, label="measured")
+        ax.plot(w.time, w.predicted, color=SIMULATED, lw=1.2, label="predicted by the final model")
+        ax.set_title(
+            literal(f"{w.record}: {w.output}, {held(w.ratio)} × noise"), loc="left", color=INK
+        )
+        ax.set_ylabel(literal(f"[{w.unit}]") if w.unit else "")
+        ax.set_xlabel("time [s]")
+    for ax in axes[len(windows) :]:
+        ax.set_axis_off()
+    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=2)
+    return figure
+
+
+@styled
+def needed_forces(forces: Sequence[NeededForce]) -> Figure:
+    """Returns a figure of the force that each joint would need, over what it follows."""
+    rows = -(-len(forces) // 2)
+    figure = Figure((WIDTH, 0.4 + 2.2 * rows), layout="constrained")
+    axes = figure.subplots(rows, min(2, len(forces)), squeeze=False).ravel()
+    for ax, needed in zip(axes, forces, strict=False):
+        _draw(ax, needed)
+    for ax in axes[len(forces) :]:
+        ax.set_axis_off()
+    return figure
+
+
+def _draw(ax: Axes, needed: NeededForce) -> None:
+    at, order = needed.nodes.at, np.argsort(needed.nodes.at)
+    told = order[needed.known[order]]
+    ax.plot(at[told], needed.force[told], color=SERIES[0], lw=1.0)
+    ax.errorbar(at[told], needed.force[told], SURE * needed.std[told], color=INK, fmt="o", ms=3.5,
+                lw=1, capsize=2)  # fmt: skip
+    ax.axhline(0, color=GREY, lw=0.6)
+    ax.set_title(literal(f"joint {needed.nodes.joint}"), loc="left", color=INK)
+    ax.set_xlabel(literal(f"{needed.nodes.reads} [{needed.nodes.unit}]"))
+    ax.set_ylabel(literal(f"force [{needed.unit}]"))

@@ -1,0 +1,235 @@
+"""Where a model fails over a horizon: in which outputs and windows, over which lengths, and the
+forces that it would need.
+
+    r_y = √(mean (y - ŷ)²)           of an output over windows of the horizon, in its unit
+    e_w = √(mean_y (r_wy/s_y)²)      of a window, s of `Discovery.scale`;  e_w/√(mean_y ν_y²/s_y²),
+                                     ν the sensors' noise, is how many times the noise it errs
+    c, std(c)                        the curve of a joint that would take most of the fitted error,
+                                     at its nodes, by the linear score of the last model
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from identification.discovery.result import Discovery
+from identification.effects.curves import NODES
+from identification.prediction.model import WindowModel
+from identification.prediction.scores import WindowScore
+from identification.report.named_words import Nodes, curve_nodes
+from identification.windows.unseen import Unseen
+
+WORST = 4  # windows that are drawn
+APART = 3  # windows between two of them: neighbours fail for the same reason
+
+
+@dataclass(frozen=True)
+class OutputError:
+    """The error of one output on windows that are told of, all in `unit`; of two models."""
+
+    name: str
+    unit: str
+    before: float
+    after: float
+    noise: float
+
+
+@dataclass(frozen=True)
+class RecordWindows:
+    """Errors of the windows of the horizon in one record.
+
+    Attributes:
+        name: of the record.
+        role: "fit" or "confirm".
+        time: at which each window begins, shape (W,) [s].
+        before: of the fitted model without effects, how many times the noise, shape (W,).
+        after: of the final model.
+    """
+
+    name: str
+    role: str
+    time: np.ndarray
+    before: np.ndarray
+    after: np.ndarray
+
+
+@dataclass(frozen=True)
+class LengthError:
+    """Errors over windows of one length, how many times the noise; of two models."""
+
+    length: float
+    before: float
+    after: float
+
+
+@dataclass(frozen=True)
+class NeededForce:
+    """The force at one joint that would take most of what the final model leaves.
+
+    Attributes:
+        nodes: of the curve, and what it is drawn over.
+        force: at the nodes, shape (8,), in `unit`.
+        std: of it.
+        unit: of the force.
+        fall: share of the fitted error that it would take away.
+        chance: of as much by luck.
+    """
+
+    nodes: Nodes
+    force: np.ndarray
+    std: np.ndarray
+    unit: str
+    fall: float
+    chance: float
+
+    @property
+    def known(self) -> np.ndarray:
+        """Whether the motion tells the force at each node, shape (8,)."""
+        return np.isfinite(self.std) & (self.std < np.abs(self.force).max())
+
+    @property
+    def largest(self) -> int:
+        """The known node at which the force is largest."""
+        return int(np.argmax(np.where(self.known, np.abs(self.force), -1.0)))
+
+
+@dataclass(frozen=True)
+class FailedWindow:
+    """A fitted window in which the final model fails, of the output that errs most.
+
+    Attributes:
+        record: its name.
+        output: its name.
+        unit: of the output.
+        time: of the samples, shape (L,) [s].
+        measured: shape (L,), in `unit`.
+        predicted: likewise.
+        ratio: how many times the noise the window errs.
+    """
+
+    record: str
+    output: str
+    unit: str
+    time: np.ndarray
+    measured: np.ndarray
+    predicted: np.ndarray
+    ratio: float
+
+
+@dataclass(frozen=True)
+class HorizonGap:
+    """What the fitted model without effects, and the final one, fail to predict over a horizon.
+
+    Attributes:
+        outputs: the one first that errs most with the final model, in multiples of its noise.
+        records: those that were fitted, then those that confirm.
+        lengths: of windows, over which they were predicted, the shortest first.
+        forces: of each joint at which a curve would explain more than luck, the largest share
+            first.
+        windows: fitted ones in which the final model fails most.
+    """
+
+    outputs: tuple[OutputError, ...]
+    records: tuple[RecordWindows, ...]
+    lengths: tuple[LengthError, ...]
+    forces: tuple[NeededForce, ...]
+    windows: tuple[FailedWindow, ...]
+
+
+def find_gap(found: Discovery) -> HorizonGap | None:
+    """Returns where the models of a discovery fail over its horizon; None along a free run."""
+    nominal, final, scale = found.nominal, found.final, found.scale
+    if not (isinstance(nominal, WindowModel) and isinstance(final, WindowModel)) or scale is None:
+        return None
+    told = nominal.unseen.report, final.unseen.report
+    noise = final.unseen.noise  # ν²/s² of each output
+    level = float(np.sqrt(noise.mean())) or 1.0
+    rms = [np.sqrt(np.concatenate(u.of_outputs).mean(axis=0)) * scale for u in told]
+    each = zip(found.outputs.items(), *rms, np.sqrt(noise) * scale, strict=True)
+    outputs = [OutputError(name, unit, *map(float, of)) for (name, unit), *of in each]
+    outputs.sort(key=lambda o: -o.after / o.noise if o.noise > 0 else -np.inf)
+    parts = [(p.predictor.log, p.cut.starts) for p in final.fit.problem.parts]
+    fitted = [
+        RecordWindows(log.name, "fit", log.time[starts], *(_ratios(e, scale, level) for e in pair))
+        for (log, starts), *pair in zip(parts, nominal.fit.errors, final.fit.errors, strict=True)
+    ]
+    places = final.unseen.places[final.unseen.lengths.index(1.0)]
+    logs = [r.log for r in found.records if r.role == "confirm"]
+    squares = nominal.unseen.at_horizon, final.unseen.at_horizon
+    confirm = [
+        RecordWindows(
+            log.name, "confirm", log.time[at[:, 0]], np.sqrt(a) / level, np.sqrt(b) / level
+        )
+        for log, at, a, b in zip(logs, places, *squares, strict=True)
+    ]
+    return HorizonGap(
+        outputs=tuple(outputs), records=(*fitted, *confirm),
+        lengths=_lengths(found.horizon or 0.0, *told, level), forces=_forces(found, final),
+        windows=_worst(final, [r.after for r in fitted], scale, found.outputs),
+    )  # fmt: skip
+
+
+def _ratios(errors: np.ndarray, scale: np.ndarray, level: float) -> np.ndarray:
+    return np.asarray(np.sqrt(np.mean((errors / scale) ** 2, axis=(1, 2))) / level)
+
+
+def _lengths(
+    horizon: float, before: Unseen, after: Unseen, level: float
+) -> tuple[LengthError, ...]:
+    """Returns the errors over each length that both models were judged by."""
+    out = []
+    for length in (n for n in before.lengths if n in after.lengths):
+        squares = (np.concatenate(u.squares[u.lengths.index(length)]) for u in (before, after))
+        out.append(LengthError(horizon * length, *(float(np.sqrt(s.mean())) / level
+                                                   for s in squares)))  # fmt: skip
+    return tuple(out)
+
+
+def _forces(found: Discovery, final: WindowModel) -> tuple[NeededForce, ...]:
+    """Returns the best curve of each joint that explains more than luck among all scores."""
+    most = found.options.significance / max(1, len(found.remaining))
+    best: dict[str, NeededForce] = {}
+    for s in found.remaining:
+        if not isinstance(s, WindowScore) or not s.candidate.effect.is_curve:
+            continue
+        nodes = curve_nodes(s.candidate, final.plant)
+        is_one = len(nodes) == 1 and len(s.size) == NODES
+        if not is_one or s.fall <= found.options.min_fall or s.p_value >= most:
+            continue
+        unit = s.candidate.effect.sizes[0].unit
+        needed = NeededForce(nodes[0], s.size, s.std, unit, s.fall, s.p_value)
+        if needed.known.any():
+            best.setdefault(nodes[0].joint, needed)
+    return tuple(sorted(best.values(), key=lambda n: -n.fall))
+
+
+def _worst(
+    final: WindowModel, ratios: Sequence[np.ndarray], scale: np.ndarray, outputs: Mapping[str, str]
+) -> tuple[FailedWindow, ...]:
+    """Returns the fitted windows in which a model fails most, none of them near another.
+
+    Args:
+        final: the model.
+        ratios: how many times the noise each window errs, one array a record.
+        scale: s of each output, shape (ny,), in its unit.
+        outputs: the unit of each output by name.
+    """
+    every = [(float(e), k, w) for k, each in enumerate(ratios) for w, e in enumerate(each)]
+    names, taken, out = [*outputs], list[tuple[int, int]](), list[FailedWindow]()
+    for ratio, k, w in sorted(every, reverse=True):
+        if len(out) == WORST:
+            break
+        if any(k == j and abs(w - v) < APART for j, v in taken):
+            continue
+        taken.append((k, w))
+        part, error = final.fit.problem.parts[k], final.fit.errors[k][w]
+        log, y = part.predictor.log, int(np.argmax(np.mean((error / scale) ** 2, axis=0)))
+        measured = part.cut.outputs[w][:, y]
+        time = log.time[part.cut.starts[w] + np.arange(len(measured))]
+        out.append(FailedWindow(
+            log.name, names[y], outputs[names[y]], time, measured, measured - error[:, y], ratio,
+        ))  # fmt: skip
+    return tuple(out)

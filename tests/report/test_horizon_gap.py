@@ -1,0 +1,114 @@
+"""Where a model fails over a horizon: the errors that are told, and the force that is missing."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from fake_discovery import found as free_run
+from records_cases import HORIZON, nominal_model, pendulum, records
+
+from identification.effects.joint_plant import candidates
+from identification.prediction.discovery import discover_records
+from identification.report.discovery_json import discovery_to_json
+from identification.report.discovery_report import discovery_text
+from identification.report.discovery_verdict import discovery_verdict
+from identification.report.horizon_gap import APART, WORST, find_gap
+from identification.report.horizon_section import NO_FORCE, TITLE, horizon_sections
+
+LEVEL = 0.03  # of the hidden friction [N m]
+EFFECTS = ("coulomb_friction", "curve_speed", "curve_position")
+
+
+@cache
+def named():
+    """A discovery that names the friction."""
+    logs = records(4, {"coulomb_friction.f_c@hinge": LEVEL}, samples=300)
+    effects = [e for e in candidates(pendulum(), ("J", "d")) if e.name in EFFECTS]
+    return discover_records(nominal_model(), logs[:2], logs[2:], effects)
+
+
+def unknown():
+    """The same, as if no candidate had been proven."""
+    answer = named()
+    return replace(answer, verdict="unknown effect", named=(), final=answer.nominal,
+                   after=answer.before, remaining=answer.scores, findings=())  # fmt: skip
+
+
+def test_errors_are_those_that_the_discovery_tells():
+    answer, gap = named(), find_gap(named())
+    (angle,) = gap.outputs
+    assert (angle.name, angle.unit) == ("angle", "rad")
+    assert angle.before == pytest.approx(answer.before.rms, rel=1e-9)
+    assert angle.after == pytest.approx(answer.after.rms, rel=1e-9)
+    assert angle.noise == pytest.approx(answer.noise_rms, rel=1e-9)
+    (at_horizon,) = (n for n in gap.lengths if n.length == HORIZON)
+    assert at_horizon.before == pytest.approx(answer.times_noise(answer.before), rel=1e-9)
+    assert at_horizon.after == pytest.approx(answer.times_noise(answer.after), rel=1e-9)
+    assert [n.length for n in gap.lengths] == pytest.approx([HORIZON / 2, HORIZON, 2 * HORIZON])
+    for mine, told in zip(gap.records, answer.errors, strict=True):
+        assert (mine.name, mine.role) == (told.name, told.role)
+        if mine.role == "fit":  # of records that confirm, only untouched windows are told of
+            for ratios, rms in ((mine.before, told.before), (mine.after, told.after)):
+                assert np.sqrt(np.mean(ratios**2)) * angle.noise == pytest.approx(rms, rel=1e-9)
+
+
+def test_the_worst_windows_are_as_they_were_predicted_and_not_neighbours():
+    answer, gap = unknown(), find_gap(unknown())
+    assert 0 < len(gap.windows) <= WORST
+    fitted = [r for r in gap.records if r.role == "fit"]
+    assert gap.windows[0].ratio == max(r.after.max() for r in fitted)
+    logs = {r.log.name: r.log for r in answer.records}
+    for w in gap.windows:
+        log = logs[w.record]
+        rows = np.searchsorted(log.time, w.time)
+        np.testing.assert_array_equal(w.measured, log.outputs[rows, 0])
+        rms = np.sqrt(np.mean((w.measured - w.predicted) ** 2))
+        assert rms == pytest.approx(w.ratio * gap.outputs[0].noise, rel=1e-9)
+    for record in logs:
+        begun = sorted(float(w.time[0]) for w in gap.windows if w.record == record)
+        assert np.all(np.diff(begun) > (APART - 0.5) * HORIZON)
+
+
+def test_the_force_that_is_needed_is_the_one_that_is_missing():
+    """Coulomb friction: a step over the speed, against the motion; its score is linear."""
+    (needed,) = find_gap(unknown()).forces
+    assert (needed.nodes.joint, needed.nodes.depends_on, needed.unit) == ("hinge", "speed", "N m")
+    assert needed.fall > 0.8
+    told = needed.known & (np.abs(needed.nodes.at) > 1.0)
+    assert told.sum() >= 4
+    truth = -LEVEL * np.sign(needed.nodes.at)
+    assert np.all(np.abs(needed.force - truth)[told] < 4 * needed.std[told] + 0.2 * LEVEL)
+    assert needed.known[needed.largest]
+
+
+def test_once_the_friction_is_named_no_force_is_needed():
+    assert find_gap(named()).forces == ()
+    (section,) = horizon_sections(named())
+    assert NO_FORCE not in section.plain  # nothing is far above the noise
+    assert "where the model with what is named fails" in section.plain
+
+
+def test_an_unknown_effect_is_shown_where_it_acts():
+    answer = unknown()
+    (section,) = horizon_sections(answer)
+    assert section.title == TITLE
+    assert [caption for caption, _ in section.drawn] == [
+        f"Error of each window of {HORIZON:g} s",
+        "The fitted windows in which the final model fails most",
+        "The force that each joint would need",
+    ]
+    assert "It looks like a force on hinge over the rate of hinge: " in discovery_verdict(answer)[0]
+    assert "a force on hinge over the rate of hinge would take away" in discovery_text(answer)
+    fails = discovery_to_json(answer)["fails"]
+    assert [f["joint"] for f in fails["forces"]] == ["hinge"]
+    assert len(fails["forces"][0]["force"]) == len(fails["forces"][0]["nodes"])
+    none = replace(answer, remaining=())
+    assert NO_FORCE in discovery_text(none)
+    assert "It looks like a force" not in discovery_text(none)
+
+
+def test_a_free_run_tells_it_otherwise():
+    assert find_gap(free_run()) is None
+    assert horizon_sections(free_run()) == []
+    assert discovery_to_json(free_run())["fails"] is None
