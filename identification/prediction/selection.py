@@ -117,7 +117,7 @@ def refit_contenders(
     for c in out:
         change, t = fall_words(c.prediction.fall), c.prediction.t
         progress(f"{_label(c.candidate)}: mean square error on unseen records {change}, t {t:z.1f}")
-    return parent, _ranked(out, options)
+    return parent, ranked(out, options)
 
 
 def _begun(
@@ -218,8 +218,10 @@ def _is_worse(new: Unseen, old: Unseen, options: DiscoveryOptions) -> bool:
     return find_doubt(compare(new, old), 1, options) is None
 
 
-def _ranked(found: Sequence[Contender], options: DiscoveryOptions) -> tuple[Contender, ...]:
-    """Returns contenders in the order of `refit_contenders`.
+def ranked(found: Sequence[Contender], options: DiscoveryOptions) -> tuple[Contender, ...]:
+    """Returns contenders in their order: proven ones before others, by evidence.
+
+    One with fewer numbers comes first where resamples cannot tell it from the best one.
 
     A difference between records comes before a proven law only where the evidence for it is very
     strong: with numbers of each record it explains much that a law of all of them is.

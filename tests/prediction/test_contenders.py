@@ -27,7 +27,7 @@ from identification.prediction.contenders import (
 )
 from identification.prediction.evidence import compute_confidence, evidence
 from identification.prediction.scores import WindowScore
-from identification.prediction.selection import STRONG_BIC, _near_best, _ranked
+from identification.prediction.selection import STRONG_BIC, _near_best, ranked
 from identification.prediction.trial import (
     LEVEL,
     TWINS,
@@ -165,23 +165,23 @@ def contender(e, gain, seed=0, numbers=1, is_proven=True):
     )  # fmt: skip
 
 
-def ranked(*contenders):
-    return [c.candidate.effect.name for c in _ranked(contenders, OPTIONS)]
+def order(*contenders):
+    return [c.candidate.effect.name for c in ranked(contenders, OPTIONS)]
 
 
 def test_fewer_numbers_come_first_where_resamples_cannot_tell():
     rich = contender(effect("rich"), 1.06, seed=1, numbers=2)
     plain = contender(effect("plain"), 1.0, seed=2)
-    assert ranked(rich, plain) == ["plain", "rich"]
+    assert order(rich, plain) == ["plain", "rich"]
     better = contender(effect("rich"), 1.07, seed=1, numbers=2)
     assert better.criterion > plain.criterion  # but not surely
-    assert ranked(better, plain) == ["plain", "rich"]
+    assert order(better, plain) == ["plain", "rich"]
 
 
 def test_more_numbers_come_first_where_all_windows_tell():
     rich = contender(effect("rich"), 2.0, seed=1, numbers=2)
     plain = contender(effect("plain"), 1.0, seed=2)
-    assert ranked(plain, rich) == ["rich", "plain"]
+    assert order(plain, rich) == ["rich", "plain"]
 
 
 def test_a_law_that_adds_a_number_and_nothing_else_pays_for_it():

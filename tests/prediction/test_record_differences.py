@@ -14,7 +14,7 @@ from identification.effects.joint_plant import candidates
 from identification.prediction.discovery import discover_records
 from identification.prediction.scores import WindowScore
 from identification.prediction.screening import at_several, felt_places
-from identification.prediction.selection import STRONG_BIC, _ranked
+from identification.prediction.selection import STRONG_BIC, ranked
 from identification.report.discovery_json import discovery_to_json
 from identification.report.discovery_report import discovery_text
 
@@ -100,10 +100,10 @@ def test_a_difference_comes_before_a_law_only_where_the_evidence_is_very_strong(
     differs = in_each_record(replace(effect("zero"), of_records="its zero differs"))
     law, own = contender(effect("law"), 1.0), contender(differs, 1.0)
     law, own = replace(law, criterion=50.0), replace(own, criterion=50.0 + ahead * STRONG_BIC)
-    first, _ = _ranked((law, own), OPTIONS)
+    first, _ = ranked((law, own), OPTIONS)
     assert first is (own if ahead > 1 else law)
     unproven = replace(law, doubt="chance")
-    assert _ranked((unproven, own), OPTIONS)[0] is own
+    assert ranked((unproven, own), OPTIONS)[0] is own
 
 
 def test_a_place_is_felt_in_any_record_and_sizes_are_those_of_one_record_after_the_other():
