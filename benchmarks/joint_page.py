@@ -15,6 +15,7 @@ ROWS = (
     ("right_first", "the right name first, goal 93 %"),
     ("right_or_alike", "or in a set of two"),
     ("wrong_first", "a wrong name first"),
+    ("right_refused", "the right law refused as the name of a neighbour"),
     ("further_names", "further names beside a right one"),
     ("place_right", "the right joint, when named right"),
     ("null_silent", "no name where nothing is hidden, goal 97 %"),
@@ -31,6 +32,7 @@ ABOUT_UNLISTED = (
 )
 UNLISTED_ROWS = (
     ("law_named", "a law is named, which is wrong, goal 4 % at most"),
+    ("law_refused", "a law refused as the name of a neighbour"),
     ("drawn", "drawn as a curve at the right joint, and no law is named"),
     ("drawn_over_cause", "and over what the force depends on, where a curve can draw it"),
     ("unknown", '"unknown effect"'),

@@ -119,6 +119,11 @@ def is_drawn(row: Row) -> bool:
     return bool(row["named"]) and not is_law_named(row) and is_placed(row)
 
 
+def refused(row: Row) -> set[str]:
+    """Laws that were not named, because a smooth force of what they depend on explains more."""
+    return {name for name, _, doubt in row.get("rejected", ()) if doubt == "neighbour"}
+
+
 def is_unknown(row: Row) -> bool:
     return bool(row["verdict"] == "unknown effect")
 
@@ -164,6 +169,7 @@ def _rates_of_unlisted(rows: Sequence[Row]) -> dict[str, Any]:
     mine = [r for r in rows if is_unlisted(r)]
     return {
         "law_named": rate(mine, is_law_named),
+        "law_refused": rate(mine, lambda r: bool(refused(r))),
         "drawn": rate(mine, is_drawn),
         "drawn_over_cause": rate(
             [r for r in mine if r["truth"]["curve"] != "-"], is_drawn_over_its_cause
@@ -183,6 +189,7 @@ def _rates(rows: Sequence[Row]) -> dict[str, Any]:
         "right_first": rate(hidden, is_right),
         "right_or_alike": rate(hidden, is_right_or_alike),
         "wrong_first": rate(hidden, lambda r: bool(r["named"]) and not is_right(r)),
+        "right_refused": rate(hidden, lambda r: bool(refused(r) & right_names(r))),
         "further_names": rate(right, lambda r: len(r["named"]) > 1),
         "place_right": rate([r for r in right if r["truth"]["places"]], is_placed),
         "null_silent": rate([r for r in rows if is_null(r)], lambda r: not r["named"]),

@@ -12,6 +12,7 @@ from joint_worlds.slots import plain_joints
 
 from identification.effects.axes import Axis
 from identification.effects.catalogue import joint_effects
+from identification.sweep.statistics import rate
 
 AXES = tuple(Axis(name, "hinge", 1.0, 1.0, 1.0, duration=2.0) for name in "ab")
 LAWS = [
@@ -71,9 +72,10 @@ def test_answers_are_counted_by_what_they_claim():
     assert [is_drawn_over_its_cause(r) for r in rows] == [True] + 6 * [False]
     found = summary([*rows, row("unlisted effect", ("curve_speed", "joint rail"), curve="-")])
     counted = {key: (r["hits"], r["of"]) for key, r in found["unlisted"]["cart"].items()}
-    assert counted == {"law_named": (2, 8), "drawn": (3, 8), "drawn_over_cause": (1, 7),
-                       "unknown": (1, 8), "drawn_or_unknown": (4, 8), "missed": (1, 8),
-                       "worse_than_fit": (0, 8)}  # fmt: skip
+    assert counted == {
+        "law_named": (2, 8), "law_refused": (0, 8), "drawn": (3, 8), "drawn_over_cause": (1, 7),
+        "unknown": (1, 8), "drawn_or_unknown": (4, 8), "missed": (1, 8), "worse_than_fit": (0, 8),
+    }  # fmt: skip
     assert found["all"]["right_first"]["of"] == 0  # they are no worlds with a name
     assert found["reliability"]["80 to 90 %"] == {
         **found["reliability"]["80 to 90 %"],
@@ -82,4 +84,12 @@ def test_answers_are_counted_by_what_they_claim():
     }
     assert "| a law is named, which is wrong, goal 4 % at most | 2 of 7 [8, 64 %] |" in section(
         rows
+    )
+
+
+def test_laws_that_were_refused_as_neighbours_names_are_counted():
+    told = {**row("unknown effect"), "rejected": [["quadratic_friction", "rail", "neighbour"]]}
+    other = {**row("unknown effect"), "rejected": [["cogging", "rail", "chance"]]}
+    assert summary([told, other, row("unknown effect")])["unlisted"]["all"]["law_refused"] == rate(
+        [told, other, None], lambda r: r is told
     )
