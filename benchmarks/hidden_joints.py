@@ -87,7 +87,7 @@ def answer(toml: Path, a: Path, b: Path, way: str, without: tuple[str, ...] = ()
              "rivals": [rival.name for rival in n.rivals],
              "shares": [rival.confidence for rival in n.rivals],
              "smooth_share": n.smooth_share,
-             "neighbour": n.neighbour and [n.neighbour.axis, n.neighbour.share, n.neighbour.chance],
+             "neighbour": (b := n.neighbour) and [b.curve, b.where, b.share, b.chance],
              "compared": n.compared, "fall": n.proof.fall,
              "t": n.proof.t,
              "sizes": {name: p[0] for name, p in n.parameters.items()}}

@@ -255,16 +255,17 @@ class RecordDifference(OfCandidate):
 
 @dataclass(frozen=True)
 class Neighbour:
-    """What a smooth force of what a law depends on would explain beside the law.
+    """The curve of the data that explains what a law leaves with the least chance of luck.
 
     Attributes:
-        axis: name of the curve over what the law depends on.
-        share: of what the model leaves, what the force would take of samples that it was not fitted
-            to, 0 to 1.
-        chance: of a gain as large by luck.
+        curve: its name.
+        where: its place.
+        share: of the fitted error that it would take away beside the law, 0 to 1.
+        chance: of as much by luck, paid for by the number of curves.
     """
 
-    axis: str
+    curve: str
+    where: str
     share: float
     chance: float
 

@@ -87,7 +87,7 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
         HORIZON, "puts a curve of the data in the place of a law that it predicts better than",
     ),
     "neighbours_names": (
-        HORIZON, "names no law beside which a curve of what it depends on explains more",
+        HORIZON, "names no law beside which a curve of the data still explains much",
     ),
     "drop_beside_curves": (HORIZON, "drops laws that were found only beside a curve of the data"),
     "drop_drawn_laws": (HORIZON, "drops a law whose work a later curve of the data does"),

@@ -111,14 +111,11 @@ class Condensed:
         G: S⊥ᵀS⊥ of each block, shape (B, k, k).
         a: S⊥ᵀr⊥ of each, shape (B, k).
         squares: ‖r⊥‖² of each, shape (B,).
-        H: SᵀS of all, shape (k, k), without what states make up for, but with what the free
-            parameters do.
     """
 
     G: np.ndarray
     a: np.ndarray
     squares: np.ndarray
-    H: np.ndarray
 
 
 def condensed(
@@ -141,7 +138,7 @@ def condensed(
     G = np.array([S[rows].T @ S[rows] for rows in base.blocks])
     a = np.array([S[rows].T @ base.r[rows] for rows in base.blocks])
     squares = np.array([base.r[rows] @ base.r[rows] for rows in base.blocks])
-    return Condensed(G, a, squares, columns.T @ columns)
+    return Condensed(G, a, squares)
 
 
 def find_imitated(fit: WindowFit, scores: Sequence[WindowScore]) -> set[tuple[str, str]]:

@@ -73,16 +73,11 @@ def choose(
 def find_members(model: WindowModel, parent: WindowModel) -> list[Candidate]:
     """Returns the effects that a model has and its parent has not, with their fitted shapes."""
     old = {c.key for c in parent.candidates}
-    return with_fitted_shapes(model, [c for c in model.candidates if c.key not in old])
-
-
-def with_fitted_shapes(model: WindowModel, candidates: Sequence[Candidate]) -> list[Candidate]:
-    """Returns effects of a model with the shapes that were fitted."""
     values = {**model.plant.parameters.values(), **model.values}
     return [
         replace(c, shape={s.name: values[c.effect.parameter(s.name, c.where)]
                           for s in c.effect.shapes})
-        for c in candidates
+        for c in model.candidates if c.key not in old
     ]  # fmt: skip
 
 

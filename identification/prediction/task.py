@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
+from identification.discovery.attempts import attempt
 from identification.discovery.moves import SearchState, Task, Watch
 from identification.prediction.model import WindowModel
+from identification.prediction.screening import score_all
 from identification.prediction.trial import Contender
 from identification.progress import Progress
 from identification.windows.records import Record
@@ -78,9 +81,14 @@ def finishing(
         watch = Watch(state.seconds)
         model, accepted, lost = change(state, progress)
         watch.stop("refits")
+        scores = state.scores
+        if model is not state.model:  # what is left beside the new model is asked of it
+            again = partial(score_all, model, state.task.effects, state.task.options)
+            scores = attempt(None, again) or scores
+            watch.stop("scores")
         return replace(
             state, model=model, accepted=accepted, rejected=(*lost, *state.rejected),
-            seconds=watch.seconds,
+            scores=scores, seconds=watch.seconds,
         )  # fmt: skip
 
     return make

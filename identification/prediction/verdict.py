@@ -2,9 +2,9 @@
 
 The confidence of a name is its share of the odds among its rivals, in the mean over resamples
 (`identification.prediction.evidence`). A name below even odds is no name, unless it is told with
-its look-alike; nor is a law beside which a smooth force of what it depends on explains more, for
-the right one would not leave that (`identification.prediction.yardstick`). What was tried is then
-told, and the verdict is "unknown effect".
+its look-alike; nor is a law beside which a curve of the data still explains much, for the right one
+would not leave that (`identification.prediction.neighbours`). What was tried is then told, and the
+verdict is "unknown effect".
 """
 
 from __future__ import annotations
@@ -36,13 +36,14 @@ from identification.prediction.clocks import record_shifts
 from identification.prediction.evidence import compute_confidence
 from identification.prediction.extension import at_own_steps, refitted
 from identification.prediction.model import WindowModel
+from identification.prediction.neighbours import find_neighbour, has_neighbours_name
 from identification.prediction.record_errors import error_unit, errors_by_unit, record_errors
 from identification.prediction.recovery import recover_over_horizon
 from identification.prediction.remaining import find_remaining, left_by_steps, needed_input_error
 from identification.prediction.screening import contains
 from identification.prediction.task import WindowSearch
 from identification.prediction.trial import Contender, evidences, find_twin
-from identification.prediction.yardstick import Yardstick, has_neighbours_name, measure
+from identification.prediction.yardstick import Yardstick, measure
 from identification.windows.records import Record
 from identification.windows.unseen import Prediction, Unseen, rise
 
@@ -221,7 +222,7 @@ def _named(
         evidence=accepted.criterion, proof=_proof(state, accepted),
         same_as=next((e for e in state.task.effects if e.name == twin), None),
         smooth_share=stick.share_of(mine, accepted.prediction.fall) if stick else None,
-        neighbour=stick.beside.get(mine.key) if stick else None,
+        neighbour=find_neighbour(mine, state.scores),
     )  # fmt: skip
 
 

@@ -73,7 +73,7 @@ DOUBTS = {
     "exchange": "where the other records are fitted instead, it predicts a record worse, or all of"
     " them on average",
     "drawn": "a curve of the data at the same joint does the same, and more",
-    "neighbour": "a smooth force of what it depends on explains more beside it, beyond chance",
+    "neighbour": "a curve of the data still explains much of what it leaves, beyond chance",
     "curve": "it was found beside a curve of the data, which leaves what its nodes cannot draw",
     "differ": "it explains what was fitted and makes unseen records much worse, so that the records"
     " differ in something that it stands for",

@@ -270,7 +270,9 @@ def test_what_physics_forbids_takes_its_share_of_the_odds_and_is_no_other_name(
     monkeypatch.setattr(verdict, "_proof", lambda state, seen: None)
     monkeypatch.setattr(verdict, "_rival", lambda o, share: o.candidate.effect.name)
     state = SimpleNamespace(
-        task=SimpleNamespace(options=OPTIONS, effects=()), model=SimpleNamespace(candidates=())
+        task=SimpleNamespace(options=OPTIONS, effects=()),
+        model=SimpleNamespace(candidates=()),
+        scores=(),
     )
     named = verdict._named(state, replace(law, alternatives=(rival,)), 0.95, None)
     assert (named.confidence < 0.01) == (gain > 0.5)
@@ -279,5 +281,5 @@ def test_what_physics_forbids_takes_its_share_of_the_odds_and_is_no_other_name(
     assert named.one_of == is_possible
     expected = "named" if is_possible or gain < 0.5 else "unknown effect"
     assert verdict.decide([named], (), False, OPTIONS) == expected
-    beside = replace(named, neighbour=Neighbour("curve_speed", 0.2, 1e-4))
+    beside = replace(named, neighbour=Neighbour("curve_speed", "joint a", 0.3, 1e-4))
     assert verdict.decide([beside], (), False, OPTIONS) == "unknown effect"

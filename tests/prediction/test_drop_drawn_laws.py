@@ -46,7 +46,7 @@ def state(whole, every, effects=()):
     task = SimpleNamespace(
         nominal_model=None, confirm=(), horizon=0.2, effects=effects, options=DiscoveryOptions()
     )
-    return SimpleNamespace(model=whole, accepted=tuple(every), task=task)
+    return SimpleNamespace(model=whole, accepted=tuple(every), task=task, scores=())
 
 
 def names(each):

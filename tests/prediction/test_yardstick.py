@@ -1,6 +1,5 @@
 """The share that a law explains of what smooth forces could is one for the law that is missing."""
 
-from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -9,20 +8,15 @@ from records_cases import FREE, HORIZON, nominal_model, pendulum, records
 from scipy.optimize import lsq_linear
 
 from identification.discovery.candidates import list_common
-from identification.discovery.effect_results import Neighbour
-from identification.discovery.options import DiscoveryOptions
 from identification.effects.joint_plant import candidates
 from identification.prediction.extension import with_effect
 from identification.prediction.first_fit import begin
 from identification.prediction.nominal_fit import fit_nominal
 from identification.prediction.scores import condensed, window_scores
-from identification.prediction.yardstick import has_neighbours_name, measure
-from identification.windows.fit import solve
+from identification.prediction.yardstick import measure
 from identification.windows.records import as_records
 
 EFFECTS = candidates(pendulum(), FREE)
-OPTIONS = DiscoveryOptions()
-WITHOUT = DiscoveryOptions(without=("neighbours_names",))
 
 
 @cache
@@ -72,39 +66,6 @@ def test_the_law_that_is_missing_leaves_nothing_to_a_smooth_force_and_a_neighbou
     assert left["coulomb_friction"] < 0.01
     assert share["sublinear_friction"] < 0.998
     assert left["sublinear_friction"] > 0.03
-
-
-def test_a_neighbour_leaves_much_to_a_force_of_what_it_depends_on_and_the_right_law_does_not():
-    beside = {}
-    for name in ("coulomb_friction", "transmitted_load_friction"):
-        (beside[name],) = measure(with_law(name), EFFECTS).beside.values()
-        assert beside[name].axis == "curve_speed"
-    assert not has_neighbours_name(beside["coulomb_friction"], OPTIONS)
-    assert has_neighbours_name(beside["transmitted_load_friction"], OPTIONS)
-    assert not has_neighbours_name(beside["transmitted_load_friction"], WITHOUT)
-    assert not has_neighbours_name(None, OPTIONS)
-
-
-@pytest.mark.parametrize(("share", "chance"), [(0.5, 0.02), (0.05, 1e-6)])
-def test_what_is_luck_or_too_little_is_no_reason_against_a_law(share, chance):
-    assert not has_neighbours_name(Neighbour("curve_speed", share, chance), OPTIONS)
-
-
-def test_the_size_of_the_law_makes_room_for_the_force_beside_it():
-    """A force that the law can do itself by another size explains nothing beside it."""
-    model = with_law("coulomb_friction")
-    (key,) = (c.key for c in model.candidates)
-    right = measure(model, EFFECTS).beside[key]
-    at = model.fit.problem.names.index("coulomb_friction.f_c@hinge")
-    q = model.fit.q.copy()
-    q[at] *= 1.05
-    problem = model.fit.problem
-    moves, r = problem.settled(q, model.fit.moves, model.fit.tangents)
-    moved = solve(problem, q, moves, tolerance=1e9, known=r)  # not one step
-    assert moved.values[problem.names[at]] != model.fit.values[problem.names[at]]
-    off = measure(replace(model, fit=moved), EFFECTS).beside[key]
-    assert not has_neighbours_name(off, OPTIONS)
-    assert off.share < right.share + 0.02
 
 
 def test_what_is_no_law_of_a_joint_has_no_share():

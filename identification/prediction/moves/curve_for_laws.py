@@ -7,10 +7,11 @@ fitted in the place of all laws at the joint, and their cause is unlisted where 
 
     has more evidence for it than several laws have, with the price of its many numbers, or
     predicts unseen records better than a law beyond chance, which needs no price, or
-    is proven, where the law has a neighbour's name (`identification.prediction.yardstick`).
+    is proven, where the law has a neighbour's name (`identification.prediction.neighbours`).
 
 A single law is asked only where a curve beside it may explain what it leaves. Laws that are there
-have the evidence of their few numbers, which a curve has not.
+have the evidence of their few numbers, which a curve has not. A law of a sensor or an input that
+has a neighbour's name is asked at the joint of the curve that explains what it leaves.
 """
 
 from __future__ import annotations
@@ -27,11 +28,12 @@ from identification.prediction.contenders import count_numbers
 from identification.prediction.evidence import all_gains, count_windows, evidence
 from identification.prediction.extension import refitted
 from identification.prediction.model import WindowModel
+from identification.prediction.neighbours import find_neighbour, has_neighbours_name
 from identification.prediction.screening import places_of, score_all
 from identification.prediction.selection import refit_contenders
 from identification.prediction.task import Change, WindowSearch
 from identification.prediction.trial import Contender
-from identification.prediction.yardstick import acts_on_joints, has_neighbours_name, measure
+from identification.prediction.yardstick import acts_on_joints
 from identification.progress import Progress
 from identification.windows.unseen import compare
 
@@ -44,10 +46,13 @@ def curve_for_laws(state: WindowSearch, progress: Progress) -> Change:
     """Returns the state's model with a curve in place of several laws, if it has more evidence."""
     task, model, accepted = state.task, state.model, [*state.accepted]
     options, confirm = task.options, task.confirm
-    neighbours = _neighbours_names(state) if any(map(_is_law, accepted)) else set()
+    neighbours = _neighbours_names(state)
     curves, lost = [e for e in task.effects if e.is_curve], list[Contender]()
-    for where in _joints_of_laws(state, neighbours):
-        laws = [a for a in accepted if a.candidate.where == where and _is_law(a)]
+    for where in _joints_of_laws(state, neighbours.values()):
+        laws = [
+            a for a in accepted
+            if neighbours.get(a.candidate.key, a.candidate.where if _is_law(a) else "") == where
+        ]  # fmt: skip
         out = {a.candidate.key for a in laws}
         rest = [c for c in model.candidates if c.key not in out]
         bare = refitted(model, rest, task.nominal_model, confirm)
@@ -79,11 +84,10 @@ def curve_for_laws(state: WindowSearch, progress: Progress) -> Change:
     return model, tuple(accepted), tuple(lost)
 
 
-def _neighbours_names(state: WindowSearch) -> set[tuple[str, str]]:
-    """Returns laws that have the name of a neighbour of what is missing."""
-    stick = attempt(None, partial(measure, state.model, state.task.effects))
-    each = stick.beside.items() if stick else ()
-    return {key for key, n in each if has_neighbours_name(n, state.task.options)}
+def _neighbours_names(state: WindowSearch) -> dict[tuple[str, str], str]:
+    """Returns laws that have the name of a neighbour of what is missing, and its curve's joint."""
+    each = ((a.candidate, find_neighbour(a.candidate, state.scores)) for a in state.accepted)
+    return {c.key: n.where for c, n in each if n and has_neighbours_name(n, state.task.options)}
 
 
 def _predicts_better(curve: Contender, laws: WindowModel, options: DiscoveryOptions) -> bool:
@@ -92,7 +96,7 @@ def _predicts_better(curve: Contender, laws: WindowModel, options: DiscoveryOpti
     return found.is_everywhere and found.chance < options.significance
 
 
-def _joints_of_laws(state: WindowSearch, neighbours: Collection[tuple[str, str]]) -> list[str]:
+def _joints_of_laws(state: WindowSearch, doubtful: Collection[str]) -> list[str]:
     """Returns the joints of several laws, or of one that may be a neighbour's, and of no curve."""
     curves = {
         place
@@ -101,9 +105,8 @@ def _joints_of_laws(state: WindowSearch, neighbours: Collection[tuple[str, str]]
         for place in places_of(a.candidate.where)
     }
     count = Counter(a.candidate.where for a in state.accepted if _is_law(a))
-    doubtful = {where for _, where in neighbours}
-    return [where for where, n in count.items() if where not in curves
-            and (n > 1 or where in doubtful or _may_be_neighbour(state, where))]  # fmt: skip
+    asked = [w for w, n in count.items() if n > 1 or _may_be_neighbour(state, w)]
+    return [where for where in dict.fromkeys((*asked, *doubtful)) if where not in curves]
 
 
 def _may_be_neighbour(state: WindowSearch, where: str) -> bool:

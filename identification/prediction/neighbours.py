@@ -1,0 +1,64 @@
+"""Laws that have the name of a neighbour of what is missing.
+
+The right law leaves no more than luck to a curve of the data beside it. The law that lies nearest
+to a force in no catalogue leaves a pattern: a spring that hardens explains most of what a soft stop
+does, and a curve of the position still explains a third of the rest. So a law is not named where
+the best curve at its joint, scored beside all that was found,
+
+    takes away more than `MOST_LEFT` of the fitted error, and
+    has a chance below `significance`, paid for by the number of curves
+
+though the curve itself, with its many numbers, is not proven. A law of a sensor, an input or a body
+has no joint of its own, and curves at all joints count.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from identification.discovery.effect_results import Neighbour
+from identification.discovery.options import DiscoveryOptions
+from identification.discovery.passes import uses
+from identification.effects.effect import Candidate
+from identification.prediction.scores import WindowScore
+from identification.prediction.screening import places_of
+from identification.prediction.yardstick import acts_on_joints
+
+# Of the fitted error. In hidden worlds curves that were beyond chance took 13 % or less beside laws
+# that were right, and 20 % or more beside neighbours (docs/discovery.md).
+MOST_LEFT = 0.2
+
+
+def find_neighbour(candidate: Candidate, scores: Sequence[WindowScore]) -> Neighbour | None:
+    """Returns the curve that explains what a law leaves with the least chance of luck.
+
+    Args:
+        candidate: the law, or a curve.
+        scores: of all candidates, beside all that was found.
+
+    Returns:
+        None for a curve, and where no curve has a score.
+    """
+    if candidate.effect.is_curve:
+        return None
+    curves = [s for s in scores if s.candidate.effect.is_curve]
+    if acts_on_joints(candidate.effect) and candidate.effect.places.get(candidate.where):
+        mine = {*places_of(candidate.where)}
+        curves = [s for s in curves if mine & {*places_of(s.candidate.where)}]
+    if not curves:
+        return None
+    best = min(curves, key=lambda s: s.p_value)
+    chance = min(1.0, len(curves) * best.p_value)
+    return Neighbour(best.candidate.effect.name, best.candidate.where, best.fall, chance)
+
+
+def has_neighbours_name(neighbour: Neighbour | None, options: DiscoveryOptions) -> bool:
+    """Returns whether a law has the name of a neighbour of what is missing.
+
+    Args:
+        neighbour: the curve beside it; None where there is none.
+        options: what is beyond chance.
+    """
+    if neighbour is None or not uses(options, "neighbours_names"):
+        return False
+    return neighbour.chance < options.significance and neighbour.share > MOST_LEFT
