@@ -2,9 +2,7 @@
 
 import numpy as np
 import pytest
-from scipy.stats import binom
 
-from identification.chances import mean_above_zero
 from identification.discovery.smooth_force import (
     FOLDS,
     RIDGES,
@@ -53,38 +51,6 @@ def test_white_noise_gives_nothing_to_explain():
         gains.append(find_smooth_force(*condensed(S, e), (NODES, NODES)).gain)
     assert min(gains) >= 0
     assert np.mean(gains) < 2.5
-
-
-def test_blocks_gain_on_average_where_there_is_a_force_and_not_where_there_is_none():
-    """What decides on a neighbour's name: Student's t of the logarithms of the blocks' falls.
-
-    The force of a block is fitted to the others, so that one that is not there loses as often as it
-    gains; fitted to all of them it would gain far too often.
-    """
-    level, floor, draws = 0.1, 0.3 * N / BLOCKS, 150
-    found, fitted_to_all = 0, 0
-    for seed in range(draws):
-        v, _, S = columns(seed % 6)
-        S = S[:, :NODES]
-        e = np.random.default_rng(seed).standard_normal(N)
-        squares = np.array([e[r] @ e[r] for r in np.array_split(np.arange(N), BLOCKS)])
-        G, a = condensed(S, e)
-        every = np.linalg.lstsq(G.sum(axis=0), a.sum(axis=0), rcond=None)[0]
-        inside = 2 * a @ every - np.einsum("i,bij,j->b", every, G, every)
-        for gains, is_inside in ((find_smooth_force(G, a, (NODES,)).gains, False), (inside, True)):
-            logs = np.log(squares + floor) - np.log(squares - gains + floor)
-            is_found = bool(logs.any()) and mean_above_zero(logs)[1] < level
-            found += is_found and not is_inside
-            fitted_to_all += is_found and is_inside
-    assert found < binom.ppf(1 - 1e-4, draws, level)
-    assert fitted_to_all > binom.ppf(1 - 1e-4, draws, level)
-    v, _, S = columns(3)
-    rough = np.sign(v) + 0.5 * np.random.default_rng(3).standard_normal(N)
-    G, a = condensed(S[:, :NODES], rough)
-    force = find_smooth_force(G, a, (NODES,))
-    assert force.gains.sum() == pytest.approx(force.gain, rel=1e-9)
-    squares = np.array([rough[r] @ rough[r] for r in np.array_split(np.arange(N), BLOCKS)])
-    assert mean_above_zero(np.log(squares) - np.log(squares - force.gains))[1] < 1e-6
 
 
 def test_it_explains_what_it_says_of_samples_it_has_not_seen():
