@@ -77,9 +77,6 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
     "drop_places": (
         HORIZON, "drops places at which an effect that has several does nothing after all",
     ),
-    "law_for_curve": (
-        HORIZON, "puts a law in the place of a curve of the data that says no more than it does",
-    ),
     "curve_for_laws": (
         HORIZON, "puts one curve of the data in the place of several laws at a joint",
     ),

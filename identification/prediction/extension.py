@@ -161,50 +161,6 @@ def refitted(
         nominal_model: its other free parameters, and the horizon.
         confirm: records that no fit may see.
     """
-    task, q, fixed = _with_fewer(model, candidates, nominal_model)
-    horizon = float(nominal_model.horizon or 0.0)
-
-    def evaluate() -> WindowModel:
-        found = solve(task, q, model.fit.moves)
-        seen = predict_fitted(
-            model.plant, confirm, horizon, model.scale, found, fixed, model.unseen
-        )
-        refuse_infinite(found.cost, *seen.at_horizon)
-        return WindowModel(tuple(candidates), found, seen, model.scale)
-
-    return attempt(None, evaluate)
-
-
-def left_out(
-    model: WindowModel, candidates: Sequence[Candidate], nominal_model: NominalModel
-) -> WindowModel | None:
-    """Returns a model with fewer effects and all other values as they are, linearised there.
-
-    What it leaves is what the other effects did. Its errors on unseen records are those of the
-    model with them: only a search for states begins there.
-
-    Args:
-        model: with more effects.
-        candidates: those that it keeps.
-        nominal_model: its other free parameters.
-
-    Returns:
-        None where it cannot be simulated.
-    """
-    task, q, _ = _with_fewer(model, candidates, nominal_model)
-
-    def evaluate() -> WindowModel:
-        found = solve(task, q, model.fit.moves, most=1)
-        refuse_infinite(found.cost)
-        return WindowModel(tuple(candidates), found, model.unseen, model.scale)
-
-    return attempt(None, evaluate)
-
-
-def _with_fewer(
-    model: WindowModel, candidates: Sequence[Candidate], nominal_model: NominalModel
-) -> tuple[Problem, np.ndarray, dict[str, float]]:
-    """Returns the problem of a model with fewer effects, q where it is, and what it holds fixed."""
     fit, old = model.fit, model.fit.problem.unknowns
     keep = {*nominal_model.names, *(n for c in candidates for n in (*c.free, *shapes_of(c)))}
     values = {n: v for c in candidates for n, v in (*c.fixed.items(), *c.whole.items())}
@@ -214,4 +170,14 @@ def _with_fewer(
     fixed = {**absent, **values}
     task = with_unknowns(fit.problem, old.shared.only([*keep]), old.own.only([*keep]), fixed)
     q = np.array([fit.q[fit.problem.names.index(n)] for n in task.names])
-    return task, q, fixed
+    horizon = float(nominal_model.horizon or 0.0)
+
+    def evaluate() -> WindowModel:
+        found = solve(task, q, fit.moves)
+        seen = predict_fitted(
+            model.plant, confirm, horizon, model.scale, found, fixed, model.unseen
+        )
+        refuse_infinite(found.cost, *seen.at_horizon)
+        return WindowModel(tuple(candidates), found, seen, model.scale)
+
+    return attempt(None, evaluate)

@@ -20,7 +20,6 @@ from identification.prediction.moves.drop_beside_curves import drop_beside_curve
 from identification.prediction.moves.drop_drawn_laws import drop_drawn_laws
 from identification.prediction.moves.drop_effects import drop_effects
 from identification.prediction.moves.drop_places import drop_places
-from identification.prediction.moves.law_for_curve import law_for_curve
 from identification.prediction.nominal_fit import as_begun, fit_alone, predicted
 from identification.prediction.screening import score_all
 from identification.prediction.task import RecordsTask, WindowSearch, finishing
@@ -38,8 +37,7 @@ MOVES = (
     *(
         Move(change.__name__, finishing(change))
         for change in (
-            drop_effects, drop_places, law_for_curve, curve_for_laws, drop_beside_curves,
-            drop_drawn_laws,
+            drop_effects, drop_places, curve_for_laws, drop_beside_curves, drop_drawn_laws,
         )
     ),
 )  # fmt: skip

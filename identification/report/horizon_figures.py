@@ -52,10 +52,8 @@ def windows_over_time(records: Sequence[RecordWindows], is_named: bool) -> Figur
 @styled
 def worst_windows(windows: Sequence[FailedWindow]) -> Figure:
     """Returns a figure of measured and predicted motion in some windows, a panel each."""
-    rows = -(-len(windows) // 2)
-    figure = Figure((WIDTH, 0.6 + 2.1 * rows), layout="constrained")
-    axes = figure.subplots(rows, min(2, len(windows)), squeeze=False).ravel()
-    for ax, w in zip(axes, windows, strict=False):
+    figure, axes = _panels(len(windows))
+    for ax, w in zip(axes, windows, strict=True):
         ax.plot(w.time, w.measured, ".", ms=3, color=MEASURED, label="measured")
         ax.plot(w.time, w.predicted, color=SIMULATED, lw=1.2, label="predicted by the final model")
         ax.set_title(
@@ -63,8 +61,6 @@ def worst_windows(windows: Sequence[FailedWindow]) -> Figure:
         )
         ax.set_ylabel(literal(f"[{w.unit}]") if w.unit else "")
         ax.set_xlabel("time [s]")
-    for ax in axes[len(windows) :]:
-        ax.set_axis_off()
     figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=2)
     return figure
 
@@ -72,14 +68,20 @@ def worst_windows(windows: Sequence[FailedWindow]) -> Figure:
 @styled
 def needed_forces(forces: Sequence[NeededForce]) -> Figure:
     """Returns a figure of the force that each joint would need, over what it follows."""
-    rows = -(-len(forces) // 2)
-    figure = Figure((WIDTH, 0.4 + 2.2 * rows), layout="constrained")
-    axes = figure.subplots(rows, min(2, len(forces)), squeeze=False).ravel()
-    for ax, needed in zip(axes, forces, strict=False):
+    figure, axes = _panels(len(forces))
+    for ax, needed in zip(axes, forces, strict=True):
         _draw(ax, needed)
-    for ax in axes[len(forces) :]:
-        ax.set_axis_off()
     return figure
+
+
+def _panels(count: int) -> tuple[Figure, list[Axes]]:
+    """Returns a figure with so many panels, in up to two columns."""
+    rows = -(-count // 2)
+    figure = Figure((WIDTH, 0.6 + 2.1 * rows), layout="constrained")
+    axes = [*figure.subplots(rows, min(2, count), squeeze=False).ravel()]
+    for ax in axes[count:]:
+        ax.set_axis_off()
+    return figure, axes[:count]
 
 
 def _draw(ax: Axes, needed: NeededForce) -> None:

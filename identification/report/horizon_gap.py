@@ -218,14 +218,15 @@ def _worst(
         outputs: the unit of each output by name.
     """
     every = [(float(e), k, w) for k, each in enumerate(ratios) for w, e in enumerate(each)]
-    names, taken, out = [*outputs], list[tuple[int, int]](), list[FailedWindow]()
+    errors, names = final.fit.errors, [*outputs]
+    taken, out = list[tuple[int, int]](), list[FailedWindow]()
     for ratio, k, w in sorted(every, reverse=True):
         if len(out) == WORST:
             break
         if any(k == j and abs(w - v) < APART for j, v in taken):
             continue
         taken.append((k, w))
-        part, error = final.fit.problem.parts[k], final.fit.errors[k][w]
+        part, error = final.fit.problem.parts[k], errors[k][w]
         log, y = part.predictor.log, int(np.argmax(np.mean((error / scale) ** 2, axis=0)))
         measured = part.cut.outputs[w][:, y]
         time = log.time[part.cut.starts[w] + np.arange(len(measured))]
