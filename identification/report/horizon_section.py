@@ -58,7 +58,7 @@ def horizon_sections(found: Discovery) -> list[Section]:
         text.append(f"{said} {FORCES}" if forces else NO_FORCE)
         if found.verdict == "unknown effect":
             text.append(TRY)
-    plain = [listed_below(f"where {model} fails, on untouched data", [*lines, *rest, *forces])]
+    plain = [listed_below(f"where {model} fails", [*lines, *rest, *forces])]
     if is_far and not forces:
         plain.append(NO_FORCE)
     return [

@@ -22,7 +22,7 @@ def output_line(o: OutputError) -> str:
     """Returns the error of an output, beside its sensor's noise."""
     size, noise = alike([o.after, o.noise], o.unit, 3)
     times = f", {held(o.after / o.noise)} times the {noise} of its sensor" if o.noise > 0 else ""
-    return f"{o.name} errs by {size} rms{times}"
+    return f"{o.name} errs by {size} rms on untouched data{times}"
 
 
 def worst_lines(gap: HorizonGap) -> list[str]:
@@ -33,7 +33,7 @@ def worst_lines(gap: HorizonGap) -> list[str]:
     at, every = int(np.argmax(most.after)), np.concatenate([r.after for r in gap.records])
     begin, ratio = float(most.time[at]), float(most.after[at])
     return [
-        f"the worst window begins at {quantity(begin, unit='s')} of {most.name}, with"
+        f"the worst of all windows begins at {quantity(begin, unit='s')} of {most.name}, with"
         f" {held(ratio)} times the noise; the median of all windows is"
         f" {held(float(np.median(every)))} times it"
     ]
@@ -45,7 +45,7 @@ def length_lines(lengths: Sequence[LengthError]) -> list[str]:
         return []
     over = listed([f"{n.length:g} s" for n in lengths])
     ratios = listed([held(n.after) for n in lengths])
-    return [f"over {over} it errs by {ratios} times the noise"]
+    return [f"over {over} it errs by {ratios} times the noise on untouched data"]
 
 
 def force_line(needed: NeededForce) -> str:
