@@ -262,12 +262,14 @@ class Neighbour:
         where: its place.
         share: of the fitted error that it would take away beside the law, 0 to 1.
         chance: of as much by luck, paid for by the number of curves.
+        of_both: what the curve explains of what law and curve explain together, 0 to 1.
     """
 
     curve: str
     where: str
     share: float
     chance: float
+    of_both: float
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -6,7 +6,10 @@ does, and a curve of the position still explains a third of the rest. So a law i
 the best curve at its joint, scored beside all that was found,
 
     takes away more than `MOST_LEFT` of the fitted error, and
-    has a chance below `significance`, paid for by the number of curves
+    has a chance below `significance`, paid for by the number of curves, and
+    explains more than `EXACT` of what law and curve explain together:
+
+        g/(F + g),  g = f (1 - F)        F: fall by the law,  f: fall by the curve beside it
 
 though the curve itself, with its many numbers, is not proven. A law of a sensor, an input or a body
 has no joint of its own, and curves at all joints count.
@@ -27,13 +30,19 @@ from identification.prediction.yardstick import acts_on_joints
 # Of the fitted error. In hidden worlds curves that were beyond chance took 13 % or less beside laws
 # that were right, and 20 % or more beside neighbours (docs/discovery.md).
 MOST_LEFT = 0.2
+# No law is right to more than a per mille of its power, which is 3 % of its force: steps of
+# the simulation and shapes of bodies are not known better.
+EXACT = 1e-3
 
 
-def find_neighbour(candidate: Candidate, scores: Sequence[WindowScore]) -> Neighbour | None:
+def find_neighbour(
+    candidate: Candidate, fall: float, scores: Sequence[WindowScore]
+) -> Neighbour | None:
     """Returns the curve that explains what a law leaves with the least chance of luck.
 
     Args:
         candidate: the law, or a curve.
+        fall: of the mean square by it, F.
         scores: of all candidates, beside all that was found.
 
     Returns:
@@ -49,7 +58,9 @@ def find_neighbour(candidate: Candidate, scores: Sequence[WindowScore]) -> Neigh
         return None
     best = min(curves, key=lambda s: s.p_value)
     chance = min(1.0, len(curves) * best.p_value)
-    return Neighbour(best.candidate.effect.name, best.candidate.where, best.fall, chance)
+    gain = best.fall * (1 - fall)
+    of_both = gain / (fall + gain) if fall + gain > 0 else 0.0
+    return Neighbour(best.candidate.effect.name, best.candidate.where, best.fall, chance, of_both)
 
 
 def has_neighbours_name(neighbour: Neighbour | None, options: DiscoveryOptions) -> bool:
@@ -61,4 +72,5 @@ def has_neighbours_name(neighbour: Neighbour | None, options: DiscoveryOptions) 
     """
     if neighbour is None or not uses(options, "neighbours_names"):
         return False
-    return neighbour.chance < options.significance and neighbour.share > MOST_LEFT
+    is_much = neighbour.share > MOST_LEFT and neighbour.of_both > EXACT
+    return is_much and neighbour.chance < options.significance

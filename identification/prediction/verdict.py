@@ -222,7 +222,7 @@ def _named(
         evidence=accepted.criterion, proof=_proof(state, accepted),
         same_as=next((e for e in state.task.effects if e.name == twin), None),
         smooth_share=stick.share_of(mine, accepted.prediction.fall) if stick else None,
-        neighbour=find_neighbour(mine, state.scores),
+        neighbour=find_neighbour(mine, accepted.prediction.fall, state.scores),
     )  # fmt: skip
 
 

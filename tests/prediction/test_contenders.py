@@ -263,7 +263,7 @@ def test_what_physics_forbids_takes_its_share_of_the_odds_and_is_no_other_name(
     monkeypatch, doubt, gain
 ):
     """Where it is likelier than a possible law, that is below even odds and no name."""
-    law = contender(effect("law"), 0.5)
+    law = replace(contender(effect("law"), 0.5), prediction=SimpleNamespace(fall=0.5))
     rival = replace(contender(effect("rival"), gain), doubt=doubt)
     monkeypatch.setattr(verdict, "find_twin", lambda model, mine: "")
     monkeypatch.setattr(verdict, "_fitted", lambda model, c: (c, {}))
@@ -281,5 +281,5 @@ def test_what_physics_forbids_takes_its_share_of_the_odds_and_is_no_other_name(
     assert named.one_of == is_possible
     expected = "named" if is_possible or gain < 0.5 else "unknown effect"
     assert verdict.decide([named], (), False, OPTIONS) == expected
-    beside = replace(named, neighbour=Neighbour("curve_speed", "joint a", 0.3, 1e-4))
+    beside = replace(named, neighbour=Neighbour("curve_speed", "joint a", 0.3, 1e-4, 0.1))
     assert verdict.decide([beside], (), False, OPTIONS) == "unknown effect"

@@ -13,7 +13,12 @@ from identification.effects.joint_plant import candidates
 from identification.prediction.extension import with_effect
 from identification.prediction.first_fit import begin
 from identification.prediction.moves.curve_for_laws import curve_for_laws
-from identification.prediction.neighbours import MOST_LEFT, find_neighbour, has_neighbours_name
+from identification.prediction.neighbours import (
+    EXACT,
+    MOST_LEFT,
+    find_neighbour,
+    has_neighbours_name,
+)
 from identification.prediction.nominal_fit import fit_nominal
 from identification.prediction.scores import window_scores
 from identification.prediction.screening import score_all
@@ -46,7 +51,7 @@ def with_law(name):
 
 def neighbour_of(name):
     _, model = with_law(name)
-    return find_neighbour(model.candidates[-1], score_all(model, EFFECTS, OPTIONS))
+    return find_neighbour(model.candidates[-1], 0.9, score_all(model, EFFECTS, OPTIONS))
 
 
 def test_the_right_law_leaves_luck_to_a_curve_and_its_neighbour_leaves_the_pattern():
@@ -59,11 +64,13 @@ def test_the_right_law_leaves_luck_to_a_curve_and_its_neighbour_leaves_the_patte
     assert not has_neighbours_name(wrong, WITHOUT)
 
 
-@pytest.mark.parametrize(("share", "chance", "has"), [
-    (0.5, 0.02, False), (0.9 * MOST_LEFT, 1e-9, False), (1.1 * MOST_LEFT, 1e-3, True),
+@pytest.mark.parametrize(("share", "chance", "of_both", "has"), [
+    (0.5, 0.02, 0.1, False), (0.9 * MOST_LEFT, 1e-9, 0.1, False), (0.9, 1e-9, 0.9 * EXACT, False),
+    (1.1 * MOST_LEFT, 1e-3, 1.1 * EXACT, True),
 ])  # fmt: skip
-def test_what_may_be_luck_or_is_little_is_no_reason_against_a_law(share, chance, has):
-    assert has_neighbours_name(Neighbour("curve_speed", "joint a", share, chance), OPTIONS) == has
+def test_what_may_be_luck_or_is_little_is_no_reason_against_a_law(share, chance, of_both, has):
+    found = Neighbour("curve_speed", "joint a", share, chance, of_both)
+    assert has_neighbours_name(found, OPTIONS) == has
     assert not has_neighbours_name(None, OPTIONS)
 
 
@@ -71,11 +78,13 @@ def test_the_chance_is_paid_for_by_the_number_of_curves_at_the_joint():
     _, model = with_law("stiffness")
     scores = score_all(model, EFFECTS, OPTIONS)
     curves = [s for s in scores if s.candidate.effect.is_curve]
-    found = find_neighbour(model.candidates[-1], scores)
+    found = find_neighbour(model.candidates[-1], 0.9, scores)
     assert len(curves) > 2
     assert found.chance == pytest.approx(len(curves) * min(s.p_value for s in curves))
-    assert find_neighbour(curves[0].candidate, scores) is None
-    assert find_neighbour(model.candidates[-1], []) is None
+    left = 0.1 * found.share
+    assert found.of_both == pytest.approx(left / (0.9 + left))
+    assert find_neighbour(curves[0].candidate, 0.9, scores) is None
+    assert find_neighbour(model.candidates[-1], 0.9, []) is None
 
 
 def test_a_proven_curve_takes_the_place_of_a_neighbours_name():

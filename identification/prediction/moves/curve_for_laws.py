@@ -86,7 +86,10 @@ def curve_for_laws(state: WindowSearch, progress: Progress) -> Change:
 
 def _neighbours_names(state: WindowSearch) -> dict[tuple[str, str], str]:
     """Returns laws that have the name of a neighbour of what is missing, and its curve's joint."""
-    each = ((a.candidate, find_neighbour(a.candidate, state.scores)) for a in state.accepted)
+    each = (
+        (a.candidate, find_neighbour(a.candidate, a.prediction.fall, state.scores))
+        for a in state.accepted
+    )
     return {c.key: n.where for c, n in each if n and has_neighbours_name(n, state.task.options)}
 
 
