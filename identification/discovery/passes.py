@@ -22,6 +22,9 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
     "add_pair": (
         RUN, "adds two effects of which none is proven alone, because each hides the other",
     ),
+    "add_yielding_friction": (
+        HORIZON, "fits a friction that gives before it slips from its largest compliance",
+    ),
     "add_set": (HORIZON, "adds several effects that are proven together and not alone"),
     "set_for_effects": (
         HORIZON, "puts effects that are proven together in the place of those found one by one",
@@ -86,7 +89,9 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
     "neighbours_names": (
         HORIZON, "names no law beside which a curve of the data still explains much",
     ),
-    "drop_beside_curves": (HORIZON, "drops laws that were found only beside a curve of the data"),
+    "drop_beside_curves": (
+        HORIZON, "drops forces that were found only beside a curve of the data at their joint",
+    ),
     "drop_drawn_laws": (HORIZON, "drops a law whose work a later curve of the data does"),
 })  # fmt: skip
 

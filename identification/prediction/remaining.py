@@ -20,10 +20,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
 from identification.chances import mean_above_other
+from identification.discovery.attempts import attempt
 from identification.discovery.effect_results import RejectedEffect
 from identification.discovery.findings.finding import Finding, FindingKind
 from identification.discovery.findings.records_evidence import (
@@ -33,6 +35,7 @@ from identification.discovery.findings.records_evidence import (
     UnprovenEffect,
     WorseFit,
 )
+from identification.discovery.options import DiscoveryOptions
 from identification.effects.named import phrase_there
 from identification.model.predictor import Plant
 from identification.prediction.clocks import told_shifts
@@ -83,6 +86,25 @@ def find_remaining(
     told = told_shifts(shifts, len(state.task.records), state.task.options) if left else ()
     out += [Finding(FindingKind.SHIFTED_RECORD, e) for e in told]
     return tuple(out)
+
+
+def is_much_left(model: WindowModel, options: DiscoveryOptions) -> bool:
+    """Returns whether a model errs by so much that more than one effect may be missing.
+
+    That is far above the sensors' noise, on windows on which the search decides, and more than
+    inputs make that are off by what is usual. Of a right model that errs by little there is nothing
+    to find, and what is asked then takes as long as all that was before it.
+
+    Args:
+        model: fitted.
+        options: the usual error of inputs.
+    """
+    unseen = model.unseen.select
+    square = float(np.mean(np.concatenate(unseen.at_horizon)))
+    if not square > unseen.floor * MAX_OUTPUT_RATIO**2:
+        return False
+    needed = attempt(None, partial(needed_input_error, model.fit, model.unseen.floor))
+    return needed is None or needed > options.max_input_error
 
 
 def _error_left(state: WindowSearch) -> RemainingError | None:

@@ -7,7 +7,8 @@ chosen    by what they explain of fitted windows together, and again about the r
           the set stays the same: far from the truth a linear choice errs
                                                         (`identification.prediction.set_choice`)
 in place  each is the best of what was refitted in its place, beside the others
-proven    each beside the others, and all together; the weakest that is not is left out
+proven    each beside the others, and all together; the weakest that is not is left out, until
+          all are, one alone among them
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ from identification.prediction.exchange import exchanged, is_contradicted
 from identification.prediction.extension import refitted, with_effect, with_fitting_steps
 from identification.prediction.first_fit import begin
 from identification.prediction.model import WindowModel
-from identification.prediction.remaining import MAX_OUTPUT_RATIO, needed_input_error
+from identification.prediction.remaining import is_much_left
 from identification.prediction.scores import WindowScore, window_scores
 from identification.prediction.screening import score_all
 from identification.prediction.selection import judged, refit_contenders
@@ -73,7 +74,7 @@ def add_set(
             of the state when None.
     """
     task, watch = state.task, Watch(state.seconds)
-    if state.room < 2 or not state.scores or not _is_left(state):
+    if state.room < 2 or not state.scores or not is_much_left(state.model, task.options):
         return state
     model, places, refits, asked = state.model, dict[Key, Place](), 0, list[set[Key]]()
     for _ in range(MAX_ROUNDS):
@@ -105,10 +106,15 @@ def add_set(
 def set_for_effects(state: WindowSearch, progress: Progress) -> WindowSearch:
     """Returns the state with a set in the place of all its effects, where more speaks for the set.
 
-    A set that was found in this way is not asked for again.
+    It is asked where much is left, and where a curve stands beside other effects: the curve may be
+    what several laws do together, of which it hides each. A set that was found in this way is not
+    asked for again.
     """
     is_done = any(name == set_for_effects.__name__ for name in state.made)
-    if is_done or not state.accepted or state.worse_fit is not None or not _is_left(state):
+    if is_done or not state.accepted or state.worse_fit is not None:
+        return state
+    is_asked = _has_curve_beside_others(state) or is_much_left(state.model, state.task.options)
+    if not is_asked:
         return state
     bare = replace(
         state, model=state.nominal, accepted=(), scores=state.nominal_scores, exchanged=None
@@ -128,24 +134,13 @@ def set_for_effects(state: WindowSearch, progress: Progress) -> WindowSearch:
     return replace(found, rejected=(*lost, *state.rejected))
 
 
+def _has_curve_beside_others(state: WindowSearch) -> bool:
+    """Returns whether one of several effects is a curve."""
+    return len(state.accepted) > 1 and any(a.candidate.effect.is_curve for a in state.accepted)
+
+
 def _keys(model: WindowModel) -> set[Key]:
     return {c.key for c in model.candidates}
-
-
-def _is_left(state: WindowSearch) -> bool:
-    """Returns whether the model errs by so much that several effects may be missing.
-
-    That is far above the sensors' noise, on windows on which the search decides, and more than
-    inputs make that are off by what is usual. A set takes as long as all that was before it, and of
-    a right model that errs by little there is nothing to find.
-    """
-    model, options = state.model, state.task.options
-    unseen = model.unseen.select
-    square = float(np.mean(np.concatenate(unseen.at_horizon)))
-    if not square > unseen.floor * MAX_OUTPUT_RATIO**2:
-        return False
-    needed = attempt(None, partial(needed_input_error, model.fit, model.unseen.floor))
-    return needed is None or needed > options.max_input_error
 
 
 def _with_set(state: WindowSearch, model: WindowModel, progress: Progress) -> WindowModel:
@@ -234,7 +229,9 @@ def _criterion(parent: WindowModel, model: WindowModel, key: Key) -> float:
 def _proven(
     state: WindowSearch, model: WindowModel, refits: int, progress: Progress
 ) -> tuple[Contender, ...]:
-    """Returns the members that are proven, each beside the others; none where fewer than two are.
+    """Returns the members that are proven, each beside the others.
+
+    One may be left: beside the others it was refitted from a better beginning than alone.
 
     Args:
         state: the model without them.
@@ -247,7 +244,7 @@ def _proven(
     model = attempt(None, shorter) or model
     while True:
         new = [c.key for c in find_members(model, state.model)]
-        if len(new) < 2:
+        if not new:
             return ()
         parent, (whole,) = at_all_lengths(
             state.model, [model], task.horizon, task.confirm, uses(options, "states_of_others")
