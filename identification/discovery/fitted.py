@@ -94,5 +94,9 @@ class Fitted(Protocol):
         """Std of each free value over the std that was known before; 0 where none was."""
 
     @property
+    def departures(self) -> Mapping[str, float]:
+        """Change of each free value since before the fit, in std of what was known; 0 without."""
+
+    @property
     def finer(self) -> StepShift | None:
         """The change of the fit with a quarter of the model's step; None where nobody asks."""

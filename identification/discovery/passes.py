@@ -93,6 +93,7 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
         HORIZON, "drops forces that were found only beside a curve of the data at their joint",
     ),
     "drop_drawn_laws": (HORIZON, "drops a law whose work a later curve of the data does"),
+    "likeliest_of_set": (HORIZON, "puts the likeliest effect of a set of names into the model"),
 })  # fmt: skip
 
 

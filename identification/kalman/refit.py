@@ -112,6 +112,12 @@ class Refit:
         return dict(zip(self.point.space.names, shares, strict=True))
 
     @property
+    def departures(self) -> dict[str, float]:
+        """Change of each free value since before the fit, in std of what was known; 0 without."""
+        moved = (-self.priors.against(self.point.q)).tolist()
+        return dict(zip(self.point.space.names, moved, strict=True))
+
+    @property
     def finer(self) -> None:
         """The change of the fit with finer steps, for which nobody asks along a free run."""
         return None

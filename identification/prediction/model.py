@@ -97,6 +97,17 @@ class WindowModel:
         return dict(zip(self.fit.problem.names, left.tolist(), strict=True))
 
     @property
+    def departures(self) -> dict[str, float]:
+        """Change of each free value since before the fit, in std of what was known; 0 without.
+
+        Shapes of effects are left out: of these nothing was known but a grid.
+        """
+        moved = dict(zip(self.fit.problem.names, -self.fit.problem.prior.against(self.fit.q),
+                         strict=True))  # fmt: skip
+        effects = {n for c in self.candidates for n in (*c.sizes, *c.fixed)}
+        return {n: float(by) for n, by in moved.items() if n.partition(" [")[0] not in effects}
+
+    @property
     def std(self) -> dict[str, float]:
         """Std of the free values by blocks of windows, by name, in their units."""
         return dict(zip(self.fit.problem.names, self.fit.std.tolist(), strict=True))

@@ -1,9 +1,11 @@
 """Errors of two models by record, over windows of the horizon.
 
-    rms = S √mean (e/s)²,        S = √mean s²       over all outputs; S = 1 where units differ
-    rms_g = S_g √mean (e/s)²,    S_g = √mean s²     over the outputs of a unit g
+    rms_g = √mean e²            over the outputs of a unit g
+    rms   = rms_g               where all outputs have one unit
+    rms   = √mean (e/s)²        else; s: scale of each output, in which a search weighs them
 
-s: scale of each output. Of one output, or of outputs of one scale, this is the rms of e itself.
+The search decides by (e/s)², in which each output counts as much as its error under the nominal
+model; what is told in a unit is the error itself.
 """
 
 from __future__ import annotations
@@ -21,17 +23,6 @@ from identification.windows.unseen import Unseen
 Errors = Sequence[np.ndarray]  # y - ŷ of windows (W, L, ny), one array a record
 
 
-def error_unit(log: Log, scale: np.ndarray) -> tuple[float, str]:
-    """Returns S, and its unit: that of the outputs, or none where they have several.
-
-    Args:
-        log: one of the records.
-        scale: s of each output, shape (ny,), in its unit.
-    """
-    unit = log.output_unit
-    return (float(np.sqrt(np.mean(scale**2))), unit) if unit else (1.0, "")
-
-
 def scaled_squares(errors: Sequence[np.ndarray], scale: np.ndarray) -> list[np.ndarray]:
     """Returns mean squares (W,) in units of s² of windows' errors (W, L, ny), an array a record."""
     return [np.mean((e / scale) ** 2, axis=(1, 2)) for e in errors]
@@ -45,9 +36,19 @@ def errors_by_unit(squares: np.ndarray, scale: np.ndarray, log: Log) -> dict[str
         scale: s of each output, shape (ny,), in its unit.
         log: which outputs they are.
     """
-    each = np.sqrt(squares.reshape(-1, squares.shape[-1]).mean(axis=0))
-    share = by_unit(each, log)
-    return {unit: size * share[unit] for unit, size in by_unit(scale, log).items()}
+    return by_unit(scale * np.sqrt(squares.reshape(-1, squares.shape[-1]).mean(axis=0)), log)
+
+
+def error_of_all(squares: np.ndarray, scale: np.ndarray, log: Log) -> float:
+    """Returns the rms over all outputs, in their unit; without a unit where they have several.
+
+    Args:
+        squares: mean squares of outputs in units of s², shape (…, ny).
+        scale: s of each output, shape (ny,), in its unit.
+        log: which outputs they are.
+    """
+    each = errors_by_unit(squares, scale, log)
+    return next(iter(each.values())) if len(each) == 1 else float(np.sqrt(squares.mean()))
 
 
 def record_errors(
@@ -72,9 +73,8 @@ def record_errors(
     }
     out = []
     for record in records:
-        whole, _ = error_unit(record.log, scale)
         pair = next(pairs[record.role])
-        before, after = (whole * float(np.sqrt(x.mean())) for x in pair)
+        before, after = (error_of_all(x, scale, record.log) for x in pair)
         told = [errors_by_unit(x, scale, record.log) for x in pair]
         out.append(RecordError(record.log.name, record.role, before, after, *told))
     return tuple(out)

@@ -26,10 +26,9 @@ from identification.prediction.model import WindowModel
 from identification.prediction.nominal_fit import begin, fit_nominal
 from identification.prediction.record_errors import (
     RecordError,
-    error_unit,
+    error_of_all,
     errors_by_unit,
     record_errors,
-    scaled_squares,
 )
 from identification.prediction.std import told_std
 from identification.prediction.trial import find_doubt
@@ -114,21 +113,18 @@ class RecordsFit:
     @property
     def rms(self) -> float:
         """Rms error of the windows that were fitted, in `unit`."""
-        squares = scaled_squares(self.model.fit.errors, self.model.scale)
-        return self.scale * float(np.sqrt(np.mean(np.concatenate(squares))))
+        return error_of_all(self._fitted_squares, self.model.scale, self.records[0].log)
 
     @property
     def rms_by_unit(self) -> dict[str, float]:
         """Rms error of the windows that were fitted, by the outputs' units, each in its unit."""
-        scale = self.model.scale
-        squares = [np.mean((e / scale) ** 2, axis=1) for e in self.model.fit.errors]
-        return errors_by_unit(np.concatenate(squares), scale, self.records[0].log)
+        return errors_by_unit(self._fitted_squares, self.model.scale, self.records[0].log)
 
     @property
     def unseen_rms(self) -> tuple[float, float]:
         """Rms errors on the records that confirm: begun and fitted, in `unit`."""
         before, after = (
-            self.scale * float(np.sqrt(np.mean(np.concatenate(u.at_horizon))))
+            error_of_all(np.concatenate(u.of_outputs), self.model.scale, self.records[0].log)
             for u in (self.begun, self.model.unseen)
         )
         return before, after
@@ -142,7 +138,7 @@ class RecordsFit:
     @property
     def noise_rms(self) -> float:
         """Rms of the sensors' noise, in `unit`."""
-        return self.scale * float(np.sqrt(self.model.unseen.floor))
+        return error_of_all(self.model.unseen.noise, self.model.scale, self.records[0].log)
 
     @property
     def noise_by_unit(self) -> dict[str, float]:
@@ -152,7 +148,13 @@ class RecordsFit:
     @property
     def unit(self) -> str:
         """The unit of errors over all outputs; empty where these have several, or none."""
-        return error_unit(self.records[0].log, self.model.scale)[1]
+        return self.records[0].log.output_unit
+
+    @property
+    def _fitted_squares(self) -> np.ndarray:
+        """Mean squares of the windows that were fitted in units of s², shape (W, ny)."""
+        scale = self.model.scale
+        return np.concatenate([np.mean((e / scale) ** 2, axis=1) for e in self.model.fit.errors])
 
     @cached_property
     def errors(self) -> tuple[RecordError, ...]:
@@ -180,11 +182,6 @@ class RecordsFit:
         λ, v = np.linalg.eigh(σ[:, None] * H * σ)
         rows = (σ[:, None] * v[:, λ < 1]).T
         return np.asarray(rows / np.linalg.norm(rows, axis=1, keepdims=True))
-
-    @property
-    def scale(self) -> float:
-        """One unit of a scaled error, in `unit`."""
-        return error_unit(self.records[0].log, self.model.scale)[0]
 
 
 @one_blas_thread()

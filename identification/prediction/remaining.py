@@ -37,9 +37,11 @@ from identification.discovery.findings.records_evidence import (
 )
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.named import phrase_there
+from identification.estimation.metrics import relative
 from identification.model.predictor import Plant
 from identification.prediction.clocks import told_shifts
 from identification.prediction.model import WindowModel
+from identification.prediction.record_errors import errors_by_unit
 from identification.prediction.task import WindowSearch
 from identification.windows.fit import WindowFit
 from identification.windows.shooting import Shooting, Tangent
@@ -132,9 +134,9 @@ def output_ratios(unseen: Unseen) -> np.ndarray:
 
 def noise_ratio(state: WindowSearch) -> float:
     """Returns the final model's rms error on unseen records over that of the sensors' noise."""
-    unseen = state.model.unseen.report
-    square = float(np.mean(np.concatenate(unseen.at_horizon)))
-    return float(np.sqrt(square / unseen.floor)) if unseen.floor else np.inf
+    unseen, scale, log = state.model.unseen, state.model.scale, state.task.records[0].log
+    errors = errors_by_unit(np.concatenate(unseen.report.of_outputs), scale, log)
+    return relative(errors, errors_by_unit(unseen.noise, scale, log))
 
 
 def different_records(state: WindowSearch) -> list[DifferentRecord]:

@@ -21,6 +21,7 @@ from identification.prediction.moves.drop_beside_curves import drop_beside_curve
 from identification.prediction.moves.drop_drawn_laws import drop_drawn_laws
 from identification.prediction.moves.drop_effects import drop_effects
 from identification.prediction.moves.drop_places import drop_places
+from identification.prediction.moves.likeliest_of_set import likeliest_of_set
 from identification.prediction.nominal_fit import as_begun, fit_alone, predicted
 from identification.prediction.screening import score_all
 from identification.prediction.task import RecordsTask, WindowSearch, finishing
@@ -40,6 +41,7 @@ MOVES = (
         Move(change.__name__, finishing(change))
         for change in (
             drop_effects, drop_places, curve_for_laws, drop_beside_curves, drop_drawn_laws,
+            likeliest_of_set,
         )
     ),
 )  # fmt: skip

@@ -26,23 +26,21 @@ from identification.discovery.effect_results import (
     Rival,
 )
 from identification.discovery.findings.finding import Finding, FindingKind
-from identification.discovery.impossible import IMPOSSIBLE
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.result import Discovery, Verdict
 from identification.effects.effect import Candidate
 from identification.logs.joined import REPLAYED, replayed_share
 from identification.logs.log import Log
 from identification.prediction.clocks import record_shifts
-from identification.prediction.evidence import compute_confidence
 from identification.prediction.extension import at_own_steps, refitted
 from identification.prediction.model import WindowModel
 from identification.prediction.neighbours import find_neighbour, has_neighbours_name
-from identification.prediction.record_errors import error_unit, errors_by_unit, record_errors
+from identification.prediction.odds import find_odds
+from identification.prediction.record_errors import error_of_all, errors_by_unit, record_errors
 from identification.prediction.recovery import recover_over_horizon
 from identification.prediction.remaining import find_remaining, left_by_steps, needed_input_error
-from identification.prediction.screening import contains
 from identification.prediction.task import WindowSearch
-from identification.prediction.trial import Contender, evidences, find_twin
+from identification.prediction.trial import Contender
 from identification.prediction.yardstick import Yardstick, measure
 from identification.windows.records import Record
 from identification.windows.unseen import Prediction, Unseen, rise
@@ -88,14 +86,15 @@ def conclude(state: WindowSearch) -> Discovery:
     above = before - min(floor, after)
     smooth = stick.share(nominal.fit.cost, model.fit.cost) if stick and named else None
     log = task.records[0].log
-    scale, unit = error_unit(log, nominal.scale)
+    noise = model.unseen.noise
     return Discovery(
         records=task.records, options=options, horizon=task.horizon, verdict=verdict, named=named,
         rejected=rejected, share=float((before - after) / above) if above > 0 else 0.0,
         smooth_share=smooth,
         unexplained=verdict != "nothing missing" and (bool(findings) or not named),
-        noise_rms=scale * float(np.sqrt(floor)), unit=unit, scale=nominal.scale,
-        input_error=needed, noise_by_unit=errors_by_unit(model.unseen.noise, nominal.scale, log),
+        noise_rms=error_of_all(noise, nominal.scale, log), unit=log.output_unit,
+        scale=nominal.scale, input_error=needed,
+        noise_by_unit=errors_by_unit(noise, nominal.scale, log),
         before=_gap(nominal.unseen, nominal.scale, log),
         after=_gap(model.unseen, nominal.scale, log),
         errors=record_errors(
@@ -198,29 +197,18 @@ def _named(
     """
     options, mine = state.task.options, accepted.candidate
     is_final = any(c.key == mine.key for c in state.model.candidates)
-    is_law = not mine.effect.is_curve  # which curves may imitate, but are no rival of its name
-    others = [o for o in accepted.alternatives if not (is_law and o.candidate.effect.is_curve)]
     final = state.model if is_final else accepted.model
-    twin = find_twin(final, mine)
-    others = [o for o in others if o.candidate.effect.name != twin]  # the same is no rival
-    # What physics forbids takes its share of the odds, and is no other name. The same effect at
-    # more places is the same name: what it explains there is no reason to doubt this place.
-    possible = [o for o in others if o.doubt not in IMPOSSIBLE]
-    forbidden = [o for o in others if o.doubt in IMPOSSIBLE and not contains(o.candidate, mine)]
-    shares = compute_confidence(evidences([accepted, *possible, *forbidden]))
-    own, of_rivals = shares[0], shares[1 : 1 + len(possible)]
+    odds = find_odds(accepted, final)
     candidate, parameters = _fitted(final, mine)
     return NamedEffect(
-        candidate=candidate, parameters=parameters, confidence=min(limit, float(own)),
+        candidate=candidate, parameters=parameters, confidence=min(limit, odds.own),
         rivals=tuple(
-            _rival(o, float(share))
-            for o, share in zip(possible, of_rivals, strict=True)
-            if share > MIN_LISTED_CONFIDENCE
+            _rival(o, share) for o, share in odds.rivals if share > MIN_LISTED_CONFIDENCE
         ),
-        compared=len(others),
-        one_of=bool(max(of_rivals, default=0.0) > options.set_confidence),
+        compared=odds.compared,
+        one_of=bool(odds.likeliest and odds.likeliest[1] > options.set_confidence),
         evidence=accepted.criterion, proof=_proof(state, accepted),
-        same_as=next((e for e in state.task.effects if e.name == twin), None),
+        same_as=next((e for e in state.task.effects if e.name == odds.twin), None),
         smooth_share=stick.share_of(mine, accepted.prediction.fall) if stick else None,
         neighbour=find_neighbour(mine, accepted.prediction.fall, state.scores),
     )  # fmt: skip
@@ -321,7 +309,6 @@ def _is_off(model: WindowModel, options: DiscoveryOptions) -> bool:
 
 
 def _gap(unseen: Unseen, scale: np.ndarray, log: Log) -> Gap:
-    told = unseen.report
-    square = float(np.mean(np.concatenate(told.at_horizon)))
-    each = errors_by_unit(np.concatenate(told.of_outputs), scale, log)
-    return Gap(error_unit(log, scale)[0] * float(np.sqrt(square)), unseen.fit_percent, each)
+    squares = np.concatenate(unseen.report.of_outputs)
+    each = errors_by_unit(squares, scale, log)
+    return Gap(error_of_all(squares, scale, log), unseen.fit_percent, each)

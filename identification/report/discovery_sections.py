@@ -13,6 +13,7 @@ import numpy as np
 from identification.discovery.result import Discovery
 from identification.prediction.clocks import shown_shifts
 from identification.quantities import held
+from identification.report.departure_words import departures_found
 from identification.report.discovery_figures import gap_figures, where_figures
 from identification.report.effect_sections import listed_below
 from identification.report.effect_words import words_of
@@ -116,7 +117,8 @@ def steps_taken(found: Discovery) -> list[str]:
     """Returns sentences on the steps of simulations, on finer ones, and on passes left out."""
     steps, without = steps_of(found.nominal.plant), ", ".join(found.options.without)
     left_out = [f"The options left out these passes of the search: {without}."] if without else []
-    return [*step_sentences(found.final, words_of(found), steps), *left_out]
+    said = step_sentences(found.final, words_of(found), steps)
+    return [*said, *departures_found(found), *left_out]
 
 
 def where_section(found: Discovery) -> list[Section]:

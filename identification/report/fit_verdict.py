@@ -13,6 +13,7 @@ from identification.estimation.identifiability import in_words
 from identification.estimation.metrics import output_units, relative
 from identification.model.protocol import FINER
 from identification.quantities import held, quantity
+from identification.report.departure_words import departure_sentences
 from identification.report.error_words import describe_scale, error_words, times_words
 from identification.report.fitted_values import first_few, std_sentence, step_sentences
 from identification.report.untold_words import (
@@ -77,7 +78,7 @@ def _of_records(fit: RecordsFit) -> list[str]:
             " what the model takes it for; discover looks for what is missing."
         )
     scale = describe_scale(output_units(fit.records[0].log), model.scale)
-    return [*said, *scale, *step_sentences(model)]
+    return [*said, *scale, *departure_sentences(model), *step_sentences(model)]
 
 
 def window_sentences(found: WindowEstimate, floor: float, unit: str) -> list[str]:

@@ -43,10 +43,12 @@ def kinds(
 
 
 def state_of(unseen, accepted, outputs=("x",), finer=np.nan):
-    log, steps = SimpleNamespace(output_names=outputs), SimpleNamespace(error=finer)
+    units, steps = dict.fromkeys(outputs, "rad"), SimpleNamespace(error=finer)
+    log = SimpleNamespace(output_names=outputs, units=units)
+    told = SimpleNamespace(report=unseen, noise=unseen.noise)
     return SimpleNamespace(
         worse_fit=None, accepted=accepted,
-        model=SimpleNamespace(unseen=SimpleNamespace(report=unseen), plant=None, finer=steps),
+        model=SimpleNamespace(unseen=told, plant=None, finer=steps, scale=np.ones(len(outputs))),
         task=SimpleNamespace(options=OPTIONS, records=2 * (SimpleNamespace(log=log),)),
     )  # fmt: skip
 
@@ -55,11 +57,11 @@ def state_of(unseen, accepted, outputs=("x",), finer=np.nan):
 def test_an_output_that_errs_is_told_whatever_the_others_do(monkeypatch, rms, output, told):
     """The others, which were never wrong, have most of the noise in units of their error."""
     monkeypatch.setattr(remaining, "different_records", lambda state: [])
-    noise = np.array([1.0, 1e-6])
+    noise = np.array([1.0, 1e-6 if output else 1.0])
     each = noise * np.array([1.0, rms**2])
     unseen = SimpleNamespace(
         at_horizon=(np.array([each.mean()]),), noise=noise, of_outputs=(each[None],),
-        floor=noise.mean() / (1 if output else told**2),
+        floor=noise.mean(),
     )  # fmt: skip
     state = state_of(unseen, ("an effect",), ("x", "y"))
     (found,) = remaining.find_remaining(state, (), (), np.inf)

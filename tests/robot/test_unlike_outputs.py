@@ -12,7 +12,7 @@ from unlike_cases import MODEL, NOISE, TOML, TRUE, write_robot_and_logs
 
 from identification import InputError, discover, fit, read_robot
 from identification.estimation.metrics import relative
-from identification.prediction.record_errors import error_unit, errors_by_unit
+from identification.prediction.record_errors import error_of_all, errors_by_unit
 from identification.report.discovery_json import discovery_to_json
 from identification.report.discovery_report import discovery_text
 from identification.report.discovery_sections import gap_section, where_section
@@ -199,14 +199,21 @@ def unlike(units):
     return SimpleNamespace(units=units, output_names=[*units])
 
 
-def test_outputs_of_one_unit_have_the_error_over_all_outputs():
-    rng = np.random.default_rng(0)
-    scale, log = np.array([2e-3, 5e-3]), unlike({"a": "rad", "b": "rad"})
-    log.output_unit = "rad"
-    squares = rng.uniform(size=(7, 2))
-    whole, _ = error_unit(log, scale)
-    told = errors_by_unit(squares, scale, log)
-    assert told == {"rad": pytest.approx(whole * np.sqrt(squares.mean()))}
+def test_what_is_told_of_outputs_of_one_unit_is_their_error_whatever_they_weigh():
+    e = np.random.default_rng(0).standard_normal((7, 30, 2)) * (1e-3, 4e-3)
+    log = unlike({"a": "rad", "b": "rad"})
+    for scale in (np.array([2e-3, 5e-3]), np.array([1.0, 1e-5])):
+        squares = np.mean((e / scale) ** 2, axis=1)
+        rms = pytest.approx(np.sqrt(np.mean(e**2)))
+        assert error_of_all(squares, scale, log) == rms
+        assert errors_by_unit(squares, scale, log) == {"rad": rms}
+
+
+def test_outputs_of_several_units_are_weighed_by_their_scales():
+    e = np.random.default_rng(2).standard_normal((7, 30, 2)) * (1e-3, 2e-5)
+    scale, log = np.array([4e-3, 1.0]), unlike({"turn": "rad", "way": "m"})
+    weighed = np.sqrt(np.mean((e / scale) ** 2))
+    assert error_of_all(np.mean((e / scale) ** 2, axis=1), scale, log) == pytest.approx(weighed)
 
 
 def test_an_error_of_one_unit_does_not_depend_on_that_of_another():

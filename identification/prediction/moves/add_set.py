@@ -169,7 +169,7 @@ def _with_set(state: WindowSearch, model: WindowModel, progress: Progress) -> Wi
         has = {c.key for c in model.candidates}
         for c in chosen:
             if c.key not in has:
-                model = _with_one(state, model, c) or model
+                model = with_one(state, model, c) or model
         is_first = not find_members(best, state.model)
         best = model if is_first or _bic(model) < _bic(best) else best
     return best
@@ -182,8 +182,14 @@ def _bic(model: WindowModel) -> float:
     return float(samples * np.log(fit.cost) + len(fit.q) * np.log(samples))
 
 
-def _with_one(state: WindowSearch, model: WindowModel, candidate: Candidate) -> WindowModel | None:
-    """Returns the model refitted with one effect more; None where it explains nothing."""
+def with_one(state: WindowSearch, model: WindowModel, candidate: Candidate) -> WindowModel | None:
+    """Returns the model refitted with one effect more; None where it explains nothing.
+
+    Args:
+        state: whose data are fitted.
+        model: without the effect.
+        candidate: the effect at its place.
+    """
 
     def evaluate() -> WindowModel | None:
         scores = window_scores(model.fit, [candidate])

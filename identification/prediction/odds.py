@@ -1,0 +1,59 @@
+"""The odds of an effect among what was refitted in its place.
+
+What physics forbids takes its share of the odds and is no other name. A curve of the data is no
+rival of a law, which it can imitate, and the same force by another name (`find_twin`) is none. The
+same effect at more places is the same name: what it explains there is no reason to doubt this one.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from identification.discovery.impossible import IMPOSSIBLE
+from identification.prediction.evidence import compute_confidence
+from identification.prediction.model import WindowModel
+from identification.prediction.screening import contains
+from identification.prediction.trial import Contender, evidences, find_twin
+
+
+@dataclass(frozen=True)
+class Odds:
+    """The odds of an effect and of its rivals.
+
+    Attributes:
+        own: share of the effect.
+        rivals: others that may be meant, each with its share.
+        compared: how many others were compared with it.
+        twin: name of the effect that is the same force by another name; "" where there is none.
+    """
+
+    own: float
+    rivals: tuple[tuple[Contender, float], ...]
+    compared: int
+    twin: str
+
+    @property
+    def likeliest(self) -> tuple[Contender, float] | None:
+        """The rival with the largest share; None without rivals."""
+        return max(self.rivals, key=lambda rival: rival[1], default=None)
+
+
+def find_odds(accepted: Contender, final: WindowModel) -> Odds:
+    """Returns the odds of an accepted effect among its alternatives.
+
+    Args:
+        accepted: the effect.
+        final: the model with it, whose sizes tell whether it has a twin.
+    """
+    mine = accepted.candidate
+    is_law = not mine.effect.is_curve
+    twin = find_twin(final, mine)
+    others = [
+        o for o in accepted.alternatives
+        if not (is_law and o.candidate.effect.is_curve) and o.candidate.effect.name != twin
+    ]  # fmt: skip
+    possible = [o for o in others if o.doubt not in IMPOSSIBLE]
+    forbidden = [o for o in others if o.doubt in IMPOSSIBLE and not contains(o.candidate, mine)]
+    shares = compute_confidence(evidences([accepted, *possible, *forbidden]))
+    rivals = zip(possible, map(float, shares[1 : 1 + len(possible)]), strict=True)
+    return Odds(float(shares[0]), tuple(rivals), len(others), twin)
