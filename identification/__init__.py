@@ -25,11 +25,15 @@ _PUBLIC = {
     "read_robot": "robot.reading",
     "Robot": "robot.robot",
     "fit": "robot.fitting",
-    "RobotFit": "robot.fitting",
+    "RobotFit": "robot.robot_fit",
     "discover": "robot.discovery",
     "confirm": "robot.confirmation",
     "Confirmation": "robot.record_error",
     "write_robot": "robot.write",
+    # results that were saved
+    "load": "saved",
+    "SavedDiscovery": "saved",
+    "SavedFit": "saved",
     # models and their parameters
     "Parameter": "model.parameter",
     "ParameterSet": "model.parameter",
@@ -205,13 +209,16 @@ if TYPE_CHECKING:  # the same list, for type checkers and editors
     from identification.report.style import save_png as save_png
     from identification.robot.confirmation import confirm as confirm
     from identification.robot.discovery import discover as discover
-    from identification.robot.fitting import RobotFit as RobotFit
     from identification.robot.fitting import fit as fit
     from identification.robot.linearization import operating_points as operating_points
     from identification.robot.reading import read_robot as read_robot
     from identification.robot.record_error import Confirmation as Confirmation
     from identification.robot.robot import Robot as Robot
+    from identification.robot.robot_fit import RobotFit as RobotFit
     from identification.robot.write import write_robot as write_robot
+    from identification.saved import SavedDiscovery as SavedDiscovery
+    from identification.saved import SavedFit as SavedFit
+    from identification.saved import load as load
     from identification.windows.window_error import joined as joined
     from identification.windows.window_error import window_error as window_error
     from identification.windows.window_estimate import WindowEstimate as WindowEstimate

@@ -55,14 +55,14 @@ def refuse_foreign(folder: Path) -> None:
     for name in _RESULTS:
         if name in now.folders:
             raise InputError(
-                f"{folder / name} is a folder, and results have a file of this name; give --out"
+                f"{folder / name} is a folder, and results have a file of this name; choose"
                 " another folder"
             )
     if foreign := now.foreign:
         more = f" and {len(foreign) - _SHOWN} more" if len(foreign) > _SHOWN else ""
         raise InputError(
             f"the folder {folder} holds {', '.join(foreign[:_SHOWN])}{more}, not made there by this"
-            " program or changed since; give --out a new or an empty folder"
+            " program or changed since; choose a new or an empty folder"
         )
 
 

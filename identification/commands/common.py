@@ -7,7 +7,7 @@ import os
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import ExitStack
-from dataclasses import asdict, dataclass, field, is_dataclass
+from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, TypeVar
@@ -16,9 +16,8 @@ import tyro
 
 from identification.commands.stopping import leaving_out
 from identification.errors import InputError
-from identification.files import readable, write_text
 from identification.folders import draft_of
-from identification.quantities import plain
+from identification.results import RESULT, plain_text, write_result
 
 if TYPE_CHECKING:
     from identification.folders import Draft
@@ -90,18 +89,7 @@ def note(text: str) -> None:
 
 def say_json(result: Mapping[str, Any]) -> None:
     """Writes the result as one JSON object to stdout; what is not finite is null."""
-    say(json.dumps(_plain(result), allow_nan=False))
-
-
-def write_result(path: Path, command: Any, result: Mapping[str, Any]) -> None:
-    """Write result.json: the result, the resolved configuration and the versions that made it."""
-    packages = ("inca-mj", "mujoco", "numpy", "scipy", "numba")
-    record = {
-        **_plain(result),
-        "configuration": _plain(asdict(command)) if is_dataclass(command) else {},  # type: ignore[arg-type]
-        "versions": {"python": sys.version.split()[0], **{p: _version(p) for p in packages}},
-    }
-    write_text(path, json.dumps(record, indent=1, allow_nan=False) + "\n")
+    say(json.dumps(plain_text(result), allow_nan=False))
 
 
 def conclude(
@@ -131,7 +119,7 @@ def conclude(
         try:
             if output.out is not None:
                 draft = stack.enter_context(draft_of(output.out))
-                write_result(draft.folder / "result.json", command, record)
+                write_result(draft.folder / RESULT, command, record)
                 if keep is not None:
                     keep_if_possible("data and model", partial(keep, draft.folder))
                 draft.save()
@@ -204,24 +192,6 @@ def import_without_graphics(*, own_methods: bool = False) -> None:
     backend = os.environ.get("MUJOCO_GL", "").lower().strip()
     if not (own_methods and backend in _BACKENDS):
         os.environ["MUJOCO_GL"] = "disable"
-
-
-def _version(package: str) -> str:
-    from importlib.metadata import PackageNotFoundError, version
-
-    try:
-        return version(package)
-    except PackageNotFoundError:  # run from a source tree
-        return "not installed"
-
-
-def _plain(value: Any) -> Any:
-    """Returns plain values for JSON, with paths as text, and text that every reader takes."""
-    if isinstance(value, Mapping):
-        return {k: _plain(v) for k, v in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(v) for v in value]
-    return readable(str(value)) if isinstance(value, Path | str) else plain(value)
 
 
 def table(head: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> str:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -26,6 +25,7 @@ from identification.progress import duration
 
 if TYPE_CHECKING:
     from identification.robot.robot import Robot
+    from identification.written import Files
 
 WORSE = (
     "the fitted values predict unseen records worse than those of the robot's file, and are not to"
@@ -79,20 +79,13 @@ class Fit(OnRobot):
     def run(self) -> int:
         """Fit, confirm, say, keep; 1 where unseen records are predicted worse, 130 when stopped."""
         robot = self.read()
-        from identification.robot.confirmation import confirm
-        from identification.robot.fit_json import robot_fit_to_json
         from identification.robot.fitting import fit
-        from identification.robot.write import write_robot
 
         found = fit(robot, self.output.tell)
-        record = robot_fit_to_json(found, confirm(robot, found))
-
-        def keep(out: Path) -> None:
-            place = self.output.out or out
-            remark = record["verdict"][0] if found.is_worse or found.stopped else ""
-            write_robot(robot, found.shared, out / "robot.toml", place, remark, found.own_values)
-
-        conclude(self, record, _fit_text(record), keep)
+        files = found.files
+        # Whoever stopped it does not wait for figures.
+        draw = None if found.stopped else timed(self.output, files.draw, "fit")
+        conclude(self, files.record, _fit_text(files.record), kept(self.output, files), draw)
         if found.is_worse:
             note(f"identification: {WORSE}")
         return STOPPED if found.stopped else int(found.is_worse)
@@ -116,52 +109,32 @@ class Discover(OnRobot):
 
         options = None if self.options is None else read_options(self.options)
         robot = self.read()
-        from identification.report.discovery_json import discovery_to_json
-        from identification.report.discovery_report import discovery_text, write_discovery_report
-        from identification.robot.confirmation import confirm
+        from identification.report.discovery_report import discovery_text
         from identification.robot.discovery import discover
-        from identification.robot.reading import doubtful
-        from identification.robot.record_error import find_repetitions
-        from identification.robot.write import write_robot
+        from identification.robot.discovery_files import RobotDiscoveryFiles
 
         found = discover(robot, progress=self.output.tell, options=options)
-        # Over a horizon the report has the errors of every record already.
-        pairs = confirm(robot, found) if found.horizon is None else ()
-        repeated = find_repetitions(robot)
-        sentences = [*doubtful(robot), *map(str, (*pairs, *repeated))]
-        record = discovery_to_json(found)
-        record |= {
-            "located": [*record.get("located", []), *map(str, repeated)],
-            "findings": [*record.get("findings", []), *(r.finding for r in repeated)],
-            "confirm": [vars(c) for c in pairs],
-            "remarks": list(robot.remarks),
-        }
-
-        def keep(out: Path) -> None:
-            named = {
-                n for each in found.named for n in (*each.candidate.sizes, *each.candidate.fixed)
-            }
-            kept = {*found.nominal.values, *named}
-            values = {n: v for n, v in found.final.values.items() if n in kept}
-            write_robot(
-                robot, values, out / "robot.toml", self.output.out or out,
-                own_values=found.final.own_values,
-            )  # fmt: skip
-
-        draw = timed(self.output, partial(write_discovery_report, found, sentences=sentences))
-        conclude(self, record, "\n".join([discovery_text(found), *sentences]), keep, draw)
+        files = RobotDiscoveryFiles(found, robot)
+        text = "\n".join([discovery_text(found), *files.sentences])
+        draw = timed(self.output, files.draw, "search")
+        conclude(self, files.record, text, kept(self.output, files), draw)
         return 0
 
 
-def timed(output: Output, draw: Callable[..., object]) -> Callable[[Path], None]:
-    """Returns what draws figures and report into a folder, and says how long it took."""
+def kept(output: Output, files: Files) -> Callable[[Path], object]:
+    """Returns what writes the model of a result into a folder."""
+    return lambda out: files.keep(out, output.out or out)
+
+
+def timed(output: Output, draw: Callable[[Path], object], beside: str) -> Callable[[Path], None]:
+    """Returns what draws into a folder, and says how long it took beside a search or a fit."""
 
     def drawn(out: Path) -> None:
         output.tell("drawing the report")
         began = time.monotonic()
-        draw(folder=out)
+        draw(out)
         took = duration(time.monotonic() - began)
-        output.tell(f"report and figures took {took}, beside the search")
+        output.tell(f"report and figures took {took}, beside the {beside}")
 
     return drawn
 

@@ -45,13 +45,14 @@ from identification.estimation.metrics import output_units, relative
 from identification.logs.joined import Record
 from identification.model.parameter import Parameter
 from identification.shown import Shown
+from identification.written import Files, Written
 
 Recover = Callable[[Candidate, Sequence[Rival]], RecoveredForce | None]
 Verdict = Literal["named", "nothing missing", "unknown effect", "unlisted effect"]
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
-class Discovery(Shown):
+class Discovery(Shown, Written):
     """The outcome of a discovery.
 
     Attributes:
@@ -110,6 +111,8 @@ class Discovery(Shown):
         run: the free runs of both fits; None over a horizon.
         recover: returns the force of a named effect, beside those of its rivals, as the data ask
             for it; None where it has none. It raises DivergenceError.
+        files_of: returns what writes its files (`identification.written`), which depend on what was
+            searched; None where no public function was asked.
     """
 
     records: tuple[Record, ...]
@@ -152,6 +155,7 @@ class Discovery(Shown):
     moves: tuple[str, ...] = ()
     run: FreeRun | None = None
     recover: Recover
+    files_of: Callable[[Discovery], Files] | None = None
 
     @cached_property
     def missing_forces(self) -> tuple[MissingForce, ...]:

@@ -65,43 +65,54 @@ def discovery_sections(found: Discovery, files: str = "") -> list[Section]:
     ]
 
 
-def write_discovery_report(found: Discovery, folder: Path, sentences: Sequence[str] = ()) -> Path:
+def write_discovery_report(
+    found: Discovery,
+    folder: Path,
+    sentences: Sequence[str] = (),
+    sections: Sequence[Section] | None = None,
+    drawings: dict[Figure, str] | None = None,
+) -> Path:
     """Write report.html and its figures into a folder; returns the path of the page.
 
     Args:
         found: the discovery.
         folder: exists.
         sentences: that follow the verdict.
+        sections: those of every page on a discovery when None.
+        drawings: see `write_report`.
 
     Raises:
         InputError: a file cannot be written.
     """
-    sections = discovery_sections(found)
+    sections = discovery_sections(found) if sections is None else sections
     save_figures(sections, folder)
-    return write_page(found, folder, sections, sentences)
+    return write_page(found, folder / "report.html", sections, sentences, drawings)
 
 
 def write_page(
     found: Discovery,
-    folder: Path,
+    path: Path,
     sections: Sequence[Section],
     sentences: Sequence[str] = (),
     drawings: dict[Figure, str] | None = None,
 ) -> Path:
-    """Write report.html of some sections into a folder; returns its path.
+    """Write the report of a discovery, one HTML file of some sections; returns its path.
 
     Args:
         found: the discovery.
-        folder: exists.
+        path: of the file, whose folder exists.
         sections: those of every page on a discovery, and more.
         sentences: that follow the verdict.
         drawings: see `write_report`.
+
+    Raises:
+        InputError: the file cannot be written.
     """
     if all(section.video is None for section in sections):  # the law stands where a film would
         sections = [replace(s, first=s.first or s.title == LAWS) for s in sections]
     fitted = [record.log.name for record in found.records if record.role == "fit"]
     return write_report(
-        folder / "report.html",
+        path,
         f"{', '.join(fitted)}: what the model lacks",
         [*discovery_verdict(found), *sentences],
         sections,

@@ -15,9 +15,9 @@ from identification.model.predictor import Plant, Predictor
 from identification.prediction.model import predict_fitted
 from identification.prediction.record_errors import record_errors
 from identification.prediction.records_fit import RecordsFit
-from identification.robot.fitting import RobotFit
 from identification.robot.record_error import AS_WRITTEN, FITTED, Confirmation, of_record
 from identification.robot.robot import Robot
+from identification.robot.robot_fit import RobotFit
 from identification.windows.records import Record
 from identification.windows.unseen import predict
 from identification.windows.window_error import window_error
@@ -136,10 +136,10 @@ def _errors(robot: Robot, log: Log, values: Mapping[str, float]) -> np.ndarray:
     horizon, here = robot.file.horizon, {**values, **robot.values_of(log), **robot.started(log)}
     if horizon is None:
         return _free_run(robot, log, here)
-    return window_error(_plant(robot, log, here), log, horizon, here)
+    return window_error(plant_with(robot, log, here), log, horizon, here)
 
 
-def _plant(robot: Robot, log: Log, values: Mapping[str, float]) -> Plant:
+def plant_with(robot: Robot, log: Log, values: Mapping[str, float]) -> Plant:
     """Returns the plant of a record, with the states that the effects among some values need."""
     plant = robot.plant_of(log)
     if not isinstance(plant, JointPlant):
@@ -148,5 +148,5 @@ def _plant(robot: Robot, log: Log, values: Mapping[str, float]) -> Plant:
 
 
 def _free_run(robot: Robot, log: Log, values: Mapping[str, float]) -> np.ndarray:
-    predictor = Predictor(_plant(robot, log, values), log, (), dict(values))
+    predictor = Predictor(plant_with(robot, log, values), log, (), dict(values))
     return np.asarray(log.outputs - predictor.predict(np.empty((1, 0)))[0])

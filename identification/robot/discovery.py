@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import partial
 from typing import overload
 
 from identification.discovery.nominal_model import NominalModel
@@ -17,6 +19,7 @@ from identification.report import discovery_verdict  # noqa: F401  how the resul
 from identification.robot.blame import told_of_factors
 from identification.robot.checks import refuse_horizon, refuse_unlike
 from identification.robot.robot import Robot
+from identification.written import Files
 
 
 @overload
@@ -52,6 +55,8 @@ def discover(
     "unknown effect" or "nothing missing"), then `found.unexplained`: whether something is left.
     `found.named` has what is missing, `found.rejected` what was tried and not proven, and
     `found.before`, `found.after` and `found.noise_rms` say how far the model was off unseen data.
+    `found.report(path)` writes the report, `found.save(folder)` all that the command
+    `identification discover` keeps, and `found.to_dict()` returns the numbers.
 
     Examples:
         from identification import confirm, discover, discovery_text, read_robot
@@ -64,6 +69,7 @@ def discover(
             print(named.name, named.where, named.confidence, named.parameters)
             print([(rival.name, rival.where, rival.confidence) for rival in named.rivals])
         print(discovery_text(found))
+        found.report("elbow.html")
         for record in confirm(robot, found):
             print(record)
 
@@ -89,24 +95,26 @@ def discover(
             raise InputError("a robot has its own log and candidates; leave log and effects out")
         if model.file.horizon is None and not model.others:
             refuse_unlike(model.file, model.log)
-            return search.discover(
-                model.nominal_model, model.log, without_states(model.candidates), progress, options
+            effects = without_states(model.candidates)
+            return _written(
+                search.discover(model.nominal_model, model.log, effects, progress, options), model
             )
         fitted = (model.log, *model.others)
         for each in (*fitted, *model.records):
             refuse_horizon(model.file, each, is_whole=bool(model.records))
         with told_of_factors(model):
-            return discover_records(
+            found = discover_records(
                 model.nominal_model, fitted, model.records, model.candidates, progress, options
             )
+        return _written(found, model)
     if log is None or effects is None:
         raise InputError("discover needs a log and candidate effects beside a nominal model")
     refuse_kind(log, Log, "discover takes a Log (read_log) beside a nominal model")
     for effect in effects:
         refuse_kind(effect, Effect, "discover takes effects (candidates(plant, free), or your own)")
     if model.horizon is None:
-        return search.discover(model, log, without_states(effects), progress, options)
-    return discover_records(model, [log], [], effects, progress, options)
+        return _written(search.discover(model, log, without_states(effects), progress, options))
+    return _written(discover_records(model, [log], [], effects, progress, options))
 
 
 def without_states(effects: Sequence[Effect]) -> tuple[Effect, ...]:
@@ -115,3 +123,16 @@ def without_states(effects: Sequence[Effect]) -> tuple[Effect, ...]:
     A Kalman filter along a free run would have to know how uncertain these states are.
     """
     return tuple(effect for effect in effects if not effect.state)
+
+
+def _written(found: Discovery, robot: Robot | None = None) -> Discovery:
+    """Returns a discovery that knows what it is of, and so which files it has."""
+    return replace(found, files_of=partial(_files, robot=robot))
+
+
+def _files(found: Discovery, robot: Robot | None) -> Files:
+    # What draws figures is slow to import.
+    from identification.report.discovery_files import DiscoveryFiles
+    from identification.robot.discovery_files import RobotDiscoveryFiles
+
+    return DiscoveryFiles(found) if robot is None else RobotDiscoveryFiles(found, robot)

@@ -13,12 +13,13 @@ from typing import Any
 
 import numpy as np
 
+from identification.quantities import plain
 from identification.report.error_words import kind, listed
 from identification.report.fit_json import fit_to_json
-from identification.robot.fitting import RobotFit
 from identification.robot.free_swing import impossible_sentence
 from identification.robot.reading import doubtful
 from identification.robot.record_error import Confirmation, find_repetitions
+from identification.robot.robot_fit import RobotFit
 
 LEAST = 0.01  # rise of the mean square that is told; the noise of a right fit makes less
 LEAST_OF_UNIT = 0.1  # rise of the mean square of one unit that is told
@@ -40,7 +41,7 @@ def robot_fit_to_json(result: RobotFit, confirmed: Sequence[Confirmation] = ()) 
         far.append(no_body)
     verdict = [*record["verdict"][:first], *far, *record["verdict"][first:], *map(str, said)]
     return {
-        **record, "confirm": [vars(c) for c in confirmed], "verdict": verdict,
+        **record, "confirm": plain(tuple(confirmed)), "verdict": verdict,
         "findings": [r.finding for r in repeated],
         "remarks": list(result.robot.remarks),
     }  # fmt: skip

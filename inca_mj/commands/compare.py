@@ -101,7 +101,8 @@ def keep(result: inca.Comparison, out: Path) -> None:
 
 def draw(result: inca.Comparison, out: Path) -> None:
     """Write the figure and the one-file report into a folder."""
-    from inca_mj.report.sections import compare_section, compare_verdict, model_section
+    from inca_mj.report.sections import compare_section, compare_verdict
+    from inca_mj.twin.section import model_section
 
     sections = [compare_section(result), model_section(result.run.twin)]
     title = f"{result.log.name}: measured against simulated"

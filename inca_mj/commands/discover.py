@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import time
 from contextlib import ExitStack
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
@@ -21,11 +21,11 @@ from identification.commands.common import (
     output_field,
     say,
     say_json,
-    write_result,
 )
 from identification.errors import InputError
 from identification.folders import draft_of
 from identification.progress import duration
+from identification.results import RESULT, write_result
 from inca_mj.commands.common import (
     Trust,
     Values,
@@ -37,15 +37,12 @@ from inca_mj.commands.common import (
 from inca_mj.files import example_path
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
     from identification.discovery.result import Discovery
     from identification.folders import Draft
-    from identification.report.page import Section
+    from inca_mj.workflows.discovery_files import TwinDiscoveryFiles
 
 ORDER = ("report", "model", "effects", "film")  # in which files are named
 LEAVE_OUT = "Ctrl-C leaves it out, and so does --no-film"
-FILES = "The model with it is in model.xml and effects.json; inca_mj.load_twin reads them."
 
 
 @dataclass(frozen=True)
@@ -97,44 +94,55 @@ class Discover:
             settled=self.settled, options=options, trust=trust,
         )  # fmt: skip
         from identification.report.discovery_report import discovery_text  # slow to import
+        from inca_mj.workflows.discovery_files import TwinDiscoveryFiles
 
+        files = TwinDiscoveryFiles(found)
         if not self.output.json:
             say(discovery_text(found))
-        files: dict[str, Path] = {}
+        names: dict[str, Path] = {}
         with ExitStack() as stack:
             draft = None
             try:  # what was found is said even where it cannot be saved
                 if self.output.out is not None:
                     draft = stack.enter_context(draft_of(self.output.out))
-                    files = keep(found, draft.folder, self)
+                    saved = files.keep(draft.folder, draft.place)
+                    write_result(draft.folder / RESULT, self, {**files.record, **saved})
+                    names = {"model": Path(saved["model"]), "effects": Path("effects.json")}
                     draft.save()
             finally:
                 if self.output.json:
-                    model = draft.place / files["model"] if draft and files else None
-                    say_json(as_json(found, model))
+                    model = {"model": str(draft.place / names["model"])} if draft and names else {}
+                    say_json({**files.record, **model})
             if draft is not None:
-                self._draw(found, draft, files, blind)
+                self._draw(found, files, draft, names, blind)
                 if not self.output.json:
-                    lines = [f"{w + ':':<8} {draft.place / files[w]}" for w in ORDER if w in files]
+                    lines = [f"{w + ':':<8} {draft.place / names[w]}" for w in ORDER if w in names]
                     say("\n" + "\n".join(lines))
         return 0
 
-    def _draw(self, found: Discovery, draft: Draft, files: dict[str, Path], blind: str) -> None:
+    def _draw(
+        self,
+        found: Discovery,
+        files: TwinDiscoveryFiles,
+        draft: Draft,
+        names: dict[str, Path],
+        blind: str,
+    ) -> None:
         """Add figures and the report to the saved results, and then the film; adds their names."""
         begun, tell = time.monotonic(), self.output.tell
-        report = _Report(found, draft.folder)
+        page = draft.folder / "report.html"
 
         def write() -> None:
             tell("drawing the report")
-            if not add_drawings(draft, "figures and report", report.write):
+            if not add_drawings(draft, "figures and report", lambda: files.draw(draft.folder)):
                 return
-            files["report"] = Path("report.html")
+            names["report"] = Path("report.html")
             drawn = duration(time.monotonic() - begun)
             tell(f"report and figures took {drawn}, beside the search")
 
         if blind or not self.film:
             write()
-            if blind and files.get("report"):
+            if blind and "report" in names:
                 note(f"no film: {blind}")
             return
         from inca_mj.commands.film import FilmProgress
@@ -143,8 +151,10 @@ class Discover:
         progress = FilmProgress(tell, FPS, hint=LEAVE_OUT)
         with film_beside(found, draft.folder, progress) as film:
             write()
-            if "report" in files and add_drawings(draft, "film", lambda: report.write(film())):
-                files["film"] = Path("film.mp4")
+            if "report" not in names:
+                return
+            if add_drawings(draft, "film", lambda: files.write_filmed(page, film())):
+                names["film"] = Path("film.mp4")
                 tell(f"the film took {duration(time.monotonic() - begun)}")
 
 
@@ -170,46 +180,3 @@ class Demo:
         """Do all of it, say the verdict first and where the report lies last."""
         log = self.log or example_path()
         return Discover((log,), film=self.film, robot=self.robot, output=self.output).run()
-
-
-def as_json(found: Discovery, model: Path | None) -> dict[str, Any]:
-    """Returns the outcome and the path of its model as plain values; what is not finite is null."""
-    from identification.report.discovery_json import discovery_to_json
-
-    return {**discovery_to_json(found), "model": None if model is None else str(model)}
-
-
-def keep(found: Discovery, out: Path, command: Any) -> dict[str, Path]:
-    """Write model, effects and result into a folder; returns their names by kind."""
-    model, effects = (Path(path.name) for path in inca.save_twin(inca.named_twin(found), out))
-    write_result(out / "result.json", command, as_json(found, model))
-    return {"model": model, "effects": effects}
-
-
-class _Report:
-    """The report of a discovery, whose figures are drawn once, also where a film follows them."""
-
-    def __init__(self, found: Discovery, folder: Path) -> None:
-        self._found, self._folder = found, folder
-        self._sections: list[Section] = []
-        self._drawings: dict[Figure, str] = {}
-
-    def write(self, film: Section | None = None) -> None:
-        """Write figures and report into the folder; with the section of a film the report alone."""
-        from identification.report.discovery_report import discovery_sections, write_page
-        from identification.report.page import save_figures
-        from inca_mj.report.sections import model_section
-
-        if not self._sections:
-            model = model_section(_without_zeros(inca.named_twin(self._found)))
-            self._sections = [*discovery_sections(self._found, FILES), model]
-            save_figures(self._sections, self._folder)
-        *shown, model = self._sections
-        sections = [*shown, *([film] if film else []), model]
-        write_page(self._found, self._folder, sections, drawings=self._drawings)
-
-
-def _without_zeros(robot: inca.Twin) -> inca.Twin:
-    """Returns the twin without parameters of effects that are zero, which no table needs."""
-    shown = tuple(p for p in robot.parameters if p.where != "effect" or p.value)
-    return replace(robot, parameters=replace(robot.parameters, records=shown))

@@ -13,11 +13,12 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import tyro
 
 import inca_mj as inca
-from identification.commands.common import Output, say, say_json, write_result
+from identification.commands.common import Output, say, say_json
 from identification.errors import GraphicsError, InputError
 from identification.files import check_file
 from identification.folders import whole_folder
 from identification.progress import duration
+from identification.results import RESULT, write_result
 from inca_mj.commands.common import SavedRobot, cannot_draw, do_not_draw, saved_robot_field
 
 if TYPE_CHECKING:
@@ -85,7 +86,7 @@ class Film:
             film(scene, path, fps=FPS, speed=self.speed, progress=progress, **look)
             names = [p.name for p in (path, *stills(scene, draft, self.still, **look))]
             record = {"film": names[0], "stills": names[1:], "seconds": end, "titles": titles}
-            write_result(draft / "result.json", self, record)
+            write_result(draft / RESULT, self, record)
         files = [str(out / name) for name in names]
         if self.output.json:
             say_json({**record, "film": files[0], "stills": files[1:]})

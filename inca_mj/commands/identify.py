@@ -179,7 +179,8 @@ def draw(
     """Write figures and the one-file report into a folder."""
     from inca_mj.report.identification import fit_section, identification_verdict, profile_section
     from inca_mj.report.information import information_section
-    from inca_mj.report.sections import compare_section, model_section
+    from inca_mj.report.sections import compare_section
+    from inca_mj.twin.section import model_section
 
     about = (
         f"What {result.log.name} says of the parameters at their estimate, for white noise of the"

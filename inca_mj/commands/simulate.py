@@ -162,7 +162,8 @@ def _text(result: inca.Run) -> str:
 
 def draw(result: inca.Run, notes: str, out: Path) -> None:
     """Write figures and the report into a folder."""
-    from inca_mj.report.sections import model_section, run_section
+    from inca_mj.report.sections import run_section
+    from inca_mj.twin.section import model_section
 
     sections = [run_section(result), model_section(result.twin)]
     verdict = [f"{result.time[-1]:g} s simulated, {notes}."]

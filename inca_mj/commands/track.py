@@ -145,7 +145,8 @@ def _text(result: inca.Tracking) -> str:
 
 def draw(result: inca.Tracking, out: Path) -> None:
     """Write figures and the report into a folder."""
-    from inca_mj.report.sections import model_section, run_section, tracking_section
+    from inca_mj.report.sections import run_section, tracking_section
+    from inca_mj.twin.section import model_section
 
     run = result.run
     sections = [tracking_section(result), run_section(run), model_section(run.twin)]

@@ -1,4 +1,4 @@
-"""Sections of reports: a comparison, a run, a robot on a path, a cross-check, and a model."""
+"""Sections of reports: a comparison, a run, a robot on a path, and a cross-check."""
 
 from __future__ import annotations
 
@@ -7,14 +7,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from identification.estimation.metrics import mean_fit
-from identification.report.effect_words import parameter_words
 from identification.report.figures import compare_figure
 from identification.report.page import Section, Table
 from inca_mj.report.figures import crosscheck_figure, simulation_figures, tracking_figure
 
 if TYPE_CHECKING:
     from inca_mj.twin.run import Run
-    from inca_mj.twin.twin import Twin
     from inca_mj.verification import CrossCheck
     from inca_mj.workflows.comparison import Comparison
     from inca_mj.workflows.tracking import Tracking
@@ -104,23 +102,6 @@ def crosscheck_section(result: CrossCheck) -> Section:
             ("case", "step [ms]", "angle [rad]", "position [m]", "tension [N]"),
             tuple(
                 (row["case"], 1e3 * row["step"], *(row[key] for key in keys)) for row in result.rows
-            ),
-        ),
-    )
-
-
-def model_section(robot: Twin) -> Section:
-    """Returns the section on every number of the robot and where it comes from."""
-    assumed = " These coordinates are assumed." if robot.geometry.assumed else ""
-    words = parameter_words(robot.parameters, robot.effects)
-    return Section(
-        "The model",
-        f"Parameter set {robot.parameters.name}. Geometry: {robot.geometry.source}.{assumed}",
-        table=Table(
-            ("parameter", "value", "unit", "more", "source"),
-            tuple(
-                (words[p.name], p.value, p.unit, p.about.partition(": ")[2], p.source)
-                for p in robot.parameters
             ),
         ),
     )

@@ -24,6 +24,7 @@ from inca_mj.workflows.spread import Spread, spread_of
 
 if TYPE_CHECKING:
     from identification.discovery.result import Discovery
+    from identification.written import Files
 
 TIMESTEP = 2e-3  # [s]; RK4 errs by 0.03 mrad, 1/20 of an encoder's noise, at half the cost of 1 ms
 TOLD = 2.0  # of a record that confirms, the fit sees so much, which tells where it begins [s]
@@ -48,6 +49,8 @@ def discover(
     What is found shows the first sentence of its verdict; `identification.discovery_text` tells all
     of it. Read `found.verdict` first ("named", "unknown effect" or "nothing missing"), then
     `found.unexplained`: whether something is left that no named effect explains.
+    `found.report(path)` writes the report, `found.save(folder)` all that `inca discover` keeps but
+    for the film (`film` draws one), and `found.to_dict()` returns the numbers.
 
     Examples:
         from identification import discovery_text
@@ -59,6 +62,7 @@ def discover(
             print(named.name, named.where, named.confidence, named.parameters)
             print([(rival.name, rival.where, rival.confidence) for rival in named.rivals])
         print(discovery_text(found))
+        found.report("report.html")
         robot = named_twin(found)
 
     Args:
@@ -108,9 +112,15 @@ def discover(
     plant = build_twin(
         known, geometry, timestep=step, effects=effects, settled=settled, visual=False
     )
-    return told(
-        search(nominal_model(plant, spread, records), every, effects, progress, options)
-    )  # fmt: skip
+    found = search(nominal_model(plant, spread, records), every, effects, progress, options)
+    return replace(told(found), files_of=files_of)
+
+
+def files_of(found: Discovery) -> Files:
+    """Returns what writes the files of a discovery on the robot."""
+    from inca_mj.workflows.discovery_files import TwinDiscoveryFiles  # slow to import
+
+    return TwinDiscoveryFiles(found)
 
 
 def _whole(log: Log) -> Log:

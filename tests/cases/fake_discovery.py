@@ -39,6 +39,7 @@ from inca_mj.robot.inputs import make_input
 from inca_mj.twin.logs import run_to_log
 from inca_mj.twin.run import simulate
 from inca_mj.twin.twin import Twin, build_twin
+from inca_mj.workflows.discovery_files import TwinDiscoveryFiles
 
 (FRICTION_MISMATCH,) = (e for e in MISMATCHES if e.name == "friction_mismatch")
 EFFECTS = (STRIBECK_FRICTION, FRICTION_MISMATCH, DELAY)
@@ -132,6 +133,7 @@ def found(verdict="named", *, one_of=False, unexplained=False, several=False) ->
         hidden=(Hidden(MISMATCH, {"delta": (0.002, 0.006, "")}, 0.3, 4.0),),
         detectable=(Detectable(STRIBECK, "f_s", 2e-4, "N m"), Detectable(LATE, "tau", np.inf, "s")),
         findings=(DRIVE_3,) * unexplained, seconds={"fit": 1.5, "score": 2.0},
+        files_of=TwinDiscoveryFiles,
     )  # fmt: skip
 
 

@@ -20,7 +20,7 @@ from pathlib import Path
 
 from folder_cases import list_foreign
 
-from identification.commands import common
+from identification import results
 from identification.commands.common import Output, conclude
 from identification.errors import InputError
 from identification.files import write_text
@@ -117,7 +117,7 @@ def child(out: Path, number: int, what: str, met: int) -> int:
 def main(what: str, case: str, place: str) -> None:
     """Meet every call once, and check the folder after each."""
     os.fsync = lambda file: None  # no kill of a process tells whether a disk has a file
-    common._version = cache(common._version)  # files of packages, each read once
+    results.package_version = cache(results.package_version)  # files of packages, each read once
     read, met = os.pipe()
     os.set_blocking(read, False)
     found = []

@@ -177,7 +177,7 @@ def test_an_interrupt_in_the_film_costs_the_film_only(tmp_path, capsys, monkeypa
         raise KeyboardInterrupt
 
     monkeypatch.setattr(Output, "tell", lambda _, line: told.append(line))
-    monkeypatch.setattr("identification.report.page.save_figures", save_one)
+    monkeypatch.setattr("identification.report.discovery_report.save_figures", save_one)
     monkeypatch.setattr(filmed, "film_discovery", interrupted)
     monkeypatch.setattr("inca_mj.commands.discover.cannot_draw", lambda: "")
     monkeypatch.setattr(
@@ -212,7 +212,7 @@ def test_what_cannot_be_drawn_costs_itself_only(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(filmed, "film_discovery", film)
     monkeypatch.setattr("inca_mj.commands.discover.cannot_draw", lambda: "")
     save = no_figures if fails == "figures" else save_one
-    monkeypatch.setattr("identification.report.page.save_figures", save)
+    monkeypatch.setattr("identification.report.discovery_report.save_figures", save)
     found = fake_discovery.found()
     monkeypatch.setattr("inca_mj.workflows.discovery.discover", lambda *_, **__: found)
     assert Discover((Path("examples/log.csv"),), output=Output(out=out)).run() == 0

@@ -7,39 +7,20 @@ INCA with a result that was made before, and on the elbow with a search of few e
 import inspect
 import re
 import textwrap
-from functools import cache
 from pathlib import Path
 
 import fake_discovery
 import pytest
+from elbow_cases import elbow
 from page_text import text_of
 
 import identification
 import inca_mj
-from identification import discover, discovery_text, fit, read_robot
-from identification.robot import discovery as of_robots
+from identification import discovery_text, fit
 from identification.shown import Shown, verdict_of
 
 ROOT = Path(__file__).parents[2]
-ELBOW = ROOT / "examples" / "elbow"
-FEW = ("coulomb_friction", "quadratic_friction")
 README, YOUR_ROBOT = ROOT / "README.md", ROOT / "docs" / "robot" / "index.md"
-
-
-@cache
-def elbow():
-    """The robot, and what a search among a few effects finds."""
-    robot = read_robot(
-        ELBOW / "elbow.toml", ELBOW / "first.csv", confirm=[ELBOW / "second.csv"]
-    )  # fmt: skip
-    search = of_robots.discover_records
-
-    def short(model, fitted, records, effects, *rest):
-        return search(model, fitted, records, [e for e in effects if e.name in FEW], *rest)
-
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(of_robots, "discover_records", short)
-        return robot, discover(robot)
 
 
 RESULTS = {
@@ -71,9 +52,15 @@ def example(function):
     return textwrap.dedent(text[text.index("Examples:\n") + 10 : text.index("Args:\n")])
 
 
+@pytest.fixture(autouse=True)
+def beside_the_examples(tmp_path, monkeypatch):
+    """A folder of its own, in which an example finds its logs and may write."""
+    (tmp_path / "examples").symlink_to(ROOT / "examples")
+    monkeypatch.chdir(tmp_path)
+
+
 def run(source, monkeypatch, **names):
     """Run an example in which a search returns at once."""
-    monkeypatch.chdir(ROOT)
     monkeypatch.setattr(inca_mj, "discover", lambda *a, **k: fake_discovery.found(several=True))
     monkeypatch.setattr(identification, "discover", lambda robot: elbow()[1])
     exec(compile(source, "example", "exec"), names)
@@ -93,7 +80,7 @@ def test_readme_reads_a_result_of_both_kinds(monkeypatch, capsys):
 
 @pytest.mark.parametrize("source", [*reading(YOUR_ROBOT), *reading(README)])
 def test_every_loop_of_the_documents_reads_every_result(source, found, monkeypatch):
-    loop = source[source.index("for named in found.named") :].split("\nrobot = ")[0]
+    loop = re.split("\nrobot = |\nfound.report", source[source.index("for named in found") :])[0]
     names = {"discovery_text": discovery_text, "found": found}
     assert run(loop, monkeypatch, **names)["found"] is found
 

@@ -13,7 +13,6 @@ from identification import write_log
 from identification.discovery.findings.finding import FindingKind
 from identification.report.discovery_json import finding_to_json
 from inca_mj.cli import main
-from inca_mj.commands.discover import as_json
 from inca_mj.robot.inputs import make_input
 from inca_mj.twin.logs import run_to_log
 from inca_mj.twin.run import simulate
@@ -71,7 +70,7 @@ def test_the_page_knows_every_key(arguments, capsys, short_log):
 
 
 def test_the_page_knows_every_key_of_a_discovery():
-    printed = keys_of(as_json(fake_discovery.found(one_of=True, unexplained=True), None))
+    printed = keys_of(fake_discovery.found(one_of=True, unexplained=True).to_dict())
     assert {"proof", "rivals", "smallest", "gain"} <= printed
     assert printed <= section("discover")
 

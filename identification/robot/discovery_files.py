@@ -1,0 +1,66 @@
+"""The files of a discovery on a robot of a file: also robot.toml, and how each record confirms."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from identification.quantities import plain
+from identification.report.discovery_files import DiscoveryFiles
+from identification.report.discovery_json import discovery_to_json
+from identification.robot.confirmation import confirm
+from identification.robot.reading import doubtful
+from identification.robot.record_error import Confirmation, Repetition, find_repetitions
+from identification.robot.robot import Robot
+from identification.robot.write import write_robot
+
+
+@dataclass(frozen=True)
+class RobotDiscoveryFiles(DiscoveryFiles):
+    """The files of a discovery on a robot of a file.
+
+    Attributes:
+        found: the discovery.
+        robot: the robot.
+    """
+
+    robot: Robot
+
+    @cached_property
+    def record(self) -> dict[str, Any]:
+        """The discovery as plain values, with what the robot's records say."""
+        record = discovery_to_json(self.found)
+        repeated = self._repeated
+        return record | {
+            "located": [*record["located"], *map(str, repeated)],
+            "findings": [*record["findings"], *(r.finding for r in repeated)],
+            "confirm": plain(self._confirmed),
+            "remarks": list(self.robot.remarks),
+        }
+
+    @cached_property
+    def sentences(self) -> Sequence[str]:
+        """What is said behind the verdict."""
+        return [*doubtful(self.robot), *map(str, (*self._confirmed, *self._repeated))]
+
+    def keep(self, folder: Path, place: Path) -> dict[str, Any]:
+        """Write robot.toml: the robot with what was found, as it is read from `place`."""
+        found = self.found
+        named = {n for each in found.named for n in (*each.candidate.sizes, *each.candidate.fixed)}
+        kept = {*found.nominal.values, *named}
+        values = {n: v for n, v in found.final.values.items() if n in kept}
+        own = found.final.own_values
+        write_robot(self.robot, values, folder / "robot.toml", place, own_values=own)
+        return {}
+
+    @cached_property
+    def _confirmed(self) -> Sequence[Confirmation]:
+        """Errors on the records; over a horizon the report has those of every record already."""
+        return confirm(self.robot, self.found) if self.found.horizon is None else ()
+
+    @cached_property
+    def _repeated(self) -> Sequence[Repetition]:
+        return find_repetitions(self.robot)
