@@ -29,7 +29,7 @@ Wanted = Callable[[Sequence[str]], Collection[str]]  # of the columns of a file,
 KINDS = (".csv", ".mat", ".npz", ".parquet", *OF_ROS)
 
 
-def read_table(
+def log_table(
     path: Path,
     wanted: Wanted | None,
     *,
@@ -38,7 +38,7 @@ def read_table(
     asked: Collection[str] = (),
     of_matlab: tuple[Sequence[str], Sequence[str], Sequence[str]] = ((), (), ()),
 ) -> Table:
-    """Reads the table in a log, whatever its kind.
+    """Returns the table of columns in a log, whatever its kind.
 
     Args:
         path: of the file, of a folder of ROS, or of an episode of a LeRobot data set.

@@ -13,7 +13,7 @@ import numpy as np
 from identification.errors import InputError
 from identification.files import readable
 from identification.logs.coarse import evened_stamps, refuse_contradicted
-from identification.logs.formats import read_table
+from identification.logs.formats import log_table
 from identification.logs.log import Log
 from identification.logs.names import check_column_names, check_keys, lookup
 from identification.logs.plausible import check_plausible, check_possible
@@ -201,7 +201,7 @@ def _read_table(
 ) -> Table:
     """Reads the table in a log; columns that nobody asks for are left out where lenient."""
     olds = {new: old for old, new in sidecar.columns.items()}
-    return read_table(
+    return log_table(
         path,
         wanted_columns({"time", *inputs, *outputs, *optional}, sidecar) if lenient else None,
         header=sidecar.header,

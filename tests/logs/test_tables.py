@@ -11,7 +11,7 @@ from example_logs import INPUTS, OUTPUTS, wave
 from pyarrow import parquet
 
 from identification import read_log
-from identification.logs.formats import read_table
+from identification.logs.formats import log_table
 
 BEGIN = 1_748_873_654_316_744_521  # [ns], a stamp that no float holds
 
@@ -170,4 +170,4 @@ def test_what_has_to_be_installed_is_told(tmp_path, refusal, monkeypatch):
 def test_all_columns_of_a_file_are_found(tmp_path):
     path = tmp_path / "run.npz"
     np.savez(path, time=log().time, q=log().outputs)
-    assert read_table(path, None).names == ("time", "q_1", "q_2")
+    assert log_table(path, None).names == ("time", "q_1", "q_2")

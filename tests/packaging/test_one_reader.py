@@ -18,7 +18,6 @@ LOADERS = ("np", "numpy", "json", "tomllib", "pickle", "yaml")
 OURS = ("read_text", "read_bytes")
 WRITES = frozenset("wxa")
 ALLOWED = {
-    "identification/logs/read.py: read_table": "our own function of the same name",
     "inca_mj/rendering/film.py: open": "a film that the program wrote just now",
     "identification/files.py: fdopen": "the reader",
     "identification/exchange.py: open": "a folder, to lock it",
