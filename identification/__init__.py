@@ -21,6 +21,8 @@ _PUBLIC = {
     "decimate": "logs.decimation",
     "on_a_grid": "logs.resampling",
     "noise_floor": "logs.noise",
+    "inspect_log": "inspection.inspected",
+    "Inspection": "inspection.inspected",
     # a robot of a TOML file
     "read_robot": "robot.reading",
     "Robot": "robot.robot",
@@ -166,6 +168,8 @@ if TYPE_CHECKING:  # the same list, for type checkers and editors
     from identification.estimation.residuals import ResidualTests as ResidualTests
     from identification.estimation.residuals import residual_tests as residual_tests
     from identification.estimation.search import Options as Options
+    from identification.inspection.inspected import Inspection as Inspection
+    from identification.inspection.inspected import inspect_log as inspect_log
     from identification.kalman.estimate import InnovationsFit as InnovationsFit
     from identification.kalman.estimate import estimate_innovations as estimate_innovations
     from identification.linear.export import load_system as load_system

@@ -30,7 +30,8 @@ _SAID = 120  # letters of another library's message
 _UNPACKED = 8  # times as large an archive of arrays may be as the largest file
 # Opening a pipe waits for a writer unless it is told not to; Windows has no such flag.
 _FLAGS = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
-LOG = "log file (.csv or .mat)"  # what a path should have been, in messages
+# What a path should have been, in messages.
+LOG = "log file (.csv, .mat, .npz, .parquet, .mcap, .db3 or .bag)"
 MODEL = "model file (MJCF or URDF)"
 
 

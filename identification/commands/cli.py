@@ -9,6 +9,7 @@ from typing import Annotated
 import tyro
 
 from identification.commands.common import import_without_graphics
+from identification.commands.inspect import Inspect
 from identification.commands.linearize import Linearize
 from identification.commands.program import run_program
 from identification.commands.robots import Discover, Fit
@@ -17,6 +18,7 @@ from identification.commands.sweep import SweepCommand
 Command = (
     Annotated[Fit, tyro.conf.subcommand("fit")]
     | Annotated[Discover, tyro.conf.subcommand("discover")]
+    | Annotated[Inspect, tyro.conf.subcommand("inspect")]
     | Annotated[Linearize, tyro.conf.subcommand("linearize")]
     | Annotated[SweepCommand, tyro.conf.subcommand("sweep")]
 )

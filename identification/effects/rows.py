@@ -13,7 +13,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
 from pathlib import Path
-from warnings import catch_warnings, simplefilter
 
 import mujoco
 import numpy as np
@@ -33,6 +32,7 @@ from identification.errors import InputError, unknown_name
 from identification.files import MODEL, read_bytes
 from identification.logs.names import quoted
 from identification.model.hostile import refuse_endless, refuse_hostile, refuse_numbers
+from identification.model.missing_files import compile_without_missing
 from identification.model.paths import Slot
 from identification.native.element import Term, refuse_unfit_functions
 from identification.native.gear import FIELDS as STATE_FIELDS
@@ -126,8 +126,21 @@ def read_model(source: str | Path | mujoco.MjSpec) -> mujoco.MjSpec:
     Raises:
         InputError: it cannot be read or compiled.
     """
-    if isinstance(source, mujoco.MjSpec):
-        return source.copy()
+    return source.copy() if isinstance(source, mujoco.MjSpec) else read_told_model(source)[0]
+
+
+def read_told_model(source: str | Path) -> tuple[mujoco.MjSpec, str]:
+    """Returns an MJCF as a specification, and one sentence on missing files that it needs not.
+
+    Args:
+        source: path of the file, or its text, which begins with "<".
+
+    Returns:
+        The specification and the sentence, which is "" where no file is missing.
+
+    Raises:
+        InputError: it cannot be read or compiled, or its motion depends on a missing file.
+    """
     text = str(source)
     given = text.lstrip().startswith("<")
     where = "the model" if given else f"the model {text}"
@@ -139,14 +152,14 @@ def read_model(source: str | Path | mujoco.MjSpec) -> mujoco.MjSpec:
         refuse_endless(text if given else Path(text), where, amount)
     try:
         spec = mujoco.MjSpec.from_string(text) if given else mujoco.MjSpec.from_file(text)
-        with catch_warnings():
-            simplefilter("error")
-            model = spec.compile()
+        model, left_out = compile_without_missing(spec, where, is_asked=not amount.may_be_large)
+    except InputError:
+        raise
     except (ValueError, OSError, mujoco.FatalError, Warning) as error:
         reason = quoted(" ".join(str(error).split()), _LONGEST)  # MuJoCo writes several lines
         raise InputError(f"{where} cannot be read ({reason}); correct it there") from error
     refuse_numbers(model, where)
-    return spec
+    return spec, left_out
 
 
 def with_rows(spec: mujoco.MjSpec, axes: Sequence[Axis], layout: JointLayout) -> mujoco.MjModel:

@@ -1,4 +1,4 @@
-"""A log file to a `Log`: one reader for CSV and MATLAB, with an optional TOML beside it."""
+"""A log to a `Log`: one reader for files of every kind, with an optional TOML beside it."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 
 from identification.errors import InputError
-from identification.files import read_bytes, readable
+from identification.files import readable
 from identification.logs.coarse import evened_stamps, refuse_contradicted
-from identification.logs.csv_files import parse_csv
+from identification.logs.formats import log_table
 from identification.logs.log import Log
 from identification.logs.names import check_column_names, check_keys, lookup
 from identification.logs.plausible import check_plausible, check_possible
@@ -22,7 +22,6 @@ from identification.logs.publishers import (
     refuse_second_publisher,
     refuse_two_inputs,
 )
-from identification.logs.read_mat import parse_mat
 from identification.logs.resampling import Even, even_out
 from identification.logs.sampling import FloatArray, check_time, grid
 from identification.logs.sidecar import Sidecar, read_sidecar
@@ -60,8 +59,9 @@ def read_log(
     angle_2, and so on.
 
     Args:
-        path: `.csv` with the header `time,<inputs>,<outputs>[,<optional>]`, or `.mat` with `u`,
-            `y`, `Ts`; a `.toml` of the same stem may say more (see `identification.logs.sidecar`).
+        path: `.csv` with the header `time,<inputs>,<outputs>[,<optional>]`, `.mat` with `u`, `y`,
+            `Ts`, or a path of another kind (see `identification.logs.formats`); a `.toml` of the
+            same stem may say more (see `identification.logs.sidecar`).
         inputs: names of the actuators (nu).
         outputs: names of the sensors (ny).
         optional: columns that may be there; they become `Log.extras`.
@@ -92,14 +92,13 @@ def read_log(
     for unit in units.values():
         check_si(unit)
 
-    raw = read_bytes(path)
     sidecar = read_sidecar(path.with_suffix(".toml"), said, named_in)
     if sidecar.values and not lenient:
         raise InputError(
             f"{sidecar.file_of('values')} gives values of a robot under [values], which only the"
             " robots of read_robot have; leave them out"
         )
-    table = _read_table(raw, path, inputs, outputs, optional, sidecar, lenient)
+    table = _read_table(path, inputs, outputs, optional, sidecar, lenient)
     for key in ("units", "factors"):
         check_keys(
             f"column under {key!r} in {sidecar.file_of(key)}:",
@@ -112,7 +111,7 @@ def read_log(
             " time goes on; write a positive one, such as 1e-9 for ns"
         )
     table, remark = with_time(renamed(table, sidecar), sidecar)
-    remarks = (remark,) if remark else ()
+    remarks = (*table.remarks, remark) if remark else table.remarks
     if "time" not in table.names and sidecar.sampling_time:
         table = _with_time(table, sidecar.sampling_time)
     check_columns(table, ("time", *inputs, *outputs), optional, sidecar, named_in)
@@ -193,7 +192,6 @@ def _grid_place(path: Path) -> Callable[[int], str]:
 
 
 def _read_table(
-    raw: bytes,
     path: Path,
     inputs: Sequence[str],
     outputs: Sequence[str],
@@ -201,13 +199,16 @@ def _read_table(
     sidecar: Sidecar,
     lenient: bool,
 ) -> Table:
-    if path.suffix.lower() == ".csv":
-        wanted = wanted_columns({"time", *inputs, *outputs, *optional}, sidecar)
-        stamps = {"time", *(old for old, new in sidecar.columns.items() if new == "time")}
-        return parse_csv(raw, path, sidecar.header, wanted if lenient else None, stamps)
-    if path.suffix.lower() == ".mat":
-        return parse_mat(raw, path, inputs, outputs, optional)
-    raise InputError(f"{path} is neither .csv nor .mat; export the log as one of these")
+    """Reads the table in a log; columns that nobody asks for are left out where lenient."""
+    olds = {new: old for old, new in sidecar.columns.items()}
+    return log_table(
+        path,
+        wanted_columns({"time", *inputs, *outputs, *optional}, sidecar) if lenient else None,
+        header=sidecar.header,
+        stamps={"time", *(old for old, new in sidecar.columns.items() if new == "time")},
+        asked=[olds.get(name, name) for name in (*inputs, *outputs)],
+        of_matlab=(inputs, outputs, optional),
+    )
 
 
 def _with_time(table: Table, step: float) -> Table:

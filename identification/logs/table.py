@@ -24,7 +24,8 @@ HUGE = 1e15  # of any SI unit: no angle, way, force, voltage or current of a rob
 class Table:
     """Columns (n, c) of a file, their names (c), and a function that says where a row stands.
 
-    `unread` are the names of columns that nobody asked for; they are not read.
+    `unread` are the names of columns that nobody asked for; they are not read. `remarks` tell what
+    was taken for granted when it was read, a sentence each.
     """
 
     path: Path
@@ -32,6 +33,7 @@ class Table:
     data: FloatArray
     place: Callable[[int], str]
     unread: tuple[str, ...] = ()
+    remarks: tuple[str, ...] = ()
 
     @property
     def all_names(self) -> tuple[str, ...]:

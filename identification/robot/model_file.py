@@ -1,5 +1,7 @@
 """The model of a robot's file: an MJCF as it is, or a URDF that is completed for a log.
 
+An MJCF may lack files that tell only its look (`identification.model.missing_files`).
+
 A URDF has no actuators, no sensors and no integrator, and most often names meshes that lie
 elsewhere. Dynamics need no meshes: they are left out. Each joint that moves gets a sensor of its
 position, called as the joint, and a motor of gear 1, called joint_torque, or joint_force where it
@@ -17,7 +19,7 @@ from xml.etree import ElementTree
 import mujoco
 import numpy as np
 
-from identification.effects.rows import read_model
+from identification.effects.rows import read_model, read_told_model
 from identification.errors import InputError
 from identification.files import MODEL, read_bytes
 from identification.logs.log import Log
@@ -40,10 +42,11 @@ _LARGEST = 2**26  # [bytes]
 
 
 def robot_spec(file: RobotFile) -> tuple[mujoco.MjSpec, tuple[str, ...]]:
-    """Returns the model of a robot, and what was added to it, in sentences."""
+    """Returns the model of a robot, and what was added to it or left out, in sentences."""
     raw = read_bytes(file.model, _LARGEST, MODEL)
     if file.model.suffix.lower() != ".urdf" and b"<robot" not in raw[:HEAD]:
-        return read_model(file.model), ()
+        spec, left_out = read_told_model(file.model)
+        return spec, (left_out,) if left_out else ()
     try:
         root = ElementTree.fromstring(raw)
     except ElementTree.ParseError as error:

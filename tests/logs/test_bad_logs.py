@@ -130,7 +130,7 @@ def test_bad_paths(tmp_path, refusal):
         "nowhere/run.csv": ["no such folder", "nowhere"],
         "logs.csv": ["is a folder"],
         "pipe.csv": ["not a regular file"],
-        "run.xlsx": ["neither .csv nor .mat"],
+        "run.xlsx": ["no log that can be read", ".csv, .mat, .npz"],
         "a" * 300 + ".csv": ["cannot read", "too long"],
         ".": ["is a folder"],
         "zero\0.csv": ["no such file"],

@@ -1,0 +1,1 @@
+"""What is in a log that nobody described yet, and the robot's file to begin with."""

@@ -1,0 +1,136 @@
+"""The robot's file to begin with: what was found in a log and a model, and what was guessed."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+
+import mujoco
+
+from identification.errors import InputError
+from identification.files import exists, toml_table, toml_value, whole_file
+from identification.inspection.inspected import SAID, Inspection
+from identification.inspection.matching import Match, channels_of, match
+from identification.inspection.words import answer_sentence
+from identification.logs.units import to_si
+from identification.model.tied import servo_kind
+from identification.robot.file import RobotFile
+from identification.robot.model_file import robot_spec
+
+SHORTEST = 0.3  # [s] of a horizon to begin with: a part of a swing
+FEWEST = 10  # samples of it
+_DRIVES = {"position": "a position servo: its input is a setpoint",
+           "velocity": "a velocity servo: its input is a setpoint"}  # fmt: skip
+
+
+def write_beginning(found: Inspection, model: Path, path: Path) -> tuple[Path, list[str]]:
+    """Write the robot's file to begin with, which nothing may stand in the place of.
+
+    Args:
+        found: what is in the log.
+        model: path of the MJCF or URDF.
+        path: of the file to write.
+
+    Returns:
+        Its path, and a sentence for each thing that it still needs.
+
+    Raises:
+        InputError: the file exists, or the model cannot be read.
+    """
+    if exists(path):
+        raise InputError(
+            f"{path} exists, and nothing of yours is replaced; give another name behind --robot"
+        )
+    spec, said = robot_spec(RobotFile(path=path, model=model, free=()))
+    compiled = spec.compile()
+    matches = match(channels_of(compiled), found)
+    lines, needs = _lines(found, compiled, matches, os.path.relpath(model, path.parent), said)
+    with whole_file(path) as draft:
+        draft.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    return path, needs
+
+
+def _lines(
+    found: Inspection, model: mujoco.MjModel, matches: Sequence[Match], place: str,
+    said: Sequence[str],
+) -> tuple[list[str], list[str]]:  # fmt: skip
+    """Returns the lines of the file, and what it still needs, a sentence each."""
+    needs = _needs(model, matches)
+    inputs = [m for m in matches if m.channel.is_input and m.column]
+    outputs = [m for m in matches if not m.channel.is_input and m.column]
+    joints = [*dict.fromkeys(m.channel.joint for m in outputs)]
+    horizon = float(f"{max(SHORTEST, FEWEST * found.step):.2g}")
+    lines = [
+        f"# What `identification inspect` found in {found.path.name} and {Path(place).name}.",
+        "# Lines with 'guessed' are to be judged by you. docs/robot tells all keys.",
+        *(f"# {sentence}" for sentence in said),
+        *(f"# NEEDED: {sentence}" for sentence in needs),
+        "",
+        f"model = {toml_value(place)}",
+        f"outputs = {toml_value([m.channel.name for m in outputs])}",
+        "# guessed: a number of the model for each measured joint; free what you want to know",
+        f"free = {toml_value([_free(model, joint) for joint in joints])}",
+        f"horizon = {horizon!r}  # [s], guessed: a part of a swing that the model must predict",
+    ]
+    if inputs or outputs:
+        lines += ["", "[columns]  # actuator or sensor = column of the log"]
+    for m in (*inputs, *outputs):
+        note = f"  # {m.how}; {_what(model, m)}"
+        lines.append(f"{toml_value(m.channel.name)} = {toml_value(m.column)}{note}")
+    answers = {a.output: a for a in found.answers}
+    lines += [f"# {answer_sentence(answers[m.column])}" for m in outputs if m.column in answers]
+    return [*lines, *_log_lines(found, matches)], needs
+
+
+def _log_lines(found: Inspection, matches: Sequence[Match]) -> list[str]:
+    """Returns the tables that tell how the log is to be read, where it differs from the usual."""
+    lines = []
+    if found.time_column not in ("", "time"):
+        lines += toml_table("log.columns", {found.time_column: "time"})
+        lines[-1] += "  # guessed"
+    units = {} if found.time_unit == "s" or not found.time_column else {"time": found.time_unit}
+    guessed = {c.name: c.unit for c in found.columns if c.why != SAID}
+    for m in matches:
+        if (unit := guessed.get(m.column)) and to_si(unit)[1] != 1:
+            units[m.column] = unit
+    lines += [f"{line}  # guessed" if "=" in line else line
+              for line in toml_table("log.units", units)]  # fmt: skip
+    return lines
+
+
+def _what(model: mujoco.MjModel, m: Match) -> str:
+    """Returns what a channel is, for a comment."""
+    if not m.channel.is_input:
+        return f"the {'rate' if m.channel.is_rate else 'position'} of joint {m.channel.joint}"
+    row = int(model.actuator(m.channel.name).id)
+    drives = _DRIVES.get(servo_kind(model, row) or "", "its input is a torque, force or current")
+    return drives + (f" at joint {m.channel.joint}" if m.channel.joint else "")
+
+
+def _needs(model: mujoco.MjModel, matches: Sequence[Match]) -> list[str]:
+    """Returns what a fit will ask for, a sentence each."""
+    out = []
+    for m in matches:
+        if m.channel.is_input and not m.column:
+            out.append(
+                f"no column was found for actuator {m.channel.name}; name it under [columns], or"
+                " take the actuator out of the model"
+            )
+    if not any(m.column for m in matches if not m.channel.is_input):
+        joint = model.joint(0).name if model.njnt else "NAME"
+        out.append(
+            "no sensor of the model has a column; give the model a sensor for each measured joint,"
+            f' such as <jointpos name="{joint}" joint="{joint}"/>, and name its column'
+        )
+    return out
+
+
+def _free(model: mujoco.MjModel, joint: str) -> str:
+    """Returns a number of a joint that is not zero in the model, or the mass that it carries."""
+    j = model.joint(joint)
+    for path, value in (("damping", float(model.dof_damping[j.dofadr[0]])),
+                        ("armature", float(model.dof_armature[j.dofadr[0]]))):  # fmt: skip
+        if value > 0:
+            return f"joint/{joint}.{path}"
+    return f"body/{model.body(int(j.bodyid[0])).name}.mass"

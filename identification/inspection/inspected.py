@@ -1,0 +1,210 @@
+"""What is in a log: its columns with guesses of their units, rates, gaps, ranges, and answers."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from identification.errors import InputError
+from identification.files import read_bytes
+from identification.inspection.answers import Answer, find_answers
+from identification.inspection.guesses import (
+    Role,
+    family,
+    is_time,
+    role_of,
+    seconds,
+    time_unit,
+    unit_of,
+)
+from identification.logs.formats import log_table
+from identification.logs.names import listed, lookup
+from identification.logs.sampling import MIN_ROWS, FloatArray, grid
+from identification.logs.sidecar import read_sidecar
+from identification.logs.stamps import with_time
+from identification.logs.table import Table, renamed
+
+GAP = 1.5  # of the usual interval, from which samples are missing
+EVEN = 1e-2  # of the usual interval, by which stamps of an even log differ
+SAID = "the TOML of the log"  # why a unit is believed that is no guess
+STAMPS = ("time", "%time", "stamp", "timestamp", "t")  # columns whose digits a float may lack
+LINES = 50  # of a CSV that show which of its columns hold numbers
+
+
+@dataclass(frozen=True, kw_only=True)
+class Column:
+    """What a column of a log holds."""
+
+    name: str
+    role: Role  # guessed by its name
+    unit: str  # guessed, "" where unknown
+    why: str  # it is believed
+    rate: float  # of its samples [Hz]
+    least: float  # of its numbers, in the unit of the file
+    most: float
+    gaps: int  # intervals longer than usual
+    widest: float  # interval between two samples [s]
+    empty: int  # rows without a number
+
+
+@dataclass(frozen=True, kw_only=True)
+class Inspection:
+    """What is in a log.
+
+    Attributes:
+        path: of the log.
+        time: stamps from the first one, shape (n,) [s].
+        values: numbers by column, shape (n,), NaN where nothing stands, in the unit of the file.
+        columns: what each holds, in the order of the file.
+        time_column: the column of time, "" where the log has none.
+        time_unit: its unit; guessed where no TOML says it.
+        is_even: whether its stamps are.
+        answers: which input each output answers.
+        left_out: columns of a CSV that hold no numbers.
+        remarks: what was taken for granted when the file was read.
+    """
+
+    path: Path
+    time: FloatArray
+    values: Mapping[str, FloatArray]
+    columns: tuple[Column, ...]
+    time_column: str
+    time_unit: str
+    is_even: bool
+    answers: tuple[Answer, ...]
+    left_out: tuple[str, ...] = ()
+    remarks: tuple[str, ...] = field(default=())
+
+    @property
+    def step(self) -> float:
+        """The usual interval of its rows [s]."""
+        return usual(self.time)
+
+
+def inspect_log(path: str | os.PathLike[str]) -> Inspection:
+    """Returns what is in a log of any kind that `read_log` reads, with guesses that say they are.
+
+    Args:
+        path: of the log; a TOML beside it counts as it does for `read_log`.
+
+    Raises:
+        InputError: it cannot be read, or has fewer than three rows of numbers.
+    """
+    path = Path(path)
+    sidecar = read_sidecar(path.with_suffix(".toml"))
+    if path.suffix.lower() == ".mat":
+        raise InputError(
+            f"{path} has no names of columns, but u and y in the order of the model's actuators and"
+            " sensors; give it to identification fit as it is"
+        )
+    texts = () if sidecar.header or path.suffix.lower() != ".csv" else _texts(path)
+    table = log_table(
+        path, lambda names: [n for n in names if n not in texts], header=sidecar.header,
+        stamps=STAMPS,
+    )  # fmt: skip
+    table, remark = with_time(renamed(table, sidecar), sidecar)
+    if len(table.data) < MIN_ROWS:
+        raise InputError(f"{path} has fewer than {MIN_ROWS} rows; record the log again")
+    name = _time_of(table)
+    if not name and not sidecar.sampling_time:
+        raise InputError(
+            f"{path} has no column that looks like time; it has {listed(table.names)}; write the"
+            f' one that is as COLUMN = "time" under [columns] in {sidecar.path}, or sampling_time'
+            " = 0.01 (in seconds) into it"
+        )
+    unit = sidecar.units.get("time") or (time_unit(table[name]) if name else "s")
+    declared = grid(0.0, sidecar.sampling_time or 1.0, len(table.data))
+    time: FloatArray = seconds(table[name], unit) if name else declared
+    values = {n: table[n] for n in table.names if n != name}
+    full = {n: x for n, x in values.items() if np.isfinite(x).sum() >= MIN_ROWS}
+    farthest = _farthest(full)
+    columns = tuple(
+        _column(n, time, x, lookup(sidecar.units, n) or "", farthest[family(n)])
+        for n, x in full.items()
+    )
+    if not columns:
+        raise InputError(f"{path} has no numbers beside its time; record the log again")
+    steps = np.diff(np.unique(time))
+    return Inspection(
+        path=path, time=time, values=full, columns=columns,
+        time_column=name, time_unit=unit, is_even=bool(np.ptp(steps) <= EVEN * np.median(steps)),
+        answers=_answers(time, full, columns), left_out=texts,
+        remarks=(*table.remarks, remark) if remark else table.remarks,
+    )  # fmt: skip
+
+
+def usual(time: FloatArray) -> float:
+    """Returns the median interval of stamps that differ [s]."""
+    return float(np.median(np.diff(np.unique(time))))
+
+
+def _farthest(values: Mapping[str, FloatArray]) -> dict[str, float]:
+    """Returns the largest number of all columns of a family, by its name: they have one unit."""
+    out: dict[str, float] = {}
+    for name, x in values.items():
+        out[family(name)] = max(out.get(family(name), 0.0), float(np.nanmax(np.abs(x))))
+    return out
+
+
+def _column(name: str, time: FloatArray, values: FloatArray, said: str, farthest: float) -> Column:
+    """Returns what a column holds, with the unit that a TOML says, or else a guess."""
+    rows = np.isfinite(values)
+    apart = np.diff(np.unique(time[rows]))
+    interval = float(np.median(apart)) if apart.size else np.inf
+    unit, why = (said, SAID) if said else unit_of(name, farthest)
+    return Column(
+        name=name, role=role_of(name), unit=unit, why=why, rate=1 / interval,
+        least=float(np.nanmin(values)), most=float(np.nanmax(values)),
+        gaps=int(np.sum(apart > GAP * interval)), widest=float(apart.max(initial=0.0)),
+        empty=int(np.sum(~rows)),
+    )  # fmt: skip
+
+
+def _answers(
+    time: FloatArray, values: Mapping[str, FloatArray], columns: Sequence[Column]
+) -> tuple[Answer, ...]:
+    """Returns what answers what; columns without a role may be either."""
+    moving = [c for c in columns if c.most > c.least]
+    if not moving:
+        return ()
+    step = max(1 / c.rate for c in moving)
+    t = grid(time[0], step, int((time[-1] - time[0]) / step) + 1)
+    even = {}
+    for column in moving:
+        rows = np.isfinite(values[column.name])
+        even[column.name] = np.interp(t, time[rows], values[column.name][rows])
+    names = {role: [c.name for c in moving if c.role == role] for role in ("input", "output", "")}
+    inputs = names["input"] or names[""]
+    outputs = names["output"] or names[""]
+    if len(t) < MIN_ROWS:
+        return ()
+    return find_answers(step, {n: even[n] for n in inputs}, {n: even[n] for n in outputs})
+
+
+def _time_of(table: Table) -> str:
+    """Returns the name of the column of time, "" where none looks like it."""
+    if "time" in table.names:
+        return "time"
+    return next((n for n in table.names if is_time(n, table[n])), "")
+
+
+def _texts(path: Path) -> tuple[str, ...]:
+    """Returns the columns of a CSV that hold words, as its first lines show."""
+    text = read_bytes(path).decode("utf-8-sig", "replace")
+    lines = [line for line in text.splitlines() if line.strip() and line[0] != "#"][: LINES + 1]
+    names = [name.strip().strip('"').strip() for name in (lines or [""])[0].split(",")]
+    cells = [line.split(",") for line in lines[1:]]
+    whole = [row for row in cells if len(row) == len(names)]
+    return tuple(n for k, n in enumerate(names) if any(not _is_number(row[k]) for row in whole))
+
+
+def _is_number(cell: str) -> bool:
+    try:
+        float(cell or "nan")
+    except ValueError:
+        return not cell.strip()
+    return True

@@ -1,0 +1,76 @@
+"""Arrays of a file as columns of numbers: one column each, or one for each entry of a vector.
+
+q        shape (n,)      the column q
+q        shape (n, 3)    the columns q_1, q_2 and q_3, or q.NAME where the entries have names
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from identification.errors import InputError
+from identification.logs.sampling import FloatArray
+from identification.logs.stamps import WHOLE
+from identification.logs.table import Table
+
+KINDS = "biufm M".replace(" ", "")  # numbers, truths and times of numpy
+
+
+def names_of(name: str, width: int, labels: Sequence[str] = ()) -> tuple[str, ...]:
+    """Returns the names of the columns of vectors.
+
+    Args:
+        name: of the vectors.
+        width: of each, 0 for plain numbers.
+        labels: of their entries; these are counted from 1 where there are not as many labels.
+    """
+    if not width:
+        return (name,)
+    if len(labels) == width:
+        return tuple(f"{name}.{label}" for label in labels)
+    return tuple(f"{name}_{k + 1}" for k in range(width)) if width > 1 else (name,)
+
+
+def as_numbers(values: np.ndarray, is_stamp: bool) -> FloatArray:
+    """Returns numbers as floats; stamps that no float holds, and dates, count from the first.
+
+    Args:
+        values: shape (n,); dates become seconds.
+        is_stamp: whether they are stamps of time.
+    """
+    if values.dtype.kind in "mM":
+        ns = values.astype(f"{values.dtype.kind}8[ns]").astype(np.int64)
+        return np.asarray((ns - ns[:1]) * 1e-9, np.float64)
+    if is_stamp and values.dtype.kind in "iu" and values.size and np.abs(values).max() >= WHOLE:
+        return np.asarray(values.astype(np.int64) - np.int64(values[0]), np.float64)
+    return values.astype(np.float64)
+
+
+def table_of(
+    path: Path,
+    columns: Mapping[str, Callable[[], np.ndarray]],
+    wanted: Callable[[Sequence[str]], Collection[str]] | None,
+    stamps: Collection[str],
+    place: Callable[[int], str],
+) -> Table:
+    """Returns the wanted columns of a file as a table.
+
+    Args:
+        path: of the file.
+        columns: by name, what reads each: shape (n,), the same n for all.
+        wanted: says which of them to read; all when None.
+        stamps: those that are stamps of time.
+        place: says in words where a row stands.
+    """
+    asked = columns if wanted is None else wanted([*columns])
+    names = tuple(name for name in columns if name in asked)
+    data = [as_numbers(columns[name](), name in stamps) for name in names]
+    if columns and not names:  # the refusal of what is missing lists those that are there
+        data = [np.zeros(0)]
+    if not columns or (names and not len(data[0])):
+        raise InputError(f"{path} has no numbers; record the log again, or export its samples")
+    unread = tuple(name for name in columns if name not in names)
+    return Table(path, names, np.column_stack(data)[:, : len(names)], place, unread)

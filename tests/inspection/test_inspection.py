@@ -1,0 +1,209 @@
+"""A log is told with its rates, gaps and answers, and a fit runs from the file that is written."""
+
+import json
+import tomllib
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from bag_cases import BEGIN, numbers, state, write_bag
+from robot_cases import refused, run
+from touching_cases import simulated
+
+from identification import InputError, fit, inspect_log, read_robot, write_log
+from identification.inspection.answers import find_answers
+from identification.inspection.guesses import is_time, role_of, time_unit, unit_of
+from identification.inspection.words import answer_sentence
+
+STEP = 0.01
+
+
+@pytest.mark.parametrize(
+    ("name", "role", "unit"),
+    [
+        ("joint_states.position.elbow", "output", "rad"), ("joint_states.effort.elbow", "input",
+        "N m"), ("action.elbow", "input", ""), ("observation.state.elbow", "output", "rad"),
+        ("desired.position.elbow", "input", "rad"), ("i_motor", "input", "A"), ("supply", "", ""),
+        ("motorCurrent [mA]", "input", "mA"), ("angle_deg", "output", "deg"),
+        ("field.velocity0", "output", "rad/s"), ("tool_force_2", "input", "N"),
+    ],
+)  # fmt: skip
+def test_names_tell_roles_and_units(name, role, unit):
+    assert role_of(name) == role
+    assert unit_of(name, 1.0)[0] == unit
+
+
+def test_an_angle_of_many_radians_is_rather_one_in_degrees():
+    assert unit_of("position.elbow", 20.0)[0] == "rad"
+    assert unit_of("position.elbow", 85.0)[0] == "deg"
+
+
+@pytest.mark.parametrize("rate", [10.0, 30.0, 100.0, 1000.0])
+@pytest.mark.parametrize(("unit", "factor"), [("s", 1), ("ms", 1e3), ("us", 1e6), ("ns", 1e9)])
+def test_the_unit_of_time_is_that_of_a_rate_of_robots(rate, unit, factor):
+    stamps = factor * (7.0 + np.arange(200) / rate)
+    assert time_unit(stamps) == unit
+    assert is_time("header.stamp", stamps)
+    assert not is_time("header.stamp", stamps[::-1])
+    assert not is_time("battery", stamps)
+
+
+def waves(n=3000, seed=0):
+    """A smooth random signal and its two integrals, sampled."""
+    rng = np.random.default_rng(seed)
+    a = np.convolve(rng.standard_normal(n + 60), np.hanning(61) / 30, "valid")
+    v = np.cumsum(a) * STEP
+    v -= np.linspace(v[0], v[-1], n)
+    return a, v
+
+
+def test_what_answers_what_and_how_late():
+    u, other = waves()[0], waves(seed=1)[0]
+    inputs = {"u": u, "other": other}
+    late = np.roll(u, 7)
+    (answer,) = find_answers(STEP, inputs, {"y": late})
+    assert (answer.input, answer.of) == ("u", "itself")
+    assert answer.lag == pytest.approx(7 * STEP)
+    assert answer.gain == pytest.approx(1, abs=0.02)
+    assert answer.is_setpoint
+    (turned,) = find_answers(STEP, inputs, {"y": -0.1 * late})
+    assert turned.correlation < -0.95
+    assert not turned.is_setpoint
+    assert "with the opposite sign" in answer_sentence(turned)
+    (moved,) = find_answers(STEP, inputs, {"y": waves()[1]})
+    assert (moved.input, moved.of) == ("u", "rate")
+    assert moved.lag <= 2 * STEP
+    assert "as it would answer a torque" in answer_sentence(moved)
+    assert find_answers(STEP, inputs, {"y": np.ones(len(u))}) == ()
+
+
+def test_rates_gaps_ranges_and_words_of_a_csv(tmp_path):
+    path = tmp_path / "run.csv"
+    rows = [f"{1000 * STEP * k:.0f},{k % 5},{k},on" for k in range(300) if not 100 <= k < 110]
+    path.write_text("\n".join(["stamp [ms],u,angle,mode", *rows]) + "\n")
+    found = inspect_log(path)
+    assert (found.time_column, found.time_unit) == ("stamp [ms]", "ms")
+    assert found.step == pytest.approx(STEP)
+    assert not found.is_even
+    assert found.left_out == ("mode",)
+    u, angle = found.columns
+    assert (u.role, angle.role, angle.unit) == ("input", "output", "deg")
+    assert (angle.least, angle.most, angle.gaps, angle.empty) == (0, 299, 1, 0)
+    assert angle.widest == pytest.approx(11 * STEP)
+    assert angle.rate == pytest.approx(100)
+
+
+def test_topics_with_rates_of_their_own(tmp_path):
+    q = waves(600)[0]
+    topics = {
+        "/joint_states": [(BEGIN + 10**7 * k, state(BEGIN + 10**7 * k, ["elbow"], [x]))
+                          for k, x in enumerate(q)],
+        "/commands": [(BEGIN + 4 * 10**7 * k, numbers([x])) for k, x in enumerate(q[::4])],
+    }  # fmt: skip
+    found = inspect_log(write_bag(tmp_path / "run", topics))
+    rates = {c.name: c.rate for c in found.columns}
+    assert rates == pytest.approx({"joint_states.position.elbow": 100, "commands.data_1": 25})
+    (answer,) = found.answers
+    assert answer.input == "commands.data_1"
+
+
+ARM = """<mujoco><option timestep="0.002" integrator="implicitfast"/><worldbody>
+<body name="upper"><joint name="shoulder" axis="0 1 0" damping="0.2" armature="0.02"/>
+  <inertial pos="0 0 -0.1" mass="0.6" diaginertia="0.004 0.004 0.001"/>
+  <body name="lower" pos="0 0 -0.25"><joint name="elbow" axis="0 1 0" damping="{damping}"/>
+    <inertial pos="0 0 -0.1" mass="0.4" diaginertia="0.004 0.004 0.001"/></body></body>
+</worldbody><actuator><position name="shoulder_servo" joint="shoulder" kp="9" kv="0.5"/>
+  <position name="elbow_servo" joint="elbow" kp="6" kv="0.5"/></actuator>
+<sensor><jointpos name="shoulder_pos" joint="shoulder"/><jointpos name="elbow_pos" joint="elbow"/>
+</sensor></mujoco>"""
+
+
+@pytest.fixture(scope="module")
+def arm(tmp_path_factory):
+    """The folder of an arm, and the recording of one with more damping of its elbow, in degrees."""
+    folder = tmp_path_factory.mktemp("arm")
+    (folder / "arm.xml").write_text(ARM.format(damping=0.1))
+    log = simulated(ARM.format(damping=0.4), samples=500, noise=1e-4)
+    joints = ("elbow", "shoulder")  # in another order than that of the model
+    stamps = BEGIN + 10**7 * np.arange(len(log))
+    states = [(int(t), state(int(t), joints, np.rad2deg(y[::-1])))
+              for t, y in zip(stamps, log.outputs, strict=True)]  # fmt: skip
+    sent = [(int(t), state(int(t), joints, np.rad2deg(u[::-1])))
+            for t, u in zip(stamps, log.inputs, strict=True)]  # fmt: skip
+    write_bag(folder / "run", {"/joint_states": states, "/desired": sent})
+    return folder
+
+
+def test_a_fit_runs_from_the_file_that_is_written(arm, capsys, monkeypatch):
+    monkeypatch.chdir(arm)
+    record = run(capsys, "inspect", "run", "--model", "arm.xml", "--out", "out")
+    assert record["needs"] == []
+    said = {a["output"]: a["input"] for a in record["answers"]}
+    assert said["joint_states.position.elbow"] == "desired.position.elbow"
+    assert (arm / "out" / "log.png").stat().st_size > 1000
+    text = (arm / "robot.toml").read_text()
+    content = tomllib.loads(text)
+    assert content["columns"] == {
+        "shoulder_servo": "desired.position.shoulder", "elbow_servo": "desired.position.elbow",
+        "shoulder_pos": "joint_states.position.shoulder",
+        "elbow_pos": "joint_states.position.elbow",
+    }  # fmt: skip
+    assert "a position servo: its input is a setpoint" in text
+    assert {*content["log"]["units"].values()} == {"deg"}
+    robot = read_robot("robot.toml", "run", trust=["steps"])
+    assert fit(robot).values["joint/elbow.damping"] == pytest.approx(0.4, rel=0.05)
+
+
+def test_no_file_is_replaced(arm, capsys, monkeypatch, tmp_path):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "robot.toml").write_text("mine")
+    said = refused(capsys, "inspect", arm / "run", "--model", arm / "arm.xml")
+    assert "robot.toml exists, and nothing of yours is replaced" in said
+    assert (tmp_path / "robot.toml").read_text() == "mine"
+    run(capsys, "inspect", arm / "run", "--model", arm / "arm.xml", "--robot", "other.toml")
+    assert tomllib.loads((tmp_path / "other.toml").read_text())["outputs"]
+
+
+def test_what_a_fit_will_ask_for_is_told(arm, capsys, monkeypatch, tmp_path):
+    monkeypatch.chdir(tmp_path)
+    log = simulated(ARM.format(damping=0.1), samples=200)
+    log = replace(log, inputs=log.inputs[:, :1], input_names=("shoulder_servo",))
+    write_log(log, tmp_path / "run.csv")
+    xml = ARM.format(damping=0.1)
+    (tmp_path / "arm.xml").write_text(xml[: xml.index("<sensor>")] + "</mujoco>")
+    first, second = run(capsys, "inspect", "run.csv", "--model", "arm.xml")["needs"]
+    assert "no column was found for actuator elbow_servo" in first
+    assert '<jointpos name="shoulder" joint="shoulder"/>' in second
+
+
+def test_text_on_a_terminal(arm, capsys):
+    from identification.__main__ import main
+
+    assert main(["inspect", str(arm / "run")]) == 0
+    text = capsys.readouterr().out
+    assert "500 rows over 4.99 s, one every 0.01 s" in text
+    assert "joint_states.position.elbow answers desired.position.elbow" in text
+    assert "as it would answer the command of a position" in text
+
+
+def test_logs_of_which_nothing_can_be_said_are_refused(tmp_path, refusal):
+    path = tmp_path / "run.csv"
+    path.write_text("volts,angle\n1,2\n2,1\n3,2\n4,2\n")
+    assert "no column that looks like time; it has volts, angle" in refusal(inspect_log, path)
+    path.with_suffix(".toml").write_text("sampling_time = 0.5\n")
+    assert inspect_log(path).step == 0.5
+    (tmp_path / "run.mat").write_bytes(b"")
+    with pytest.raises(InputError, match="no names of columns"):
+        inspect_log(tmp_path / "run.mat")
+
+
+def test_the_keys_are_documented(arm, capsys, monkeypatch, tmp_path):
+    from pathlib import Path
+
+    page = (Path(__file__).parents[2] / "docs" / "json.md").read_text(encoding="utf-8")
+    part = page.split("## inspect\n")[1].split("\n## ")[0]
+    monkeypatch.chdir(tmp_path)
+    record = run(capsys, "inspect", arm / "run", "--model", arm / "arm.xml")
+    keys = {*record, *record["time"], *record["columns"][0], *record["answers"][0]}
+    assert all(f"`{key}`" in part for key in keys)
+    assert json.dumps(record)
