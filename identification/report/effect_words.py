@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterable
 from math import isfinite, isinf, isnan
 from typing import TYPE_CHECKING
@@ -42,6 +43,13 @@ def parameter_words(
 ) -> dict[str, str]:
     """Returns the words of parameters by name, also of effects, whose sizes are told with place."""
     words = {p.name: describe_parameter(p) for p in parameters}
+    count = Counter(words.values())
+    # of an effect that has the same parameter at several joints the joint is told too
+    words |= {
+        name: f"{said}, {place}"
+        for name, said in words.items()
+        if count[said] > 1 and (place := name.partition("@")[2])
+    }
     for effect in effects:
         what = phrase(effect)
         words |= {f"{effect.name}.{shape.name}": f"{shape.name}, {what}" for shape in effect.shapes}

@@ -56,7 +56,7 @@ def horizon_sections(found: Discovery) -> list[Section]:
     if is_far:
         said = " ".join(f"{line[0].upper()}{line[1:]}." for line in forces)
         text.append(f"{said} {FORCES}" if forces else NO_FORCE)
-        if found.verdict == "unknown effect":
+        if found.input_error > found.options.max_input_error:  # more than usual inputs would make
             text.append(TRY)
     plain = [listed_below(f"where {model} fails", [*lines, *rest, *forces])]
     if is_far and not forces:

@@ -38,7 +38,7 @@ RECOVERED = {  # by what errors are of
 }
 NONE = (
     "{effect}: not drawn. It acts at several places at once, or by more than one quantity together,"
-    " so that there is nothing to draw it against. The figures of the gap show what it does."
+    " so that there is nothing to draw it against. The figures of errors show what it does."
 )
 
 

@@ -7,8 +7,7 @@ chosen    by what they explain of fitted windows together, and again about the r
           the set stays the same: far from the truth a linear choice errs
                                                         (`identification.prediction.set_choice`)
 in place  each is the best of what was refitted in its place, beside the others
-proven    each beside the others, and all together; the weakest that is not is left out, until
-          all are, one alone among them
+proven    each beside the others, and all together; the weakest that is not is left out
 """
 
 from __future__ import annotations
@@ -235,9 +234,7 @@ def _criterion(parent: WindowModel, model: WindowModel, key: Key) -> float:
 def _proven(
     state: WindowSearch, model: WindowModel, refits: int, progress: Progress
 ) -> tuple[Contender, ...]:
-    """Returns the members that are proven, each beside the others.
-
-    One may be left: beside the others it was refitted from a better beginning than alone.
+    """Returns the members that are proven, each beside the others; none where fewer than two are.
 
     Args:
         state: the model without them.
@@ -250,7 +247,7 @@ def _proven(
     model = attempt(None, shorter) or model
     while True:
         new = [c.key for c in find_members(model, state.model)]
-        if not new:
+        if len(new) < 2:  # one alone was refused where it competed with curves
             return ()
         parent, (whole,) = at_all_lengths(
             state.model, [model], task.horizon, task.confirm, uses(options, "states_of_others")

@@ -51,7 +51,7 @@ def add_yielding_friction(state: WindowSearch, progress: Progress) -> WindowSear
         return state
     level = refit_level(state.scores, task.options)
     tried = (attempt(s.candidate, partial(_from_largest, state.model, s)) for s in best)
-    found = [s for s in tried if s and is_significant(s, level, task.options)]
+    found = [s for s in tried if s and _is_felt(s) and is_significant(s, level, task.options)]
     watch.stop("scores")
     state = replace(state, seconds=watch.seconds)
     if not found:
@@ -66,6 +66,12 @@ def add_yielding_friction(state: WindowSearch, progress: Progress) -> WindowSear
 
 def _gives(s: WindowScore) -> bool:
     return s.candidate.effect.state == GRIP
+
+
+def _is_felt(s: WindowScore) -> bool:
+    """Returns whether a compliance is larger than what steps of the simulation resolve."""
+    sizes = s.candidate.effect.sizes
+    return bool(np.any(np.abs(s.size) > np.resize([z.smallest for z in sizes], len(s.size))))
 
 
 def _from_largest(model: WindowModel, score: WindowScore) -> WindowScore:
