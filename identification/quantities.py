@@ -15,10 +15,14 @@ from dataclasses import fields, is_dataclass
 from math import ceil, floor, isfinite, log10
 from typing import Any
 
+from identification.shares import decimal
+from identification.shares import fall_words as fall_words
+
 _PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M"}
 _TAKE = ("N", "m", "s", "A", "g", "V", "W", "Hz")  # units that take a prefix where they lead
 _SMALL = ("rad",)  # those that take small ones only: nobody says kiloradian
 _LEAST = 1e-3  # smaller numbers, in units without a prefix, are said as powers of ten
+_SHARE = 1e-5  # a smaller number without unit is no percentage, but a power of ten
 _LARGE = 1e6  # a larger value in a table is a power of ten
 _FINEST = 1e-5  # a smaller std is said as a power of ten
 _MOST = 15  # decimals, beyond which a number of a computer has none
@@ -52,14 +56,6 @@ def plain_fields(value: object, *names: str, **renamed: str) -> dict[str, Any]:
     return {new: plain(getattr(value, old)) for new, old in every.items()}
 
 
-def fall_words(fall: float) -> str:
-    """Returns the relative change of a mean square in words: "falls by 12 %", "rises by 3 %"."""
-    percent = f"{100 * abs(fall):.0f} %"
-    if percent == "0 %":
-        return "stays the same"
-    return f"{'falls' if fall > 0 else 'rises'} by {percent}"
-
-
 def quantity(value: float, std: float = float("nan"), unit: str = "", like: float = 0.0) -> str:
     """Returns a value with its std and unit.
 
@@ -76,12 +72,22 @@ def quantity(value: float, std: float = float("nan"), unit: str = "", like: floa
     largest = max(abs(like), abs(value), std if known else 0.0)
     factor, unit = _scale(largest, unit, exact=std == 0)
     value, std = value / factor, std / factor
+    if unit == "%":
+        return f"{_percentage(value, std if known else 0.0)} %"
     if not known:
         return f"{_plain(value, _DIGITS)} {unit}".strip()
     places = min(max(0, _shared(value, std)), _MOST)
     if std < _FINEST:
         return f"{value:z.{places}f} ± {std:.1e} {unit}".strip()
     return f"{value:z.{places}f} ± {std:.{places}f} {unit}".strip()
+
+
+def _percentage(value: float, std: float) -> str:
+    """Returns a percentage, and its std where it is no zero in decimals; no powers of ten."""
+    if std < 10.0**-_MOST:
+        return decimal(value, _DIGITS) if abs(value) < _LEAST else _plain(value, _DIGITS)
+    places = min(max(0, _shared(value, std)), _MOST)
+    return f"{value:z.{places}f} ± {std:.{places}f}"
 
 
 def matched(value: float, std: float, sign: str = "") -> tuple[str, str]:
@@ -160,7 +166,8 @@ def _scale(magnitude: float, unit: str, exact: bool) -> tuple[float, str]:
     """Returns the unit for a magnitude, as a factor to the old unit, and its name."""
     unit = plain_unit(unit)
     if not unit:
-        return (0.01, "%") if magnitude < 1 and not exact else (1.0, "")
+        is_share = magnitude == 0 or _SHARE <= magnitude < 1
+        return (0.01, "%") if is_share and not exact else (1.0, "")
     lead, rest = _lead(unit)
     base = 1.0
     if lead == "kg":

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from identification.errors import InputError
+from identification.shares import ratio_of
 
 FloatArray = NDArray[np.float64]
 
@@ -124,7 +125,8 @@ def _check_even(time: FloatArray, place: Callable[[int], str], declared: float |
             f" {time[jump]:.9g} s where the step is {usual:.6g} s; cut the log there"
         )
     row = int(np.argmax(off))
-    size = f"{off[row]:.3g} s, {100 * off[row] / step:.2g} % of the {step:.6g} s step,"
+    share = ratio_of(float(off[row] / step), f"the {step:.6g} s step")
+    size = f"{off[row]:.3g} s, {share},"
     if declared:
         raise InputError(
             f"{place(row)}: time is {size} away from what sampling_time says; "

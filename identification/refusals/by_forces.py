@@ -27,6 +27,7 @@ from identification.refusals.balance import Freedom, unbalanced_share
 from identification.refusals.columns import Doubt, factor_readings, turned_units, unit_readings
 from identification.refusals.readings import EXPLAINED, NEARER, UNEXPLAINED, Reading
 from identification.refusals.turned_inputs import with_turned_ranges
+from identification.shares import percent
 
 FREEDOM = Freedom(has_springs=True)
 WIDER = (1, 2, 4)  # times ψ; a fourfold one has 32 times less noise in its accelerations
@@ -118,7 +119,7 @@ def rescaled(
     times = held(float(np.sqrt(own.max())))
     return reading, (
         f"needs forces {times} times those of the drives for this motion, whatever"
-        f" payload and friction it has, and explains {100 * (1 - left.max()):.0f} % of them"
+        f" payload and friction it has, and explains {percent(1 - float(left.max()))} of them"
         f" {reading.said}; {reading.cure} (where the outputs are right, the inputs are in a larger"
         " unit: write that of the inputs)"
     )

@@ -33,6 +33,7 @@ from identification.refusals.judge import lengths_of, unexplained
 from identification.refusals.readings import NEARER
 from identification.refusals.trust import Robot
 from identification.refusals.unmeasured import felt_trees
+from identification.shares import percent
 
 LISTED = 3  # pairs that a sentence lists
 FAR_BETTER = "and without this touch the model explains what was measured far better"
@@ -155,7 +156,7 @@ def touch_sentence(
     """Returns a sentence on what touches along logs, "" for nothing, and if they contradict it."""
     if not touches:
         return ""
-    shares = " and ".join(dict.fromkeys(_percent(touch.share) for touch in touches[:LISTED]))
+    shares = " and ".join(dict.fromkeys(percent(touch.share) for touch in touches[:LISTED]))
     more = f", {FAR_BETTER}" if contradicted else ""
     return (
         f"In the model {_who(robot, touches)} in {shares} of the states of {_where(logs)} that were"
@@ -182,13 +183,6 @@ def _is_fitted(robot: Robot, touch: Touch) -> bool:
     things = [path.removeprefix("geom/").rpartition(".")[0] for path in paths
               if path.startswith("geom/")]  # fmt: skip
     return any(fnmatchcase(name, thing) for name in names for thing in things)
-
-
-def _percent(share: float) -> str:
-    """Returns a share of states in words, which is neither none nor all unless it truly is."""
-    if 0.995 <= share < 1:
-        return "nearly all"
-    return f"{100 * share:.0f} %" if share >= 0.005 else "less than 1 %"
 
 
 def _who(robot: Robot, touches: Sequence[Touch]) -> str:

@@ -20,10 +20,12 @@ from identification.report.named_words import named_sentences
 from identification.report.parts_words import is_untouched
 from identification.report.shown_words import SHOWN, hiding, smallest, split_detectable
 from identification.report.untold_words import bound_sentences
+from identification.shares import HELD, change, decimal, fall_words, percent, ratio_of, times
 from identification.shown import verdict_of
 
 NOT_FITTED = "the fit has not seen, but on which the search has decided"
 NO_ERROR = 1e-3  # of the inputs' rms: less is not told from none
+ALMOST = 0.999  # more than 99 %, and not all
 NOISIER = 1.5  # times the rms noise of the other outputs of its unit: more is told
 
 
@@ -68,7 +70,7 @@ def _noisier(found: Discovery) -> list[str]:
         if noise > NOISIER * rms > 0:
             size = quantity(noise, unit=unit)
             out.append(
-                f"The noise of {name} is {size}, {noise / rms:.2g} times that of the other outputs"
+                f"The noise of {name} is {size}, {times(noise / rms)} that of the other outputs"
                 " of its unit."
             )
     return out
@@ -125,7 +127,7 @@ def _either(found: Discovery) -> str:
     if not isfinite(found.input_error):
         return "No input moves that could err: something is missing that no candidate explains."
     return (
-        f"Either the inputs err by {100 * found.input_error:.2g} % of their rms, or something is"
+        f"Either the inputs err by {ratio_of(found.input_error, 'their rms')}, or something is"
         " missing that no candidate explains."
     )
 
@@ -138,11 +140,11 @@ def _rest(found: Discovery, alone: str) -> str:
             return " The sensors alone would make it."
         if not isfinite(found.input_error):
             return ""
-        percent = f"{100 * found.input_error:.2g}"
-        return f" Inputs that err by {percent} % of their rms would make the rest."
+        size = ratio_of(found.input_error, "their rms")
+        return f" Inputs that err by {size} would make the rest."
     if not found.floor_rms > found.noise_rms:
         return ""
-    lasts = f"for {unlogged.time:.2g} s at a time"
+    lasts = f"for {decimal(unlogged.time, HELD)} s at a time"
     if not unlogged.is_of_inputs:
         return (
             f" The sensors alone make {alone}; the rest is what unlogged forces on the joints do,"
@@ -163,8 +165,8 @@ def _unknown(found: Discovery) -> str:
     times = f", {held(ratio)} times the {noise} that the sensors make" if isfinite(ratio) else ""
     needed = ""
     if found.unlogged is None and 0 < found.input_error < inf:
-        percent = f"{100 * found.input_error:.2g}"
-        needed = f"; inputs would have to err by {percent} % of their rms to make that"
+        size = ratio_of(found.input_error, "their rms")
+        needed = f"; inputs would have to err by {size} to make that"
     return " ".join(
         [
             f"Something is missing that none of the {tried} known effects surely explains: the"
@@ -201,36 +203,33 @@ def _nearest(found: Discovery) -> list[str]:
     if (nearest := found.nearest) is None:
         return []
     told = nearest.proof.told
-    fall = 100 * told.fall
-    turn = f"{'falls' if fall >= 0 else 'rises'} by {abs(fall):.2g} %"
     return [
         f"Nearest comes {describe_effect(nearest.candidate)}: it predicts each next unseen sample"
         f" better ({describe_chance(told)}), and with it the mean square of the free run"
-        f" {turn}. It is too small to matter, or not the likeliest."
+        f" {fall_words(told.fall, HELD)}. It is too small to matter, or not the likeliest."
     ]
 
 
 def _proof(found: Discovery) -> str:
     """Returns sentences on how far the error on unseen data falls, beside the noise."""
     errors = found.errors_of(found.before), found.errors_of(found.after)
-    change, (noise, own) = change_words(*errors, [found.floor, found.sensors])
+    moved, (noise, own) = change_words(*errors, [found.floor, found.sensors])
     whom = "it" if len(found.named) == 1 else "them"
     rest = f", of which sensors make {own} and unlogged errors of the inputs the rest"
     made = rest if found.floor_rms > found.noise_rms else ""
     of = found.over and f" of prediction{found.over}"
     square = (found.after.rms / found.before.rms) ** 2 - 1 if found.before.rms > 0 else 0.0
     is_one = found.scale is not None or len(errors[0]) == 1  # else the square has no meaning
-    nearly_all = "less by more than 99" if square < -0.995 else f"{100 * square:+z.0f}"
-    percent = f" (mean square {nearly_all} %)" if is_one else ""
+    changed = f" (mean square {change(square)})" if is_one else ""
     data = "neither the fit nor the search has used" if is_untouched(found) else NOT_FITTED
     said = (
-        f"On data that {data}, the error{of} falls {change} with {whom} in the"
-        f" model{percent}; the noise is {noise}{made}."
+        f"On data that {data}, the error{of} falls {moved} with {whom} in the"
+        f" model{changed}; the noise is {noise}{made}."
     )
     if found.share is not None:
-        nearly = found.share > 0.995 and found.times_noise(found.after) > 1
-        closed = "more than 99" if nearly else f"{100 * found.share:z.0f}"
-        said += f" That is {closed} % of the power that was above the noise."
+        # Of outputs of several units one may be above its noise while the sum of all is not.
+        share = min(found.share, ALMOST) if found.times_noise(found.after) > 1 else found.share
+        said += f" That is {percent(share)} of the power that was above the noise."
     return f"{said}{_smooth(found)}"
 
 
@@ -240,8 +239,7 @@ def _smooth(found: Discovery) -> str:
         return ""
     is_one, share = len(found.named) == 1, found.smooth_share
     who, whom = ("This effect explains", "it") if is_one else ("These effects explain", "they")
-    explained = "more than 99" if share > 0.99 else f"{100 * share:.0f}"
     return (
-        f" {who} {explained} % of what {whom} and any smooth forces of rate, position, drive and"
+        f" {who} {percent(share)} of what {whom} and any smooth forces of rate, position, drive and"
         " time at the joints could explain together."
     )

@@ -19,6 +19,7 @@ from identification.report.effect_words import (
 from identification.report.finding_words import sentence
 from identification.report.named_words import SHOWN, diff_line
 from identification.report.page import Section, Table
+from identification.shares import percent
 
 BEST, LISTED = 10, 6  # candidates with the best scores, in a figure and in a list
 MANY = 8  # lines on what failed; of more the count is told
@@ -51,7 +52,7 @@ def added_section(found: Discovery, files: str = "") -> Section:
         effect = describe_there(named.candidate, found.final.plant)
         law, gains = named.candidate.effect.law, describe_gains(named)
         for k, (name, (value, std, unit)) in enumerate(named.parameters.items()):
-            once = (f"+ {effect}", f"{100 * named.confidence:.0f} %", law)
+            once = (f"+ {effect}", percent(named.confidence), law)
             rows.append((name, quantity(value, std, unit), *(once if k == 0 else ("",) * 3)))
         proofs.append(sentence(f"{effect}: {gains}"))
         lines += [diff_line(found, named), f"    law: {law}", f"    {gains}"]
@@ -59,7 +60,7 @@ def added_section(found: Discovery, files: str = "") -> Section:
         if other is not None and other.confidence >= SHOWN:
             lines.append(
                 f"    no effect, but {words[other.parameter]} {other.distance:+z.2g} std from what"
-                f" was known: confidence {100 * other.confidence:.0f} %"
+                f" was known: confidence {percent(other.confidence)}"
             )
     return Section(
         title,
@@ -73,7 +74,7 @@ def rivals_section(found: Discovery) -> Section:
     """Returns the section on all candidates: what each would explain, and rivals of the named."""
     (text, axis, caption), best = MEASURES[found.scored_by], best_scores(found)
     rows = tuple(
-        (describe_effect(r.candidate), f"{100 * r.confidence:.0f} %",
+        (describe_effect(r.candidate), percent(r.confidence),
          describe_effect(n.candidate), r.alike)
         for n in found.named
         for r in n.rivals
@@ -118,7 +119,7 @@ def describe_score(found: Discovery, score: Scored) -> str:
     """Returns in words what a candidate would explain, before it is fitted."""
     value = f"gain {score.explains:z.3g}"
     if found.scored_by == "fall":
-        value = f"{100 * score.explains:z.0f} % of the fitted error"
+        value = f"{percent(score.explains)} of the fitted error"
     effect = describe_there(score.candidate, found.final.plant)
     return f"{effect}: {value}, chance {score.p_value:.2g}"
 

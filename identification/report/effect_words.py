@@ -9,6 +9,7 @@ from math import isfinite, isinf, isnan
 from typing import TYPE_CHECKING
 
 from identification.quantities import probability, quantity
+from identification.shares import fall_words, percent
 
 if TYPE_CHECKING:  # a search is slow to import, and a page may tell of a model alone
     from identification.discovery.effect_results import (
@@ -178,7 +179,6 @@ def describe_rejected(found: Discovery) -> tuple[str, list[str]]:
 def _rejected(rejected: RejectedEffect, plant: Plant) -> str:
     """Returns a rejected effect with its sizes, what it would do, and what is against it."""
     proof, outside, fall = rejected.proof, rejected.outside, rejected.proof.told.fall
-    turn = "falls" if fall >= 0 else "rises"
     doubt = f"; {DOUBTS[rejected.doubt]}" if rejected.doubt else ""
     if rejected.doubt == "differ" and proof.disagrees:
         doubt += f" (worse: {', '.join(proof.disagrees)})"
@@ -186,7 +186,7 @@ def _rejected(rejected: RejectedEffect, plant: Plant) -> str:
     return (
         f"{describe_there(rejected.candidate, plant)}: {describe_sizes(rejected)};"
         f" {_fitted(rejected)}; on unseen data {describe_chance(proof)}; {_where_told(proof)} the"
-        f" mean square {turn} by {100 * abs(fall):.3g} %{doubt}{instead}"
+        f" mean square {fall_words(fall, 3)}{doubt}{instead}"
     )
 
 
@@ -220,5 +220,5 @@ def describe_outside(outside: Outside) -> str:
     link = "at" if outside.along == "time" else "of"
     return (
         f"some force that follows the {outside.along} {link} {outside.where}, by a law that is in"
-        f" no catalogue ({100 * outside.confidence:.0f} %)"
+        f" no catalogue ({percent(outside.confidence)})"
     )

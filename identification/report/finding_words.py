@@ -16,6 +16,7 @@ from identification.report.effect_words import (
     describe_sizes,
     without_colon,
 )
+from identification.shares import HELD, change, decimal, fall_words, percent, ratio_of, times
 
 HOLDS = {"foh": "ran in straight lines between their samples", "zoh": "kept each sample's value"}
 FOLLOWED = {  # by an error of the inputs: keys of `input_error.list_families`
@@ -51,13 +52,13 @@ def sentence(clause: str) -> str:
 def _worst_output(e: evidence.WorstOutput) -> str:
     return (
         f"on the fitted samples the error is largest on {e.output}: {quantity(e.rms, unit=e.unit)}"
-        f" rms, {100 * e.share:.0f} % of the power over all outputs, {e.noise_ratio:.1f} times the"
+        f" rms, {percent(e.share)} of the power over all outputs, {e.noise_ratio:.1f} times the"
         " sensors' noise"
     )
 
 
 def _worst_interval(e: evidence.WorstInterval) -> str:
-    return f"it is largest from {e.start:.1f} to {e.end:.1f} s ({100 * e.share:.0f} % of its power)"
+    return f"it is largest from {e.start:.1f} to {e.end:.1f} s ({percent(e.share)} of its power)"
 
 
 def _median_frequency(e: evidence.MedianFrequency) -> str:
@@ -66,12 +67,10 @@ def _median_frequency(e: evidence.MedianFrequency) -> str:
 
 def _missing_force(e: evidence.ForceEvidence) -> str:
     sizes = " and ".join(f"{rms:.2g} {unit}" for rms, unit in zip(e.rms, e.units, strict=True))
-    said = (
-        f"generalised forces of {sizes} rms on {e.where} would explain {100 * e.share:.0f} % of it"
-    )
+    said = f"generalised forces of {sizes} rms on {e.where} would explain {percent(e.share)} of it"
     if e.regressor is None:
         return said
-    follows = f"{100 * e.regressor_share:.0f} % of their power follows {REGRESSORS[e.regressor]}"
+    follows = f"{percent(e.regressor_share)} of their power follows {REGRESSORS[e.regressor]}"
     return f"{said}, and {follows}"
 
 
@@ -92,7 +91,7 @@ def _spectral_line(e: evidence.SpectralLine) -> str:
 
 def _correlated_innovations(e: evidence.CorrelatedInnovations) -> str:
     return (
-        f"the innovations are not white: {100 * e.share:.0f} % of their power follows from the"
+        f"the innovations are not white: {percent(e.share)} of their power follows from the"
         f" samples before (chance {probability(e.p_value)})"
     )
 
@@ -106,16 +105,16 @@ def _parameters_at_limit(e: evidence.ParametersAtLimit) -> str:
 def _large_input_error(e: evidence.LargeInputError) -> str:
     return (
         f"the inputs would have to err by {quantity(e.rms, unit=e.unit)} rms beside what the log"
-        f" says, {100 * e.share:.0f} % of their own motion, for {e.correlation_time:.2g} s at a"
-        " time"
+        f" says, {ratio_of(e.share, 'their own motion')}, for"
+        f" {decimal(e.correlation_time, HELD)} s at a time"
     )
 
 
 def _robot_change(e: evidence.RobotChange) -> str:
     return (
-        f"from about {e.time:.3g} s on the unseen samples are predicted worse than the fitted ones,"
-        f" with errors {e.ratio:.3g} times as large one sample ahead: the robot changed, or it does"
-        " there what the fitted samples never show"
+        f"from about {decimal(e.time, 3)} s on the unseen samples are predicted worse than the"
+        f" fitted ones, with errors {times(e.ratio)} as large one sample ahead: the robot changed,"
+        " or it does there what the fitted samples never show"
     )
 
 
@@ -123,7 +122,7 @@ def _structured_input_error(e: evidence.StructuredInputError) -> str:
     return (
         f"an unlogged error of the inputs, {quantity(e.rms, unit=e.unit)} rms, is not random:"
         f" it follows {FOLLOWED[e.regressor]}, most of all on {e.input}, and with it the mean"
-        f" square on unseen data is {100 * e.fall:z.0f} % less"
+        f" square on unseen data {fall_words(e.fall)}"
     )
 
 
@@ -131,7 +130,7 @@ def _doubtful_effect(e: evidence.DoubtfulEffect) -> str:
     r, told = e.rejected, e.rejected.proof.told
     return (
         f"{describe_effect(r.candidate)}, {describe_sizes(r)}, explains the fitted samples"
-        f" beyond chance and {100 * told.fall:z.0f} % of the error on unseen data, but is not"
+        f" beyond chance and {percent(told.fall)} of the error on unseen data, but is not"
         f" proven there ({describe_chance(r.proof)})"
     )
 
@@ -152,7 +151,7 @@ def _oversized_effect(e: evidence.OversizedEffect) -> str:
 
 def _different_record(e: records_evidence.DifferentRecord) -> str:
     return (
-        f"record {e.record} is predicted {e.ratio:.2g} times worse than the others (rms of windows,"
+        f"record {e.record} is predicted {times(e.ratio)} worse than the others (rms of windows,"
         " geometric means): something is different in it; look at it, or leave it out"
     )
 
@@ -160,7 +159,7 @@ def _different_record(e: records_evidence.DifferentRecord) -> str:
 def _shifted_record(e: records_evidence.ShiftedRecord) -> str:
     return (
         f"record {e.record} looks as if its inputs acted {describe_shift(e)} than their time stamps"
-        f" say, which takes {100 * e.fall:z.0f} % off its mean square; check how it was logged, and"
+        f" say, which takes {percent(e.fall)} off its mean square; check how it was logged, and"
         " shift its inputs if that is so"
     )
 
@@ -173,7 +172,7 @@ def describe_shift(e: records_evidence.ShiftedRecord) -> str:
 def _worse_fit(e: records_evidence.WorseFit) -> str:
     return (
         "without effects the fitted values predicted unseen data worse than those of the model"
-        f" (mean square {100 * e.rise:+z.0f} %), so that the search began with the latter"
+        f" (mean square {change(e.rise)}), so that the search began with the latter"
     )
 
 
@@ -181,7 +180,7 @@ def _remaining_error(e: records_evidence.RemainingError) -> str:
     of = f" of {e.output}" if e.output else ""
     noise = "its sensor's noise" if e.output else "the sensors' noise"
     return (
-        f"an error{of} on unseen data that is {e.noise_ratio:.3g} times {noise} is left, and no"
+        f"an error{of} on unseen data that is {times(e.noise_ratio)} {noise} is left, and no"
         " candidate explains it"
     )
 
@@ -189,7 +188,7 @@ def _remaining_error(e: records_evidence.RemainingError) -> str:
 def _unproven_effect(e: records_evidence.UnprovenEffect) -> str:
     return (
         f"{without_colon(e.phrase)}, {e.where}, predicts unseen data better on average (mean"
-        f" square {-100 * e.fall:+z.0f} %, t = {e.t:z.1f}), but is not"
+        f" square {change(-e.fall)}, t = {e.t:z.1f}), but is not"
         f" {'believed' if e.doubt in IMPOSSIBLE else 'proven'}: {DOUBTS[e.doubt]}"
     )
 

@@ -16,6 +16,7 @@ from identification.report.horizon_gap import (
     OutputError,
     find_gap,
 )
+from identification.shares import percent
 
 
 def output_line(o: OutputError) -> str:
@@ -52,7 +53,7 @@ def force_line(needed: NeededForce) -> str:
     """Returns what a force at a joint would explain, and where it would be largest."""
     return (
         f"a force on {needed.nodes.joint} over the {needed.nodes.reads} would take away"
-        f" {100 * needed.fall:.0f} % of the fitted error; it would be largest at {_largest(needed)}"
+        f" {percent(needed.fall)} of the fitted error; it would be largest at {_largest(needed)}"
     )
 
 
@@ -74,5 +75,5 @@ def needed_sentences(found: Discovery) -> list[str]:
     first = gap.forces[0]
     return [
         f"It looks like a force {each}: that on {first.nodes.joint} would take away"
-        f" {100 * first.fall:.0f} % of the fitted error and be largest at {_largest(first)}."
+        f" {percent(first.fall)} of the fitted error and be largest at {_largest(first)}."
     ]

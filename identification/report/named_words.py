@@ -23,6 +23,7 @@ from identification.report.effect_words import (
     words_of,
 )
 from identification.report.error_words import listed
+from identification.shares import percent
 
 # The longer ones first: the end of one is another.
 READS = ("speed_before", "speed_behind", "before", "behind", "position", "speed", "load", "time")
@@ -120,19 +121,19 @@ def _named(found: Discovery, named: NamedEffect) -> str:
     least = NEAR * own if is_set else SHOWN
     rivals = [r for r in named.rivals if r.confidence >= least] or [*named.rivals[:is_set]]
     others = [
-        f"{describe_there(r.candidate, plant)} ({100 * r.confidence:.0f} %)" for r in rivals
+        f"{describe_there(r.candidate, plant)} ({percent(r.confidence)})" for r in rivals
     ]  # fmt: skip
     if is_set:
         total = own + sum(r.confidence for r in rivals)
         return (
             f"{first} is one of these, which the data do not surely tell apart:"
-            f" {'; '.join([f'{mine} ({100 * own:.0f} %)', *others])}; together {_percent(total)}."
+            f" {'; '.join([f'{mine} ({percent(own)})', *others])}; together {percent(total)}."
             f" The first is put into the model: {describe_sizes(named)}."
             + (f" {named.advice}" if named.advice else "")
         )
     less = f" Less likely: {'; '.join(others)}." if others else ""
     return (
-        f"{first}: {mine}, {describe_sizes(named)}; confidence {100 * own:.0f} %"
+        f"{first}: {mine}, {describe_sizes(named)}; confidence {percent(own)}"
         f"{_compared(found, named)}.{less}"
     )
 
@@ -168,7 +169,7 @@ def _retuned(found: Discovery, named: NamedEffect) -> str:
         return ""
     what = words_of(found)[other.parameter]
     return (
-        f" Or it is no effect ({100 * other.confidence:.0f} %): with {what}"
+        f" Or it is no effect ({percent(other.confidence)}): with {what}"
         f" {abs(other.distance):.2g} std {'above' if other.distance > 0 else 'below'} what was said"
         " to be known of it, the model explains the same. Measure it, or record another motion."
     )
@@ -202,8 +203,3 @@ def _agreement(found: Discovery, named: NamedEffect) -> str:
     if worse := named.proof.told.disagrees:
         said += f" It raises the error on {', '.join(worse)}, beyond chance."
     return said
-
-
-def _percent(chance: float) -> str:
-    """Returns a probability in percent; rounding makes no certainty of it."""
-    return "more than 99 %" if chance > 0.995 else f"{100 * chance:.0f} %"

@@ -13,6 +13,7 @@ from math import inf, isfinite
 from identification.discovery.effect_results import Detectable, Hidden
 from identification.quantities import quantity
 from identification.report.effect_words import describe_effect
+from identification.shares import percent
 
 SHOWN = 4  # of the effects that a log would have shown, or that its noise hides, so many are listed
 SHARE = 0.1  # of the inputs' error, by power: an effect that would be less of it has no share told
@@ -107,7 +108,7 @@ def sized(value: float, unit: str) -> str:
     """Returns a size in words; without a unit it is a share, in percent also from 1 on."""
     if not isfinite(value):
         return "–"
-    return quantity(value, unit=unit) if unit else f"{100 * value:.3g} %"
+    return quantity(value, unit=unit) if unit else percent(value, 3)
 
 
 def _more(seen: Sequence[Shown]) -> list[str]:
@@ -117,7 +118,7 @@ def _more(seen: Sequence[Shown]) -> list[str]:
     count, share = len(seen) - LISTED, seen[LISTED].share
     who = "1 more effect, which shows" if count == 1 else f"{count} more effects, which show"
     return [
-        f"and {who} from {100 * share:.2g} % of the largest plausible size on, or less; report and"
+        f"and {who} from {percent(share, 2)} of the largest plausible size on, or less; report and"
         " JSON list all"
     ]
 
@@ -135,7 +136,7 @@ def hiding(hidden: Sequence[Hidden]) -> str:
 
 def _describe(h: Hidden) -> str:
     sizes = ", ".join(f"{n} {quantity(most, unit=unit)}" for n, (_, most, unit) in h.sizes.items())
-    taken = f" (it would be {100 * h.taken:.0f} % of what passes for errors of the inputs)"
+    taken = f" (it would be {percent(h.taken)} of what passes for errors of the inputs)"
     return f"{describe_effect(h.candidate)}, {sizes}{taken if h.taken >= SHARE else ''}"
 
 

@@ -12,6 +12,7 @@ from identification.estimation.scaling_symmetry import ScalingSymmetry
 from identification.model.parameter import Parameter
 from identification.quantities import matched
 from identification.report.effect_words import parameter_words
+from identification.shares import percent
 
 if TYPE_CHECKING:
     from identification.estimation.fit import Fit
@@ -97,7 +98,7 @@ def unresolved_words(found: Identifiability) -> str:
     names = [n for n, m in zip(found.names, moved, strict=True) if m]
     share = np.where(moved, found.errors / np.where(found.norms > 0, found.norms, np.inf), 0.0)
     worst = np.argsort(-share)[: min(3, len(names))]
-    errors = ", ".join(f"{_percent(share[i])} for {found.names[i]}" for i in worst)
+    errors = ", ".join(f"{percent(float(share[i]), 2)} for {found.names[i]}" for i in worst)
     listed = " and ".join(filter(None, [", ".join(names[:-1]), *names[-1:]]))
     said = (
         f" lost in the errors of the sensitivities ({errors}), so that {listed}"
@@ -153,7 +154,3 @@ def cure(names: Sequence[str]) -> str:
     if len(names) == 1:
         return "Fix it, or record a motion that tells more of it."
     return "Fix one of them, or record a motion that tells more of them."
-
-
-def _percent(share: float) -> str:
-    return f"{100 * share:.0f} %" if share > 0.1 else f"{100 * share:.2g} %"

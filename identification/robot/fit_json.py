@@ -20,6 +20,7 @@ from identification.robot.free_swing import impossible_sentence
 from identification.robot.reading import doubtful
 from identification.robot.record_error import Confirmation, find_repetitions
 from identification.robot.robot_fit import RobotFit
+from identification.shares import change
 
 LEAST = 0.01  # rise of the mean square that is told; the noise of a right fit makes less
 LEAST_OF_UNIT = 0.1  # rise of the mean square of one unit that is told
@@ -60,7 +61,7 @@ def no_better(result: RobotFit, confirmed: Sequence[Confirmation]) -> list[str]:
         return worse_unit(confirmed)
     return [
         "The fitted values predict what was not fitted worse than the values with which the fit"
-        f" began (mean square {100 * rise:+z.0f} %). This may be chance, but it does not confirm"
+        f" began (mean square {change(rise)}). This may be chance, but it does not confirm"
         " the fitted values: fit a longer log, or more logs, before you use them.",
         *worse_unit(confirmed),
     ]
@@ -103,7 +104,7 @@ def _squares(each: Sequence[Mapping[str, float]]) -> dict[str, float]:
 
 def _told(rises: Mapping[str, float]) -> str:
     """Returns the outputs with the change of their mean square, in words."""
-    return listed([f"the {kind(u)} (mean square {100 * r:+z.0f} %)" for u, r in rises.items()])
+    return listed([f"the {kind(u)} (mean square {change(r)})" for u, r in rises.items()])
 
 
 def _far(parameters: Mapping[str, Mapping[str, Any]]) -> list[str]:

@@ -35,6 +35,7 @@ from identification.robot.start import (
     unused_sentence,
 )
 from identification.robot.step_error import refuse_coarse_steps
+from identification.shares import percent
 
 LEAST = 0.01  # of an input's rms: less is cut off by the noise of a measured input at its limit
 
@@ -106,7 +107,7 @@ def clipped_sentence(model: mujoco.MjModel, log: Log) -> str | None:
             share = float(np.linalg.norm(off) / np.linalg.norm(u))
             unit = log.units.get(name, "")
             farthest = float(u[np.argmax(np.abs(off))])
-            part = f"{100 * np.mean(off != 0):.0f} %"
+            part = percent(float(np.mean(off != 0)))
             worst = (
                 f"Of the samples of {name!r} in log {log.name!r}, {part} lie beyond the"
                 f" actuator's ctrlrange {low:g} to {high:g}, such as"

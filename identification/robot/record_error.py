@@ -15,6 +15,7 @@ from identification.logs.joined import REPLAYED, replayed_share
 from identification.quantities import alike
 from identification.report.error_words import error_words, kind, listed
 from identification.robot.robot import Robot
+from identification.shares import change, percent
 
 AS_WRITTEN, FITTED = "with the values of the robot's file", "with those that were fitted"
 
@@ -66,7 +67,7 @@ def of_record(error: RecordError, unit: str, models: tuple[str, str]) -> Confirm
 
 def _change(before: float, after: float) -> str:
     """Returns the change of the mean square in words."""
-    return f"{100 * ((after / before) ** 2 - 1) if before else 0.0:+z.0f} %"
+    return change((after / before) ** 2 - 1 if before else 0.0)
 
 
 @dataclass(frozen=True)
@@ -79,7 +80,7 @@ class Repetition:
     def __str__(self) -> str:
         return (
             f"{self.log} repeats what was fitted: a replay of the fitted samples, without any"
-            f" model, explains {100 * self.share:.0f} % of it, so it confirms less; confirm on"
+            f" model, explains {percent(self.share)} of it, so it confirms less; confirm on"
             " another motion."
         )
 

@@ -35,6 +35,7 @@ import numpy as np
 from identification import Log
 from identification.logs.units import UNITS
 from identification.refusals.readings import Reading
+from identification.shares import percent
 from inca_mj.refusals.agreement import (
     angles_under,
     assigned,
@@ -156,7 +157,7 @@ def _nearest(
 
 
 def _percent(γ: float) -> str:
-    return f"{100 * max(0.0, 1 - γ):.0f} %"
+    return percent(max(0.0, 1 - γ))
 
 
 def _followed(plant: Twin, longer: Log, predicted: np.ndarray) -> Iterator[np.ndarray]:

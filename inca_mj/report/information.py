@@ -10,6 +10,7 @@ from identification.estimation.information import Information, determinable
 from identification.quantities import plain
 from identification.report.page import Section, Table
 from identification.report.untold_words import unresolved_words, untold
+from identification.shares import HELD, percent
 
 if TYPE_CHECKING:
     from inca_mj.workflows.excitation import Design, Tried
@@ -60,7 +61,8 @@ def lost_sentences(found: Information) -> list[str]:
 
 
 def _amount(found: Information, i: int) -> str:
-    return f"{100 * found.std[i]:.2g} %" if found.logarithmic[i] else f"{found.std[i]:.2g} SI units"
+    std = float(found.std[i])
+    return percent(std, HELD) if found.logarithmic[i] else f"{std:.2g} SI units"
 
 
 def information_json(found: Information) -> dict[str, Any]:

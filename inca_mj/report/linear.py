@@ -18,6 +18,7 @@ from identification.report.linear import (
 )
 from identification.report.page import Section, Table
 from identification.report.style import GREY, INK, MEASURED, SERIES, SIMULATED, styled
+from identification.shares import HELD, percent
 from inca_mj.kinematics.rotations import rotation
 from inca_mj.linear.accuracy import InterpolationError, RunError
 from inca_mj.linear.linearization import LinearModel
@@ -197,11 +198,11 @@ def grid_sentences(
     ]
     for run in runs:
         left = "the model leaves the grid" if run.scheduled != run.scheduled else (
-            f"the scheduled model misses {100 * run.scheduled:.2g} % of the angles' motion"
+            f"the scheduled model misses {percent(run.scheduled, HELD)} of the angles' motion"
         )  # fmt: skip
         said.append(
             f"Under a PRBS of ±{run.amplitude:g} A about a held point {left}, the linearisation at"
-            f" the start {100 * run.fixed:.2g} %."
+            f" the start {percent(run.fixed, HELD)}."
         )
     return said
 

@@ -12,6 +12,7 @@ from identification.files import write_text
 from identification.quantities import plain, plain_fields
 from identification.report.page import Section, Table
 from identification.report.style import GREY, INK, SERIES, styled
+from identification.shares import percent
 from inca_mj.kinematics.cables import Cables
 from inca_mj.kinematics.jacobians import condition, jacobian, rank
 from inca_mj.robot.geometry import Geometry
@@ -115,11 +116,11 @@ def poses_verdict(found: LogPoses) -> list[str]:
         )
     against = _measured(found)
     if against is not None:
-        inside = 100 * np.mean(against["inside_95"])
+        inside = percent(float(np.mean(against["inside_95"])))
         rms = np.array(against["rms"])
         said.append(
             f"Against the pose in the log the rms error is {1e6 * rms[:3].max():.0f} µm and"
-            f" {1e3 * rms[3:].max():.2f} mrad at the worst axis; {inside:.0f} % of the errors lie"
+            f" {1e3 * rms[3:].max():.2f} mrad at the worst axis; {inside} of the errors lie"
             " within the 95 % intervals."
         )
     if np.allclose(found.std, found.noise_std):

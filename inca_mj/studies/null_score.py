@@ -19,6 +19,7 @@ import numpy as np
 
 from identification.errors import refuse_negative
 from identification.report.page import Section, Table
+from identification.shares import percent
 from identification.sweep.method import Column, Findings, Method, Record, Seed
 from identification.sweep.settings import file_setting, setting
 from identification.sweep.statistics import said, wilson
@@ -126,7 +127,7 @@ def null_findings(records: Sequence[Record]) -> Findings:
         found["coloured" if coloured else "white"] = {
             "a_false_name": false, "below_5_percent": below, "names": dict(names.most_common()),
         }  # fmt: skip
-        rows.append((words, said(false), f"{100 * below:.2g} %",
+        rows.append((words, said(false), percent(below, 2),
                      ", ".join(f"{n} ({k})" for n, k in names.most_common(8))))  # fmt: skip
     head = ("noise", "a false name", "scores below p = 5 %", "names")
     sentences = [f"{row[0]}: a false name in {row[1]}." for row in rows]

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from identification.errors import InputError
+from identification.shares import percent
 from inca_mj.robot.geometry import DRIVES
 from inca_mj.twin.run import Run
 
@@ -110,7 +111,7 @@ def _slack(run: Run) -> tuple[str, ...]:
         return ()
     cables = ", ".join(str(k + 1) for k in range(DRIVES) if slack[k] > 0)
     return (
-        f"Slack for a part of the run: cable {cables} (the longest {100 * slack.max():.0f} % of"
+        f"Slack for a part of the run: cable {cables} (the longest {percent(float(slack.max()))} of"
         " it). A slack cable holds nothing, and winds up loosely on a real drum.",
     )
 

@@ -6,8 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from identification import Experiment, Information, Log, noise_floor
-from identification.estimation.experiment import information
+from identification import Log, noise_floor
+from identification.estimation.experiment import Experiment, information
+from identification.estimation.information import Information
 from identification.model.parameter import ParameterSet
 from inca_mj.robot.geometry import INCA, Geometry
 from inca_mj.robot.inputs import make_input

@@ -10,7 +10,8 @@ from scipy import stats
 from scipy.signal import lfilter
 from scipy.stats import chi2, kstest
 
-from identification import chances, fit_percent, loss, rms
+from identification import chances, fit_percent, rms
+from identification.estimation.metrics import loss
 from identification.estimation.residuals import LAGS, autocorrelation, residual_tests, whiteness
 from identification.logs.noise import noise_floor
 

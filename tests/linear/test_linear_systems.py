@@ -17,10 +17,11 @@ from linear_cases import (
 )
 from scipy.linalg import expm
 
-from identification import InputError, State
+from identification import InputError
 from identification.linear.linearization import linearize
 from identification.linear.modes import modes
 from identification.linear.operating_points import at_rest, samples_at
+from identification.model.rollout import State
 
 
 def oscillator():

@@ -5,8 +5,9 @@ from functools import cache
 import numpy as np
 import pytest
 
-from identification import InputError, Log, State
+from identification import InputError, Log
 from identification.linear.modes import minimal, modes
+from identification.model.rollout import State
 from inca_mj.linear.accuracy import interpolation_errors, run_error
 from inca_mj.linear.linearization import held_at, linearize, linearize_along, linearize_grid
 from inca_mj.linear.thesis_states import STATES

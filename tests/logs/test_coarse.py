@@ -7,9 +7,10 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from identification import InputError, Log, halves, read_log
+from identification import InputError, Log, read_log
 from identification.logs.coarse import evened_stamps
 from identification.logs.fitting_steps import EXACT, judged
+from identification.logs.log import halves
 from identification.logs.sampling import sampling_time
 from identification.logs.sidecar import Sidecar
 from identification.logs.table import Table

@@ -10,8 +10,9 @@ from example_logs import wave
 from hypothesis import given
 from hypothesis import strategies as st
 
-from identification import Log, halves
+from identification import Log
 from identification.logs.joined import JoinedLog, join_logs, records_of
+from identification.logs.log import halves
 
 
 @pytest.mark.parametrize("rate", [50, 100, 187, 333])

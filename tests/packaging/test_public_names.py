@@ -1,11 +1,16 @@
 """The public lists: every name is there, for Python and for type checkers, and says what it is."""
 
 import ast
+import inspect
+import json
+import re
 from importlib import import_module
+from pathlib import Path
 from pkgutil import iter_modules
 
 import pytest
 
+ROOT = Path(__file__).parents[2]
 PACKAGES = ("identification", "inca_mj", "inca_mj.kinematics", "identification.sweep")
 OPTIONAL = {"load_environment": "dm_control", "load_gymnasium": "dm_control"}
 
@@ -55,3 +60,28 @@ def test_a_name_comes_from_the_module_that_defines_it(package):
     for name, thing in public(package):
         if hasattr(thing, "__module__"):
             assert thing.__module__ == f"{package}.{module._PUBLIC[name]}"
+
+
+def shown():
+    """The words of all code that a user sees: of documents, notebooks, examples and benchmarks."""
+    pages = [ROOT / "README.md", *(ROOT / "docs").rglob("*.md")]
+    code = [re.findall(r"```.*?```|`[^`\n]+`", p.read_text(encoding="utf-8"), re.S) for p in pages]
+    for path in (ROOT / "docs").rglob("*.ipynb"):
+        cells = json.loads(path.read_text(encoding="utf-8"))["cells"]
+        code += [cell["source"] for cell in cells if cell["cell_type"] == "code"]
+    scripts = [*(ROOT / "examples").glob("*.py"), *(ROOT / "benchmarks").rglob("*.py")]
+    code += [[path.read_text(encoding="utf-8")] for path in scripts]
+    return {word for texts in code for text in texts for word in re.findall(r"\w+", text)}
+
+
+def annotated(package):
+    """The words of what public functions take and return."""
+    functions = [thing for _, thing in public(package) if inspect.isfunction(thing)]
+    each = (str(f.__annotations__.values()) for f in functions)
+    return {word for text in each for word in re.findall(r"\w+", text)}
+
+
+def test_a_name_is_public_because_a_user_meets_it():
+    module = import_module("identification")
+    assert set(module.__all__) - shown() - annotated("identification") == set()
+    assert not {"halves", "joined", "loss", "drives"} & set(module.__all__)

@@ -34,7 +34,7 @@ SAYS = {
     FindingKind.REMAINING_ERROR: "error of x on unseen data that is 7.1 times its sensor's noise",
     FindingKind.DIFFERENT_RECORD: "c.csv is predicted 4.2 times worse",
     FindingKind.SHIFTED_RECORD: "c.csv looks as if its inputs acted 14.0 ± 3.0 ms earlier than",
-    FindingKind.WORSE_FIT: "worse than those of the model (mean square +796 %)",
+    FindingKind.WORSE_FIT: "worse than those of the model (mean square 9 times as large)",
     FindingKind.UNPROVEN_EFFECT: "body – centre of mass displaced, body arm, predicts unseen data "
     "better on average (mean square -20 %, t = 1.9), but is not proven: with",
 }

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 import identification
 import inca_mj
 from identification.estimation.scaling_symmetry import ScalingSymmetry
-from identification.quantities import HELD, alike, fall_words, held, matched, per, quantity
+from identification.quantities import HELD, alike, held, matched, per, quantity
 from identification.report.error_words import pair_words
 from identification.report.untold_words import untold
 
@@ -122,16 +122,6 @@ def test_the_prefix_is_that_of_the_larger_of_value_and_std(
 ) -> None:
     said = quantity(value, std, unit).split(" ")
     assert said[3:] == quantity(max(value, std), std, unit).split(" ")[3:]
-
-
-@pytest.mark.parametrize(
-    ("fall", "said"),
-    [
-    (0.126, "falls by 13 %"), (-2.5, "rises by 250 %"), (-0.004, "stays the same"),
-],
-)  # fmt: skip
-def test_a_change_of_a_mean_square_is_said_without_a_sign(fall: float, said: str) -> None:
-    assert fall_words(fall) == said
 
 
 def test_brackets_stand_only_around_products() -> None:

@@ -16,7 +16,8 @@ import winch
 import winch_strokes as strokes
 import xl330
 
-from identification import Log, Predictor, estimate_windows, read_model, read_robot, window_error
+from identification import Log, Predictor, estimate_windows, read_robot, window_error
+from identification.effects.rows import read_model
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 SHARED = EXAMPLES.parents[1] / "shared" / "data"

@@ -5,10 +5,12 @@ in a plane are felt by nothing, and may not keep a fit from that.
 """
 
 import json
+import re
 
 import mujoco
 import numpy as np
 import pytest
+from page_text import text_of
 from records_cases import MJCF, pendulum, record
 
 from identification import discover, fit, read_robot, write_log
@@ -97,6 +99,8 @@ def test_a_fit_that_ends_on_a_bound_is_told_why_and_can_be_read_again(tmp_path, 
     assert record_["parameters"][INERTIA]["std"] is None
     assert CAUSE in record_["verdict"]
     assert not any("std of" in s and INERTIA in s for s in record_["verdict"])
+    page = text_of(found.report(tmp_path / "report.html").read_text())
+    assert re.search(rf">{re.escape(INERTIA)}</td>.*\n.*\n.*>[^<±]*, on its bound</td>", page)
     assert found.values[INERTIA] <= 2 * DRAWN
     robot.plant.with_values(found.shared)  # its result is in the range
     again = write_robot(robot, found.shared, tmp_path / "again.toml", tmp_path)

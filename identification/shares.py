@@ -1,0 +1,86 @@
+"""Shares and ratios in words: percent below one, times above; nothing that rounding alone makes so.
+
+0.12 -> 12 %      0.9996 -> more than 99 %      0.002 -> less than 1 %      8 -> 8 times
+
+No number has a power of ten. All is said to be 100 % only where it is all, and nothing to be 0 %
+only where it is nothing.
+"""
+
+from __future__ import annotations
+
+from math import floor, isfinite, log10
+
+WHOLE = 0  # digits: whole percents
+HELD = 2  # digits of a ratio
+_LEAST = 1e-3  # percent: smaller shares are less than it
+_MOST = 15  # decimals, beyond which a number of a computer has none
+
+
+def percent(share: float, digits: int = WHOLE) -> str:
+    """Returns a share in percent, such as "12 %" or "more than 99 %".
+
+    Args:
+        share: of one; it may be larger than one, or negative.
+        digits: of the percentage, without leading zeros; 0 for whole percents.
+    """
+    if not isfinite(share):
+        return "unknown"
+    least, most = (1.0, "99") if digits == WHOLE else (_LEAST, "99.9" if digits > HELD else "99")
+    said = f"{100 * share:z.0f}" if digits == WHOLE else decimal(100 * share, digits)
+    if share > 0 and (said == "0" or 100 * share < least / 2):
+        return f"less than {decimal(least, 1)} %"
+    if share < 1 and said == "100":
+        return f"more than {most} %"
+    return f"{said} %"
+
+
+def ratio_of(ratio: float, whole: str) -> str:
+    """Returns a ratio to something in words: "80 % of their rms", "8 times their rms".
+
+    Args:
+        ratio: not negative.
+        whole: what it is a ratio to.
+    """
+    if ratio < 0.995:
+        return f"{percent(ratio, HELD)} of {whole}"
+    return f"as much as {whole}" if ratio < 1.05 else f"{times(ratio)} {whole}"
+
+
+def times(ratio: float) -> str:
+    """Returns a ratio with two digits, such as "8.3 times"."""
+    return f"{decimal(ratio, HELD)} times" if isfinite(ratio) else "infinitely many times"
+
+
+def change(rise: float) -> str:
+    """Returns a relative change in words: "-12 %", "less by more than 99 %", "3 times as large"."""
+    if not isfinite(rise):
+        return "unknown"
+    if rise >= 0.995:
+        return f"{times(1 + rise)} as large"
+    if -1 < rise <= -0.995:
+        return "less by more than 99 %"
+    return f"{100 * rise:+z.0f} %"
+
+
+def fall_words(fall: float, digits: int = WHOLE) -> str:
+    """Returns the relative change of a mean square in words: "falls by 12 %", "rises by 3 %".
+
+    Args:
+        fall: relative; negative where the mean square rises.
+        digits: see `percent`.
+    """
+    if fall <= -0.995:
+        return f"rises to {times(1 - fall)} what it was"
+    if abs(fall) < (0.005 if digits == WHOLE else _LEAST / 200):
+        return "stays the same"
+    return f"{'falls' if fall > 0 else 'rises'} by {percent(abs(fall), digits)}"
+
+
+def decimal(value: float, digits: int) -> str:
+    """Returns a finite number with some digits, without a power of ten and without last zeros."""
+    rounded = float(f"{value:.{digits}g}")
+    if rounded == 0:
+        return "0"
+    places = min(max(0, digits - 1 - floor(log10(abs(rounded)))), _MOST)
+    said = f"{rounded:z.{places}f}"
+    return said.rstrip("0").rstrip(".") if "." in said else said

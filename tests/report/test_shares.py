@@ -1,0 +1,91 @@
+"""Shares and ratios in words: no power of ten, and neither all nor nothing by rounding."""
+
+import re
+
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from identification.quantities import quantity
+from identification.report.shown_words import sized
+from identification.shares import HELD, change, decimal, fall_words, percent, ratio_of, times
+
+EXPONENT = re.compile(r"\de[-+]?\d")
+SHARES = st.floats(-1e6, 1e6) | st.floats(-1.0, 1.0) | st.floats(1e-12, 1e-2)
+PARTS = st.floats(0.0, 1.0) | st.floats(0.98, 1.0) | st.floats(0.0, 0.02)
+DIGITS = st.sampled_from((0, 2, 3))
+
+
+@given(SHARES, DIGITS)
+def test_no_power_of_ten_is_in_a_share_or_a_ratio(share, digits):
+    said = [
+        percent(share, digits), ratio_of(abs(share), "their rms"), times(abs(share)),
+        change(max(share, -1.0)), fall_words(min(share, 1.0), digits), sized(share, ""),
+    ]  # fmt: skip
+    assert not [words for words in said if EXPONENT.search(words)]
+
+
+@given(
+    st.floats(-1e3, 1e3) | st.floats(-1.0, 1.0) | st.floats(-1e-4, 1e-4),
+    st.floats(1e-25, 1e3) | st.floats(1e-12, 1e-2) | st.sampled_from((0.0, float("nan"))),
+    st.sampled_from((0.0, 0.3, 2.0)),
+)
+def test_no_power_of_ten_is_in_a_percentage(value, std, like):
+    said = quantity(value, std, "", like)
+    assert not ("%" in said and EXPONENT.search(said)), said
+
+
+@given(PARTS, DIGITS)
+def test_all_and_nothing_are_said_only_where_they_are(part, digits):
+    said = percent(part, digits)
+    assert (said == "100 %") == (part == 1.0)
+    assert (said == "0 %") == (part == 0.0)
+
+
+@given(PARTS, DIGITS)
+def test_what_is_said_of_a_part_is_true(part, digits):
+    said = re.fullmatch(r"(less than |more than |)([\d.]+) %", percent(part, digits))
+    bound, number = said.groups()
+    value, tolerance = float(number), {0: 0.5, 2: 0.05 * 100 * part, 3: 0.005 * 100 * part}[digits]
+    assert 100 * part < value if bound == "less than " else True
+    assert 100 * part > value if bound == "more than " else True
+    assert bound or abs(100 * part - value) <= tolerance * (1 + 1e-9)
+
+
+@given(PARTS)
+def test_a_change_that_leaves_something_is_not_one_of_everything(part):
+    assume(part < 1.0)
+    assert "100 %" not in change(-part)
+    assert "100 %" not in fall_words(part)
+
+
+@given(st.floats(1e-9, 1e9), st.integers(1, 6))
+def test_a_decimal_is_the_number_with_its_digits(value, digits):
+    assert float(decimal(value, digits)) == pytest.approx(value, rel=0.51 * 10.0 ** (1 - digits))
+
+
+@pytest.mark.parametrize(
+    ("said", "words"),
+    [
+        (percent(0.884), "88 %"), (percent(0.9996), "more than 99 %"), (percent(1.0), "100 %"),
+        (percent(0.99), "99 %"), (percent(0.0001), "less than 1 %"), (percent(0.0), "0 %"),
+        (percent(1.3), "130 %"), (percent(-0.03), "-3 %"), (percent(float("inf")), "unknown"),
+        (percent(0.00652, 3), "0.652 %"), (percent(0.9996, 3), "more than 99.9 %"),
+        (percent(1e-7, 2), "less than 0.001 %"), (percent(12.3, 2), "1200 %"),
+        (ratio_of(8.0, "their rms"), "8 times their rms"),
+        (ratio_of(0.8, "their rms"), "80 % of their rms"),
+        (ratio_of(0.032, "their rms"), "3.2 % of their rms"),
+        (ratio_of(1.01, "their rms"), "as much as their rms"),
+        (ratio_of(831.0, "their rms"), "830 times their rms"),
+        (times(0.12), "0.12 times"), (times(float("inf")), "infinitely many times"),
+        (change(-0.88), "-88 %"), (change(0.035), "+4 %"), (change(-1.0), "-100 %"),
+        (change(-0.999), "less by more than 99 %"), (change(2.2), "3.2 times as large"),
+        (change(float("nan")), "unknown"), (fall_words(0.126), "falls by 13 %"),
+        (fall_words(-0.03), "rises by 3 %"), (fall_words(-2.5), "rises to 3.5 times what it was"),
+        (fall_words(-0.004), "stays the same"), (fall_words(0.004, HELD), "falls by 0.4 %"),
+        (fall_words(0.9997), "falls by more than 99 %"), (quantity(2e-7), "2.00e-07"),
+        (quantity(0.5, 1e-7), "50.000000 ± 0.000010 %"), (quantity(0.0), "0 %"),
+    ],
+)  # fmt: skip
+def test_examples(said, words):
+    assert said == words
