@@ -21,7 +21,7 @@ from identification.inspection.guesses import (
     time_unit,
     unit_of,
 )
-from identification.logs.formats import log_table
+from identification.logs.formats import log_table, refuse_no_log
 from identification.logs.names import listed, lookup
 from identification.logs.sampling import MIN_ROWS, FloatArray, grid
 from identification.logs.sidecar import read_sidecar
@@ -95,6 +95,7 @@ def inspect_log(path: str | os.PathLike[str]) -> Inspection:
         InputError: it cannot be read, or has fewer than three rows of numbers.
     """
     path = Path(path)
+    refuse_no_log(path)
     sidecar = read_sidecar(path.with_suffix(".toml"))
     if path.suffix.lower() == ".mat":
         raise InputError(

@@ -29,6 +29,12 @@ Wanted = Callable[[Sequence[str]], Collection[str]]  # of the columns of a file,
 KINDS = (".csv", ".mat", ".npz", ".parquet", *OF_ROS)
 
 
+def refuse_no_log(path: Path) -> None:
+    """Refuse a path that names neither a file nor a folder that is a log, without reading it."""
+    if episode_of(path) is None and not is_bag_folder(path):
+        check_file(path, what=LOG)
+
+
 def log_table(
     path: Path,
     wanted: Wanted | None,
@@ -57,7 +63,6 @@ def log_table(
         return read_parquet(path, wanted, stamps)
     if is_bag_folder(path):
         return read_bag(path, wanted, asked)
-    check_file(path, what=LOG)
     if kind in OF_ROS:
         return read_bag(path, wanted, asked)
     if kind == ".csv":

@@ -13,7 +13,7 @@ import numpy as np
 from identification.errors import InputError
 from identification.files import readable
 from identification.logs.coarse import evened_stamps, refuse_contradicted
-from identification.logs.formats import log_table
+from identification.logs.formats import log_table, refuse_no_log
 from identification.logs.log import Log
 from identification.logs.names import check_column_names, check_keys, lookup
 from identification.logs.plausible import check_plausible, check_possible
@@ -92,6 +92,7 @@ def read_log(
     for unit in units.values():
         check_si(unit)
 
+    refuse_no_log(path)
     sidecar = read_sidecar(path.with_suffix(".toml"), said, named_in)
     if sidecar.values and not lenient:
         raise InputError(

@@ -28,7 +28,7 @@ from pathlib import Path
 from typing import Any
 
 from identification.errors import InputError, unknown_name
-from identification.files import exists, read_toml
+from identification.files import read_toml
 from identification.logs.log import HOLDS
 
 
@@ -63,7 +63,7 @@ def read_sidecar(
     """
     values = _values(given or {}, f"[log] of {given_in or path}")
     elsewhere = dict.fromkeys(given or {}, given_in or path)
-    if exists(path):
+    if path.exists():
         content = read_toml(path)
         inner = content.pop("log", {})
         if not isinstance(inner, dict):

@@ -192,6 +192,8 @@ def test_logs_of_which_nothing_can_be_said_are_refused(tmp_path, refusal):
     assert "no column that looks like time; it has volts, angle" in refusal(inspect_log, path)
     path.with_suffix(".toml").write_text("sampling_time = 0.5\n")
     assert inspect_log(path).step == 0.5
+    assert "is a folder; give the path of a log file" in refusal(inspect_log, tmp_path)
+    assert "no such file" in refusal(inspect_log, tmp_path / "none.csv")
     (tmp_path / "run.mat").write_bytes(b"")
     with pytest.raises(InputError, match="no names of columns"):
         inspect_log(tmp_path / "run.mat")
