@@ -97,8 +97,7 @@ def _error_section(found: RobotFit) -> Section:
     title = f"Measured and predicted over {horizon:g} s, {log.name}"
     text = f"The first output, {AS_WRITTEN} and {FITTED}, from each window's best state."
     values = _values(found, log)
-    begun = {n: v for n, v in values.items() if n not in found.shared}
-    models = {AS_WRITTEN: begun, FITTED: values}
+    models = {AS_WRITTEN: _given(found, log), FITTED: values}
     plant = plant_with(found.robot, log, values)
     return Section(title, text, figures=((title, windows_figure(plant, log, horizon, models)),))
 
@@ -111,19 +110,19 @@ def _shown(found: RobotFit) -> Log:
     return robot.log if found.found.horizon is None else robot.log.part("validation")
 
 
+def _given(found: RobotFit, log: Log) -> dict[str, float]:
+    """Returns the values that a record gives, and where it begins."""
+    robot = found.robot
+    return {**robot.values_of(log), **(robot.started(log) if robot.records else {})}
+
+
 def _values(found: RobotFit, log: Log) -> dict[str, float]:
     """Returns the values of the fitted model on a record, those of the record's own among them."""
-    robot = found.robot
     own: Mapping[str, tuple[float, float]] = {}
     if isinstance(found.found, RecordsFit):
         own = found.found.own.get(log.name, {})
-    started = robot.started(log) if robot.records else {}
-    return {
-        **found.shared,
-        **{n: v for n, (v, _) in own.items()},
-        **robot.values_of(log),
-        **started,
-    }
+    of_record = {n: value for n, (value, _) in own.items()}
+    return {**found.shared, **of_record, **_given(found, log)}
 
 
 def _free_run(found: RobotFit, log: Log) -> Figure:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import sys
 from pathlib import Path
 from types import ModuleType
@@ -12,7 +13,9 @@ from fake_discovery import EFFECTS, found, log
 
 from identification import write_log
 from identification.discovery.options import DiscoveryOptions
+from identification.report.page import Section
 from inca_mj.cli import main
+from inca_mj.commands import filmed
 from inca_mj.twin.saved import load_twin
 
 
@@ -99,6 +102,28 @@ def test_a_folder_of_results_is_whole(
     assert {"python", "mujoco"} <= set(kept["versions"])
     twin = load_twin(tmp_path, EFFECTS)
     assert {e.name for e in twin.effects} == {e["name"] for e in record["effects"]}
+
+
+def test_the_film_stands_in_the_report_before_the_model(
+    path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:  # fmt: skip
+    def film_discovery(found: object, folder: Path, progress: object) -> Section:
+        files = [folder / name for name in ("film.mp4", "film.jpg")]
+        for file in files:
+            file.write_bytes(b"moving")
+        return Section("The film", "It moves.", video=files[0], poster=files[1], first=True)
+
+    monkeypatch.setattr(filmed, "film_discovery", film_discovery)
+    monkeypatch.setattr("inca_mj.commands.discover.cannot_draw", lambda: "")
+    assert run("discover", path, "--out", tmp_path) == 0
+    assert f"film:    {tmp_path / 'film.mp4'}" in capsys.readouterr().out
+    page = (tmp_path / "report.html").read_text()
+    assert page.count("<video") == 1
+    assert 0 < page.index("It moves.") < page.index("Parameter set ")
+    alone = found().report(tmp_path.parent / "alone.html").read_text()
+    titles = [sorted(re.findall(r"<title id=[^>]*>(.*?)</title>", text)) for text in (page, alone)]
+    assert titles[0] == titles[1] != []
 
 
 def test_options_of_a_file_are_passed_on_and_bad_ones_refused(
