@@ -23,7 +23,7 @@ from identification.report.effect_words import (
     words_of,
 )
 from identification.report.error_words import listed
-from identification.shares import percent
+from identification.shares import fall_words, percent
 
 # The longer ones first: the end of one is another.
 READS = ("speed_before", "speed_behind", "before", "behind", "position", "speed", "load", "time")
@@ -100,8 +100,8 @@ def named_sentences(found: Discovery, named: NamedEffect) -> str:
     if named.candidate.effect.is_curve:
         nodes = f" {nodes_sentence(curve_nodes(named.candidate, found.final.plant))}"
     return (
-        f"{_named(found, named)}{nodes}{_retuned(found, named)}{_outside(named)}"
-        f"{_agreement(found, named)}"
+        f"{_named(found, named)}{nodes}{nearest_law(found, named)}{_retuned(found, named)}"
+        f"{_outside(named)}{_agreement(found, named)}"
     )
 
 
@@ -150,6 +150,26 @@ def _compared(found: Discovery, named: NamedEffect) -> str:
         return f"{among}, none of which was near enough to be refitted in its place"
     when = "said while something is left" if found.unexplained else "ever said"
     return f"{among}, the highest that is {when}, {why}"
+
+
+def nearest_law(found: Discovery, named: NamedEffect) -> str:
+    """Returns a sentence on the listed law that comes nearest to a curve; "" where none does.
+
+    The law was refitted at the curve's joint, predicts unseen data better than the model without
+    it, and was left for the curve because a curve explains much of what it leaves.
+    """
+    c = named.candidate
+    if not c.effect.is_curve:
+        return ""
+    drawn = [r for r in found.rejected if r.doubt == "drawn" and r.candidate.where == c.where]
+    best = max(drawn, key=lambda r: r.evidence, default=None)
+    if best is None or not best.proof.told.fall > 0:
+        return ""
+    said, change = describe_there(best.candidate, found.final.plant), best.proof.told.fall
+    return (
+        f" Of the listed laws this one comes nearest: {said}, {describe_sizes(best)}; with it in"
+        f" the curve's place the mean square {fall_words(change)}."
+    )
 
 
 def _twin(named: NamedEffect) -> str:

@@ -9,8 +9,9 @@ from fake_discovery import DRIVE_3, NOISE, REJECTED, SLOW, found
 from identification.report.discovery_json import discovery_to_json
 from identification.report.discovery_report import discovery_text
 from identification.report.discovery_verdict import discovery_verdict
-from identification.report.effect_words import describe_effect
+from identification.report.effect_words import describe_effect, describe_sizes
 from identification.report.finding_words import describe_finding, sentence
+from identification.report.named_words import nearest_law
 
 
 def test_a_named_effect_is_said_with_size_place_confidence_and_proof() -> None:
@@ -134,3 +135,20 @@ def test_what_was_tried_and_not_believed_is_told_with_its_size_and_why() -> None
     assert "not believed" not in said
     (line,) = [x for x in said.splitlines() if x.startswith("error on unseen data:")]
     assert "times the noise" in line  # one number is neither before nor after
+
+
+def test_beside_a_curve_the_listed_law_that_comes_nearest_is_told() -> None:
+    """That law was left for the curve at its own joint; others are not told there."""
+    proof = replace(REJECTED.proof, fall=0.59)
+    law = replace(REJECTED, doubt="drawn", evidence=5.0, proof=proof)
+    curve = replace(found().named[0], candidate=replace(
+        law.candidate, effect=replace(law.candidate.effect, name="curve_speed")))  # fmt: skip
+    behind = replace(law, evidence=4.0, parameters={})
+    answer = replace(found(), named=(curve,), rejected=(behind, law))
+    said = nearest_law(answer, curve)
+    assert describe_sizes(law) in said
+    assert f"mean square falls by {100 * law.proof.told.fall:.0f} %" in said
+    elsewhere = replace(law, candidate=replace(law.candidate, where="joint of another"))
+    for rejected in ((), (REJECTED,), (elsewhere,)):
+        assert nearest_law(replace(answer, rejected=rejected), curve) == ""
+    assert nearest_law(answer, found().named[0]) == ""
