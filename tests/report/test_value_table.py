@@ -7,6 +7,8 @@ from joint_cases import arm
 
 from identification.effects.effect import Candidate, effect_parameters
 from identification.effects.state_effects import joint_elasticity
+from identification.model.parameter import Parameter
+from identification.report.effect_words import parameter_words
 from identification.report.fitted_values import value_table
 
 
@@ -28,3 +30,14 @@ def test_where_an_encoder_sits_is_no_fitted_value():
     assert len(first) == 3
     assert not [name for name in first if name.startswith("link")]
     assert np.all([str(row[-1]) != "0 %" for row in value_table(found).rows])
+
+
+def test_what_several_joints_have_is_told_with_its_joint():
+    def level(joint):
+        name = f"coulomb_friction.f_c@{joint}"
+        return Parameter(name=name, value=1.0, unit="N m", where="effect", lower=0.0, upper=9.0,
+                         symbol="f_c", about="level: of Coulomb friction")  # fmt: skip
+
+    elbow, wrist = level("elbow"), level("wrist")
+    assert [*parameter_words([elbow, wrist]).values()] == ["level f_c, elbow", "level f_c, wrist"]
+    assert [*parameter_words([elbow]).values()] == ["level f_c"]
