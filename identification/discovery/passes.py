@@ -89,9 +89,7 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
     "neighbours_names": (
         HORIZON, "names no law beside which a curve of the data still explains much",
     ),
-    "drop_beside_curves": (
-        HORIZON, "drops forces that were found only beside a curve of the data at their joint",
-    ),
+    "drop_beside_curves": (HORIZON, "drops laws that were found only beside a curve of the data"),
     "drop_drawn_laws": (HORIZON, "drops a law whose work a later curve of the data does"),
     "likeliest_of_set": (HORIZON, "puts the likeliest effect of a set of names into the model"),
 })  # fmt: skip

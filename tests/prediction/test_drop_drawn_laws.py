@@ -152,15 +152,8 @@ class Accepted_curves:
 
 
 def accepted_curves(*names):
-    """Effects at a joint; "NAME at PLACE" is one at another place."""
-    out = []
-    for each in names:
-        name, _, place = each.partition(" at ")
-        hook = "input" if place.startswith("input") else "force"
-        place = place or "joint"
-        effect = Effect(name, "", SIZES, places={place: ""}, hooks={hook: LAW})
-        out.append(Accepted_curves(Candidate(effect, place, {})))
-    return out
+    return [Accepted_curves(Candidate(Effect(n, "", SIZES, places={"joint": ""}), "joint", {}))
+            for n in names]  # fmt: skip
 
 
 @pytest.fixture
@@ -193,9 +186,3 @@ def test_laws_behind_a_curve_go_and_the_rest_is_refitted_once(kept):
     names, refits = kept("offset", "curve_time", "cogging", "curve_before", "stiffness")
     assert names == ["offset", "curve_time", "curve_before"]
     assert refits == [["offset", "curve_time", "curve_before"]]
-
-
-def test_laws_of_other_places_are_other_causes_than_what_a_curve_leaves(kept):
-    names, refits = kept("curve_load", "time_shift at input u", "cogging at other joint")
-    assert names == ["curve_load", "time_shift", "cogging"]
-    assert refits == []

@@ -1,10 +1,9 @@
-"""Laws that were found beside a curve of the data at their joint are not named.
+"""Laws that were found beside a curve of the data are not named.
 
-A curve has eight nodes. What its cause does between them is left, and the force at the joint that
-imitates that best is proven like any other: a torque along the position of a neighbour, drawn as a
-curve, left a fifth of the error to a cogging that was not there. Only forces that were found before
-the curve, or that made it needless, are names. A law of a sensor, an input or a body is another
-cause than what the curve leaves of its own.
+A curve has eight nodes. What its cause does between them is left, and the law that imitates that
+best is proven like any other: a torque along the position of a neighbour, drawn as a curve, left a
+fifth of the error to a cogging that was not there. Only laws that were found before the curve, or
+that made it needless, are names.
 """
 
 from __future__ import annotations
@@ -12,15 +11,13 @@ from __future__ import annotations
 from dataclasses import replace
 
 from identification.prediction.extension import refitted
-from identification.prediction.screening import places_of
 from identification.prediction.task import Change, WindowSearch
 from identification.prediction.trial import Contender
-from identification.prediction.yardstick import acts_on_joints
 from identification.progress import Progress
 
 
 def drop_beside_curves(state: WindowSearch, progress: Progress) -> Change:
-    """Returns the state's model without forces that were accepted after a curve at their joint.
+    """Returns the state's model without laws that were accepted after a curve that is still there.
 
     All are kept where the model without them cannot be simulated.
     """
@@ -28,15 +25,9 @@ def drop_beside_curves(state: WindowSearch, progress: Progress) -> Change:
     kept: list[Contender] = []
     lost: list[Contender] = []
     for old in accepted:
-        effect, places = old.candidate.effect, {*places_of(old.candidate.where)}
-        drawn = {
-            place
-            for k in kept
-            if k.candidate.effect.is_curve
-            for place in places_of(k.candidate.where)
-        }
-        is_force = acts_on_joints(effect) and not effect.is_curve
-        (lost if is_force and places & drawn else kept).append(old)
+        is_beside = any(k.candidate.effect.is_curve for k in kept)
+        is_law = not old.candidate.effect.is_curve
+        (lost if is_law and is_beside else kept).append(old)
     keys = {old.candidate.key for old in lost}
     rest = [c for c in model.candidates if c.key not in keys]
     without = refitted(model, rest, task.nominal_model, task.confirm) if lost else None
