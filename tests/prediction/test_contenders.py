@@ -18,7 +18,7 @@ from identification.effects.effect import Candidate, Effect, Shape, Size
 from identification.effects.joint_plant import candidates
 from identification.model.parameter import Parameter, ParameterSet
 from identification.model.predictor import Predictor
-from identification.prediction import verdict
+from identification.prediction import odds, verdict
 from identification.prediction.contenders import (
     count_numbers,
     list_contenders,
@@ -265,7 +265,7 @@ def test_what_physics_forbids_takes_its_share_of_the_odds_and_is_no_other_name(
     """Where it is likelier than a possible law, that is below even odds and no name."""
     law = replace(contender(effect("law"), 0.5), prediction=SimpleNamespace(fall=0.5))
     rival = replace(contender(effect("rival"), gain), doubt=doubt)
-    monkeypatch.setattr(verdict, "find_twin", lambda model, mine: "")
+    monkeypatch.setattr(odds, "find_twin", lambda model, mine: "")
     monkeypatch.setattr(verdict, "_fitted", lambda model, c: (c, {}))
     monkeypatch.setattr(verdict, "_proof", lambda state, seen: None)
     monkeypatch.setattr(verdict, "_rival", lambda o, share: o.candidate.effect.name)

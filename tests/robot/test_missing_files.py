@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 from touching_cases import make_robot, simulated
 
-from identification import fit, read_model, read_robot
-from identification.effects.rows import read_told_model
+from identification import fit, read_robot
+from identification.effects.rows import read_model, read_told_model
 from identification.model import hostile
 from identification.robot.model_file import robot_spec
 
