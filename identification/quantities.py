@@ -16,7 +16,6 @@ from math import ceil, floor, isfinite, log10
 from typing import Any
 
 from identification.shares import decimal
-from identification.shares import fall_words as fall_words
 
 _PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M"}
 _TAKE = ("N", "m", "s", "A", "g", "V", "W", "Hz")  # units that take a prefix where they lead

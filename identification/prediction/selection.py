@@ -39,7 +39,7 @@ from identification.prediction.trial import (
     is_at_bound,
 )
 from identification.progress import Progress, counted
-from identification.quantities import fall_words
+from identification.shares import fall_words
 from identification.windows.records import Record
 from identification.windows.unseen import Unseen, compare
 

@@ -67,7 +67,8 @@ def windows_figure(
     upper.set(ylabel=literal(f"{name} [{unit}]"))
     upper.set_title(literal(f"{of} over {length:g} s"), loc="left", color=INK)
     lower.set(ylabel=literal(f"error [{unit}]"), xlabel="time [s]")
-    upper.legend(loc="upper left", fontsize=8)
+    handles = upper.get_legend_handles_labels()
+    figure.legend(*handles, loc="outside upper right", ncols=len(handles[0]), fontsize=8)
     return figure
 
 

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, NullFormatter
 
 from identification.quantities import held
 from identification.report.horizon_gap import FailedWindow, NeededForce, RecordWindows
@@ -40,7 +41,9 @@ def windows_over_time(records: Sequence[RecordWindows], is_named: bool) -> Figur
         ax.set_title(literal(f"{r.name} ({r.role})"), loc="left", color=INK)
         if is_far:
             ax.set_yscale("log")
+            ax.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
             ax.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
+            ax.yaxis.set_minor_formatter(NullFormatter())
         else:
             ax.set_ylim(bottom=0.0)
     figure.supylabel("error of a window, times the noise", fontsize=9, color=INK)
