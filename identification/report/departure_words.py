@@ -33,8 +33,8 @@ def departure_sentences(model: Fitted, words: Mapping[str, str] | None = None) -
     farthest_first = sorted(far, key=lambda n: -far[n])
     told = [f"{(words or {}).get(n, n)} by {held(far[n])} std" for n in farthest_first]
     return [
-        f"The fit moved {listed(told)} of what was known before. Either the model lacks"
-        " something that this imitates, or what was known is wrong."
+        f"The fit moved values far from what was known of them: {listed(told)}. Either the model"
+        " lacks something that they imitate, or what was known is wrong."
     ]
 
 
