@@ -58,6 +58,9 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
     "losing_blocks": (
         HORIZON, "lets a record contradict an effect only where its blocks lose on average too",
     ),
+    "curves_at_last": (
+        HORIZON, "refits curves of the data that promise less than a law where no law is proven",
+    ),
     "simpler_laws": (HORIZON, "fits laws with fewer numbers that act as the best one does"),
     "several_places": (
         HORIZON, "scores an effect with a size of its own at each of several places",

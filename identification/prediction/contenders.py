@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 import numpy as np
 
@@ -41,6 +41,22 @@ def list_contenders(
 
     best = max([promised(s) for s in laws], default=0.0)
     return [*laws, *[s for s in curves if promised(s) > best][:MAX_CURVES]]
+
+
+def list_curves(
+    scores: Sequence[WindowScore], tried: Collection[tuple[str, str]], options: DiscoveryOptions
+) -> list[WindowScore]:
+    """Returns curves beyond chance that were not refitted, for want of a law that is proven.
+
+    Args:
+        scores: of all candidates, the best first.
+        tried: keys of the candidates that were refitted.
+        options: what is beyond chance; the switch `curves_at_last`.
+    """
+    if not uses(options, "curves_at_last"):
+        return []
+    curves = _best_few([s for s in scores if s.candidate.effect.is_curve], scores, options)
+    return [s for s in curves if s.candidate.key not in tried][:MAX_CURVES]
 
 
 def _best_few(

@@ -3,7 +3,7 @@
 Which records are fitted is a choice, and physics does not depend on it. An effect that is proven
 with one choice is contradicted where, with the roles of the records exchanged, it predicts worse on
 average, or one of the records. It need not be proven once more: the records that confirm may be few
-and tell little.
+and tell little. A curve of the data is not asked: a record tells only the nodes that it reaches.
 """
 
 from __future__ import annotations
@@ -45,6 +45,8 @@ def without_contradicted(
     rest, contradicted = list(tried), list[Contender]()
     unseen = [r for r in records if r.role == "fit"]
     while rest and rest[0].is_proven:
+        if rest[0].candidate.effect.is_curve:  # a node is known only to records that reach it
+            return (*rest, *contradicted), None
         with_it = exchanged(rest[0].model, records, horizon)
         if with_it is None:
             return (*rest, *contradicted), None

@@ -21,6 +21,7 @@ from identification.effects.effect import Candidate
 from identification.prediction.contenders import (
     count_numbers,
     list_contenders,
+    list_curves,
     list_simpler,
     list_starts,
 )
@@ -106,6 +107,12 @@ def refit_contenders(
     children = refit(_near_best(_begun(model, chosen, scores), options))
     parent, out = judge(model, children)
     proven = [c for c in out if c.is_proven]
+    curves = [] if proven else list_curves(scores, {s.candidate.key for s in chosen}, options)
+    if curves:
+        refits += len(curves)
+        more = refit(_near_best(_begun(model, curves, scores), options))
+        parent, out = judge(parent, [*(c.model for c in out), *more])
+        proven = [c for c in out if c.is_proven]
     if proven and uses(options, "simpler_laws"):
         best = max(proven, key=lambda c: c.criterion)
         tried = {c.candidate.key for c in out}

@@ -22,6 +22,7 @@ from identification.prediction import odds, verdict
 from identification.prediction.contenders import (
     count_numbers,
     list_contenders,
+    list_curves,
     list_simpler,
     refit_level,
 )
@@ -119,6 +120,18 @@ def test_where_something_is_missing_a_weak_law_is_refitted_and_without_the_pass_
     assert names(list_contenders([curve, weak, *others], strict, 100)) == ["curve_speed"]
     assert list_contenders([weak, *others], OPTIONS, 100) == [weak]  # 0.5 of 101 by luck
     assert list_contenders([weak, *others, *others], OPTIONS, 100) == []
+
+
+def test_a_curve_that_promises_less_than_a_law_is_refitted_only_where_no_law_is_proven():
+    law_, curve = score(effect("law"), 0.8), score(effect("curve_speed", 8), 0.7)
+    weak = score(effect("curve_load", 8), 0.6, p_value=0.5)
+    scores = [law_, curve, weak]
+    asked = list_contenders(scores, OPTIONS, 100)
+    assert names(asked) == ["law"]
+    tried = {s.candidate.key for s in asked}
+    assert names(list_curves(scores, tried, OPTIONS)) == ["curve_speed"]
+    assert list_curves(scores, {*tried, curve.candidate.key}, OPTIONS) == []
+    assert list_curves(scores, tried, DiscoveryOptions(without=("curves_at_last",))) == []
 
 
 def test_a_score_that_asks_for_too_large_a_size_is_refitted_and_one_of_a_wrong_sign_is_not():

@@ -14,7 +14,7 @@ from identification.discovery.options import DiscoveryOptions
 from identification.effects.joint_plant import candidates
 from identification.model.predictor import Predictor
 from identification.prediction.discovery import discover_records
-from identification.prediction.exchange import exchanged, is_contradicted
+from identification.prediction.exchange import exchanged, is_contradicted, without_contradicted
 from identification.prediction.extension import with_effect
 from identification.prediction.first_fit import begin
 from identification.prediction.model import predict_fitted
@@ -23,7 +23,7 @@ from identification.prediction.remaining import needed_input_error
 from identification.prediction.scores import window_scores
 from identification.prediction.screening import score_all
 from identification.prediction.selection import REFUTED, refit_contenders
-from identification.prediction.trial import find_doubt
+from identification.prediction.trial import Contender, find_doubt
 from identification.windows.records import as_records
 from identification.windows.unseen import HORIZON as ALONE
 from identification.windows.unseen import compare
@@ -73,6 +73,22 @@ def test_a_law_of_all_records_is_the_same_from_both_sides():
     without, other = other_side("has it")
     assert other.values[MU] == pytest.approx(with_it.values[MU], abs=4 * with_it.std[MU])
     assert not is_contradicted(without, other, OPTIONS)
+
+
+def test_a_curve_is_not_asked_because_a_record_tells_only_the_nodes_that_it_reaches():
+    """The same model, called a law or a curve: only the law is contradicted."""
+    every, without, with_it = pair("lacks it")
+    bare, _ = other_side("lacks it")
+    gains = np.zeros(4)
+    (c,) = with_it.candidates
+    curve = replace(c, effect=replace(c.effect, name="curve_speed"))
+    for candidate, doubt in ((c, "exchange"), (curve, None)):
+        contender = Contender(
+            model=replace(with_it, candidates=(candidate,)), gains=gains, numbers=1, doubt=None,
+            prediction=compare(without.unseen, with_it.unseen), criterion=1.0,
+        )  # fmt: skip
+        tried, _ = without_contradicted([contender], bare, every, HORIZON, OPTIONS, lambda _: None)
+        assert [t.doubt for t in tried] == [doubt]
 
 
 def test_a_law_that_one_fitted_record_lacks_is_proven_and_then_contradicted():
