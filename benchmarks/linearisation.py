@@ -10,18 +10,19 @@ from __future__ import annotations
 
 import argparse
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from statistics import median
 from time import perf_counter, process_time
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from identification.linear.gridded import gridded
 from identification.linear.modes import minimal, modes
 from identification.linear.operating_points import State, at_rest
-from identification.report.style import save_png
+from identification.report.style import SERIES, save_png, styled
 from inca_mj.linear.accuracy import (
     BAND,
     InterpolationError,
@@ -30,7 +31,7 @@ from inca_mj.linear.accuracy import (
     run_error,
 )
 from inca_mj.linear.linearization import linearize, linearize_grid
-from inca_mj.report.linear import shape_figure, spacing_figure
+from inca_mj.report.linear import shape_figure
 from inca_mj.twin.logs import POSE
 from inca_mj.twin.twin import Twin, build_twin
 
@@ -127,6 +128,19 @@ def main() -> None:
     out.write_text(json.dumps(record, indent=1) + "\n")
     save_png(shape_figure(model), ROOT / "docs" / "linearisation_modes.png", dpi=110)
     save_png(spacing_figure(lines), ROOT / "docs" / "linearisation_grid.png", dpi=110)
+
+
+@styled
+def spacing_figure(errors: Mapping[str, Sequence[tuple[float, float]]]) -> Figure:
+    """Returns a figure of errors of G(f) between grid points over their spacing [m], by method."""
+    figure = Figure((6.5, 3.6), layout="constrained")
+    axis = figure.subplots()
+    for k, (label, pairs) in enumerate(errors.items()):
+        x, y = zip(*pairs, strict=True)
+        axis.loglog(x, y, "o-", color=SERIES[k], label=label)
+    axis.set(xlabel="spacing of the grid [m]", ylabel="largest relative error of G(f)")
+    axis.legend(fontsize=8)
+    return figure
 
 
 if __name__ == "__main__":

@@ -61,12 +61,6 @@ class Information:
         return identifiability(S, names, E, self.least, _among(self.symmetries, names))
 
     @property
-    def fisher(self) -> np.ndarray:
-        """F of the parameters of interest, with unknown nuisances, shape (asked, asked)."""
-        S, _ = self._without_nuisances
-        return S.T @ S
-
-    @property
     def std(self) -> np.ndarray:
         """Least std of q if all others are unknown, shape (asked,): relative where logarithmic."""
         return self.found.std

@@ -56,11 +56,6 @@ class ForwardPose:
         """Std of the pose, shape (6,) [m, rad]."""
         return np.sqrt(np.diag(self.covariance))
 
-    @property
-    def is_unique(self) -> bool:
-        """Tells whether no motion of the platform leaves all lengths as they are."""
-        return self.rank == len(self.pose)
-
 
 def pose_from_lengths(
     lengths: Array,

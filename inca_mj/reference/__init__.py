@@ -10,9 +10,5 @@ from inca_mj.reference.integrate import simulate_reference as simulate_reference
 from inca_mj.reference.numbers import Rest as Rest
 from inca_mj.reference.numbers import pack as pack
 from inca_mj.reference.numbers import rest as rest
-from inca_mj.reference.outputs import Energy as Energy
 from inca_mj.reference.outputs import Outputs as Outputs
-from inca_mj.reference.outputs import Power as Power
-from inca_mj.reference.outputs import energy as energy
 from inca_mj.reference.outputs import outputs as outputs
-from inca_mj.reference.outputs import power as power

@@ -1,7 +1,4 @@
-"""Citations of the program, and of the thesis whose equations it computes.
-
-CITATION.cff at the root of the source is `to_cff()`; a test compares the two.
-"""
+"""Citations of the program, and of the thesis whose equations it computes."""
 
 from __future__ import annotations
 
@@ -44,12 +41,6 @@ THESIS = Work(
     note="the title page with the author's name and the year is missing in the text that this"
     " project works from",
 )
-KEYWORDS = (
-    "MuJoCo",
-    "system identification",
-    "cable-driven parallel robot",
-    "digital twin",
-)
 
 
 def software() -> Work:
@@ -82,32 +73,6 @@ def to_text() -> str:
 def to_bibtex() -> str:
     """Returns a BibTeX entry for each work."""
     return "\n\n".join(_entry(work) for work in works())
-
-
-def to_cff() -> str:
-    """Returns the text of CITATION.cff (Citation File Format 1.2.0)."""
-    program = software()
-    lines = [
-        "cff-version: 1.2.0",
-        "message: If you use this software, please cite it as below.",
-        "type: software",
-        f'title: "{program.title}"',
-        f"version: {program.version}",
-        f"license: {program.license}",
-        "authors:",
-        f"  - name: {program.author}",
-        "keywords:",
-        *(f"  - {word}" for word in KEYWORDS),
-        "references:",
-        f"  - type: {THESIS.kind}",
-        f'    title: "{THESIS.title}"',
-        "    authors:",
-        f'      - name: "{THESIS.author}"',
-        "    institution:",
-        f'      name: "{THESIS.where}"',
-        f'    notes: "{THESIS.note}"',
-    ]
-    return "\n".join(lines) + "\n"
 
 
 def _sentence(work: Work) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -17,7 +17,7 @@ from identification.report.linear import (
     system_to_json,
 )
 from identification.report.page import Section, Table
-from identification.report.style import GREY, INK, MEASURED, SERIES, SIMULATED, styled
+from identification.report.style import GREY, INK, MEASURED, SIMULATED, styled
 from identification.shares import HELD, percent
 from inca_mj.kinematics.rotations import rotation
 from inca_mj.linear.accuracy import InterpolationError, RunError
@@ -107,19 +107,6 @@ def _draw_handle(
         axis.plot(*np.stack([centre, point], axis=1), color=colour, lw=width)
         way = (far - point) / np.linalg.norm(far - point)
         axis.plot(*np.stack([point, point + STUB * way], axis=1), color=colour, lw=0.5)
-
-
-@styled
-def spacing_figure(errors: Mapping[str, Sequence[tuple[float, float]]]) -> Figure:
-    """Returns a figure of errors of G(f) between grid points over their spacing [m], by method."""
-    figure = Figure((6.5, 3.6), layout="constrained")
-    axis = figure.subplots()
-    for k, (label, pairs) in enumerate(errors.items()):
-        x, y = zip(*pairs, strict=True)
-        axis.loglog(x, y, "o-", color=SERIES[k], label=label)
-    axis.set(xlabel="spacing of the grid [m]", ylabel="largest relative error of G(f)")
-    axis.legend(fontsize=8)
-    return figure
 
 
 ERRORS = ("matrix", "response", "eigenvalue")

@@ -20,13 +20,11 @@ would stick at rest, which the thesis' friction does not.
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import mujoco
 import numpy as np
 
-from identification.model.export import write_xml
 from identification.model.parameter import ParameterSet
 from inca_mj.robot.geometry import DRIVES, INCA, Geometry
 from inca_mj.robot.parameters import parameter_set
@@ -58,17 +56,6 @@ def build_plain(parameters: ParameterSet | None = None, geometry: Geometry = INC
         _drive(spec, k, parameters, geometry, begin)
     _sensors(spec)
     return spec
-
-
-def save_plain(
-    path: str | Path, parameters: ParameterSet | None = None, geometry: Geometry = INCA
-) -> Path:
-    """Write the linearised robot as MJCF, exact to the last bit; returns the path.
-
-    Raises:
-        InputError: the start pose admits no pretension, or the file cannot be written.
-    """
-    return write_xml(build_plain(parameters, geometry), path)
 
 
 def _drive(

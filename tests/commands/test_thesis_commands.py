@@ -9,7 +9,7 @@ import pytest
 
 from inca_mj.cli import main
 from inca_mj.effects.platform import PULL
-from inca_mj.report.citation import THESIS, software, to_cff, to_text
+from inca_mj.report.citation import THESIS, software, to_text, works
 from inca_mj.robot.inputs import make_input
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.twin.run import load_run, simulate
@@ -25,7 +25,10 @@ def run(*arguments):
 
 
 def test_the_citation_file_is_what_the_program_cites():
-    assert (ROOT / "CITATION.cff").read_text(encoding="utf-8") == to_cff()
+    kept = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    for work in works():
+        for value in (work.title, work.author, work.version, work.license, work.where, work.note):
+            assert value in kept
     project = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
     assert f'version = "{software().version}"' in project
 

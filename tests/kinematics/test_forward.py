@@ -18,7 +18,7 @@ def test_lengths_give_their_pose_back(pose):
     found = pose_from_lengths(inverse(pose, INCA).lengths, INCA, START)
     np.testing.assert_allclose(found.pose, pose, atol=1e-8)
     np.testing.assert_allclose(found.residual, 0, atol=1e-10)
-    assert found.is_unique
+    assert found.rank == 6
 
 
 @settings(max_examples=20, deadline=None)
@@ -47,7 +47,6 @@ def test_where_a_motion_changes_no_length_its_std_is_infinite():
     pose = np.array([0.1, 0.05, 1.0, 0, 0, 0.2])
     found = pose_from_lengths(inverse(pose, FLAT).lengths, FLAT, np.array([0, 0, 1.0, 0, 0, 0.0]))
     assert found.rank == 3
-    assert not found.is_unique
     assert list(np.isinf(found.std)) == [False, False, True, True, True, False]
     np.testing.assert_allclose(found.pose, pose, atol=1e-8)
 

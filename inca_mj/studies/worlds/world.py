@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -63,19 +63,6 @@ class HiddenTruth:
     def sizes(self) -> tuple[dict[str, float], ...]:
         """The numbers of each effect's law."""
         return tuple(effect.values() for effect in self.effects)
-
-    def as_dict(self) -> dict[str, Any]:
-        """Returns everything but the arrays, for a file of labels."""
-        return {
-            "seed": self.seed,
-            "effects": [
-                {"name": e.name, "where": e.where, "sizes": e.values()} for e in self.effects
-            ],
-            "ratios": list(self.ratios),
-            "parameters": dict(self.parameters),
-            "noise_rms": self.noise_rms,
-            "error_rms": self.error_rms,
-        }
 
 
 class HiddenWorld(NamedTuple):
