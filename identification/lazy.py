@@ -2,29 +2,39 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import inspect
+import re
+import sys
+from collections.abc import Callable
 from importlib import import_module
 from types import ModuleType
 from typing import Any
 
 from identification.errors import InputError
 
+LISTED = r"^    from ([\w.]+) import (\w+) as \2$"
 
-def lazy(
-    package: str, public: Mapping[str, str]
-) -> tuple[Callable[[str], Any], Callable[[], list[str]]]:
-    """Returns a package's `__getattr__` and `__dir__`."""
+
+def lazy(package: str) -> tuple[list[str], Callable[[str], Any], Callable[[], list[str]]]:
+    """Returns `__all__`, `__getattr__` and `__dir__` of a package.
+
+    The list of its public names are the imports in the block `if TYPE_CHECKING` of its
+    `__init__.py`: type checkers and editors follow them, and here each is made when its name is
+    first asked for.
+    """
+    imports = re.findall(LISTED, inspect.getsource(sys.modules[package]), re.MULTILINE)
+    public = {name: module for module, name in imports}
 
     def get(name: str) -> Any:
         if name not in public:
             raise AttributeError(f"module {package!r} has no attribute {name!r}")
         try:
-            module = import_module(f"{package}.{public[name]}")
+            module = import_module(public[name])
         except AttributeError as error:  # "from ... import" would call it a missing name
             raise ImportError(f"{name} cannot be imported: {error}") from error
         return getattr(module, name)
 
-    return get, lambda: sorted(public)
+    return list(public), get, lambda: sorted(public)
 
 
 def needed(module: str, extra: str, what: str) -> ModuleType:

@@ -65,15 +65,15 @@ def turned(found: re.Match[str], folder: str, page: str) -> str:
 
 
 def public_names(package: str) -> str:
-    """Headings and directives of mkdocstrings for every name in the list `_PUBLIC`."""
+    """Headings and directives of mkdocstrings for every public name of a package."""
     source = ROOT / package.replace(".", "/") / "__init__.py"
-    block = source.read_text(encoding="utf-8").split("_PUBLIC = {\n")[1].split("\n}")[0]
+    block = source.read_text(encoding="utf-8").split("if TYPE_CHECKING:")[1]
     lines = []
     for line in block.splitlines():
-        if heading := re.match(r"    # (.*)", line):
+        if heading := re.match(r"    # (?!isort)(.*)", line):
             lines.append(f"## {heading[1][0].upper()}{heading[1][1:]}\n")
-        elif entry := re.match(r'    "(\w+)": "([\w.]+)"', line):
-            lines.append(f"::: {package}.{entry[2]}.{entry[1]}\n")
+        elif entry := re.match(r"    from ([\w.]+) import (\w+)", line):
+            lines.append(f"::: {entry[1]}.{entry[2]}\n")
     return "\n".join(lines)
 
 

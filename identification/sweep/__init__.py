@@ -10,34 +10,20 @@ from typing import TYPE_CHECKING
 
 from identification.lazy import lazy
 
-_PUBLIC = {
-    "Method": "method",
-    "Column": "method",
-    "Seed": "method",
-    "Findings": "method",
-    "Sweep": "task",
-    "read_sweep": "config",
-    "Store": "store",
-    "run_sweep": "run",
-    "Backend": "backend",
-    "backend_of": "run",
-    "setting": "settings",
-    "file_setting": "settings",
-}
-__all__ = list(_PUBLIC)
-
-if TYPE_CHECKING:  # the same list, for type checkers and editors
-    from identification.sweep.backend import Backend as Backend
-    from identification.sweep.config import read_sweep as read_sweep
-    from identification.sweep.method import Column as Column
-    from identification.sweep.method import Findings as Findings
+if TYPE_CHECKING:  # the public names
+    # isort: off
     from identification.sweep.method import Method as Method
+    from identification.sweep.method import Column as Column
     from identification.sweep.method import Seed as Seed
-    from identification.sweep.run import backend_of as backend_of
-    from identification.sweep.run import run_sweep as run_sweep
-    from identification.sweep.settings import file_setting as file_setting
-    from identification.sweep.settings import setting as setting
-    from identification.sweep.store import Store as Store
+    from identification.sweep.method import Findings as Findings
     from identification.sweep.task import Sweep as Sweep
+    from identification.sweep.config import read_sweep as read_sweep
+    from identification.sweep.store import Store as Store
+    from identification.sweep.run import run_sweep as run_sweep
+    from identification.sweep.backend import Backend as Backend
+    from identification.sweep.run import backend_of as backend_of
+    from identification.sweep.settings import setting as setting
+    from identification.sweep.settings import file_setting as file_setting
+    # isort: on
 else:
-    __getattr__, __dir__ = lazy(__name__, _PUBLIC)
+    __all__, __getattr__, __dir__ = lazy(__name__)

@@ -7,46 +7,8 @@ from typing import TYPE_CHECKING
 
 from identification.lazy import lazy
 
-_PUBLIC = {
-    "body_rate_matrix": "rotations",
-    "euler": "rotations",
-    "euler_of": "rotations",
-    "euler_rate_matrix": "rotations",
-    "pose_rate_matrix": "rotations",
-    "quaternion": "rotations",
-    "rotation": "rotations",
-    "Pulleys": "cables",
-    "Cables": "cables",
-    "inverse": "cables",
-    "CableRates": "jacobians",
-    "rates": "jacobians",
-    "CableAccelerations": "jacobians",
-    "accelerations": "jacobians",
-    "condition": "jacobians",
-    "jacobian": "jacobians",
-    "jacobian_rate": "jacobians",
-    "length_jacobian": "jacobians",
-    "rank": "jacobians",
-    "ForwardPose": "forward",
-    "pose_from_lengths": "forward",
-}
-__all__ = list(_PUBLIC)
-
-if TYPE_CHECKING:  # the same list, for type checkers and editors
-    from inca_mj.kinematics.cables import Cables as Cables
-    from inca_mj.kinematics.cables import Pulleys as Pulleys
-    from inca_mj.kinematics.cables import inverse as inverse
-    from inca_mj.kinematics.forward import ForwardPose as ForwardPose
-    from inca_mj.kinematics.forward import pose_from_lengths as pose_from_lengths
-    from inca_mj.kinematics.jacobians import CableAccelerations as CableAccelerations
-    from inca_mj.kinematics.jacobians import CableRates as CableRates
-    from inca_mj.kinematics.jacobians import accelerations as accelerations
-    from inca_mj.kinematics.jacobians import condition as condition
-    from inca_mj.kinematics.jacobians import jacobian as jacobian
-    from inca_mj.kinematics.jacobians import jacobian_rate as jacobian_rate
-    from inca_mj.kinematics.jacobians import length_jacobian as length_jacobian
-    from inca_mj.kinematics.jacobians import rank as rank
-    from inca_mj.kinematics.jacobians import rates as rates
+if TYPE_CHECKING:  # the public names
+    # isort: off
     from inca_mj.kinematics.rotations import body_rate_matrix as body_rate_matrix
     from inca_mj.kinematics.rotations import euler as euler
     from inca_mj.kinematics.rotations import euler_of as euler_of
@@ -54,5 +16,20 @@ if TYPE_CHECKING:  # the same list, for type checkers and editors
     from inca_mj.kinematics.rotations import pose_rate_matrix as pose_rate_matrix
     from inca_mj.kinematics.rotations import quaternion as quaternion
     from inca_mj.kinematics.rotations import rotation as rotation
+    from inca_mj.kinematics.cables import Pulleys as Pulleys
+    from inca_mj.kinematics.cables import Cables as Cables
+    from inca_mj.kinematics.cables import inverse as inverse
+    from inca_mj.kinematics.jacobians import CableRates as CableRates
+    from inca_mj.kinematics.jacobians import rates as rates
+    from inca_mj.kinematics.jacobians import CableAccelerations as CableAccelerations
+    from inca_mj.kinematics.jacobians import accelerations as accelerations
+    from inca_mj.kinematics.jacobians import condition as condition
+    from inca_mj.kinematics.jacobians import jacobian as jacobian
+    from inca_mj.kinematics.jacobians import jacobian_rate as jacobian_rate
+    from inca_mj.kinematics.jacobians import length_jacobian as length_jacobian
+    from inca_mj.kinematics.jacobians import rank as rank
+    from inca_mj.kinematics.forward import ForwardPose as ForwardPose
+    from inca_mj.kinematics.forward import pose_from_lengths as pose_from_lengths
+    # isort: on
 else:
-    __getattr__, __dir__ = lazy(__name__, _PUBLIC)
+    __all__, __getattr__, __dir__ = lazy(__name__)
