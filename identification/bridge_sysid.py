@@ -35,13 +35,9 @@ Residual = Callable[..., Any]
 
 @dataclass(frozen=True)
 class Compiled:
-    """Stands where `mujoco.sysid` wants an MjSpec: a model that is compiled already.
+    """Stands where `mujoco.sysid` wants an MjSpec: a model that is compiled already."""
 
-    Attributes:
-        model: the compiled model.
-    """
-
-    model: mujoco.MjModel
+    model: mujoco.MjModel  # the compiled model
 
     def compile(self) -> mujoco.MjModel:
         """Returns a copy of the model."""

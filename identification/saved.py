@@ -20,36 +20,23 @@ Parameters = Mapping[str, tuple[float, float, str]]
 
 @dataclass(frozen=True)
 class SavedRival:
-    """Another effect that may explain the same data.
+    """Another effect that may explain the same data."""
 
-    Attributes:
-        name: of the effect.
-        where: the place where it acts, in words.
-        confidence: probability that it is the right one of those considered.
-    """
-
-    name: str
-    where: str
-    confidence: float
+    name: str  # of the effect
+    where: str  # the place where it acts, in words
+    confidence: float  # probability that it is the right one of those considered
 
 
 @dataclass(frozen=True)
 class SavedEffect:
-    """An effect that was named, or refitted and not believed.
+    """An effect that was named, or refitted and not believed."""
 
-    Attributes:
-        name: of the effect.
-        where: the place where it acts, in words.
-        confidence: probability that the name is right among its rivals, 0 to 1.
-        parameters: its sizes and shapes by name: value, std, unit; NaN where a number is not known.
-        rivals: other effects that were refitted in its place.
-    """
-
-    name: str
-    where: str
-    confidence: float
+    name: str  # of the effect
+    where: str  # the place where it acts, in words
+    confidence: float  # probability that the name is right among its rivals, 0 to 1
+    # its sizes and shapes by name: value, std, unit; NaN where a number is not known
     parameters: Parameters
-    rivals: tuple[SavedRival, ...] = ()
+    rivals: tuple[SavedRival, ...] = ()  # other effects that were refitted in its place
 
 
 @dataclass(frozen=True)

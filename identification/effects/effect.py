@@ -103,14 +103,10 @@ class Onset:
 
     An effect with an onset is one law behind a course in time, so its law is evaluated once for
     all times at which it may begin.
-
-    Attributes:
-        shape: name of the shape that is t_s, a time of the record [s].
-        lasts: w [s].
     """
 
-    shape: str
-    lasts: float
+    shape: str  # name of the shape that is t_s, a time of the record [s]
+    lasts: float  # w [s]
 
     def course(self, time: np.ndarray, begins: float) -> np.ndarray:
         """Returns the factor at some times [s], where the effect begins at `begins` [s]."""

@@ -55,21 +55,13 @@ LEAST = 1e-3  # of the largest force of the drives: the smallest std of a force
 
 @dataclass(frozen=True, eq=False)
 class Gears:
-    """The states of a plant's joints.
+    """The states of a plant's joints."""
 
-    Attributes:
-        effects: all of the plant.
-        axes: the joints that may have effects.
-        states: of joints.
-        model: with actuators for the states.
-        spec: the model as its file has it, on which shares of inertia are counted.
-    """
-
-    effects: tuple[Effect, ...]
-    axes: tuple[Axis, ...]
-    states: tuple[JointState, ...]
-    model: mujoco.MjModel
-    spec: mujoco.MjSpec
+    effects: tuple[Effect, ...]  # all of the plant
+    axes: tuple[Axis, ...]  # the joints that may have effects
+    states: tuple[JointState, ...]  # of joints
+    model: mujoco.MjModel  # with actuators for the states
+    spec: mujoco.MjSpec  # the model as its file has it, on which shares of inertia are counted
 
     @cached_property
     def joints(self) -> dict[str, Axis]:

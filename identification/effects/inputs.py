@@ -92,17 +92,11 @@ LAG = {"input": lagged, "start": lag_start, "next": lag_next}
 
 @dataclass(frozen=True)
 class Drive:
-    """An actuator and how far a log drives it.
+    """An actuator and how far a log drives it."""
 
-    Attributes:
-        actuator: its name.
-        largest: largest input [unit].
-        unit: SI unit of the input, "" when not known.
-    """
-
-    actuator: str
-    largest: float
-    unit: str = ""
+    actuator: str  # its name
+    largest: float  # largest input [unit]
+    unit: str = ""  # SI unit of the input, "" when not known
 
     def __post_init__(self) -> None:
         if not (np.isfinite(self.largest) and self.largest > 0):

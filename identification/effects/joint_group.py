@@ -31,19 +31,12 @@ SEEN = 2.0  # periods within the travel, below which a curve is not seen to repe
 
 @dataclass(frozen=True)
 class Group:
-    """Hinges, or slides.
+    """Hinges, or slides."""
 
-    Attributes:
-        kind: of all of them.
-        axes: the joints, one or more.
-        turns: periods in a turn of a hinge that are tried.
-        both: whether the robot has joints of the other kind too.
-    """
-
-    kind: Kind
-    axes: tuple[Axis, ...]
-    turns: Sequence[float]
-    both: bool = False
+    kind: Kind  # of all of them
+    axes: tuple[Axis, ...]  # the joints, one or more
+    turns: Sequence[float]  # periods in a turn of a hinge that are tried
+    both: bool = False  # whether the robot has joints of the other kind too
 
     @property
     def prefix(self) -> str:

@@ -40,15 +40,11 @@ POSES = 8  # random ones, behind the model's own
 
 @dataclass(frozen=True)
 class JointState:
-    """A state of a joint.
+    """A state of a joint."""
 
-    Attributes:
-        kind: "motor", θ and ω behind a gear; or "grip", p of a friction that gives.
-        joint: its name.
-    """
-
+    # "motor", θ and ω behind a gear; or "grip", p of a friction that gives
     kind: Literal["motor", "grip"]
-    joint: str
+    joint: str  # its name
 
 
 @dataclass(frozen=True, kw_only=True)

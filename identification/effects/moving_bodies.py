@@ -18,25 +18,17 @@ STEP = 0.1  # of a number of a body, relative to its size
 
 @dataclass(frozen=True, kw_only=True)
 class MovingBody:
-    """A body that joints move.
+    """A body that joints move."""
 
-    Attributes:
-        label: its name, or that of its first joint where it has none.
-        index: in the model.
-        mass: [kg].
-        point: where a payload would sit, in its frame: its farthest site, else the farthest end of
-            its geoms (of a capsule, cylinder or box; of others the centre), else twice as far as
-            its centre of mass, where a uniform link ends, shape (3,) [m].
-        reach: distance of the farthest site or centre of a geom from its frame [m].
-        is_last: whether it carries no other moving body.
-    """
-
-    label: str
-    index: int
-    mass: float
+    label: str  # its name, or that of its first joint where it has none
+    index: int  # in the model
+    mass: float  # [kg]
+    # where a payload would sit, in its frame: its farthest site, else the farthest end of its geoms
+    # (of a capsule, cylinder or box; of others the centre), else twice as far as its centre of
+    # mass, where a uniform link ends, shape (3,) [m]
     point: tuple[float, float, float]
-    reach: float
-    is_last: bool
+    reach: float  # distance of the farthest site or centre of a geom from its frame [m]
+    is_last: bool  # whether it carries no other moving body
 
 
 def movable(spec: mujoco.MjSpec) -> mujoco.MjModel:

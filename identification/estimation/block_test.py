@@ -43,55 +43,33 @@ MOST_FREEDOM = 1e4  # as good as infinitely many
 
 @dataclass(frozen=True, kw_only=True)
 class Blocks:
-    """The columns of J candidates with m sizes each by blocks, in coordinates in which H is 1.
+    """The columns of J candidates with m sizes each by blocks, in coordinates in which H is 1."""
 
-    Attributes:
-        root: H^-½, shape (J, m, m); zero in directions that no sample feels.
-        G: shape (B, J, m, m).
-        over: Ω^-½, shape (J, m, m); zero in directions of which blocks tell no scatter.
-        rank: number of sizes that the samples feel, shape (J,).
-        freedom: ν, shape (J,); zero where blocks tell nothing of the scatter.
-        trace_freedom: f, shape (J,).
-    """
-
-    root: np.ndarray
-    G: np.ndarray
-    over: np.ndarray
-    rank: np.ndarray
-    freedom: np.ndarray
-    trace_freedom: np.ndarray
+    root: np.ndarray  # H^-½, shape (J, m, m); zero in directions that no sample feels
+    G: np.ndarray  # shape (B, J, m, m)
+    over: np.ndarray  # Ω^-½, shape (J, m, m); zero in directions of which blocks tell no scatter
+    rank: np.ndarray  # number of sizes that the samples feel, shape (J,)
+    freedom: np.ndarray  # ν, shape (J,); zero where blocks tell nothing of the scatter
+    trace_freedom: np.ndarray  # f, shape (J,)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Scatter:
-    """Estimated sizes of J candidates and their scatter.
+    """Estimated sizes of J candidates and their scatter."""
 
-    Attributes:
-        blocks: of the candidates.
-        η: η̂ in coordinates in which H is 1, shape (J, m).
-        D: shape (J, m, m).
-        variance: σ̂², shape (J,).
-        signs: that physics admits of the sizes, shape (J, m); 0 where it admits both.
-    """
-
-    blocks: Blocks
-    η: np.ndarray
-    D: np.ndarray
-    variance: np.ndarray
-    signs: np.ndarray
+    blocks: Blocks  # of the candidates
+    η: np.ndarray  # η̂ in coordinates in which H is 1, shape (J, m)
+    D: np.ndarray  # shape (J, m, m)
+    variance: np.ndarray  # σ̂², shape (J,)
+    signs: np.ndarray  # that physics admits of the sizes, shape (J, m); 0 where it admits both
 
 
 @dataclass(frozen=True)
 class Common:
-    """The scatter that all candidates have in common.
+    """The scatter that all candidates have in common."""
 
-    Attributes:
-        freedom: d.
-        square: s².
-    """
-
-    freedom: float
-    square: float
+    freedom: float  # d
+    square: float  # s²
 
 
 def make_blocks(G: np.ndarray, Z: np.ndarray) -> Blocks:

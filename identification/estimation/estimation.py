@@ -40,35 +40,21 @@ from identification.progress import Progress
 
 @dataclass(frozen=True, kw_only=True)
 class Estimate:
-    """The end of a search: the estimate, and how it was found.
+    """The end of a search: the estimate, and how it was found."""
 
-    Attributes:
-        predictor: the plant, the log and the names of the free parameters.
-        space: their coordinates.
-        start: starting values, shape (p,), in their units.
-        q: the estimate, shape (p,), in the coordinates of `space`.
-        whitener: C of the criterion, shape (ny, ny), in one over the outputs' units.
-        weight: weight of each residual where the noise is relative, shape (n, ny); ones where it
-            is not.
-        options: the options of the search.
-        evaluations: how often the outputs were simulated.
-        jacobians: how often the sensitivities were computed.
-        status: `converged`, `iterations` (the largest number was reached), or `stopped` by the
-            user.
-        seconds: wall time [s].
-    """
-
-    predictor: Predictor
-    space: Coordinates
-    start: np.ndarray
-    q: np.ndarray
-    whitener: np.ndarray
+    predictor: Predictor  # the plant, the log and the names of the free parameters
+    space: Coordinates  # their coordinates
+    start: np.ndarray  # starting values, shape (p,), in their units
+    q: np.ndarray  # the estimate, shape (p,), in the coordinates of `space`
+    whitener: np.ndarray  # C of the criterion, shape (ny, ny), in one over the outputs' units
+    # weight of each residual where the noise is relative, shape (n, ny); ones where it is not
     weight: np.ndarray
-    options: Options
-    evaluations: int
-    jacobians: int
+    options: Options  # the options of the search
+    evaluations: int  # how often the outputs were simulated
+    jacobians: int  # how often the sensitivities were computed
+    # `converged`, `iterations` (the largest number was reached), or `stopped` by the user
     status: Status
-    seconds: float
+    seconds: float  # wall time [s]
 
     @property
     def priors(self) -> Priors:

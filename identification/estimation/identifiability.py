@@ -37,30 +37,22 @@ ENTRY_ROUNDING = 1e-3  # an entry of a direction of norm 1 that is smaller than 
 
 @dataclass(frozen=True, kw_only=True)
 class Identifiability:
-    """The directions of a parameter space, and how strongly the outputs of a log feel each.
+    """The directions of a parameter space, and how strongly the outputs of a log feel each."""
 
-    Attributes:
-        names: parameters, p of them.
-        strengths: ‖S v‖ of each direction v, shape (p,). The directions that are felt come first,
-            then the others; in both groups the strongest is first.
-        directions: orthogonal, of norm 1, one in each row, shape (p, p). First those that are felt,
-            then those whose effect cannot be told from the error of the differences, then the
-            proven symmetries.
-        rank: how many directions the outputs feel.
-        norms: norms of the columns of S, shape (p,): the effect of each parameter alone, in units
-            of the noise.
-        errors: d, the norms of the errors of the columns of S, shape (p,).
-        leaks: ‖U_fᵀ E b‖ of each blind direction b, shape (p - rank,); 0 for a symmetry.
-        symmetries: the ways in which parameters can be scaled together while no output changes.
-    """
-
-    names: tuple[str, ...]
+    names: tuple[str, ...]  # parameters, p of them
+    # ‖S v‖ of each direction v, shape (p,). The directions that are felt come first, then the
+    # others; in both groups the strongest is first.
     strengths: np.ndarray
+    # orthogonal, of norm 1, one in each row, shape (p, p). First those that are felt, then those
+    # whose effect cannot be told from the error of the differences, then the proven symmetries.
     directions: np.ndarray
-    rank: int
+    rank: int  # how many directions the outputs feel
+    # norms of the columns of S, shape (p,): the effect of each parameter alone, in units of the
+    # noise
     norms: np.ndarray
-    errors: np.ndarray
-    leaks: np.ndarray
+    errors: np.ndarray  # d, the norms of the errors of the columns of S, shape (p,)
+    leaks: np.ndarray  # ‖U_fᵀ E b‖ of each blind direction b, shape (p - rank,); 0 for a symmetry
+    # the ways in which parameters can be scaled together while no output changes
     symmetries: tuple[ScalingSymmetry, ...] = ()
 
     @property

@@ -32,25 +32,17 @@ from identification.model.coordinates import Coordinates
 
 @dataclass(frozen=True, kw_only=True)
 class Information:
-    """The information of an experiment on p parameters.
+    """The information of an experiment on p parameters."""
 
-    Attributes:
-        names: the parameters of interest, then the nuisances.
-        asked: how many parameters are of interest.
-        logarithmic: true where q = ln(value), shape (p,).
-        root: upper triangular, rootᵀ root = F of all, shape (p, p), in the coordinates q.
-        error: errors of S, in rows of which the first p are those of `root`, shape (2 p, p), in the
-            coordinates q.
-        least: norm of the round-off error of a column of S.
-        symmetries: the ways in which parameters can be scaled together while no output changes.
-    """
-
-    names: tuple[str, ...]
-    asked: int
-    logarithmic: np.ndarray
-    root: np.ndarray
+    names: tuple[str, ...]  # the parameters of interest, then the nuisances
+    asked: int  # how many parameters are of interest
+    logarithmic: np.ndarray  # true where q = ln(value), shape (p,)
+    root: np.ndarray  # upper triangular, rootᵀ root = F of all, shape (p, p), in the coordinates q
+    # errors of S, in rows of which the first p are those of `root`, shape (2 p, p), in the
+    # coordinates q
     error: np.ndarray
-    least: float
+    least: float  # norm of the round-off error of a column of S
+    # the ways in which parameters can be scaled together while no output changes
     symmetries: tuple[ScalingSymmetry, ...] = ()
 
     @property

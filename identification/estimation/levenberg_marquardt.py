@@ -63,17 +63,11 @@ Linearised = TypeVar("Linearised", bound=Criterion[Any])
 
 @dataclass(frozen=True)
 class Damping:
-    """The rule by which the damping μ changes from step to step.
+    """The rule by which the damping μ changes from step to step."""
 
-    Attributes:
-        first: μ of the first step; where it is 0, steps are undamped until one is rejected.
-        raised: factor of μ after a step that was rejected.
-        least: smallest positive μ.
-    """
-
-    first: float
-    raised: float
-    least: float
+    first: float  # μ of the first step; where it is 0, steps are undamped until one is rejected
+    raised: float  # factor of μ after a step that was rejected
+    least: float  # smallest positive μ
 
     def next(self, μ: np.ndarray, taken: np.ndarray) -> np.ndarray:
         """Returns μ of the next step, elementwise, from the last μ and whether it was accepted."""
@@ -84,25 +78,15 @@ class Damping:
 
 @dataclass(frozen=True, kw_only=True)
 class Trial(Generic[Linearised]):
-    """One trial step of a descent; arrays have the shape of the criterion's cost.
+    """One trial step of a descent; arrays have the shape of the criterion's cost."""
 
-    Attributes:
-        criterion: the criterion, linearised at the point after the trial.
-        step: the step that was tried.
-        before: cost before the step.
-        after: cost after the step.
-        taken: true where the step was accepted.
-        μ: damping of the step.
-        next: damping of the next step.
-    """
-
-    criterion: Linearised
-    step: Any
-    before: np.ndarray
-    after: np.ndarray
-    taken: np.ndarray
-    μ: np.ndarray
-    next: np.ndarray
+    criterion: Linearised  # the criterion, linearised at the point after the trial
+    step: Any  # the step that was tried
+    before: np.ndarray  # cost before the step
+    after: np.ndarray  # cost after the step
+    taken: np.ndarray  # true where the step was accepted
+    μ: np.ndarray  # damping of the step
+    next: np.ndarray  # damping of the next step
 
 
 def levenberg_marquardt(

@@ -36,21 +36,16 @@ LINEAR_SPREAD_SHARE = 0.1  # of the spread, for coordinates that are no logarith
 
 @dataclass(frozen=True)
 class Starts:
-    """Searches from several starts.
+    """Searches from several starts."""
 
-    Attributes:
-        best: the search that explains the log best.
-        cost: the criterion V at which each search ended, in the order of the starts, shape (n,),
-            without unit; infinite where the search diverged. The best has the smallest.
-        rms: rms of the residual of each search over all outputs, shape (n,), in their unit;
-            infinite where the search diverged. Where outputs have several units it says little.
-        values: starting values, shape (n, p), in their units.
-    """
-
-    best: Estimate
+    best: Estimate  # the search that explains the log best
+    # the criterion V at which each search ended, in the order of the starts, shape (n,), without
+    # unit; infinite where the search diverged. The best has the smallest.
     cost: np.ndarray
+    # rms of the residual of each search over all outputs, shape (n,), in their unit; infinite where
+    # the search diverged. Where outputs have several units it says little.
     rms: np.ndarray
-    values: np.ndarray
+    values: np.ndarray  # starting values, shape (n, p), in their units
 
 
 def estimate_from(

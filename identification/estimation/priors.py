@@ -37,16 +37,11 @@ MIN_STD_SHARE = 1e-2  # of the s before: below it a deviation moves nothing that
 
 @dataclass(frozen=True)
 class Priors:
-    """Free parameters, and what is known of each before a log speaks.
+    """Free parameters, and what is known of each before a log speaks."""
 
-    Attributes:
-        space: their coordinates and bounds, p of them.
-        mean: q̄, shape (p,).
-        weight: 1/s in coordinates, zero where nothing is known, shape (p,).
-    """
-
-    space: Coordinates = NOTHING
-    mean: np.ndarray = field(default_factory=lambda: np.zeros(0))
+    space: Coordinates = NOTHING  # their coordinates and bounds, p of them
+    mean: np.ndarray = field(default_factory=lambda: np.zeros(0))  # q̄, shape (p,)
+    # 1/s in coordinates, zero where nothing is known, shape (p,)
     weight: np.ndarray = field(default_factory=lambda: np.zeros(0))
 
     @property

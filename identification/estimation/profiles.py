@@ -34,23 +34,16 @@ MAX_REACH = 0.5  # of q to each side where the std is larger or infinite
 
 @dataclass(frozen=True, kw_only=True)
 class Profile:
-    """The smallest cost at given values of one parameter.
+    """The smallest cost at given values of one parameter."""
 
-    Attributes:
-        name: the parameter.
-        estimate: its estimated value.
-        values: the values at which it was held, ascending, shape (k,), in its unit.
-        rise: V_p - V(q̂) in units of s_j², infinite where no simulation was possible, shape (k,).
-        others: the best values of the other parameters there, by name, each of shape (k,) in its
-            unit.
-        interval: 95 % interval of the value; an end that the profile does not reach is infinite.
-    """
-
-    name: str
-    estimate: float
-    values: np.ndarray
+    name: str  # the parameter
+    estimate: float  # its estimated value
+    values: np.ndarray  # the values at which it was held, ascending, shape (k,), in its unit
+    # V_p - V(q̂) in units of s_j², infinite where no simulation was possible, shape (k,)
     rise: np.ndarray
+    # the best values of the other parameters there, by name, each of shape (k,) in its unit
     others: dict[str, np.ndarray]
+    # 95 % interval of the value; an end that the profile does not reach is infinite
     interval: tuple[float, float]
 
     @property

@@ -26,15 +26,11 @@ LAGS = 25  # as MATLAB's resid
 
 @dataclass(frozen=True)
 class ResidualTests:
-    """p-values per output; a small one contradicts the hypothesis.
+    """p-values per output; a small one contradicts the hypothesis."""
 
-    Attributes:
-        white: that the residual is white, shape (ny,), without unit.
-        independent: that it does not depend on any past input, corrected for the number of inputs
-            and lags, shape (ny,), without unit.
-    """
-
-    white: np.ndarray
+    white: np.ndarray  # that the residual is white, shape (ny,), without unit
+    # that it does not depend on any past input, corrected for the number of inputs and lags, shape
+    # (ny,), without unit
     independent: np.ndarray
 
 
@@ -52,22 +48,15 @@ def residual_tests(residual: np.ndarray, inputs: np.ndarray, lags: int = LAGS) -
 
 @dataclass(frozen=True, kw_only=True)
 class InnovationTests:
-    """Tests of innovations.
+    """Tests of innovations."""
 
-    Attributes:
-        p_correlation: p-value of the test of Ljung and Box over all channels.
-        predictable: share of the power that the correlations would predict, less the share that
-            chance would predict, 0 to 1.
-        p_line: p-value of the strongest spectral line of all channels.
-        channel: index of the output on which that line has the most power.
-        frequency: of that line [Hz].
-    """
-
-    p_correlation: float
+    p_correlation: float  # p-value of the test of Ljung and Box over all channels
+    # share of the power that the correlations would predict, less the share that chance would
+    # predict, 0 to 1
     predictable: float
-    p_line: float
-    channel: int
-    frequency: float
+    p_line: float  # p-value of the strongest spectral line of all channels
+    channel: int  # index of the output on which that line has the most power
+    frequency: float  # of that line [Hz]
 
     def is_correlated(self, level: float, least_share: float) -> bool:
         """Returns whether samples are correlated beyond chance, and by enough to matter."""
@@ -101,15 +90,10 @@ def innovation_tests(E: np.ndarray, sampling_time: float) -> InnovationTests:
 
 @dataclass(frozen=True)
 class Whiteness:
-    """The test of Ljung and Box.
+    """The test of Ljung and Box."""
 
-    Attributes:
-        r: autocorrelation at the lags 1..m, shape (m, ny).
-        samples: N.
-    """
-
-    r: np.ndarray
-    samples: int
+    r: np.ndarray  # autocorrelation at the lags 1..m, shape (m, ny)
+    samples: int  # N
 
     @property
     def Q(self) -> np.ndarray:

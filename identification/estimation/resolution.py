@@ -37,21 +37,13 @@ AtTwoSteps = Callable[[float], tuple[np.ndarray, np.ndarray]]
 
 @dataclass(frozen=True)
 class Resolved:
-    """Whitened sensitivities and their errors.
+    """Whitened sensitivities and their errors."""
 
-    Attributes:
-        names: parameters, p of them.
-        S: shape (n, p), zero along the symmetries.
-        E: estimated errors of S, shape (n, p).
-        least: norm of the round-off error of a column.
-        symmetries: the proven symmetries.
-    """
-
-    names: tuple[str, ...]
-    S: np.ndarray
-    E: np.ndarray
-    least: float
-    symmetries: tuple[ScalingSymmetry, ...] = ()
+    names: tuple[str, ...]  # parameters, p of them
+    S: np.ndarray  # shape (n, p), zero along the symmetries
+    E: np.ndarray  # estimated errors of S, shape (n, p)
+    least: float  # norm of the round-off error of a column
+    symmetries: tuple[ScalingSymmetry, ...] = ()  # the proven symmetries
 
     @property
     def errors(self) -> np.ndarray:

@@ -31,13 +31,9 @@ Whiten = Callable[[np.ndarray], np.ndarray]
 
 @dataclass(frozen=True)
 class ScalingSymmetry:
-    """Parameters that can be scaled together.
+    """Parameters that can be scaled together."""
 
-    Attributes:
-        powers: v by name; parameters that are not named have 0.
-    """
-
-    powers: dict[str, Fraction]
+    powers: dict[str, Fraction]  # v by name; parameters that are not named have 0
 
     def row(self, names: Sequence[str]) -> np.ndarray:
         """Returns v as a direction of q, of norm 1, shape (p,)."""
@@ -47,13 +43,9 @@ class ScalingSymmetry:
 
 @dataclass(frozen=True)
 class Combination:
-    """A product of powers of parameters that can be known although the parameters cannot.
+    """A product of powers of parameters that can be known although the parameters cannot."""
 
-    Attributes:
-        exponents: the powers, by name.
-    """
-
-    exponents: dict[str, Fraction]
+    exponents: dict[str, Fraction]  # the powers, by name
 
     def __str__(self) -> str:
         return " ".join(

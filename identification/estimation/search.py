@@ -91,27 +91,16 @@ class Options:
 
 @dataclass
 class Search:
-    """One search: what `least_squares` calls, and the best point it has seen.
+    """One search: what `least_squares` calls, and the best point it has seen."""
 
-    Attributes:
-        predictor: the plant, the log and the names of the free parameters.
-        space: their coordinates.
-        best: the point at which it begins, then the best one, shape (p,).
-        whitener: C, shape (ny, ny).
-        options: how to search.
-        progress: is told one line per accepted step.
-        evaluations: how often the outputs were simulated.
-        jacobians: how often the sensitivities were computed.
-    """
-
-    predictor: Predictor
-    space: Coordinates
-    best: np.ndarray
-    whitener: np.ndarray
-    options: Options
-    progress: Progress | None
-    evaluations: int = 0
-    jacobians: int = 0
+    predictor: Predictor  # the plant, the log and the names of the free parameters
+    space: Coordinates  # their coordinates
+    best: np.ndarray  # the point at which it begins, then the best one, shape (p,)
+    whitener: np.ndarray  # C, shape (ny, ny)
+    options: Options  # how to search
+    progress: Progress | None  # is told one line per accepted step
+    evaluations: int = 0  # how often the outputs were simulated
+    jacobians: int = 0  # how often the sensitivities were computed
 
     def __post_init__(self) -> None:
         self.weight = relative_weight(self.predictor.log.outputs, self.options.relative_noise)

@@ -41,21 +41,16 @@ RIDGE_WEIGHT = 0.1  # 1/std of q: holds directions that have no effect on the ou
 
 @dataclass(frozen=True)
 class InnovationsFit:
-    """An estimate by innovations.
+    """An estimate by innovations."""
 
-    Attributes:
-        fit: the values; std, correlation and tests are those of the innovations, residual and fit
-            percentages those of a free run.
-        level: the noise of sensors and inputs.
-        innovations: of the whole log, in the outputs' unit, shape (N, ny); of the fitted samples
-            alone where the search was stopped.
-        first: first sample that was not fitted.
-    """
-
+    # the values; std, correlation and tests are those of the innovations, residual and fit
+    # percentages those of a free run
     fit: Fit
-    level: NoiseLevel
+    level: NoiseLevel  # the noise of sensors and inputs
+    # of the whole log, in the outputs' unit, shape (N, ny); of the fitted samples alone where the
+    # search was stopped
     innovations: np.ndarray
-    first: int
+    first: int  # first sample that was not fitted
 
     @property
     def rms(self) -> float:

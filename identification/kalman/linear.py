@@ -32,40 +32,28 @@ from identification.pool import one_blas_thread
 
 @dataclass(frozen=True, eq=False)
 class LinearPlant:
-    """The linearisation at the N samples of a log.
+    """The linearisation at the N samples of a log."""
 
-    Attributes:
-        A: transition from each sample to the next, shape (N-1, nx, nx); zeros where another
-            record of a joined log begins.
-        B: effect of an input held over the sample, shape (N-1, nx, nu).
-        C: outputs from the state, shape (ny, nx).
-        felt: which entries of the state are x, shape (2 nv + na,); None where nobody knows.
-    """
-
+    # transition from each sample to the next, shape (N-1, nx, nx); zeros where another record of a
+    # joined log begins
     A: np.ndarray
-    B: np.ndarray
-    C: np.ndarray
+    B: np.ndarray  # effect of an input held over the sample, shape (N-1, nx, nu)
+    C: np.ndarray  # outputs from the state, shape (ny, nx)
+    # which entries of the state are x, shape (2 nv + na,); None where nobody knows
     felt: np.ndarray | None = None
 
 
 @dataclass(frozen=True)
 class Linearisation:
-    """The linearisation of one record over the L intervals of its trajectory.
+    """The linearisation of one record over the L intervals of its trajectory."""
 
-    Attributes:
-        along: the trajectory.
-        A: transition over each interval, shape (L, nx, nx).
-        Γ: effect of a constant rate of change of each velocity and activation, shape (L, nx, nf).
-        B: effect of a constant input, shape (L, nx, nu).
-        C: outputs from the state, shape (ny, nx).
-        felt: which entries of the state are x: those that outputs feel, shape (2 nv + na,).
-    """
-
-    along: Trajectory
-    A: np.ndarray
+    along: Trajectory  # the trajectory
+    A: np.ndarray  # transition over each interval, shape (L, nx, nx)
+    # effect of a constant rate of change of each velocity and activation, shape (L, nx, nf)
     Γ: np.ndarray
-    B: np.ndarray
-    C: np.ndarray
+    B: np.ndarray  # effect of a constant input, shape (L, nx, nu)
+    C: np.ndarray  # outputs from the state, shape (ny, nx)
+    # which entries of the state are x: those that outputs feel, shape (2 nv + na,)
     felt: np.ndarray
 
     @cached_property

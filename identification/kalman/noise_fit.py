@@ -38,17 +38,11 @@ FIRST_LEVELS = (0.0, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0)
 
 @dataclass(frozen=True)
 class NoiseLevel:
-    """A noise and the likelihood of a residual under it.
+    """A noise and the likelihood of a residual under it."""
 
-    Attributes:
-        noise: ρ and τ, and the shares of sensors and inputs.
-        sigma: σ, rms of the sensors' noise over all outputs, in their unit.
-        log_likelihood: of the residual, up to a constant that depends on the log only.
-    """
-
-    noise: Noise
-    sigma: float
-    log_likelihood: float
+    noise: Noise  # ρ and τ, and the shares of sensors and inputs
+    sigma: float  # σ, rms of the sensors' noise over all outputs, in their unit
+    log_likelihood: float  # of the residual, up to a constant that depends on the log only
 
     @property
     def input_std(self) -> float:

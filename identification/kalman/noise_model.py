@@ -38,18 +38,13 @@ _kept: deque[Whitened] = deque(maxlen=KEPT_POINTS)
 
 @dataclass(frozen=True)
 class Noise:
-    """The numbers of the noise model beside σ.
+    """The numbers of the noise model beside σ."""
 
-    Attributes:
-        ratio: ρ, std of the inputs' error over σ [unit of the input per unit of the output].
-        time: τ, correlation time of the inputs' error [s].
-        outputs: s, std of the noise of each sensor over σ; none where all are alike.
-        inputs: g, std of the error of each input over ρ σ; none where all are alike.
-    """
-
-    ratio: float
-    time: float
+    ratio: float  # ρ, std of the inputs' error over σ [unit of the input per unit of the output]
+    time: float  # τ, correlation time of the inputs' error [s]
+    # s, std of the noise of each sensor over σ; none where all are alike
     outputs: tuple[float, ...] = ()
+    # g, std of the error of each input over ρ σ; none where all are alike
     inputs: tuple[float, ...] = ()
 
     def of_outputs(self, ny: int) -> np.ndarray:
@@ -78,24 +73,17 @@ class Noise:
 
 @dataclass(frozen=True)
 class Whitener:
-    """A whitening filter; residuals and sensitivities pass the same one.
+    """A whitening filter; residuals and sensitivities pass the same one."""
 
-    Attributes:
-        A: transitions of the state z = (x, w) of plant and input error, shape (N-1, nz, nz); empty
-            where the inputs have no error.
-        C: outputs from that state, shape (ny, nz).
-        s: std of the noise of each sensor over σ, shape (ny,).
-        K: Kalman gains, shape (N, nz, ny).
-        L: inverted Cholesky factors of the innovations' covariances over σ², shape (N, ny, ny).
-        log_determinant: Σ log det of the covariances over σ².
-    """
-
+    # transitions of the state z = (x, w) of plant and input error, shape (N-1, nz, nz); empty where
+    # the inputs have no error
     A: np.ndarray
-    C: np.ndarray
-    s: np.ndarray
-    K: np.ndarray
+    C: np.ndarray  # outputs from that state, shape (ny, nz)
+    s: np.ndarray  # std of the noise of each sensor over σ, shape (ny,)
+    K: np.ndarray  # Kalman gains, shape (N, nz, ny)
+    # inverted Cholesky factors of the innovations' covariances over σ², shape (N, ny, ny)
     L: np.ndarray
-    log_determinant: float
+    log_determinant: float  # Σ log det of the covariances over σ²
 
     def __call__(self, e: np.ndarray) -> np.ndarray:
         """Returns innovations of e, shape (n, ny) or (n, ny, p), n <= N samples, of std σ each."""
@@ -131,20 +119,13 @@ class Whitened:
     The noise that is found at a point is that of its criterion, of its scores and of the std of
     its estimate, and after a short step the columns are those from before it. So the last ones
     are kept.
-
-    Attributes:
-        plant: the linearised plant of the filter.
-        J: the sensitivities, shape (N, ny, p).
-        noise: ρ and τ.
-        filter: the whitening filter.
-        F: the whitened sensitivities, shape (N ny, p).
     """
 
-    plant: LinearPlant
-    J: np.ndarray
-    noise: Noise
-    filter: Whitener
-    F: np.ndarray
+    plant: LinearPlant  # the linearised plant of the filter
+    J: np.ndarray  # the sensitivities, shape (N, ny, p)
+    noise: Noise  # ρ and τ
+    filter: Whitener  # the whitening filter
+    F: np.ndarray  # the whitened sensitivities, shape (N ny, p)
 
     @cached_property
     def H(self) -> np.ndarray:

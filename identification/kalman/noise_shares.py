@@ -36,21 +36,13 @@ LEAST_SHARE = 0.05
 
 @dataclass(frozen=True)
 class Shared:
-    """A noise and what the likelihood of a fixed residual says of it.
+    """A noise and what the likelihood of a fixed residual says of it."""
 
-    Attributes:
-        noise: the noise.
-        log_likelihood: with the likeliest σ, up to a constant that depends on the log only.
-        sensors: q_i/t_i of each sensor, shape (ny,).
-        inputs: q_j/t_j of each input, shape (nu,); empty where they have no error.
-        input: the same of all inputs together, 1 where they have no error.
-    """
-
-    noise: Noise
-    log_likelihood: float
-    sensors: np.ndarray
-    inputs: np.ndarray
-    input: float
+    noise: Noise  # the noise
+    log_likelihood: float  # with the likeliest σ, up to a constant that depends on the log only
+    sensors: np.ndarray  # q_i/t_i of each sensor, shape (ny,)
+    inputs: np.ndarray  # q_j/t_j of each input, shape (nu,); empty where they have no error
+    input: float  # the same of all inputs together, 1 where they have no error
 
 
 def share_noise(

@@ -39,28 +39,18 @@ SHORT_CHANGE = 0.02
 
 @dataclass(frozen=True, kw_only=True)
 class Problem(Criterion[np.ndarray]):
-    """The criterion about a point: rows of the innovations and of the priors, in units of σ.
+    """The criterion about a point: rows of the innovations and of the priors, in units of σ."""
 
-    Attributes:
-        point: the plant at the point, with p free parameters.
-        level: the noise.
-        priors: what is known of the parameters.
-        filter: the whitening filter of the noise.
-        rows: F, shape (N ny + p, p).
-        target: -r, shape (N ny + p,).
-        curvature: FᵀF, shape (p, p).
-        largest: largest error of the inputs that is believed after a step, in the inputs' unit.
-        runs: simulations after steps that were tried, by the bytes of their q.
-    """
-
-    point: Point
-    level: NoiseLevel
-    priors: Priors
-    filter: Whitener
-    rows: np.ndarray
-    target: np.ndarray
-    curvature: np.ndarray
+    point: Point  # the plant at the point, with p free parameters
+    level: NoiseLevel  # the noise
+    priors: Priors  # what is known of the parameters
+    filter: Whitener  # the whitening filter of the noise
+    rows: np.ndarray  # F, shape (N ny + p, p)
+    target: np.ndarray  # -r, shape (N ny + p,)
+    curvature: np.ndarray  # FᵀF, shape (p, p)
+    # largest error of the inputs that is believed after a step, in the inputs' unit
     largest: float = np.inf
+    # simulations after steps that were tried, by the bytes of their q
     runs: dict[bytes, Run] = field(default_factory=dict, repr=False)
 
     @property

@@ -48,21 +48,13 @@ PATIENCE = 2  # successive steps without progress after which a search ends
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Refit:
-    """The estimate at which a search ended.
+    """The estimate at which a search ended."""
 
-    Attributes:
-        point: the plant at the estimate.
-        level: the noise.
-        std: of q, by the curvature of the likelihood, shape (p,).
-        priors: what was known of the parameters.
-        steps: number of steps that were taken.
-    """
-
-    point: Point
-    level: NoiseLevel
-    std: np.ndarray
-    priors: Priors
-    steps: int
+    point: Point  # the plant at the estimate
+    level: NoiseLevel  # the noise
+    std: np.ndarray  # of q, by the curvature of the likelihood, shape (p,)
+    priors: Priors  # what was known of the parameters
+    steps: int  # number of steps that were taken
 
     @property
     def log_posterior(self) -> float:

@@ -31,33 +31,20 @@ POINTS = ("qpos", "qvel", "moved", "act", "inputs", "time")  # fields with a row
 
 @dataclass(frozen=True, kw_only=True)
 class Trajectory:
-    """One record's trajectory at M points, P of them for each of its N samples but the last.
+    """One record's trajectory at M points, P of them for each of its N samples but the last."""
 
-    Attributes:
-        model: with the numbers of the value set, without its sensors.
-        qpos: positions, shape (M, nq).
-        qvel: velocities, shape (M, nv).
-        moved: how far the velocities move in the time that a point stands for, shape (M, nv).
-        act: activations, shape (M, na).
-        inputs: that reach the model, shape (M, nu).
-        time: of the points in the record [s], shape (M,).
-        steps: of the simulation, between which the points lie, shape (M + 1,).
-        timestep: of the simulation [s].
-        begins: first point of each interval, shape (L,).
-        states: fields of the state at the samples, each (N, size).
-    """
-
-    model: mujoco.MjModel
-    qpos: np.ndarray
-    qvel: np.ndarray
+    model: mujoco.MjModel  # with the numbers of the value set, without its sensors
+    qpos: np.ndarray  # positions, shape (M, nq)
+    qvel: np.ndarray  # velocities, shape (M, nv)
+    # how far the velocities move in the time that a point stands for, shape (M, nv)
     moved: np.ndarray
-    act: np.ndarray
-    inputs: np.ndarray
-    time: np.ndarray
-    steps: np.ndarray
-    timestep: float
-    begins: np.ndarray
-    states: dict[str, np.ndarray]
+    act: np.ndarray  # activations, shape (M, na)
+    inputs: np.ndarray  # that reach the model, shape (M, nu)
+    time: np.ndarray  # of the points in the record [s], shape (M,)
+    steps: np.ndarray  # of the simulation, between which the points lie, shape (M + 1,)
+    timestep: float  # of the simulation [s]
+    begins: np.ndarray  # first point of each interval, shape (L,)
+    states: dict[str, np.ndarray]  # fields of the state at the samples, each (N, size)
 
     @property
     def intervals(self) -> int:

@@ -32,15 +32,10 @@ FREE, BALL = int(mujoco.mjtJoint.mjJNT_FREE), int(mujoco.mjtJoint.mjJNT_BALL)
 
 @dataclass(frozen=True)
 class Scheme:
-    """The scheme by which a derivative is taken.
+    """The scheme by which a derivative is taken."""
 
-    Attributes:
-        step: h, in the units of the state and of the inputs.
-        is_central: whether both sides are taken.
-    """
-
-    step: float
-    is_central: bool
+    step: float  # h, in the units of the state and of the inputs
+    is_central: bool  # whether both sides are taken
 
 
 FORWARD = Scheme(1e-7, is_central=False)

@@ -33,21 +33,15 @@ KEPT = 1e-9  # of the fastest rate: an eigenvalue below is zero
 
 @dataclass(frozen=True, kw_only=True)
 class Minimal:
-    """A minimal realisation.
+    """A minimal realisation."""
 
-    Attributes:
-        system: the realisation; its states z are called z1, z2, …, zero at the operating point.
-        unreached: how many states no input reaches.
-        unfelt: how many of the others no output feels.
-        to_states: δx = V δz for what inputs reach, V of shape (nx, nz), in the units of the states.
-        tolerance: of the ranks.
-    """
-
+    # the realisation; its states z are called z1, z2, …, zero at the operating point
     system: LinearSystem
-    unreached: int
-    unfelt: int
+    unreached: int  # how many states no input reaches
+    unfelt: int  # how many of the others no output feels
+    # δx = V δz for what inputs reach, V of shape (nx, nz), in the units of the states
     to_states: np.ndarray
-    tolerance: float
+    tolerance: float  # of the ranks
 
 
 def minimal(system: LinearSystem, tolerance: float = TOLERANCE) -> Minimal:

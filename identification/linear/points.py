@@ -57,17 +57,14 @@ class AtPoints(Protocol):
 
 @dataclass(frozen=True)
 class Change:
-    """A change of the states or the numbers at which a model is evaluated.
+    """A change of the states or the numbers at which a model is evaluated."""
 
-    Attributes:
-        fields: other values of `qpos`, `qvel`, `act` or `ctrl`, one row or a row for each point.
-        numbers: entries of the model that differ, one each, and their values.
-        courses: factors of its increments at the points, shape (k, M): each gives a result of its
-            own; one that is 1 throughout when None.
-    """
-
+    # other values of `qpos`, `qvel`, `act` or `ctrl`, one row or a row for each point
     fields: Mapping[str, np.ndarray] = field(default_factory=dict)
+    # entries of the model that differ, one each, and their values
     numbers: Sequence[tuple[Slot, float]] = ()
+    # factors of its increments at the points, shape (k, M): each gives a result of its own; one
+    # that is 1 throughout when None
     courses: np.ndarray | None = None
 
     @property

@@ -39,32 +39,23 @@ Role = Literal["fit", "confirm"]
 
 @dataclass(frozen=True)
 class Record:
-    """A log and what it is used for.
+    """A log and what it is used for."""
 
-    Attributes:
-        log: what was measured.
-        role: "fit" or "confirm".
-        values: values of the plant's parameters that hold for this record alone, by name.
-        parts: of what no fit sees of it, in a search; None where nothing is told apart.
-    """
-
-    log: Log
-    role: Role
+    log: Log  # what was measured
+    role: Role  # "fit" or "confirm"
+    # values of the plant's parameters that hold for this record alone, by name
     values: Mapping[str, float] = field(default_factory=dict)
+    # of what no fit sees of it, in a search; None where nothing is told apart
     parts: Parts | None = None
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class JoinedLog(Log):
-    """A log that is made of several records; `join_logs` makes one.
+    """A log that is made of several records; `join_logs` makes one."""
 
-    Attributes:
-        records: the records, one after the other.
-        numbers: of each record among those that were joined, counted from 1; a part of the log
-            keeps the numbers of its records.
-    """
-
-    records: tuple[Log, ...] = field(repr=False)
+    records: tuple[Log, ...] = field(repr=False)  # the records, one after the other
+    # of each record among those that were joined, counted from 1; a part of the log keeps the
+    # numbers of its records
     numbers: tuple[int, ...]
 
     def between(self, start: float, end: float) -> Log:

@@ -43,18 +43,13 @@ REPORT_EVERY = 3  # one of so many blocks is told of, the others decide
 
 @dataclass(frozen=True, eq=False)
 class Parts:
-    """Which samples of a record decide in a search, and which are told of.
+    """Which samples of a record decide in a search, and which are told of."""
 
-    Attributes:
-        select: those on which a search decides, shape (N,).
-        report: those of which it tells, shape (N,); the same as `select` where the record is too
-            short to keep a part untouched.
-        block: length of a block in samples; 0 where there are none.
-    """
-
-    select: np.ndarray
+    select: np.ndarray  # those on which a search decides, shape (N,)
+    # those of which it tells, shape (N,); the same as `select` where the record is too short to
+    # keep a part untouched
     report: np.ndarray
-    block: int
+    block: int  # length of a block in samples; 0 where there are none
 
     @property
     def is_kept(self) -> bool:

@@ -24,20 +24,13 @@ INSIDE = 4 * np.finfo(float).eps
 
 @dataclass(frozen=True)
 class Coordinates:
-    """A change of variables for p parameters: values in their units, q without units.
+    """A change of variables for p parameters: values in their units, q without units."""
 
-    Attributes:
-        names: the parameters, p of them.
-        logarithmic: true where q = ln(value), shape (p,).
-        lower: smallest q, without unit, shape (p,).
-        upper: largest q, without unit, shape (p,).
-        scale: value of q = 1 of those that are not logarithmic, in their units, shape (p,).
-    """
-
-    names: tuple[str, ...]
-    logarithmic: np.ndarray
-    lower: np.ndarray
-    upper: np.ndarray
+    names: tuple[str, ...]  # the parameters, p of them
+    logarithmic: np.ndarray  # true where q = ln(value), shape (p,)
+    lower: np.ndarray  # smallest q, without unit, shape (p,)
+    upper: np.ndarray  # largest q, without unit, shape (p,)
+    # value of q = 1 of those that are not logarithmic, in their units, shape (p,)
     scale: np.ndarray
 
     def encode(self, values: np.ndarray) -> np.ndarray:

@@ -40,17 +40,11 @@ UNLOGGED = "state of "  # actuators called so carry states alone: they have no i
 
 @dataclass(frozen=True)
 class State:
-    """Initial states of simulations: one row for each, or one row for all.
+    """Initial states of simulations: one row for each, or one row for all."""
 
-    Attributes:
-        qpos: positions, shape (n, nq) or (nq,) [m, rad, quaternions].
-        qvel: velocities, shape (n, nv) or (nv,) [m/s, rad/s].
-        act: activations, shape (n, na) or (na,), in the units of their actuators.
-    """
-
-    qpos: np.ndarray
-    qvel: np.ndarray
-    act: np.ndarray
+    qpos: np.ndarray  # positions, shape (n, nq) or (nq,) [m, rad, quaternions]
+    qvel: np.ndarray  # velocities, shape (n, nv) or (nv,) [m/s, rad/s]
+    act: np.ndarray  # activations, shape (n, na) or (na,), in the units of their actuators
 
     def rows(self, keep: np.ndarray) -> State:
         """Returns some of the rows, by mask or by index."""

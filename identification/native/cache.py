@@ -133,17 +133,11 @@ def _note(text: str) -> None:
 
 @dataclass(frozen=True)
 class MachineCode:
-    """The machine code of one callback.
+    """The machine code of one callback."""
 
-    Attributes:
-        symbol: name of the callback in the object file.
-        needs: names of what the object file takes from outside.
-        object_file: the object file, as LLVM wrote it.
-    """
-
-    symbol: str
-    needs: tuple[str, ...]
-    object_file: bytes
+    symbol: str  # name of the callback in the object file
+    needs: tuple[str, ...]  # names of what the object file takes from outside
+    object_file: bytes  # the object file, as LLVM wrote it
 
 
 def compile_callback(

@@ -71,14 +71,10 @@ Function = Callable[..., Any]
 
 @dataclass(frozen=True)
 class Hook:
-    """A place of a law where effects may add.
+    """A place of a law where effects may add."""
 
-    Attributes:
-        name: what an effect calls it, e.g. "torque".
-        returns: the numbers that a function for it returns, each with its unit in brackets.
-    """
-
-    name: str
+    name: str  # what an effect calls it, e.g. "torque".
+    # the numbers that a function for it returns, each with its unit in brackets
     returns: tuple[str, ...]
 
     @property
@@ -99,19 +95,14 @@ class Hook:
 
 @dataclass(frozen=True)
 class Element:
-    """A kind of thing that effects act on.
+    """A kind of thing that effects act on."""
 
-    Attributes:
-        name: in words, e.g. "joint".
-        state: class of the named tuple that the hooks' functions see. Where an effect may have a
-            state of its own, it is the field `x`.
-        hooks: the places of its law.
-        integers: fields of `state` that are whole numbers; all others are doubles.
-    """
-
-    name: str
+    name: str  # in words, e.g. "joint".
+    # class of the named tuple that the hooks' functions see. Where an effect may have a state of
+    # its own, it is the field `x`.
     state: Any
-    hooks: tuple[Hook, ...]
+    hooks: tuple[Hook, ...]  # the places of its law
+    # fields of `state` that are whole numbers; all others are doubles
     integers: tuple[str, ...] = ()
 
     @property
@@ -127,23 +118,14 @@ class Element:
 
 @dataclass(frozen=True, kw_only=True)
 class Term:
-    """An effect in the law of an element: its functions, and where its numbers stand in a row.
+    """An effect in the law of an element: its functions, and where its numbers stand in a row."""
 
-    Attributes:
-        effect: its name.
-        functions: name of a hook and its njit function, in pairs.
-        names: its parameters, sizes first.
-        sizes: how many of them are sizes; where all sizes are zero, the effect is absent.
-        column: where the first of its parameters stands in the row.
-        state: which of the element's states is its own, counted from 1; 0 where it has none.
-    """
-
-    effect: str
-    functions: tuple[tuple[str, Function], ...]
-    names: tuple[str, ...]
-    sizes: int
-    column: int
-    state: int = 0
+    effect: str  # its name
+    functions: tuple[tuple[str, Function], ...]  # name of a hook and its njit function, in pairs
+    names: tuple[str, ...]  # its parameters, sizes first
+    sizes: int  # how many of them are sizes; where all sizes are zero, the effect is absent
+    column: int  # where the first of its parameters stands in the row
+    state: int = 0  # which of the element's states is its own, counted from 1; 0 where it has none
 
     def function(self, hook: str) -> Function | None:
         """Returns its function for a hook, None where it adds nothing there."""

@@ -34,53 +34,39 @@ KEPT = {"nothing": NONE, "positions": POSITION, "velocities": VELOCITY}
 
 @dataclass(frozen=True)
 class Case:
-    """A change of the base.
+    """A change of the base."""
 
-    Attributes:
-        states: rows of `STATE`, shape (points, 1 + nq + nv + na + nu), contiguous; those of the
-            base when None.
-        numbers: entries of the model that differ, where the base's model serves: the array, the
-            index in it, and the value.
-        model: another one of the same sizes; that of the base when None.
-        keeps: a key of `KEPT`: what of the base it leaves as it is.
-        courses: factors of the increments at the points, k courses that give an output each, shape
-            (k, points), contiguous; one course of ones when None.
-        actuators: those whose shares are all that differs; none where more does, or where other
-            results than `RATES` are asked for.
-    """
-
+    # rows of `STATE`, shape (points, 1 + nq + nv + na + nu), contiguous; those of the base when
+    # None
     states: np.ndarray | None = None
+    # entries of the model that differ, where the base's model serves: the array, the index in it,
+    # and the value
     numbers: Sequence[tuple[str, tuple[int, ...], float]] = ()
-    model: mujoco.MjModel | None = None
-    keeps: str = "velocities"
+    model: mujoco.MjModel | None = None  # another one of the same sizes; that of the base when None
+    keeps: str = "velocities"  # a key of `KEPT`: what of the base it leaves as it is
+    # factors of the increments at the points, k courses that give an output each, shape (k,
+    # points), contiguous; one course of ones when None
     courses: np.ndarray | None = None
+    # those whose shares are all that differs; none where more does, or where other results than
+    # `RATES` are asked for
     actuators: Sequence[int] = ()
 
 
 @dataclass(frozen=True)
 class Intervals:
-    """Intervals over which increments are averaged.
+    """Intervals over which increments are averaged."""
 
-    Attributes:
-        begins: first point of each interval, shape (L,).
-        weight: share of each point in its interval, shape (points,).
-    """
-
-    begins: np.ndarray
-    weight: np.ndarray
+    begins: np.ndarray  # first point of each interval, shape (L,)
+    weight: np.ndarray  # share of each point in its interval, shape (points,)
 
 
 @dataclass(frozen=True)
 class Base:
-    """A model and its states at points, with a copy of the model for each thread.
+    """A model and its states at points, with a copy of the model for each thread."""
 
-    Attributes:
-        models: the model, and copies of it into which numbers of cases are written.
-        states: rows of `STATE`, shape (points, 1 + nq + nv + na + nu), contiguous.
-    """
-
+    # the model, and copies of it into which numbers of cases are written
     models: tuple[mujoco.MjModel, ...]
-    states: np.ndarray
+    states: np.ndarray  # rows of `STATE`, shape (points, 1 + nq + nv + na + nu), contiguous
 
 
 def evaluate(

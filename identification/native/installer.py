@@ -51,24 +51,19 @@ _ENTERED: dict[tuple[str, float], Law] = {}  # the laws of this process
 
 @dataclass(frozen=True, eq=False)
 class Law:
-    """Callbacks of one set of effects.
+    """Callbacks of one set of effects."""
 
-    Attributes:
-        name: of what they act on, e.g. "joints".
-        key: what its models carry; two laws with one key are one law, of which the newer counts.
-        functions: kind of callback ("passive", "act_dyn", …) -> the function to be compiled; the
-            kind "share" where an actuator's share is given too.
-        fields: the fields of mjModel and mjData that they touch.
-        check: raises `InputError` where a function of an effect cannot be compiled.
-        owners: which numbers of a model an actuator of this law alone reads; none of a model that
-            carries another key.
-    """
-
-    name: str
+    name: str  # of what they act on, e.g. "joints".
+    # what its models carry; two laws with one key are one law, of which the newer counts
     key: float
+    # kind of callback ("passive", "act_dyn", …) -> the function to be compiled; the kind "share"
+    # where an actuator's share is given too
     functions: Mapping[str, Function]
-    fields: frozenset[str]
+    fields: frozenset[str]  # the fields of mjModel and mjData that they touch
+    # raises `InputError` where a function of an effect cannot be compiled
     check: Callable[[], None]
+    # which numbers of a model an actuator of this law alone reads; none of a model that carries
+    # another key
     owners: Callable[[mujoco.MjModel], Owners] = field(default=lambda model: {})
 
 

@@ -51,15 +51,10 @@ PULL = 1e-4  # of an unknown, that it adds to what is left; columns are of a siz
 
 @dataclass(frozen=True)
 class Freedom:
-    """The further forces that a model may lack, and how smooth its motion is taken.
+    """The further forces that a model may lack, and how smooth its motion is taken."""
 
-    Attributes:
-        has_springs: whether each joint may have a spring that the model lacks.
-        wider: times as long a ψ, for motion that is rougher than its noise says.
-    """
-
-    has_springs: bool = False
-    wider: int = 1
+    has_springs: bool = False  # whether each joint may have a spring that the model lacks
+    wider: int = 1  # times as long a ψ, for motion that is rougher than its noise says
 
 
 def unbalanced_share(

@@ -29,17 +29,11 @@ MOST_PAIRS = 66
 
 @dataclass(frozen=True)
 class Doubt:
-    """A log, and which of its outputs are not explained as they are read.
+    """A log, and which of its outputs are not explained as they are read."""
 
-    Attributes:
-        log: as it is read.
-        bad: true where an output is not explained, shape (ny,).
-        column: what an output or input is called in the log's file.
-    """
-
-    log: Log
-    bad: np.ndarray
-    column: Mapping[str, str]
+    log: Log  # as it is read
+    bad: np.ndarray  # true where an output is not explained, shape (ny,)
+    column: Mapping[str, str]  # what an output or input is called in the log's file
 
     @classmethod
     def of(cls, log: Log, column: Mapping[str, str]) -> Doubt:

@@ -30,25 +30,15 @@ PASSIVE = (  # parts of MuJoCo's step that a model may leave out, and that are n
 
 @dataclass(frozen=True)
 class MovingBody:
-    """One body at n samples, in the axes of the world.
+    """One body at n samples, in the axes of the world."""
 
-    Attributes:
-        J_c: of its centre of mass, shape (n, 3, nv).
-        J_ω: of its rotation, shape (n, 3, nv).
-        a_c: acceleration of its centre of mass, without gravity, shape (n, 3) [m/s^2].
-        ω: angular velocity, shape (n, 3) [rad/s].
-        α: angular acceleration, shape (n, 3) [rad/s^2].
-        R: its axes, shape (n, 3, 3).
-        R_i: axes of its inertia, shape (n, 3, 3).
-    """
-
-    J_c: np.ndarray
-    J_ω: np.ndarray
-    a_c: np.ndarray
-    ω: np.ndarray
-    α: np.ndarray
-    R: np.ndarray
-    R_i: np.ndarray
+    J_c: np.ndarray  # of its centre of mass, shape (n, 3, nv)
+    J_ω: np.ndarray  # of its rotation, shape (n, 3, nv)
+    a_c: np.ndarray  # acceleration of its centre of mass, without gravity, shape (n, 3) [m/s^2]
+    ω: np.ndarray  # angular velocity, shape (n, 3) [rad/s]
+    α: np.ndarray  # angular acceleration, shape (n, 3) [rad/s^2]
+    R: np.ndarray  # its axes, shape (n, 3, 3)
+    R_i: np.ndarray  # axes of its inertia, shape (n, 3, 3)
 
 
 def follow_bodies(

@@ -42,17 +42,11 @@ LENGTHS = (0.1, 1.0)  # of windows, shares of a log, where the robot has no hori
 
 @dataclass(frozen=True)
 class Judge:
-    """A model over windows of one length of a log.
+    """A model over windows of one length of a log."""
 
-    Attributes:
-        plant: the model, as it begins in the log.
-        length: of the windows [s].
-        log: as it is read.
-    """
-
-    plant: JointPlant
-    length: float
-    log: Log
+    plant: JointPlant  # the model, as it begins in the log
+    length: float  # of the windows [s]
+    log: Log  # as it is read
 
     @cached_property
     def own(self) -> np.ndarray | None:

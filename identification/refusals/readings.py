@@ -28,21 +28,13 @@ SAME = 0.01  # of ε, within which two readings are the same: a factor of 57.3 a
 
 @dataclass(frozen=True)
 class Reading:
-    """Another way to read a log.
+    """Another way to read a log."""
 
-    Attributes:
-        log: so read.
-        columns: outputs that change, with it or with what an input does to them.
-        said: what it would be, in words.
-        cure: what to do, were it so.
-        kinds: "units", "wiring" or both, which a user may trust.
-    """
-
-    log: Log
-    columns: Sequence[int]
-    said: str
-    cure: str
-    kinds: tuple[str, ...] = ("wiring",)
+    log: Log  # so read
+    columns: Sequence[int]  # outputs that change, with it or with what an input does to them
+    said: str  # what it would be, in words
+    cure: str  # what to do, were it so
+    kinds: tuple[str, ...] = ("wiring",)  # "units", "wiring" or both, which a user may trust
 
 
 # ε of a reading, shape (ny,); None where none can be had, or where it is not far better

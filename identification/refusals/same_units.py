@@ -29,21 +29,13 @@ WANTED = 10.0  # factor from 1 that b may be of a drive that is weak, or of a jo
 
 @dataclass(frozen=True)
 class Pair:
-    """Two columns of one joint.
+    """Two columns of one joint."""
 
-    Attributes:
-        q: output that is the position.
-        other: output or input that is a rate or a wanted motion.
-        unit: SI unit of the other one.
-        slope: b, without unit; NaN where the line does not explain the position.
-        free: factor from 1 that b may be.
-    """
-
-    q: str
-    other: str
-    unit: str
-    slope: float
-    free: float
+    q: str  # output that is the position
+    other: str  # output or input that is a rate or a wanted motion
+    unit: str  # SI unit of the other one
+    slope: float  # b, without unit; NaN where the line does not explain the position
+    free: float  # factor from 1 that b may be
 
 
 def different_units(model: mujoco.MjModel, log: Log, column: Mapping[str, str]) -> str | None:

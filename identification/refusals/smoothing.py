@@ -28,19 +28,12 @@ WIDTHS = (2, 4, 8, 16, 32, 64)  # half the length of ψ that are tried, in sampl
 
 @dataclass(frozen=True)
 class Smooth:
-    """Smoothed motion and inputs of the chosen samples.
+    """Smoothed motion and inputs of the chosen samples."""
 
-    Attributes:
-        q: positions, shape (n, nv) [rad or m].
-        v: velocities, shape (n, nv).
-        a: accelerations, shape (n, nv).
-        u: inputs, shape (n, nu), in their units.
-    """
-
-    q: np.ndarray
-    v: np.ndarray
-    a: np.ndarray
-    u: np.ndarray
+    q: np.ndarray  # positions, shape (n, nv) [rad or m]
+    v: np.ndarray  # velocities, shape (n, nv)
+    a: np.ndarray  # accelerations, shape (n, nv)
+    u: np.ndarray  # inputs, shape (n, nu), in their units
 
 
 def widths(q: np.ndarray, h: float, wider: int = 1) -> Iterator[int]:

@@ -43,19 +43,12 @@ _OFF = int(mujoco.mjtDisableBit.mjDSBL_CONTACT) | int(mujoco.mjtDisableBit.mjDSB
 
 @dataclass(frozen=True)
 class Touch:
-    """Two bodies whose geoms touch in some states of the logs.
+    """Two bodies whose geoms touch in some states of the logs."""
 
-    Attributes:
-        bodies: their indices, the smaller one first.
-        geoms: indices of the geoms that touch.
-        share: of the states in which they touch, above 0 and at most 1.
-        depth: the largest, beyond which MuJoCo pushes them apart [m].
-    """
-
-    bodies: tuple[int, int]
-    geoms: tuple[int, ...]
-    share: float
-    depth: float
+    bodies: tuple[int, int]  # their indices, the smaller one first
+    geoms: tuple[int, ...]  # indices of the geoms that touch
+    share: float  # of the states in which they touch, above 0 and at most 1
+    depth: float  # the largest, beyond which MuJoCo pushes them apart [m]
 
 
 def find_touches(robot: Robot, logs: Sequence[Log]) -> tuple[Touch, ...]:

@@ -29,13 +29,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class RobotFitFiles:
-    """The files of a fit of a robot.
+    """The files of a fit of a robot."""
 
-    Attributes:
-        fitted: the result of the fit.
-    """
-
-    fitted: RobotFit
+    fitted: RobotFit  # the result of the fit
 
     @cached_property
     def record(self) -> dict[str, Any]:

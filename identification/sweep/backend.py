@@ -58,13 +58,9 @@ class Serial:
 
 @dataclass(frozen=True)
 class Processes:
-    """Processes of this machine.
+    """Processes of this machine."""
 
-    Attributes:
-        jobs: how many.
-    """
-
-    jobs: int
+    jobs: int  # how many
 
     def outcomes(self, work: Work, tasks: Iterable[Task]) -> Iterator[Outcome]:
         """Yields the outcome of each task, in the order in which they end.

@@ -32,15 +32,10 @@ WAIT = 15  # [s] for a scheduler, and for its first worker
 
 @dataclass(frozen=True)
 class Dask:
-    """A Dask cluster.
+    """A Dask cluster."""
 
-    Attributes:
-        address: of a running scheduler; None for a cluster of this machine's processes.
-        jobs: processes of such a cluster.
-    """
-
-    address: str | None
-    jobs: int
+    address: str | None  # of a running scheduler; None for a cluster of this machine's processes
+    jobs: int  # processes of such a cluster
 
     def __post_init__(self) -> None:
         needed("distributed", "cluster", "--backend dask")
@@ -105,17 +100,11 @@ TASKS = "tasks_per_job"  # our own option beside those of submitit
 
 @dataclass
 class Chunk:
-    """Some tasks that one job runs, and the outcomes of those that have ended.
+    """Some tasks that one job runs, and the outcomes of those that have ended."""
 
-    Attributes:
-        work: runs a task.
-        tasks: in their order.
-        done: outcomes of the first of them.
-    """
-
-    work: Work
-    tasks: list[Task]
-    done: list[Outcome] = field(default_factory=list)
+    work: Work  # runs a task
+    tasks: list[Task]  # in their order
+    done: list[Outcome] = field(default_factory=list)  # outcomes of the first of them
 
     def __call__(self) -> list[Outcome]:
         """Run what is left."""
@@ -132,18 +121,12 @@ class Chunk:
 
 @dataclass(frozen=True)
 class Submitit:
-    """Jobs of submitit.
+    """Jobs of submitit."""
 
-    Attributes:
-        cluster: "slurm" or "local".
-        jobs: how many are in the queue or run at a time.
-        folder: for what they say; all machines must see it.
-        options: of submitit by name, such as slurm_partition or timeout_min; and `tasks_per_job`.
-    """
-
-    cluster: str
-    jobs: int
-    folder: Path
+    cluster: str  # "slurm" or "local"
+    jobs: int  # how many are in the queue or run at a time
+    folder: Path  # for what they say; all machines must see it
+    # of submitit by name, such as slurm_partition or timeout_min; and `tasks_per_job`
     options: dict[str, str]
 
     def __post_init__(self) -> None:

@@ -23,19 +23,12 @@ FEW = 12  # an axis with more values repeats a task; it is no axis of a curve
 
 @dataclass(frozen=True)
 class Curve:
-    """Rates over one setting.
+    """Rates over one setting."""
 
-    Attributes:
-        others: values of the other settings of the grid.
-        x: values of the setting, ascending.
-        rates: at each, as `statistics.wilson` has it.
-        heads: the settings in words.
-    """
-
-    others: Mapping[str, Plain]
-    x: tuple[float, ...]
-    rates: tuple[Mapping[str, Any], ...]
-    heads: Heads = NAMES
+    others: Mapping[str, Plain]  # values of the other settings of the grid
+    x: tuple[float, ...]  # values of the setting, ascending
+    rates: tuple[Mapping[str, Any], ...]  # at each, as `statistics.wilson` has it
+    heads: Heads = NAMES  # the settings in words
 
     @property
     def label(self) -> str:
@@ -56,21 +49,13 @@ class Curve:
 
 @dataclass(frozen=True)
 class Threshold:
-    """The smallest value of a setting that is found in 80 % of the tasks.
+    """The smallest value of a setting that is found in 80 % of the tasks."""
 
-    Attributes:
-        at: value of another setting.
-        value: None where not even the largest is found so often.
-        low: end of its interval.
-        high: the other end; None where it is beyond the largest.
-        largest: the largest value that was tried.
-    """
-
-    at: float
-    value: float | None
-    low: float | None
-    high: float | None
-    largest: float
+    at: float  # value of another setting
+    value: float | None  # None where not even the largest is found so often
+    low: float | None  # end of its interval
+    high: float | None  # the other end; None where it is beyond the largest
+    largest: float  # the largest value that was tried
 
 
 def word(value: Plain) -> str:

@@ -170,13 +170,9 @@ def build(settings: type, values: Mapping[str, Plain]) -> Any:
 
 @dataclass(frozen=True)
 class Heads:
-    """Names of settings and columns in words.
+    """Names of settings and columns in words."""
 
-    Attributes:
-        about: what each is about, by name; a name that is missing has no unit.
-    """
-
-    about: Mapping[str, str]
+    about: Mapping[str, str]  # what each is about, by name; a name that is missing has no unit
 
     def unit(self, name: str) -> str:
         """Returns the unit of a name, or ""."""

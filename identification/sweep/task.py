@@ -24,27 +24,16 @@ from identification.sweep.settings import Plain, check_values, resolve
 
 @dataclass(frozen=True, kw_only=True)
 class Study:
-    """One method over a grid of its settings.
+    """One method over a grid of its settings."""
 
-    Attributes:
-        name: of the study.
-        word: how the TOML names the method.
-        reference: where a worker finds it.
-        method: it.
-        count: tasks for each point of the grid.
-        paired: whether the k-th task has the same seed at all points.
-        settings: values that all tasks have, by name.
-        grid: values of each axis, by the setting's name.
-    """
-
-    name: str
-    word: str
-    reference: str
-    method: Method
-    count: int
-    paired: bool
-    settings: Mapping[str, Plain]
-    grid: Mapping[str, tuple[Plain, ...]]
+    name: str  # of the study
+    word: str  # how the TOML names the method
+    reference: str  # where a worker finds it
+    method: Method  # it
+    count: int  # tasks for each point of the grid
+    paired: bool  # whether the k-th task has the same seed at all points
+    settings: Mapping[str, Plain]  # values that all tasks have, by name
+    grid: Mapping[str, tuple[Plain, ...]]  # values of each axis, by the setting's name
 
     @property
     def points(self) -> int:
@@ -63,19 +52,12 @@ class Study:
 
 @dataclass(frozen=True)
 class Task:
-    """A task as a worker gets it: plain data and a seed.
+    """A task as a worker gets it: plain data and a seed."""
 
-    Attributes:
-        number: in the sweep, from 0.
-        reference: of the method.
-        settings: values of all its settings, paths whole.
-        seed: of the task.
-    """
-
-    number: int
-    reference: str
-    settings: Mapping[str, Plain]
-    seed: Seed
+    number: int  # in the sweep, from 0
+    reference: str  # of the method
+    settings: Mapping[str, Plain]  # values of all its settings, paths whole
+    seed: Seed  # of the task
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -63,18 +63,13 @@ _PLAIN: dict[Any, type | tuple[type, ...]] = {
 
 @dataclass(frozen=True)
 class Outcome:
-    """The outcome of a task.
+    """The outcome of a task."""
 
-    Attributes:
-        number: of the task.
-        record: an entry for each column of its method; None where it met an error.
-        error: the kind of the error and its message, in a line; None where there was none.
-        run: how it was computed (seconds, host, ...), which no two runs have in common.
-    """
-
-    number: int
+    number: int  # of the task
+    # an entry for each column of its method; None where it met an error
     record: dict[str, Any] | None
-    error: str | None
+    error: str | None  # the kind of the error and its message, in a line; None where there was none
+    # how it was computed (seconds, host, ...), which no two runs have in common
     run: dict[str, Any]
 
 

@@ -36,25 +36,15 @@ STD_BLOCKS = 40  # of windows, over all records: their scatter gives the std
 
 @dataclass(frozen=True, kw_only=True)
 class WindowFit:
-    """The result of a search over the windows of all records.
+    """The result of a search over the windows of all records."""
 
-    Attributes:
-        problem: what was solved.
-        q: the estimate, shape (p,).
-        moves: of the windows' states, one array (W, nx) a record.
-        tangents: the windows linearised there, one a record.
-        cost: V there.
-        converged: whether the search ended by itself.
-        steps: linearisations it took.
-    """
-
-    problem: Problem
-    q: np.ndarray
-    moves: tuple[np.ndarray, ...]
-    tangents: tuple[Tangent, ...]
-    cost: float
-    converged: bool
-    steps: int
+    problem: Problem  # what was solved
+    q: np.ndarray  # the estimate, shape (p,)
+    moves: tuple[np.ndarray, ...]  # of the windows' states, one array (W, nx) a record
+    tangents: tuple[Tangent, ...]  # the windows linearised there, one a record
+    cost: float  # V there
+    converged: bool  # whether the search ended by itself
+    steps: int  # linearisations it took
 
     @property
     def values(self) -> dict[str, float]:

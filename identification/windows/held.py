@@ -37,14 +37,10 @@ NO_VALUES = np.zeros((1, 0))  # the value set of a predictor whose values are al
 
 @dataclass(frozen=True)
 class HeldRecords:
-    """Windows of some records, none of which has a free parameter.
+    """Windows of some records, none of which has a free parameter."""
 
-    Attributes:
-        parts: the windows, one a record.
-        groups: indices of records that are simulated in one batch, and their windows together.
-    """
-
-    parts: tuple[Shooting, ...]
+    parts: tuple[Shooting, ...]  # the windows, one a record
+    # indices of records that are simulated in one batch, and their windows together
     groups: tuple[tuple[tuple[int, ...], HeldWindows], ...]
 
     def residuals(
@@ -78,39 +74,24 @@ def held_records(parts: Sequence[Shooting]) -> HeldRecords:
 
 @dataclass(frozen=True, kw_only=True)
 class HeldWindows:
-    """The data that do not change while the initial states of windows are sought.
+    """The data that do not change while the initial states of windows are sought."""
 
-    Attributes:
-        predictors: of each record, all parameters held.
-        has_rough_slopes: see `Shooting`.
-        every: inputs per sample.
-        hold_kind: of the inputs.
-        record: which record each window is of, shape (W,).
-        numbers: model entries and their values of the whole, shape (W,).
-        times: when each window begins in its record, shape (W,) [s].
-        inputs: of the whole, shape (W, steps, nu).
-        outputs: what was measured, shape (W, L, ny).
-        first: the states where the windows are believed to begin, W rows.
-        weight: 1/s of each tangent coordinate, shape (W, nx).
-        whitener: C, shape (ny, ny).
-        whole: the windows of which these are some, which know their simulations; None for itself.
-        at: which of them, shape (W,).
-    """
-
-    predictors: tuple[Predictor, ...]
-    has_rough_slopes: bool
-    every: int
-    hold_kind: str
-    record: np.ndarray
+    predictors: tuple[Predictor, ...]  # of each record, all parameters held
+    has_rough_slopes: bool  # see `Shooting`
+    every: int  # inputs per sample
+    hold_kind: str  # of the inputs
+    record: np.ndarray  # which record each window is of, shape (W,)
+    # model entries and their values of the whole, shape (W,)
     numbers: tuple[tuple[Slot, np.ndarray], ...]
-    times: np.ndarray
-    inputs: np.ndarray
-    outputs: np.ndarray
-    first: State
-    weight: np.ndarray
-    whitener: np.ndarray
+    times: np.ndarray  # when each window begins in its record, shape (W,) [s]
+    inputs: np.ndarray  # of the whole, shape (W, steps, nu)
+    outputs: np.ndarray  # what was measured, shape (W, L, ny)
+    first: State  # the states where the windows are believed to begin, W rows
+    weight: np.ndarray  # 1/s of each tangent coordinate, shape (W, nx)
+    whitener: np.ndarray  # C, shape (ny, ny)
+    # the windows of which these are some, which know their simulations; None for itself
     whole: HeldWindows | None = None
-    at: np.ndarray | None = None
+    at: np.ndarray | None = None  # which of them, shape (W,)
 
     def rows(self, keep: np.ndarray) -> HeldWindows:
         """Returns some of the windows, by mask or by index."""
@@ -234,17 +215,11 @@ def held_windows(part: Shooting) -> HeldWindows:
 
 @dataclass(frozen=True)
 class Prepared:
-    """Simulations of all windows, several of each.
+    """Simulations of all windows, several of each."""
 
-    Attributes:
-        simulations: of the first move of all windows, then of the next move.
-        controls: of each window at each step, shape (W, steps, nu).
-        every: steps of a sample.
-    """
-
-    simulations: Simulations
-    controls: np.ndarray
-    every: int
+    simulations: Simulations  # of the first move of all windows, then of the next move
+    controls: np.ndarray  # of each window at each step, shape (W, steps, nu)
+    every: int  # steps of a sample
 
 
 def at_values(part: Shooting, q: np.ndarray) -> Shooting:

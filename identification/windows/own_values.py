@@ -17,14 +17,10 @@ from identification.windows.records import Record
 
 @dataclass(frozen=True)
 class Own:
-    """Parameters of which each record has a value of its own.
+    """Parameters of which each record has a value of its own."""
 
-    Attributes:
-        prior: what is known of them.
-        start: where their search begins, shape (m,), in coordinates.
-    """
-
-    prior: Priors = field(default_factory=Priors)
+    prior: Priors = field(default_factory=Priors)  # what is known of them
+    # where their search begins, shape (m,), in coordinates
     start: np.ndarray = field(default_factory=lambda: np.zeros(0))
 
 

@@ -35,42 +35,26 @@ Moves = tuple[np.ndarray, ...]  # of the windows' states, one array (W, nx) a re
 
 @dataclass(frozen=True)
 class Step:
-    """The end of a trial step.
+    """The end of a trial step."""
 
-    Attributes:
-        q: the parameters there, shape (p,).
-        moves: of the windows' states there, one array (W, nx) a record.
-        residuals: there, one array (W, m) a record.
-        cost: V there; infinite where it cannot be simulated.
-        promised: V there by the linearisation.
-    """
-
-    q: np.ndarray
-    moves: Moves
-    residuals: tuple[np.ndarray, ...]
-    cost: float
-    promised: float
+    q: np.ndarray  # the parameters there, shape (p,)
+    moves: Moves  # of the windows' states there, one array (W, nx) a record
+    residuals: tuple[np.ndarray, ...]  # there, one array (W, m) a record
+    cost: float  # V there; infinite where it cannot be simulated
+    promised: float  # V there by the linearisation
 
 
 @dataclass(frozen=True)
 class AtPoint(Criterion[Step]):
-    """The criterion linearised at parameters and states, for `levenberg_marquardt`.
+    """The criterion linearised at parameters and states, for `levenberg_marquardt`."""
 
-    Attributes:
-        problem: windows and priors.
-        q: shape (p,).
-        moves: of the windows' states, one array (W, nx) a record.
-        tangents: the windows linearised, one a record: r there, and slopes there or before.
-        tolerance: relative fall of V that is worth a search of the states.
-        is_fresh: whether slopes are those at this point.
-    """
-
-    problem: Problem
-    q: np.ndarray
-    moves: Moves
+    problem: Problem  # windows and priors
+    q: np.ndarray  # shape (p,)
+    moves: Moves  # of the windows' states, one array (W, nx) a record
+    # the windows linearised, one a record: r there, and slopes there or before
     tangents: tuple[Tangent, ...]
-    tolerance: float
-    is_fresh: bool = True
+    tolerance: float  # relative fall of V that is worth a search of the states
+    is_fresh: bool = True  # whether slopes are those at this point
 
     @property
     def cost(self) -> float:

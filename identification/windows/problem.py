@@ -41,15 +41,11 @@ MIN_WINDOWS = 10  # of a record, so that blocks of them can be compared
 
 @dataclass(frozen=True)
 class Problem:
-    """The data and unknowns that do not change while parameters and states are sought.
+    """The data and unknowns that do not change while parameters and states are sought."""
 
-    Attributes:
-        parts: the windows of each record that is fitted; each feels its own columns of q.
-        unknowns: the free parameters, and what is known of them.
-    """
-
+    # the windows of each record that is fitted; each feels its own columns of q
     parts: tuple[Shooting, ...]
-    unknowns: Unknowns
+    unknowns: Unknowns  # the free parameters, and what is known of them
 
     @cached_property
     def prior(self) -> Priors:

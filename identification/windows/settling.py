@@ -20,15 +20,10 @@ from identification.windows.states import search, search_again, states_at
 
 @dataclass(frozen=True)
 class Settled:
-    """Windows of a record at their best states.
+    """Windows of a record at their best states."""
 
-    Attributes:
-        d: changes of the initial states, shape (W, nx).
-        r: residual there, shape (W, L ny + nx).
-    """
-
-    d: np.ndarray
-    r: np.ndarray
+    d: np.ndarray  # changes of the initial states, shape (W, nx)
+    r: np.ndarray  # residual there, shape (W, L ny + nx)
 
 
 def settle(
@@ -70,15 +65,10 @@ def settle(
 
 @dataclass(frozen=True)
 class Starts:
-    """The starts of a record's windows under a model.
+    """The starts of a record's windows under a model."""
 
-    Attributes:
-        d: changes of the initial states, shape (W, nx).
-        squares: of the errors of each window, shape (W,).
-    """
-
-    d: np.ndarray
-    squares: np.ndarray
+    d: np.ndarray  # changes of the initial states, shape (W, nx)
+    squares: np.ndarray  # of the errors of each window, shape (W,)
 
 
 def best_starts(starts: Starts, others: Sequence[Starts]) -> tuple[np.ndarray, np.ndarray]:

@@ -38,23 +38,15 @@ RK4 = int(mujoco.mjtIntegrator.mjINT_RK4)
 
 @dataclass(frozen=True)
 class Shooting:
-    """The data that do not change during a search over windows.
+    """The data that do not change during a search over windows."""
 
-    Attributes:
-        predictor: the plant, the log and the names of p free parameters.
-        space: their coordinates.
-        cut: the windows.
-        first: the prior of their initial states.
-        whitener: C, shape (ny, ny).
-        has_rough_slopes: whether simulations whose differences make slopes are those of a smooth
-            model, with one evaluation of the dynamics a step.
-    """
-
-    predictor: Predictor
-    space: Coordinates
-    cut: Windows
-    first: FirstStates
-    whitener: np.ndarray
+    predictor: Predictor  # the plant, the log and the names of p free parameters
+    space: Coordinates  # their coordinates
+    cut: Windows  # the windows
+    first: FirstStates  # the prior of their initial states
+    whitener: np.ndarray  # C, shape (ny, ny)
+    # whether simulations whose differences make slopes are those of a smooth model, with one
+    # evaluation of the dynamics a step
     has_rough_slopes: bool = False
 
     def rows(self, keep: np.ndarray) -> Shooting:
@@ -171,23 +163,14 @@ def tangent(
 
 @dataclass(frozen=True, kw_only=True)
 class Tangent:
-    """All windows, linearised at a point; X = U s Vᵀ, its columns scaled to the norm 1.
+    """All windows, linearised at a point; X = U s Vᵀ, its columns scaled to the norm 1."""
 
-    Attributes:
-        r: residual at the point, shape (W, m), m = L ny + nx.
-        S: -∂r/∂q, shape (W, m, p).
-        U: shape (W, m, nx).
-        s: singular values, 0 for directions that are not felt, shape (W, nx).
-        Vt: shape (W, nx, nx).
-        size: norms of the columns of X before the scaling, shape (W, nx).
-    """
-
-    r: np.ndarray
-    S: np.ndarray
-    U: np.ndarray
-    s: np.ndarray
-    Vt: np.ndarray
-    size: np.ndarray
+    r: np.ndarray  # residual at the point, shape (W, m), m = L ny + nx
+    S: np.ndarray  # -∂r/∂q, shape (W, m, p)
+    U: np.ndarray  # shape (W, m, nx)
+    s: np.ndarray  # singular values, 0 for directions that are not felt, shape (W, nx)
+    Vt: np.ndarray  # shape (W, nx, nx)
+    size: np.ndarray  # norms of the columns of X before the scaling, shape (W, nx)
 
     def rows(self, keep: np.ndarray) -> Tangent:
         """Returns some of the windows, by mask or by index."""

@@ -87,34 +87,21 @@ def search_again(held: HeldWindows, d: np.ndarray, r: np.ndarray) -> tuple[np.nd
 
 @dataclass(frozen=True)
 class StatesStep:
-    """The end of a trial step.
+    """The end of a trial step."""
 
-    Attributes:
-        d: changes of the initial states there, shape (W, nx).
-        r: residual there, shape (W, m); NaN where a window diverges.
-        promised: sums of squares there by the linearisation, shape (W,).
-    """
-
-    d: np.ndarray
-    r: np.ndarray
-    promised: np.ndarray
+    d: np.ndarray  # changes of the initial states there, shape (W, nx)
+    r: np.ndarray  # residual there, shape (W, m); NaN where a window diverges
+    promised: np.ndarray  # sums of squares there by the linearisation, shape (W,)
 
 
 @dataclass(frozen=True)
 class States(Criterion[StatesStep]):
-    """The criteria of the initial states, one per window.
+    """The criteria of the initial states, one per window."""
 
-    Attributes:
-        windows: what is simulated.
-        d: changes of the initial states, shape (W, nx).
-        tangent: the residual at d, and slopes there or at an earlier d.
-        is_fresh: whether slopes are those at d, shape (W,).
-    """
-
-    windows: HeldWindows
-    d: np.ndarray
-    tangent: Tangent
-    is_fresh: np.ndarray
+    windows: HeldWindows  # what is simulated
+    d: np.ndarray  # changes of the initial states, shape (W, nx)
+    tangent: Tangent  # the residual at d, and slopes there or at an earlier d
+    is_fresh: np.ndarray  # whether slopes are those at d, shape (W,)
 
     @property
     def cost(self) -> np.ndarray:

@@ -16,17 +16,11 @@ from identification.estimation.priors import Priors
 
 @dataclass(frozen=True)
 class Unknowns:
-    """The parameters that are sought, and what is known of them.
+    """The parameters that are sought, and what is known of them."""
 
-    Attributes:
-        shared: parameters with one value for all records.
-        own: parameters of which each record has a value of its own.
-        records: names of the records.
-    """
-
-    shared: Priors
-    own: Priors
-    records: tuple[str, ...]
+    shared: Priors  # parameters with one value for all records
+    own: Priors  # parameters of which each record has a value of its own
+    records: tuple[str, ...]  # names of the records
 
     @property
     def local(self) -> Priors:

@@ -38,33 +38,28 @@ HORIZON = (1.0,)  # the horizon alone
 
 @dataclass(frozen=True, kw_only=True)
 class Unseen:
-    """Errors of one model on the records that confirm.
+    """Errors of one model on the records that confirm."""
 
-    Attributes:
-        lengths: of windows, in units of the horizon.
-        squares: mean square of each window in units of s², shape (W,), by length and record.
-        moves: where each window begins, shape (W, nx), by length and record.
-        of_outputs: mean square of each output over each window of the horizon itself in units of
-            s², shape (W, ny), by record.
-        noise: mean square of the sensors' noise in units of s², shape (ny,): of each output the
-            median over the records; motion that is sampled slowly looks like noise, and an encoder
-            that rests like none.
-        fit_percent: over windows of the horizon that are told of, of each output, shape (ny,) [%].
-        places: first sample of each window, and the one behind it, shape (W, 2), by length and
-            record.
-        parts: of each record; None where all of it both decides and is told of.
-        own: by record, the parameters that it has for itself: value and std of each, from the
-            values of its two halves.
-    """
-
-    lengths: tuple[float, ...]
+    lengths: tuple[float, ...]  # of windows, in units of the horizon
+    # mean square of each window in units of s², shape (W,), by length and record
     squares: tuple[tuple[np.ndarray, ...], ...]
+    # where each window begins, shape (W, nx), by length and record
     moves: tuple[tuple[np.ndarray, ...], ...]
+    # mean square of each output over each window of the horizon itself in units of s², shape (W,
+    # ny), by record
     of_outputs: tuple[np.ndarray, ...]
+    # mean square of the sensors' noise in units of s², shape (ny,): of each output the median over
+    # the records; motion that is sampled slowly looks like noise, and an encoder that rests like
+    # none
     noise: np.ndarray
+    # over windows of the horizon that are told of, of each output, shape (ny,) [%]
     fit_percent: np.ndarray
+    # first sample of each window, and the one behind it, shape (W, 2), by length and record
     places: tuple[tuple[np.ndarray, ...], ...]
+    # of each record; None where all of it both decides and is told of
     parts: tuple[Parts | None, ...]
+    # by record, the parameters that it has for itself: value and std of each, from the values of
+    # its two halves
     own: Mapping[str, Mapping[str, tuple[float, float]]] = field(default_factory=dict)
 
     def begun(self, length: float) -> tuple[Starts, ...]:
@@ -132,30 +127,21 @@ class Unseen:
 
 @dataclass(frozen=True, kw_only=True)
 class Prediction:
-    """The gain of one model's predictions over another's.
+    """The gain of one model's predictions over another's."""
 
-    Attributes:
-        t: of the mean gain over blocks, at the horizon.
-        chance: of as much by luck.
-        gains: mean gain over blocks, by length of the windows.
-        falls: relative fall of the mean square over all records, by length.
-        fall: the one at the horizon, and `gain` likewise.
-        typical_falls: the same of each record's mean square by itself, in the geometric mean: a
-            record that errs most, whatever the model, does not decide alone.
-        record_falls: relative fall of the mean square by record, at the horizon.
-        blocks: gain of each block of each record, at the horizon, shape (B,) a record.
-        untouched: the same on windows on which a search does not decide; None where none are kept.
-    """
-
-    t: float
-    chance: float
+    t: float  # of the mean gain over blocks, at the horizon
+    chance: float  # of as much by luck
     gain: float
-    gains: tuple[float, ...]
-    fall: float
-    falls: tuple[float, ...]
+    gains: tuple[float, ...]  # mean gain over blocks, by length of the windows
+    fall: float  # the one at the horizon, and `gain` likewise
+    falls: tuple[float, ...]  # relative fall of the mean square over all records, by length
+    # the same of each record's mean square by itself, in the geometric mean: a record that errs
+    # most, whatever the model, does not decide alone
     typical_falls: tuple[float, ...]
-    record_falls: tuple[float, ...]
+    record_falls: tuple[float, ...]  # relative fall of the mean square by record, at the horizon
+    # gain of each block of each record, at the horizon, shape (B,) a record
     blocks: tuple[np.ndarray, ...]
+    # the same on windows on which a search does not decide; None where none are kept
     untouched: Prediction | None = None
 
     @property

@@ -146,19 +146,12 @@ def estimate_windows(
 
 @dataclass(frozen=True)
 class WindowsAtPoint(Criterion[tuple[np.ndarray, np.ndarray]]):
-    """The criterion of the parameters and the initial states, linearised at a point.
+    """The criterion of the parameters and the initial states, linearised at a point."""
 
-    Attributes:
-        shooting: the windows.
-        q: the parameters, shape (p,).
-        d: changes of the initial states, shape (W, nx).
-        tangent: the linearisation of the windows at q and d.
-    """
-
-    shooting: Shooting
-    q: np.ndarray
-    d: np.ndarray
-    tangent: Tangent
+    shooting: Shooting  # the windows
+    q: np.ndarray  # the parameters, shape (p,)
+    d: np.ndarray  # changes of the initial states, shape (W, nx)
+    tangent: Tangent  # the linearisation of the windows at q and d
 
     @property
     def cost(self) -> float:

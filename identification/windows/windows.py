@@ -35,16 +35,11 @@ class Windows:
     """A log in W windows of L samples.
 
     A remainder shorter than a window is left out, and so are windows that touch a gap of the log.
-
-    Attributes:
-        inputs: shape (W, L, nu).
-        outputs: shape (W, L, ny).
-        starts: first sample of each window, shape (W,).
     """
 
-    inputs: np.ndarray
-    outputs: np.ndarray
-    starts: np.ndarray
+    inputs: np.ndarray  # shape (W, L, nu)
+    outputs: np.ndarray  # shape (W, L, ny)
+    starts: np.ndarray  # first sample of each window, shape (W,)
 
     @property
     def places(self) -> np.ndarray:
@@ -106,15 +101,10 @@ def some(cut: Windows, part: float) -> Windows:
 
 @dataclass(frozen=True)
 class FirstStates:
-    """The prior of the windows' initial states.
+    """The prior of the windows' initial states."""
 
-    Attributes:
-        states: x̄, W rows.
-        weight: 1/s of each tangent coordinate, 0 where nothing is known, shape (nx,).
-    """
-
-    states: State
-    weight: np.ndarray
+    states: State  # x̄, W rows
+    weight: np.ndarray  # 1/s of each tangent coordinate, 0 where nothing is known, shape (nx,)
 
     def rows(self, keep: np.ndarray) -> FirstStates:
         """Returns the prior of some of the windows, by mask or by index."""

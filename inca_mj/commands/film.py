@@ -178,21 +178,14 @@ class View:
 
 @dataclass
 class FilmProgress:
-    """Counts the frames of a film, and says how long the rest will take.
+    """Counts the frames of a film, and says how long the rest will take."""
 
-    Attributes:
-        tell: is told each line.
-        fps: frames per second of the film.
-        lines: whether it is told a line now and then; where stderr is a terminal, a bar says it.
-        clock: the time [s].
-        hint: how to do without the film; told where it begins.
-    """
-
-    tell: Callable[[str], None]
-    fps: float
+    tell: Callable[[str], None]  # is told each line
+    fps: float  # frames per second of the film
+    # whether it is told a line now and then; where stderr is a terminal, a bar says it
     lines: bool = field(default_factory=lambda: not sys.stderr.isatty())
-    clock: Callable[[], float] = time.monotonic
-    hint: str = ""
+    clock: Callable[[], float] = time.monotonic  # the time [s]
+    hint: str = ""  # how to do without the film; told where it begins
     _first: int = 0
     _began: float = 0.0
     _last_line: float = 0.0

@@ -130,15 +130,10 @@ def _turn_to_upright(orientation: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Controlled:
-    """The record of a controller, N samples; `simulate(robot, currents)` is the run.
+    """The record of a controller, N samples; `simulate(robot, currents)` is the run."""
 
-    Attributes:
-        currents: shape (N, 8) [A]; sample k is held until k+1.
-        seen: position of the platform as the controller saw it, shape (N, 3) [m].
-    """
-
-    currents: np.ndarray
-    seen: np.ndarray
+    currents: np.ndarray  # shape (N, 8) [A]; sample k is held until k+1
+    seen: np.ndarray  # position of the platform as the controller saw it, shape (N, 3) [m]
 
 
 def run_loop(

@@ -58,17 +58,11 @@ class Tensions:
 
 @dataclass(frozen=True)
 class Needed:
-    """The currents, tensions and rates that a motion needs.
+    """The currents, tensions and rates that a motion needs."""
 
-    Attributes:
-        currents: of the motors, shape (8,) [A].
-        tension: of the cables, shape (8,) [N].
-        rate: of the motors, shape (8,) [rad/s].
-    """
-
-    currents: np.ndarray
-    tension: np.ndarray
-    rate: np.ndarray
+    currents: np.ndarray  # of the motors, shape (8,) [A]
+    tension: np.ndarray  # of the cables, shape (8,) [N]
+    rate: np.ndarray  # of the motors, shape (8,) [rad/s]
 
 
 class Inverse:

@@ -39,15 +39,10 @@ STEPS, NEAR = 20, 1e-9  # Newton steps, and the last of them [m, rad]
 
 @dataclass(frozen=True)
 class Pose:
-    """The pose of the platform.
+    """The pose of the platform."""
 
-    Attributes:
-        position: in O, shape (3,) [m].
-        orientation: unit quaternion w, x, y, z, shape (4,).
-    """
-
-    position: np.ndarray
-    orientation: np.ndarray
+    position: np.ndarray  # in O, shape (3,) [m]
+    orientation: np.ndarray  # unit quaternion w, x, y, z, shape (4,)
 
 
 class Observer:

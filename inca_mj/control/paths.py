@@ -23,17 +23,11 @@ PLANES = {"xy": (0, 1), "xz": (0, 2), "yz": (1, 2)}  # the axes that cos θ and 
 
 @dataclass(frozen=True)
 class Motion:
-    """The wanted place of the platform at one time, and its wanted motion there.
+    """The wanted place of the platform at one time, and its wanted motion there."""
 
-    Attributes:
-        position: in O, shape (3,) [m].
-        velocity: shape (3,) [m/s].
-        acceleration: shape (3,) [m/s²].
-    """
-
-    position: np.ndarray
-    velocity: np.ndarray
-    acceleration: np.ndarray
+    position: np.ndarray  # in O, shape (3,) [m]
+    velocity: np.ndarray  # shape (3,) [m/s]
+    acceleration: np.ndarray  # shape (3,) [m/s²]
 
 
 class Path(Protocol):

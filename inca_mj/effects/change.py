@@ -86,23 +86,14 @@ def heat_rate(s, p):
 
 @dataclass(frozen=True)
 class _Rule:
-    """The way in which a change of one parameter enters the law.
+    """The way in which a change of one parameter enters the law."""
 
-    Attributes:
-        law: what a relative change c adds.
-        hook: where.
-        letter: the parameter.
-        phrase: what changes, in words.
-        largest: the largest plausible relative deviation of one drive.
-        probe: share of the largest plausible drift at which its sensitivity is taken.
-    """
-
-    law: Any
-    hook: str
-    letter: str
-    phrase: str
-    largest: float
-    probe: float = 1.0
+    law: Any  # what a relative change c adds
+    hook: str  # where
+    letter: str  # the parameter
+    phrase: str  # what changes, in words
+    largest: float  # the largest plausible relative deviation of one drive
+    probe: float = 1.0  # share of the largest plausible drift at which its sensitivity is taken
 
     @property
     def name(self) -> str:

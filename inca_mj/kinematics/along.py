@@ -67,17 +67,11 @@ FAR = 0.05  # lengths that no pose meets better than that belong to no pose [m]
 
 @dataclass(frozen=True)
 class Components:
-    """Std of what the statements leave open.
+    """Std of what the statements leave open."""
 
-    Attributes:
-        length: σ_L, of lengths by geometry and parameters [m].
-        tension: σ_T, of the drums' balance [N].
-        force: σ_F, of the platform's balance [N].
-    """
-
-    length: float
-    tension: float
-    force: float
+    length: float  # σ_L, of lengths by geometry and parameters [m]
+    tension: float  # σ_T, of the drums' balance [N]
+    force: float  # σ_F, of the platform's balance [N]
 
 
 FIRST = Components(length=1e-3, tension=1.0, force=0.3)  # where the search for them begins
@@ -85,17 +79,11 @@ FIRST = Components(length=1e-3, tension=1.0, force=0.3)  # where the search for 
 
 @dataclass(frozen=True, kw_only=True)
 class Along:
-    """Poses along a log.
+    """Poses along a log."""
 
-    Attributes:
-        found: poses, tensions and their covariance at each sample.
-        std: what the statements leave open, as the log shows it.
-        weights: std of all statements.
-    """
-
-    found: Balance
-    std: Components
-    weights: Weights
+    found: Balance  # poses, tensions and their covariance at each sample
+    std: Components  # what the statements leave open, as the log shows it
+    weights: Weights  # std of all statements
 
 
 def measure(

@@ -59,38 +59,23 @@ NoLoad = Callable[[Robot, Array], tuple[Array, Array]]
 
 @dataclass(frozen=True, kw_only=True)
 class Measured:
-    """Measurements at N instants, a row each.
+    """Measurements at N instants, a row each."""
 
-    Attributes:
-        angles: φ, shape (N, 8) [rad].
-        currents: i, shape (N, 8) [A].
-        rates: ω, shape (N, 8) [rad/s].
-        rate_changes: ω̇, shape (N, 8) [rad/s^2].
-        rate_noise: std of ω̇ that noise of the angles makes, over their std [1/s^2].
-    """
-
-    angles: Array
-    currents: Array
-    rates: Array
-    rate_changes: Array
-    rate_noise: float = 0.0
+    angles: Array  # φ, shape (N, 8) [rad]
+    currents: Array  # i, shape (N, 8) [A]
+    rates: Array  # ω, shape (N, 8) [rad/s]
+    rate_changes: Array  # ω̇, shape (N, 8) [rad/s^2]
+    rate_noise: float = 0.0  # std of ω̇ that noise of the angles makes, over their std [1/s^2]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Weights:
-    """Std of the statements.
+    """Std of the statements."""
 
-    Attributes:
-        length: σ_d of each cable, shape (8,) [m].
-        tension: σ_T of each drum, shape (8,), or (N, 8) where instants differ [N].
-        force: of the platform's balance [N].
-        moment: of the platform's balance [N m].
-    """
-
-    length: Array
-    tension: Array
-    force: float
-    moment: float
+    length: Array  # σ_d of each cable, shape (8,) [m]
+    tension: Array  # σ_T of each drum, shape (8,), or (N, 8) where instants differ [N]
+    force: float  # of the platform's balance [N]
+    moment: float  # of the platform's balance [N m]
 
     @property
     def platform(self) -> Array:
@@ -100,25 +85,15 @@ class Weights:
 
 @dataclass(frozen=True, kw_only=True)
 class Balance:
-    """Poses and tensions at N instants.
+    """Poses and tensions at N instants."""
 
-    Attributes:
-        position: of the platform, shape (N, 3) [m].
-        R: its rotation, shape (N, 3, 3), without unit.
-        tension: shape (N, 8) [N].
-        taut: False where a cable is slack, shape (N, 8), bool.
-        residual: of the statements, in their std, shape (N, 22), relative.
-        J: their derivative by twist and tensions, shape (N, 22, 14), in the units of both.
-        covariance: (JᵀJ)⁻¹ of twist and tensions, shape (N, 14, 14), in the units of both.
-    """
-
-    position: Array
-    R: Array
-    tension: Array
-    taut: Array
-    residual: Array
-    J: Array
-    covariance: Array
+    position: Array  # of the platform, shape (N, 3) [m]
+    R: Array  # its rotation, shape (N, 3, 3), without unit
+    tension: Array  # shape (N, 8) [N]
+    taut: Array  # False where a cable is slack, shape (N, 8), bool
+    residual: Array  # of the statements, in their std, shape (N, 22), relative
+    J: Array  # their derivative by twist and tensions, shape (N, 22, 14), in the units of both
+    covariance: Array  # (JᵀJ)⁻¹ of twist and tensions, shape (N, 14, 14), in the units of both
 
     @property
     def pose(self) -> Array:

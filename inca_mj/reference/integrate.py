@@ -36,17 +36,11 @@ SINGULAR = np.radians(89.0)  # largest pitch [rad]: Euler rates are up to 57 tim
 
 @dataclass(frozen=True)
 class ReferenceRun:
-    """A trajectory of the reference, sampled; its arrays are read-only.
+    """A trajectory of the reference, sampled; its arrays are read-only."""
 
-    Attributes:
-        time: sample times, shape (n,) [s].
-        state: the 36 states in the order of `layout`, shape (n, 36).
-        tension: cable tensions, shape (n, 8) [N].
-    """
-
-    time: np.ndarray
-    state: np.ndarray
-    tension: np.ndarray
+    time: np.ndarray  # sample times, shape (n,) [s]
+    state: np.ndarray  # the 36 states in the order of `layout`, shape (n, 36)
+    tension: np.ndarray  # cable tensions, shape (n, 8) [N]
 
     def __post_init__(self) -> None:
         for array in (self.time, self.state, self.tension):

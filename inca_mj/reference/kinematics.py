@@ -28,35 +28,22 @@ from inca_mj.robot.geometry import Geometry
 
 @dataclass(frozen=True)
 class CablePose:
-    """The arms, lengths, directions and frames of the cables.
+    """The arms, lengths, directions and frames of the cables."""
 
-    Attributes:
-        arms: b_i, from P to B_i, in O, shape (8, 3) [m].
-        lengths: d_i, shape (8,) [m].
-        directions: s_i, from A_i to B_i, in O, shape (8, 3).
-        angles: (φ_i, θ_i), shape (8, 2) [rad]; φ_i = 0 for a vertical cable.
-        frames: R_Ai, from frame i to O, shape (8, 3, 3).
-    """
-
-    arms: np.ndarray
-    lengths: np.ndarray
-    directions: np.ndarray
-    angles: np.ndarray
-    frames: np.ndarray
+    arms: np.ndarray  # b_i, from P to B_i, in O, shape (8, 3) [m]
+    lengths: np.ndarray  # d_i, shape (8,) [m]
+    directions: np.ndarray  # s_i, from A_i to B_i, in O, shape (8, 3)
+    angles: np.ndarray  # (φ_i, θ_i), shape (8, 2) [rad]; φ_i = 0 for a vertical cable
+    frames: np.ndarray  # R_Ai, from frame i to O, shape (8, 3, 3)
 
 
 @dataclass(frozen=True)
 class CableMotion:
-    """The motion of the cables: a velocity analysis, or an acceleration analysis.
+    """The motion of the cables: a velocity analysis, or an acceleration analysis."""
 
-    Attributes:
-        connectors: v_b (or v̇_b) of B_i, in O, shape (8, 3) [m/s] ([m/s^2]).
-        lengths: ḋ (or d̈), shape (8,) [m/s] ([m/s^2]).
-        turns: ω (or ω̇) of the line of the cable, in frame i, shape (8, 3) [rad/s] ([rad/s^2]).
-    """
-
-    connectors: np.ndarray
-    lengths: np.ndarray
+    connectors: np.ndarray  # v_b (or v̇_b) of B_i, in O, shape (8, 3) [m/s] ([m/s^2])
+    lengths: np.ndarray  # ḋ (or d̈), shape (8,) [m/s] ([m/s^2])
+    # ω (or ω̇) of the line of the cable, in frame i, shape (8, 3) [rad/s] ([rad/s^2])
     turns: np.ndarray
 
 

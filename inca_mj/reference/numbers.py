@@ -67,19 +67,12 @@ def pack(
 
 @dataclass(frozen=True)
 class Rest:
-    """The robot at rest at its start pose, currents zero.
+    """The robot at rest at its start pose, currents zero."""
 
-    Attributes:
-        tension: T(0), shape (8,) [N].
-        length: d of the cables, shape (8,) [m].
-        no_load: d₀(0), shape (8,) [m].
-        state: the 36 states of that rest.
-    """
-
-    tension: np.ndarray
-    length: np.ndarray
-    no_load: np.ndarray
-    state: np.ndarray
+    tension: np.ndarray  # T(0), shape (8,) [N]
+    length: np.ndarray  # d of the cables, shape (8,) [m]
+    no_load: np.ndarray  # d₀(0), shape (8,) [m]
+    state: np.ndarray  # the 36 states of that rest
 
 
 def wrench_matrix(pose: kinematics.CablePose) -> np.ndarray:

@@ -13,25 +13,16 @@ from inca_mj.reference.kinematics import rotation
 
 @dataclass(frozen=True, kw_only=True)
 class Outputs:
-    """Cables and accelerations at one state.
+    """Cables and accelerations at one state."""
 
-    Attributes:
-        tension: T, shape (8,) [N].
-        length: d, shape (8,) [m].
-        length_rate: ḋ, shape (8,) [m/s].
-        no_load_rate: ḋ₀, shape (8,) [m/s].
-        acceleration: p̈ = R_AB (v̇ + ω × v) of the platform, along O, shape (3,) [m/s^2].
-        angular_acceleration: ω̇ of the platform, along its body axes, shape (3,) [rad/s^2].
-        motor_acceleration: ω̇_m, shape (8,) [rad/s^2].
-    """
-
-    tension: np.ndarray
-    length: np.ndarray
-    length_rate: np.ndarray
-    no_load_rate: np.ndarray
-    acceleration: np.ndarray
+    tension: np.ndarray  # T, shape (8,) [N]
+    length: np.ndarray  # d, shape (8,) [m]
+    length_rate: np.ndarray  # ḋ, shape (8,) [m/s]
+    no_load_rate: np.ndarray  # ḋ₀, shape (8,) [m/s]
+    acceleration: np.ndarray  # p̈ = R_AB (v̇ + ω × v) of the platform, along O, shape (3,) [m/s^2]
+    # ω̇ of the platform, along its body axes, shape (3,) [rad/s^2]
     angular_acceleration: np.ndarray
-    motor_acceleration: np.ndarray
+    motor_acceleration: np.ndarray  # ω̇_m, shape (8,) [rad/s^2]
 
 
 def outputs(x: np.ndarray, i: np.ndarray, q: np.ndarray) -> Outputs:

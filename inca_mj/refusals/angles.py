@@ -27,15 +27,10 @@ from inca_mj.refusals.bounds import BOUNDS
 
 @dataclass(frozen=True)
 class Places:
-    """The places of the columns of a log.
+    """The places of the columns of a log."""
 
-    Attributes:
-        angles: P, shape (k, k).
-        currents: Q, shape (8, 8).
-    """
-
-    angles: np.ndarray
-    currents: np.ndarray
+    angles: np.ndarray  # P, shape (k, k)
+    currents: np.ndarray  # Q, shape (8, 8)
 
 
 def other_angles(part: Log, predicted: np.ndarray) -> tuple[Reading, str] | None:

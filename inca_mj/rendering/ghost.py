@@ -69,17 +69,12 @@ def ghost_errors(off: Difference) -> tuple[np.ndarray, np.ndarray]:
 
 @dataclass(frozen=True)
 class Difference:
-    """Poses of a simulated and of the measured robot.
+    """Poses of a simulated and of the measured robot."""
 
-    Attributes:
-        simulated: MuJoCo positions of the simulated robot, shape (N, 15) [m, -, rad].
-        own: the same, its pose taken in the way in which that of the measured robot is known.
-        measured: positions of the measured one, shape (N, 15).
-    """
-
-    simulated: np.ndarray
+    simulated: np.ndarray  # MuJoCo positions of the simulated robot, shape (N, 15) [m, -, rad]
+    # the same, its pose taken in the way in which that of the measured robot is known
     own: np.ndarray
-    measured: np.ndarray
+    measured: np.ndarray  # positions of the measured one, shape (N, 15)
 
     @property
     def moved(self) -> np.ndarray:

@@ -52,17 +52,12 @@ def tension_scale(tension: np.ndarray) -> TensionScale:
 
 @dataclass(frozen=True)
 class Entry:
-    """A row of the legend.
+    """A row of the legend."""
 
-    Attributes:
-        text: beside the mark.
-        colours: of the mark, from left to right; none is the measured robot's outline and cable.
-        half: half of the mark's height [em].
-    """
-
-    text: str
+    text: str  # beside the mark
+    # of the mark, from left to right; none is the measured robot's outline and cable
     colours: tuple[str, ...]
-    half: float = 0.33
+    half: float = 0.33  # half of the mark's height [em]
 
 
 ROBOT = (

@@ -28,15 +28,10 @@ Box = tuple[int, int, int, int]  # left, top, right, bottom [px]
 
 @dataclass(frozen=True)
 class Outline:
-    """The outline of a robot, in pixels.
+    """The outline of a robot, in pixels."""
 
-    Attributes:
-        shapes: convex polygons, shape (K, 2) each.
-        cables: their corners, shape (K, 2) each.
-    """
-
-    shapes: tuple[np.ndarray, ...]
-    cables: tuple[np.ndarray, ...]
+    shapes: tuple[np.ndarray, ...]  # convex polygons, shape (K, 2) each
+    cables: tuple[np.ndarray, ...]  # their corners, shape (K, 2) each
 
 
 def outline_of(

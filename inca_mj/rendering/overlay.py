@@ -31,17 +31,11 @@ _FINER = 3  # times as many pixels are drawn, so that edges are smooth
 
 @dataclass(frozen=True)
 class Eye:
-    """A camera.
+    """A camera."""
 
-    Attributes:
-        place: o in O, shape (3,) [m].
-        axes: Q, its axes to the right, up and backwards as columns, shape (3, 3).
-        fovy: its vertical angle of view [rad].
-    """
-
-    place: np.ndarray
-    axes: np.ndarray
-    fovy: float
+    place: np.ndarray  # o in O, shape (3,) [m]
+    axes: np.ndarray  # Q, its axes to the right, up and backwards as columns, shape (3, 3)
+    fovy: float  # its vertical angle of view [rad]
 
     def pixels(self, points: np.ndarray, size: tuple[int, int]) -> np.ndarray:
         """Returns pixels (M, 2) of points (M, 3) [m] in O; NaN if they are not before the eye."""
@@ -106,19 +100,12 @@ def _box(
 
 @dataclass(frozen=True)
 class Trace:
-    """The trace of a platform that follows what is asked.
+    """The trace of a platform that follows what is asked."""
 
-    Attributes:
-        time: sample times, shape (N,) [s].
-        asked: positions asked of the platform, shape (N, 3) [m].
-        error: true positions less those, shape (N, 3) [m].
-        magnify: k, by which the error is drawn larger.
-    """
-
-    time: np.ndarray
-    asked: np.ndarray
-    error: np.ndarray
-    magnify: float = MAGNIFY
+    time: np.ndarray  # sample times, shape (N,) [s]
+    asked: np.ndarray  # positions asked of the platform, shape (N, 3) [m]
+    error: np.ndarray  # true positions less those, shape (N, 3) [m]
+    magnify: float = MAGNIFY  # k, by which the error is drawn larger
 
     def distance(self, at: float) -> float:
         """Returns the distance from what is asked at a time [s], linear between samples [m]."""

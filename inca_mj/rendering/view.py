@@ -31,23 +31,14 @@ _WIDE = 1.15  # width to height that a camera is made for
 
 @dataclass(frozen=True)
 class View:
-    """A renderer with a model of its own, whose cables it may colour and thicken.
+    """A renderer with a model of its own, whose cables it may colour and thicken."""
 
-    Attributes:
-        camera: its name in the model.
-        model: with the cables as they are drawn.
-        robot: the simulated robot, as it was drawn last.
-        ghost: the measured one.
-        draws: the renderer, which only `thread` may use.
-        thread: draws one picture after the other.
-    """
-
-    camera: str
-    model: mujoco.MjModel
-    robot: mujoco.MjData
-    ghost: mujoco.MjData
-    draws: mujoco.Renderer
-    thread: Executor
+    camera: str  # its name in the model
+    model: mujoco.MjModel  # with the cables as they are drawn
+    robot: mujoco.MjData  # the simulated robot, as it was drawn last
+    ghost: mujoco.MjData  # the measured one
+    draws: mujoco.Renderer  # the renderer, which only `thread` may use
+    thread: Executor  # draws one picture after the other
 
     def begin(
         self, qpos: np.ndarray, colours: np.ndarray, ghost: np.ndarray | None = None,

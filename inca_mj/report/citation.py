@@ -8,27 +8,16 @@ from importlib.metadata import PackageNotFoundError, version
 
 @dataclass(frozen=True)
 class Work:
-    """A work to cite.
+    """A work to cite."""
 
-    Attributes:
-        key: of its BibTeX entry.
-        kind: software or thesis.
-        title: its title.
-        author: who wrote it; a name or a group.
-        version: of a software, else "".
-        license: SPDX name, or "".
-        where: the institution of a thesis, else "".
-        note: what a reader should know.
-    """
-
-    key: str
-    kind: str
-    title: str
-    author: str
-    version: str = ""
-    license: str = ""
-    where: str = ""
-    note: str = ""
+    key: str  # of its BibTeX entry
+    kind: str  # software or thesis
+    title: str  # its title
+    author: str  # who wrote it; a name or a group
+    version: str = ""  # of a software, else ""
+    license: str = ""  # SPDX name, or ""
+    where: str = ""  # the institution of a thesis, else ""
+    note: str = ""  # what a reader should know
 
 
 THESIS = Work(

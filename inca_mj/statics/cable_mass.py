@@ -33,33 +33,19 @@ TENSION = (1.0, 4.0, 16.0)  # [N]
 
 @dataclass(frozen=True, kw_only=True)
 class LineError:
-    """Errors of the massless straight line at one pose, the worst of the eight cables.
+    """Errors of the massless straight line at one pose, the worst of the eight cables."""
 
-    Attributes:
-        pose: x, y, z [m], roll, pitch, yaw [rad], shape (6,).
-        rho: mass per length [kg/m].
-        tension: of every cable at its connector [N].
-        length: difference of the unstrained lengths [m].
-        angle: the same as an angle of the drum [rad].
-        force: difference of the forces on the connector, without any weight of the cable [N].
-        force_half: the same where half of the cable's weight hangs on the connector [N].
-        sag: of the cable below the middle of its chord, by Irvine's parabola [m].
-        stiffness_lost: 1 − λ_eq/λ by Ernst.
-        moved: how far the weight of all cables moves the platform against free drums [m].
-        moved_angle: the largest turn of a drum by that [rad].
-    """
-
-    pose: np.ndarray
-    rho: float
-    tension: float
-    length: float
-    angle: float
-    force: float
-    force_half: float
-    sag: float
-    stiffness_lost: float
-    moved: float
-    moved_angle: float
+    pose: np.ndarray  # x, y, z [m], roll, pitch, yaw [rad], shape (6,)
+    rho: float  # mass per length [kg/m]
+    tension: float  # of every cable at its connector [N]
+    length: float  # difference of the unstrained lengths [m]
+    angle: float  # the same as an angle of the drum [rad]
+    force: float  # difference of the forces on the connector, without any weight of the cable [N]
+    force_half: float  # the same where half of the cable's weight hangs on the connector [N]
+    sag: float  # of the cable below the middle of its chord, by Irvine's parabola [m]
+    stiffness_lost: float  # 1 − λ_eq/λ by Ernst
+    moved: float  # how far the weight of all cables moves the platform against free drums [m]
+    moved_angle: float  # the largest turn of a drum by that [rad]
 
     @property
     def line_is_enough(self) -> bool:

@@ -44,25 +44,15 @@ WIDENINGS = 60  # of a bracket, each by a factor e of H
 
 @dataclass(frozen=True)
 class Catenary:
-    """A cable that hangs between an exit point A and a connector B.
+    """A cable that hangs between an exit point A and a connector B."""
 
-    Attributes:
-        exit: A, shape (3,) [m].
-        connector: B, shape (3,) [m].
-        no_load: d₀, its unstrained length [m].
-        rho: mass per unstrained length [kg/m].
-        lambda_: elastic modulus λ = E S [N].
-        H: horizontal tension [N].
-        V: vertical force on the upper end, upwards [N].
-    """
-
-    exit: np.ndarray
-    connector: np.ndarray
-    no_load: float
-    rho: float
-    lambda_: float
-    H: float
-    V: float
+    exit: np.ndarray  # A, shape (3,) [m]
+    connector: np.ndarray  # B, shape (3,) [m]
+    no_load: float  # d₀, its unstrained length [m]
+    rho: float  # mass per unstrained length [kg/m]
+    lambda_: float  # elastic modulus λ = E S [N]
+    H: float  # horizontal tension [N]
+    V: float  # vertical force on the upper end, upwards [N]
 
     @property
     def from_exit(self) -> bool:

@@ -56,19 +56,13 @@ NOTHING = 1e-9  # a row of the null space of less is zero
 
 @dataclass(frozen=True)
 class Closure:
-    """Rank, condition and internal tension of the cables at one pose.
+    """Rank, condition and internal tension of the cables at one pose."""
 
-    Attributes:
-        rank: of the wrench matrix, 6 where the cables move the platform in every direction.
-        condition: its largest over its smallest singular value, lengths in metres; infinite below
-            rank 6.
-        margin: smallest over largest tension of the best internal tension; 0 without closure.
-        tensions: that internal tension, largest 1, shape (8,), relative; all zero without closure.
-    """
-
-    rank: int
+    rank: int  # of the wrench matrix, 6 where the cables move the platform in every direction
+    # its largest over its smallest singular value, lengths in metres; infinite below rank 6
     condition: float
-    margin: float
+    margin: float  # smallest over largest tension of the best internal tension; 0 without closure
+    # that internal tension, largest 1, shape (8,), relative; all zero without closure
     tensions: np.ndarray
 
     @property

@@ -36,25 +36,16 @@ NONE = np.zeros(6)
 
 @dataclass(frozen=True)
 class Equilibrium:
-    """The robot at rest.
+    """The robot at rest."""
 
-    Attributes:
-        pose: x, y, z [m], roll, pitch, yaw [rad], shape (6,).
-        tension: T, shape (8,) [N].
-        angle: φ, shape (8,) [rad].
-        no_load: d₀, shape (8,) [m].
-        stiffness: K with free drums, shape (6, 6) [N/m, N, N m/rad].
-        stable: whether every small displacement is driven back.
-        friction_band: how far from this pose Coulomb friction may hold it, along x, y, z [m] and
-            about them [rad], shape (6,).
-    """
-
-    pose: np.ndarray
-    tension: np.ndarray
-    angle: np.ndarray
-    no_load: np.ndarray
-    stiffness: np.ndarray
-    stable: bool
+    pose: np.ndarray  # x, y, z [m], roll, pitch, yaw [rad], shape (6,)
+    tension: np.ndarray  # T, shape (8,) [N]
+    angle: np.ndarray  # φ, shape (8,) [rad]
+    no_load: np.ndarray  # d₀, shape (8,) [m]
+    stiffness: np.ndarray  # K with free drums, shape (6, 6) [N/m, N, N m/rad]
+    stable: bool  # whether every small displacement is driven back
+    # how far from this pose Coulomb friction may hold it, along x, y, z [m] and about them [rad],
+    # shape (6,)
     friction_band: np.ndarray
 
 

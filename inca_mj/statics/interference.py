@@ -49,21 +49,14 @@ def point_distance(x: np.ndarray, p: np.ndarray, u: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Interference:
-    """The smallest distances along some poses.
+    """The smallest distances along some poses."""
 
-    Attributes:
-        pairs: cables that share no anchor, as numbers from 1.
-        between: their distances, shape (N, pairs) [m].
-        sharing: cables that share an anchor, as numbers from 1.
-        angle: between them, shape (N, sharing) [rad].
-        platform: clearance of each cable from grip and arms, shape (N, 8) [m]; negative where it
-            would run through them.
-    """
-
-    pairs: tuple[tuple[int, int], ...]
-    between: np.ndarray
-    sharing: tuple[tuple[int, int], ...]
-    angle: np.ndarray
+    pairs: tuple[tuple[int, int], ...]  # cables that share no anchor, as numbers from 1
+    between: np.ndarray  # their distances, shape (N, pairs) [m]
+    sharing: tuple[tuple[int, int], ...]  # cables that share an anchor, as numbers from 1
+    angle: np.ndarray  # between them, shape (N, sharing) [rad]
+    # clearance of each cable from grip and arms, shape (N, 8) [m]; negative where it would run
+    # through them
     platform: np.ndarray
 
     def nearest_pair(self) -> tuple[tuple[int, int], int]:

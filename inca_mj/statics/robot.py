@@ -59,19 +59,12 @@ def static_robot(parameters: ParameterSet, geometry: Geometry) -> Robot:
 
 @dataclass(frozen=True)
 class Pull:
-    """The pull of eight cables of given lengths whose drums are in balance.
+    """The pull of eight cables of given lengths whose drums are in balance."""
 
-    Attributes:
-        tension: T, shape (..., 8) [N].
-        angle: φ, positive winds in, shape (..., 8) [rad].
-        no_load: d₀, shape (..., 8) [m].
-        stiffness: dT/dd, zero where the drum spring is unwound, shape (..., 8) [N/m].
-    """
-
-    tension: np.ndarray
-    angle: np.ndarray
-    no_load: np.ndarray
-    stiffness: np.ndarray
+    tension: np.ndarray  # T, shape (..., 8) [N]
+    angle: np.ndarray  # φ, positive winds in, shape (..., 8) [rad]
+    no_load: np.ndarray  # d₀, shape (..., 8) [m]
+    stiffness: np.ndarray  # dT/dd, zero where the drum spring is unwound, shape (..., 8) [N/m]
 
 
 def pull(robot: Robot, d: np.ndarray, current: float | np.ndarray = 0.0) -> Pull:

@@ -75,17 +75,11 @@ def with_drums(robot: Robot, at: Cables, tension: np.ndarray, no_load: np.ndarra
 
 @dataclass(frozen=True)
 class Axes:
-    """Principal values of a 3 x 3 stiffness, the softest first.
+    """Principal values of a 3 x 3 stiffness, the softest first."""
 
-    Attributes:
-        values: shape (3,) [N/m] or [N m/rad].
-        vectors: in the rows, in O, shape (3, 3), without unit.
-        words: each in words.
-    """
-
-    values: np.ndarray
-    vectors: np.ndarray
-    words: tuple[str, ...]
+    values: np.ndarray  # shape (3,) [N/m] or [N m/rad]
+    vectors: np.ndarray  # in the rows, in O, shape (3, 3), without unit
+    words: tuple[str, ...]  # each in words
 
 
 def principal(K: np.ndarray) -> tuple[Axes, Axes]:
@@ -110,17 +104,11 @@ def principal(K: np.ndarray) -> tuple[Axes, Axes]:
 
 @dataclass(frozen=True)
 class Modes:
-    """Modes in which the platform swings without damping, the slowest first.
+    """Modes in which the platform swings without damping, the slowest first."""
 
-    Attributes:
-        frequency: shape (6,) [Hz]; NaN where the equilibrium is not stable.
-        shape: in the rows, displacement and turn, M-normalised, shape (6, n).
-        words: each mode in words.
-    """
-
-    frequency: np.ndarray
-    shape: np.ndarray
-    words: tuple[str, ...]
+    frequency: np.ndarray  # shape (6,) [Hz]; NaN where the equilibrium is not stable
+    shape: np.ndarray  # in the rows, displacement and turn, M-normalised, shape (6, n)
+    words: tuple[str, ...]  # each mode in words
 
 
 def modes(K: np.ndarray, M: np.ndarray, count: int = 6) -> Modes:

@@ -68,23 +68,17 @@ def in_plane_frequency(d: float, span: float, tension: float, rho: float, lambda
 
 @dataclass(frozen=True)
 class Coupled:
-    """The platform's modes with massless cables, and with swinging ones; drums locked.
+    """The platform's modes with massless cables, and with swinging ones; drums locked."""
 
-    Attributes:
-        massless: frequencies of the platform alone, shape (6,) [Hz].
-        added: frequencies where a third of each cable's mass moves with its connector, shape (6,)
-            [Hz]: right for cables that are much faster than the platform.
-        coupled: frequencies of the modes in which the platform moves most, shape (6,) [Hz].
-        share: part of the kinetic energy of each that the platform has, shape (6,).
-        cables: lowest frequency of each cable between ends at rest, shape (8,) [Hz].
-        in_plane: the same in the vertical plane, where sag stretches the cable, shape (8,) [Hz].
-    """
-
-    massless: np.ndarray
+    massless: np.ndarray  # frequencies of the platform alone, shape (6,) [Hz]
+    # frequencies where a third of each cable's mass moves with its connector, shape (6,) [Hz]:
+    # right for cables that are much faster than the platform
     added: np.ndarray
+    # frequencies of the modes in which the platform moves most, shape (6,) [Hz]
     coupled: np.ndarray
-    share: np.ndarray
-    cables: np.ndarray
+    share: np.ndarray  # part of the kinetic energy of each that the platform has, shape (6,)
+    cables: np.ndarray  # lowest frequency of each cable between ends at rest, shape (8,) [Hz]
+    # the same in the vertical plane, where sag stretches the cable, shape (8,) [Hz]
     in_plane: np.ndarray
 
 

@@ -94,23 +94,14 @@ def margin(kind: Kind, robot: Robot, poses: np.ndarray, limits: DriveLimits) -> 
 
 @dataclass(frozen=True, kw_only=True)
 class Workspace:
-    """A workspace at one orientation.
+    """A workspace at one orientation."""
 
-    Attributes:
-        kind: "closure", "feasible" or "static".
-        orientation: roll, pitch, yaw, shape (3,) [rad].
-        axes: coordinates of the grid along x, y and z [m].
-        margin: at the points of the grid, shape (X, Y, Z): [rad] for closure, else [N].
-        volume: [m^3].
-        std: standard error of the volume [m^3].
-    """
-
-    kind: Kind
-    orientation: np.ndarray
-    axes: tuple[np.ndarray, np.ndarray, np.ndarray]
-    margin: np.ndarray
-    volume: float
-    std: float
+    kind: Kind  # "closure", "feasible" or "static"
+    orientation: np.ndarray  # roll, pitch, yaw, shape (3,) [rad]
+    axes: tuple[np.ndarray, np.ndarray, np.ndarray]  # coordinates of the grid along x, y and z [m]
+    margin: np.ndarray  # at the points of the grid, shape (X, Y, Z): [rad] for closure, else [N]
+    volume: float  # [m^3]
+    std: float  # standard error of the volume [m^3]
 
     @property
     def inside(self) -> np.ndarray:

@@ -12,40 +12,24 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class PrintedTable:
-    """A table of the thesis.
+    """A table of the thesis."""
 
-    Attributes:
-        number: as in the thesis.
-        title: its caption.
-        columns: headings.
-        rows: cells as they are printed.
-    """
-
-    number: str
-    title: str
-    columns: tuple[str, ...]
-    rows: tuple[tuple[str, ...], ...]
+    number: str  # as in the thesis
+    title: str  # its caption
+    columns: tuple[str, ...]  # headings
+    rows: tuple[tuple[str, ...], ...]  # cells as they are printed
 
 
 @dataclass(frozen=True)
 class PrintedFits:
-    """The numbers of a figure of the thesis that compares data and model.
+    """The numbers of a figure of the thesis that compares data and model."""
 
-    Attributes:
-        number: of the figure.
-        title: its caption.
-        fits: of the angles of motors 1 to 8 [%].
-        mean: the "summary" [%].
-        loss: by equation 3.5.
-        matlab_loss: as MATLAB prints it; None where it is not given.
-    """
-
-    number: str
-    title: str
-    fits: tuple[float, ...]
-    mean: float
-    loss: float
-    matlab_loss: float | None = None
+    number: str  # of the figure
+    title: str  # its caption
+    fits: tuple[float, ...]  # of the angles of motors 1 to 8 [%]
+    mean: float  # the "summary" [%]
+    loss: float  # by equation 3.5
+    matlab_loss: float | None = None  # as MATLAB prints it; None where it is not given
 
 
 _INERTIA = "diag(0.8, 1.5, 1.8) 1e-4"

@@ -31,19 +31,12 @@ from inca_mj.workflows.identification import Identification, identify_as_thesis
 
 @dataclass(frozen=True)
 class FigureSettings:
-    """The settings that a figure of the thesis needs.
+    """The settings that a figure of the thesis needs."""
 
-    Attributes:
-        input: of `make_input`.
-        set: parameter set.
-        duration: [s].
-        title: what it is called here.
-    """
-
-    input: str
-    set: Literal["trial", "simulation"]
-    duration: float
-    title: str
+    input: str  # of `make_input`
+    set: Literal["trial", "simulation"]  # parameter set
+    duration: float  # [s]
+    title: str  # what it is called here
 
 
 FIGURES = {

@@ -35,21 +35,13 @@ NOISE = 0.05  # largest error of a sample, relative to it
 
 @dataclass(frozen=True)
 class Trial:
-    """A trial: its starting values, its noise, and what the thesis found.
+    """A trial: its starting values, its noise, and what the thesis found."""
 
-    Attributes:
-        number: 1 to 4.
-        start: starting values of the free parameters.
-        noisy: whether the outputs carry noise.
-        thesis: the thesis' estimates.
-        thesis_fit: the thesis' mean output fit [%].
-    """
-
-    number: int
-    start: Mapping[str, float]
-    noisy: bool
-    thesis: Mapping[str, float]
-    thesis_fit: float
+    number: int  # 1 to 4
+    start: Mapping[str, float]  # starting values of the free parameters
+    noisy: bool  # whether the outputs carry noise
+    thesis: Mapping[str, float]  # the thesis' estimates
+    thesis_fit: float  # the thesis' mean output fit [%]
 
 
 def _trial(n: int) -> Trial:

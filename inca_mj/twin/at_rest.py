@@ -30,26 +30,17 @@ UNKNOWN = dict.fromkeys(Drive._fields, np.nan)
 
 @dataclass(frozen=True, kw_only=True)
 class Change:
-    """The change of the robot at rest by the effects that are present.
+    """The change of the robot at rest by the effects that are present."""
 
-    Attributes:
-        longer: Δd of each cable, shape (8,) [m].
-        turned: ∂Δd/∂r of each cable, in O, shape (8, 3).
-        load: what is added to the wrench that the cables carry, in O, about the platform's frame,
-            shape (6,) [N, N m].
-        wider: ΔR of each roller, shape (8,) [m].
-        d: length of each cable, shape (8,) [m].
-        values: of all parameters, in SI units.
-        stiffening: effects that add to the tension.
-    """
-
-    longer: np.ndarray
-    turned: np.ndarray
+    longer: np.ndarray  # Δd of each cable, shape (8,) [m]
+    turned: np.ndarray  # ∂Δd/∂r of each cable, in O, shape (8, 3)
+    # what is added to the wrench that the cables carry, in O, about the platform's frame, shape
+    # (6,) [N, N m]
     load: np.ndarray
-    wider: np.ndarray
-    d: np.ndarray
-    values: Mapping[str, float]
-    stiffening: tuple[Effect, ...]
+    wider: np.ndarray  # ΔR of each roller, shape (8,) [m]
+    d: np.ndarray  # length of each cable, shape (8,) [m]
+    values: Mapping[str, float]  # of all parameters, in SI units
+    stiffening: tuple[Effect, ...]  # effects that add to the tension
 
     def strain(self, T: np.ndarray) -> np.ndarray:
         """Returns ε(0) at tensions T, shape (8,)."""

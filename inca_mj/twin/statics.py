@@ -32,24 +32,15 @@ NO_EFFECTS = Layout()
 
 @dataclass(frozen=True, kw_only=True)
 class Start:
-    """A robot at rest, all angles zero: where a log begins.
+    """A robot at rest, all angles zero: where a log begins."""
 
-    Attributes:
-        pose: x, y, z [m], roll, pitch, yaw [rad], shape (6,).
-        tension: T(0), shape (8,) [N].
-        no_load_length: d₀(0), shape (8,) [m].
-        strain: ε(0) of each cable, shape (8,).
-        balance: tensions that the drum springs balance, with the radius R of the model, shape (8,)
-            [N].
-        own: the effects' own states, shape (8, states).
-    """
-
-    pose: np.ndarray
-    tension: np.ndarray
-    no_load_length: np.ndarray
-    strain: np.ndarray
+    pose: np.ndarray  # x, y, z [m], roll, pitch, yaw [rad], shape (6,)
+    tension: np.ndarray  # T(0), shape (8,) [N]
+    no_load_length: np.ndarray  # d₀(0), shape (8,) [m]
+    strain: np.ndarray  # ε(0) of each cable, shape (8,)
+    # tensions that the drum springs balance, with the radius R of the model, shape (8,) [N]
     balance: np.ndarray
-    own: np.ndarray
+    own: np.ndarray  # the effects' own states, shape (8, states)
 
 
 def pretension(

@@ -42,26 +42,17 @@ _VARIED = ("R", "R_s", "k_s", "lambda", "b", "J", "b_v", "b_c", "beta", "K_t", "
 
 @dataclass(frozen=True, kw_only=True)
 class DerivativeErrors:
-    """Largest relative errors over all states; what they are relative to, see the module.
+    """Largest relative errors over all states; what they are relative to, see the module."""
 
-    Attributes:
-        linear: of the platform's linear acceleration.
-        angular: of its angular acceleration.
-        motor: of the motors' accelerations. MuJoCo demands an inertia of the drum's body beside
-            the armature J; that share of J (7e-11 of the thesis') is seen here.
-        no_load: of the rates of the no-load lengths.
-        tension: of the tensions.
-        states: number of states.
-        slack: share of slack cables in them.
-    """
-
-    linear: float
-    angular: float
+    linear: float  # of the platform's linear acceleration
+    angular: float  # of its angular acceleration
+    # of the motors' accelerations. MuJoCo demands an inertia of the drum's body beside the armature
+    # J; that share of J (7e-11 of the thesis') is seen here.
     motor: float
-    no_load: float
-    tension: float
-    states: int
-    slack: float
+    no_load: float  # of the rates of the no-load lengths
+    tension: float  # of the tensions
+    states: int  # number of states
+    slack: float  # share of slack cables in them
 
     @property
     def largest(self) -> float:

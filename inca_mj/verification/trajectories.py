@@ -51,19 +51,12 @@ Row = dict[str, Any]  # case, step [s], and the errors; None where a run diverge
 
 @dataclass(frozen=True)
 class Case:
-    """A start and currents for both models.
+    """A start and currents for both models."""
 
-    Attributes:
-        name: one of `CASES`.
-        start: state of the reference, shape (36,).
-        time: sample times, shape (N,) [s].
-        currents: held from sample to sample, shape (N, 8) [A].
-    """
-
-    name: str
-    start: np.ndarray
-    time: np.ndarray
-    currents: np.ndarray
+    name: str  # one of `CASES`
+    start: np.ndarray  # state of the reference, shape (36,)
+    time: np.ndarray  # sample times, shape (N,) [s]
+    currents: np.ndarray  # held from sample to sample, shape (N, 8) [A]
 
 
 def make_case(name: str, parameters: ParameterSet, geometry: Geometry, duration: float) -> Case:

@@ -48,19 +48,12 @@ FEWEST = 50  # unseen samples of a record on which a calibration is judged
 
 @dataclass(frozen=True)
 class RecordGap:
-    """The error of free runs on a record, on samples that no fit of physical values has seen.
+    """The error of free runs on a record, on samples that no fit of physical values has seen."""
 
-    Attributes:
-        name: of the record.
-        role: "fit": its first half was fitted; "confirm": only its start pose was.
-        before: rms with all drives alike and all points as drawn [rad].
-        after: rms of the calibrated robot [rad].
-    """
-
-    name: str
-    role: str
-    before: float
-    after: float
+    name: str  # of the record
+    role: str  # "fit": its first half was fitted; "confirm": only its start pose was
+    before: float  # rms with all drives alike and all points as drawn [rad]
+    after: float  # rms of the calibrated robot [rad]
 
 
 @dataclass(frozen=True, kw_only=True)

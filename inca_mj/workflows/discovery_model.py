@@ -91,17 +91,11 @@ def rerun(robot: Twin, log: Log) -> Run:
 
 @dataclass(frozen=True)
 class Contrast:
-    """An input, and the distance of two look-alikes under it.
+    """An input, and the distance of two look-alikes under it."""
 
-    Attributes:
-        name: of the input, in words.
-        distance: d [std of the noise].
-        own: the distance under the log's own input.
-    """
-
-    name: str
-    distance: float
-    own: float
+    name: str  # of the input, in words
+    distance: float  # d [std of the noise]
+    own: float  # the distance under the log's own input
 
 
 def tell_apart(found: Discovery, named: NamedEffect) -> Contrast | None:

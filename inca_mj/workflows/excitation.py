@@ -36,21 +36,13 @@ Progress = Callable[[str], None]
 
 @dataclass(frozen=True)
 class Tried:
-    """An input, its simulation, and the information that it gives.
+    """An input, its simulation, and the information that it gives."""
 
-    Attributes:
-        name: in words.
-        run: the simulated run.
-        extent: how far currents, tensions and pose went.
-        found: information on the parameters, where the start pose is unknown.
-        allowed: whether it keeps the limits.
-    """
-
-    name: str
-    run: Run
-    extent: Extent
-    found: Information
-    allowed: bool
+    name: str  # in words
+    run: Run  # the simulated run
+    extent: Extent  # how far currents, tensions and pose went
+    found: Information  # information on the parameters, where the start pose is unknown
+    allowed: bool  # whether it keeps the limits
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -155,19 +147,12 @@ def excite(
 
 @dataclass(frozen=True)
 class Bench:
-    """The twin, the noise, the parameters and the limits with which inputs are tried.
+    """The twin, the noise, the parameters and the limits with which inputs are tried."""
 
-    Attributes:
-        robot: the twin at its nominal values.
-        sigma: std of the noise on each angle [rad].
-        names: the parameters of interest; the start pose is unknown too.
-        limits: what an input may do.
-    """
-
-    robot: Twin
-    sigma: float
-    names: tuple[str, ...]
-    limits: Limits
+    robot: Twin  # the twin at its nominal values
+    sigma: float  # std of the noise on each angle [rad]
+    names: tuple[str, ...]  # the parameters of interest; the start pose is unknown too
+    limits: Limits  # what an input may do
 
     def attempt(self, name: str, run: Run, resolved: bool = False) -> Tried:
         """Returns the information that a run gives, from 2 p simulations.

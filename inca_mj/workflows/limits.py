@@ -60,21 +60,13 @@ class Limits:
 
 @dataclass(frozen=True)
 class Extent:
-    """The extent of currents, tensions and pose in a run.
+    """The extent of currents, tensions and pose in a run."""
 
-    Attributes:
-        low: smallest current [A].
-        high: largest current [A].
-        tension: least tension [N].
-        reach: largest move of the platform along x, y or z from its start [m].
-        turn: largest rotation from its start [rad].
-    """
-
-    low: float
-    high: float
-    tension: float
-    reach: float
-    turn: float
+    low: float  # smallest current [A]
+    high: float  # largest current [A]
+    tension: float  # least tension [N]
+    reach: float  # largest move of the platform along x, y or z from its start [m]
+    turn: float  # largest rotation from its start [rad]
 
     def within(self, limits: Limits) -> bool:
         """Returns whether a run kept the limits."""

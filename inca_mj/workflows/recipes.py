@@ -32,17 +32,11 @@ _PHASES = {"multisine": DRIVES * TONES, "prbs": DRIVES}
 
 @dataclass(frozen=True)
 class Recipe:
-    """An input in a few numbers.
+    """An input in a few numbers."""
 
-    Attributes:
-        kind: "multisine" or "prbs".
-        numbers: in [0, 1], levels first, phases last.
-        scale: factor of the swing about the mean, at most 1.
-    """
-
-    kind: Literal["multisine", "prbs"]
-    numbers: np.ndarray
-    scale: float = 1.0
+    kind: Literal["multisine", "prbs"]  # "multisine" or "prbs"
+    numbers: np.ndarray  # in [0, 1], levels first, phases last
+    scale: float = 1.0  # factor of the swing about the mean, at most 1
 
     def settings(self, limits: Limits) -> dict[str, float]:
         """Returns what the numbers mean, in units; without the phases."""

@@ -38,23 +38,14 @@ from inca_mj.twin.logs import pose_of
 
 @dataclass(frozen=True, kw_only=True)
 class Held:
-    """The hold of the cables on the platform at a pose.
+    """The hold of the cables on the platform at a pose."""
 
-    Attributes:
-        low: smallest tensions that the drives can give, shape (8,) [N].
-        high: largest tensions, shape (8,) [N].
-        nearest: tensions nearest to 4 N without limits, shape (8,) [N].
-        minimum_norm: tensions of minimum norm without limits, shape (8,) [N].
-        within: tensions nearest to 4 N within the limits, shape (8,) [N].
-        current: of the motors that give `within`, shape (8,) [A].
-    """
-
-    low: np.ndarray
-    high: np.ndarray
-    nearest: np.ndarray
-    minimum_norm: np.ndarray
-    within: np.ndarray
-    current: np.ndarray
+    low: np.ndarray  # smallest tensions that the drives can give, shape (8,) [N]
+    high: np.ndarray  # largest tensions, shape (8,) [N]
+    nearest: np.ndarray  # tensions nearest to 4 N without limits, shape (8,) [N]
+    minimum_norm: np.ndarray  # tensions of minimum norm without limits, shape (8,) [N]
+    within: np.ndarray  # tensions nearest to 4 N within the limits, shape (8,) [N]
+    current: np.ndarray  # of the motors that give `within`, shape (8,) [A]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -29,19 +29,12 @@ from inca_mj.studies.worlds.integrate import PLAY_STEP, STEP, trajectory
 
 @dataclass(frozen=True)
 class HiddenPlant:
-    """The numbers of one robot; its arrays are read-only.
+    """The numbers of one robot; its arrays are read-only."""
 
-    Attributes:
-        q: packed numbers of the reference, at the true geometry, shape (147,).
-        D: numbers of the drives, shape (8, 49).
-        P: numbers of the platform, shape (3,).
-        start: first state, shape (60,).
-    """
-
-    q: np.ndarray
-    D: np.ndarray
-    P: np.ndarray
-    start: np.ndarray
+    q: np.ndarray  # packed numbers of the reference, at the true geometry, shape (147,)
+    D: np.ndarray  # numbers of the drives, shape (8, 49)
+    P: np.ndarray  # numbers of the platform, shape (3,)
+    start: np.ndarray  # first state, shape (60,)
 
     def __post_init__(self) -> None:
         for array in (self.q, self.D, self.P, self.start):

@@ -79,17 +79,11 @@ BETWEEN = 5  # simulated states a sample, where angles between samples are asked
 
 @dataclass(frozen=True)
 class Motion:
-    """The motion of the motors.
+    """The motion of the motors."""
 
-    Attributes:
-        time: of the samples, shape (n,) [s].
-        angles: at the samples, shape (n, k) [rad].
-        between: the angles at any time, at rest before the first sample.
-    """
-
-    time: np.ndarray
-    angles: np.ndarray
-    between: CubicHermiteSpline
+    time: np.ndarray  # of the samples, shape (n,) [s]
+    angles: np.ndarray  # at the samples, shape (n, k) [rad]
+    between: CubicHermiteSpline  # the angles at any time, at rest before the first sample
 
     def at(self, time: np.ndarray) -> np.ndarray:
         """Returns angles at any times, shape (m, k) [rad]."""

@@ -22,27 +22,16 @@ from inca_mj.studies.worlds.setting import HiddenSetting, elsewhere, make_curren
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class HiddenTruth:
-    """The answer to a world.
+    """The answer to a world."""
 
-    Attributes:
-        seed: of the world.
-        effects: what was on.
-        ratios: of each effect, where it was asked for by ratio.
-        parameters: every true value by name, start pose included.
-        noise_rms: of the measurement [rad].
-        error_rms: of the unlogged error of the currents [A].
-        angles: true angles at the samples, shape (n, 8) [rad].
-        error: the unlogged error of the currents, shape (n, 8) [A].
-    """
-
-    seed: int
-    effects: tuple[HiddenEffect, ...]
-    ratios: tuple[float, ...]
-    parameters: Mapping[str, float]
-    noise_rms: float
-    error_rms: float
-    angles: np.ndarray = field(repr=False)
-    error: np.ndarray = field(repr=False)
+    seed: int  # of the world
+    effects: tuple[HiddenEffect, ...]  # what was on
+    ratios: tuple[float, ...]  # of each effect, where it was asked for by ratio
+    parameters: Mapping[str, float]  # every true value by name, start pose included
+    noise_rms: float  # of the measurement [rad]
+    error_rms: float  # of the unlogged error of the currents [A]
+    angles: np.ndarray = field(repr=False)  # true angles at the samples, shape (n, 8) [rad]
+    error: np.ndarray = field(repr=False)  # the unlogged error of the currents, shape (n, 8) [A]
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "parameters", MappingProxyType(dict(self.parameters)))
