@@ -21,8 +21,8 @@ from identification.logs.cures import how_to_rename, how_to_turn
 from identification.logs.names import listed
 from identification.refusals.columns import Doubt, output_readings, turned
 from identification.refusals.readings import Reading, misread
+from inca_mj.refusals import bounds
 from inca_mj.refusals.agreement import assigned
-from inca_mj.refusals.bounds import BOUNDS
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ def other_angles(part: Log, predicted: np.ndarray) -> tuple[Reading, str] | None
     readings = chain(output_readings(doubt, False), _several(part, predicted))
     return misread(
         part, off(part, predicted), readings, lambda reading: off(reading.log, predicted),
-        lambda reading, left: bool((left <= BOUNDS.right).all()),
+        lambda reading, left: bool((left <= bounds.RIGHT).all()),
     )  # fmt: skip
 
 
@@ -67,7 +67,7 @@ def _several(part: Log, predicted: np.ndarray) -> Iterator[Reading]:
         outputs = part.outputs.copy()
         outputs[:, at] = turned(part.outputs, back)
         changed = np.intersect1d(every, [*at[moved], *at[back]])
-        wrong = [k for k in changed.tolist() if 1 - right[k] > BOUNDS.right]
+        wrong = [k for k in changed.tolist() if 1 - right[k] > bounds.RIGHT]
         if not wrong:  # all are right by a mirror
             continue
         new_names = {names[i]: names[at[i]] for i in moved}
@@ -133,7 +133,7 @@ def off(part: Log, predicted: np.ndarray) -> np.ndarray:
 
 def is_right(part: Log, predicted: np.ndarray) -> bool:
     """Returns whether every angle is as near to the twin's as one of a right log."""
-    return bool((off(part, predicted) <= BOUNDS.right).all())
+    return bool((off(part, predicted) <= bounds.RIGHT).all())
 
 
 def apart(part: Log, predicted: np.ndarray) -> float:
@@ -145,6 +145,6 @@ def apart(part: Log, predicted: np.ndarray) -> float:
     tiny, simulated = np.finfo(float).tiny, np.linalg.norm(predicted, axis=0)
     ratio = np.linalg.norm(y, axis=0) / np.maximum(simulated, tiny)
     usual = np.median(ratio)
-    y = y * np.where(ratio > BOUNDS.far * usual, usual / np.maximum(ratio, tiny), 1.0)
+    y = y * np.where(ratio > bounds.FAR * usual, usual / np.maximum(ratio, tiny), 1.0)
     sizes = np.linalg.norm(y) * np.linalg.norm(simulated)
     return float(1 - np.sum(y * predicted) / sizes) if sizes > 0 else np.inf

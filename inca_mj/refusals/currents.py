@@ -36,6 +36,7 @@ from identification import Log
 from identification.logs.units import UNITS
 from identification.refusals.readings import Reading
 from identification.shares import percent
+from inca_mj.refusals import bounds
 from inca_mj.refusals.agreement import (
     angles_under,
     assigned,
@@ -47,7 +48,6 @@ from inca_mj.refusals.agreement import (
     unreached_share,
 )
 from inca_mj.refusals.angles import Places, alike, apart, is_right, rewired
-from inca_mj.refusals.bounds import BOUNDS
 from inca_mj.robot.geometry import DRIVES
 from inca_mj.twin.twin import Twin
 
@@ -64,7 +64,7 @@ def other_currents(
         longer: the log a little longer, with all eight angles; None where not all of them move.
     """
     own = apart(part, predicted)
-    if own <= BOUNDS.astray:
+    if own <= bounds.ASTRAY:
         return None
     for Q in () if longer is None else _followed(plant, longer, predicted):
         found = _nearest(plant, part, own, [Q], False)
@@ -85,10 +85,10 @@ def renamed_drives(plant: Twin, part: Log, predicted: np.ndarray) -> tuple[Readi
     """
     own, y = apart(part, predicted), some(part.outputs)
     share = float(unreached_share(plant, y[None])[0])
-    orders = likely_orders(plant, y, BOUNDS.max_orders)
+    orders = likely_orders(plant, y, bounds.MAX_ORDERS)
     shares = unreached_share(plant, np.moveaxis(y[:, orders], 1, 0))
-    first = np.argsort(shares, kind="stable")[: BOUNDS.max_simulated]
-    close = [k for k in first.tolist() if shares[k] <= BOUNDS.closer * share]
+    first = np.argsort(shares, kind="stable")[: bounds.MAX_SIMULATED]
+    close = [k for k in first.tolist() if shares[k] <= bounds.CLOSER * share]
     if not close:
         return None
     places = [np.eye(DRIVES)[orders[k]] for k in close]
@@ -99,11 +99,11 @@ def renamed_drives(plant: Twin, part: Log, predicted: np.ndarray) -> tuple[Readi
             continue
         reading = rewired(part, Places(P, P))
         left = apart(reading.log, angles)
-        if left <= BOUNDS.nearer_renamed * own and is_right(reading.log, angles):
+        if left <= bounds.NEARER_RENAMED * own and is_right(reading.log, angles):
             found.append((left, int(np.sum(orders[k] != np.arange(DRIVES))), k, reading))
     if not found:
         return None
-    as_near = [each for each in found if each[0] <= BOUNDS.nearly * min(each[0] for each in found)]
+    as_near = [each for each in found if each[0] <= bounds.NEARLY * min(each[0] for each in found)]
     left, _, k, reading = min(as_near, key=lambda each: (each[1], each[0]))
     moved = [str(m + 1) for m in np.flatnonzero(orders[k] != np.arange(DRIVES))]
     others = f" (so they do in {len(as_near)} orders, since the robot is symmetric)"
@@ -141,16 +141,16 @@ def _nearest(
         if with_angles:
             likeness = alike(part, predicted).T
             P = signed(likeness, assigned(np.abs(likeness)))
-        if np.sum(np.diag(P) != 1) > BOUNDS.max_angles:
+        if np.sum(np.diag(P) != 1) > bounds.MAX_ANGLES:
             continue
         reading = rewired(part, Places(P, Q))
         left = apart(reading.log, predicted)
-        if left < BOUNDS.nearer * own and is_right(reading.log, predicted):
+        if left < bounds.NEARER * own and is_right(reading.log, predicted):
             found.append((left, reading))
     if not found:
         return None
     (least, best), *rest = sorted(found, key=lambda each: each[0])
-    as_near = [reading.said for left, reading in rest if left < BOUNDS.nearly * least]
+    as_near = [reading.said for left, reading in rest if left < bounds.NEARLY * least]
     mirror = f" (or, since the robot is symmetric, {' or '.join(as_near)})" if as_near else ""
     said = f"explains {_percent(own)} of the motion, and {_percent(least)} {best.said}{mirror}"
     return best, f"{said}; {best.cure}"

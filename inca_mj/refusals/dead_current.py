@@ -25,9 +25,9 @@ import numpy as np
 from identification import Log
 from identification.logs.cures import how_to_turn
 from identification.logs.names import listed
+from inca_mj.refusals import bounds
 from inca_mj.refusals.agreement import SETTLED, follow, shares_of, some
 from inca_mj.refusals.angles import apart, is_right, with_outputs
-from inca_mj.refusals.bounds import BOUNDS
 from inca_mj.refusals.currents import likely_units
 from inca_mj.refusals.scales import is_turned, mended_angle, odd_angle, odd_words
 from inca_mj.twin.twin import Twin
@@ -47,8 +47,8 @@ def dead_current(
         The sentence, and what it judges, words of `JUDGED`.
     """
     ranges = np.ptp(part.inputs, axis=0)
-    still = np.flatnonzero(ranges <= BOUNDS.constant * np.median(ranges)).tolist()
-    if not still or apart(part, predicted) <= BOUNDS.astray:
+    still = np.flatnonzero(ranges <= bounds.CONSTANT * np.median(ranges)).tolist()
+    if not still or apart(part, predicted) <= bounds.ASTRAY:
         return None
     for factor in likely_units(part, predicted):
         scaled = replace(part, outputs=factor * part.outputs)
@@ -56,7 +56,7 @@ def dead_current(
         for angle in (None,) if odd is None else (odd, None):
             mended = scaled if angle is None else mended_angle(scaled, *angle)
             own = apart(mended, predicted)
-            if own <= BOUNDS.astray:
+            if own <= bounds.ASTRAY:
                 continue
             for dead, signs in _likely(plant, mended, still):
                 currents = _missing(plant, mended, dead, signs, own)
@@ -78,7 +78,7 @@ def _missing(
         return None
     kept = ~np.isin(np.arange(log.outputs.shape[1]), dead)
     others, angles = with_outputs(log, kept), followed[1][:, kept]
-    if apart(others, angles) >= BOUNDS.nearer * own or not is_right(others, angles):
+    if apart(others, angles) >= bounds.NEARER * own or not is_right(others, angles):
         return None
     currents: np.ndarray = followed[0][SETTLED:, dead]
     return currents
@@ -86,7 +86,7 @@ def _missing(
 
 def _likely(plant: Twin, log: Log, still: list[int]) -> Iterator[tuple[list[int], np.ndarray]]:
     """Yields drives whose currents may be missing, with the signs of all currents, shape (8,)."""
-    groups = [*([k] for k in still), *([still] if 1 < len(still) <= BOUNDS.max_dead else [])]
+    groups = [*([k] for k in still), *([still] if 1 < len(still) <= bounds.MAX_DEAD else [])]
     right = np.ones(log.inputs.shape[1])
     yield from ((dead, right) for dead in groups)
     followed = follow(plant, log)

@@ -35,9 +35,9 @@ from identification.logs.cures import how_to_turn, toml_key, unit_lines
 from identification.logs.names import listed
 from identification.logs.units import UNITS
 from identification.refusals.same_units import NEAR
+from inca_mj.refusals import bounds
 from inca_mj.refusals.agreement import angles_under, follow, shares_of, some, unreached_share
 from inca_mj.refusals.angles import apart, is_right, off
-from inca_mj.refusals.bounds import BOUNDS
 from inca_mj.robot.geometry import DRIVES
 from inca_mj.twin.twin import Twin
 
@@ -61,9 +61,9 @@ def other_unit(
     """
     y = part.outputs - part.outputs[0]
     scales = np.abs((y * predicted).sum(0) / (predicted**2).sum(0))
-    scale, far = float(np.exp(np.mean(np.log(scales)))), np.flatnonzero(scales > BOUNDS.far)
-    of_all = not BOUNDS.little < scale < BOUNDS.far
-    is_alike = bool((off(part, predicted) <= BOUNDS.alike).all())
+    scale, far = float(np.exp(np.mean(np.log(scales)))), np.flatnonzero(scales > bounds.FAR)
+    of_all = not bounds.LITTLE < scale < bounds.FAR
+    is_alike = bool((off(part, predicted) <= bounds.ALIKE).all())
     if not len(far) and not (of_all and is_alike):
         return None
     if not is_alike and not wiring_is_right:
@@ -103,7 +103,7 @@ def scaled_angle(plant: Twin, part: Log, predicted: np.ndarray) -> str | None:
     moved = part.outputs - part.outputs[0]
     sizes = np.linalg.norm(moved, axis=0) / np.linalg.norm(predicted, axis=0)
     proportion = factor * sizes[k] / np.median(np.delete(sizes, k))
-    if not _is_near(proportion) or off(part, predicted)[k] > BOUNDS.right:
+    if not _is_near(proportion) or off(part, predicted)[k] > bounds.RIGHT:
         return None
     return odd_words(part, k, factor)
 
@@ -118,7 +118,7 @@ def scaled_current(plant: Twin, part: Log, longer: Log, predicted: np.ndarray) -
         predicted: the twin's angles under the logged currents, shape (n, 8) [rad].
     """
     own = apart(part, predicted)
-    if own <= BOUNDS.astray:
+    if own <= bounds.ASTRAY:
         return None
     tried = [each for log in (longer, part) if (each := _odd_current(plant, log)) is not None]
     if not tried:
@@ -129,7 +129,7 @@ def scaled_current(plant: Twin, part: Log, longer: Log, predicted: np.ndarray) -
     every = angles_under(plant, part, part.inputs * scales[:, None])
     left = [apart(part, angles) if np.isfinite(angles).all() else np.inf for angles in every]
     best = int(np.argmin(left))
-    if not (left[best] < BOUNDS.nearer * own and is_right(part, every[best])):
+    if not (left[best] < bounds.NEARER * own and is_right(part, every[best])):
         return None
     k, factor = tried[best]
     name = part.input_names[k]
@@ -159,7 +159,7 @@ def odd_angle(
     finer = tried[at] * FINER
     shares = _shares(plant, y, k, finer)
     factor, own = float(finer[shares.argmin()]), float(unreached_share(plant, y[None])[0])
-    return None if _is_near(factor) or shares.min() > BOUNDS.closer * own else (k, factor)
+    return None if _is_near(factor) or shares.min() > bounds.CLOSER * own else (k, factor)
 
 
 def mended_angle(log: Log, k: int, factor: float) -> Log:
@@ -191,7 +191,7 @@ def is_turned(factor: float) -> bool:
 
 
 def _is_near(factor: float) -> bool:
-    return 1 / BOUNDS.beyond < factor < BOUNDS.beyond
+    return 1 / bounds.BEYOND < factor < bounds.BEYOND
 
 
 def _odd_current(plant: Twin, log: Log) -> tuple[int, float] | None:

@@ -21,9 +21,9 @@ from identification.logs.names import listed
 from identification.logs.plausible import refuse_frozen
 from identification.refusals.readings import Reading
 from identification.refusals.trust import trusted
+from inca_mj.refusals import bounds
 from inca_mj.refusals.agreement import angles_under, some, unreached_share
 from inca_mj.refusals.angles import apart, other_angles, with_outputs
-from inca_mj.refusals.bounds import BOUNDS
 from inca_mj.refusals.currents import other_currents, renamed_drives
 from inca_mj.refusals.dead_current import dead_current
 from inca_mj.refusals.scales import other_unit, scaled_angle, scaled_current
@@ -92,10 +92,10 @@ def _other_wiring(
     if angles is not None and longer is not None and _tears(plant, part, angles[0].log):
         angles = None
     left = np.inf if angles is None else apart(angles[0].log, predicted)
-    if left <= BOUNDS.astray:
+    if left <= bounds.ASTRAY:
         return angles
     found = other_currents(plant, part, predicted, longer)
-    if found is None and longer is not None and apart(part, predicted) > BOUNDS.astray:
+    if found is None and longer is not None and apart(part, predicted) > bounds.ASTRAY:
         found = renamed_drives(plant, part, predicted)
     if found is None:
         return angles
@@ -106,7 +106,7 @@ def _other_wiring(
 def _tears(plant: Twin, part: Log, other: Log) -> bool:
     """Returns whether another reading's angles belong to no poses, while those as read do."""
     own, new = unreached_share(plant, np.stack([some(log.outputs) for log in (part, other)]))
-    return bool(new > BOUNDS.as_near * own)
+    return bool(new > bounds.AS_NEAR * own)
 
 
 def _moving(part: Log, predicted: np.ndarray) -> np.ndarray:

@@ -3,7 +3,7 @@
 Each alone was told before, and together they hid each other.
 """
 
-from dataclasses import fields, replace
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +12,6 @@ from advice import advised
 
 from identification import InputError, write_log
 from inca_mj.refusals.agreement import some
-from inca_mj.refusals.bounds import WiringBounds
 from inca_mj.refusals.scales import odd_angle
 from inca_mj.refusals.wiring import refuse_miswired
 from inca_mj.twin.logs import read_inca_log
@@ -79,12 +78,3 @@ def test_the_cables_tell_an_odd_angle_without_a_current(plant, factor):
     assert found is not None
     assert found[0] == drive
     assert found[1] * factor == pytest.approx(1.0, rel=0.1)
-
-
-@pytest.mark.parametrize("field", fields(WiringBounds), ids=lambda field: field.name)
-def test_every_bound_has_its_reason(field):
-    told = field.metadata
-    assert told["least"] <= field.default <= told["most"]
-    assert told["reason"].endswith(".")
-    assert told["unit"]
-    assert told["source"]
