@@ -22,9 +22,8 @@ from inca_mj.commands.kinematics import Kinematics
 from inca_mj.commands.linearize import Linearize
 from inca_mj.commands.simulate import Simulate
 from inca_mj.commands.statics import Statics
-from inca_mj.commands.thesis import Thesis
+from inca_mj.commands.thesis import Thesis, Trials
 from inca_mj.commands.track import Track
-from inca_mj.commands.trials import Trials
 
 
 @dataclass(frozen=True)

@@ -30,6 +30,7 @@ from identification.progress import stage
 PROFILE_LEVEL = chi2_level(0.05, 1)  # 3.84
 REACH_STDS = 3.0  # to each side, unless points are given
 MAX_REACH = 0.5  # of q to each side where the std is larger or infinite
+MAX_EVALUATIONS = 30  # simulations of the outputs for each point
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,16 +53,13 @@ class Profile:
         return bool(np.isinf(self.interval).any())
 
 
-def profile(
-    fit: Fit, name: str, points: int | Sequence[float] = 9, max_evaluations: int = 30
-) -> Profile:
+def profile(fit: Fit, name: str, points: int | Sequence[float] = 9) -> Profile:
     """Profiles one parameter of a fit: at each of its values the others are fitted again.
 
     Args:
         fit: an estimate and its uncertainty.
         name: the parameter.
         points: values of it, or how many to spread over ±3 std of its coordinate.
-        max_evaluations: largest number of simulations of the outputs for each point.
 
     Raises:
         InputError: the name is not among the estimated ones, or fewer than two values remain.
@@ -83,7 +81,7 @@ def profile(
             near = best
             for i in way:
                 try:
-                    near = _refit(estimate, name, float(values[i]), near, max_evaluations)
+                    near = _refit(estimate, name, float(values[i]), near)
                     found[i], rise[i] = near, (_cost(estimate, near) - bottom) / scale
                 except DivergenceError:
                     break
@@ -119,16 +117,16 @@ def _spread(fit: Fit, j: int, points: int) -> np.ndarray:
     return space.decode(moves[inside])[:, j]
 
 
-def _refit(
-    estimate: Estimate, name: str, value: float, near: dict[str, float], most: int
-) -> dict[str, float]:
+def _refit(estimate: Estimate, name: str, value: float, near: dict[str, float]) -> dict[str, float]:
     """Fits the other parameters again while one is held, from a neighbouring point."""
     predictor, options = estimate.predictor, estimate.options
     held = {**predictor.fixed, **near, name: value}
     free = tuple(n for n in near if n != name)
     if not free:
         return {name: value}
-    once = replace(options, horizons=(1.0,), criterion="trace", max_evaluations=most, priors={})
+    once = replace(
+        options, horizons=(1.0,), criterion="trace", max_evaluations=MAX_EVALUATIONS, priors={}
+    )
     found = search(
         predictor.plant, predictor.log, free, held, once, whitener=estimate.whitener
     ).values

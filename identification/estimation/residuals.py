@@ -34,16 +34,15 @@ class ResidualTests:
     independent: np.ndarray
 
 
-def residual_tests(residual: np.ndarray, inputs: np.ndarray, lags: int = LAGS) -> ResidualTests:
+def residual_tests(residual: np.ndarray, inputs: np.ndarray) -> ResidualTests:
     """Test a residual against its own past and against the inputs.
 
     Args:
         residual: y - ŷ, shape (n, ny), each column in a unit of its own.
         inputs: of the same samples, shape (n, nu), each column in a unit of its own.
-        lags: how many samples back.
     """
-    white = whiteness(residual, lags).p_values
-    return ResidualTests(white, _independence(residual, inputs, lags))
+    white = whiteness(residual).p_values
+    return ResidualTests(white, _independence(residual, inputs))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -135,19 +134,19 @@ def autocorrelation(x: np.ndarray, lags: int) -> np.ndarray:
     return np.stack([(x[k:] * x[: len(x) - k]).sum(axis=0) / power for k in range(lags + 1)])
 
 
-def correlation_time(residual: np.ndarray, lags: int = LAGS) -> float:
+def correlation_time(residual: np.ndarray) -> float:
     """Returns the integrated autocorrelation time of the most persistent column [samples].
 
     Summed up to the first lag that is not significantly positive (Geyer's initial sequence).
     """
-    r = autocorrelation(residual, min(lags, len(residual) - 1))[1:]
+    r = autocorrelation(residual, min(LAGS, len(residual) - 1))[1:]
     significant = np.cumprod(r > normal_level(0.01) / np.sqrt(len(residual)), axis=0)
     return float(1 + 2 * (r * significant).sum(axis=0).max())
 
 
-def _independence(residual: np.ndarray, inputs: np.ndarray, lags: int) -> np.ndarray:
+def _independence(residual: np.ndarray, inputs: np.ndarray) -> np.ndarray:
     n = len(residual)
-    lags = min(lags, n // 4)
+    lags = min(LAGS, n // 4)
     e, u = residual - residual.mean(axis=0), inputs - inputs.mean(axis=0)
     moving = u.std(axis=0) > 0
     if not moving.any():

@@ -36,6 +36,7 @@ from identification.pool import one_blas_thread
 from identification.progress import Progress
 
 MIN_SAMPLES = 50  # with fewer, the noise of the sensors cannot be told from that of the inputs
+STEPS = 30  # at most
 RIDGE_WEIGHT = 0.1  # 1/std of q: holds directions that have no effect on the outputs
 
 
@@ -69,10 +70,7 @@ def estimate_innovations(
     log: Log,
     names: Sequence[str],
     start: Mapping[str, float] | None = None,
-    priors: Mapping[str, float] | None = None,
     progress: Progress | None = None,
-    steps: int = 30,
-    options: KalmanOptions | None = None,
 ) -> InnovationsFit:
     """Estimate parameters by the innovations of a log's part `estimation`; confirm on the rest.
 
@@ -83,32 +81,26 @@ def estimate_innovations(
         log: what was measured.
         names: the free parameters.
         start: starting values by name; the plant's own where not given.
-        priors: std by name of q about the start (of ln(value) where q is a logarithm).
         progress: is told one line per accepted step.
-        steps: largest number of steps.
-        options: which noise is believed.
 
     Raises:
         InputError: a name is unknown or has no effect, or the log is too short.
         DivergenceError: the start cannot be simulated.
     """
     began = time.perf_counter()
-    weights = Options(priors=dict(priors or {}))
     part = log.part("estimation")
     if len(part) < MIN_SAMPLES:
         raise InputError(
             f"the log has {len(part)} samples to fit; innovations need at least {MIN_SAMPLES}"
         )
-    for name in weights.priors:
-        plant.parameters[name]
     predictor, space, first = free_parameters(plant, part, names, start or {})
-    known = Priors.of(space, space.encode(first), weights.priors)
-    held = replace(known, weight=np.maximum(known.weight, RIDGE_WEIGHT))
-    first_point = evaluate_point(predictor, space, known.mean)
+    mean = space.encode(first)
+    held = Priors(space, mean, np.full(len(mean), RIDGE_WEIGHT))
+    first_point = evaluate_point(predictor, space, mean)
     if without_effect(first_point.J, part.outputs).any():
         refuse_without_effect(first_point.J, space.names, part)
     seen = [(first_point, NoiseLevel(Noise(0.0, 1.0), 1.0, 0.0))]
-    points = descend(first_point, held, options or KalmanOptions(), steps=steps)
+    points = descend(first_point, held, KalmanOptions(), steps=STEPS)
     status = _search(points, seen, progress)
     taken = max(0, len(seen) - 2)
     end = conclude(*seen[-1], held, taken)
@@ -119,7 +111,7 @@ def estimate_innovations(
         q=end.point.q,
         whitener=np.diag(1 / end.level.of_outputs(part.outputs.shape[1])),
         weight=np.ones_like(part.outputs),
-        options=weights,
+        options=Options(),
         evaluations=taken + 1,
         jacobians=taken + 1,
         status=status,

@@ -90,7 +90,6 @@ def forward_sensitivity(
     space: Coordinates,
     q: np.ndarray,
     predicted: np.ndarray,
-    step: float = FORWARD_STEP,
 ) -> np.ndarray:
     """Returns ∂ŷ/∂q (samples, ny, p), from p simulations, where ŷ(q) is known already.
 
@@ -99,11 +98,10 @@ def forward_sensitivity(
         space: coordinates of the parameters.
         q: the point, shape (p,).
         predicted: ŷ(q), shape (samples, ny).
-        step: h, the step of q.
     """
-    values = space.decode(q + step * np.eye(len(q)))
+    values = space.decode(q + FORWARD_STEP * np.eye(len(q)))
     ahead = predictor.predict(values, len(predicted))
-    return np.moveaxis((ahead - predicted) / step, 0, -1)
+    return np.moveaxis((ahead - predicted) / FORWARD_STEP, 0, -1)
 
 
 def without_effect(J: np.ndarray, outputs: np.ndarray) -> np.ndarray:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 from identification.discovery.moves import Evidence
 from identification.discovery.nominal_model import NominalModel, without_starts
@@ -28,7 +28,6 @@ def discover_records(
     effects: Sequence[Effect],
     progress: Progress | None = None,
     options: DiscoveryOptions | None = None,
-    values: Mapping[str, Mapping[str, float]] | None = None,
 ) -> Discovery:
     """Name what a model lacks to explain records, judged by predictions over its horizon.
 
@@ -41,7 +40,6 @@ def discover_records(
         effects: the candidates.
         progress: is told a line per step.
         options: what is believed; the defaults of `DiscoveryOptions` when None.
-        values: by the name of a log, values of parameters that hold for it alone.
 
     Raises:
         InputError: there is no horizon, windows do not fit a log, or a name is unknown.
@@ -49,7 +47,7 @@ def discover_records(
     """
     if nominal_model.horizon is None:
         raise InputError(NO_HORIZON)
-    records = as_records(fit, confirm, values)
+    records = as_records(fit, confirm)
     task = RecordsTask(
         nominal_model=without_starts(nominal_model), records=records, effects=tuple(effects),
         options=options or DiscoveryOptions(),

@@ -190,7 +190,6 @@ def fit_records(
     fit: Sequence[Log],
     confirm: Sequence[Log] = (),
     progress: Progress | None = None,
-    values: Mapping[str, Mapping[str, float]] | None = None,
 ) -> RecordsFit:
     """Fit the free parameters of a model to records, over windows of its horizon.
 
@@ -200,7 +199,6 @@ def fit_records(
         confirm: logs that the fit may not see; where there is none, the first half of each log is
             fitted and the second half confirms.
         progress: is told one line per linearisation.
-        values: by the name of a log, values of parameters that hold for it alone.
 
     Raises:
         InputError: there is no horizon, windows do not fit a log, or a parameter has no effect.
@@ -210,7 +208,7 @@ def fit_records(
     if base.horizon is None:
         raise InputError(NO_HORIZON)
     clock = time.perf_counter()
-    records = as_records(fit, confirm, values)
+    records = as_records(fit, confirm)
     unseen = [r for r in records if r.role == "confirm"]
     found = fit_nominal(base, records, progress)
     model = attempt(None, partial(at_own_steps, found, base.horizon, unseen)) or found

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
+from itertools import chain, repeat
 
 from identification.errors import InputError
 from identification.logs.joined import Record as Record
@@ -11,11 +12,7 @@ from identification.logs.joined import Role, refuse_different
 from identification.logs.log import Log
 
 
-def as_records(
-    fit: Sequence[Log],
-    confirm: Sequence[Log] = (),
-    values: Mapping[str, Mapping[str, float]] | None = None,
-) -> tuple[Record, ...]:
+def as_records(fit: Sequence[Log], confirm: Sequence[Log] = ()) -> tuple[Record, ...]:
     """Returns records to fit and records to confirm.
 
     Where nothing confirms, the first half of each log is fitted (its part `estimation`) and the
@@ -24,8 +21,6 @@ def as_records(
     Args:
         fit: logs to fit.
         confirm: logs that no fit may see.
-        values: by the name of a log, values that hold for it alone, beside those that the log says
-            itself (`Log.values`).
 
     Raises:
         InputError: there is no log to fit, the columns differ, or a log is given twice, in whole
@@ -34,19 +29,18 @@ def as_records(
     if not fit:
         raise InputError("no log is to be fitted; give at least one")
     refuse_different([*fit, *confirm])
-    given = values or {}
-    every = [*fit, *confirm]
-    own = [{**log.values, **given.get(log.name, {})} for log in every]
-    named = list(zip(_distinct(every), own, strict=True))
+    named = _distinct([*fit, *confirm])
     if confirm:
-        return (
-            *(Record(log, "fit", v) for log, v in named[: len(fit)]),
-            *(Record(log, "confirm", v) for log, v in named[len(fit) :]),
-        )
-    return tuple(Record(log.part(part), role, v) for part, role in _HALVES for log, v in named)
+        roles = chain(repeat(_FIT, len(fit)), repeat(_CONFIRM))
+        return tuple(map(Record, named, roles, (log.values for log in named)))
+    return tuple(
+        Record(log.part(part), role, log.values) for part, role in _HALVES for log in named
+    )
 
 
-_HALVES: tuple[tuple[str, Role], ...] = (("estimation", "fit"), ("validation", "confirm"))
+_FIT: Role = "fit"
+_CONFIRM: Role = "confirm"
+_HALVES = (("estimation", _FIT), ("validation", _CONFIRM))
 
 
 def _distinct(logs: Sequence[Log]) -> list[Log]:

@@ -1,4 +1,4 @@
-"""inca thesis: the tables and figures of the thesis by their numbers, beside ours."""
+"""inca thesis|trials: the tables and figures of the thesis by their numbers, beside ours."""
 
 from __future__ import annotations
 
@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from identification.commands.common import Output, conclude, table
+from identification.commands.common import Output, conclude, draw_report, output_field, table
 from inca_mj.commands.common import do_not_draw
 
 if TYPE_CHECKING:
     from inca_mj.thesis.results import ThesisResults
+    from inca_mj.thesis.trials import TrialResult
 
 
 @dataclass(frozen=True)
@@ -62,14 +63,72 @@ class Thesis:
 
 def draw(found: ThesisResults, out: Path) -> None:
     """Write the report and its figures as PNG."""
-    from identification.report.page import save_figures, write_report
     from inca_mj.thesis.report import thesis_sections, thesis_verdict
 
-    sections = thesis_sections(found)
-    save_figures(sections, out)
-    write_report(
-        out / "report.html",
-        "Modelling and identification of the INCA robot: the thesis, number by number",
-        thesis_verdict(found),
-        sections,
+    title = "Modelling and identification of the INCA robot: the thesis, number by number"
+    draw_report(out, title, thesis_verdict(found), thesis_sections(found))
+
+
+@dataclass(frozen=True)
+class Trials:
+    """Run the thesis' four identification trials from its own starts.
+
+    Examples:
+        inca trials --trial 1 2
+        inca trials --trial 4 --monte-carlo 20 --out out/trials
+    """
+
+    trial: tuple[int, ...] = (1, 2, 3, 4)
+    """Which trials."""
+    seed: int = 0
+    """Seed of the noise of trial 4."""
+    monte_carlo: int = 0
+    """Repeat trial 4 with so many seeds: bias, std and coverage of the 95 %% intervals."""
+    single: bool = False
+    """One free-run fit over all data, as the thesis did, instead of a growing horizon."""
+    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
+
+    def run(self) -> int:
+        """Run, say, keep."""
+        do_not_draw()
+        from identification.errors import refuse_negative
+        from identification.estimation.estimation import Options
+        from inca_mj.thesis.trials import monte_carlo, trials
+
+        refuse_negative("--monte-carlo", self.monte_carlo)  # before trials that take minutes
+        options = Options(horizons=(1.0,)) if self.single else None
+        results = trials(self.trial, seed=self.seed, options=options, progress=self.output.tell)
+        record: dict[str, object] = {"trials": [r.to_json() for r in results]}
+        if self.monte_carlo:
+            record["monte_carlo"] = monte_carlo(self.monte_carlo, progress=self.output.tell)
+        text = "\n\n".join(summary(r) for r in results)
+        if self.monte_carlo:
+            text += f"\n{record['monte_carlo']}"
+        conclude(self, record, text)
+        return 0
+
+
+def summary(result: TrialResult) -> str:
+    """Returns a trial as the thesis' table with a column of ours."""
+    from identification.report.fit_verdict import fit_verdict
+
+    shown = result.to_json()
+    rows = [
+        (
+            name,
+            f"{p['true']:.6g}",
+            f"{p['initial']:.6g}",
+            f"{p['thesis']:.6g}",
+            f"{p['estimated']:.8g}",
+            "-" if p["fit_percent"] is None else f"{p['fit_percent']:.5f}",
+        )
+        for name, p in shown["parameters"].items()
+    ]
+    return (
+        f"trial {result.trial.number}: output fit {result.output_fit_percent.mean():.5f} %"
+        f" (thesis {result.trial.thesis_fit} %), loss {result.loss:.3g},"
+        f" {result.fit.estimate.seconds:.1f} s\n"
+        + table(("parameter", "true", "start", "thesis", "ours", "fit [%]"), rows)
+        + "\n"
+        + "\n".join(fit_verdict(result.fit))
     )

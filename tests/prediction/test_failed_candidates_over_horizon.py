@@ -35,7 +35,7 @@ def task():
     logs = records(3, {SIZE: TRUE}, samples=SAMPLES)
     return RecordsTask(
         nominal_model=nominal_model(),
-        records=as_records(logs[:1], logs[1:], None),
+        records=as_records(logs[:1], logs[1:]),
         effects=tuple(
             e for e in candidates(pendulum(), ("J", "d")) if e.name in (NAME, "offset")
         ),
