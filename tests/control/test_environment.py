@@ -1,3 +1,6 @@
+import runpy
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -16,6 +19,7 @@ from inca_mj.robot.parameters import parameter_set
 from inca_mj.twin.run import simulate
 from inca_mj.twin.twin import build_twin
 
+EXAMPLE = Path(__file__).parents[2] / "examples" / "hold_the_handle.py"
 POSE = ("x", "y", "z", "roll", "pitch", "yaw")
 
 
@@ -219,3 +223,10 @@ def test_refusals():
     for noise in (-1.0, np.nan):
         with pytest.raises(InputError, match="encoder noise"):
             load("hold", encoder_noise=noise)
+
+
+def test_the_example_brings_the_handle_to_its_target():
+    miss, reward = runpy.run_path(str(EXAMPLE))["hold"](seconds=3.0, seed=4, task="hold")
+    assert miss[-1] < 1e-3
+    assert reward[-1] > 0.99
+    assert np.max(miss) < 0.01

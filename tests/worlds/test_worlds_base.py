@@ -1,16 +1,13 @@
 """Without effects a world is the reference; an effect of size zero is no effect, to the bit."""
 
-import ast
 from dataclasses import replace
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 import pytest
 from worlds_cases import ALL, TRIAL, plant, prbs, rate
 from worlds_cases import simulate as simulate_world
 
-import inca_mj.studies.worlds
 from identification.errors import InputError
 from identification.model.predictor import Predictor
 from inca_mj.effects.catalogue import CATALOGUE
@@ -37,25 +34,6 @@ from inca_mj.studies.worlds.drive_effects import HiddenStribeckFriction
 from inca_mj.twin.twin import build_twin
 
 CLOSE = 1e-7  # the oracle is adaptive, at 1e-11 [rad]
-SHARED = {
-    *("inca_mj.robot.geometry", "inca_mj.robot.parameters", "inca_mj.robot.inputs"),
-    *("inca_mj.robot.spread", "inca_mj.reference", "inca_mj.studies.worlds"),
-}
-
-
-def test_the_worlds_share_no_physics_with_the_twin():
-    names = set()
-    for file in Path(inca_mj.studies.worlds.__file__).parent.glob("*.py"):
-        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
-            if isinstance(node, ast.Import):
-                names |= {alias.name for alias in node.names}
-            elif isinstance(node, ast.ImportFrom):
-                names.add(node.module)
-    assert not any(name.split(".")[0] == "mujoco" for name in names)
-    ours = {name for name in names if name.startswith("inca_mj")}
-    assert {
-        next((s for s in SHARED if f"{name}.".startswith(f"{s}.")), name) for name in ours
-    } == SHARED
 
 
 def test_the_rate_is_that_of_the_reference_without_effects():
