@@ -48,8 +48,8 @@ if TYPE_CHECKING:  # the public names, by what they are for
 
     # what a model may lack
     from identification.effects.effect import Effect as Effect
-    from identification.effects.effect import Size as Size
-    from identification.effects.effect import Shape as Shape
+    from identification.effects.sizes import Size as Size
+    from identification.effects.sizes import Shape as Shape
     from identification.effects.effect import Candidate as Candidate
     from identification.effects.axes import Axis as Axis
     from identification.effects.axes import axes as axes

@@ -26,12 +26,12 @@ def percent(share: float, digits: int = WHOLE) -> str:
     if not isfinite(share):
         return "unknown"
     least, most = (1.0, "99") if digits == WHOLE else (_LEAST, "99.9" if digits > HELD else "99")
-    said = f"{100 * share:z.0f}" if digits == WHOLE else decimal(100 * share, digits)
-    if share > 0 and (said == "0" or 100 * share < least / 2):
+    text = f"{100 * share:z.0f}" if digits == WHOLE else decimal(100 * share, digits)
+    if share > 0 and (text == "0" or 100 * share < least / 2):
         return f"less than {decimal(least, 1)} %"
-    if share < 1 and said == "100":
+    if share < 1 and text == "100":
         return f"more than {most} %"
-    return f"{said} %"
+    return f"{text} %"
 
 
 def ratio_of(ratio: float, whole: str) -> str:
@@ -82,5 +82,5 @@ def decimal(value: float, digits: int) -> str:
     if rounded == 0:
         return "0"
     places = min(max(0, digits - 1 - floor(log10(abs(rounded)))), _MOST)
-    said = f"{rounded:z.{places}f}"
-    return said.rstrip("0").rstrip(".") if "." in said else said
+    text = f"{rounded:z.{places}f}"
+    return text.rstrip("0").rstrip(".") if "." in text else text

@@ -11,7 +11,7 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 
 from identification.discovery.passes import PASSES, refuse_unknown
-from identification.effects.effect import FARTHEST
+from identification.effects.sizes import FARTHEST
 from identification.errors import InputError, unknown_name
 from identification.files import read_toml
 from identification.kalman.options import KalmanOptions, option

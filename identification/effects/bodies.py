@@ -26,8 +26,9 @@ import mujoco
 import numpy as np
 from numba import njit
 
-from identification.effects.effect import Effect, Size
+from identification.effects.effect import Effect
 from identification.effects.moving_bodies import Felt, MovingBody, movable, moving_bodies
+from identification.effects.sizes import Size
 from identification.effects.values import Values, is_present, table_at
 from identification.errors import InputError
 from identification.model.paths import Slot

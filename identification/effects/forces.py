@@ -29,8 +29,9 @@ from math import cos, sin
 
 from numba import njit
 
-from identification.effects.effect import Effect, Shape
+from identification.effects.effect import Effect
 from identification.effects.joint_group import Group, wave_sizes, waves
+from identification.effects.sizes import Shape
 from identification.quantities import per
 
 MOMENTS = 8  # times of a record at which a jump or a push is tried

@@ -33,8 +33,9 @@ from math import cos, exp, sin
 
 from numba import njit
 
-from identification.effects.effect import Effect, Shape
+from identification.effects.effect import Effect
 from identification.effects.joint_group import Group, wave_sizes, waves
+from identification.effects.sizes import Shape
 from identification.quantities import per
 
 SPEEDS = (0.03, 0.06, 0.12, 0.25, 0.5)  # Stribeck velocities to try, of the top speed

@@ -22,7 +22,8 @@ from math import exp, floor
 import numpy as np
 from numba import njit
 
-from identification.effects.effect import Effect, Shape, Size, places
+from identification.effects.effect import Effect, places
+from identification.effects.sizes import Shape, Size
 from identification.errors import InputError
 from identification.logs.log import Log
 from identification.native.input_filter import past, shifted

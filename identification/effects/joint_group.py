@@ -19,7 +19,8 @@ from math import pi
 from typing import Any
 
 from identification.effects.axes import Axis, Kind
-from identification.effects.effect import Effect, Shape, Sign, Size, places
+from identification.effects.effect import Effect, places
+from identification.effects.sizes import Shape, Sign, Size
 from identification.native.element import Function
 
 PROBE = 0.01  # of the largest plausible size

@@ -26,8 +26,9 @@ import mujoco
 from numba import njit
 
 from identification.effects.axes import Axis, Kind
-from identification.effects.effect import Effect, Shape, Sign, Size, places
+from identification.effects.effect import Effect, places
 from identification.effects.joint_group import prefix_of, with_kind
+from identification.effects.sizes import Shape, Sign, Size
 from identification.native.element import Function
 from identification.native.reading import lagged_position, position_at
 

@@ -19,8 +19,9 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from identification.effects.effect import Effect, Shape, Size
+from identification.effects.effect import Effect
 from identification.effects.joint_group import PROBE, Group
+from identification.effects.sizes import Shape, Size
 from identification.quantities import per
 
 # Largest plausible sizes, as shares of half the travel: under the drive's full force a gear gives

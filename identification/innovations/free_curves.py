@@ -18,7 +18,8 @@ import numpy as np
 from identification.discovery.missing_forces import list_actuated_joints
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.curves import NODES
-from identification.effects.effect import CURVE, Candidate, Effect, Size
+from identification.effects.effect import CURVE, Candidate, Effect
+from identification.effects.sizes import Size
 from identification.innovations.scoring.scores import score
 from identification.innovations.scoring.sensitivities import Sensitivity
 from identification.innovations.scoring.significance import correct_p_value

@@ -73,11 +73,11 @@ def match(channels: Sequence[Channel], found: Inspection) -> tuple[Match, ...]:
             out[channels[i]] = Match(channels[i], names[k], "guessed by the words of its name")
             free.remove(names[k])
     for kind in ((True, False), (False, False), (False, True)):
-        left = [c for c in channels if c not in out and (c.is_input, c.is_rate) == kind]
-        columns = [name for name in free if left and _may_be(left[0], name, found)]
-        if left and len(left) == len(columns):
-            for channel, name in zip(left, columns, strict=True):
-                how = "guessed by its order" if len(left) > 1 else "guessed: no other is left"
+        rest = [c for c in channels if c not in out and (c.is_input, c.is_rate) == kind]
+        columns = [name for name in free if rest and _may_be(rest[0], name, found)]
+        if rest and len(rest) == len(columns):
+            for channel, name in zip(rest, columns, strict=True):
+                how = "guessed by its order" if len(rest) > 1 else "guessed: no other is left"
                 out[channel] = Match(channel, name, how)
                 free.remove(name)
     return tuple(out.get(channel, Match(channel, "", "")) for channel in channels)

@@ -48,16 +48,16 @@ def answer_sentence(answer: Answer) -> str:
     """Returns which input a column answers, and what that makes of the input, in one sentence."""
     who = answer.output if answer.of == OF[0] else f"The {answer.of} of {answer.output}"
     against = " with the opposite sign" if answer.correlation < 0 else ""
-    said = (
+    text = (
         f"{who} answers {answer.input}{against} (correlation {answer.correlation:.2f},"
         f" {1e3 * answer.lag:.0f} ms later)"
     )
     if answer.is_setpoint:
-        return f"{said}, as it would answer the command of a position."
+        return f"{text}, as it would answer the command of a position."
     return (
-        f"{said}."
+        f"{text}."
         if answer.of == OF[0]
-        else f"{said}, as it would answer a torque, a force or a current."
+        else f"{text}, as it would answer a torque, a force or a current."
     )
 
 

@@ -135,12 +135,12 @@ def _odd(time: FloatArray) -> np.ndarray:
 def _with_step(table: Table, stamps: Stamps, step: float) -> tuple[Table, str]:
     data = table.data.copy()
     data[:, table.names.index("time")] = grid(stamps.time[0], step, len(data))
-    said = (
+    text = (
         f"Stamps of log {table.path.stem!r} are multiples of {stamps.tick:.6g} s; all its"
         f" rows were kept, and given the sampling time that fits them, {step:.6g} s"
         f" ({1 / step:.4g} Hz)."
     )
-    return replace(table, data=data), said
+    return replace(table, data=data), text
 
 
 def _roundest(low: float, high: float) -> float:

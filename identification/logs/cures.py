@@ -28,11 +28,11 @@ def how_to_turn(
     """
     is_known, factors, cures = factors is not None, factors or {}, []
     if given := [n for n in columns if n in factors]:
-        told = listed(f"{factors[n]:g} of {n}" for n in given)
-        cures.append(f"turn the sign of the factor {told} that the log's TOML gives")
+        text = listed(f"{factors[n]:g} of {n}" for n in given)
+        cures.append(f"turn the sign of the factor {text} that the log's TOML gives")
     if new := [n for n in columns if n not in factors]:
-        told = lines_of([f"{toml_key(name)} = -1" for name in new])
-        cures.append(f"write {told} under [factors] of the log's TOML")
+        text = lines_of([f"{toml_key(name)} = -1" for name in new])
+        cures.append(f"write {text} under [factors] of the log's TOML")
         if not is_known:
             its = f"{new[0]} already has a factor" if len(new) == 1 else "a factor already stands"
             cures.append(f"or, if {its} there, change the sign of that factor instead")
@@ -48,9 +48,9 @@ def how_to_rename(names: Mapping[str, str]) -> str:
 
     A file that already gives names there has other columns; so the names may also be changed there.
     """
-    told = lines_of([f"{toml_key(old)} = {json.dumps(new)}" for old, new in names.items()])
+    text = lines_of([f"{toml_key(old)} = {json.dumps(new)}" for old, new in names.items()])
     return (
-        f" under [columns] of the log's TOML: write {told}, or change the names there if it"
+        f" under [columns] of the log's TOML: write {text}, or change the names there if it"
         " already gives these columns some"
     )
 
@@ -62,8 +62,8 @@ def how_to_exchange(a: str, b: str) -> str:
 
 def unit_lines(units: Mapping[str, str]) -> str:
     """Says how to give the units of some columns of a log, by column or by group."""
-    told = lines_of([f"{toml_key(name)} = {json.dumps(word)}" for name, word in units.items()])
-    return f"write {told} under [units] of the log's TOML"
+    text = lines_of([f"{toml_key(name)} = {json.dumps(word)}" for name, word in units.items()])
+    return f"write {text} under [units] of the log's TOML"
 
 
 def toml_key(name: str) -> str:

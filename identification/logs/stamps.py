@@ -90,8 +90,8 @@ def with_time(table: Table, sidecar: Sidecar) -> tuple[Table, str]:
     keep = [k for k, name in enumerate(table.names) if name not in pair]
     names = (TIME, *(table.names[k] for k in keep))
     data = np.column_stack([time, table.data[:, keep]])
-    said = f"Time of log {table.path.stem!r} is {quoted(pair[0])} [s] + {quoted(pair[1])} [ns]."
-    return replace(table, names=names, data=data), "" if pair == APART else said
+    text = f"Time of log {table.path.stem!r} is {quoted(pair[0])} [s] + {quoted(pair[1])} [ns]."
+    return replace(table, names=names, data=data), "" if pair == APART else text
 
 
 def wanted_columns(asked: set[str], sidecar: Sidecar) -> Callable[[Sequence[str]], set[str]]:
@@ -127,11 +127,11 @@ def without_repeated(table: Table) -> tuple[Table, str]:
     if not same.any() or not equal[same].all():
         return table, ""
     keep = np.flatnonzero(np.append(True, ~same))
-    said = (
+    text = (
         f"{int(same.sum())} rows of log {table.path.stem!r} repeat the row before them to the last"
         " digit and were left out."
     )
-    return replace(table, data=table.data[keep], place=_place(table.place, keep)), said
+    return replace(table, data=table.data[keep], place=_place(table.place, keep)), text
 
 
 def moves_on(time: FloatArray, x: FloatArray) -> bool | None:

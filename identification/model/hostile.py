@@ -177,8 +177,8 @@ def _amount(raw: str | bytes, where: str, folder: Path | None, depth: int) -> Am
     except (ElementTree.ParseError, ValueError, RecursionError) as error:
         if isinstance(error, InputError):
             raise
-        said = "nested too deeply" if isinstance(error, RecursionError) else str(error)
-        raise InputError(f"{where} cannot be read ({said}); correct it there") from error
+        text = "nested too deeply" if isinstance(error, RecursionError) else str(error)
+        raise InputError(f"{where} cannot be read ({text}); correct it there") from error
     grids = [_product(" ".join(e.get(name, "1") for name in _GRIDS[e.tag]))
              for e in root.iter() if e.tag in _GRIDS]  # fmt: skip
     users = [(_product(number), name) for e in root.iter("size") for name, number in e.items()

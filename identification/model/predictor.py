@@ -130,13 +130,13 @@ class Predictor:
 
         Value sets that differ in values of other records only are simulated once.
         """
-        out, left = [], len(self.log) if samples is None else samples
+        out, rest = [], len(self.log) if samples is None else samples
         for predictor, columns in self.records():
-            here = min(left, len(predictor.log))
+            here = min(rest, len(predictor.log))
             if here > 0:
                 different, which = np.unique(values[:, columns], axis=0, return_inverse=True)
                 out.append(predictor.predict(different, here)[which.ravel()])
-            left -= here
+            rest -= here
         return np.concatenate(out, axis=1)
 
     def outputs(

@@ -26,7 +26,8 @@ from identification.discovery.attempts import tell_lost
 from identification.discovery.candidates import list_common, list_single
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.passes import uses
-from identification.effects.effect import Candidate, Effect, Size, in_each_record
+from identification.effects.effect import Candidate, Effect, in_each_record
+from identification.effects.sizes import Size
 from identification.prediction.contenders import is_plausible, is_significant, refit_level
 from identification.prediction.first_fit import picks, thinned, thinned_moves, thinned_tangents
 from identification.prediction.model import WindowModel

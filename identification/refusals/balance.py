@@ -93,8 +93,8 @@ def unbalanced_share(
     b = (force / size).ravel()
     flat = flat[:, used] / norm[used]
     x = solve_bounded(flat, b, low[used] * norm[used], high[used] * norm[used])
-    left = (b - flat @ x).reshape(force.shape)
-    eta = np.mean(left**2, axis=0)
+    rest = (b - flat @ x).reshape(force.shape)
+    eta = np.mean(rest**2, axis=0)
     joint = [i if field == "qvel" else int(model.jnt_dofadr[model.jnt_qposadr == i][0])
              for field, i in columns]  # fmt: skip
     return np.asarray(eta[joint])

@@ -68,12 +68,12 @@ class Balance:
 
     def decides(self, reading: Reading) -> str | None:
         """Says how much less of the forces is unexplained by a reading; None where not far less."""
-        left = None if self.own is None else self._of(reading)
-        if self.own is None or left is None or (left > UNEXPLAINED).any():
+        rest = None if self.own is None else self._of(reading)
+        if self.own is None or rest is None or (rest > UNEXPLAINED).any():
             return None
-        if left.sum() > NEARER * self.own.sum():
+        if rest.sum() > NEARER * self.own.sum():
             return None
-        times = held(float(self.own.sum() / max(left.sum(), np.finfo(float).tiny)))
+        times = held(float(self.own.sum() / max(rest.sum(), np.finfo(float).tiny)))
         return (
             f"leaves {times} times as much of the drives' forces unexplained as it would"
             f" {reading.said}, whatever payload, gravity and friction it has; {reading.cure}"
@@ -107,19 +107,19 @@ def rescaled(
     both = turned_units(doubt) if signs else ()
     found: list[tuple[Reading, np.ndarray]] = []
     for reading in chain(factor_readings(doubt), unit_readings(doubt, alone=alone), both):
-        left = unbalanced_share(model, reading.log, FREEDOM)
-        if left is not None and left.max() <= EXPLAINED and left.sum() <= NEARER * own.sum():
-            found.append((reading, left))
+        rest = unbalanced_share(model, reading.log, FREEDOM)
+        if rest is not None and rest.max() <= EXPLAINED and rest.sum() <= NEARER * own.sum():
+            found.append((reading, rest))
     if not found:
         return None
-    least = min(left.sum() for _, left in found)
-    near = [(r, left) for r, left in found if NEARER * left.sum() <= least]
+    least = min(rest.sum() for _, rest in found)
+    near = [(r, rest) for r, rest in found if NEARER * rest.sum() <= least]
     # Rounded, so that of two readings that are the same the first one counts.
-    reading, left = min(near, key=lambda each: round(_change(each[0].log, log), DIGITS))
+    reading, rest = min(near, key=lambda each: round(_change(each[0].log, log), DIGITS))
     times = held(float(np.sqrt(own.max())))
     return reading, (
         f"needs forces {times} times those of the drives for this motion, whatever"
-        f" payload and friction it has, and explains {percent(1 - float(left.max()))} of them"
+        f" payload and friction it has, and explains {percent(1 - float(rest.max()))} of them"
         f" {reading.said}; {reading.cure} (where the outputs are right, the inputs are in a larger"
         " unit: write that of the inputs)"
     )
@@ -136,11 +136,11 @@ def _least_share(model: mujoco.MjModel, log: Log) -> np.ndarray | None:
     """Returns η of each output (ny,), of the ψ that leaves least; None where it cannot be had."""
     best: np.ndarray | None = None
     for wider in WIDER:
-        left = unbalanced_share(model, log, replace(FREEDOM, wider=wider))
-        if left is None:
+        rest = unbalanced_share(model, log, replace(FREEDOM, wider=wider))
+        if rest is None:
             return best
-        if best is None or left.max() < best.max():
-            best = left
+        if best is None or rest.max() < best.max():
+            best = rest
         if best.max() <= NEEDED:
             return best
     return best

@@ -113,8 +113,8 @@ def unit_readings(
         )
         units = {doubt.column[names[k]]: words[k] for k in changed}
         felt = changed if changed[-1] < ny else doubt.wrong
-        said = f"were it in {' and '.join(dict.fromkeys(units.values()))}"
-        yield Reading(other, felt, said, unit_lines(units), ("units",))
+        text = f"were it in {' and '.join(dict.fromkeys(units.values()))}"
+        yield Reading(other, felt, text, unit_lines(units), ("units",))
 
 
 def output_readings(doubt: Doubt, mirrored: bool = True) -> Iterator[Reading]:

@@ -60,12 +60,12 @@ class Judge:
 
     def if_far_better(self, reading: Reading) -> np.ndarray | None:
         """Returns ε of a reading; None as soon as a part of the windows is not far better."""
-        left = None
+        rest = None
         for part in PARTS:
-            left = self.left(reading.log, part=part)
-            if left is None or self.own is None or not is_far_better(reading, left, self.own):
+            rest = self.left(reading.log, part=part)
+            if rest is None or self.own is None or not is_far_better(reading, rest, self.own):
                 return None
-        return left
+        return rest
 
     def promising(self, readings: Iterable[Reading]) -> Iterator[Reading]:
         """Yields the readings that a few windows do not speak against."""
@@ -74,10 +74,10 @@ class Judge:
             return
         own = unexplained(self.plant, self.length, self.log, FEW_WINDOWS)
         for reading in readings:
-            left, k = self.left(reading.log, FEW_WINDOWS), list(reading.columns)
-            if own is None or left is None:
+            rest, k = self.left(reading.log, FEW_WINDOWS), list(reading.columns)
+            if own is None or rest is None:
                 continue
-            if (left[k] < np.minimum(EXPLAINED, NEARER * MARGIN * own[k])).all():
+            if (rest[k] < np.minimum(EXPLAINED, NEARER * MARGIN * own[k])).all():
                 yield reading
 
 

@@ -82,16 +82,16 @@ def is_contradicted(robot: Robot, logs: Sequence[Log], touches: Sequence[Touch])
     if not touches:
         return False
     geoms = sorted({g for touch in touches for g in touch.geoms})
-    left, left_without = 0.0, 0.0
+    rest, left_without = 0.0, 0.0
     for log in logs:
         plant, length = robot.plant_of(log), lengths_of(robot, log)[0]
         model = copy.copy(plant.bare.model)
         model.geom_contype[geoms] = 0
         model.geom_conaffinity[geoms] = 0
         without = replace(plant, bare=replace(plant.bare, model=model))
-        left += _left(plant, length, log)
+        rest += _left(plant, length, log)
         left_without += _left(without, length, log)
-    return left_without < NEARER * left
+    return left_without < NEARER * rest
 
 
 @quiet()
@@ -121,8 +121,8 @@ def _contacts(plant: JointPlant, log: Log) -> list[dict[tuple[int, int], tuple[s
 
 def _left(plant: JointPlant, length: float, log: Log) -> float:
     """Returns what a model leaves unexplained of a log; all where it cannot be simulated."""
-    left = unexplained(plant, length, log)
-    return np.inf if left is None else float(left.sum())
+    rest = unexplained(plant, length, log)
+    return np.inf if rest is None else float(rest.sum())
 
 
 def refuse_touching(robot: Robot, logs: Sequence[Log], touches: Sequence[Touch]) -> None:

@@ -35,8 +35,8 @@ def all_inputs_turned(doubt: Doubt, model: mujoco.MjModel, file: RobotFile) -> I
     if not doubt.log.inputs.any():
         return
     other = replace(doubt.log, inputs=turned(doubt.log.inputs, range(nu)))
-    said = "with the other sign of all inputs" if nu > 1 else "with the other sign of the input"
-    yield Reading(other, doubt.wrong, said, _cure(doubt, model, file))
+    text = "with the other sign of all inputs" if nu > 1 else "with the other sign of the input"
+    yield Reading(other, doubt.wrong, text, _cure(doubt, model, file))
 
 
 def with_turned_ranges(model: mujoco.MjModel, log: Log, other: Log) -> mujoco.MjModel:

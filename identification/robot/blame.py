@@ -105,11 +105,11 @@ def _without_factors(robot: Robot) -> Iterator[tuple[Robot, str]]:
     log, column = robot.log, robot.file.columns
     given = {n: f for n, f in log.factors.items() if abs(f) >= LARGE and n in log.columns}
     for names in [*([n] for n in given), *([[*given]] if len(given) > 1 else [])]:
-        told = " and ".join(f"{given[n]:g} of {column.get(n, n)}" for n in names)
+        text = " and ".join(f"{given[n]:g} of {column.get(n, n)}" for n in names)
         largest = max(float(np.abs(log.columns[n]).max()) for n in names)
         yield (
             _started(replace(robot, log=_divided(log, {n: given[n] for n in names}))),
-            f"log {log.name!r}: its TOML gives the factor {told} under [factors], which makes"
+            f"log {log.name!r}: its TOML gives the factor {text} under [factors], which makes"
             f" numbers up to {largest:.3g}; with these the model cannot be simulated well, and with"
             " the numbers of the log itself it can: correct the factor",
         )

@@ -77,8 +77,8 @@ def _values_section(found: RobotFit) -> Section:
     for name, value in found.values.items():
         unit, first = units[name.partition(" [")[0]], found.start[name]
         bound = ", on its bound" if found.at_bound[name] else ""
-        told = quantity(value, found.std[name], unit, like=first)
-        rows.append((name, quantity(first, unit=unit, like=value), f"{told}{bound}"))
+        words = quantity(value, found.std[name], unit, like=first)
+        rows.append((name, quantity(first, unit=unit, like=value), f"{words}{bound}"))
     text = "A value has the digits of its std. A value on its bound has no std."
     return Section("The parameters", text, table=Table(("parameter", "begun", "fitted"), (*rows,)))
 

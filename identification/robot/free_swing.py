@@ -83,16 +83,16 @@ def inertias_sentence(file: RobotFile) -> str:
 
 def carried_sentence(robot: Robot) -> str:
     """Returns a sentence on inertias that go along with a free one; empty where there are none."""
-    said = []
+    lines = []
     for p in robot.plant.parameters:
         body, inertia, _ = p.where.partition(".inertia[")
         if inertia and p.ties and p.name in robot.file.free:
             others = listed(path for path, _ in p.ties)
-            said.append(
+            lines.append(
                 f"Of {body} the motion feels the inertia {p.name} alone; {others}, which nothing"
                 " feels, go along with it in proportion, so that it stays a body."
             )
-    return " ".join(said)
+    return " ".join(lines)
 
 
 def impossible_sentence(robot: Robot, values: Mapping[str, float]) -> str:

@@ -107,14 +107,14 @@ def start_sentence(file: RobotFile, model: mujoco.MjModel, log: Log) -> str | No
     moved = [(p, b) for p, b in moved_begin(file, model, log).items() if p not in free]
     if not moved:
         return None
-    reset, said = own_start(model), []
+    reset, lines = own_start(model), []
     for (field, i), begin in moved[:LISTED]:
         of, unit = _what(field, begin, log)
         pair = alike([begin.value, float(getattr(reset, field)[i])], unit)
-        said.append(f"{of} at {pair[0]} instead of {pair[1]}")
+        lines.append(f"{of} at {pair[0]} instead of {pair[1]}")
     more = _more(moved)
     return (
-        f"Simulations of log {log.name!r} begin where it does, {', '.join(said)}{more}; write"
+        f"Simulations of log {log.name!r} begin where it does, {', '.join(lines)}{more}; write"
         f' trust = ["start"] into {file.path} to begin where {file.model.name} does.'
     )
 

@@ -156,16 +156,16 @@ def error_line(error: BaseException, reference: str) -> str:
     itself what is wrong, and has no line.
     """
     try:
-        said = " ".join(str(error).split())
+        text = " ".join(str(error).split())
     except Exception:  # an error of a user may fail even at this
-        said = "without a message"
+        text = "without a message"
     name = type(error).__name__
     calls = traceback.extract_tb(error.__traceback__)
     if isinstance(error, SyntaxError | InputError) or not calls:  # their messages say where
-        return f"{name}: {said}"
+        return f"{name}: {text}"
     file = reference.rpartition(":")[0]
     last = next((c for c in reversed(calls) if c.filename == file), calls[-1])
-    return f"{name}: {said} ({Path(last.filename).name}, line {last.lineno})"
+    return f"{name}: {text} ({Path(last.filename).name}, line {last.lineno})"
 
 
 def load_method(reference: str) -> Method:

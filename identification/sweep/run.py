@@ -121,6 +121,6 @@ class _Clock:
         if now - self.said < EVERY and self.ended < self.total:
             return ""
         self.said = now
-        left = (now - self.begun) / self.ended * (self.total - self.ended)
+        rest = (now - self.begun) / self.ended * (self.total - self.ended)
         errors = f", {self.failed} with an error" if self.failed else ""
-        return f"{self.ended} of {self.total} tasks{errors}, {duration(left)} left"
+        return f"{self.ended} of {self.total} tasks{errors}, {duration(rest)} left"

@@ -144,17 +144,17 @@ def step_of(
     """Returns the damped step of the parameters, within bounds, and of the windows' states."""
     H, g = np.diag(problem.prior.weight**2), problem.prior.weight * problem.prior.against(q)
     each = [t.eliminated(damping) for t in tangents]
-    for t, (against, left, share) in zip(tangents, each, strict=True):
+    for t, (against, rest, share) in zip(tangents, each, strict=True):
         H = H + np.einsum("wmp,wmq->pq", t.S, t.S)
         H = H - np.einsum("wkp,wk,wkq->pq", against, share, against)
-        g = g + np.einsum("wmp,wm->p", t.S, t.r) - np.einsum("wkp,wk,wk->p", against, share, left)
+        g = g + np.einsum("wmp,wm->p", t.S, t.r) - np.einsum("wkp,wk,wk->p", against, share, rest)
     size = np.sqrt(np.maximum(np.diag(H), 0.0))
     size = np.where(size > 0, size, 1.0)
     scaled = H / np.outer(size, size) + damping * np.eye(len(g))
     dq = _within(scaled, g / size, problem.prior.space, q, size)
     moves = (
-        t.states_step(dq, damping, against, left)
-        for t, (against, left, _) in zip(tangents, each, strict=True)
+        t.states_step(dq, damping, against, rest)
+        for t, (against, rest, _) in zip(tangents, each, strict=True)
     )
     return dq, tuple(moves)
 

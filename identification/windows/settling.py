@@ -110,9 +110,9 @@ def sought_from_others(
         finite = np.isfinite(first).all(axis=1)
         at, first = at[finite], first[finite]
         if at.size:
-            other, left = search(states_at(windows.rows(at), begun[at], first))
-            better = ~(np.sum(left**2, axis=1) >= np.sum(r[at] ** 2, axis=1))
-            d[at[better]], r[at[better]] = other[better], left[better]
+            other, rest = search(states_at(windows.rows(at), begun[at], first))
+            better = ~(np.sum(rest**2, axis=1) >= np.sum(r[at] ** 2, axis=1))
+            d[at[better]], r[at[better]] = other[better], rest[better]
         out |= _by_record(records, windows, d, r)
     return tuple(out[k] for k in range(len(held.parts)))
 

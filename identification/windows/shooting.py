@@ -199,8 +199,8 @@ class Tangent:
     def eliminated(self, damping: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Returns UᵀS (W, nx, p), Uᵀr (W, nx) and s²/(s² + μ) (W, nx), which eliminate states."""
         against = np.swapaxes(self.U, 1, 2) @ self.S
-        left = np.einsum("wmk,wm->wk", self.U, self.r)
-        return against, left, self.s**2 / (self.s**2 + damping)
+        rest = np.einsum("wmk,wm->wk", self.U, self.r)
+        return against, rest, self.s**2 / (self.s**2 + damping)
 
     def states_step(
         self, dq: np.ndarray, damping: float, against: np.ndarray, left: np.ndarray
@@ -211,16 +211,16 @@ class Tangent:
 
     def step(self, damping: float) -> tuple[np.ndarray, np.ndarray]:
         """Returns the damped step: Δq (p,) and Δd (W, nx)."""
-        against, left, share = self.eliminated(damping)
+        against, rest, share = self.eliminated(damping)
         H = np.einsum("wmp,wmq->pq", self.S, self.S)
         g = np.einsum("wmp,wm->p", self.S, self.r)
         H_q = H - np.einsum("wkp,wk,wkq->pq", against, share, against)
-        g_q = g - np.einsum("wkp,wk,wk->p", against, share, left)
+        g_q = g - np.einsum("wkp,wk,wk->p", against, share, rest)
         size = np.sqrt(np.diag(H))
         size = np.where(size > 0, size, 1.0)  # one that a search drove to nothing stays there
         scaled = H_q / np.outer(size, size) + damping * np.eye(len(g))
         dq = np.linalg.lstsq(scaled, g_q / size, rcond=None)[0] / size
-        return dq, self.states_step(dq, damping, against, left)
+        return dq, self.states_step(dq, damping, against, rest)
 
 
 def decomposed(r: np.ndarray, X: np.ndarray, S: np.ndarray) -> Tangent:

@@ -79,9 +79,9 @@ def search_again(held: HeldWindows, d: np.ndarray, r: np.ndarray) -> tuple[np.nd
     if not np.isfinite(first).all():  # elsewhere it diverges: the states found stand
         return d, r
     found = search(states_at(part, begun, first))
-    for other, left in zip(*(np.split(x, len(RESTART_SHARES)) for x in found), strict=True):
-        better = np.sum(left**2, axis=1) < np.sum(r[far] ** 2, axis=1)
-        d[far[better]], r[far[better]] = other[better], left[better]
+    for other, rest in zip(*(np.split(x, len(RESTART_SHARES)) for x in found), strict=True):
+        better = np.sum(rest**2, axis=1) < np.sum(r[far] ** 2, axis=1)
+        d[far[better]], r[far[better]] = other[better], rest[better]
     return d, r
 
 

@@ -199,13 +199,13 @@ class FilmProgress:
             more = f"; {self.hint}" if self.hint else ""
             self.tell(f"film: {frames} frames, {frames / self.fps:.3g} s of film{more}")
             return
-        left = (now - self._began) / (done - self._first) * (frames - done)
+        rest = (now - self._began) / (done - self._first) * (frames - done)
         if done == frames:
             return
         if not self._is_promised:
             if done - self._first >= FIRST or now - self._began >= SOON:
                 self._last_line, self._is_promised = now, True
-                self.tell(f"film: {frames} frames, about {duration(left)} to draw")
+                self.tell(f"film: {frames} frames, about {duration(rest)} to draw")
         elif self.lines and now - self._last_line >= EVERY:
             self._last_line = now
-            self.tell(f"film: {done} of {frames} frames, {duration(left)} left")
+            self.tell(f"film: {done} of {frames} frames, {duration(rest)} left")

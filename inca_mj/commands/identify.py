@@ -79,15 +79,15 @@ class Identify:
             f"step {k} of {len(result.fits)}\n{summary(result, fit)}\n"
             for k, fit in enumerate(result.fits, 1)
         ]
-        said = [*steps, *map(profile_sentence, profiles)]
+        lines = [*steps, *map(profile_sentence, profiles)]
         if len(result.fits) > 1:
-            said.append(f"step {result.best + 1} predicts unseen data best.")
+            lines.append(f"step {result.best + 1} predicts unseen data best.")
         if result.stopped:  # whoever stopped it does not wait for a model and figures
-            conclude(self, best, "\n".join(said))
+            conclude(self, best, "\n".join(lines))
             return STOPPED
         shown = cache(partial(compared, result, self.robot))
         conclude(
-            self, best, "\n".join(said),
+            self, best, "\n".join(lines),
             keep=lambda out: shown().run.twin.save(out / "model.xml"),
             draw=lambda out: draw(result, profiles, shown(), out),
         )  # fmt: skip

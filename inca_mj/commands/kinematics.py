@@ -87,11 +87,11 @@ class Kinematics:
         if self.noise is not None or self.std:
             raise InputError("--noise and --std are for a log; a pose has no noise: leave them out")
         place = displaced(self.robot.place(), self.robot.parameters().values())
-        there = inverse(pose, place, Pulleys(self.pulley) if self.pulley else None)
-        said = cables_verdict(there, place)
-        text = "\n".join([table(*cables_rows(there)), jacobian_text(there), *said])
-        draw = partial(draw_pose, pose, there, place, said)
-        conclude(self, cables_json(pose, there), text, draw=draw)
+        cables = inverse(pose, place, Pulleys(self.pulley) if self.pulley else None)
+        lines = cables_verdict(cables, place)
+        text = "\n".join([table(*cables_rows(cables)), jacobian_text(cables), *lines])
+        draw = partial(draw_pose, pose, cables, place, lines)
+        conclude(self, cables_json(pose, cables), text, draw=draw)
 
     def _along(self) -> None:
         from inca_mj.report.poses import poses_json, poses_verdict, write_poses

@@ -64,17 +64,17 @@ class Linearize:
 
         models, labels, rate = self._models()
         record: dict[str, Any] = {"models": [model_to_json(m, rate) for m in models]}
-        said = []
+        lines = []
         for model, label in zip(models, labels, strict=True):
-            said += [*model_sentences(model, label), table(HANDLE_HEAD, handle_rows(model))]
+            lines += [*model_sentences(model, label), table(HANDLE_HEAD, handle_rows(model))]
         grid = None
         if self.grid:
             grid, errors, runs = self._grid(models[0], rate)
             record["grid"] = grid_to_json(grid, errors, runs)
-            said += grid_sentences(errors, runs)
+            lines += grid_sentences(errors, runs)
         keep_all = partial(keep, models, rate, grid)
-        draw_all = partial(draw, models, labels, rate, said)
-        conclude(self, record, "\n".join(said), keep_all, draw_all)
+        draw_all = partial(draw, models, labels, rate, lines)
+        conclude(self, record, "\n".join(lines), keep_all, draw_all)
         return 0
 
     def _refuse_unclear(self) -> None:

@@ -122,12 +122,12 @@ class Simulate:
         return robot if self.force is None else inca.with_force(robot, self.force, self.force_at)
 
     def _notes(self) -> str:
-        said = f"input {self.input}, seed {self.seed}"
+        text = f"input {self.input}, seed {self.seed}"
         if self.figure is not None:
-            said = f"Figure {self.figure} of the thesis: {said}, parameter set {self.robot.set}"
+            text = f"Figure {self.figure} of the thesis: {text}, parameter set {self.robot.set}"
         if self.force is not None:
-            said += f", force {self.force} N at {self.force_at} m"
-        return said
+            text += f", force {self.force} N at {self.force_at} m"
+        return text
 
     def _currents(self) -> tuple[np.ndarray, float, str]:
         from inca_mj.robot.inputs import INPUTS, make_input, sampling_time_of

@@ -34,7 +34,8 @@ from math import atan2, cos, sin, sqrt, tanh
 
 from numba import njit
 
-from identification.effects.effect import Effect, Shape, Size
+from identification.effects.effect import Effect
+from identification.effects.sizes import Shape, Size
 from inca_mj.effects.hooks import CABLES, DRIVES_EACH, ONE_DRIVE
 from inca_mj.robot.parameters import GRAVITY
 

@@ -28,7 +28,8 @@ from typing import Any
 
 from numba import njit
 
-from identification.effects.effect import Effect, Onset, Shape, Size
+from identification.effects.effect import Effect
+from identification.effects.sizes import Onset, Shape, Size
 from inca_mj.effects.hooks import DRIVES_EACH, ONE_DRIVE
 from inca_mj.robot.geometry import DRIVES
 from inca_mj.robot.spread import AXES

@@ -34,10 +34,11 @@ from math import cos, exp, sin, tanh
 from numba import njit
 
 from identification.effects import sensors
-from identification.effects.effect import Effect, Shape, Size
+from identification.effects.effect import Effect
 from identification.effects.inputs import BEFORE
 from identification.effects.inputs import DELAY as DELAYED
 from identification.effects.inputs import LAG as LAGGED
+from identification.effects.sizes import Shape, Size
 from inca_mj.effects.change import LASTS, TIMES
 from inca_mj.effects.hooks import DRIVES_EACH, ONE_DRIVE
 

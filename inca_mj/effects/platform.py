@@ -10,7 +10,8 @@ from math import sqrt
 
 from numba import njit
 
-from identification.effects.effect import Effect, Shape, Size
+from identification.effects.effect import Effect
+from identification.effects.sizes import Shape, Size
 from inca_mj.effects.hooks import ON_PLATFORM
 
 

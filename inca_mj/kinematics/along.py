@@ -225,9 +225,9 @@ def _estimated(
         weights = weights_of(σ, robot, encoder)
         now = balance(robot, measured, weights, no_load, begin)
         begin = now.position, now.R, now.tension
-        square, left = now.residual**2, now.redundancy
+        square, remaining = now.residual**2, now.redundancy
         d, T, F = (
-            float(np.sqrt(square[:, group].sum() / left[:, group].sum()))
+            float(np.sqrt(square[:, group].sum() / remaining[:, group].sum()))
             for group in (LENGTHS, DRUMS, PLATFORM)
         )
         rms = float(np.sqrt(np.mean(weights.length**2)))

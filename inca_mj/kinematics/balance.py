@@ -161,15 +161,15 @@ def statements(
 ) -> tuple[Array, Array]:
     """Returns residuals (N, 22) and their derivatives by twist and T (N, 22, 14), see `balance`."""
     position, R, T = at
-    there = cables_at(position, R, robot.geometry)
-    L, stretch = jacobian(there), 1 + T / robot.lambda_
+    cables = cables_at(position, R, robot.geometry)
+    L, stretch = jacobian(cables), 1 + T / robot.lambda_
     d_0, slope = no_load(robot, T)
     σ_T = np.where(taut, weights.tension, SLACK)
     σ_w, eye = weights.platform, np.eye(8)
     WT = -(T[:, None] @ L)[:, 0]
     r = np.concatenate(
         [
-            taut * (there.lengths - d_0 * stretch) / weights.length,
+            taut * (cables.lengths - d_0 * stretch) / weights.length,
             (T - taut * drum_tension(robot, measured)) / σ_T,
             (WT - robot.weight) / σ_w,
         ],
@@ -180,7 +180,7 @@ def statements(
     by_T = taut * -(d_0 / robot.lambda_ + slope * stretch) / weights.length
     J[:, LENGTHS, 6:] = by_T[..., None] * eye
     J[:, DRUMS, 6:] = eye / σ_T[..., None]
-    stiffness = [-(T[:, None] @ jacobian_rate(there, twist))[:, 0] for twist in np.eye(6)]
+    stiffness = [-(T[:, None] @ jacobian_rate(cables, twist))[:, 0] for twist in np.eye(6)]
     J[:, PLATFORM, :6] = np.stack(stiffness, -1) / σ_w[:, None]
     J[:, PLATFORM, 6:] = -np.swapaxes(L, 1, 2) / σ_w[:, None]
     return r, J

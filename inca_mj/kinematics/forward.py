@@ -85,8 +85,8 @@ def pose_from_lengths(
     lengths, start, σ = _checked(lengths, start, std)
     begin = start[:3], rotation(*start[3:])
     position, R, last = find(lengths, geometry, begin, σ, pulleys, tolerance)
-    there = cables_at(position, R, geometry, pulleys)
-    residual = there.lengths - lengths
+    cables = cables_at(position, R, geometry, pulleys)
+    residual = cables.lengths - lengths
     worst = int(np.abs(residual).argmax())
     if last >= tolerance or abs(residual[worst]) > reach:
         raise InputError(
@@ -97,10 +97,10 @@ def pose_from_lengths(
     pose = np.concatenate([position, euler_of(R)])
     return ForwardPose(
         pose=pose,
-        covariance=_covariance(there, pose, σ),
+        covariance=_covariance(cables, pose, σ),
         residual=residual,
-        rank=rank(there),
-        condition=condition(there),
+        rank=rank(cables),
+        condition=condition(cables),
     )
 
 
@@ -135,16 +135,16 @@ def _search(
 ) -> tuple[Array, Array, float]:
     """Takes Gauss-Newton steps, halved where the error grows; moves the first `free` of a twist."""
     position, R = begin
-    there = cables_at(position, R, geometry, pulleys)
-    error, last = (lengths - there.lengths) / σ, np.inf
+    cables = cables_at(position, R, geometry, pulleys)
+    error, last = (lengths - cables.lengths) / σ, np.inf
     for _ in range(STEPS):
         step = np.zeros(6)
-        L = jacobian(there)[:, :free] / σ[:, None]
+        L = jacobian(cables)[:, :free] / σ[:, None]
         step[:free] = np.linalg.lstsq(L, error, rcond=1e-12)[0]
         for _ in range(HALVINGS):
             moved, turned = position + step[:3], turn(step[3:]) @ R
-            there = cables_at(moved, turned, geometry, pulleys)
-            new = (lengths - there.lengths) / σ
+            cables = cables_at(moved, turned, geometry, pulleys)
+            new = (lengths - cables.lengths) / σ
             last = float(np.abs(step).max())
             if new @ new <= error @ error or last < tolerance:
                 break

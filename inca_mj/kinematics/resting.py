@@ -113,8 +113,8 @@ def _weighted(
     for _ in range(ROUNDS):
         weights = rest_weights(robot, encoder, max(length, floor))
         found = balance(robot, measured, weights, no_load, begin)
-        r, left = found.residual[:, LENGTHS], found.redundancy[:, LENGTHS]
-        scale = float(np.sqrt((r**2).sum() / left.sum()))
+        r, remaining = found.residual[:, LENGTHS], found.redundancy[:, LENGTHS]
+        scale = float(np.sqrt((r**2).sum() / remaining.sum()))
         length = scale * float(np.sqrt(np.mean(weights.length**2)))
         if abs(scale - 1) < STILL or length < floor:
             break

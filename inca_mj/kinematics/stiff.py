@@ -67,12 +67,12 @@ def _settle(
     """
     rows = np.arange(len(lengths))
     at, turned = positions.copy(), rotations.copy()
-    there = cables_at(at, turned, geometry)
-    error = lengths - there.lengths
+    cables = cables_at(at, turned, geometry)
+    error = lengths - cables.lengths
     good = np.abs(error).max(axis=1, initial=0.0) <= FAR
     lost = [*rows[~good].tolist()]
     rows, error = rows[good], error[good]
-    L = jacobian(there)[good]
+    L = jacobian(cables)[good]
     for _ in range(TURNS):
         if not len(rows):
             break
@@ -80,14 +80,14 @@ def _settle(
         last = np.abs(step).max(axis=1)
         at[rows] += step[:, :3]
         turned[rows] = turn(step[:, 3:]) @ turned[rows]
-        there = cables_at(at[rows], turned[rows], geometry)
-        new = lengths[rows] - there.lengths
+        cables = cables_at(at[rows], turned[rows], geometry)
+        new = lengths[rows] - cables.lengths
         lower = (last < FINE) | (np.sum(new**2, axis=1) <= np.sum(error**2, axis=1))
         lost += rows[~lower].tolist()
         ended = lower & (last < FINE)
         positions[rows[ended]], rotations[rows[ended]] = at[rows[ended]], turned[rows[ended]]
         on = lower & ~ended
-        rows, error, L = rows[on], new[on], jacobian(there)[on]
+        rows, error, L = rows[on], new[on], jacobian(cables)[on]
     return sorted([*lost, *rows.tolist()])
 
 

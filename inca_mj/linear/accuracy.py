@@ -161,8 +161,8 @@ def run_error(
 
 
 def _pose(robot: Twin, point: dict[str, float]) -> Sequence[float]:
-    own = robot.parameters.values()
-    return [point.get(name, own[name]) for name in POSE]
+    values = robot.parameters.values()
+    return [point.get(name, values[name]) for name in POSE]
 
 
 def _eigenvalue_error(own: LinearSystem, other: LinearSystem) -> float:

@@ -98,8 +98,8 @@ def linearize(
         DivergenceError: the accelerations are not finite.
     """
     robot = robot or build_twin()
-    own = robot.parameters.values()
-    at = [own[name] for name in POSE] if pose is None else pose
+    values = robot.parameters.values()
+    at = [values[name] for name in POSE] if pose is None else pose
     return _models(robot, held_at(robot, [at]), outputs)[0]
 
 
@@ -163,9 +163,9 @@ def linearize_grid(
         raise InputError(
             f"the grid has {size} points, more than {LARGEST_GRID}; give fewer, and method cubic"
         )
-    own = robot.parameters.values()
+    numbers = robot.parameters.values()
     poses = [
-        [dict(zip(axes, point, strict=True)).get(name, own[name]) for name in POSE]
+        [dict(zip(axes, point, strict=True)).get(name, numbers[name]) for name in POSE]
         for point in product(*axes.values())
     ]
     models = _models(robot, held_at(robot, poses), outputs)

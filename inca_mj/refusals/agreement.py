@@ -151,18 +151,18 @@ def unreached_share(plant: Twin, angles: np.ndarray) -> np.ndarray:
     shape = angles.shape[:2]
     p = np.broadcast_to(start[:3], (*shape, 3))
     R = np.broadcast_to(rotation(*start[3:]), (*shape, 3, 3))
-    there = cables_at(p, R, plant.geometry)
-    goal = there.lengths + wanted
+    cables = cables_at(p, R, plant.geometry)
+    goal = cables.lengths + wanted
     with np.errstate(all="ignore"):
         for _ in range(STEPS):
-            J = jacobian(there)
+            J = jacobian(cables)
             JT = np.swapaxes(J, -1, -2)
-            left = (goal - there.lengths)[..., None]
-            step = np.linalg.solve(JT @ J + SMALL * np.eye(6), JT @ left)[..., 0]
+            rest = (goal - cables.lengths)[..., None]
+            step = np.linalg.solve(JT @ J + SMALL * np.eye(6), JT @ rest)[..., 0]
             step /= np.maximum(1.0, np.linalg.norm(step, axis=-1, keepdims=True))
             p, R = p + step[..., :3], turn(step[..., 3:]) @ R
-            there = cables_at(p, R, plant.geometry)
-        share = np.sum((goal - there.lengths) ** 2, axis=(1, 2)) / np.sum(wanted**2, axis=(1, 2))
+            cables = cables_at(p, R, plant.geometry)
+        share = np.sum((goal - cables.lengths) ** 2, axis=(1, 2)) / np.sum(wanted**2, axis=(1, 2))
     return np.where(np.isfinite(share), share, np.inf)
 
 
@@ -176,12 +176,12 @@ def likely_orders(plant: Twin, angles: np.ndarray, most: int) -> np.ndarray:
     L = jacobian(cables_at(start[:3], rotation(*start[3:]), plant.geometry))
     no_pose = np.linalg.svd(L)[0][:, L.shape[1] :]  # what no motion of the platform does
     orders, squares = np.array([*permutations(range(DRIVES))]), angles.T @ angles
-    left = np.zeros(len(orders))
+    rest = np.zeros(len(orders))
     weight = no_pose @ no_pose.T
     for i in range(DRIVES):
         for j in range(DRIVES):
-            left += weight[i, j] * squares[orders[:, i], orders[:, j]]
-    return orders[np.argsort(left, kind="stable")[:most]]
+            rest += weight[i, j] * squares[orders[:, i], orders[:, j]]
+    return orders[np.argsort(rest, kind="stable")[:most]]
 
 
 def some(angles: np.ndarray) -> np.ndarray:

@@ -71,11 +71,11 @@ def _several(part: Log, predicted: np.ndarray) -> Iterator[Reading]:
         if not wrong:  # all are right by a mirror
             continue
         new_names = {names[i]: names[at[i]] for i in moved}
-        said, cure = "were they exchanged", f"rename {_pairs(new_names)}{how_to_rename(new_names)}"
+        text, cure = "were they exchanged", f"rename {_pairs(new_names)}{how_to_rename(new_names)}"
         if back:
-            said += " and turned"
+            text += " and turned"
             cure += f", and {how_to_turn([names[at[i]] for i in back], renamed=True)}"
-        yield Reading(replace(part, outputs=outputs), wrong, said, cure)
+        yield Reading(replace(part, outputs=outputs), wrong, text, cure)
 
 
 def rewired(part: Log, places: Places) -> Reading:
@@ -103,10 +103,10 @@ def _cure(renamed: dict[str, str], back: Sequence[str], factors: Mapping[str, fl
         return how_to_turn(back, factors)
     turn = f", and {how_to_turn(back, renamed=True)}" if back else ""
     pairs = [(old, new) for old, new in renamed.items() if renamed[new] == old and old < new]
-    told = f"rename {_pairs(renamed)}"
+    text = f"rename {_pairs(renamed)}"
     if 2 * len(pairs) == len(renamed):
-        told = f"exchange {', and '.join(f'{a} and {b}' for a, b in pairs)}"
-    return f"{told}{how_to_rename(renamed)}{turn}"
+        text = f"exchange {', and '.join(f'{a} and {b}' for a, b in pairs)}"
+    return f"{text}{how_to_rename(renamed)}{turn}"
 
 
 def _pairs(renamed: Mapping[str, str]) -> str:

@@ -98,17 +98,17 @@ def renamed_drives(plant: Twin, part: Log, predicted: np.ndarray) -> tuple[Readi
         if not np.isfinite(angles).all():
             continue
         reading = rewired(part, Places(P, P))
-        left = apart(reading.log, angles)
-        if left <= bounds.NEARER_RENAMED * own and is_right(reading.log, angles):
-            found.append((left, int(np.sum(orders[k] != np.arange(DRIVES))), k, reading))
+        rest = apart(reading.log, angles)
+        if rest <= bounds.NEARER_RENAMED * own and is_right(reading.log, angles):
+            found.append((rest, int(np.sum(orders[k] != np.arange(DRIVES))), k, reading))
     if not found:
         return None
     as_near = [each for each in found if each[0] <= bounds.NEARLY * min(each[0] for each in found)]
-    left, _, k, reading = min(as_near, key=lambda each: (each[1], each[0]))
+    rest, _, k, reading = min(as_near, key=lambda each: (each[1], each[0]))
     moved = [str(m + 1) for m in np.flatnonzero(orders[k] != np.arange(DRIVES))]
     others = f" (so they do in {len(as_near)} orders, since the robot is symmetric)"
     return reading, (
-        f"explains {_percent(own)} of the motion, and {_percent(left)} were the drives"
+        f"explains {_percent(own)} of the motion, and {_percent(rest)} were the drives"
         f" {', '.join(moved)} numbered in another order, in which the angles also fit the cables of"
         f" one platform {share / shares[k]:.0f} times as well"
         f"{others if len(as_near) > 1 else ''}; {reading.cure}"
@@ -144,16 +144,16 @@ def _nearest(
         if np.sum(np.diag(P) != 1) > bounds.MAX_ANGLES:
             continue
         reading = rewired(part, Places(P, Q))
-        left = apart(reading.log, predicted)
-        if left < bounds.NEARER * own and is_right(reading.log, predicted):
-            found.append((left, reading))
+        remaining = apart(reading.log, predicted)
+        if remaining < bounds.NEARER * own and is_right(reading.log, predicted):
+            found.append((remaining, reading))
     if not found:
         return None
     (least, best), *rest = sorted(found, key=lambda each: each[0])
-    as_near = [reading.said for left, reading in rest if left < bounds.NEARLY * least]
+    as_near = [reading.said for remaining, reading in rest if remaining < bounds.NEARLY * least]
     mirror = f" (or, since the robot is symmetric, {' or '.join(as_near)})" if as_near else ""
-    said = f"explains {_percent(own)} of the motion, and {_percent(least)} {best.said}{mirror}"
-    return best, f"{said}; {best.cure}"
+    text = f"explains {_percent(own)} of the motion, and {_percent(least)} {best.said}{mirror}"
+    return best, f"{text}; {best.cure}"
 
 
 def _percent(γ: float) -> str:

@@ -127,9 +127,9 @@ def scaled_current(plant: Twin, part: Log, longer: Log, predicted: np.ndarray) -
     for n, (k, factor) in enumerate(tried):
         scales[n, k] = factor
     every = angles_under(plant, part, part.inputs * scales[:, None])
-    left = [apart(part, angles) if np.isfinite(angles).all() else np.inf for angles in every]
-    best = int(np.argmin(left))
-    if not (left[best] < bounds.NEARER * own and is_right(part, every[best])):
+    rest = [apart(part, angles) if np.isfinite(angles).all() else np.inf for angles in every]
+    best = int(np.argmin(rest))
+    if not (rest[best] < bounds.NEARER * own and is_right(part, every[best])):
         return None
     k, factor = tried[best]
     name = part.input_names[k]

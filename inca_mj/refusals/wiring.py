@@ -91,8 +91,8 @@ def _other_wiring(
     angles = other_angles(part, predicted)
     if angles is not None and longer is not None and _tears(plant, part, angles[0].log):
         angles = None
-    left = np.inf if angles is None else apart(angles[0].log, predicted)
-    if left <= bounds.ASTRAY:
+    rest = np.inf if angles is None else apart(angles[0].log, predicted)
+    if rest <= bounds.ASTRAY:
         return angles
     found = other_currents(plant, part, predicted, longer)
     if found is None and longer is not None and apart(part, predicted) > bounds.ASTRAY:
@@ -100,7 +100,7 @@ def _other_wiring(
     if found is None:
         return angles
     under = angles_under(plant, part, found[0].log.inputs[None])[0]
-    return found if apart(found[0].log, under) < left else angles
+    return found if apart(found[0].log, under) < rest else angles
 
 
 def _tears(plant: Twin, part: Log, other: Log) -> bool:

@@ -120,8 +120,8 @@ class Lettering:
         if magnify is not None:  # beside the clock's card where there is room, else under it
             beside = width >= 26 * em
             at = (left + int(12.5 * em), top) if beside else (left, top + high)
-            said = f"trace, error × {magnify:g}"
-            paths = [Entry("asked path", (ASKED,), 0.08), Entry(said, (TRACE,), 0.14)]
+            text = f"trace, error × {magnify:g}"
+            paths = [Entry("asked path", (ASKED,), 0.08), Entry(text, (TRACE,), 0.14)]
             self._card(pen, *at, int(12.5 * em), int(4.8 * em))
             self._legend(pen, paths, at[0] + em, at[1] + int(1.05 * em))
             self._readout = (at[0] + em, at[1] + int(3.25 * em))
@@ -171,13 +171,13 @@ class Lettering:
     def _caption(self, pen: ImageDraw.ImageDraw, left: int, top: int, room: int,
                  times: float) -> None:  # fmt: skip
         """Writes what the close view shows and by how much it enlarges, in as many words as fit."""
-        said, font = ["handle"], self._font(0.8)
+        lines, font = ["handle"], self._font(0.8)
         if times != 1:
-            said = [f"handle; blue: difference drawn {times:g} times", f"difference × {times:g}"]
-        each = [int(pen.textlength(text, font)) + self._em for text in said]
-        fits = next((k for k, wide in enumerate(each) if wide < room), len(said) - 1)
+            lines = [f"handle; blue: difference drawn {times:g} times", f"difference × {times:g}"]
+        each = [int(pen.textlength(text, font)) + self._em for text in lines]
+        fits = next((k for k, wide in enumerate(each) if wide < room), len(lines) - 1)
         self._card(pen, left, top, each[fits], 2 * self._em)
-        pen.text((left + 2 * self._em // 3, top + self._em), said[fits], INK, font, anchor="lm")
+        pen.text((left + 2 * self._em // 3, top + self._em), lines[fits], INK, font, anchor="lm")
 
     def _font(self, ems: float) -> ImageFont.FreeTypeFont:
         # matplotlib brings this font, so that every machine writes alike.

@@ -31,29 +31,29 @@ def calibration_verdict(found: Calibration) -> list[str]:
         for when in ("before", "after")
     )
     was, now = alike([before, after], "rad")
-    said = [
+    lines = [
         f"Calibrated from {records}, {length:.0f} s in all. Free runs over unseen samples are off"
         f" by {now} rms; with all drives alike and all points as drawn it was {was}."
     ]
     if after >= before:
-        said.append(
+        lines.append(
             "The calibration predicts no better than drives that are alike and points as drawn: do"
             " not use it. Record longer, or with inputs that move the platform farther."
         )
     usual = {**found.spread.drives, **found.spread.points}
     same = [_kind(found, g) for g, s in found.scatter.items() if s < ALIKE * usual[g]]
     if same:
-        said.append(f"All parts are alike in: {', '.join(same)}.")
+        lines.append(f"All parts are alike in: {', '.join(same)}.")
     unknown = untold(found)
     if unknown:
-        said.append(
+        lines.append(
             "The records do not tell the single deviations of: "
             + ", ".join(_kind(found, g) for g in unknown)
             + ". What is said of them is the common value, with the scatter of all parts as std."
         )
     far = unusual(found)
     if far:
-        said.append(
+        lines.append(
             f"Far from what is usual: {'; '.join(_far(found, *one) for one in far[:MOST])}"
             + (f"; and {len(far) - MOST} more" if len(far) > MOST else "")
             + ". So large a difference is a fault of this part or of a sensor, or it stands for an"
@@ -61,21 +61,21 @@ def calibration_verdict(found: Calibration) -> list[str]:
         )
     if "exit" in found.spread.points:
         own, together = point_std(found, "exit")
-        said.append(
+        lines.append(
             f"Exit points are known to {1e3 * own:.2g} mm rms relative to one another, and to"
             f" {1e3 * together:.2g} mm rms in the frame: no angle of a motor tells where the frame"
             " as a whole stands."
         )
-    return said
+    return lines
 
 
 def untold(found: Calibration) -> tuple[str, ...]:
     """Returns groups of which the records do not tell the single deviations."""
     out = []
     for group, names in found.spread.groups.items():
-        left = np.mean([found.std[name] ** 2 for name in names]) / found.scatter[group] ** 2
+        rest = np.mean([found.std[name] ** 2 for name in names]) / found.scatter[group] ** 2
         usual = {**found.spread.drives, **found.spread.points}[group]
-        if left > TOLD**2 and found.scatter[group] >= ALIKE * usual:
+        if rest > TOLD**2 and found.scatter[group] >= ALIKE * usual:
             out.append(group)
     return tuple(out)
 

@@ -68,13 +68,13 @@ def identification_verdict(result: Identification) -> list[str]:
         return innovations_verdict(result.innovations)
     if result.windows is not None:
         return windows_verdict(result.windows, result.fit)
-    said = fit_verdict(result.fit)
+    lines = fit_verdict(result.fit)
     if held := held_sentence(result.fit):
-        said.append(held)
+        lines.append(held)
     if result.starts:
         unit = result.fit.estimate.predictor.log.output_unit
-        said.append(starts_sentence(result.starts[result.best], unit))
-    return said
+        lines.append(starts_sentence(result.starts[result.best], unit))
+    return lines
 
 
 def rows(result: Identification, fit: Fit) -> list[Row]:
@@ -98,53 +98,53 @@ def rows(result: Identification, fit: Fit) -> list[Row]:
 def windows_verdict(found: WindowEstimate, fit: Fit) -> list[str]:
     """Returns what the windows found, and how well their parameters predict a free run."""
     floor, unit = float(np.sqrt(np.mean(fit.floor**2))), fit.estimate.predictor.log.output_unit
-    said = window_sentences(found, floor, unit)
+    lines = window_sentences(found, floor, unit)
     unseen = ""
     if fit.validation_rms is not None:
         unseen = f" and {error(fit.validation_rms, unit)} on unseen data"
-    said.append(
+    lines.append(
         f"A free run with them, its start pose fitted, leaves {error(fit.rms, unit)} rms{unseen};"
         " there small errors of parameters, and all that disturbs the robot, add up."
     )
-    return said
+    return lines
 
 
 def innovations_verdict(found: InnovationsFit) -> list[str]:
     """Returns the verdict of an estimate by innovations: first on the noise, then on the fit."""
     fit, noise = found.fit, found.level
-    said = [*search_sentences(fit)]
+    lines = [*search_sentences(fit)]
     if fit.estimate.status == "stopped":  # it says nothing of the model
-        return said
-    said += identifiable_sentences(fit)
+        return lines
+    lines += identifiable_sentences(fit)
     log = fit.estimate.predictor.log
     unit, sensors = log.output_unit, error(noise.sigma, log.output_unit)
     if noise.noise.ratio:
         inputs = error(noise.input_std, log.units.get(log.input_names[0], ""))
-        said.append(
+        lines.append(
             f"The inputs err by {inputs} rms beside what the log says, for"
             f" {noise.noise.time:g} s at a time; the sensors' noise is {sensors}."
         )
     else:
-        said.append(f"The inputs are as the log says; the sensors' noise is {sensors}.")
+        lines.append(f"The inputs are as the log says; the sensors' noise is {sensors}.")
     if found.validation_rms is not None:
         ratio = found.validation_rms / found.rms
         held = "the model holds there too" if ratio < HOLDS else "the model does not hold there"
-        said.append(
+        lines.append(
             f"One step ahead it errs by {error(found.rms, unit)} rms,"
             f" by {error(found.validation_rms, unit)} on unseen data: {held}."
         )
         unseen = nan if fit.validation_rms is None else fit.validation_rms
-        said.append(
+        lines.append(
             f"A free run errs by {error(fit.rms, unit)}, by {error(unseen, unit)} on unseen data;"
             " there all that disturbs the robot adds up."
         )
-    said.append(
+    lines.append(
         "The innovations are white: the model suffices."
         if not coloured_outputs(fit)
         else f"The innovations of {coloured_outputs(fit)} outputs are coloured: the model lacks"
         " something; `inca discover` looks for it."
     )
-    return said
+    return lines
 
 
 def held_sentence(fit: Fit) -> str:
@@ -173,8 +173,8 @@ def starts_sentence(errors: np.ndarray, unit: str) -> str:
 def profile_sentence(known: Profile) -> str:
     """Returns the 95 % interval of a profile in words."""
     low, high = known.interval
-    said = f"{known.name}: {known.estimate:.6g}, 95 % interval [{low:.6g}, {high:.6g}]"
-    return said + ("; open: the log does not bound it here" if known.open else "")
+    text = f"{known.name}: {known.estimate:.6g}, 95 % interval [{low:.6g}, {high:.6g}]"
+    return text + ("; open: the log does not bound it here" if known.open else "")
 
 
 def _profile(known: Profile) -> dict[str, Any]:
@@ -188,10 +188,10 @@ def _profile(known: Profile) -> dict[str, Any]:
 
 def fit_section(result: Identification, fit: Fit, title: str) -> Section:
     """Returns the section on parameters with uncertainty, and the fit's verdict."""
-    said = identification_verdict(result) if fit is result.fit else fit_verdict(fit)
+    lines = identification_verdict(result) if fit is result.fit else fit_verdict(fit)
     return Section(
         title,
-        "\n\n".join(said),
+        "\n\n".join(lines),
         table=Table(
             ("parameter", "value", "std", "unit", "start", "note"),
             tuple(

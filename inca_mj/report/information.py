@@ -22,19 +22,19 @@ def information_verdict(found: Information) -> list[str]:
     """Returns sentences on what can be determined and what cannot."""
     kept, held = determinable(found)
     if held:
-        said = [*lost_sentences(found), f"Hold {' and '.join(held)} fixed."]
+        lines = [*lost_sentences(found), f"Hold {' and '.join(held)} fixed."]
         if not kept:
-            return said
+            return lines
         found = found.about(kept)
     else:
-        said = [f"All {found.asked} parameters can be told apart."]
+        lines = [f"All {found.asked} parameters can be told apart."]
     std = found.std
     worst = int(std.argmax())
-    said.append(
+    lines.append(
         f"{found.names[worst]} is known worst, to {_amount(found, worst)};"
         f" {found.ranking[0]} best, to {_amount(found, int(std.argmin()))}."
     )
-    said.append(
+    lines.append(
         f"The worst direction is ({found.found.weakest()}); the condition number is"
         f" {found.condition:.3g}."
     )
@@ -42,22 +42,22 @@ def information_verdict(found: Information) -> list[str]:
     if weak := [
         n for n, s, r in zip(found.names, std, logarithmic, strict=False) if r and s > WEAK
     ]:
-        said.append(f"Too weakly for this noise: {', '.join(weak)}; excite them more, or longer.")
-    return said
+        lines.append(f"Too weakly for this noise: {', '.join(weak)}; excite them more, or longer.")
+    return lines
 
 
 def lost_sentences(found: Information) -> list[str]:
     """Returns sentences on what cannot be determined, because it is not felt or not resolved."""
-    inner, said = found.found, []
+    inner, lines = found.found, []
     if inner.symmetries:
         known = ", ".join(map(str, found.combinations))
         lost = untold(inner.symmetries, inner.names, {})
         lost = f"T{lost[1:]}" if lost.startswith("the data") else lost
-        said.append(lost + (f"; only {known} can be known." if known else "."))
+        lines.append(lost + (f"; only {known} can be known." if known else "."))
     if k := len(inner.unresolved):
-        count = f"{k}{' more' if said else ''} direction{'s are' if k > 1 else ' is'}"
-        said.append(count + unresolved_words(inner))
-    return said
+        count = f"{k}{' more' if lines else ''} direction{'s are' if k > 1 else ' is'}"
+        lines.append(count + unresolved_words(inner))
+    return lines
 
 
 def _amount(found: Information, i: int) -> str:
@@ -114,7 +114,7 @@ def design_verdict(result: Design) -> list[str]:
     worst, gain = result.worst_gain, result.gain
     names = result.best.found.names
     best, least = int(gain.argmax()), int(gain.argmin())
-    said = [
+    lines = [
         f"The worst determined direction is known {worst:.2f} times better than with the thesis'"
         f" PRBS of the same length and noise; {names[best]} gains most ({gain[best]:.2f} times),"
         f" {names[least]} least ({gain[least]:.2f} times).",
@@ -123,16 +123,16 @@ def design_verdict(result: Design) -> list[str]:
         " at most.",
     ]
     if not result.settings:
-        said.append(f"The search found nothing better than {result.best.name}; raise the budget.")
+        lines.append(f"The search found nothing better than {result.best.name}; raise the budget.")
     elif worst < 1.2:
-        said.append("That gain is small: a longer record does as much.")
+        lines.append("That gain is small: a longer record does as much.")
     if lost := [n for n, g in zip(names, gain, strict=False) if g < 1]:
-        said.append(f"Known worse than with the PRBS: {', '.join(lost)}; the worst one counts.")
+        lines.append(f"Known worse than with the PRBS: {', '.join(lost)}; the worst one counts.")
     if result.held:
-        said.append(f"Held fixed, as the PRBS cannot tell them apart: {', '.join(result.held)}.")
+        lines.append(f"Held fixed, as the PRBS cannot tell them apart: {', '.join(result.held)}.")
     if not result.prbs.allowed:
-        said.append("The thesis' PRBS itself breaks these limits.")
-    return said
+        lines.append("The thesis' PRBS itself breaks these limits.")
+    return lines
 
 
 def design_json(result: Design) -> dict[str, Any]:

@@ -178,7 +178,7 @@ def grid_sentences(
 ) -> list[str]:  # fmt: skip
     """Returns how good a gridded model is, in sentences."""
     worst = {key: max(getattr(e, key) for e in errors) for key in ERRORS}
-    said = [
+    lines = [
         f"At {len(errors)} random points off the grid the interpolated model differs from the"
         f" twin's own linearisation by at most {worst['response']:.2g} of the transfer function,"
         f" {worst['matrix']:.2g} of A and {worst['eigenvalue']:.2g} of an eigenvalue."
@@ -187,11 +187,11 @@ def grid_sentences(
         left = "the model leaves the grid" if run.scheduled != run.scheduled else (
             f"the scheduled model misses {percent(run.scheduled, HELD)} of the angles' motion"
         )  # fmt: skip
-        said.append(
+        lines.append(
             f"Under a PRBS of ±{run.amplitude:g} A about a held point {left}, the linearisation at"
             f" the start {percent(run.fixed, HELD)}."
         )
-    return said
+    return lines
 
 
 def _range(values: np.ndarray) -> str:

@@ -35,20 +35,20 @@ def cables_json(pose: np.ndarray, cables: Cables) -> dict[str, Any]:
 
 def cables_verdict(cables: Cables, geometry: Geometry) -> list[str]:
     """Returns what the Jacobian says of a pose, in sentences."""
-    said = []
+    lines = []
     if rank(cables) < 6:
-        said.append(
+        lines.append(
             f"The lengths do not tell this pose: the Jacobian has rank {rank(cables)} of 6, so that"
             " the platform can move without a change of any length."
         )
     else:
-        said.append(
+        lines.append(
             "The lengths tell this pose: the Jacobian has rank 6 and the condition number"
             f" {condition(cables):.3g} (angles counted at the distance of the connectors)."
         )
     if geometry.assumed:
-        said.append(f"The geometry is assumed ({geometry.source}).")
-    return said
+        lines.append(f"The geometry is assumed ({geometry.source}).")
+    return lines
 
 
 def cables_rows(cables: Cables) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
@@ -96,14 +96,14 @@ def poses_json(found: LogPoses) -> dict[str, Any]:
 def poses_verdict(found: LogPoses) -> list[str]:
     """Returns what the poses are worth, in sentences."""
     length, angle = 1e6 * found.std[:, :3].mean(), 1e3 * found.std[:, 3:].mean()
-    said = [
+    lines = [
         f"The mean std is {length:.0f} µm of the position and {angle:.2f} mrad of the angles.",
         f"The motors' balances leave {found.tension_error:.2g} N of each tension open, and the"
         f" neglected acceleration of the platform is worth {found.force_error:.2g} N.",
     ]
     encoder = float(found.encoder_length.mean())
     if found.length_error > 0:
-        said.append(
+        lines.append(
             f"The lengths disagree by {1e3 * found.length_error:.2g} mm, far more than the"
             f" encoders' {1e3 * encoder:.2g} mm: geometry, start pose or parameters are not those"
             " of this robot; inca calibrate finds them, and inca discover"
@@ -111,21 +111,21 @@ def poses_verdict(found: LogPoses) -> list[str]:
         )
     slack = int((~found.taut.all(axis=1)).sum())
     if slack:
-        said.append(
+        lines.append(
             f"In {slack} samples a cable is slack; its motor says nothing of the pose there."
         )
     against = _measured(found)
     if against is not None:
         inside = percent(float(np.mean(against["inside_95"])))
         rms = np.array(against["rms"])
-        said.append(
+        lines.append(
             f"Against the pose in the log the rms error is {1e6 * rms[:3].max():.0f} µm and"
             f" {1e3 * rms[3:].max():.2f} mrad at the worst axis; {inside} of the errors lie"
             " within the 95 % intervals."
         )
     if np.allclose(found.std, found.noise_std):
-        said.append("The parameters are taken as exact; --std says how well they are known.")
-    return said
+        lines.append("The parameters are taken as exact; --std says how well they are known.")
+    return lines
 
 
 def poses_section(found: LogPoses) -> Section:

@@ -22,17 +22,17 @@ def compare_verdict(result: Comparison) -> list[str]:
     """Returns what the comparison means, in sentences."""
     fit, error = result.fit_percent, 1e3 * float(result.rms.mean())
     cable = error * result.run.twin.parameters["R"].value
-    said = [f"The mean fit is {mean_fit(fit)}."]
+    lines = [f"The mean fit is {mean_fit(fit)}."]
     if not np.isnan(fit).all():
         worst = int(np.nanargmin(fit))
-        said = [
+        lines = [
             f"The twin explains {np.nanmean(fit):z.1f} % of the motor angles' motion (mean fit);"
             f" drive {worst + 1} is worst with {fit[worst]:z.1f} %."
         ]
     if still := [str(i + 1) for i in np.flatnonzero(np.isnan(fit))]:
-        said.append(f"No fit is said of drives that never move: {', '.join(still)}.")
+        lines.append(f"No fit is said of drives that never move: {', '.join(still)}.")
     return [
-        *said,
+        *lines,
         f"The difference is {error:.1f} mrad rms, {cable:.2f} mm of cable.",
     ]
 

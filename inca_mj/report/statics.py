@@ -29,7 +29,7 @@ def statics_verdict(found: StaticAnalysis) -> list[str]:
     """Returns what was found, in sentences."""
     held, rest, push = found.held, found.rest, found.push
     x, y, z = rest.pose[:3]
-    said = [
+    lines = [
         f"The cables have rank {found.closure.rank} and closure: the best internal tension has a"
         f" smallest tension of {found.closure.margin:.2f} of the largest.",
         f"Tensions from {held.within.min():.2f} to {held.within.max():.2f} N hold the platform,"
@@ -45,29 +45,29 @@ def statics_verdict(found: StaticAnalysis) -> list[str]:
     ]
     if found.workspace is not None:
         w = found.workspace
-        said.append(
+        lines.append(
             f"The {NAMES[w.kind]} workspace at this orientation has"
             f" {quantity(w.volume, w.std, 'm³')} (standard error of stratified sampling)."
         )
-    said += _near_words("At the pose", found.nearness)
+    lines += _near_words("At the pose", found.nearness)
     if found.nearness_along is not None:
         n = len(found.nearness_along.platform)
-        said += _near_words(f"Over {n} poses", found.nearness_along)
-    return [*said, *mass_verdict(found)]
+        lines += _near_words(f"Over {n} poses", found.nearness_along)
+    return [*lines, *mass_verdict(found)]
 
 
 def mass_verdict(found: StaticAnalysis) -> list[str]:
     """Returns for which cables the massless straight line is good enough, in sentences."""
-    said = []
+    lines = []
     for rho in found.rho:
         rows = [e for e in found.line_errors if e.rho == rho]
         enough = [e.tension for e in rows if e.line_is_enough]
         where = f"from {min(enough):g} N on" if enough else "at none of the tensions"
-        said.append(
+        lines.append(
             f"Cables of {1e3 * rho:g} g/m are straight to the noise of a log {where}; their weight"
             f" moves a free platform by {1e3 * rows[0].moved:.1f} mm."
         )
-    return said
+    return lines
 
 
 def _near_words(begin: str, found: Interference) -> list[str]:

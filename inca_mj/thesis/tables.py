@@ -109,8 +109,8 @@ def _beside(
 
 
 def _joined(values: Mapping[str, float], names: list[str]) -> str:
-    told = ", ".join(_number(values[name]) for name in names)
-    return f"[{told}]" if len(names) > 1 else told
+    text = ", ".join(_number(values[name]) for name in names)
+    return f"[{text}]" if len(names) > 1 else text
 
 
 def _number(value: float) -> str:

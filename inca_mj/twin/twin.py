@@ -198,9 +198,9 @@ def write_values(
     model: mujoco.MjModel, parameters: ParameterSet, geometry: Geometry, layout: Layout
 ) -> None:
     """Write all model parameters into mjModel, in place; `Twin` writes those of the start."""
-    own = parameters.values()
-    every = merged(own, tuple(own), np.array([[*own.values()]]))
-    for slot, column in model_numbers(model, parameters, geometry, layout, tuple(own), every, 1):
+    values = parameters.values()
+    every = merged(values, tuple(values), np.array([[*values.values()]]))
+    for slot, column in model_numbers(model, parameters, geometry, layout, tuple(values), every, 1):
         write(model, slot, float(column[0]))
 
 

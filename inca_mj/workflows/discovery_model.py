@@ -71,8 +71,8 @@ def _twin(fit: Refit, names: Set[str], values: Mapping[str, float]) -> Twin:
     effects = tuple(e for e in plant.effects if e.name in names)
     base = tuple(p for p in plant.parameters if p.where not in ("effect", RECORD))
     known = with_effects(replace(plant.parameters, records=base), effects)
-    own = known.values()
-    at = {name: value for name, value in values.items() if name in own}
+    numbers = known.values()
+    at = {name: value for name, value in values.items() if name in numbers}
     free = {name: at[name] for name in fit.point.space.names if name in at}
     return build_twin(
         known.with_values(at).with_values(free, "fitted to the log"),

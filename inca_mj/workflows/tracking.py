@@ -118,9 +118,9 @@ def track(
         DivergenceError: the robot left the finite numbers.
     """
     robot = robot or build_twin()
-    own = robot.parameters.values()
-    model = (model or build_twin()).with_values({name: own[name] for name in START})
-    path = path or Circle(centre=(own["x"], own["y"], own["z"]))
+    values = robot.parameters.values()
+    model = (model or build_twin()).with_values({name: values[name] for name in START})
+    path = path or Circle(centre=(values["x"], values["y"], values["z"]))
     begin = path.at(0.0).position
     if np.linalg.norm(begin - robot.start.pose[:3]) > APART:
         raise InputError(

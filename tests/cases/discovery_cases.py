@@ -11,7 +11,8 @@ import numpy as np
 from identification import Log, Parameter, ParameterSet
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
-from identification.effects.effect import Candidate, Effect, Size
+from identification.effects.effect import Candidate, Effect
+from identification.effects.sizes import Size
 from identification.estimation.priors import Priors
 from identification.innovations.discovery import INNOVATIONS
 from identification.innovations.scoring.scores import score

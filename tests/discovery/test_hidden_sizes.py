@@ -18,7 +18,8 @@ from discovery_cases import (
 )
 
 from identification import InputError, Parameter
-from identification.effects.effect import Candidate, Effect, Size
+from identification.effects.effect import Candidate, Effect
+from identification.effects.sizes import Size
 from identification.estimation.block_test import (
     MOST_FREEDOM,
     Common,

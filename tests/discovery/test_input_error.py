@@ -11,7 +11,8 @@ from discovery_cases import response as dense
 from identification import Log, Parameter, ParameterSet
 from identification.discovery.findings.finding import FindingKind
 from identification.discovery.nominal_model import NominalModel
-from identification.effects.effect import Effect, Size
+from identification.effects.effect import Effect
+from identification.effects.sizes import Size
 from identification.estimation.residuals import innovation_tests
 from identification.innovations.discovery import discover
 from identification.innovations.fitted_model import fit_model

@@ -6,7 +6,8 @@ import pytest
 from discovery_cases import EFFECTS, SENSOR, record, slider, task, wander
 
 from identification.discovery.effect_results import Proof
-from identification.effects.effect import Candidate, Effect, Shape
+from identification.effects.effect import Candidate, Effect
+from identification.effects.sizes import Shape
 from identification.innovations import kinds
 from identification.innovations.fitted_model import AcceptedEffect, fit_model
 from identification.innovations.kinds import improve_kinds, improve_rivals

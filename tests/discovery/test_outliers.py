@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 from discovery_cases import OPTIONS, record, slider, wander
 
-from identification.effects.effect import Candidate, Effect, Shape, Size
+from identification.effects.effect import Candidate, Effect
 from identification.effects.sensors import encoder_jump
+from identification.effects.sizes import Shape, Size
 from identification.innovations.scoring.outliers import (
     MAX_JUMPS,
     find_outlier_times,

@@ -12,7 +12,8 @@ from scipy.stats import binom
 from identification.chances import mean_above_zero
 from identification.discovery.effect_results import Proof
 from identification.discovery.options import DiscoveryOptions
-from identification.effects.effect import Candidate, Effect, Size
+from identification.effects.effect import Candidate, Effect
+from identification.effects.sizes import Size
 from identification.innovations.fitted_model import is_confirmed
 from identification.innovations.proof import flip_chance
 from identification.innovations.scoring.significance import select_significant

@@ -23,7 +23,8 @@ from scipy.linalg import lstsq
 
 from identification import Parameter, ParameterSet
 from identification.discovery.nominal_model import NominalModel
-from identification.effects.effect import Candidate, Effect, Size
+from identification.effects.effect import Candidate, Effect
+from identification.effects.sizes import Size
 from identification.innovations.fit import fit_with_effects
 from identification.innovations.fitted_model import fit_model
 from identification.innovations.replacement import PRIOR_WIDENING, replace_effect, retune

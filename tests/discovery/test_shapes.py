@@ -10,7 +10,8 @@ from effect_cases import full
 
 from identification import Log, Predictor
 from identification.discovery.candidates import list_between
-from identification.effects.effect import Candidate, Effect, Shape, Size
+from identification.effects.effect import Candidate, Effect
+from identification.effects.sizes import Shape, Size
 from identification.innovations import shapes
 from identification.innovations.scoring.sensitivities import compute_sensitivities
 from identification.innovations.shapes import improve_shape

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from identification.discovery.options import DiscoveryOptions
-from identification.effects.effect import Candidate, Effect, Shape, Size
+from identification.effects.effect import Candidate, Effect
+from identification.effects.sizes import Shape, Size
 from identification.innovations import forward_selection
 
 JUMP = Effect(

@@ -7,7 +7,8 @@ from effect_cases import CATALOGUE, EVERYWHERE, bare, forward, full, probes, sim
 from numba import njit
 
 from identification import Log, Predictor
-from identification.effects.effect import Effect, Size
+from identification.effects.effect import Effect
+from identification.effects.sizes import Size
 from identification.kalman.linear import linearise
 from identification.model.rollout import rollout
 from inca_mj.effects.hooks import DRIVES_EACH

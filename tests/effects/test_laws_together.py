@@ -13,8 +13,9 @@ from numba import njit
 from numpy.testing import assert_allclose
 from scipy.interpolate import CubicSpline
 
-from identification.effects.effect import Effect, Size, places
+from identification.effects.effect import Effect, places
 from identification.effects.joint_plant import joint_plant
+from identification.effects.sizes import Size
 from identification.native.installer import uninstall
 from inca_mj.effects.hooks import KEY
 from inca_mj.twin import native

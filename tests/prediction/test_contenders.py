@@ -14,8 +14,9 @@ from identification.discovery.attempts import collected
 from identification.discovery.candidates import list_common
 from identification.discovery.effect_results import Neighbour
 from identification.discovery.options import DiscoveryOptions
-from identification.effects.effect import Candidate, Effect, Shape, Size
+from identification.effects.effect import Candidate, Effect
 from identification.effects.joint_plant import candidates
+from identification.effects.sizes import Shape, Size
 from identification.model.parameter import Parameter, ParameterSet
 from identification.model.predictor import Predictor
 from identification.prediction import odds, verdict

@@ -8,7 +8,8 @@ import pytest
 from numba import njit
 
 from identification.discovery.options import DiscoveryOptions
-from identification.effects.effect import Candidate, Effect, Size
+from identification.effects.effect import Candidate, Effect
+from identification.effects.sizes import Size
 from identification.prediction.moves import curve_for_laws, drop_beside_curves, drop_drawn_laws
 from identification.prediction.trial import has_size
 

@@ -11,8 +11,9 @@ from arm_cases import LOG, text
 
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
-from identification.effects.effect import Candidate, Effect, Size
+from identification.effects.effect import Candidate, Effect
 from identification.effects.joint_plant import candidates, joint_plant
+from identification.effects.sizes import Size
 from identification.model.parameter import Parameter
 from identification.model.predictor import Predictor
 from identification.prediction import screening

@@ -8,7 +8,8 @@ import pytest
 from fake_discovery import fit
 
 from identification.discovery.effect_results import Detectable
-from identification.effects.effect import Candidate, Effect, Size
+from identification.effects.effect import Candidate, Effect
+from identification.effects.sizes import Size
 from identification.model.parameter import with_own
 from identification.report.discovery_json import discovery_to_json
 from identification.report.discovery_sections import parameters_section
