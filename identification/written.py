@@ -45,7 +45,7 @@ class Written:
 
     @cached_property
     def files(self) -> Files:
-        """What writes the files of this result.
+        """The writer of the files of this result.
 
         Raises:
             InputError: the result was made by no public function.

@@ -28,7 +28,7 @@ OF = ("itself", "rate", "acceleration")
 
 @dataclass(frozen=True)
 class Answer:
-    """What a column answers, as the data show it."""
+    """The input that an output answers, as the data show it."""
 
     output: str
     input: str

@@ -37,7 +37,7 @@ LINES = 50  # of a CSV that show which of its columns hold numbers
 
 @dataclass(frozen=True, kw_only=True)
 class Column:
-    """What a column of a log holds."""
+    """The content of a column of a log."""
 
     name: str
     role: Role  # guessed by its name
@@ -53,7 +53,7 @@ class Column:
 
 @dataclass(frozen=True, kw_only=True)
 class Inspection:
-    """What is in a log.
+    """The content of a log.
 
     Attributes:
         path: of the log.

@@ -43,7 +43,7 @@ REPORT_EVERY = 3  # one of so many blocks is told of, the others decide
 
 @dataclass(frozen=True, eq=False)
 class Parts:
-    """Which samples of a record decide in a search, and which are told of."""
+    """The samples of a record on which a search decides, and those of which it tells."""
 
     select: np.ndarray  # those on which a search decides, shape (N,)
     # those of which it tells, shape (N,); the same as `select` where the record is too short to

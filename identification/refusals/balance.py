@@ -140,8 +140,8 @@ def _columns(
     reach = _size(model, moving)
     nv, n, least = model.nv, len(motion.v), np.finfo(float).tiny
     bodies = follow_bodies(model, motion.q, motion.v, motion.a, moving)
-    own = [inertial_force(body, float(model.body_mass[b]), model.body_inertia[b])
-           for b, body in bodies.items()]  # fmt: skip
+    masses = [inertial_force(body, float(model.body_mass[b]), model.body_inertia[b])
+              for b, body in bodies.items()]  # fmt: skip
     rotors = [motion.a * (model.dof_armature * (np.arange(nv) == j))
               for j in range(nv) if model.dof_armature[j]]  # fmt: skip
     stiff = [(motion.q - model.qpos_spring) * (model.jnt_stiffness * (np.arange(nv) == j))
@@ -161,12 +161,12 @@ def _columns(
     most = max(PAYLOAD * float(model.body_mass[moving].sum()), least)
     low, high = [], []
     for found, (a, b) in (
-        (own + rotors + stiff, (1 / FACTOR, FACTOR)), (payload, (0.0, most)),
+        (masses + rotors + stiff, (1 / FACTOR, FACTOR)), (payload, (0.0, most)),
         (each, (0.0, np.inf)), (weight + level, (-np.inf, np.inf)),
     ):  # fmt: skip
         low += [a] * len(found)
         high += [b] * len(found)
-    every = [*own, *rotors, *stiff, *payload, *each, *weight, *level]
+    every = [*masses, *rotors, *stiff, *payload, *each, *weight, *level]
     return np.stack(every, axis=2), np.array(low), np.array(high)
 
 

@@ -43,40 +43,40 @@ class Balance:
     log: Log
 
     @cached_property
-    def own(self) -> np.ndarray | None:
+    def as_read(self) -> np.ndarray | None:
         """η of each output, shape (ny,)."""
         return unbalanced_share(self.model, self.log)
 
     @property
     def contradicts(self) -> bool:
         """Tells whether forces do not explain the log as it is read, or say nothing of it."""
-        return self.own is None or bool((self.own > UNEXPLAINED).any())
+        return self.as_read is None or bool((self.as_read > UNEXPLAINED).any())
 
     @property
     def excludes(self) -> bool:
         """Tells whether forces cannot be those of the log as it is read, whatever it lacks."""
-        return self.own is not None and bool((self.own > NEEDED).any())
+        return self.as_read is not None and bool((self.as_read > NEEDED).any())
 
-    def confirms(self, reading: Reading, left: np.ndarray) -> bool:
+    def confirms(self, reading: Reading, rest: np.ndarray) -> bool:
         """Returns whether forces speak for a reading that leaves ε (ny,)."""
         k = list(reading.columns)
-        if self.own is None:
-            return bool((left[k] < UNEXPLAINED).all())
+        if self.as_read is None:
+            return bool((rest[k] < UNEXPLAINED).all())
         other = self._of(reading)
         # Together, because a joint without a drive looks the same from both sides.
-        return other is not None and bool(other[k].sum() < NEARER * self.own[k].sum())
+        return other is not None and bool(other[k].sum() < NEARER * self.as_read[k].sum())
 
     def decides(self, reading: Reading) -> str | None:
         """Says how much less of the forces is unexplained by a reading; None where not far less."""
-        rest = None if self.own is None else self._of(reading)
-        if self.own is None or rest is None or (rest > UNEXPLAINED).any():
+        rest = None if self.as_read is None else self._of(reading)
+        if self.as_read is None or rest is None or (rest > UNEXPLAINED).any():
             return None
-        if rest.sum() > NEARER * self.own.sum():
+        if rest.sum() > NEARER * self.as_read.sum():
             return None
-        times = held(float(self.own.sum() / max(rest.sum(), np.finfo(float).tiny)))
+        times = held(float(self.as_read.sum() / max(rest.sum(), np.finfo(float).tiny)))
         return (
             f"leaves {times} times as much of the drives' forces unexplained as it would"
-            f" {reading.said}, whatever payload, gravity and friction it has; {reading.cure}"
+            f" {reading.words}, whatever payload, gravity and friction it has; {reading.cure}"
         )
 
     def _of(self, reading: Reading) -> np.ndarray | None:
@@ -101,14 +101,14 @@ def rescaled(
         in words what it explains; None where the motion can be as it is read.
     """
     log = doubt.log
-    own = _least_share(model, log)
-    if own is None or own.max() <= NEEDED:
+    as_read = _least_share(model, log)
+    if as_read is None or as_read.max() <= NEEDED:
         return None
     both = turned_units(doubt) if signs else ()
     found: list[tuple[Reading, np.ndarray]] = []
     for reading in chain(factor_readings(doubt), unit_readings(doubt, alone=alone), both):
         rest = unbalanced_share(model, reading.log, FREEDOM)
-        if rest is not None and rest.max() <= EXPLAINED and rest.sum() <= NEARER * own.sum():
+        if rest is not None and rest.max() <= EXPLAINED and rest.sum() <= NEARER * as_read.sum():
             found.append((reading, rest))
     if not found:
         return None
@@ -116,11 +116,11 @@ def rescaled(
     near = [(r, rest) for r, rest in found if NEARER * rest.sum() <= least]
     # Rounded, so that of two readings that are the same the first one counts.
     reading, rest = min(near, key=lambda each: round(_change(each[0].log, log), DIGITS))
-    times = held(float(np.sqrt(own.max())))
+    times = held(float(np.sqrt(as_read.max())))
     return reading, (
         f"needs forces {times} times those of the drives for this motion, whatever"
         f" payload and friction it has, and explains {percent(1 - float(rest.max()))} of them"
-        f" {reading.said}; {reading.cure} (where the outputs are right, the inputs are in a larger"
+        f" {reading.words}; {reading.cure} (where the outputs are right, the inputs are in a larger"
         " unit: write that of the inputs)"
     )
 

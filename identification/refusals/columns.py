@@ -217,7 +217,7 @@ def _turns(doubt: Doubt) -> Iterator[Reading]:
 def _both(first: Reading, turn: Reading, then: str, log: Log) -> Reading:
     """Returns two readings as one."""
     return Reading(
-        log, sorted({*turn.columns, *first.columns}), f"{first.said} and {turn.said}",
+        log, sorted({*turn.columns, *first.columns}), f"{first.words} and {turn.words}",
         f"{first.cure}, {then} {turn.cure}", tuple(dict.fromkeys((*first.kinds, *turn.kinds))),
     )  # fmt: skip
 

@@ -49,11 +49,11 @@ class Judge:
     log: Log  # as it is read
 
     @cached_property
-    def own(self) -> np.ndarray | None:
+    def as_read(self) -> np.ndarray | None:
         """ε of the log as it is read, shape (ny,)."""
         return unexplained(self.plant, self.length, self.log)
 
-    def left(self, other: Log, most: int = MOST_WINDOWS, part: float = 1.0) -> np.ndarray | None:
+    def of(self, other: Log, most: int = MOST_WINDOWS, part: float = 1.0) -> np.ndarray | None:
         """Returns ε of the log as it may be read; see `unexplained`."""
         plant = plant_of_reading(self.plant, self.log, other)
         return unexplained(plant, self.length, other, most, part)
@@ -62,8 +62,12 @@ class Judge:
         """Returns ε of a reading; None as soon as a part of the windows is not far better."""
         rest = None
         for part in PARTS:
-            rest = self.left(reading.log, part=part)
-            if rest is None or self.own is None or not is_far_better(reading, rest, self.own):
+            rest = self.of(reading.log, part=part)
+            if (
+                rest is None
+                or self.as_read is None
+                or not is_far_better(reading, rest, self.as_read)
+            ):
                 return None
         return rest
 
@@ -72,12 +76,12 @@ class Judge:
         if self.log.duration < 2 * FEW_WINDOWS * self.length:
             yield from readings
             return
-        own = unexplained(self.plant, self.length, self.log, FEW_WINDOWS)
+        as_read = unexplained(self.plant, self.length, self.log, FEW_WINDOWS)
         for reading in readings:
-            rest, k = self.left(reading.log, FEW_WINDOWS), list(reading.columns)
-            if own is None or rest is None:
+            rest, k = self.of(reading.log, FEW_WINDOWS), list(reading.columns)
+            if as_read is None or rest is None:
                 continue
-            if (rest[k] < np.minimum(EXPLAINED, NEARER * MARGIN * own[k])).all():
+            if (rest[k] < np.minimum(EXPLAINED, NEARER * MARGIN * as_read[k])).all():
                 yield reading
 
 

@@ -32,7 +32,7 @@ class Reading:
 
     log: Log  # so read
     columns: Sequence[int]  # outputs that change, with it or with what an input does to them
-    said: str  # what it would be, in words
+    words: str  # what it would be, in words
     cure: str  # what to do, were it so
     kinds: tuple[str, ...] = ("wiring",)  # "units", "wiring" or both, which a user may trust
 
@@ -41,18 +41,18 @@ class Reading:
 Unexplained = Callable[[Reading], np.ndarray | None]
 
 
-def is_far_better(reading: Reading, left: np.ndarray, own: np.ndarray) -> bool:
+def is_far_better(reading: Reading, rest: np.ndarray, as_read: np.ndarray) -> bool:
     """Returns whether ε (ny,) of a reading is far below ε of the log in all columns it changes."""
     k = list(reading.columns)
-    return bool((left[k] < np.minimum(EXPLAINED, NEARER * own[k])).all())
+    return bool((rest[k] < np.minimum(EXPLAINED, NEARER * as_read[k])).all())
 
 
 def misread(
     log: Log,
-    own: np.ndarray,
+    as_read: np.ndarray,
     readings: Iterable[Reading],
     unexplained: Unexplained,
-    believed: Callable[[Reading, np.ndarray], bool] = lambda reading, left: True,
+    believed: Callable[[Reading, np.ndarray], bool] = lambda reading, rest: True,
 ) -> tuple[Reading, str] | None:
     """Returns the reading that explains a log far better than the present one, and that in words.
 
@@ -60,7 +60,7 @@ def misread(
 
     Args:
         log: as it is read.
-        own: its ε, shape (ny,), without unit.
+        as_read: its ε, shape (ny,), without unit.
         readings: other ones.
         unexplained: ε of a reading.
         believed: whether a reading with its ε is what no better model could be.
@@ -71,18 +71,20 @@ def misread(
     """
     best, least = None, np.inf
     for reading in counted(readings, "other readings of the log"):
-        left = unexplained(reading)
-        if left is None or not is_far_better(reading, left, own):
+        rest = unexplained(reading)
+        if rest is None or not is_far_better(reading, rest, as_read):
             continue
-        if left.sum() < (1 - SAME) * least and believed(reading, left):
-            best, least = (reading, left), float(left.sum())
+        if rest.sum() < (1 - SAME) * least and believed(reading, rest):
+            best, least = (reading, rest), float(rest.sum())
     if best is None:
         return None
-    reading, left = best
-    before, after = (100 * max(0.0, 1 - float(e[list(reading.columns)].max())) for e in (own, left))
+    reading, rest = best
+    before, after = (
+        100 * max(0.0, 1 - float(e[list(reading.columns)].max())) for e in (as_read, rest)
+    )
     return reading, (
         f"explains {before:.0f} % of {listed(log.output_names[k] for k in reading.columns)}, and"
-        f" {after:.0f} % {reading.said}; {reading.cure}"
+        f" {after:.0f} % {reading.words}; {reading.cure}"
     )
 
 

@@ -71,9 +71,9 @@ def refuse_miswired(robot: Robot, log: Log) -> None:
         raise InputError(f'log {log.name!r}: {cure}, or write trust = ["units"] into {file.path}')
     is_explained = is_nearer = False
     for judge in (Judge(plant, length, log) for length in lengths):
-        if (own := judge.own) is None:
+        if (as_read := judge.as_read) is None:
             continue
-        bad = own > UNEXPLAINED
+        bad = as_read > UNEXPLAINED
         if not bad.any():
             is_explained = True
             continue
@@ -82,22 +82,24 @@ def refuse_miswired(robot: Robot, log: Log) -> None:
         kinds += [partial(_of_outputs, judge), input_readings] * wiring
         kinds += [together] * (wiring and len(log.input_names) > 1)
         readings = chain(*(kind(doubt) for kind in kinds))
-        found = misread(log, own, readings, judge.if_far_better, balance.confirms)
+        found = misread(log, as_read, readings, judge.if_far_better, balance.confirms)
         if found is None and wiring and is_small and balance.contradicts:
             two = [turned_units(doubt, wanted)] * units
             if judge.length == lengths[0]:  # an exchange is seen in all windows, and these are many
                 two += [two_turns(doubt), turned_exchanges(doubt)]
             near = judge.promising(chain(*two))
-            found = misread(log, own, near, judge.if_far_better, balance.confirms)
+            found = misread(log, as_read, near, judge.if_far_better, balance.confirms)
         if wiring:
-            turns = (judge.left(reading.log) for reading in together(doubt))
-            is_nearer |= any(e is not None and (e[bad] < NEARER * own[bad]).all() for e in turns)
+            turns = (judge.of(reading.log) for reading in together(doubt))
+            is_nearer |= any(
+                e is not None and (e[bad] < NEARER * as_read[bad]).all() for e in turns
+            )
         if found is not None:
             raise _refusal(robot, log, *found)
     if wiring and not is_explained and (is_nearer or balance.excludes):
         for reading in together(every):
-            if said := balance.decides(reading):
-                raise _refusal(robot, log, reading, said)
+            if words := balance.decides(reading):
+                raise _refusal(robot, log, reading, words)
     # The gain of a drive that wants a position is a guess, and its force with it.
     if units and not (is_explained or wanted):
         found = rescaled(plant.model, every, wiring and is_small, is_small)
@@ -113,16 +115,16 @@ def _of_outputs(judge: Judge, doubt: Doubt) -> Iterator[Reading]:
     """
     is_mirrored, log = False, doubt.log
     if doubt.bad.all() and log.inputs.any():
-        one = judge.left(replace(log, outputs=-log.outputs))
-        other = judge.left(replace(log, inputs=-log.inputs))
+        one = judge.of(replace(log, outputs=-log.outputs))
+        other = judge.of(replace(log, inputs=-log.inputs))
         is_mirrored = one is not None and other is not None and np.allclose(one, other, rtol=SAME)
     yield from output_readings(doubt, is_mirrored)
 
 
-def _refusal(robot: Robot, log: Log, reading: Reading, said: str) -> InputError:
+def _refusal(robot: Robot, log: Log, reading: Reading, text: str) -> InputError:
     file = robot.file
     words = ", ".join(f'"{kind}"' for kind in reading.kinds)
     return InputError(
-        f"log {log.name!r}: the model of {file.model} {said}, or give values nearer to the"
+        f"log {log.name!r}: the model of {file.model} {text}, or give values nearer to the"
         f" robot's, or write trust = [{words}] into {file.path}"
     )

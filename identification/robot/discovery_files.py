@@ -43,7 +43,7 @@ class RobotDiscoveryFiles(DiscoveryFiles):
 
     @cached_property
     def sentences(self) -> Sequence[str]:
-        """What is said behind the verdict."""
+        """The sentences behind the verdict."""
         return [*doubtful(self.robot), *map(str, (*self._confirmed, *self._repeated))]
 
     def keep(self, folder: Path, place: Path) -> dict[str, Any]:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Values:
-    """Which robot: a parameter set, some values of your own, a geometry of your own."""
+    """A robot: a parameter set, some values of your own, a geometry of your own."""
 
     set: Literal["trial", "simulation"] = "trial"
     """Parameter set: the thesis' Table 3.2 (trial) or Table 2.1 (simulation)."""

@@ -23,7 +23,7 @@ UNKNOWN = ("lambda", "b", "J", "b_v", "b_c", "beta")
 
 @dataclass(frozen=True, kw_only=True)
 class Sensitivity:
-    """Which parameters the angles can tell, how well, and which only together.
+    """Say which parameters the angles can tell, how well, and which only together.
 
     Examples:
         inca sensitivity --out out/sensitivity

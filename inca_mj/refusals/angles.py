@@ -45,7 +45,7 @@ def other_angles(part: Log, predicted: np.ndarray) -> tuple[Reading, str] | None
     readings = chain(output_readings(doubt, False), _several(part, predicted))
     return misread(
         part, off(part, predicted), readings, lambda reading: off(reading.log, predicted),
-        lambda reading, left: bool((left <= bounds.RIGHT).all()),
+        lambda reading, rest: bool((rest <= bounds.RIGHT).all()),
     )  # fmt: skip
 
 
@@ -91,10 +91,10 @@ def rewired(part: Log, places: Places) -> Reading:
     log = replace(
         part, outputs=part.outputs @ places.angles.T, inputs=part.inputs @ places.currents.T
     )
-    said = [f"were {listed(sorted(renamed))} exchanged"] if renamed else []
-    said += [f"with the other sign of {listed(back)}"] if back else []
+    words = [f"were {listed(sorted(renamed))} exchanged"] if renamed else []
+    words += [f"with the other sign of {listed(back)}"] if back else []
     cure = _cure(dict(sorted(renamed.items())), back, part.factors)
-    return Reading(log, range(len(part.output_names)), " and ".join(said), cure)
+    return Reading(log, range(len(part.output_names)), " and ".join(words), cure)
 
 
 def _cure(renamed: dict[str, str], back: Sequence[str], factors: Mapping[str, float]) -> str:

@@ -63,14 +63,14 @@ def other_currents(
         predicted: the twin's angles under the currents as they are read, shape (n, k) [rad].
         longer: the log a little longer, with all eight angles; None where not all of them move.
     """
-    own = apart(part, predicted)
-    if own <= bounds.ASTRAY:
+    as_read = apart(part, predicted)
+    if as_read <= bounds.ASTRAY:
         return None
     for Q in () if longer is None else _followed(plant, longer, predicted):
-        found = _nearest(plant, part, own, [Q], False)
+        found = _nearest(plant, part, as_read, [Q], False)
         if found is not None:
             return found
-    return _nearest(plant, part, own, [*_single()], True)
+    return _nearest(plant, part, as_read, [*_single()], True)
 
 
 def renamed_drives(plant: Twin, part: Log, predicted: np.ndarray) -> tuple[Reading, str] | None:
@@ -83,7 +83,7 @@ def renamed_drives(plant: Twin, part: Log, predicted: np.ndarray) -> tuple[Readi
         part: the first motion, n samples of all eight angles.
         predicted: the twin's angles under the currents as they are read, shape (n, 8) [rad].
     """
-    own, y = apart(part, predicted), some(part.outputs)
+    as_read, y = apart(part, predicted), some(part.outputs)
     share = float(unreached_share(plant, y[None])[0])
     orders = likely_orders(plant, y, bounds.MAX_ORDERS)
     shares = unreached_share(plant, np.moveaxis(y[:, orders], 1, 0))
@@ -99,7 +99,7 @@ def renamed_drives(plant: Twin, part: Log, predicted: np.ndarray) -> tuple[Readi
             continue
         reading = rewired(part, Places(P, P))
         rest = apart(reading.log, angles)
-        if rest <= bounds.NEARER_RENAMED * own and is_right(reading.log, angles):
+        if rest <= bounds.NEARER_RENAMED * as_read and is_right(reading.log, angles):
             found.append((rest, int(np.sum(orders[k] != np.arange(DRIVES))), k, reading))
     if not found:
         return None
@@ -108,7 +108,7 @@ def renamed_drives(plant: Twin, part: Log, predicted: np.ndarray) -> tuple[Readi
     moved = [str(m + 1) for m in np.flatnonzero(orders[k] != np.arange(DRIVES))]
     others = f" (so they do in {len(as_near)} orders, since the robot is symmetric)"
     return reading, (
-        f"explains {_percent(own)} of the motion, and {_percent(rest)} were the drives"
+        f"explains {_percent(as_read)} of the motion, and {_percent(rest)} were the drives"
         f" {', '.join(moved)} numbered in another order, in which the angles also fit the cables of"
         f" one platform {share / shares[k]:.0f} times as well"
         f"{others if len(as_near) > 1 else ''}; {reading.cure}"
@@ -129,7 +129,7 @@ def likely_units(log: Log, predicted: np.ndarray) -> list[float]:
 
 
 def _nearest(
-    plant: Twin, part: Log, own: float, tried: Sequence[np.ndarray], with_angles: bool
+    plant: Twin, part: Log, as_read: float, tried: Sequence[np.ndarray], with_angles: bool
 ) -> tuple[Reading, str] | None:
     """Returns the places Q of currents under which the twin is nearest, if near enough."""
     found: list[tuple[float, Reading]] = []
@@ -145,14 +145,14 @@ def _nearest(
             continue
         reading = rewired(part, Places(P, Q))
         remaining = apart(reading.log, predicted)
-        if remaining < bounds.NEARER * own and is_right(reading.log, predicted):
+        if remaining < bounds.NEARER * as_read and is_right(reading.log, predicted):
             found.append((remaining, reading))
     if not found:
         return None
     (least, best), *rest = sorted(found, key=lambda each: each[0])
-    as_near = [reading.said for remaining, reading in rest if remaining < bounds.NEARLY * least]
+    as_near = [reading.words for remaining, reading in rest if remaining < bounds.NEARLY * least]
     mirror = f" (or, since the robot is symmetric, {' or '.join(as_near)})" if as_near else ""
-    text = f"explains {_percent(own)} of the motion, and {_percent(least)} {best.said}{mirror}"
+    text = f"explains {_percent(as_read)} of the motion, and {_percent(least)} {best.words}{mirror}"
     return best, f"{text}; {best.cure}"
 
 

@@ -55,22 +55,22 @@ def dead_current(
         odd = odd_angle(plant, some(scaled.outputs))
         for angle in (None,) if odd is None else (odd, None):
             mended = scaled if angle is None else mended_angle(scaled, *angle)
-            own = apart(mended, predicted)
-            if own <= bounds.ASTRAY:
+            as_read = apart(mended, predicted)
+            if as_read <= bounds.ASTRAY:
                 continue
             for dead, signs in _likely(plant, mended, still):
-                currents = _missing(plant, mended, dead, signs, own)
+                currents = _missing(plant, mended, dead, signs, as_read)
                 if currents is not None:
-                    said = _said(part, dead, currents, signs)
+                    words = _said(part, dead, currents, signs)
                     if angle is None:
-                        return said, ("sensors",)
+                        return words, ("sensors",)
                     other = "wiring" if is_turned(angle[1]) else "units"
-                    return f"{said}; beside it, {odd_words(part, *angle)}", ("sensors", other)
+                    return f"{words}; beside it, {odd_words(part, *angle)}", ("sensors", other)
     return None
 
 
 def _missing(
-    plant: Twin, log: Log, dead: list[int], signs: np.ndarray, own: float
+    plant: Twin, log: Log, dead: list[int], signs: np.ndarray, as_read: float
 ) -> np.ndarray | None:
     """Returns the currents that drives had, shape (n, drives) [A]; None if others do not fit."""
     followed = follow(plant, replace(log, inputs=log.inputs * signs), dead)
@@ -78,7 +78,7 @@ def _missing(
         return None
     kept = ~np.isin(np.arange(log.outputs.shape[1]), dead)
     others, angles = with_outputs(log, kept), followed[1][:, kept]
-    if apart(others, angles) >= bounds.NEARER * own or not is_right(others, angles):
+    if apart(others, angles) >= bounds.NEARER * as_read or not is_right(others, angles):
         return None
     currents: np.ndarray = followed[0][SETTLED:, dead]
     return currents

@@ -117,8 +117,8 @@ def scaled_current(plant: Twin, part: Log, longer: Log, predicted: np.ndarray) -
         longer: the log a little longer, of which feedback tells more.
         predicted: the twin's angles under the logged currents, shape (n, 8) [rad].
     """
-    own = apart(part, predicted)
-    if own <= bounds.ASTRAY:
+    as_read = apart(part, predicted)
+    if as_read <= bounds.ASTRAY:
         return None
     tried = [each for log in (longer, part) if (each := _odd_current(plant, log)) is not None]
     if not tried:
@@ -129,7 +129,7 @@ def scaled_current(plant: Twin, part: Log, longer: Log, predicted: np.ndarray) -
     every = angles_under(plant, part, part.inputs * scales[:, None])
     rest = [apart(part, angles) if np.isfinite(angles).all() else np.inf for angles in every]
     best = int(np.argmin(rest))
-    if not (rest[best] < bounds.NEARER * own and is_right(part, every[best])):
+    if not (rest[best] < bounds.NEARER * as_read and is_right(part, every[best])):
         return None
     k, factor = tried[best]
     name = part.input_names[k]
@@ -158,8 +158,8 @@ def odd_angle(
     k, at = (int(i) for i in np.unravel_index(int(shares.argmin()), shares.shape))
     finer = tried[at] * FINER
     shares = _shares(plant, y, k, finer)
-    factor, own = float(finer[shares.argmin()]), float(unreached_share(plant, y[None])[0])
-    return None if _is_near(factor) or shares.min() > bounds.CLOSER * own else (k, factor)
+    factor, as_read = float(finer[shares.argmin()]), float(unreached_share(plant, y[None])[0])
+    return None if _is_near(factor) or shares.min() > bounds.CLOSER * as_read else (k, factor)
 
 
 def mended_angle(log: Log, k: int, factor: float) -> Log:

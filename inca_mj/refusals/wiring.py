@@ -79,9 +79,9 @@ def refuse_miswired(log: Log, plant: Twin, trust: Sequence[str] = ()) -> None:
     wrong += [] if wiring is None else [(f"the twin {wiring[1]}", ("wiring",))]
     wrong += [] if unit is None else [unit]
     if wrong:
-        said = "; so read, ".join(sentence for sentence, _ in wrong)
+        text = "; so read, ".join(sentence for sentence, _ in wrong)
         words = dict.fromkeys(word for _, words in wrong for word in words)
-        raise InputError(f"log {log.name!r}: {said}{overruled_by(*words)}{ADVICE}")
+        raise InputError(f"log {log.name!r}: {text}{overruled_by(*words)}{ADVICE}")
 
 
 def _other_wiring(
@@ -105,8 +105,8 @@ def _other_wiring(
 
 def _tears(plant: Twin, part: Log, other: Log) -> bool:
     """Returns whether another reading's angles belong to no poses, while those as read do."""
-    own, new = unreached_share(plant, np.stack([some(log.outputs) for log in (part, other)]))
-    return bool(new > bounds.AS_NEAR * own)
+    as_read, new = unreached_share(plant, np.stack([some(log.outputs) for log in (part, other)]))
+    return bool(new > bounds.AS_NEAR * as_read)
 
 
 def _moving(part: Log, predicted: np.ndarray) -> np.ndarray:
