@@ -97,14 +97,14 @@ def make_hidden(path: Path) -> Path:
             rmtree(draft, ignore_errors=True)
     inside = make_hidden_inside(path)  # the folder itself must be writable, not only its parent
     try:
-        beside = make_hidden_beside(path)
+        hidden = make_hidden_beside(path)
     except OSError as error:
         if error.errno in IMPOSSIBLE:
             return inside
         rmtree(inside, ignore_errors=True)
         raise
     rmtree(inside, ignore_errors=True)
-    return beside
+    return hidden
 
 
 def make_hidden_beside(path: Path) -> Path:

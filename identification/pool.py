@@ -36,9 +36,9 @@ def threads() -> int:
     if hasattr(_here, "given_up"):
         return 1
     allowed = os.sched_getaffinity(0) if hasattr(os, "sched_getaffinity") else ()
-    said = os.environ.get("INCA_MJ_THREADS", "")
+    text = os.environ.get("INCA_MJ_THREADS", "")
     most = len(allowed) or os.cpu_count() or 1
-    return min(most, int(said)) if said.isdigit() and int(said) else most
+    return min(most, int(text)) if text.isdigit() and int(text) else most
 
 
 def end_if_given_up() -> None:

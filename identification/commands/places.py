@@ -40,16 +40,16 @@ def refuse_place(command: Any) -> None:
     if out is None:
         return
     try:
-        there = next(p for p in (out, *out.absolute().parents) if os.path.lexists(p))
-        is_folder = there.is_dir()
+        existing = next(p for p in (out, *out.absolute().parents) if os.path.lexists(p))
+        is_folder = existing.is_dir()
     except OSError as error:  # a name that is too long
         raise InputError(f"cannot make folder {out}: {error.strerror}; choose another") from error
-    if not exists(there):  # also where links lead round in a loop
+    if not exists(existing):  # also where links lead round in a loop
         raise InputError(
-            f"cannot make folder {out}: {there} is a link that leads nowhere; choose another"
+            f"cannot make folder {out}: {existing} is a link that leads nowhere; choose another"
         )
     if not is_folder:
-        raise InputError(f"cannot make folder {out}: {there} is a file; choose another")
+        raise InputError(f"cannot make folder {out}: {existing} is a file; choose another")
     real = out.resolve()
     for path in _inputs(command):
         if (path if path.is_dir() else path.parent).resolve() == real:

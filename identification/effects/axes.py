@@ -98,10 +98,10 @@ def axes(model: mujoco.MjModel, log: Log, trust: Sequence[str] = ()) -> tuple[Ax
     for k, (field, i) in enumerate(output_columns(model, log.output_names)):
         at = model.jnt_qposadr if field == "qpos" else model.jnt_dofadr
         seen.setdefault(int(np.flatnonzero(at == i)[0]), {})[field] = k
-    for j, own in seen.items():
+    for j, column in seen.items():
         inputs = [_control(model, i) for i in drives_of(model, j)] or [*range(logged_inputs(model))]
-        for field, k in own.items():
-            others = [i for i in own.values() if i != k]
+        for field, k in column.items():
+            others = [i for i in column.values() if i != k]
             if "sensors" not in trust:
                 refuse_frozen(log, k, log.inputs[:, inputs], log.outputs[:, others], OVERRULE,
                               is_rate=field != "qpos")  # fmt: skip

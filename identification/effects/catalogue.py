@@ -48,12 +48,12 @@ def all_effects(
         turns: periods in a turn of a hinge that are tried.
         asked: names of effects that act wherever they may, also on shafts that turn on and on.
     """
-    own = spec.copy().compile()
+    compiled = spec.copy().compile()
     return (
         *joint_effects(axes, turns, asked),
         *body_effects(spec),
         *input_effects(drives(log)),
-        *sensor_effects(own, log.output_names, axes),
+        *sensor_effects(compiled, log.output_names, axes),
     )
 
 

@@ -179,8 +179,8 @@ class Candidate:
     @property
     def free(self) -> tuple[str, ...]:
         """The sizes that are estimated, by the names of the plant's parameters."""
-        own = zip(self.sizes, self.effect.sizes, strict=True)
-        return tuple(name for name, size in own if size.present is None)
+        sizes = zip(self.sizes, self.effect.sizes, strict=True)
+        return tuple(name for name, size in sizes if size.present is None)
 
     @property
     def estimated(self) -> tuple[str, ...]:
@@ -191,8 +191,8 @@ class Candidate:
     @property
     def whole(self) -> dict[str, float]:
         """Values of the sizes that can have only one value."""
-        own = zip(self.sizes, self.effect.sizes, strict=True)
-        return {name: size.present for name, size in own if size.present is not None}
+        sizes = zip(self.sizes, self.effect.sizes, strict=True)
+        return {name: size.present for name, size in sizes if size.present is not None}
 
     @property
     def fixed(self) -> dict[str, float]:

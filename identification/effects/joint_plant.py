@@ -99,13 +99,13 @@ def refuse_unfit_own(
 ) -> None:
     """Refuse own effects at a place that is not there, or with functions that fail."""
     for element, things in ((JOINT, joints), (INPUT, actuators)):
-        own = [e for e in effects if {h.name for h in element.hooks} & {*e.hooks}]
-        for effect in own:
+        fitting = [e for e in effects if {h.name for h in element.hooks} & {*e.hooks}]
+        for effect in fitting:
             for place in filter(None, effect.places.values()):
                 if place.removeprefix("@") not in things:
                     what = f"{element.name} of effect {effect.name!r}:"
                     raise unknown_name(what, place.removeprefix("@"), things)
-        refuse_unfit_functions(element, terms_of(own, element))
+        refuse_unfit_functions(element, terms_of(fitting, element))
     for effect in effects:
         for hook in JOINT.hooks:
             if hook.name in effect.hooks:

@@ -208,8 +208,8 @@ class JointPlant:
         if not self.leaves_out:
             self.gears.refuse_stateless(self.needed_states, names, values)
         known = {p.name for p in self.bare.parameters}
-        own = [k for k, name in enumerate(names) if name in known]
-        start, numbers = self.bare.settings([names[k] for k in own], values[:, own])
+        shared = [k for k, name in enumerate(names) if name in known]
+        start, numbers = self.bare.settings([names[k] for k in shared], values[:, shared])
         others = [k for k, name in enumerate(names) if name not in known]
         bodies = self._bodies(names, values, numbers)
         rows = self._rows([names[k] for k in others], values[:, others])

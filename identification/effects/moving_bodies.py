@@ -105,8 +105,8 @@ class Felt:
 
 def _label(model: mujoco.MjModel, b: int) -> str:
     """Returns the name of a body, or that of its first joint."""
-    own = model.body(b).name
-    return own or (model.joint(model.body_jntadr[b]).name if model.body_jntnum[b] else "")
+    name = model.body(b).name
+    return name or (model.joint(model.body_jntadr[b]).name if model.body_jntnum[b] else "")
 
 
 def _points(model: mujoco.MjModel, b: int) -> list[np.ndarray]:
@@ -115,9 +115,9 @@ def _points(model: mujoco.MjModel, b: int) -> list[np.ndarray]:
         (model.nsite, model.site_bodyid, model.site_pos),
         (model.ngeom, model.geom_bodyid, model.geom_pos),
     ):
-        own = [np.array(pos[i]) for i in range(n) if of[i] == b]
-        if any(p.any() for p in own):
-            return own
+        places = [np.array(pos[i]) for i in range(n) if of[i] == b]
+        if any(p.any() for p in places):
+            return places
     return []
 
 

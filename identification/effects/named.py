@@ -34,9 +34,9 @@ def phrase_there(candidate: Candidate, plant: Plant) -> str:
     An effect at several joints reads another neighbour at each: its words then name none.
     """
     effect, joints = candidate.effect, joints_of(candidate)
-    said = effect.phrase or effect.name.replace("_", " ")
+    phrase = effect.phrase or effect.name.replace("_", " ")
     name = neighbour(effect.name, joints[0], plant) if len(joints) == 1 else ""
-    return said.replace("of the joint be", f"of {name}, the joint be") if name else said
+    return phrase.replace("of the joint be", f"of {name}, the joint be") if name else phrase
 
 
 # What words that name no effect mean most likely.
@@ -68,8 +68,8 @@ def unknown_effect(
     """Returns the error of an unknown effect; it lists the good names and explains `slide_`."""
     names = [e.name for e in effects]
     note = about_names(name, names)
-    said = str(unknown_name(what, name, names, likely or nearest(effect_of(name), names)))
-    return InputError(f"{said}.{note}" if note else said)
+    text = str(unknown_name(what, name, names, likely or nearest(effect_of(name), names)))
+    return InputError(f"{text}.{note}" if note else text)
 
 
 def unknown_number(name: str, effects: Sequence[Effect], is_free: bool = True) -> InputError:
@@ -82,9 +82,9 @@ def unknown_number(name: str, effects: Sequence[Effect], is_free: bool = True) -
     """
     head, (whole, at, place) = effect_of(name), name.partition("@")
     size = whole[len(head) + 1 :]
-    own = next((e for e in effects if e.name == head), None)
+    effect = next((e for e in effects if e.name == head), None)
     every = [n for e in effects for n in _numbers(e, is_free)]
-    if own is None:
+    if effect is None:
         if is_free and (path := damping_of(name, effects)) is not None:
             return InputError(
                 f"{name!r} is no number of an effect: viscous friction is a number that every joint"
@@ -98,18 +98,18 @@ def unknown_number(name: str, effects: Sequence[Effect], is_free: bool = True) -
             f"{name!r} is neither a path into the model, such as joint/NAME.damping, nor a number"
             f" of an effect: {error}"
         )
-    numbers = _numbers(own, is_free)
+    numbers = _numbers(effect, is_free)
     # of a robot with slides and hinges each kind has effects of its own
     plain = head.removeprefix(SLIDE)
     both = [n for n in every if at and effect_of(n).removeprefix(SLIDE) == plain]
     kin = [n for n in both if n.partition(".")[2].startswith(f"{size}@" if size else "")]
-    there = [n for n in kin if n.endswith(f"@{place}")] or [
+    numbered = [n for n in kin if n.endswith(f"@{place}")] or [
         n for n in both if n.endswith(f"@{place}") and effect_of(n) != head
     ]
-    if there:
-        return unknown_name(f"number of {head}:", name, there, nearest(name, there, NEAR))
+    if numbered:
+        return unknown_name(f"number of {head}:", name, numbered, nearest(name, numbered, NEAR))
     if at and any(n.startswith(f"{head}.{size}@") for n in numbers):
-        known = {at[1:]: where.partition(" ")[0] for where, at in own.places.items() if at}
+        known = {at[1:]: where.partition(" ")[0] for where, at in effect.places.items() if at}
         (kind,) = set(known.values())
         at_all = {n.partition("@")[2]: n for n in kin}
         near = nearest(place, at_all)
@@ -140,25 +140,25 @@ def _meant(name: str, numbers: Sequence[str]) -> str | None:
     Its effect is the nearest of those that have such a number there, else of those that act there.
     """
     head, (_, at, place) = effect_of(name), name.partition("@")
-    there = [n for n in numbers if at and n.endswith(f"@{place}")]
-    if at and not there:  # the place is misspelt too
+    numbered = [n for n in numbers if at and n.endswith(f"@{place}")]
+    if at and not numbered:  # the place is misspelt too
         near = nearest(place, {n.partition("@")[2] for n in numbers})
-        there = [n for n in numbers if near and n.endswith(f"@{near}")]
+        numbered = [n for n in numbers if near and n.endswith(f"@{near}")]
         place = near or place
-    there = there or list(numbers)
+    numbered = numbered or list(numbers)
     # without an effect, a size and a place are the whole name
-    alone = [n for n in there if at and n.partition(".")[2] == f"{head}@{place}"]
+    alone = [n for n in numbered if at and n.partition(".")[2] == f"{head}@{place}"]
     if at and not alone:  # the place is unknown
-        alone = [n for n in there if n.partition(".")[2].startswith(f"{head}@")]
+        alone = [n for n in numbered if n.partition(".")[2].startswith(f"{head}@")]
     if alone:
         return nearest(name, alone, 0.0)
-    same = [n for n in there if n.partition(".")[2] == name[len(head) :].lstrip(".")]
-    usual = [n for n in there if effect_of(n).removeprefix(SLIDE) == USUAL.get(head)]
+    same = [n for n in numbered if n.partition(".")[2] == name[len(head) :].lstrip(".")]
+    usual = [n for n in numbered if effect_of(n).removeprefix(SLIDE) == USUAL.get(head)]
     if usual and not same:
         return usual[0]
-    for some in (same, there):
+    for some in (same, numbered):
         if (found := nearest(name, some, NEAR)) is not None:
             return found
-    heads = sorted({effect_of(n) for n in there}, key=len)
+    heads = sorted({effect_of(n) for n in numbered}, key=len)
     near = nearest(head, heads) or next((h for h in heads if head in h), None)
-    return next((n for n in there if effect_of(n) == near), None)
+    return next((n for n in numbered if effect_of(n) == near), None)

@@ -164,17 +164,17 @@ def read_told_model(source: str | Path) -> tuple[mujoco.MjSpec, str]:
 
 def with_rows(spec: mujoco.MjSpec, axes: Sequence[Axis], layout: JointLayout) -> mujoco.MjModel:
     """Returns the compiled model with a row of effects on some joints, all their numbers zero."""
-    own, spec = spec.copy().compile(), spec.copy()
+    bare, spec = spec.copy().compile(), spec.copy()
     joints = {joint.name: joint for joint in spec.joints if int(joint.type) in _HELD}
     for axis in axes:
         if axis.joint not in joints:
             raise unknown_name("hinge or slide joint", axis.joint, joints)
-        given = own.jnt_user[own.joint(axis.joint).id]
+        given = bare.jnt_user[bare.joint(axis.joint).id]
         row = np.zeros(layout.entries)
-        row[STOP], row[-2], row[-1] = stopping_steps(own.nv) * own.opt.timestep, layout.key, TAG
+        row[STOP], row[-2], row[-1] = stopping_steps(bare.nv) * bare.opt.timestep, layout.key, TAG
         row[REACH:FIRST] = reached(axis)
         joints[axis.joint].userdata = np.concatenate([given, row])
-    spec.nuser_jnt = own.nuser_jnt + layout.entries
+    spec.nuser_jnt = bare.nuser_jnt + layout.entries
     return movable(spec) if layout.has_bodies else spec.compile()
 
 

@@ -69,13 +69,13 @@ def refuse_misplaced(effects: Sequence[Effect], elements: Sequence[Element]) -> 
         raise InputError(f"two effects are called {twice[0]!r}; rename one")
     for effect in effects:
         if sum(_acts_on(effect, element) for element in elements) != 1:
-            own = f"the hooks {', '.join(effect.hooks)}" if effect.hooks else "no hook"
+            hooks = f"the hooks {', '.join(effect.hooks)}" if effect.hooks else "no hook"
             known = "; ".join(
                 f"{element.name}: {', '.join(hook.name for hook in element.hooks)}"
                 for element in elements
             )
             raise InputError(
-                f"effect {effect.name!r} has {own}; give it hooks of one of the things that this"
+                f"effect {effect.name!r} has {hooks}; give it hooks of one of the things that this"
                 f" robot has ({known})"
             )
 
@@ -200,11 +200,11 @@ def changed_outputs(
     first, apart = signals.ctypes.data, signals.strides[0]
     for i in where:
         for k, row in enumerate(table_at(acting, things[i], values, n)):
-            own = slice(k * len(signals), (k + 1) * len(signals))
-            signals[:, :4] = np.moveaxis(readings[:, own, :, i], 0, 1)
+            columns = slice(k * len(signals), (k + 1) * len(signals))
+            signals[:, :4] = np.moveaxis(readings[:, columns, :, i], 0, 1)
             for one in range(len(signals)):  # an effect may read earlier samples of the same row
                 run(first + one * apart, y.shape[1], row.ctypes.data)
-            y[own, :, i] = signals[:, 4]
+            y[columns, :, i] = signals[:, 4]
     return y
 
 

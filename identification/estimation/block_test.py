@@ -93,12 +93,12 @@ def make_blocks(G: np.ndarray, Z: np.ndarray) -> Blocks:
     R = over[:, None, None] @ K @ over[:, None, None]
     traces = np.trace(R, axis1=3, axis2=4)
     squares = np.einsum("jbc,jbc->j", traces, traces) + np.einsum("jbcpq,jbcqp->j", R, R)
-    crossed = np.einsum("jbcpq,jbcpq->j", R, R)
-    rank, told = _rank(root), _rank(over)
-    is_told = (told == rank) & (rank > 0)  # no direction is left without a scatter of its own
+    products = np.einsum("jbcpq,jbcpq->j", R, R)
+    rank, felt = _rank(root), _rank(over)
+    is_told = (felt == rank) & (rank > 0)  # no direction is left without a scatter of its own
     with np.errstate(divide="ignore", invalid="ignore"):
         freedom = np.where(is_told, rank * (rank + 1) / squares, 0.0)
-        trace_freedom = np.where(is_told, rank**2 / crossed, 0.0)
+        trace_freedom = np.where(is_told, rank**2 / products, 0.0)
     return Blocks(
         root=root, G=G, over=over, rank=rank, freedom=freedom, trace_freedom=trace_freedom
     )

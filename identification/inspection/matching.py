@@ -85,8 +85,8 @@ def match(channels: Sequence[Channel], found: Inspection) -> tuple[Match, ...]:
 
 def _alike(channel: Channel, name: str) -> int:
     """Returns how many words a column shares with a channel or its joint, numbers among them."""
-    own = {*_words(channel.name), *_words(channel.joint)}
-    return len(own & {*_words(name)})
+    names = {*_words(channel.name), *_words(channel.joint)}
+    return len(names & {*_words(name)})
 
 
 def _words(name: str) -> set[str]:

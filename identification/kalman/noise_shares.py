@@ -112,9 +112,9 @@ def _moved(
     noise, ny, nu = now.noise, len(now.sensors), len(now.inputs)
     variances = noise.of_outputs(ny) ** 2 * now.sensors**power
     for kind in dict.fromkeys(kinds):
-        mine = np.array([k == kind for k in kinds])
-        least = LEAST_SHARE**2 * variances[mine].mean()
-        variances[mine] = np.maximum(variances[mine], least)
+        chosen = np.array([k == kind for k in kinds])
+        least = LEAST_SHARE**2 * variances[chosen].mean()
+        variances[chosen] = np.maximum(variances[chosen], least)
     scale = variances.mean()
     outputs = tuple(np.sqrt(variances / scale).tolist()) if ny > 1 else ()
     of_inputs = noise.of_inputs(nu) ** 2

@@ -119,7 +119,7 @@ def _forcing(
         always if of is ALWAYS else np.array([course(along.time) for course in of])
         for of in courses
     ]
-    moving = [k for k, own in enumerate(entries) if own]
+    moving = [k for k, entry in enumerate(entries) if entry]
     changes = (_change(entries[k], inputs[1 + k], inputs[0], factors[k]) for k in moving)
     found = Points(along).each(changes, along.weighted)
     g = []
@@ -201,7 +201,7 @@ def _outputs(
     place = np.cumsum(linear.felt) - 1  # of an entry of the state among those that are felt
     wanted, where = np.unique(_indices(predictor), return_inverse=True)
     δx = respond(linear.A, linear.Γ, first, g, linear.along.intervals, place[wanted])
-    y, q, v = (δx[..., own] for own in where.reshape(3, -1))
+    y, q, v = (δx[..., columns] for columns in where.reshape(3, -1))
     if _are_perfect(predictor, rows, here):
         return y
     nominal = predictor.said(rows[:1], here)

@@ -67,7 +67,7 @@ def differences(
     h, nx = scheme.step, 2 * at.model.nv + at.model.na
     if scheme.is_central:
         pairs = zip(points.each(_shifted(at, h)), points.each(_shifted(at, -h)), strict=True)
-        each = [(there - back) / (2 * h) for there, back in pairs]
+        each = [(ahead - back) / (2 * h) for ahead, back in pairs]
     else:
         over = intervals or Intervals(np.arange(len(at.time)), np.ones(len(at.time)))
         each = [change / h for change in points.each(_shifted(at, h, moved), over)]
@@ -137,14 +137,14 @@ def shift_position(model: mujoco.MjModel, qpos: np.ndarray, dof: int, by: float)
         by: how far [m or rad].
     """
     joint = int(model.dof_jntid[dof])
-    kind, own = model.jnt_type[joint], dof - int(model.jnt_dofadr[joint])
+    kind, place = model.jnt_type[joint], dof - int(model.jnt_dofadr[joint])
     at = int(model.jnt_qposadr[joint])
     out = qpos.copy()
-    if kind == BALL or (kind == FREE and own >= 3):
-        at, axis = at + (3 if kind == FREE else 0), own - (3 if kind == FREE else 0)
+    if kind == BALL or (kind == FREE and place >= 3):
+        at, axis = at + (3 if kind == FREE else 0), place - (3 if kind == FREE else 0)
         out[:, at : at + 4] = _turned(qpos[:, at : at + 4], by * np.eye(3)[axis])
     else:
-        out[:, at + own] += by
+        out[:, at + place] += by
     return out
 
 

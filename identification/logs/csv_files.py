@@ -185,10 +185,10 @@ def write_log(log: Log, path: str | os.PathLike[str], digits: int | None = None)
     if digits is not None and digits < 1:
         raise InputError(f"digits = {digits} leaves nothing of a number; give 1 to 17, or None")
     sidecar = path.with_suffix(".toml")
-    said = _toml(log)
+    text = _toml(log)
     write_text(path, _csv(log, digits))
-    if said or sidecar.exists():
-        write_text(sidecar, said)
+    if text or sidecar.exists():
+        write_text(sidecar, text)
 
 
 def _csv(log: Log, digits: int | None) -> str:

@@ -174,8 +174,8 @@ def _numbers(message: Any, name: str, labels: Sequence[str] = ()) -> Numbers:
     if isinstance(message, str) or message is None:
         return {}
     if is_dataclass(message):
-        own = [getattr(message, n) for n in _NAMES if hasattr(message, n)]
-        labels = next((tuple(v) for v in own if isinstance(v, list)), labels)
+        numbers = [getattr(message, n) for n in _NAMES if hasattr(message, n)]
+        labels = next((tuple(v) for v in numbers if isinstance(v, list)), labels)
         parts = {f.name: getattr(message, f.name) for f in fields(message)}
         return {
             column: number

@@ -97,11 +97,11 @@ def _frames(
     stamp: Callable[[], np.ndarray], frame: Callable[[], np.ndarray], fps: object
 ) -> np.ndarray:
     """Returns the stamps of frames [s], shape (n,), in all digits where they are frame / fps."""
-    told = stamp()
+    stamped = stamp()
     if not isinstance(fps, int | float) or not fps > 0:
-        return told
+        return stamped
     exact = frame() / fps
-    return exact if np.all(np.abs(exact - told) <= 1e-3 / fps) else told
+    return exact if np.all(np.abs(exact - stamped) <= 1e-3 / fps) else stamped
 
 
 def _width(chunked: Any) -> int:
@@ -191,16 +191,16 @@ def _episode(home: Path, number: int) -> Any:
     import pyarrow.compute as pc
 
     files = sorted((home / "data").rglob("*.parquet"))
-    own = [file for file in files if file.stem == f"episode_{number:06d}"]
+    matching = [file for file in files if file.stem == f"episode_{number:06d}"]
     found: list[int] = []
-    for file in own or files:
+    for file in matching or files:
         rows = _opened(file, [EPISODE]).column(EPISODE)
         found += pc.unique(rows).to_pylist()
         if number in found:
             content = _opened(file)
             return content.filter(pc.equal(content.column(EPISODE), pa.scalar(number)))
-    told = f"episodes {min(found)} to {max(found)}" if found else "no file with episodes below data"
-    raise InputError(f"{home} has no episode {number}; it has {told}")
+    text = f"episodes {min(found)} to {max(found)}" if found else "no file with episodes below data"
+    raise InputError(f"{home} has no episode {number}; it has {text}")
 
 
 def _opened(path: Path, columns: list[str] | None = None) -> Any:

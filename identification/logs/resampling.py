@@ -90,9 +90,9 @@ def even_out(
     gaps += [gap for c in steady for gap in find_pauses(name, c, n, h)]
     gaps += [gap for c in steady for gap in find_lost_rows(c, time)]
     why = _why(time, channels)
-    said = _sentence(name, why, [*timed, *steady], t, h) + _shared_sentence(time, channels)
-    said += _gaps_sentence(gaps)
-    return Even(t, out, said, tuple(dict.fromkeys((gap.begin, gap.end) for gap in gaps)))
+    text = _sentence(name, why, [*timed, *steady], t, h) + _shared_sentence(time, channels)
+    text += _gaps_sentence(gaps)
+    return Even(t, out, text, tuple(dict.fromkeys((gap.begin, gap.end) for gap in gaps)))
 
 
 def on_a_grid(

@@ -134,16 +134,16 @@ def refuse_other_unit(unit: str, expected: str, what: str) -> None:
     """Refuse a unit that is not the one in which a number is read."""
     if unit == expected:
         return
-    said, right = dimension(unit), dimension(expected)
-    if said is None or right is None or said.powers != right.powers:
+    given, right = dimension(unit), dimension(expected)
+    if given is None or right is None or given.powers != right.powers:
         known = repr(expected) if expected else "no unit"
         raise InputError(
             f"{what} has the unit {unit!r}, and its numbers are in {known}: give them so"
         )
-    if not said.is_si:
+    if not given.is_si:
         raise InputError(
             f"{what} has the unit {unit!r}, and its numbers are in {expected!r}:"
-            f" multiply them by {said.factor:.9g} and write unit = {expected!r}"
+            f" multiply them by {given.factor:.9g} and write unit = {expected!r}"
         )
 
 

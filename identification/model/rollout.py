@@ -202,9 +202,9 @@ class Simulations:
             try:
                 run = batch.rollout(steps, held, record=tuple(record), ids=at)
             except SimulationError as error:  # of the engine, which no other value may meet
-                said = " ".join(str(error).rpartition("simulation ")[2].split())
+                text = " ".join(str(error).rpartition("simulation ")[2].split())
                 raise InputError(
-                    f"MuJoCo refuses to simulate the model with these values ({said}); correct the"
+                    f"MuJoCo refuses to simulate the model with these values ({text}); correct the"
                     " model or the values"
                 ) from error
         reached = np.array(batch.bind("time")[which])

@@ -61,8 +61,8 @@ def _said(returned: Any) -> str:
 def _reason(error: Exception) -> str:
     """Returns the line of numba's page that says what it is about."""
     lines = [line.strip() for line in str(error).splitlines()]
-    said = [line for line in lines if line and not line.startswith("Failed in")]
-    reason = said[0] if said else type(error).__name__
+    reasons = [line for line in lines if line and not line.startswith("Failed in")]
+    reason = reasons[0] if reasons else type(error).__name__
     return reason if len(reason) <= _LONGEST else reason[: _LONGEST - 1] + "…"
 
 

@@ -52,8 +52,8 @@ class RobotDiscoveryFiles(DiscoveryFiles):
         named = {n for each in found.named for n in (*each.candidate.sizes, *each.candidate.fixed)}
         kept = {*found.nominal.values, *named}
         values = {n: v for n, v in found.final.values.items() if n in kept}
-        own = found.final.own_values
-        write_robot(self.robot, values, folder / "robot.toml", place, own_values=own)
+        of_records = found.final.own_values
+        write_robot(self.robot, values, folder / "robot.toml", place, own_values=of_records)
         return {}
 
     @cached_property

@@ -114,10 +114,10 @@ def _given(found: RobotFit, log: Log) -> dict[str, float]:
 
 def _values(found: RobotFit, log: Log) -> dict[str, float]:
     """Returns the values of the fitted model on a record, those of the record's own among them."""
-    own: Mapping[str, tuple[float, float]] = {}
+    of_log: Mapping[str, tuple[float, float]] = {}
     if isinstance(found.found, RecordsFit):
-        own = found.found.own.get(log.name, {})
-    of_record = {n: value for n, (value, _) in own.items()}
+        of_log = found.found.own.get(log.name, {})
+    of_record = {n: value for n, (value, _) in of_log.items()}
     return {**found.shared, **of_record, **_given(found, log)}
 
 

@@ -56,13 +56,13 @@ def without_untold(robot: Robot) -> Robot:
             f"{which} does not tell {listed(names)}; free what it tells, such as the damping of a"
             f" joint, in {file.path}, or take a log with inputs that are not all zero"
         )
-    told = replace(
+    model = replace(
         file,
         free=tuple(n for n in file.free if n not in untold),
         own=tuple(n for n in file.own if n not in untold),
         records={n: record for n, record in file.records.items() if n not in untold},
     )
-    fitted = robot_of(told, robot.log, robot.others, robot.records)
+    fitted = robot_of(model, robot.log, robot.others, robot.records)
     it, keeps = ("it", "keeps its value") if len(names) == 1 else ("they", "keep their values")
     remark = f"{which[0].upper()}{which[1:]} does not tell {listed(names)}: {it} {keeps}."
     return replace(fitted, remarks=(*fitted.remarks, remark))

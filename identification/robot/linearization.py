@@ -67,9 +67,9 @@ def operating_points(
         return along_log(predictor, times), names
     none = np.empty((1, 0))
     known, numbers = predictor.settings(none)
-    begun = predictor.begun(none, known)
+    first = predictor.begun(none, known)
     model = with_numbers(predictor.plant.model, numbers, 0)
-    start = State(*(np.atleast_2d(getattr(begun, f))[0] for f in ("qpos", "qvel", "act")))
+    start = State(*(np.atleast_2d(getattr(first, f))[0] for f in ("qpos", "qvel", "act")))
     return at_rest(model, start, _held(model, inputs or {})), names
 
 

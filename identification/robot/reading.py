@@ -82,15 +82,15 @@ def read_robot(
     touches = find_touches(robot, every)
     refuse_touching(robot, every, touches)  # no step is short enough for a body inside another
     contradicted = is_contradicted(robot, every, touches)
-    said = touch_sentence(robot, every, touches, contradicted)
-    with told_of_touches(said if contradicted else ""):
+    text = touch_sentence(robot, every, touches, contradicted)
+    with told_of_touches(text if contradicted else ""):
         refuse_coarse_steps(robot)
         refuse_absurd_start(robot)
         for record in records:
             axes(robot.plant.model, record, file.trust)  # a sensor that froze is refused
         for measured in every:
             refuse_miswired(robot, measured)
-    robot = replace(robot, touches=said)
+    robot = replace(robot, touches=text)
     return replace(robot, remarks=_remarks(robot, every))
 
 
@@ -136,25 +136,25 @@ def doubtful(robot: Robot) -> list[str]:
     They say that a free run of the robot's log begins elsewhere than the log does, in short, that
     the model clips inputs, and that its geoms touch.
     """
-    said = None
+    text = None
     if robot.file.horizon is None:
-        said = made_up_sentence(robot.file, robot.plant.model, robot.log)
+        text = made_up_sentence(robot.file, robot.plant.model, robot.log)
     clipped = (clipped_sentence(robot.plant.model, log) for log in (robot.log, *robot.others))
-    return [*filter(None, (said, *clipped, robot.touches))]
+    return [*filter(None, (text, *clipped, robot.touches))]
 
 
 def _remarks(robot: Robot, logs: Sequence[Log]) -> tuple[str, ...]:
     """Returns what was taken for granted, a sentence each."""
     file, model = robot.file, robot.plant.model
     if file.horizon is None:
-        begun = [of(file, model, log) for log in logs for of in (start_sentence, apart_sentence)]
+        starts = [of(file, model, log) for log in logs for of in (start_sentence, apart_sentence)]
     else:  # each window begins where it was measured
-        begun = [unused_sentence(file, model, robot.log)]
+        starts = [unused_sentence(file, model, robot.log)]
     inertias = (inertias_sentence(file), carried_sentence(robot))
     still = (still_sentence(log) for log in logs)
     resampled = (remark for log in logs for remark in log.remarks)
     clipped = (clipped_sentence(model, log) for log in logs)
-    of_logs = (*still, *resampled, *clipped, *begun, robot.touches)
+    of_logs = (*still, *resampled, *clipped, *starts, robot.touches)
     return tuple(filter(None, (*robot.remarks, *inertias, *of_logs)))
 
 

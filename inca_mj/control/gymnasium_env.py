@@ -18,17 +18,7 @@ from inca_mj.control.environment import load_environment
 
 
 class GymnasiumEnv(gymnasium.Env[Any, np.ndarray]):
-    """One task of the robot for Gymnasium.
-
-    Args:
-        task: "hold", "reach" or "track".
-        seed: of the episodes; `reset(seed=...)` gives another.
-        render_mode: "rgb_array", or None.
-        options: further arguments of `load_environment`.
-
-    Raises:
-        InputError: for the reasons of `load_environment`.
-    """
+    """One task of the robot for Gymnasium; `load_gymnasium` makes it."""
 
     metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 100}  # noqa: RUF012
 

@@ -70,10 +70,10 @@ class Handle(control.Task):
 
     def initialize_episode(self, physics: Physics) -> None:
         """Put the robot at rest near its nominal start, with the pretension for its pose."""
-        own = self.robot.parameters
+        nominal = self.robot.parameters
         shift = self.random.uniform(-self.spread, self.spread)
-        values = {n: own[n].value + s for n, s in zip(POSE, shift, strict=True)}
-        self.begin = start(own.with_values(values), self.robot.geometry, self.robot.layout)
+        values = {n: nominal[n].value + s for n, s in zip(POSE, shift, strict=True)}
+        self.begin = start(nominal.with_values(values), self.robot.geometry, self.robot.layout)
         physics.begin(self.begin)
         self.path = self.draw_path(self.begin.pose[:3])
         self._mark(physics)
@@ -164,8 +164,8 @@ class Reach(Handle):
 
     def draw_path(self, begin: np.ndarray) -> Path:
         """Returns a random target in a box about the nominal start."""
-        own = self.robot.parameters
-        centre = np.array([own[n].value for n in "xyz"])
+        nominal = self.robot.parameters
+        centre = np.array([nominal[n].value for n in "xyz"])
         return _still(centre + self.random.uniform(-REACH, REACH))
 
 

@@ -87,15 +87,15 @@ def interpolation_errors(
     """
     out = []
     for point in random_points(grid, points, seed):
-        own, other = linearize(robot, _pose(robot, point)).with_tensions, grid.at(point)
-        G, Ĝ = own.response(BAND), other.response(BAND)
+        exact, other = linearize(robot, _pose(robot, point)).with_tensions, grid.at(point)
+        G, Ĝ = exact.response(BAND), other.response(BAND)
         error = np.linalg.norm(G - Ĝ, axis=(1, 2)) / np.linalg.norm(G, axis=(1, 2))
         out.append(
             InterpolationError(
                 point=point,
-                matrix=float(np.linalg.norm(own.A - other.A) / np.linalg.norm(own.A)),
+                matrix=float(np.linalg.norm(exact.A - other.A) / np.linalg.norm(exact.A)),
                 response=float(error.max()),
-                eigenvalue=_eigenvalue_error(own, other),
+                eigenvalue=_eigenvalue_error(exact, other),
             )
         )
     return tuple(out)

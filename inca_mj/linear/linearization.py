@@ -185,13 +185,13 @@ def held_at(robot: Twin, poses: Sequence[Sequence[float]]) -> OperatingPoints:
         DivergenceError: the accelerations are not finite.
     """
     starts = [_start(robot, pose) for pose in poses]
-    own = robot.start
+    start = robot.start
     R = at_drives("R", robot.parameters.values())
     states = [start_state(begin) for begin in starts]
     qpos = np.array([s.qpos for s in states])
     for row, begin in zip(qpos, starts, strict=True):
-        ε = (own.strain + begin.strain) / 2
-        row[FIRST_ANGLE:] = (1 + ε) * (own.no_load_length - begin.no_load_length) / R
+        ε = (start.strain + begin.strain) / 2
+        row[FIRST_ANGLE:] = (1 + ε) * (start.no_load_length - begin.no_load_length) / R
     robot.state()  # its law is installed
     point = OperatingPoints(
         model=robot.model,

@@ -163,9 +163,9 @@ def common_time(scenes: Sequence[Scene]) -> tuple[float, float]:
     spans = [(float(s.run.time[0]), float(s.run.time[-1])) for s in scenes]
     begin, end = max(a for a, _ in spans), min(b for _, b in spans)
     if not begin < end:
-        said = " and ".join(f"[{a:g}, {b:g}] s" for a, b in spans)
+        text = " and ".join(f"[{a:g}, {b:g}] s" for a, b in spans)
         raise InputError(
-            f"the runs have no common time: they are of {said}; give runs of the same time"
+            f"the runs have no common time: they are of {text}; give runs of the same time"
         )
     return begin, end
 

@@ -86,9 +86,9 @@ def play(
 
     The window has `is_running`, `lock` and `sync`, as the handle of `mujoco.viewer`.
     """
-    begun, length = clock(), float(run.time[-1] - run.time[0])
+    first, length = clock(), float(run.time[-1] - run.time[0])
     while window.is_running():
-        now = run.time[0] + (speed * (clock() - begun)) % length
+        now = run.time[0] + (speed * (clock() - first)) % length
         with window.lock():
             show(run, data, int(np.searchsorted(run.time, now, side="right")) - 1)
         window.sync()

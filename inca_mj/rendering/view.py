@@ -90,18 +90,18 @@ def view(
     """Opens a view of width x height pixels; `cable` is the radius cables are drawn with [m]."""
     if camera not in CAMERAS:
         raise unknown_name("camera", camera, CAMERAS)
-    own = copy.copy(model)
-    own.vis.global_.offwidth, own.vis.global_.offheight = width, height
-    own.vis.quality.offsamples = _SAMPLES
-    own.tendon_width[:] = cable
-    number = own.camera(camera).id
+    copied = copy.copy(model)
+    copied.vis.global_.offwidth, copied.vis.global_.offheight = width, height
+    copied.vis.quality.offsamples = _SAMPLES
+    copied.tendon_width[:] = cable
+    number = copied.camera(camera).id
     narrow = max(1.0, _WIDE * height / width)
-    own.cam_fovy[number] = 2 * degrees(atan(narrow * tan(radians(own.cam_fovy[number]) / 2)))
+    copied.cam_fovy[number] = 2 * degrees(atan(narrow * tan(radians(copied.cam_fovy[number]) / 2)))
     with drawing_thread() as thread, ExitStack() as opened:
         made = ExitStack()
         opened.callback(lambda: thread.submit(made.close).result())
-        draws = thread.submit(made.enter_context, renderer(own, width, height)).result()
-        yield View(camera, own, mujoco.MjData(own), mujoco.MjData(own), draws, thread)
+        draws = thread.submit(made.enter_context, renderer(copied, width, height)).result()
+        yield View(camera, copied, mujoco.MjData(copied), mujoco.MjData(copied), draws, thread)
 
 
 def _place(model: mujoco.MjModel, data: mujoco.MjData, qpos: np.ndarray) -> None:

@@ -60,9 +60,9 @@ def calibration_verdict(found: Calibration) -> list[str]:
             " effect that the twin lacks: run inca discover on the same logs."
         )
     if "exit" in found.spread.points:
-        own, together = point_std(found, "exit")
+        relative, together = point_std(found, "exit")
         lines.append(
-            f"Exit points are known to {1e3 * own:.2g} mm rms relative to one another, and to"
+            f"Exit points are known to {1e3 * relative:.2g} mm rms relative to one another, and to"
             f" {1e3 * together:.2g} mm rms in the frame: no angle of a motor tells where the frame"
             " as a whole stands."
         )
@@ -155,8 +155,8 @@ def point_rows(found: Calibration) -> list[tuple[str, ...]]:
 
 def gap_rows(found: Calibration) -> list[tuple[str, ...]]:
     """Returns rows of records: name, role, and the gap on unseen samples before and after."""
-    told = alike([rms for g in found.unseen for rms in (g.before, g.after)], "rad")
-    pairs = zip(told[::2], told[1::2], strict=True)
+    texts = alike([rms for g in found.unseen for rms in (g.before, g.after)], "rad")
+    pairs = zip(texts[::2], texts[1::2], strict=True)
     return [(g.name, g.role, *pair) for g, pair in zip(found.unseen, pairs, strict=True)]
 
 

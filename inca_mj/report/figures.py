@@ -218,9 +218,9 @@ def drives_figure(found: Calibration) -> Figure:
     figure = Figure((9.5, 2.0 * rows), layout="constrained")
     panels = np.atleast_1d(figure.subplots(rows, columns, squeeze=False)).ravel()
     for ax, name in zip(panels, names, strict=False):
-        own = 100 * np.array([found.values[f"{name}@{i}"] for i in k])
+        values = 100 * np.array([found.values[f"{name}@{i}"] for i in k])
         std = 100 * np.array([found.std[f"{name}@{i}"] for i in k])
-        ax.errorbar(k, own, std, fmt="o", color=SERIES[0], ms=4, lw=1)
+        ax.errorbar(k, values, std, fmt="o", color=SERIES[0], ms=4, lw=1)
         ax.axhline(0, color=GREY, lw=0.8)
         what = literal(describe_parameter(parameters[name]))
         ax.set_title(f"{what} [%]", loc="left", color=INK, fontsize=8)

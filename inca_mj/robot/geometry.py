@@ -153,8 +153,8 @@ def write_geometry(geometry: Geometry, path: str | Path) -> Path:
     Raises:
         InputError: the file cannot be written.
     """
-    said = {"assumed": geometry.assumed, "source": geometry.source}
-    lines = [f"{name} = {json.dumps(value)}" for name, value in said.items()]
+    facts = {"assumed": geometry.assumed, "source": geometry.source}
+    lines = [f"{name} = {json.dumps(value)}" for name, value in facts.items()]
     for name, about in (("exits", "exit points A in O"), ("connectors", "connectors B in P")):
         rows = [f"  [{', '.join(repr(float(x)) for x in row)}]," for row in getattr(geometry, name)]
         lines += ["", f"# {about} [m]", f"{name} = [", *rows, "]"]

@@ -61,8 +61,8 @@ def with_spread(parameters: ParameterSet) -> ParameterSet:
 
 def at_drives(name: str, values: Mapping[str, float]) -> np.ndarray:
     """Returns a parameter at each drive, (8,), in its unit; unknown deviations are zero."""
-    own = [values.get(f"{name}@{k}", 0.0) for k in range(1, DRIVES + 1)]
-    return values[name] * (1 + np.array(own))
+    each = [values.get(f"{name}@{k}", 0.0) for k in range(1, DRIVES + 1)]
+    return values[name] * (1 + np.array(each))
 
 
 def displaced(geometry: Geometry, values: Mapping[str, float]) -> Geometry:

@@ -106,13 +106,13 @@ def _clearance(poses: np.ndarray, geometry: Geometry, A: np.ndarray, u: np.ndarr
     R, P = pose_rotation(poses), poses[:, :3]
     ends = [(np.array(GRIP[0]), np.array(GRIP[1]), GRIP_RADIUS, np.zeros(DRIVES, bool))]
     for b in np.unique(geometry.B, axis=0):
-        own = np.linalg.norm(geometry.B - b, axis=1) < SHARED
+        shared = np.linalg.norm(geometry.B - b, axis=1) < SHARED
         if np.linalg.norm(b) > SHARED:
-            ends.append((np.zeros(3), b, ARM_RADIUS, own))
+            ends.append((np.zeros(3), b, ARM_RADIUS, shared))
     clearance = np.full(u.shape[:2], np.inf)
-    for begin, end, radius, own in ends:
+    for begin, end, radius, shared in ends:
         q, v = P + R @ begin, R @ (end - begin)
-        for k in np.flatnonzero(~own):
+        for k in np.flatnonzero(~shared):
             d = segment_distance(A[:, k], u[:, k], q, v) - radius
             clearance[:, k] = np.minimum(clearance[:, k], d)
     return clearance

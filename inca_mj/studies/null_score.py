@@ -119,10 +119,10 @@ def null_findings(records: Sequence[Record]) -> Findings:
     """Returns the rate of false names, with and without an error of the currents, and the names."""
     found, rows = {}, []
     for coloured in sorted({r["set.coloured"] for r in records}):
-        mine = [r for r in records if r["set.coloured"] is coloured]
-        false = wilson(sum(r["false_name"] for r in mine), len(mine))
-        below = float(np.mean([r["below_5_percent"] for r in mine]))
-        names = Counter(name for r in mine for name in r["names"])
+        chosen = [r for r in records if r["set.coloured"] is coloured]
+        false = wilson(sum(r["false_name"] for r in chosen), len(chosen))
+        below = float(np.mean([r["below_5_percent"] for r in chosen]))
+        names = Counter(name for r in chosen for name in r["names"])
         words = "and an unlogged error of the currents" if coloured else "encoders only"
         found["coloured" if coloured else "white"] = {
             "a_false_name": false, "below_5_percent": below, "names": dict(names.most_common()),

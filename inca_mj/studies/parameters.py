@@ -154,15 +154,15 @@ def excitation_findings(records: Sequence[Record]) -> Findings:
     names = list(dict.fromkeys(n for r in records for n in r["names"]))
     found, rows = {}, []
     for each in inputs:
-        mine = [r for r in records if r["set.input"] == each]
+        chosen = [r for r in records if r["set.input"] == each]
         std = {
-            n: _mean([r["std"][r["names"].index(n)] for r in mine if n in r["names"]])
+            n: _mean([r["std"][r["names"].index(n)] for r in chosen if n in r["names"]])
             for n in names
         }
-        worst = _mean([r["worst_std"] for r in mine])
-        kept = wilson(sum(r["allowed"] for r in mine), len(mine))
+        worst = _mean([r["worst_std"] for r in chosen])
+        kept = wilson(sum(r["allowed"] for r in chosen), len(chosen))
         found[each] = {"std": std, "worst_std": worst, "allowed": kept}
-        rows.append((each, len(mine), worst, *std.values(), said(kept)))
+        rows.append((each, len(chosen), worst, *std.values(), said(kept)))
     head = ("input", "robots", "worst direction", *names, "keeps the limits")
     text = "Relative std of estimates, from the Fisher information; geometric means over robots."
     table = Table(head, tuple(rows))

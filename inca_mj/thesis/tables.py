@@ -73,8 +73,8 @@ def step_table(number: str, fit: Fit, true: Mapping[str, float]) -> Table:
         if names[0] not in values:
             return _joined(true, names), FIXED, FIXED
         spread = [std[name] for name in names]
-        told = ", ".join(f"{s:.2g}" for s in spread) if np.isfinite(spread).all() else "unknown"
-        return _joined(true, names), _joined(values, names), told
+        text = ", ".join(f"{s:.2g}" for s in spread) if np.isfinite(spread).all() else "unknown"
+        return _joined(true, names), _joined(values, names), text
 
     head = ("simulated robot: true", "estimated", "std")
     return _beside(TABLES[number], head, ours)

@@ -146,7 +146,7 @@ SHORT_PLAIN_NOTE = (
     "The INCA 6D linearised about its start, for MuJoCo alone; the twin itself is inca6d.xml"
     " with the law of inca_mj."
 )
-_LAW = """
+LAW_NOTE = """
   INCA 6D, the twin. Parameter set {set}; geometry: {source}.
 
   This file needs the law of inca_mj. MuJoCo alone computes the rigid bodies, the torques of the
@@ -167,7 +167,7 @@ _LAW = """
 
   Actuators current_1 to current_8 take currents [A]; a positive current winds its cable in.
 """
-_PLAIN = """
+PLAIN_NOTE = """
   INCA 6D for MuJoCo alone. Parameter set {set}; geometry: {source}.
 
   This file needs nothing but MuJoCo and rests after a reset; drop it on the window of
@@ -184,16 +184,7 @@ _PLAIN = """
 """
 
 
-def law_notes(parameters: ParameterSet, geometry: Geometry) -> str:
-    """Returns the comment of a model file that needs the law."""
-    return _filled(_LAW, parameters, geometry)
-
-
-def plain_notes(parameters: ParameterSet, geometry: Geometry) -> str:
-    """Returns the comment of a model file that needs MuJoCo only."""
-    return _filled(_PLAIN, parameters, geometry)
-
-
-def _filled(text: str, parameters: ParameterSet, geometry: Geometry) -> str:
+def filled(text: str, parameters: ParameterSet, geometry: Geometry) -> str:
+    """Returns the comment of a model file, with what the model is made from."""
     source = geometry.source.replace("--", "- -")  # XML ends a comment at two hyphens
     return text.format(set=parameters.name, source=source, file="inca6d.xml")

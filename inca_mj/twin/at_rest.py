@@ -75,14 +75,14 @@ def change_at_rest(
     `geometry` has its connectors relative to the centre of mass, whose pose is given. All values
     are in SI units.
     """
-    there = [e for e in layout.effects if _touches(e, layout.settled) and present(e, values)]
-    if not there:
+    acting = [e for e in layout.effects if _touches(e, layout.settled) and present(e, values)]
+    if not acting:
         return None
     R = rotation(*pose[3:])
     r = pose[:3] + geometry.B @ R.T - geometry.A
     way, load, wider = np.zeros((DRIVES, 4)), np.zeros(6), np.zeros(DRIVES)
     radius = at_drives("R", values)
-    for effect in there:
+    for effect in acting:
         p = drive_values(effect, values)
         for k in range(DRIVES):
             s = _drive(rx=r[k, 0], ry=r[k, 1], rz=r[k, 2], d=float(np.linalg.norm(r[k])),
@@ -106,7 +106,7 @@ def change_at_rest(
         wider=wider if at_rest else np.zeros(DRIVES),
         d=d,
         values=values,
-        stiffening=tuple(e for e in there if "tension" in e.hooks) if at_rest else (),
+        stiffening=tuple(e for e in acting if "tension" in e.hooks) if at_rest else (),
     )
 
 

@@ -26,12 +26,13 @@ from inca_mj.robot.geometry import DRIVES, Geometry
 from inca_mj.robot.parameters import GRAVITY, POSE, TIMESTEP
 from inca_mj.robot.spread import EACH_DRIVE, at_drives, displaced
 from inca_mj.twin.appearance import (
+    LAW_NOTE,
     NEEDS_LAW,
     SHORT_LAW_NOTE,
     dress_drum,
     dress_platform,
     dress_world,
-    law_notes,
+    filled,
 )
 from inca_mj.twin.statics import activations, start
 
@@ -52,7 +53,7 @@ def build(
     Raises:
         InputError: the start pose admits no pretension (see `inca_mj.twin.statics.pretension`).
     """
-    spec = empty_model(NEEDS_LAW, law_notes(parameters, geometry), SHORT_LAW_NOTE, geometry)
+    spec = empty_model(NEEDS_LAW, filled(LAW_NOTE, parameters, geometry), SHORT_LAW_NOTE, geometry)
     layout = layout or Layout()
     _settings(spec, layout)
     _platform(spec, parameters, geometry, layout)
@@ -145,7 +146,7 @@ def _drive(
 ) -> None:
     """Adds drum, motor, cable and current actuator of drive k."""
     p = parameters.values()
-    own = {name: float(at_drives(name, p)[k - 1]) for name in EACH_DRIVE}
+    numbers = {name: float(at_drives(name, p)[k - 1]) for name in EACH_DRIVE}
     exit_point = np.array(geometry.exits[k - 1])
     placed = displaced(geometry, p).exits[k - 1]
     spec.worldbody.add_site(name=f"exit_{k}", pos=placed, size=[0.012, 0.012, 0.012])
@@ -160,8 +161,8 @@ def _drive(
         name=f"motor_{k}",
         type=mujoco.mjtJoint.mjJNT_HINGE,
         axis=axis,
-        armature=own["J"],
-        damping=own["b_v"],
+        armature=numbers["J"],
+        damping=numbers["b_v"],
     )
     dress_drum(drum, axis)
 
@@ -169,7 +170,7 @@ def _drive(
     cable.wrap_site(f"exit_{k}")
     cable.wrap_site(f"connector_{k}")
     cable_row = np.zeros(law.TENDON_COLUMNS)
-    cable_row[[law.TENDON_TAG, law.LAMBDA, law.B]] = law.TAG, own["lambda"], own["b"]
+    cable_row[[law.TENDON_TAG, law.LAMBDA, law.B]] = law.TAG, numbers["lambda"], numbers["b"]
     cable.userdata = cable_row
 
     row = np.zeros(layout.actuator_columns)
@@ -179,14 +180,14 @@ def _drive(
         values = drive_values(by_name[term.effect], p)[:, k - 1]
         row[term.column : term.column + len(values)] = values
     row[law.ACTUATOR_TAG], row[law.CABLE] = law.TAG, k - 1
-    row[[law.R, law.R_S, law.K_S]] = own["R"], own["R_s"], own["k_s"]
-    row[[law.B_C, law.BETA]] = own["b_c"], own["beta"]
+    row[[law.R, law.R_S, law.K_S]] = numbers["R"], numbers["R_s"], numbers["k_s"]
+    row[[law.B_C, law.BETA]] = numbers["b_c"], numbers["beta"]
     row[law.T_0] = start(parameters, geometry, layout).balance[k - 1]
     spec.add_actuator(
         name=f"current_{k}",
         target=f"motor_{k}",
         trntype=mujoco.mjtTrn.mjTRN_JOINT,
-        gear=[own["K_t"], 0, 0, 0, 0, 0],
+        gear=[numbers["K_t"], 0, 0, 0, 0, 0],
         dyntype=mujoco.mjtDyn.mjDYN_USER,  # activation: the no-load length d₀
         actdim=layout.states,
         gaintype=mujoco.mjtGain.mjGAIN_FIXED,

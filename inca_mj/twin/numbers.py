@@ -89,8 +89,8 @@ def _connectors(
             name = f"connector_{axis}@{k + 1}"
             if moves_centre or name in names:
                 site = int(model.site(f"connector_{k + 1}").id)
-                own = every.get(name, 0.0) - centre[:, j]
-                yield Slot("site_pos", (site,), j), geometry.B[k, j] + own
+                moved = every.get(name, 0.0) - centre[:, j]
+                yield Slot("site_pos", (site,), j), geometry.B[k, j] + moved
 
 
 def owners(model: mujoco.MjModel, key: float) -> dict[tuple[str, int], int]:

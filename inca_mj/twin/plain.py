@@ -29,7 +29,7 @@ from identification.model.parameter import ParameterSet
 from inca_mj.robot.geometry import DRIVES, INCA, Geometry
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.robot.spread import EACH_DRIVE, at_drives, displaced
-from inca_mj.twin.appearance import MOTOR, PLAIN, SHORT_PLAIN_NOTE, plain_notes
+from inca_mj.twin.appearance import MOTOR, PLAIN, PLAIN_NOTE, SHORT_PLAIN_NOTE, filled
 from inca_mj.twin.mjcf import add_platform, add_pose_sensors, empty_model, weigh
 from inca_mj.twin.statics import Start, start
 
@@ -49,7 +49,7 @@ def build_plain(parameters: ParameterSet | None = None, geometry: Geometry = INC
     """
     parameters = parameters or parameter_set()
     begin = start(parameters, geometry)
-    spec = empty_model(PLAIN, plain_notes(parameters, geometry), SHORT_PLAIN_NOTE, geometry)
+    spec = empty_model(PLAIN, filled(PLAIN_NOTE, parameters, geometry), SHORT_PLAIN_NOTE, geometry)
     values = parameters.values()
     add_platform(spec, values, geometry, displaced(geometry, values).connectors)
     for k in range(1, DRIVES + 1):
@@ -63,8 +63,8 @@ def _drive(
 ) -> None:
     """Adds motor k as a slide joint along a post of the frame, and its cable."""
     p = parameters.values()
-    own = {name: float(at_drives(name, p)[k - 1]) for name in EACH_DRIVE}
-    R, T_0 = own["R"], float(begin.tension[k - 1])
+    numbers = {name: float(at_drives(name, p)[k - 1]) for name in EACH_DRIVE}
+    R, T_0 = numbers["R"], float(begin.tension[k - 1])
     placed = np.array(displaced(geometry, p).exits[k - 1])
     spec.worldbody.add_site(name=f"exit_{k}", pos=placed, size=[0.012, 0.012, 0.012])
     up = 1.0 if placed[2] < geometry.A[:, 2].mean() else -1.0  # the wound part lies along the post
@@ -73,14 +73,14 @@ def _drive(
 
     spool = spec.worldbody.add_body(name=f"spool_{k}", pos=placed + SPOOL * away)
     # MuJoCo scales a friction by the mass of the body and leaves the armature out, so J is a mass.
-    weigh(spool, own["J"] / R**2, [own["J"]] * 3)
+    weigh(spool, numbers["J"] / R**2, [numbers["J"]] * 3)
     spool.gravcomp = 1.0  # the inertia of a motor has no weight
     spool.add_site(name=f"spool_{k}", pos=[0, 0, 0], size=[0.004, 0.004, 0.004])
     spool.add_geom(
         type=mujoco.mjtGeom.mjGEOM_BOX, size=[0.03, 0.03, 0.05], rgba=MOTOR, contype=0,
         conaffinity=0, mass=0,
     )  # fmt: skip
-    k_spring = own["k_s"] * (own["R_s"] / R) ** 2  # of the drum spring, at the roller [N/m]
+    k_spring = numbers["k_s"] * (numbers["R_s"] / R) ** 2  # of the drum spring, at the roller [N/m]
     joint: dict[str, Any] = {}
     if k_spring:
         joint = {"stiffness": [k_spring, 0, 0], "springref": T_0 / k_spring}
@@ -88,15 +88,15 @@ def _drive(
         name=f"spool_{k}",
         type=mujoco.mjtJoint.mjJNT_SLIDE,
         axis=away,
-        damping=[own["b_v"] / R**2, 0, 0],
-        frictionloss=own["b_c"] / R,
-        solref_friction=[0.0, -own["b_c"] * own["beta"] / own["J"]],
+        damping=[numbers["b_v"] / R**2, 0, 0],
+        frictionloss=numbers["b_c"] / R,
+        solref_friction=[0.0, -numbers["b_c"] * numbers["beta"] / numbers["J"]],
         solimp_friction=[IMPEDANCE, IMPEDANCE, 1.0, 0.5, 1.0],
         **joint,
     )
 
     d_0 = float(begin.no_load_length[k - 1])
-    k_cable = own["lambda"] / d_0
+    k_cable = numbers["lambda"] / d_0
     length = d_0 * (1 + begin.strain[k - 1]) + SPOOL
     cable = spec.add_tendon(name=f"cable_{k}", width=0.0025, rgba=[0.2, 0.2, 0.22, 1])
     cable.wrap_site(f"exit_{k}")
@@ -104,14 +104,14 @@ def _drive(
     cable.wrap_pulley(1.0)
     cable.wrap_site(f"end_{k}")
     cable.wrap_site(f"spool_{k}")
-    cable.stiffness, cable.damping = [k_cable, 0, 0], [own["b"], 0, 0]
+    cable.stiffness, cable.damping = [k_cable, 0, 0], [numbers["b"], 0, 0]
     cable.springlength = [0.0, length - T_0 / k_cable]  # between them no force: it does not push
     spec.add_tendon(name=f"motor_{k}").wrap_joint(f"spool_{k}", 1 / R)
     spec.add_actuator(
         name=f"current_{k}",
         target=f"spool_{k}",
         trntype=mujoco.mjtTrn.mjTRN_JOINT,
-        gear=[own["K_t"] / R, 0, 0, 0, 0, 0],
+        gear=[numbers["K_t"] / R, 0, 0, 0, 0, 0],
     )
 
 

@@ -114,13 +114,13 @@ def load_twin(path: str | Path, effects: Sequence[Effect] = EVERY) -> Twin:
 
 def _effect(effect: Effect, values: dict[str, float]) -> dict[str, Any]:
     names = [p.name for p in records([effect]) if p.name in values]
-    there = [
+    known = [
         where for where, suffix in effect.places.items()
         if any(values.get(f"{effect.name}.{s.name}{suffix}", 0.0) for s in effect.sizes)
     ]  # fmt: skip
     return {
         "name": effect.name,
-        "where": there,
+        "where": known,
         "law": effect.law,
         "reference": effect.reference,
         "values": {name: values[name] for name in names},
@@ -171,8 +171,8 @@ def _same(model: mujoco.MjModel, path: Path) -> None:
     try:
         other = mujoco.MjModel.from_xml_string(read_text(path, what=MODEL))
     except ValueError as error:
-        said = " ".join(str(error).split())
-        raise InputError(f"{path} is not a model MuJoCo can read: {said}") from None
+        text = " ".join(str(error).split())
+        raise InputError(f"{path} is not a model MuJoCo can read: {text}") from None
     for name, a, b in _physics(model, other):
         if a.shape != b.shape or not np.allclose(a, b, rtol=ROUNDING, atol=1e-12):
             raise InputError(

@@ -98,15 +98,15 @@ class Twin:
             InputError: a start has no pretension.
         """
         native.install(self.layout)
-        own = self.parameters.values()
-        starts = starts_from(own, names, values, self.geometry, self.layout)
+        nominal = self.parameters.values()
+        starts = starts_from(nominal, names, values, self.geometry, self.layout)
         balance = np.array([begin.balance for begin in starts])
         for name in names:
             self.parameters[name]
         numbers = [
             *model_numbers(
                 self.model, self.parameters, self.geometry, self.layout, names,
-                merged(own, names, values), len(values),
+                merged(nominal, names, values), len(values),
             ),
             *((Slot("actuator_user", (i,), law.T_0), T) for i, T in enumerate(balance.T)),
         ]  # fmt: skip
@@ -133,8 +133,8 @@ class Twin:
         self, names: Sequence[str], values: np.ndarray, sensors: Sequence[str], readings: np.ndarray
     ) -> np.ndarray:
         """Returns what the encoders say, after effects that act on them; see `Plant`."""
-        own = self.parameters.values()
-        return effect_readings(self.effects, names, own, values, sensors, readings)
+        nominal = self.parameters.values()
+        return effect_readings(self.effects, names, nominal, values, sensors, readings)
 
     def save(self, path: str | Path) -> Path:
         """Write the model as MJCF, exact to the last bit; returns the path."""

@@ -137,8 +137,8 @@ def calibrate(
     every = join_logs([*logs, *confirm])
     step = timestep_for(every.sampling_time, timestep)
     fitted = join_logs([*logs] if confirm else [log.part("estimation") for log in logs])
-    own = with_own(with_spread(parameters or parameter_set()), POSE, len(logs))
-    plant = build_twin(own, geometry, timestep=step, visual=False)
+    known = with_own(with_spread(parameters or parameter_set()), POSE, len(logs))
+    plant = build_twin(known, geometry, timestep=step, visual=False)
     for log in (*logs, *confirm):
         refuse_miswired(log, plant, trust)
 

@@ -132,5 +132,5 @@ def _whole(log: Log) -> Log:
 def _begun(log: Log) -> Log:
     """Returns a record of which only the beginning is fitted."""
     first, last = float(log.time[0]), float(log.time[-1]) + log.sampling_time
-    told = min(first + TOLD, (first + last) / 2)
-    return replace(log, splits={"estimation": (first, told), "validation": (told, last)})
+    seen = min(first + TOLD, (first + last) / 2)
+    return replace(log, splits={"estimation": (first, seen), "validation": (seen, last)})

@@ -101,7 +101,7 @@ class Contrast:
 def tell_apart(found: Discovery, named: NamedEffect) -> Contrast | None:
     """Returns the input that tells a named effect best from its first rival; None if none can."""
     fit, rival = run_of(found).final, named.rivals[0].candidate
-    own = _distance(fit.point, fit.point.log, named.candidate, rival, fit.level.sigma)
+    here = _distance(fit.point, fit.point.log, named.candidate, rival, fit.level.sigma)
     tried = {}
     for name, currents in standard_inputs(len(fit.point.log)):
         log = replace(fit.point.log, inputs=currents, extras={})
@@ -112,7 +112,7 @@ def tell_apart(found: Discovery, named: NamedEffect) -> Contrast | None:
     if not tried:
         return None
     best = max(tried, key=tried.__getitem__)
-    return Contrast(best, tried[best], own)
+    return Contrast(best, tried[best], here)
 
 
 def told(found: Discovery) -> Discovery:
@@ -153,9 +153,9 @@ def _distance(point: Point, log: Log, named: Candidate, rival: Candidate, sigma:
         scale=point.space.scale[keep],
     )  # fmt: skip
     here = evaluate_point(Predictor(point.predictor.plant, log, names, fixed), space, q)
-    mine, *theirs = (s.S for s in compute_sensitivities(here, [named, rival]))
+    first, *theirs = (s.S for s in compute_sensitivities(here, [named, rival]))
     size = np.array([values.get(n, 0.0) or named.whole.get(n, 0.0) for n in named.sizes])
     S = np.concatenate([here.J, *theirs], axis=2).reshape(log.outputs.size, -1)
     Q = np.linalg.qr(S / (np.linalg.norm(S, axis=0) + 1e-300))[0]
-    shown = (mine @ size).ravel()
+    shown = (first @ size).ravel()
     return float(np.linalg.norm(shown - Q @ (Q.T @ shown)) / sigma)

@@ -40,24 +40,24 @@ class Recipe:
 
     def settings(self, limits: Limits) -> dict[str, float]:
         """Returns what the numbers mean, in units; without the phases."""
-        own = self.numbers[: _OWN[self.kind]]
+        count = self.numbers[: _OWN[self.kind]]
         width = limits.high - limits.low
         if self.kind == "prbs":
-            a, b = sorted(limits.low + width * own[:2])
+            a, b = sorted(limits.low + width * count[:2])
             middle, half = (a + b) / 2, self.scale * (b - a) / 2
             return {
                 "low [A]": float(middle - half),
                 "high [A]": float(middle + half),
-                "bit time [s]": float(BIT[0] * (BIT[1] / BIT[0]) ** own[2]),
-                "bits": float(BITS[0] + round((BITS[1] - BITS[0]) * own[3])),
+                "bit time [s]": float(BIT[0] * (BIT[1] / BIT[0]) ** count[2]),
+                "bits": float(BITS[0] + round((BITS[1] - BITS[0]) * count[3])),
             }
-        room = min(own[0], 1 - own[0]) * width
+        room = min(count[0], 1 - count[0]) * width
         return {
-            "mean [A]": float(limits.low + width * own[0]),
-            "amplitude [A]": float(self.scale * room * own[1]),
-            "lowest tone [Hz]": float(SLOWEST * (CORNER / SLOWEST) ** own[2]),
-            "highest tone [Hz]": float(CORNER * (FASTEST / CORNER) ** own[3]),
-            "tilt": float(2 * own[4] - 1),
+            "mean [A]": float(limits.low + width * count[0]),
+            "amplitude [A]": float(self.scale * room * count[1]),
+            "lowest tone [Hz]": float(SLOWEST * (CORNER / SLOWEST) ** count[2]),
+            "highest tone [Hz]": float(CORNER * (FASTEST / CORNER) ** count[3]),
+            "tilt": float(2 * count[4] - 1),
         }
 
     def currents(self, n: int, sampling_time: float, limits: Limits) -> np.ndarray:
@@ -99,9 +99,9 @@ def changed(recipe: Recipe, rng: np.random.Generator, size: float, share: float 
         size * rng.standard_normal(len(recipe.numbers)) * (rng.random(len(recipe.numbers)) < share)
     )
     numbers = recipe.numbers + moves
-    own = _OWN[recipe.kind]
-    numbers[:own] = numbers[:own].clip(0.0, 1.0)
-    numbers[own:] %= 1.0
+    count = _OWN[recipe.kind]
+    numbers[:count] = numbers[:count].clip(0.0, 1.0)
+    numbers[count:] %= 1.0
     return replace(recipe, numbers=numbers, scale=1.0)
 
 

@@ -124,8 +124,8 @@ class HiddenSetting:
         Of a robot whose drives differ nobody knows the common radius, spring or slope at rest
         either: a hysteresis of the drum springs is mostly a friction and a stiffness.
         """
-        own = () if self.tolerances == EXACT else ("R", "k_s", "beta")
-        return (*self.varied, *(name for name in own if name not in self.varied))
+        free = () if self.tolerances == EXACT else ("R", "k_s", "beta")
+        return (*self.varied, *(name for name in free if name not in self.varied))
 
     @property
     def samples(self) -> int:
