@@ -162,25 +162,15 @@ def _of_newest(rows: Sequence[Row], what: str, test: Callable[[Row], bool]) -> s
 
 
 class Group(NamedTuple):
-    """What worlds have in common whose answers are counted together.
+    """What worlds have in common whose answers are counted together."""
 
-    Attributes:
-        count: logs of a world.
-        seconds: length of a log [s].
-        beside: whether what parts can absorb is no part of the effects' sizes.
-        possible: whether a robot may have such sizes.
-        listed: whether the catalogue lists all effects.
-        distinct: whether no other parameters do the same to first order.
-        ratio: what an effect leaves over the noise.
-    """
-
-    count: int
-    seconds: float
-    beside: bool
-    possible: bool
-    listed: bool
-    distinct: bool
-    ratio: float
+    count: int  # logs of a world
+    seconds: float  # length of a log [s]
+    beside: bool  # whether what parts can absorb is no part of the effects' sizes
+    possible: bool  # whether a robot may have such sizes
+    listed: bool  # whether the catalogue lists all effects
+    distinct: bool  # whether no other parameters do the same to first order
+    ratio: float  # what an effect leaves over the noise
 
 
 def _group(row: Row) -> Group:

@@ -31,31 +31,20 @@ MISTUNED = 0.6  # the numbers of its model are off by up to so much
 
 @dataclass(frozen=True, kw_only=True)
 class Departure:
-    """What departs from a usual world; the defaults are a usual world.
+    """What departs from a usual world; the defaults are a usual world."""
 
-    Attributes:
-        name: of the departure.
-        about: what it is, as the page says it.
-        hides: "listed", or "powers", "jumps" and "unlisted": of these every world hides something.
-        is_unequal: whether each sensor has a noise of its own.
-        is_heavy: whether the noise has heavy tails.
-        error_time: correlation time of the inputs' error [s]; None for the usual one.
-        is_proportional: whether that error is in proportion to the input.
-        is_following: whether a part of it follows the input.
-        spread: times the usual deviations of the parameters, or their std.
-        is_mistuned: whether the controller is another one than usual.
-    """
-
-    name: str
-    about: str
+    name: str  # of the departure
+    about: str  # what it is, as the page says it
+    # "listed", or "powers", "jumps" and "unlisted": of these every world hides something
     hides: str = "listed"
-    is_unequal: bool = False
-    is_heavy: bool = False
+    is_unequal: bool = False  # whether each sensor has a noise of its own
+    is_heavy: bool = False  # whether the noise has heavy tails
+    # correlation time of the inputs' error [s]; None for the usual one
     error_time: float | None = None
-    is_proportional: bool = False
-    is_following: bool = False
-    spread: float = 1.0
-    is_mistuned: bool = False
+    is_proportional: bool = False  # whether that error is in proportion to the input
+    is_following: bool = False  # whether a part of it follows the input
+    spread: float = 1.0  # times the usual deviations of the parameters, or their std
+    is_mistuned: bool = False  # whether the controller is another one than usual
 
     def noise(
         self, shape: tuple[int, int], std: np.ndarray, rng: np.random.Generator

@@ -31,19 +31,12 @@ DRAWN = 64  # different worlds of a timing; more are copies of these
 
 @dataclass(frozen=True, kw_only=True)
 class Worlds:
-    """What is simulated.
+    """What is simulated."""
 
-    Attributes:
-        robot: the twin as fits simulate it, without shapes and sensors.
-        start: its starts, one row a world.
-        numbers: entries of its model, one value a world.
-        currents: of all worlds, one row a step, shape (steps, 8) [A].
-    """
-
-    robot: Twin
-    start: rollout.State
-    numbers: Numbers
-    currents: np.ndarray
+    robot: Twin  # the twin as fits simulate it, without shapes and sensors
+    start: rollout.State  # its starts, one row a world
+    numbers: Numbers  # entries of its model, one value a world
+    currents: np.ndarray  # of all worlds, one row a step, shape (steps, 8) [A]
 
     @property
     def model(self) -> mujoco.MjModel:

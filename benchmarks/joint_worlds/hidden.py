@@ -18,21 +18,13 @@ from joint_worlds.robot import JointRobot
 
 @dataclass(frozen=True)
 class Habits:
-    """What a joint does without the effect, and its friction, in SI units.
+    """What a joint does without the effect, and its friction, in SI units."""
 
-    Attributes:
-        force: largest force of its drive; it is below `often` in 98 % of the samples.
-        speed: top speed.
-        travel: how far it goes to either side.
-        coulomb: Coulomb friction.
-        damping: viscous friction.
-    """
-
-    force: float
-    speed: float
-    travel: float
-    coulomb: float
-    damping: float
+    force: float  # largest force of its drive; it is below `often` in 98 % of the samples
+    speed: float  # top speed
+    travel: float  # how far it goes to either side
+    coulomb: float  # Coulomb friction
+    damping: float  # viscous friction
     often: float
 
 
@@ -44,36 +36,25 @@ Shape = dict[str, float]
 
 @dataclass(frozen=True, kw_only=True)
 class Hidden:
-    """An effect that a world may hide.
+    """An effect that a world may hide."""
 
-    Attributes:
-        name: the project's name of it.
-        largest: size that is never exceeded.
-        put: writes size and shape into the numbers of a joint, shape (SLOTS,).
-        shape: draws what the size does not say.
-        kinds: of joints on which it acts.
-        heavy: whether gravity must act on the joint; None where that does not matter.
-        known: kinds of parameters that are known exactly in its worlds, because they would pass
-            for it.
-        body: "payload" or "link" where it changes a mass and not a joint.
-        everywhere: whether it acts on all joints alike.
-        coupled: whether it needs a robot of several joints.
-        also: names that mean the same on a robot of one joint.
-        curve: what an unlisted force depends on: the end of the name of the curve that draws it,
-            "-" where no curve does; nothing where the effect is listed.
-    """
-
-    name: str
-    largest: Largest
+    name: str  # the project's name of it
+    largest: Largest  # size that is never exceeded
+    # writes size and shape into the numbers of a joint, shape (SLOTS,)
     put: Put = lambda joint, size, shape: None
+    # draws what the size does not say
     shape: Callable[[Habits, Rng], Shape] = lambda habits, rng: {}
-    kinds: tuple[str, ...] = ("hinge", "slide")
+    kinds: tuple[str, ...] = ("hinge", "slide")  # of joints on which it acts
+    # whether gravity must act on the joint; None where that does not matter
     heavy: bool | None = None
+    # kinds of parameters that are known exactly in its worlds, because they would pass for it
     known: tuple[str, ...] = ()
-    body: str = ""
-    everywhere: bool = False
-    coupled: bool = False
-    also: tuple[str, ...] = ()
+    body: str = ""  # "payload" or "link" where it changes a mass and not a joint
+    everywhere: bool = False  # whether it acts on all joints alike
+    coupled: bool = False  # whether it needs a robot of several joints
+    also: tuple[str, ...] = ()  # names that mean the same on a robot of one joint
+    # what an unlisted force depends on: the end of the name of the curve that draws it, "-" where
+    # no curve does; nothing where the effect is listed
     curve: str = ""
 
     def joints(self, robot: JointRobot) -> list[int]:

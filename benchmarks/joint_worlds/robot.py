@@ -18,72 +18,44 @@ PRESLIDING = 0.1  # a joint that friction holds moves by so much of the sensor's
 
 @dataclass(frozen=True)
 class Free:
-    """A parameter that is not known exactly.
+    """A parameter that is not known exactly."""
 
-    Attributes:
-        name: as the robot's TOML calls it: a path into the model, or a size of an effect.
-        kind: "mass", "armature", "spring", "damping" or "coulomb".
-        number: where it stands among the robot's numbers; None for a number of a joint.
-        slot: joint and column among the numbers of the joints.
-    """
-
-    name: str
-    kind: str
+    name: str  # as the robot's TOML calls it: a path into the model, or a size of an effect
+    kind: str  # "mass", "armature", "spring", "damping" or "coulomb"
+    # where it stands among the robot's numbers; None for a number of a joint
     number: int | None = None
-    slot: tuple[int, int] | None = None
+    slot: tuple[int, int] | None = None  # joint and column among the numbers of the joints
 
 
 @dataclass(frozen=True, kw_only=True)
 class JointRobot:
-    """A robot as its nominal model says, in SI units; tuples have an entry per joint.
+    """A robot as its nominal model says, in SI units; tuples have an entry per joint."""
 
-    Attributes:
-        name: of the robot.
-        code: by which the compiled dynamics know it.
-        joints, inputs, outputs: names in the MJCF.
-        kind: "hinge" or "slide".
-        numbers: of its dynamics, in the order of its module.
-        payload: index of the payload among them.
-        link: indices of mass and inertia of the body whose mass may differ; `end` is its name.
-        tip: indices of the place of a payload.
-        damping: viscous [N m s/rad or N s/m].
-        coulomb: Coulomb friction [N m or N].
-        heavy: whether gravity acts on the joint.
-        travel: how far a reference goes to either side of zero [rad or m].
-        speed: top speed of a reference [rad/s or m/s].
-        bandwidth: of its controller [rad/s].
-        counts: encoder counts in a turn; or `step`: the sensor's step [rad or m].
-        white: std of the white noise of its sensors [rad or m].
-        sampling_time: of its log and its controller [s].
-        substeps: of the integrator in a sample.
-        horizon: over which its predictions are judged [s].
-        free: free parameters beside damping and Coulomb friction.
-        mjcf: writes its model from numbers and damping.
-    """
-
-    name: str
-    code: int
+    name: str  # of the robot
+    code: int  # by which the compiled dynamics know it. joints, inputs, outputs: names in the MJCF.
     joints: tuple[str, ...]
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
-    kind: str
-    numbers: tuple[float, ...]
-    payload: tuple[int, ...]
+    kind: str  # "hinge" or "slide"
+    numbers: tuple[float, ...]  # of its dynamics, in the order of its module
+    payload: tuple[int, ...]  # index of the payload among them
+    # indices of mass and inertia of the body whose mass may differ; `end` is its name
     link: tuple[int, ...]
     end: str
-    tip: tuple[int, ...]
-    damping: tuple[float, ...]
-    coulomb: tuple[float, ...]
-    heavy: tuple[bool, ...]
-    travel: tuple[float, ...]
-    speed: tuple[float, ...]
-    bandwidth: float
-    white: tuple[float, ...]
-    sampling_time: float
-    substeps: int
-    horizon: float
-    free: tuple[Free, ...]
-    mjcf: Callable[[np.ndarray, np.ndarray], str]
+    tip: tuple[int, ...]  # indices of the place of a payload
+    damping: tuple[float, ...]  # viscous [N m s/rad or N s/m]
+    coulomb: tuple[float, ...]  # Coulomb friction [N m or N]
+    heavy: tuple[bool, ...]  # whether gravity acts on the joint
+    travel: tuple[float, ...]  # how far a reference goes to either side of zero [rad or m]
+    speed: tuple[float, ...]  # top speed of a reference [rad/s or m/s]
+    bandwidth: float  # of its controller [rad/s]
+    white: tuple[float, ...]  # std of the white noise of its sensors [rad or m]
+    sampling_time: float  # of its log and its controller [s]
+    substeps: int  # of the integrator in a sample
+    horizon: float  # over which its predictions are judged [s]
+    free: tuple[Free, ...]  # free parameters beside damping and Coulomb friction
+    mjcf: Callable[[np.ndarray, np.ndarray], str]  # writes its model from numbers and damping
+    # encoder counts in a turn; or `step`: the sensor's step [rad or m]
     counts: tuple[int, ...] = ()
     step: tuple[float, ...] = field(default=())
 

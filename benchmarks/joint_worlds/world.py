@@ -55,43 +55,28 @@ class Acting:
 
 @dataclass(frozen=True, kw_only=True)
 class World:
-    """A robot, what is wrong with its nominal model, and its records.
+    """A robot, what is wrong with its nominal model, and its records."""
 
-    Attributes:
-        robot: as the nominal model knows it.
-        effect: name of what is hidden, or "nothing".
-        names: names that are right; none where the force is in no catalogue.
-        joint: where it acts.
-        places: words of which an answer names one if its place is right; none where it is clear.
-        curve: the name of the curve that draws a force which is in no catalogue, "-" where none
-            does; "" where the effect is listed, or there is none.
-        size: of the effect, in the unit of its law.
-        shape: what else was drawn of it.
-        ratio: how much of it shows, in units of the sensors' noise.
-        free: parameters that are not known exactly; `truth` has their true values by name.
-        coulomb: whether the nominal model has Coulomb friction.
-        push: unlogged torque over the input, rms.
-        also: the name of a second effect; "" where there is none.
-        acting: the effects, where several of the catalogue act at once.
-        records: the one to fit and the one that confirms.
-    """
-
-    robot: JointRobot
-    effect: str
-    names: tuple[str, ...]
-    joint: str
+    robot: JointRobot  # as the nominal model knows it
+    effect: str  # name of what is hidden, or "nothing"
+    names: tuple[str, ...]  # names that are right; none where the force is in no catalogue
+    joint: str  # where it acts
+    # words of which an answer names one if its place is right; none where it is clear
     places: tuple[str, ...]
+    # the name of the curve that draws a force which is in no catalogue, "-" where none does; ""
+    # where the effect is listed, or there is none
     curve: str
-    size: float
-    shape: Shape
-    ratio: float
+    size: float  # of the effect, in the unit of its law
+    shape: Shape  # what else was drawn of it
+    ratio: float  # how much of it shows, in units of the sensors' noise
+    # parameters that are not known exactly; `truth` has their true values by name
     free: tuple[Free, ...]
     truth: dict[str, float]
-    coulomb: bool
-    push: float
-    also: str = ""
-    acting: tuple[Acting, ...] = ()
-    records: tuple[Record, Record]
+    coulomb: bool  # whether the nominal model has Coulomb friction
+    push: float  # unlogged torque over the input, rms
+    also: str = ""  # the name of a second effect; "" where there is none
+    acting: tuple[Acting, ...] = ()  # the effects, where several of the catalogue act at once
+    records: tuple[Record, Record]  # the one to fit and the one that confirms
 
 
 class UnseenError(Exception):

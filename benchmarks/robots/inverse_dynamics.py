@@ -23,21 +23,13 @@ ORDER = 3
 
 @dataclass(frozen=True)
 class Motion:
-    """A smoothed motion on an even grid, and what drove it.
+    """A smoothed motion on an even grid, and what drove it."""
 
-    Attributes:
-        step: of the grid [s].
-        q: angles, shape (n, nv) [rad].
-        v: speeds, shape (n, nv) [rad/s].
-        a: accelerations, shape (n, nv) [rad/s^2].
-        drive: torques or currents, not filtered, shape (n, nu).
-    """
-
-    step: float
-    q: np.ndarray
-    v: np.ndarray
-    a: np.ndarray
-    drive: np.ndarray
+    step: float  # of the grid [s]
+    q: np.ndarray  # angles, shape (n, nv) [rad]
+    v: np.ndarray  # speeds, shape (n, nv) [rad/s]
+    a: np.ndarray  # accelerations, shape (n, nv) [rad/s^2]
+    drive: np.ndarray  # torques or currents, not filtered, shape (n, nu)
 
     def low(self, x: np.ndarray, band: float) -> np.ndarray:
         """Columns (n, …) of this grid below a frequency [Hz], without the ends."""

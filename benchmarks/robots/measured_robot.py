@@ -25,135 +25,87 @@ BACK = 0.01  # share of the way back to where a search began before
 
 @dataclass(frozen=True, kw_only=True)
 class Free:
-    """A free parameter: where it goes, where the search begins, and what is known of it.
+    """A free parameter: where it goes, where the search begins, and what is known of it."""
 
-    Attributes:
-        name: of the parameter; an effect's size is called `effect.size@place`.
-        value: where the search begins, in its unit.
-        path: into the model; empty for the size of an effect.
-        known: std of the prior: relative where the value must be positive, else in its unit.
-        unit: of the value.
-        scale: a magnitude that matters, where the value may be zero.
-        bounds: smallest and largest value; those of the effect or of the model when None.
-    """
-
-    name: str
-    value: float
-    path: str = ""
+    name: str  # of the parameter; an effect's size is called `effect.size@place`
+    value: float  # where the search begins, in its unit
+    path: str = ""  # into the model; empty for the size of an effect
+    # std of the prior: relative where the value must be positive, else in its unit
     known: float = 0.5
-    unit: str = ""
-    scale: float | None = None
+    unit: str = ""  # of the value
+    scale: float | None = None  # a magnitude that matters, where the value may be zero
+    # smallest and largest value; those of the effect or of the model when None
     bounds: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
 class PublishedSize:
-    """A number that others found for this robot.
+    """A number that others found for this robot."""
 
-    Attributes:
-        name: of the parameter or effect here.
-        value: in `unit`.
-        unit: of the value.
-        source: who published it, and where.
-    """
-
-    name: str
-    value: float
-    unit: str
-    source: str
+    name: str  # of the parameter or effect here
+    value: float  # in `unit`
+    unit: str  # of the value
+    source: str  # who published it, and where
 
 
 @dataclass(frozen=True, kw_only=True)
 class PublishedModel:
-    """A model of others, made again from their equations and their numbers.
+    """A model of others, made again from their equations and their numbers."""
 
-    Attributes:
-        name: what they call it.
-        source: who published it, and where.
-        errors: of its predictions.
-    """
-
-    name: str
-    source: str
-    errors: Errors
+    name: str  # what they call it
+    source: str  # who published it, and where
+    errors: Errors  # of its predictions
 
 
 @dataclass(frozen=True, kw_only=True)
 class Outcome:
-    """What a discovery left: values and window errors, for the evidence of a robot.
+    """What a discovery left: values and window errors, for the evidence of a robot."""
 
-    Attributes:
-        values: of the final model, by name.
-        nominal: window errors of the fitted nominal model.
-        final: window errors of the model with what is named.
-    """
-
-    values: Mapping[str, float]
-    nominal: Errors
-    final: Errors
+    values: Mapping[str, float]  # of the final model, by name
+    nominal: Errors  # window errors of the fitted nominal model
+    final: Errors  # window errors of the model with what is named
 
 
 @dataclass(frozen=True, kw_only=True)
 class Apart:
-    """Records of the robot as it was changed; they are neither fitted nor do they confirm.
+    """Records of the robot as it was changed; they are neither fitted nor do they confirm."""
 
-    Attributes:
-        what: how the robot differs.
-        logs: the records.
-        model: MJCF of the changed robot, None where the model is to show that something changed.
-        refit: parameters that the change should move.
-    """
-
-    what: str
-    logs: tuple[Log, ...]
+    what: str  # how the robot differs
+    logs: tuple[Log, ...]  # the records
+    # MJCF of the changed robot, None where the model is to show that something changed
     model: Path | None = None
-    refit: tuple[str, ...] = ()
+    refit: tuple[str, ...] = ()  # parameters that the change should move
 
 
 @dataclass(frozen=True, kw_only=True)
 class MeasuredRobot:
-    """A robot, its records, and what others published of it.
+    """A robot, its records, and what others published of it."""
 
-    Attributes:
-        name: a word.
-        title: what it is, in a line.
-        source: who measured it, and where the data are.
-        model: path of its MJCF.
-        free: free parameters, each with its start and its prior.
-        horizon: over which predictions are judged [s].
-        fit: records to fit.
-        confirm: records that no fit may see.
-        unit: of the outputs, where it is not that of the model's sensors.
-        second: another split of records, those to fit and those that confirm; None for the same
-            records with their roles exchanged.
-        fixed: values of effects' shapes that the model has.
-        expected: effects one of which should be named first; empty where nobody knows.
-        apart: records of the robot as it was changed.
-        starts: other values with which the whole work begins once more, by what they are.
-        lacking: free parameters that a poorer model of it lacks, by what that model is; the whole
-            work is done once more with it.
-        published: numbers of others.
-        models: models of others.
-        evidence: what else the records show, as a JSON object; None where nothing is to be shown.
-    """
-
-    name: str
-    title: str
-    source: str
-    model: Path
-    free: tuple[Free, ...]
-    horizon: float
-    fit: tuple[Log, ...]
-    confirm: tuple[Log, ...]
-    unit: str = ""
+    name: str  # a word
+    title: str  # what it is, in a line
+    source: str  # who measured it, and where the data are
+    model: Path  # path of its MJCF
+    free: tuple[Free, ...]  # free parameters, each with its start and its prior
+    horizon: float  # over which predictions are judged [s]
+    fit: tuple[Log, ...]  # records to fit
+    confirm: tuple[Log, ...]  # records that no fit may see
+    unit: str = ""  # of the outputs, where it is not that of the model's sensors
+    # another split of records, those to fit and those that confirm; None for the same records with
+    # their roles exchanged
     second: tuple[tuple[Log, ...], tuple[Log, ...]] | None = None
+    # values of effects' shapes that the model has
     fixed: Mapping[str, float] = field(default_factory=dict)
+    # effects one of which should be named first; empty where nobody knows
     expected: tuple[str, ...] = ()
-    apart: tuple[Apart, ...] = ()
+    apart: tuple[Apart, ...] = ()  # records of the robot as it was changed
+    # other values with which the whole work begins once more, by what they are
     starts: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    # free parameters that a poorer model of it lacks, by what that model is; the whole work is done
+    # once more with it
     lacking: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
-    published: tuple[PublishedSize, ...] = ()
-    models: tuple[PublishedModel, ...] = ()
+    published: tuple[PublishedSize, ...] = ()  # numbers of others
+    models: tuple[PublishedModel, ...] = ()  # models of others
+    # what else the records show, as a JSON object; None where nothing is to be shown
     evidence: Callable[[Outcome], dict[str, Any]] | None = None
 
     @property

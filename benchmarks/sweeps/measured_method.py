@@ -19,17 +19,11 @@ TIMES = ("date", "commit", "version", "seconds")  # of a record: no two runs hav
 
 @dataclass(frozen=True, kw_only=True)
 class Measured:
-    """Which robot.
+    """Which robot."""
 
-    Attributes:
-        robot: a name of `benchmarks/robots`.
-        data: folder of the data of all robots.
-        split: 1 or 2, which records are fitted.
-    """
-
-    robot: str
-    data: Path
-    split: int = 1
+    robot: str  # a name of `benchmarks/robots`
+    data: Path  # folder of the data of all robots
+    split: int = 1  # 1 or 2, which records are fitted
 
     def __post_init__(self) -> None:
         if self.robot not in ROBOTS:

@@ -88,25 +88,15 @@ def weighing(q: np.ndarray, weight: float = G) -> np.ndarray:
 
 @dataclass(frozen=True, kw_only=True)
 class Arm:
-    """What the arm is made of, each of shape (2,).
+    """What the arm is made of, each of shape (2,)."""
 
-    Attributes:
-        c: compliance of the gears [rad/(N m)]; 0: rigid.
-        J: inertia of the motors [kg m²], of the armature in `text`.
-        zeta: damping ratio of motor and spring.
-        slip: compliance of the friction [rad/(N m)]; 0: it is smoothed.
-        f_c: Coulomb friction [N m].
-        d: viscous friction [N m s/rad].
-        weight: acceleration of gravity [m/s²].
-    """
-
-    c: tuple[float, float] = (0.0, 0.0)
-    J: tuple[float, float] = (0.0, 0.0)
-    zeta: float = 0.05
-    slip: float = 0.0
-    f_c: tuple[float, float] = (0.0, 0.0)
-    d: tuple[float, float] = tuple(DAMPING)
-    weight: float = G
+    c: tuple[float, float] = (0.0, 0.0)  # compliance of the gears [rad/(N m)]; 0: rigid
+    J: tuple[float, float] = (0.0, 0.0)  # inertia of the motors [kg m²], of the armature in `text`
+    zeta: float = 0.05  # damping ratio of motor and spring
+    slip: float = 0.0  # compliance of the friction [rad/(N m)]; 0: it is smoothed
+    f_c: tuple[float, float] = (0.0, 0.0)  # Coulomb friction [N m]
+    d: tuple[float, float] = tuple(DAMPING)  # viscous friction [N m s/rad]
+    weight: float = G  # acceleration of gravity [m/s²]
 
     def tau(self, x: np.ndarray) -> np.ndarray:
         """Of the gears that give."""

@@ -32,29 +32,17 @@ WANTED = ("coulomb_friction", "stribeck_friction", *STATES)
 
 @dataclass(frozen=True, kw_only=True)
 class Truth:
-    """What the pendulum is made of.
+    """What the pendulum is made of."""
 
-    Attributes:
-        c: compliance of the gear [rad/(N m)].
-        gap: half the gap of its teeth [rad].
-        J: inertia of the motor [kg m²].
-        zeta: damping ratio of motor and spring.
-        slip: compliance of the friction [rad/(N m)].
-        f_c: Coulomb friction [N m]; with a compliance of zero it is smoothed.
-        d: viscous friction [N m s/rad].
-        d_m: viscous friction of the motor [N m s/rad].
-        weight: m g l [N m].
-    """
-
-    c: float = 0.0
-    gap: float = 0.0
-    J: float = 2e-3
-    zeta: float = 0.05
-    slip: float = 0.0
-    f_c: float = 0.0
-    d: float = 0.02
-    d_m: float = 0.0
-    weight: float = WEIGHT
+    c: float = 0.0  # compliance of the gear [rad/(N m)]
+    gap: float = 0.0  # half the gap of its teeth [rad]
+    J: float = 2e-3  # inertia of the motor [kg m²]
+    zeta: float = 0.05  # damping ratio of motor and spring
+    slip: float = 0.0  # compliance of the friction [rad/(N m)]
+    f_c: float = 0.0  # Coulomb friction [N m]; with a compliance of zero it is smoothed
+    d: float = 0.02  # viscous friction [N m s/rad]
+    d_m: float = 0.0  # viscous friction of the motor [N m s/rad]
+    weight: float = WEIGHT  # m g l [N m]
 
     def spring(self, delta: float, rate: float) -> float:
         """τ: the spring presses behind its gap, where its flank only pushes."""

@@ -108,19 +108,12 @@ OWN = Method(
 
 @dataclass(frozen=True)
 class Target:
-    """A reader.
+    """A reader."""
 
-    Attributes:
-        make: writes right files into a folder.
-        changed: names of the files that are changed, one at a time.
-        read: reads what lies in a folder.
-        share: of the cases of a run; slow readers have few.
-    """
-
-    make: Callable[[Path], object]
-    changed: tuple[str, ...]
-    read: Callable[[Path], object]
-    share: float
+    make: Callable[[Path], object]  # writes right files into a folder
+    changed: tuple[str, ...]  # names of the files that are changed, one at a time
+    read: Callable[[Path], object]  # reads what lies in a folder
+    share: float  # of the cases of a run; slow readers have few
 
 
 def _log(folder: Path) -> None:

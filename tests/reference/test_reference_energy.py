@@ -41,39 +41,23 @@ from inca_mj.robot.parameters import parameter_set
 
 
 class Energy(NamedTuple):
-    """Stored energy [J]; `sum(energy)` is E.
+    """Stored energy [J]; `sum(energy)` is E."""
 
-    Attributes:
-        kinetic: ½ m v² + ½ ωᵀ I_P ω + Σ ½ J ω_m².
-        gravitational: m g z.
-        external: −Gᵀ (p + R_AB b_G).
-        elastic: Σ ½ λ ε⁺² d₀ of the free cables.
-        spring: of the drum springs, zero at φ_m = 0, constant once F_s is zero.
-    """
-
-    kinetic: float
-    gravitational: float
-    external: float
-    elastic: float
-    spring: float
+    kinetic: float  # ½ m v² + ½ ωᵀ I_P ω + Σ ½ J ω_m²
+    gravitational: float  # m g z
+    external: float  # −Gᵀ (p + R_AB b_G)
+    elastic: float  # Σ ½ λ ε⁺² d₀ of the free cables
+    spring: float  # of the drum springs, zero at φ_m = 0, constant once F_s is zero
 
 
 class Power(NamedTuple):
-    """Power into the robot [W]; `sum(power)` is Ė.
+    """Power into the robot [W]; `sum(power)` is Ė."""
 
-    Attributes:
-        motor: Σ K_t i ω_m.
-        viscous: −Σ b_v ω_m².
-        coulomb: −Σ b_c tanh(β ω_m) ω_m.
-        damper: −Σ (T − λ ε⁺) d₀ε̇ of the cables.
-        wound: −Σ ½ λ ε⁺² R ω_m d₀/d, carried onto the rollers with the strained cable.
-    """
-
-    motor: float
-    viscous: float
-    coulomb: float
-    damper: float
-    wound: float
+    motor: float  # Σ K_t i ω_m
+    viscous: float  # −Σ b_v ω_m²
+    coulomb: float  # −Σ b_c tanh(β ω_m) ω_m
+    damper: float  # −Σ (T − λ ε⁺) d₀ε̇ of the cables
+    wound: float  # −Σ ½ λ ε⁺² R ω_m d₀/d, carried onto the rollers with the strained cable
 
 
 def energy(x: np.ndarray, q: np.ndarray) -> Energy:
