@@ -5,31 +5,17 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 
+from identification.__main__ import run_command, run_process
+
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; returns the exit code."""
-    try:
-        from inca_mj.cli import main as run  # takes a fifth of a second
-
-        return run(arguments)
-    except KeyboardInterrupt:  # while that is imported
-        sys.stderr.write("inca: stopped\n")
-        return 130
+    return run_command("inca_mj.cli", "inca", arguments)
 
 
 def program() -> int:
     """Run one command as a process of its own, which ends with the exit code."""
-    try:
-        from identification.commands.streams import settle_streams
-
-        settle_streams()
-    except KeyboardInterrupt:  # while that is imported
-        return 130
-    code = main()
-    from identification.commands.stopping import at_end
-
-    at_end(code)
-    return code
+    return run_process(main)
 
 
 if __name__ == "__main__":

@@ -32,7 +32,8 @@ class JointRobot:
     """A robot as its nominal model says, in SI units; tuples have an entry per joint."""
 
     name: str  # of the robot
-    code: int  # by which the compiled dynamics know it. joints, inputs, outputs: names in the MJCF.
+    code: int  # by which the compiled dynamics know it
+    # names in the MJCF
     joints: tuple[str, ...]
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]

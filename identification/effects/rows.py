@@ -62,17 +62,13 @@ _HELD = {int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE)}
 class JointLayout:
     """The columns of a set of effects, and its law.
 
-    Attributes:
-        effects: the set, in order.
-        has_states: whether joints have states of their own, whose numbers stand behind.
-
     Raises:
         InputError: two effects have one name, or one has a hook that is none of a joint, an input,
             a body or a sensor.
     """
 
-    effects: tuple[Effect, ...]
-    has_states: bool = False
+    effects: tuple[Effect, ...]  # the set, in order
+    has_states: bool = False  # whether joints have states of their own, whose numbers stand behind
 
     def __post_init__(self) -> None:
         refuse_misplaced(self.effects, (JOINT, INPUT, BODY, SENSOR, GEAR))

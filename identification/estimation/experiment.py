@@ -26,25 +26,17 @@ from identification.model.sensitivity import refuse_without_effect, sensitivity
 class Experiment:
     """A planned experiment.
 
-    Attributes:
-        plant: the model, with the values at which the sensitivities are taken.
-        inputs: shape (n, nu), in the units of the model's controls.
-        sampling_time: between samples [s].
-        outputs: names of the model's sensors that will be read.
-        sigma: std of the white noise on each output, in the outputs' unit.
-        hold: "zoh" or "foh".
-        fixed: values of parameters where they are not the plant's own.
-
     Raises:
         InputError: the noise is not positive, or the inputs do not fit the model.
     """
 
-    plant: Plant
-    inputs: np.ndarray = field(repr=False)
-    sampling_time: float
-    outputs: tuple[str, ...]
-    sigma: float
-    hold: str = "zoh"
+    plant: Plant  # the model, with the values at which the sensitivities are taken
+    inputs: np.ndarray = field(repr=False)  # shape (n, nu), in the units of the model's controls
+    sampling_time: float  # between samples [s]
+    outputs: tuple[str, ...]  # names of the model's sensors that will be read
+    sigma: float  # std of the white noise on each output, in the outputs' unit
+    hold: str = "zoh"  # "zoh" or "foh"
+    # values of parameters where they are not the plant's own
     fixed: Mapping[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:

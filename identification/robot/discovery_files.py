@@ -20,12 +20,7 @@ from identification.robot.write import write_robot
 
 @dataclass(frozen=True)
 class RobotDiscoveryFiles(DiscoveryFiles):
-    """The files of a discovery on a robot of a file.
-
-    Attributes:
-        found: the discovery.
-        robot: the robot.
-    """
+    """The files of a discovery on a robot of a file."""
 
     robot: Robot
 

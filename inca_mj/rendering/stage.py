@@ -34,22 +34,16 @@ _THIN = 480  # height of a picture in which the path is one pixel thick
 class Look:
     """The look of films.
 
-    Attributes:
-        camera: "front", "side" or "handle".
-        size: width and height of the whole frame, even numbers [px].
-        plots: show the motor angles beside the robot; None is yes for one robot, no for two.
-        titles: a line over each picture; none when empty.
-        magnify: by how much the deviation from the path that was asked is drawn larger.
-
     Raises:
         InputError: the size is odd or too small, or `magnify` is not positive.
     """
 
-    camera: str
-    size: tuple[int, int]
+    camera: str  # "front", "side" or "handle"
+    size: tuple[int, int]  # width and height of the whole frame, even numbers [px]
+    # show the motor angles beside the robot; None is yes for one robot, no for two
     plots: bool | None
-    titles: Sequence[str]
-    magnify: float
+    titles: Sequence[str]  # a line over each picture; none when empty
+    magnify: float  # by how much the deviation from the path that was asked is drawn larger
 
     def __post_init__(self) -> None:
         width, height = self.size

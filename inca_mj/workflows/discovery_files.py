@@ -21,11 +21,7 @@ SAVED = "The model with it is in model.xml and effects.json; inca_mj.load_twin r
 
 @dataclass(frozen=True)
 class TwinDiscoveryFiles(DiscoveryFiles):
-    """The files of a discovery on a twin.
-
-    Attributes:
-        found: the discovery.
-    """
+    """The files of a discovery on a twin."""
 
     @property
     def record(self) -> dict[str, Any]:

@@ -9,6 +9,7 @@ from joint_cases import DAMPING, MASS, SLIDER, slider_log, steps
 from identification import Predictor
 from identification.__main__ import main
 from identification.effects.joint_plant import joint_plant
+from identification.logs.csv_files import write_log
 
 TRUTH = {"damping": 3.6, "mass": 1.8, "stribeck_friction.f_s": 0.0}
 HIDDEN = {"asymmetric_viscous_friction.d_a@slide": 0.9}
@@ -32,6 +33,14 @@ def simulated(values, samples=1200, seed=1, start=0.0):
     y = Predictor(plant, log, (), values).predict(np.empty((1, 0)))[0]
     noise = 5e-4 * np.random.default_rng(seed).standard_normal(y.shape)
     return replace(slider_log(u, y + start + noise), output_names=("x",), units={})
+
+
+def write_slider(folder, samples=200, toml=TOML, model=SLIDER):
+    """Writes a robot and a short log of it into a folder; returns both paths."""
+    (folder / "slider.xml").write_text(model)
+    (folder / "robot.toml").write_text(toml)
+    write_log(simulated({"damping": 3.0, "mass": 2.0}, samples), folder / "log.csv")
+    return folder / "robot.toml", folder / "log.csv"
 
 
 def run(capsys, *arguments):

@@ -6,9 +6,7 @@ import subprocess
 import sys
 
 import pytest
-from robot_cases import TOML, simulated
-
-from identification.logs.csv_files import write_log
+from robot_cases import write_slider
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="streams of POSIX")
 STRICT = {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0",
@@ -18,12 +16,8 @@ STRICT = {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0",
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     """A folder with a robot that reads quickly, and a log of it."""
-    from joint_cases import SLIDER
-
     folder = tmp_path_factory.mktemp("robot")
-    (folder / "slider.xml").write_text(SLIDER)
-    (folder / "robot.toml").write_text(TOML)
-    write_log(simulated({"damping": 3.0, "mass": 2.0}, 200), folder / "log.csv")
+    write_slider(folder)
     return folder
 
 

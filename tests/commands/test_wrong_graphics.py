@@ -5,24 +5,19 @@ import subprocess
 import sys
 
 import pytest
-from robot_cases import TOML, simulated
+from robot_cases import write_slider
 from sweep_cases import METHOD
 
 from identification.commands.common import import_without_graphics
-from identification.logs.csv_files import write_log
 from inca_mj.cli import main
 
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     """A folder with a robot, its log, and a sweep."""
-    from joint_cases import SLIDER
-
     folder = tmp_path_factory.mktemp("robot")
-    (folder / "slider.xml").write_text(SLIDER)
-    (folder / "robot.toml").write_text(TOML)
+    write_slider(folder)
     (folder / "sweep.toml").write_text(f"[[study]]\nmethod = '{METHOD}:TOSS'\n")
-    write_log(simulated({"damping": 3.0, "mass": 2.0}, 200), folder / "log.csv")
     return folder
 
 

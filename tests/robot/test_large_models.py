@@ -7,14 +7,13 @@ import sys
 import numpy as np
 import pytest
 from joint_cases import SLIDER
-from robot_cases import TOML, simulated
+from robot_cases import TOML, write_slider
 
 from identification import InputError, read_robot
 from identification import child as child_process
 from identification.effects.axes import Axis
 from identification.effects.rows import read_model
 from identification.files import is_file
-from identification.logs.csv_files import write_log
 from identification.model import hostile
 from identification.model.hostile import refuse_hostile
 from identification.sweep.method import reference_of
@@ -170,17 +169,10 @@ HOSTILE = {
 EVERY = [(old, new, said) for old, each in HOSTILE.items() for new, said in each.items()]
 
 
-def write(folder, model, said=""):
-    (folder / "slider.xml").write_text(model)
-    (folder / "robot.toml").write_text(said + TOML)
-    write_log(simulated({"damping": 3.0, "mass": 2.0}, 60), folder / "log.csv")
-    return folder / "robot.toml", folder / "log.csv"
-
-
 @pytest.mark.parametrize(("old", "new", "said"), EVERY, ids=[new[:40] for _, new, _ in EVERY])
 def test_a_hostile_model_is_refused(tmp_path, capfd, old, new, said):
     assert old in SLIDER
-    files = write(tmp_path, SLIDER.replace(old, new, 1))
+    files = write_slider(tmp_path, 60, model=SLIDER.replace(old, new, 1))
     with pytest.raises(InputError, match=said) as refused:
         read_robot(*files)
     assert str(refused.value).isprintable()  # MuJoCo writes several lines
@@ -202,19 +194,12 @@ def test_a_model_with_replicas_and_names_of_any_kind_is_read():
     assert np.isfinite(model.body_mass).all()
 
 
-def files(folder, said):
-    (folder / "slider.xml").write_text(SLIDER)
-    (folder / "robot.toml").write_text(said)
-    write_log(simulated({"damping": 3.0, "mass": 2.0}, 60), folder / "log.csv")
-    return folder / "robot.toml", folder / "log.csv"
-
-
 def test_a_moving_body_without_mass_is_refused(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)  # where MuJoCo would write a file of warnings
     said = TOML.replace("[parameters.mass]", "[parameters.mass]\nvalue = 0.0")
     assert said != TOML
     with pytest.raises(InputError, match="moves, and its mass is 0 kg; give it a value"):
-        read_robot(*files(tmp_path, said))
+        read_robot(*write_slider(tmp_path, 60, said))
     assert not (tmp_path / "MUJOCO_LOG.TXT").exists()
 
 
@@ -223,7 +208,7 @@ def test_a_magnitude_whose_square_is_no_number_is_refused(tmp_path, value):
     key = "known"
     said = TOML.replace("[parameters.mass]", f"[parameters.mass]\n{key} = {value}")
     with pytest.raises(InputError, match=rf"{key} in .* is .*, which no robot has"):
-        read_robot(*files(tmp_path, said))
+        read_robot(*write_slider(tmp_path, 60, said))
 
 
 @pytest.mark.parametrize("word", ["a\0b.py:X", "loop.py:X"])

@@ -69,40 +69,26 @@ _INPUTS = {"prbs": prbs, "multisine": multisine}
 class HiddenSetting:
     """The making and the measuring of a world.
 
-    Attributes:
-        input: "prbs" or "multisine".
-        low: smallest current [A].
-        high: largest current [A].
-        duration: of the log [s]; its samples are those of [0, duration).
-        sampling_time: [s].
-        varied: parameters that differ from the `trial` set, uniformly within ± `spread`.
-        spread: relative.
-        offset: largest error of the start position, by axis [m].
-        tilt: largest error of the start angles, by axis [rad].
-        counts: of an encoder a turn; 0 for one without steps.
-        noise: white, before the encoder rounds [rad].
-        error_rms: of the unlogged coloured error of the currents [A].
-        error_time: its time constant [s]; 0 for white.
-        tolerances: how much its drives, points and platform differ from the common values; they do
-            not by default, and `AS_BUILT` is a usual robot.
-
     Raises:
         InputError: the input is unknown, or a number is out of its range.
     """
 
-    input: str = "prbs"
-    low: float = 0.5
-    high: float = 1.0
-    duration: float = 20.0
-    sampling_time: float = 0.01
+    input: str = "prbs"  # "prbs" or "multisine"
+    low: float = 0.5  # smallest current [A]
+    high: float = 1.0  # largest current [A]
+    duration: float = 20.0  # of the log [s]; its samples are those of [0, duration)
+    sampling_time: float = 0.01  # [s]
+    # parameters that differ from the `trial` set, uniformly within ± `spread`
     varied: tuple[str, ...] = VARIED
-    spread: float = 0.1
-    offset: float = 0.01
-    tilt: float = 0.0
-    counts: int = 4000
-    noise: float = 5e-4
-    error_rms: float = 0.0
-    error_time: float = 0.05
+    spread: float = 0.1  # relative
+    offset: float = 0.01  # largest error of the start position, by axis [m]
+    tilt: float = 0.0  # largest error of the start angles, by axis [rad]
+    counts: int = 4000  # of an encoder a turn; 0 for one without steps
+    noise: float = 5e-4  # white, before the encoder rounds [rad]
+    error_rms: float = 0.0  # of the unlogged coloured error of the currents [A]
+    error_time: float = 0.05  # its time constant [s]; 0 for white
+    # how much its drives, points and platform differ from the common values; they do not by
+    # default, and `AS_BUILT` is a usual robot
     tolerances: Tolerances = EXACT
 
     def __post_init__(self) -> None:

@@ -27,18 +27,11 @@ _FIELDS = {"lambda": "lambda_"}  # a word of Python's own cannot be a field
 class Tolerances:
     """Differences of drives, points and platform of a robot from what they should be.
 
-    Attributes:
-        R, R_s, k_s, lambda_, b, J, b_v, b_c, beta, K_t: largest relative deviation of a drive's
-            parameter from the common value.
-        exit: std of each coordinate of an exit point [m].
-        connector: std of each coordinate of a connector [m].
-        inertia: largest relative deviation of each inertia of the platform.
-        m: largest relative deviation of its mass.
-
     Raises:
         InputError: a number is negative, or not less than 1 (0.1 m for points).
     """
 
+    # Of drives, up to K_t: largest relative deviation of the parameter from the common value.
     R: float = 0.0
     R_s: float = 0.0
     k_s: float = 0.0
@@ -49,10 +42,10 @@ class Tolerances:
     b_c: float = 0.0
     beta: float = 0.0
     K_t: float = 0.0
-    exit: float = 0.0
-    connector: float = 0.0
-    inertia: float = 0.0
-    m: float = 0.0
+    exit: float = 0.0  # std of each coordinate of an exit point [m]
+    connector: float = 0.0  # std of each coordinate of a connector [m]
+    inertia: float = 0.0  # largest relative deviation of each inertia of the platform
+    m: float = 0.0  # largest relative deviation of its mass
 
     def __post_init__(self) -> None:
         for field in fields(self):
