@@ -22,10 +22,11 @@ from identification.prediction.first_fit import REFIT_TOLERANCE
 from identification.prediction.model import WindowModel, predict_fitted
 from identification.prediction.trial import Contender, contradicts_a_record
 from identification.progress import Progress
+from identification.windows.comparison import compare
 from identification.windows.fit import solve
 from identification.windows.problem import ROUGH_STEPS, Problem, no_moves, problem
 from identification.windows.records import Record
-from identification.windows.unseen import HORIZON, compare
+from identification.windows.unseen import HORIZON
 
 
 def without_contradicted(

@@ -33,11 +33,12 @@ from identification.prediction.record_errors import (
 from identification.prediction.std import told_std
 from identification.prediction.trial import find_doubt
 from identification.progress import Progress
+from identification.windows.comparison import Prediction, compare
 from identification.windows.fit import WindowFit
 from identification.windows.problem import no_moves
 from identification.windows.records import Record, as_records
 from identification.windows.settling import settle
-from identification.windows.unseen import Prediction, Unseen, compare, predict
+from identification.windows.unseen import Unseen, predict
 
 NO_HORIZON = (
     "records are judged by predictions over a horizon, and none is given; write horizon = 0.2 (in"

@@ -43,9 +43,10 @@ from identification.prediction.clocks import told_shifts
 from identification.prediction.model import WindowModel
 from identification.prediction.record_errors import errors_by_unit
 from identification.prediction.task import WindowSearch
+from identification.windows.comparison import rise
 from identification.windows.fit import WindowFit
 from identification.windows.shooting import Shooting, Tangent
-from identification.windows.unseen import Unseen, rise
+from identification.windows.unseen import Unseen
 
 INPUT_STEP = 1e-3  # of an input's rms, by which it is moved
 # Of an output's error to its noise, which its own differences tell to a tenth or two.

@@ -41,8 +41,9 @@ from identification.prediction.trial import (
 )
 from identification.progress import Progress, counted
 from identification.shares import fall_words
+from identification.windows.comparison import compare
 from identification.windows.records import Record
-from identification.windows.unseen import Unseen, compare
+from identification.windows.unseen import Unseen
 
 STRONG_BIC = 10.0  # "very strong evidence" of one law against another (Kass and Raftery 1995)
 REFUTED: tuple[Doubt, ...] = ("numbers", "chance", "differ")  # by windows of the horizon alone

@@ -28,8 +28,9 @@ from identification.prediction.task import RecordsTask, WindowSearch, finishing
 from identification.prediction.trial import find_doubt
 from identification.progress import Progress
 from identification.windows.blocks import count_blocks
+from identification.windows.comparison import compare, rise
 from identification.windows.dividing import divide_records
-from identification.windows.unseen import HORIZON, Unseen, compare, predict, rise
+from identification.windows.unseen import HORIZON, Unseen, predict
 
 FEWEST_BLOCKS = 3  # of unseen windows, whose scatter is known
 MOVES = (

@@ -33,7 +33,7 @@ from identification.effects.joint_group import SLIDE
 from identification.prediction.evidence import count_windows, evidence
 from identification.prediction.model import WindowModel
 from identification.prediction.scores import WindowScore
-from identification.windows.unseen import Prediction
+from identification.windows.comparison import Prediction
 
 Doubt = (
     Literal[

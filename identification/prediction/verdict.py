@@ -42,8 +42,9 @@ from identification.prediction.remaining import find_remaining, left_by_steps, n
 from identification.prediction.task import WindowSearch
 from identification.prediction.trial import Contender
 from identification.prediction.yardstick import Yardstick, measure
+from identification.windows.comparison import Prediction, rise
 from identification.windows.records import Record
-from identification.windows.unseen import Prediction, Unseen, rise
+from identification.windows.unseen import Unseen
 
 MIN_LISTED_CONFIDENCE = 0.02  # a rival that is less likely is not listed
 EVEN_ODDS = 0.5  # a name below them is none, unless it is told with its look-alike

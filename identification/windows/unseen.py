@@ -1,8 +1,7 @@
-"""Prediction of records that no fit has seen: two models over windows of several lengths.
+"""Errors of a model on records that no fit has seen, over windows of several lengths.
 
-The horizon is predicted first: what it refutes is not predicted over the other lengths. Both models
-begin each window at the state that explains it best, found by the same smoother. Gains of blocks of
-neighbouring windows (`identification.windows.blocks`) are the sample of a t-test.
+The horizon is predicted first: what it refutes is not predicted over the other lengths. Each model
+begins a window at the state that explains it best, found by the same smoother.
 
 A search decides on `select` and tells of `report` (`identification.logs.parts`): on the windows
 that lie wholly inside one of these parts of their record. A window on the border belongs to none.
@@ -16,14 +15,12 @@ from functools import cached_property
 
 import numpy as np
 
-from identification.chances import mean_above_zero
 from identification.errors import InputError
 from identification.estimation.metrics import fit_percent
 from identification.logs.noise import noise_floor
 from identification.logs.parts import Part, Parts, inside
 from identification.model.coordinates import NOTHING
 from identification.model.predictor import Plant, Predictor
-from identification.windows.blocks import block_gains
 from identification.windows.held import held_records
 from identification.windows.own_values import Own, of_halves, own_values
 from identification.windows.problem import MOST_STEPS, most_windows
@@ -125,41 +122,6 @@ class Unseen:
         return self.squares[self.lengths.index(1.0)]
 
 
-@dataclass(frozen=True, kw_only=True)
-class Prediction:
-    """The gain of one model's predictions over another's."""
-
-    t: float  # of the mean gain over blocks, at the horizon
-    chance: float  # of as much by luck
-    gain: float
-    gains: tuple[float, ...]  # mean gain over blocks, by length of the windows
-    fall: float  # the one at the horizon, and `gain` likewise
-    falls: tuple[float, ...]  # relative fall of the mean square over all records, by length
-    # the same of each record's mean square by itself, in the geometric mean: a record that errs
-    # most, whatever the model, does not decide alone
-    typical_falls: tuple[float, ...]
-    record_falls: tuple[float, ...]  # relative fall of the mean square by record, at the horizon
-    # gain of each block of each record, at the horizon, shape (B,) a record
-    blocks: tuple[np.ndarray, ...]
-    # the same on windows on which a search does not decide; None where none are kept
-    untouched: Prediction | None = None
-
-    @property
-    def told(self) -> Prediction:
-        """The prediction whose numbers are told: on untouched windows, where some are kept."""
-        return self.untouched or self
-
-    @property
-    def records(self) -> tuple[float, ...]:
-        """Mean gain over blocks of each record, at the horizon."""
-        return tuple(float(g.mean()) for g in self.blocks)
-
-    @property
-    def is_everywhere(self) -> bool:
-        """Tells whether windows of every length are predicted better on average."""
-        return min(self.gains) > 0 and min(self.typical_falls) > 0
-
-
 def predict(
     plant: Plant,
     records: Sequence[Record],
@@ -257,41 +219,6 @@ def _is_better_elsewhere(own: Unseen, others: Sequence[Unseen], length: float) -
     )
 
 
-def compare(without: Unseen, with_it: Unseen) -> Prediction:
-    """Returns what the second of two models predicts better, over lengths that both have.
-
-    It is of the windows on which a search decides; what is to be told of it is its `told`.
-    """
-    decided = _compare(without.select, with_it.select)
-    if not any(with_it.parts):
-        return decided
-    return replace(decided, untouched=_compare(without.report, with_it.report))
-
-
-def _compare(without: Unseen, with_it: Unseen) -> Prediction:
-    """Returns the same of all windows of two models."""
-    falls, typical, gains = [], [], []
-    lengths = [n for n in without.lengths if n in with_it.lengths]
-    for length in lengths:
-        a, b = (u.squares[u.lengths.index(length)] for u in (without, with_it))
-        falls.append(1 - float(np.concatenate(b).mean() / np.concatenate(a).mean()))
-        ratios = [np.log(y.mean() / x.mean()) for x, y in zip(a, b, strict=True)]
-        typical.append(1 - float(np.exp(np.mean(ratios))))
-        gains.append(block_gains(a, b, without.floor))
-    at = lengths.index(1.0)
-    blocks, means = gains[at], tuple(float(np.concatenate(g).mean()) for g in gains)
-    every = np.concatenate(blocks)
-    t, chance = 0.0, 1.0
-    if len(every) > 2 and every.std() > 0:
-        t, chance = mean_above_zero(every)
-    each = zip(without.at_horizon, with_it.at_horizon, strict=True)
-    return Prediction(
-        t=t, chance=chance, gain=means[at], gains=means, fall=falls[at], falls=tuple(falls),
-        typical_falls=tuple(typical),
-        record_falls=tuple(1 - float(b.mean() / a.mean()) for a, b in each), blocks=tuple(blocks),
-    )  # fmt: skip
-
-
 def _settled(
     plant: Plant, records: Sequence[Record], cuts: Sequence[Windows], scale: np.ndarray,
     values: Mapping[str, float], halves: Sequence[tuple[Mapping[str, float], Mapping[str, float]]],
@@ -330,9 +257,3 @@ def _settled(
         d, errors = out[k]
         d[half], errors[half] = s.d, part.error(s.r)
     return out
-
-
-def rise(begun: Unseen, fitted: Unseen) -> float:
-    """Returns the relative rise of the mean square at the horizon from before a fit to after it."""
-    before, after = (float(np.mean(np.concatenate(u.at_horizon))) for u in (begun, fitted))
-    return after / before - 1

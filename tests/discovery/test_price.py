@@ -20,7 +20,7 @@ from identification.innovations.scoring.significance import select_significant
 from identification.prediction.contenders import list_contenders
 from identification.prediction.trial import find_doubt
 from identification.windows.blocks import block_gains
-from identification.windows.unseen import Prediction
+from identification.windows.comparison import Prediction
 
 OPTIONS = DiscoveryOptions()
 STRICT = DiscoveryOptions(without=("weak_scores",))

@@ -23,7 +23,8 @@ from identification.logs.parts import (
     is_told,
     join,
 )
-from identification.windows.unseen import Unseen, compare
+from identification.windows.comparison import compare
+from identification.windows.unseen import Unseen
 
 
 @given(st.integers(0, 3000), st.integers(1, 90), st.floats(0, 400), st.integers(0, 50))

@@ -18,9 +18,10 @@ from identification.prediction.task import RecordsTask
 from identification.prediction.verdict import conclude
 from identification.report.parts_words import is_untouched, parts_sentence, parts_to_json
 from identification.windows import dividing
+from identification.windows.comparison import compare
 from identification.windows.dividing import divide_records, memory_of
 from identification.windows.records import as_records
-from identification.windows.unseen import LENGTHS, compare, cut_unseen
+from identification.windows.unseen import LENGTHS, cut_unseen
 
 FALSE = {"offset.f_0@hinge": 0.02}
 

@@ -30,8 +30,8 @@ from identification.prediction.verdict import conclude
 from identification.report.discovery_json import discovery_to_json
 from identification.report.effect_words import describe_there
 from identification.report.named_words import curve_nodes
+from identification.windows.comparison import compare
 from identification.windows.records import as_records
-from identification.windows.unseen import compare
 
 PLACES, HORIZON, NOISE = ["joint shoulder", "joint elbow"], 0.2, 3e-4
 SIZES = ("quadratic_friction.c@shoulder", "quadratic_friction.c@elbow")

@@ -24,9 +24,9 @@ from identification.prediction.scores import window_scores
 from identification.prediction.screening import score_all
 from identification.prediction.selection import REFUTED, refit_contenders
 from identification.prediction.trial import Contender, find_doubt
+from identification.windows.comparison import compare
 from identification.windows.records import as_records
 from identification.windows.unseen import HORIZON as ALONE
-from identification.windows.unseen import compare
 
 NAME, MU = "transmitted_load_friction", "transmitted_load_friction.mu@hinge"
 LOAD = {MU: 0.15}

@@ -15,8 +15,9 @@ from identification.prediction.nominal_fit import fit_nominal
 from identification.prediction.scores import find_imitated, window_scores
 from identification.prediction.screening import has_what_it_needs
 from identification.windows import point
+from identification.windows.comparison import compare
 from identification.windows.records import as_records
-from identification.windows.unseen import compare, predict
+from identification.windows.unseen import predict
 
 SAMPLES = 300  # of each record
 LOAD = {"transmitted_load_friction.mu@hinge": 0.15}

@@ -37,7 +37,7 @@ from identification.prediction.set_choice import choose, find_members
 from identification.prediction.task import WindowSearch
 from identification.prediction.trial import Contender, find_doubt, find_rivals
 from identification.progress import Progress
-from identification.windows.unseen import compare
+from identification.windows.comparison import compare
 
 MAX_CHOICES = 3  # of a set, each about the model with the one before
 MAX_ROUNDS = 2  # of a choice, and of asking each of its members in its place

@@ -35,7 +35,7 @@ from identification.prediction.task import Change, WindowSearch
 from identification.prediction.trial import Contender
 from identification.prediction.yardstick import acts_on_joints
 from identification.progress import Progress
-from identification.windows.unseen import compare
+from identification.windows.comparison import compare
 
 # Chance of a curve beside a law, among all curves of its joint, below which the law is asked. It
 # only saves refits: unseen records decide.

@@ -17,7 +17,7 @@ from identification.prediction.model import WindowModel
 from identification.prediction.task import Change, RecordsTask, WindowSearch
 from identification.prediction.trial import Contender, Doubt, find_doubt
 from identification.progress import Progress
-from identification.windows.unseen import compare
+from identification.windows.comparison import compare
 
 NEEDLESS: tuple[Doubt, ...] = ("chance", "little")  # others make up for it
 

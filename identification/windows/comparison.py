@@ -1,0 +1,91 @@
+"""Comparison of the predictions of two models on records that no fit has seen.
+
+Gains of blocks of neighbouring windows (`identification.windows.blocks`) are the sample of a
+t-test, for windows of each length that both models predict.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from identification.chances import mean_above_zero
+from identification.windows.blocks import block_gains
+from identification.windows.unseen import Unseen
+
+
+@dataclass(frozen=True, kw_only=True)
+class Prediction:
+    """The gain of one model's predictions over another's."""
+
+    t: float  # of the mean gain over blocks, at the horizon
+    chance: float  # of as much by luck
+    gain: float
+    gains: tuple[float, ...]  # mean gain over blocks, by length of the windows
+    fall: float  # the one at the horizon, and `gain` likewise
+    falls: tuple[float, ...]  # relative fall of the mean square over all records, by length
+    # the same of each record's mean square by itself, in the geometric mean: a record that errs
+    # most, whatever the model, does not decide alone
+    typical_falls: tuple[float, ...]
+    record_falls: tuple[float, ...]  # relative fall of the mean square by record, at the horizon
+    # gain of each block of each record, at the horizon, shape (B,) a record
+    blocks: tuple[np.ndarray, ...]
+    # the same on windows on which a search does not decide; None where none are kept
+    untouched: Prediction | None = None
+
+    @property
+    def told(self) -> Prediction:
+        """The prediction whose numbers are told: on untouched windows, where some are kept."""
+        return self.untouched or self
+
+    @property
+    def records(self) -> tuple[float, ...]:
+        """Mean gain over blocks of each record, at the horizon."""
+        return tuple(float(g.mean()) for g in self.blocks)
+
+    @property
+    def is_everywhere(self) -> bool:
+        """Tells whether windows of every length are predicted better on average."""
+        return min(self.gains) > 0 and min(self.typical_falls) > 0
+
+
+def compare(without: Unseen, with_it: Unseen) -> Prediction:
+    """Returns what the second of two models predicts better, over lengths that both have.
+
+    It is of the windows on which a search decides; what is to be told of it is its `told`.
+    """
+    decided = _compare(without.select, with_it.select)
+    if not any(with_it.parts):
+        return decided
+    return replace(decided, untouched=_compare(without.report, with_it.report))
+
+
+def _compare(without: Unseen, with_it: Unseen) -> Prediction:
+    """Returns the same of all windows of two models."""
+    falls, typical, gains = [], [], []
+    lengths = [n for n in without.lengths if n in with_it.lengths]
+    for length in lengths:
+        a, b = (u.squares[u.lengths.index(length)] for u in (without, with_it))
+        falls.append(1 - float(np.concatenate(b).mean() / np.concatenate(a).mean()))
+        ratios = [np.log(y.mean() / x.mean()) for x, y in zip(a, b, strict=True)]
+        typical.append(1 - float(np.exp(np.mean(ratios))))
+        gains.append(block_gains(a, b, without.floor))
+    at = lengths.index(1.0)
+    blocks, means = gains[at], tuple(float(np.concatenate(g).mean()) for g in gains)
+    every = np.concatenate(blocks)
+    t, chance = 0.0, 1.0
+    if len(every) > 2 and every.std() > 0:
+        t, chance = mean_above_zero(every)
+    each = zip(without.at_horizon, with_it.at_horizon, strict=True)
+    return Prediction(
+        t=t, chance=chance, gain=means[at], gains=means, fall=falls[at], falls=tuple(falls),
+        typical_falls=tuple(typical),
+        record_falls=tuple(1 - float(b.mean() / a.mean()) for a, b in each), blocks=tuple(blocks),
+    )  # fmt: skip
+
+
+def rise(begun: Unseen, fitted: Unseen) -> float:
+    """Returns the relative rise of the mean square at the horizon from before a fit to after it."""
+    before, after = (float(np.mean(np.concatenate(u.at_horizon))) for u in (begun, fitted))
+    return after / before - 1
