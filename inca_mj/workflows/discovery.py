@@ -18,7 +18,7 @@ from inca_mj.robot.parameters import parameter_set
 from inca_mj.robot.spread import with_spread
 from inca_mj.twin.logs import POSE
 from inca_mj.twin.twin import build_twin
-from inca_mj.workflows.calibration import nominal_model
+from inca_mj.workflows.calibration import TIMESTEP, nominal_model
 from inca_mj.workflows.comparison import timestep_for
 from inca_mj.workflows.spread import Spread, spread_of
 
@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from identification.discovery.result import Discovery
     from identification.written import Files
 
-TIMESTEP = 2e-3  # [s]; RK4 errs by 0.03 mrad, 1/20 of an encoder's noise, at half the cost of 1 ms
 TOLD = 2.0  # of a record that confirms, the fit sees so much, which tells where it begins [s]
 
 
