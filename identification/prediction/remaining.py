@@ -6,6 +6,8 @@ S = -∂r/∂u, u the inputs in units of their rms, each error constant over a w
 and sensitivity without what the state of a window makes up for; n: readings less the states that
 they tell, σ: the sensors' noise. No log has exact inputs: a drive's current or a commanded torque
 is good to some per cent. What so small an error of the inputs makes is no reason to seek an effect.
+The residual is that of fitted or of unseen windows, whichever is larger for its number: a force
+that came or changed after the fitted record leaves nothing there.
 
 All of it is of the windows on which the search has not decided (`identification.logs.parts`).
 Where the error at the horizon is that of the sensors, nothing is left that an effect or a shift of
@@ -53,7 +55,7 @@ INPUT_STEP = 1e-3  # of an input's rms, by which it is moved
 MAX_OUTPUT_RATIO = 1.5
 # Of a record's rms error to that of the others: beyond it, and beyond chance, it is reported.
 DIFFERENT_RECORD_RATIO = 2.0
-MIN_COMPARED_RECORDS = 3  # of two nobody knows which one is different
+MIN_COMPARED_RECORDS = 3  # of two nobody knows which one is different: they differ
 
 
 def find_remaining(
@@ -77,7 +79,7 @@ def find_remaining(
     for r in rejected if left and needed > state.task.options.max_input_error else ():
         if r.doubt == "steps":  # they are told, and are nothing that is missing
             continue
-        seen, has_fallen = r.proof, r.proof.told.fall > 0
+        seen, has_fallen = r.proof, r.proof.told.fall > state.task.options.min_fall
         if seen.is_everywhere and has_fallen and seen.t > state.task.options.min_proof_t:
             unproven = _unproven(r, state.model.plant)
             if (unproven.name, unproven.where) not in places:
@@ -85,7 +87,7 @@ def find_remaining(
             places.add((unproven.name, unproven.where))
     if state.accepted and left:
         out.append(Finding(FindingKind.REMAINING_ERROR, left))
-    out += [Finding(FindingKind.DIFFERENT_RECORD, e) for e in different_records(state)]
+    out += [Finding(FindingKind.DIFFERENT_RECORD, e) for e in different_records(state, needed)]
     told = told_shifts(shifts, len(state.task.records), state.task.options) if left else ()
     out += [Finding(FindingKind.SHIFTED_RECORD, e) for e in told]
     return tuple(out)
@@ -106,7 +108,7 @@ def is_much_left(model: WindowModel, options: DiscoveryOptions) -> bool:
     square = float(np.mean(np.concatenate(unseen.at_horizon)))
     if not square > unseen.floor * MAX_OUTPUT_RATIO**2:
         return False
-    needed = attempt(None, partial(needed_input_error, model.fit, model.unseen.floor))
+    needed = attempt(None, partial(needed_input_error, model.fit, unseen.floor, unseen.at_horizon))
     return needed is None or needed > options.max_input_error
 
 
@@ -140,10 +142,15 @@ def noise_ratio(state: WindowSearch) -> float:
     return relative(errors, errors_by_unit(unseen.noise, scale, log))
 
 
-def different_records(state: WindowSearch) -> list[DifferentRecord]:
+def different_records(state: WindowSearch, needed: float) -> list[DifferentRecord]:
     """Returns records that the final model predicts much worse than the others, by Welch's t-test.
 
-    The sample are logarithms of the windows' mean squares, and the records are paid for.
+    The sample are logarithms of the windows' mean squares, and the records are paid for. Of two
+    records the worse one is told only where inputs that are off by what is usual would not make it.
+
+    Args:
+        state: the finished state.
+        needed: error of the inputs that would make what is left, a share of their rms.
     """
     unseen, options = state.model.unseen.report, state.task.options
     errors = {
@@ -157,14 +164,14 @@ def different_records(state: WindowSearch) -> list[DifferentRecord]:
             np.mean((e / scale) ** 2, axis=(1, 2)) + unseen.floor
         )
     out: list[DifferentRecord] = []
-    if len(errors) < MIN_COMPARED_RECORDS:
+    if len(errors) < MIN_COMPARED_RECORDS and not needed > options.max_input_error:
         return out
     for name, mine in errors.items():
         rest = np.concatenate([e for n, e in errors.items() if n != name])
         ratio = float(np.exp((mine.mean() - rest.mean()) / 2))
         chance = mean_above_other(mine, rest)
         if ratio > DIFFERENT_RECORD_RATIO and chance * len(errors) < options.significance:
-            out.append(DifferentRecord(name, ratio, chance))
+            out.append(DifferentRecord(name, ratio, chance, tuple(n for n in errors if n != name)))
     return out
 
 
@@ -176,24 +183,30 @@ def _unproven(r: RejectedEffect, plant: Plant) -> UnprovenEffect:
     )
 
 
-def needed_input_error(fit: WindowFit, floor: float) -> float:
+def needed_input_error(fit: WindowFit, floor: float, unseen: Sequence[np.ndarray] = ()) -> float:
     """Returns the inputs' rms error over a window that the residual needs, as a share of their rms.
+
+    Unseen windows are taken to feel an error of the inputs as the fitted ones do.
 
     Args:
         fit: the model, on the windows of the records that were fitted.
         floor: σ², mean square of the sensors' noise in units of the errors' scale.
+        unseen: mean squares of windows that were not fitted, one array a record, in these units.
     """
     inputs = np.concatenate([p.predictor.log.inputs for p in fit.problem.parts])
     size = np.sqrt(np.mean(inputs**2, axis=0))
     moving = np.flatnonzero(size > 0)
     if not len(moving):  # in a free swing, no error of the inputs is a share of their size
         return np.inf
-    left, felt = 0.0, 0.0
+    left, felt, count = 0.0, 0.0, 0.0
     for k, (part, d, t) in enumerate(zip(fit.problem.parts, fit.moves, fit.tangents, strict=True)):
         q = fit.q[fit.problem.unknowns.columns(k)]
         readings = part.cut.outputs.size - t.freedom
         left += float(np.sum(t.projected[1] ** 2)) - floor * readings
+        count += readings
         felt += float(np.sum(_sensitivity(part, q, d, t, size, moving) ** 2))
+    if unseen:
+        left = max(left, count * float(np.mean(np.concatenate(unseen)) - floor))
     return float(np.sqrt(max(0.0, left) / felt)) if felt > 0 else np.inf
 
 

@@ -68,9 +68,9 @@ def conclude(state: WindowSearch) -> Discovery:
     differ = [a for a in state.accepted if a.candidate.effect.is_of_records]
     nominal = _with_differences(state, differ)
     # Beside a model with effects that diverges there, the nominal one tells it.
-    needed = attempt(None, partial(needed_input_error, model.fit, model.unseen.floor))
+    needed = attempt(None, partial(_needed_input_error, model))
     if needed is None:
-        needed = needed_input_error(nominal.fit, nominal.unseen.floor)
+        needed = _needed_input_error(nominal)
     findings = find_remaining(state, rejected, shifts, needed)
     limit = options.left_confidence if findings else options.max_confidence
     stick = attempt(None, partial(measure, model, task.effects)) if state.accepted else None
@@ -299,6 +299,12 @@ def _is_worse(state: WindowSearch) -> bool:
 def _errs(model: WindowModel, needed: float, options: DiscoveryOptions) -> bool:
     """Returns whether a model errs by more than noise and than errors of its inputs would make."""
     return _is_off(model, options) and needed > options.max_input_error
+
+
+def _needed_input_error(model: WindowModel) -> float:
+    """Returns the error of the inputs that would make what a model leaves, a share of their rms."""
+    unseen = model.unseen
+    return needed_input_error(model.fit, unseen.floor, unseen.report.at_horizon)
 
 
 def _is_off(model: WindowModel, options: DiscoveryOptions) -> bool:

@@ -150,6 +150,12 @@ def _oversized_effect(e: evidence.OversizedEffect) -> str:
 
 
 def _different_record(e: records_evidence.DifferentRecord) -> str:
+    if len(e.others) == 1:
+        return (
+            f"record {e.record} is predicted {times(e.ratio)} worse than record {e.others[0]} (rms"
+            " of windows, geometric means): something differs between the two, such as a load, a"
+            " force or a zero of a sensor that changed, or a motion that only one of them makes"
+        )
     return (
         f"record {e.record} is predicted {times(e.ratio)} worse than the others (rms of windows,"
         " geometric means): something is different in it; look at it, or leave it out"

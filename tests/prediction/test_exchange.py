@@ -10,6 +10,7 @@ import pytest
 from records_cases import FREE, HORIZON, NOISE, STEP, nominal_model, pendulum, record, records
 
 from identification.discovery.candidates import list_common
+from identification.discovery.findings.finding import FindingKind
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.joint_plant import candidates
 from identification.model.predictor import Predictor
@@ -30,6 +31,7 @@ from identification.windows.unseen import HORIZON as ALONE
 
 NAME, MU = "transmitted_load_friction", "transmitted_load_friction.mu@hinge"
 LOAD = {MU: 0.15}
+OFFSET = "offset.f_0@hinge"
 OPTIONS = DiscoveryOptions()
 SAMPLES = 300  # of each record
 
@@ -172,3 +174,28 @@ def test_an_error_of_the_inputs_is_found_as_large_as_it_is(share):
         assert error == pytest.approx(share, rel=0.3)
     else:
         assert error < 0.005
+
+
+def test_an_error_of_the_inputs_is_found_where_only_unseen_records_have_it():
+    logs = [disturbed(1, 0.0), disturbed(2, 0.0), disturbed(3, 0.1)]
+    found = fit_nominal(nominal_model(), as_records(logs[:2], logs[2:]))
+    unseen = found.unseen
+    assert needed_input_error(found.fit, unseen.floor) < 0.005
+    error = needed_input_error(found.fit, unseen.floor, unseen.at_horizon)
+    assert error == pytest.approx(0.1, rel=0.3)
+
+
+@pytest.mark.parametrize("force", [0.0, 0.05])
+def test_a_force_that_comes_after_the_fitted_record_is_something_that_is_missing(force):
+    """The fitted record has no trace of it, so that no effect can be proven; the records differ."""
+    before, after = (
+        record(1, 400, plant=pendulum()),
+        record(2, 400, {OFFSET: force}, plant=pendulum()),
+    )
+    effects = [e for e in candidates(pendulum(), FREE) if e.name in ("quadratic_friction", "delay")]
+    found = discover_records(nominal_model(), [before], [after], effects)
+    told = [f.evidence for f in found.findings if f.kind is FindingKind.DIFFERENT_RECORD]
+    assert found.verdict == ("unknown effect" if force else "nothing missing")
+    assert [(e.record, e.others) for e in told] == (
+        [("record 2", ("record 1 (fit)",))] if force else []
+    )

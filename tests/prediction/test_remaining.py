@@ -32,7 +32,7 @@ def kinds(
 
     Finer steps leave the share `finer` of it. Inputs that err by `needed` would make it.
     """
-    monkeypatch.setattr(remaining, "different_records", lambda state: [])
+    monkeypatch.setattr(remaining, "different_records", lambda *_: [])
     squares = ratio**2 * floor * np.array([0.5, 1.5])
     unseen = SimpleNamespace(
         at_horizon=(squares[:1], squares[1:]), floor=floor, noise=np.array([floor]),
@@ -56,7 +56,7 @@ def state_of(unseen, accepted, outputs=("x",), finer=np.nan):
 @pytest.mark.parametrize(("rms", "output", "told"), [(45.0, "y", 45.0), (1.3, "", 1.16)])
 def test_an_output_that_errs_is_told_whatever_the_others_do(monkeypatch, rms, output, told):
     """The others, which were never wrong, have most of the noise in units of their error."""
-    monkeypatch.setattr(remaining, "different_records", lambda state: [])
+    monkeypatch.setattr(remaining, "different_records", lambda *_: [])
     noise = np.array([1.0, 1e-6 if output else 1.0])
     each = noise * np.array([1.0, rms**2])
     unseen = SimpleNamespace(
@@ -89,6 +89,14 @@ def test_above_the_noise_a_doubt_and_a_shift_are_told(monkeypatch):
     assert kinds(monkeypatch, LEAST + 0.01) == doubts
     left = kinds(monkeypatch, LEAST + 0.01, accepted=("an effect",))
     assert left == [doubts[0], FindingKind.REMAINING_ERROR, doubts[1]]
+
+
+def test_an_effect_that_takes_away_next_to_nothing_is_no_doubt(monkeypatch):
+    told = SimpleNamespace(fall=0.9 * OPTIONS.min_fall)
+    proof = SimpleNamespace(**{**vars(DOUBTFUL.proof), "told": told})
+    little = SimpleNamespace(**{**vars(DOUBTFUL), "proof": proof})
+    assert FindingKind.UNPROVEN_EFFECT in kinds(monkeypatch, 4.0)
+    assert FindingKind.UNPROVEN_EFFECT not in kinds(monkeypatch, 4.0, rejected=(little,))
 
 
 def test_what_the_steps_of_the_simulation_make_is_nothing_that_is_left(monkeypatch):

@@ -27,11 +27,13 @@ class DifferentRecord:
         record: its name.
         ratio: rms error of its windows over that of the others' windows (geometric means).
         chance: of as large a difference by luck.
+        others: names of the others.
     """
 
     record: str
     ratio: float
     chance: float
+    others: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
