@@ -58,6 +58,9 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
     "losing_blocks": (
         HORIZON, "lets a record contradict an effect only where its blocks lose on average too",
     ),
+    "loud_windows": (
+        HORIZON, "takes the windows that err most where effects are fitted to some windows first",
+    ),
     "curves_at_last": (
         HORIZON, "refits curves of the data that promise less than a law where no law is proven",
     ),

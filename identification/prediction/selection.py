@@ -105,13 +105,13 @@ def refit_contenders(
                 each[k] = judge_one(c)
         return parent, [*each.values()]
 
-    children = refit(_near_best(_begun(model, chosen, scores), options))
+    children = refit(_near_best(_begun(model, chosen, scores, options), options))
     parent, out = judge(model, children)
     proven = [c for c in out if c.is_proven]
     curves = [] if proven else list_curves(scores, {s.candidate.key for s in chosen}, options)
     if curves:
         refits += len(curves)
-        more = refit(_near_best(_begun(model, curves, scores), options))
+        more = refit(_near_best(_begun(model, curves, scores, options), options))
         parent, out = judge(parent, [*(c.model for c in out), *more])
         proven = [c for c in out if c.is_proven]
     if proven and uses(options, "simpler_laws"):
@@ -119,7 +119,7 @@ def refit_contenders(
         tried = {c.candidate.key for c in out}
         simpler = list_simpler(best.candidate, scores, options)
         rest = [s for s in simpler if s.candidate.key not in tried]
-        more = refit(_begun(model, rest, scores))
+        more = refit(_begun(model, rest, scores, options))
         if more:
             parent, out = judge(parent, [*(c.model for c in out), *more])
     for c in out:
@@ -129,10 +129,13 @@ def refit_contenders(
 
 
 def _begun(
-    model: WindowModel, chosen: Sequence[WindowScore], scores: Sequence[WindowScore]
-) -> list[Begun]:
+    model: WindowModel, chosen: Sequence[WindowScore], scores: Sequence[WindowScore],
+    options: DiscoveryOptions,
+) -> list[Begun]:  # fmt: skip
     """Returns effects fitted to some of the windows; those that cannot be simulated are told."""
-    tasks = [(s.candidate, partial(begin, model, [s, *list_starts(s, scores)])) for s in chosen]
+    is_loud = uses(options, "loud_windows")
+    each = ((s.candidate, [s, *list_starts(s, scores)]) for s in chosen)
+    tasks = [(c, partial(begin, model, starts, is_loud)) for c, starts in each]
     return [begun for begun in attempt_each(tasks) if begun is not None]
 
 

@@ -24,6 +24,7 @@ import numpy as np
 
 from identification.discovery.attempts import attempt
 from identification.discovery.moves import Watch
+from identification.discovery.passes import uses
 from identification.prediction.contenders import is_significant, refit_level
 from identification.prediction.first_fit import Begun, begin, picks, thinned_tangents
 from identification.prediction.model import WindowModel
@@ -50,7 +51,8 @@ def add_yielding_friction(state: WindowSearch, progress: Progress) -> WindowSear
     if not best or not is_much_left(state.model, task.options):
         return state
     level = refit_level(state.scores, task.options)
-    tried = (attempt(s.candidate, partial(_from_largest, state.model, s)) for s in best)
+    is_loud = uses(task.options, "loud_windows")
+    tried = (attempt(s.candidate, partial(_from_largest, state.model, s, is_loud)) for s in best)
     found = [s for s in tried if s and _is_felt(s) and is_significant(s, level, task.options)]
     watch.stop("scores")
     state = replace(state, seconds=watch.seconds)
@@ -74,13 +76,13 @@ def _is_felt(s: WindowScore) -> bool:
     return bool(np.any(np.abs(s.size) > np.resize([z.smallest for z in sizes], len(s.size))))
 
 
-def _from_largest(model: WindowModel, score: WindowScore) -> WindowScore:
+def _from_largest(model: WindowModel, score: WindowScore, is_loud: bool) -> WindowScore:
     """Returns what a fit to some windows explains that begins at the largest plausible size."""
     sizes = score.candidate.effect.sizes
     largest = np.resize([z.largest for z in sizes], len(score.size))
     still = np.zeros_like(score.along)
-    begun = begin(model, [replace(score, size=largest, along=still)])
-    before, errors = _without(model, begun)
+    begun = begin(model, [replace(score, size=largest, along=still)], is_loud)
+    before, errors = _without(model, begun, is_loud)
     fall = 1 - begun.cost / before
     numbers = len(begun.q) - len(model.fit.q)
     gain = -errors * np.log(max(1e-12, 1 - fall)) - numbers * np.log(errors)
@@ -93,9 +95,9 @@ def _from_largest(model: WindowModel, score: WindowScore) -> WindowScore:
                    p_value=float(min(1.0, np.exp(-gain / 2))))  # fmt: skip
 
 
-def _without(model: WindowModel, begun: Begun) -> tuple[float, int]:
+def _without(model: WindowModel, begun: Begun, is_loud: bool) -> tuple[float, int]:
     """Returns V of the windows of a begun fit without its effect, and their number of errors."""
     fit = model.fit
-    near = thinned_tangents(fit.tangents, picks(fit.tangents))
+    near = thinned_tangents(fit.tangents, picks(fit.tangents, is_loud=is_loud))
     outputs = begun.task.parts[0].cut.outputs.shape[-1]
     return fit.problem.cost_of(fit.q, [t.r for t in near]), begun.windows * outputs
