@@ -43,7 +43,7 @@ def logs(c):
 def scored(c):
     """The nominal model of records with a compliance, and its linear score of presliding."""
     task = RecordsTask(
-        nominal_model=nominal(), records=as_records(logs(c)[:2], logs(c)[2:], None),
+        nominal_model=nominal(), records=as_records(logs(c)[:2], logs(c)[2:]),
         effects=effects("presliding"), options=DiscoveryOptions(),
     )  # fmt: skip
     state = first_state(task, print)
@@ -53,7 +53,7 @@ def scored(c):
 @pytest.mark.parametrize("c", COMPLIANCES)
 def test_a_fit_from_the_largest_compliance_finds_it_beyond_chance(c):
     model, linear = scored(c)
-    found = _from_largest(model, linear)
+    found = _from_largest(model, linear, True)
     assert found.size[0] == pytest.approx(c, rel=0.15)
     assert found.fall > max(0.5, linear.fall)
     assert found.p_value < 1e-6
@@ -61,7 +61,7 @@ def test_a_fit_from_the_largest_compliance_finds_it_beyond_chance(c):
 
 def test_the_free_parameters_go_along_to_their_true_values():
     model, linear = scored(COMPLIANCES[1])
-    found = _from_largest(model, linear)
+    found = _from_largest(model, linear, True)
     names = model.fit.problem.names
     values = dict(zip(names, model.fit.problem.prior.space.decode(model.fit.q + found.along),
                       strict=True))  # fmt: skip
@@ -71,7 +71,7 @@ def test_the_free_parameters_go_along_to_their_true_values():
 
 def test_a_friction_that_holds_is_left_to_chance():
     model, linear = scored(RIGID)
-    assert _from_largest(model, linear).p_value > 0.01
+    assert _from_largest(model, linear, True).p_value > 0.01
 
 
 @pytest.mark.parametrize(("without", "names"), [((), ["presliding"]), ((PASS,), [])])

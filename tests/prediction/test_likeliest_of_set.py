@@ -26,7 +26,7 @@ def refits():
     names = ("quadratic_friction", "stribeck_friction", "sublinear_friction")
     effects = [e for e in candidates(pendulum(), ("J", "d")) if e.name in names]
     task = RecordsTask(
-        nominal_model=nominal_model(), records=as_records(logs[:1], logs[1:], None),
+        nominal_model=nominal_model(), records=as_records(logs[:1], logs[1:]),
         effects=tuple(effects), options=DiscoveryOptions(max_effects=1),
     )  # fmt: skip
     state, best = WINDOWS.begin(task, print), {}
