@@ -21,6 +21,7 @@ from identification.results import RESULT, plain_text, write_result
 
 if TYPE_CHECKING:
     from identification.folders import Draft
+    from identification.report.headline import Headline
     from identification.report.page import Section
 
 T = TypeVar("T")
@@ -174,13 +175,16 @@ def draw_report(
     good: bool | None = None,
     footer: str = "",
     data: Sequence[str] = (),
+    headline: Headline | None = None,
 ) -> None:
     """Write the figures of sections and the one-file report into a folder; see `write_report`."""
     from identification.report.page import save_figures, write_report
 
     save_figures(sections, out)
     path = out / "report.html"
-    write_report(path, title, verdict, sections, good=good, footer=footer, data=data)
+    write_report(
+        path, title, verdict, sections, good=good, footer=footer, data=data, headline=headline
+    )
 
 
 def import_without_graphics(*, own_methods: bool = False) -> None:

@@ -100,6 +100,14 @@ class Effect:
         """Its parameters in the order in which the hooks get them: sizes, then shapes."""
         return (*(size.name for size in self.sizes), *(shape.name for shape in self.shapes))
 
+    @property
+    def about(self) -> dict[str, str]:
+        """What each of its parameters is, in words, by name."""
+        return {
+            **{size.name: size.about for size in self.sizes},
+            **{shape.name: shape.about for shape in self.shapes},
+        }
+
     def parameter(self, name: str, where: str) -> str:
         """Returns the plant's parameter name of a size at a place, or of a shape (one for all)."""
         if any(shape.name == name for shape in self.shapes):

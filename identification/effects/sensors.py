@@ -37,7 +37,8 @@ OFFSET = 0.1  # of the travel
 ECCENTRICITY = 0.02  # [rad]
 LAG = 0.02  # [s]
 PROBE = 0.02  # of the largest plausible size
-KIND = Shape("kind", "", (0.0, 1.0), 0.0, 1.0, free=False, usual=0.0, about="0 a lag, 1 a delay")
+KIND = Shape("kind", "", (0.0, 1.0), 0.0, 1.0, free=False, usual=0.0, about="0 a lag, 1 a delay",
+             words=("it is a lag", "it is a delay"))  # fmt: skip
 
 
 @njit

@@ -59,6 +59,7 @@ class Shape:
             so many maxima that a refit does not find the way; 0 where it does [unit].
         of_log: whether it tells something of one log and nothing of the robot, so that it is kept
             for no other log.
+        words: what the values 0, 1, ... mean, where it is a choice and no number.
     """
 
     name: str
@@ -71,6 +72,7 @@ class Shape:
     usual: float | None = None
     step: float = 0.0
     of_log: bool = False
+    words: tuple[str, ...] = ()
 
     @property
     def at_first(self) -> float:

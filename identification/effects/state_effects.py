@@ -36,7 +36,9 @@ SWINGS, OPENS, SLIPS = (5.0, 10.0, 20.0, 35.0, 60.0), (5.0, 30.0), (0.5, 5.0, 60
 # that holds: in units of the compliance on which it swings once in 2π steps.
 LEAST_GIVE = 9.0
 LINK = Shape("link", "", (0.0, 1.0), 0.0, 1.0, free=False, usual=0.0,
-             about="0: the encoder sits on the motor's side, 1: on the link's")  # fmt: skip
+             about="0: the encoder sits on the motor's side, 1: on the link's",
+             words=("the encoder is on the motor's side", "the encoder is on the link's side"),
+             )  # fmt: skip
 
 
 @njit

@@ -14,7 +14,7 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 from identification.discovery.free_run import FreeRun
 from identification.discovery.result import Discovery, Scored
 from identification.estimation.metrics import of_outputs
-from identification.report.effect_words import describe_effect
+from identification.report.effect_words import describe_there
 from identification.report.style import GREY, INK, MEASURED, SIMULATED, literal, styled, time_panels
 
 if TYPE_CHECKING:
@@ -63,7 +63,8 @@ def score_figures(found: Discovery, best: Sequence[Scored], axis: str, caption: 
     # What the data cannot tell from a named effect is named with it.
     named |= {r.candidate.effect.name for n in found.named if n.one_of for r in n.rivals[:1]}
     figure = gains_figure(
-        [describe_effect(s.candidate) for s in best], np.array([s.explains for s in best]),
+        [describe_there(s.candidate, found.final.plant) for s in best],
+        np.array([s.explains for s in best]),
         [s.candidate.effect.name in named for s in best], axis,
     )  # fmt: skip
     return ((caption, figure),)

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from identification.discovery.result import Discovery
+from identification.report.discovery_headline import discovery_headline
 from identification.report.discovery_sections import (
     gap_section,
     parameters_section,
@@ -17,10 +17,10 @@ from identification.report.discovery_sections import (
     unseen_section,
     where_section,
 )
-from identification.report.discovery_verdict import discovery_verdict
+from identification.report.discovery_verdict import discovery_verdict, further_sentences
 from identification.report.effect_sections import added_section, rivals_section
 from identification.report.horizon_section import horizon_sections
-from identification.report.law import LAWS, law_sections
+from identification.report.law import law_sections
 from identification.report.page import Section, save_figures, write_report
 
 if TYPE_CHECKING:
@@ -43,6 +43,7 @@ def discovery_text(found: Discovery) -> str:
     parts = [
         "\n".join(discovery_verdict(found)),
         *(section.plain for section in sections),
+        "\n".join(further_sentences(found)),
         *steps_taken(found),
         f"The search took {sum(found.seconds.values()):.1f} s.",
     ]
@@ -108,8 +109,6 @@ def write_page(
     Raises:
         InputError: the file cannot be written.
     """
-    if all(section.video is None for section in sections):  # the law stands where a film would
-        sections = [replace(s, first=s.first or s.title == LAWS) for s in sections]
     fitted = [record.log.name for record in found.records if record.role == "fit"]
     return write_report(
         path,
@@ -119,4 +118,6 @@ def write_page(
         good=found.is_good,
         data=[record.log.name for record in found.records],
         drawings=drawings,
+        headline=discovery_headline(found),
+        further=further_sentences(found),
     )

@@ -16,7 +16,7 @@ from identification.quantities import held
 from identification.report.departure_words import departures_found
 from identification.report.discovery_figures import gap_figures, where_figures
 from identification.report.effect_sections import listed_below
-from identification.report.effect_words import words_of
+from identification.report.effect_words import gathered, words_of
 from identification.report.error_words import error_words, pair_words
 from identification.report.finding_words import describe_finding, describe_shift, sentence
 from identification.report.fitted_values import (
@@ -25,6 +25,7 @@ from identification.report.fitted_values import (
     value_lines,
     value_table,
 )
+from identification.report.horizon_section import error_figures
 from identification.report.page import Section, Table
 from identification.report.parts_words import parts_sentence
 from identification.report.shown_words import shown_lines, shown_rows, shown_sentences
@@ -79,8 +80,8 @@ def gap_section(found: Discovery) -> Section:
     return Section(
         "The gap on unseen data",
         f"{GAPS[found.judged_by]} {said}",
-        first=True,
-        figures=cache(partial(gap_figures, found, run)) if run else (),
+        first=3,
+        figures=cache(partial(gap_figures, found, run) if run else partial(error_figures, found)),
         table=Table(
             ("model", "rms", "times the noise", "mean fit [%]"),
             tuple(rows if found.named else rows[:1]),
@@ -147,7 +148,7 @@ def parameters_section(found: Discovery) -> Section:
         said += " Values of single parts are their relative deviations from the common value, and"
         said += " those of single points their displacements."
     if found.held_fixed:
-        kept = " or ".join(words[name] for name in found.held_fixed)
+        kept = " or ".join(gathered(words[name] for name in found.held_fixed))
         said += f" It is also too small where the true value of {kept}, which was held fixed, is"
         said += " not the nominal one."
     steps, table = std_sentence(found.final, words), value_table(found)

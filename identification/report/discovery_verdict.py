@@ -16,7 +16,7 @@ from identification.report.effect_words import (
 from identification.report.error_words import change_words, describe_scale, error_words
 from identification.report.finding_words import describe_finding, sentence
 from identification.report.horizon_words import needed_sentences
-from identification.report.named_words import named_sentences
+from identification.report.named_words import basis_sentence, named_sentences
 from identification.report.parts_words import is_untouched
 from identification.report.shown_words import SHOWN, hiding, smallest, split_detectable
 from identification.report.untold_words import bound_sentences
@@ -33,9 +33,23 @@ NOISIER = 1.5  # times the rms noise of the other outputs of its unit: more is t
 def discovery_verdict(found: Discovery) -> list[str]:
     """Returns sentences: the verdict first, then what supports it."""
     bounds = bound_sentences(found.final.plant.parameters, found.at_bound)
-    differ = difference_sentences(found)
-    scale = describe_scale(found.outputs, found.scale)
-    return [*_verdict(found), *_noisier(found), *differ, *bounds, *scale]
+    return [*_verdict(found), *_noisier(found), *difference_sentences(found), *bounds]
+
+
+def further_sentences(found: Discovery) -> list[str]:
+    """Returns what a verdict rests on and what may stay hidden: a page folds it."""
+    return [
+        *(basis_sentence(found, named) for named in found.named),
+        *filter(None, ["" if found.unexplained else hiding(found.hidden)]),
+        *describe_scale(found.outputs, found.scale),
+    ]
+
+
+def is_above_noise(found: Discovery) -> bool:
+    """Tells whether the nominal model's error on unseen data is more than noise makes."""
+    ratio = found.before.rms / found.noise_rms if found.noise_rms else 1.0
+    is_noise = found.unlogged is not None or found.input_error < NO_ERROR
+    return not is_noise and ratio**2 > 1 + found.options.min_gap_share
 
 
 def _verdict(found: Discovery) -> list[str]:
@@ -48,7 +62,7 @@ def _verdict(found: Discovery) -> list[str]:
     if found.unexplained:
         said.append(_unexplained(found))
     elif found.hidden:
-        said.append(f"Nothing else is missing that this log shows.{hiding(found.hidden)}")
+        said.append("Nothing else is missing that this log shows.")
     return said
 
 
@@ -97,9 +111,8 @@ def _off(found: Discovery) -> tuple[str, str, str]:
 def _nothing(found: Discovery) -> str:
     """Returns the paragraph: nothing is missing, or no effect is named as no candidate helps."""
     left, noise, alone = _off(found)
-    ratio = found.before.rms / found.noise_rms if found.noise_rms else 1.0
-    is_noise = found.unlogged is not None or found.input_error < NO_ERROR
-    if not is_noise and ratio**2 > 1 + found.options.min_gap_share:
+    if is_above_noise(found):
+        ratio = found.before.rms / found.noise_rms
         return (
             "No effect is named: no candidate lowers the error of prediction on unseen data beyond"
             f" chance. It is {left}{found.over}, {held(ratio)} times the {alone} that the sensors"
@@ -115,7 +128,6 @@ def _nothing(found: Discovery) -> str:
     if seen:
         listed = "; ".join(f"{describe_effect(d.candidate)}, {smallest(d)}" for d in seen[:SHOWN])
         said += f" The log would have shown, in 9 cases of 10, effects as small as: {listed}."
-    said += hiding(found.hidden)
     if unseen:
         names = dict.fromkeys(phrase(d.candidate.effect) for d in unseen)
         said += f" No plausible size would show in it of these: {'; '.join(names)}."

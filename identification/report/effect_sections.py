@@ -6,18 +6,21 @@ from collections.abc import Sequence
 from functools import cache, partial
 
 from identification.discovery.attempts import Failed
+from identification.discovery.effect_results import NamedEffect
 from identification.discovery.result import Discovery, Scored
-from identification.quantities import quantity
 from identification.report.discovery_figures import GAIN, score_figures
 from identification.report.effect_words import (
     describe_effect,
     describe_gains,
     describe_rejected,
     describe_there,
+    say_choice,
+    shown_parameters,
+    value_with_std,
     words_of,
 )
 from identification.report.finding_words import sentence
-from identification.report.named_words import SHOWN, diff_line
+from identification.report.named_words import SHOWN, diff_line, node_lines
 from identification.report.page import Section, Table
 from identification.shares import percent
 
@@ -46,16 +49,18 @@ def added_section(found: Discovery, files: str = "") -> Section:
     """Returns the section on the added effects; `files` says where the model with them is."""
     title = "What was added"
     if not found.named:
-        return Section(title, "Nothing: the model is the nominal one, fitted.")
+        return Section(title)
     rows, proofs, lines, words = [], [], [], words_of(found)
     for named in found.named:
         effect = describe_there(named.candidate, found.final.plant)
         law, gains = named.candidate.effect.law, describe_gains(named)
-        for k, (name, (value, std, unit)) in enumerate(named.parameters.items()):
-            once = (f"+ {effect}", percent(named.confidence), law)
-            rows.append((name, quantity(value, std, unit), *(once if k == 0 else ("",) * 3)))
+        once = (f"+ {effect}", percent(named.confidence), law)
+        for k, (name, value) in enumerate(_numbers(named)):
+            rows.append((name, value, *(once if k == 0 else ("",) * 3)))
         proofs.append(sentence(f"{effect}: {gains}"))
         lines += [diff_line(found, named), f"    law: {law}", f"    {gains}"]
+        if named.candidate.effect.is_curve:
+            lines += [f"    {line}" for line in node_lines(named, found.final.plant)]
         other = named.retuned
         if other is not None and other.confidence >= SHOWN:
             lines.append(
@@ -68,6 +73,17 @@ def added_section(found: Discovery, files: str = "") -> Section:
         table=Table(("parameter", "value", "effect", "confidence", "law"), tuple(rows)),
         plain="\n".join(lines),
     )
+
+
+def _numbers(named: NamedEffect) -> list[tuple[str, str]]:
+    """Returns the numbers of a named effect, a row each; those of a curve are a figure."""
+    shown = shown_parameters(named)
+    if named.candidate.effect.is_curve:
+        return [(f"{len(shown)} nodes", "see the figure of the force")]
+    return [
+        (name, say_choice(named.candidate, name, value) or value_with_std(value, std, unit))
+        for name, (value, std, unit) in shown.items()
+    ]
 
 
 def rivals_section(found: Discovery) -> Section:

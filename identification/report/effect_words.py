@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from math import isfinite, isinf, isnan
 from typing import TYPE_CHECKING
 
@@ -68,6 +68,30 @@ def words_of(found: Discovery) -> dict[str, str]:
     return parameter_words(found.final.plant.parameters, effects)
 
 
+PART = re.compile(r"(?P<what>.+?)(?P<sign>, [^\W\d]+ |@)(?P<number>\d+)")  # one of several alike
+
+
+def gathered(told: Iterable[str]) -> list[str]:
+    """Returns words or names of parameters, those of the same one at several parts as one.
+
+    friction smoothness β, drive 1; friction smoothness β, drive 2 -> ... β of drives 1 to 2
+    """
+    groups: dict[tuple[str, str], list[int]] = {}
+    for each in told:
+        part = PART.fullmatch(each)
+        at = groups.setdefault((part["what"], part["sign"]) if part else (each, ""), [])
+        at += [int(part["number"])] if part else []
+    return [_gathered(what, sign, sorted(at)) for (what, sign), at in groups.items()]
+
+
+def _gathered(what: str, sign: str, at: Sequence[int]) -> str:
+    if len(at) < 2:
+        return f"{what}{sign}{at[0]}" if at else what
+    is_run = [*at] == [*range(at[0], at[-1] + 1)]
+    which = f"{at[0]} to {at[-1]}" if is_run else ", ".join(map(str, at))
+    return f"{what}@{which}" if sign == "@" else f"{what} of {sign.strip(', ')}s {which}"
+
+
 FEW = 0.01  # a chance above it is told as a share, and not as a power of ten
 NOT_TOLD = "(std not known, because too few data tell of it)"
 DOUBTS = {
@@ -128,16 +152,50 @@ def value_with_std(value: float, std: float, unit: str, like: float = 0.0) -> st
 
 
 def describe_sizes(found: NamedEffect | RejectedEffect) -> str:
-    """Returns sizes and shapes of a fitted effect with std, but no shape that no data tell."""
-    effect = found.candidate.effect
-    untold = {s.name for s in effect.shapes}
-    about = {s.name: s.about for s in effect.sizes} | {s.name: s.about for s in effect.shapes}
+    """Returns sizes and shapes of a fitted effect with std, but no shape that no data tell.
+
+    Of a curve, whose numbers are a figure, it returns the largest force of its nodes.
+    """
+    effect, shown = found.candidate.effect, shown_parameters(found)
+    if effect.is_curve and shown:
+        value, std, unit = shown[largest_known(shown)]
+        return f"up to {quantity(abs(value), std, unit)}"
+    about = effect.about
     return ", ".join(
-        (f"{name} not felt" if isinf(std) else f"{name} = {value_with_std(value, std, unit)}")
+        say_choice(found.candidate, name, value)
+        or (f"{name} not felt" if isinf(std) else f"{name} = {value_with_std(value, std, unit)}")
         + (f" ({about[name]})" if about.get(name) else "")
-        for name, (value, std, unit) in found.parameters.items()
-        if name not in untold or isfinite(std)
+        for name, (value, std, unit) in shown.items()
     )
+
+
+def shown_parameters(
+    found: NamedEffect | RejectedEffect,
+) -> dict[str, tuple[float, float, str]]:
+    """Returns the sizes and shapes of a fitted effect that tell something of the robot.
+
+    Shapes that no data tell, and those of one log alone, are left out.
+    """
+    shapes = {s.name: s for s in found.candidate.effect.shapes}
+    return {
+        name: each
+        for name, each in found.parameters.items()
+        if name not in shapes
+        or (not shapes[name].of_log and (bool(shapes[name].words) or isfinite(each[1])))
+    }
+
+
+def largest_known(parameters: Mapping[str, tuple[float, float, str]]) -> str:
+    """Returns the name of the largest value whose std is known, or of the largest of all."""
+    known = {n: v for n, (v, std, _) in parameters.items() if 0 < std < abs(v)}
+    of = known or {n: v for n, (v, *_) in parameters.items()}
+    return max(of, key=lambda n: abs(of[n]))
+
+
+def say_choice(candidate: Candidate, name: str, value: float) -> str:
+    """Returns in words what a shape says that is a choice, such as a side; "" where it is none."""
+    words = next((s.words for s in candidate.effect.shapes if s.name == name), ())
+    return words[round(value)] if words and 0 <= round(value) < len(words) else ""
 
 
 def difference_sentences(found: Discovery) -> list[str]:

@@ -40,9 +40,11 @@ def value_table(found: Discovery) -> Table:
     columns = [_words(m, parameters, like, is_begun and m is found.nominal) for m in models]
     words, rows = words_of(found), []
     every = dict.fromkeys(name for column in columns for name in column)
-    # which kind it is, such as where an encoder sits, is said with the effect and is no estimate
-    kinds = {f"{n.name}.{s.name}" for n in found.named for s in n.candidate.effect.shapes
-             if not s.free}  # fmt: skip
+    # which kind it is, such as where an encoder sits, is said with the effect and is no estimate,
+    # what was before the log is of no use, and the numbers of a curve are a figure
+    effects = [n.candidate.effect for n in found.named]
+    kinds = {f"{e.name}.{s.name}" for e in effects for s in e.shapes if not s.free or s.of_log}
+    kinds |= {name for e in effects if e.is_curve for name in e.every_size}
     for name in (n for n in every if n not in kinds):
         own = _of(name, parameters)
         first = NONE

@@ -26,8 +26,13 @@ def windows_over_time(records: Sequence[RecordWindows], is_named: bool) -> Figur
         records: in the order of the panels.
         is_named: whether the final model has effects, so that both models are drawn.
     """
-    figure = Figure((WIDTH, 0.6 + PANEL * len(records)), layout="constrained")
-    panels = figure.subplots(len(records), 1, squeeze=False)[:, 0]
+    columns = 2 if len(records) > 2 else 1
+    rows = -(-len(records) // columns)
+    figure = Figure((WIDTH, 0.6 + PANEL * rows), layout="constrained")
+    panels = [*figure.subplots(rows, columns, squeeze=False).T.ravel()]
+    for ax in panels[len(records) :]:
+        ax.set_axis_off()
+    panels = panels[: len(records)]
     every = np.concatenate([e for r in records for e in (r.before, r.after)])
     known = every[np.isfinite(every) & (every > 0)]
     is_far = bool(len(known)) and known.max() > FAR * known.min()
@@ -47,7 +52,8 @@ def windows_over_time(records: Sequence[RecordWindows], is_named: bool) -> Figur
         else:
             ax.set_ylim(bottom=0.0)
     figure.supylabel("error of a window, times the noise", fontsize=9, color=INK)
-    panels[-1].set_xlabel("begin of the window [s]")
+    for ax in {panels[rows - 1], panels[-1]}:  # the lowest of each column
+        ax.set_xlabel("begin of the window [s]")
     figure.legend(*panels[0].get_legend_handles_labels(), loc="outside upper center", ncols=3)
     return figure
 

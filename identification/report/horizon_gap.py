@@ -23,6 +23,7 @@ from identification.report.named_words import Nodes, curve_nodes
 from identification.windows.unseen import Unseen
 
 WORST = 4  # windows that are drawn
+SURE = 1.96  # std on each side of 95 %
 APART = 3  # windows between two of them: neighbours fail for the same reason
 
 
@@ -92,8 +93,8 @@ class NeededForce:
 
     @property
     def largest(self) -> int:
-        """The known node at which the force is largest."""
-        return int(np.argmax(np.where(self.known, np.abs(self.force), -1.0)))
+        """The known node at which the force is surely large: the largest |f| - 1.96 std."""
+        return int(np.argmax(np.where(self.known, np.abs(self.force) - SURE * self.std, -np.inf)))
 
 
 @dataclass(frozen=True)

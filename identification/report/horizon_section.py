@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import cache, partial
+from functools import cache
 from typing import TYPE_CHECKING
 
 from identification.discovery.result import Discovery
 from identification.quantities import alike, held
 from identification.report.effect_sections import listed_below
+from identification.report.finding_words import sentence
 from identification.report.horizon_figures import needed_forces, windows_over_time, worst_windows
-from identification.report.horizon_gap import HorizonGap, OutputError, find_gap
+from identification.report.horizon_gap import OutputError, find_gap
 from identification.report.horizon_words import (
     force_line,
     length_lines,
@@ -23,6 +24,8 @@ if TYPE_CHECKING:
     from identification.report.page import Figures
 
 TITLE = "Where it disagrees"
+NEEDED = "The force that is missing, by joint"
+WORST = "The fitted windows in which the final model fails most"
 NEAR_NOISE = 1.5  # times the noise, below which no window or force is told
 GROWTH = (
     "A constant force that is missing makes about four times the error over twice the time; noise"
@@ -43,7 +46,11 @@ TRY = (
 
 
 def horizon_sections(found: Discovery) -> list[Section]:
-    """Returns the section on where the models of a discovery fail; none along a free run."""
+    """Returns the sections on where the models of a discovery fail, and on the force they lack.
+
+    There are none along a free run. Where nothing is named, the force is the answer, and its figure
+    stands above the verdict.
+    """
     gap = find_gap(found)
     if gap is None:
         return []
@@ -51,36 +58,38 @@ def horizon_sections(found: Discovery) -> list[Section]:
     lines = [output_line(o) for o in gap.outputs]
     is_far = max((r.after.max() for r in gap.records), default=0.0) > NEAR_NOISE
     rest = [*(worst_lines(gap) if is_far else ()), *length_lines(gap.lengths)]
-    forces = [force_line(f) for f in gap.forces] if is_far else []
-    text = [f"{' '.join(f'{line[0].upper()}{line[1:]}.' for line in rest)} {GROWTH}"]
-    if is_far:
-        said = " ".join(f"{line[0].upper()}{line[1:]}." for line in forces)
-        text.append(f"{said} {FORCES}" if forces else NO_FORCE)
-        if found.input_error > found.options.max_input_error:  # more than usual inputs would make
-            text.append(TRY)
-    plain = [listed_below(f"where {model} fails", [*lines, *rest, *forces])]
+    forces = gap.forces if is_far else ()
+    text = [f"{' '.join(map(sentence, rest))} {GROWTH}"]
+    plain = [listed_below(f"where {model} fails", [*lines, *rest, *map(force_line, forces)])]
     if is_far and not forces:
+        text.append(NO_FORCE)
         plain.append(NO_FORCE)
-    return [
+    is_drawn = is_far and bool(gap.windows)
+    sections = [
         Section(
             TITLE,
             "\n\n".join(text),
-            figures=cache(partial(_figures, found, gap, is_far)),
+            figures=cache(lambda: ((WORST, worst_windows(gap.windows)),)) if is_drawn else (),
             table=_table(gap.outputs, bool(found.named)),
             plain="\n".join(plain),
         )
     ]
+    if forces:
+        is_answer = found.verdict == "unknown effect"
+        said = [f"{' '.join(sentence(force_line(f)) for f in forces)} {FORCES}"]
+        said += [TRY] if is_answer else []
+        drawn = cache(lambda: ((NEEDED, needed_forces(forces)),))
+        sections.append(Section(NEEDED, "\n\n".join(said), figures=drawn, first=int(is_answer)))
+    return sections
 
 
-def _figures(found: Discovery, gap: HorizonGap, is_far: bool) -> Figures:
+def error_figures(found: Discovery) -> Figures:
+    """Returns the figure of the error of each window over time; none along a free run."""
+    gap = find_gap(found)
+    if gap is None:
+        return ()
     over = f"Error of each window of {found.horizon:g} s"
-    out = [(over, windows_over_time(gap.records, bool(found.named)))]
-    if is_far and gap.windows:
-        out.append(("The fitted windows in which the final model fails most",
-                    worst_windows(gap.windows)))  # fmt: skip
-    if is_far and gap.forces:
-        out.append(("The force that each joint would need", needed_forces(gap.forces)))
-    return tuple(out)
+    return ((over, windows_over_time(gap.records, bool(found.named))),)
 
 
 def _table(outputs: Sequence[OutputError], is_named: bool) -> Table:

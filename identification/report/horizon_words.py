@@ -57,10 +57,16 @@ def force_line(needed: NeededForce) -> str:
     )
 
 
-def _largest(needed: NeededForce) -> str:
+def largest_force(needed: NeededForce) -> tuple[str, str]:
+    """Returns the largest force with its std, and where it is, both with their units."""
     k, nodes = needed.largest, needed.nodes
     size = quantity(float(needed.force[k]), float(needed.std[k]), needed.unit)
-    return f"{quantity(float(nodes.at[k]), unit=nodes.unit)}: {size}"
+    return size, quantity(float(nodes.at[k]), unit=nodes.unit)
+
+
+def _largest(needed: NeededForce) -> str:
+    size, at = largest_force(needed)
+    return f"{at}: {size}"
 
 
 def needed_sentences(found: Discovery) -> list[str]:

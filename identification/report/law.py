@@ -65,7 +65,7 @@ def law_sections(found: Discovery) -> list[Section]:
             f"{effect[0].upper()}{effect[1:]}: {candidate.effect.law}. Along this motion it is"
             f" {most} at most, which need not be the value of one of its parameters."
         )
-    return [Section(LAWS, "\n\n".join(said), figures=tuple(figures))]
+    return [Section(LAWS, "\n\n".join(said), figures=tuple(figures), first=1)]
 
 
 def _if_simulated(recover: Callable[[], RecoveredForce | None]) -> RecoveredForce | None:

@@ -2,23 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from identification.discovery.effect_results import NamedEffect
+from identification.discovery.effect_results import NamedEffect, Rival
 from identification.discovery.result import Discovery
 from identification.effects.curves import NODES
 from identification.effects.effect import Candidate
 from identification.effects.jointed import JointPlant
 from identification.effects.named import joints_of, neighbour
 from identification.model.predictor import Plant
-from identification.quantities import held
+from identification.quantities import quantity
 from identification.report.effect_words import (
     describe_outside,
     describe_sizes,
     describe_there,
+    largest_known,
     phrase,
     words_of,
 )
@@ -79,14 +79,30 @@ def _nodes_at(word: str, joint: str, plant: JointPlant) -> Nodes:
     return Nodes(joint, word, f"position of {axis.joint}", x, at)
 
 
-def nodes_sentence(nodes: Sequence[Nodes]) -> str:
-    """Returns a sentence that says where the nodes of a curve stand, at each of its joints."""
-    each = []
-    for n in nodes:
-        values = ", ".join(held(float(v)) for v in n.at)
-        at_joint = f" of joint {n.joint}" if len(nodes) > 1 else ""
-        each.append(f"c_1 to c_{NODES}{at_joint} stand at {values} {n.unit} ({n.reads})")
-    return f"Its nodes {'; '.join(each)}."
+def curve_top(named: NamedEffect, plant: Plant) -> tuple[str, str]:
+    """Returns the largest force of a curve with its std, and in words where it is so large."""
+    name = largest_known(named.parameters)
+    value, std, unit = named.parameters[name]
+    number, _, joint = name.partition("@")
+    nodes = curve_nodes(named.candidate, plant)
+    at = next((n for n in nodes if n.joint == joint), nodes[0])
+    place = quantity(float(at.at[int(number.removeprefix("c_")) - 1]), unit=at.unit)
+    return quantity(value, std, unit), f"{at.reads}: {place}"
+
+
+def node_lines(named: NamedEffect, plant: Plant) -> list[str]:
+    """Returns lines with the nodes of a curve at each of its joints, and the forces there."""
+    lines, values = [], named.parameters
+    for n in curve_nodes(named.candidate, plant):
+        names = [f"c_{k + 1}" for k in range(NODES)]
+        alone = names[0] in values
+        each = [values[name if alone else f"{name}@{n.joint}"] for name in names]
+        most = max(abs(value) for value, *_ in each)
+        told = sorted(zip(n.at, each, strict=True), key=lambda pair: pair[0])
+        lines.append(f"force on {n.joint} at these values of the {n.reads}:")
+        lines += [f"  {quantity(float(at), unit=n.unit)}: {quantity(v, std, unit, like=most)}"
+                  for at, (v, std, unit) in told]  # fmt: skip
+    return lines
 
 
 RETUNED = 0.05  # the explanation without an effect gets a sentence above this confidence
@@ -95,12 +111,9 @@ NEAR = 0.1  # of the confidence of the first one: a less likely member of a set 
 
 
 def named_sentences(found: Discovery, named: NamedEffect) -> str:
-    """Returns all that is said of a named effect."""
-    nodes = ""
-    if named.candidate.effect.is_curve:
-        nodes = f" {nodes_sentence(curve_nodes(named.candidate, found.final.plant))}"
+    """Returns what a verdict says of a named effect; `basis_sentence` has the rest."""
     return (
-        f"{_named(found, named)}{nodes}{nearest_law(found, named)}{_retuned(found, named)}"
+        f"{_named(found, named)}{nearest_law(found, named)}{_retuned(found, named)}"
         f"{_outside(named)}{_agreement(found, named)}"
     )
 
@@ -118,8 +131,7 @@ def _named(found: Discovery, named: NamedEffect) -> str:
         first += ", in no catalogue and drawn from the data"
     mine = f"{describe_there(named.candidate, plant)}{_twin(named)}"
     is_set = named.one_of and bool(named.rivals)
-    least = NEAR * own if is_set else SHOWN
-    rivals = [r for r in named.rivals if r.confidence >= least] or [*named.rivals[:is_set]]
+    rivals = likely_rivals(named)
     others = [
         f"{describe_there(r.candidate, plant)} ({percent(r.confidence)})" for r in rivals
     ]  # fmt: skip
@@ -132,24 +144,29 @@ def _named(found: Discovery, named: NamedEffect) -> str:
             + (f" {named.advice}" if named.advice else "")
         )
     less = f" Less likely: {'; '.join(others)}." if others else ""
-    return (
-        f"{first}: {mine}, {describe_sizes(named)}; confidence {percent(own)}"
-        f"{_compared(found, named)}.{less}"
-    )
+    return f"{first}: {mine}, {describe_sizes(named)}; confidence {percent(own)}.{less}"
 
 
-def _compared(found: Discovery, named: NamedEffect) -> str:
-    """Returns in words what a confidence rests on."""
-    among = "" if named.candidate.effect.is_curve else " among the known effects"
+def likely_rivals(named: NamedEffect) -> list[Rival]:
+    """Returns the rivals of a named effect that are told: of a set, those near the first one."""
+    is_set = named.one_of and bool(named.rivals)
+    least = NEAR * named.confidence if is_set else SHOWN
+    return [r for r in named.rivals if r.confidence >= least] or [*named.rivals[:is_set]]
+
+
+def basis_sentence(found: Discovery, named: NamedEffect) -> str:
+    """Returns a sentence on what the confidence of a named effect rests on."""
+    among = "" if named.candidate.effect.is_curve else "it compares known effects: "
+    said = f"Confidence of {describe_there(named.candidate, found.final.plant)}: {among}"
     if named.compared:
-        rivals = "1 rival that was" if named.compared == 1 else f"{named.compared} rivals that were"
-        return f"{among} beside {rivals} refitted in its place"
-    why = "because no rival was near enough to be refitted in its place"
+        rivals = "1 rival was" if named.compared == 1 else f"{named.compared} rivals were"
+        return f"{said}{rivals} refitted in its place."
+    said += "no other came near enough to be refitted in its place"
     limits = found.options.max_confidence, found.options.left_confidence
     if named.confidence < limits[found.unexplained]:
-        return f"{among}, none of which was near enough to be refitted in its place"
-    when = "said while something is left" if found.unexplained else "ever said"
-    return f"{among}, the highest that is {when}, {why}"
+        return f"{said}."
+    when = "while something is left" if found.unexplained else "at all"
+    return f"{said}, and {percent(named.confidence)} is the highest that is said {when}."
 
 
 def nearest_law(found: Discovery, named: NamedEffect) -> str:

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 from identification.errors import InputError
 from identification.files import read_text, write_text
+from identification.report.headline import Headline
 from identification.report.media import drawing, image_source, video_source
 
 if TYPE_CHECKING:
@@ -83,7 +84,8 @@ class Section:
         table: shown below the text; a long one is folded.
         video: an mp4 file, shown last.
         poster: a picture of the film, shown on paper.
-        first: its figures and its film stand above all sections, under the verdict.
+        first: where its figures and its film stand above all sections: 1 above the verdict, 2 and
+            3 below it in this order; 0 in the section itself.
         plain: what a terminal prints of it, without its title; paragraphs likewise.
     """
 
@@ -93,7 +95,7 @@ class Section:
     table: Table | None = None
     video: Path | None = None
     poster: Path | None = None
-    first: bool = False
+    first: int = 0
     plain: str = ""
 
     @property
@@ -112,6 +114,8 @@ def write_report(
     footer: str = "",
     data: Sequence[str] = (),
     drawings: dict[Figure, str] | None = None,
+    headline: Headline | None = None,
+    further: Sequence[str] = (),
 ) -> Path:
     """Write a report, whole or not at all.
 
@@ -124,6 +128,8 @@ def write_report(
         footer: what is said at its foot, before version, command and date.
         data: names of the logs that it rests on.
         drawings: elements that an earlier page drew of the same figures; the others are added.
+        headline: the answer in large letters; the title is then small.
+        further: sentences behind the verdict, folded.
 
     Raises:
         InputError: a video cannot be read or is too large, or the file cannot be written.
@@ -145,7 +151,9 @@ def write_report(
     page = environment.get_template("report.html").render(
         title=title,
         file=Path(path).name,
+        headline=headline,
         verdict=list(verdict),
+        further=list(further),
         sections=[
             # Without drawings of an earlier page a figure that stands twice has names for each.
             _parts(section, number, {} if drawings is None else drawings)
@@ -196,11 +204,16 @@ def _parts(section: Section, number: int, drawings: dict[Figure, str]) -> dict[s
         if figure not in drawings:
             drawings[figure] = drawing(figure, f"f{number}_{k}_", caption)
     width = [float(figure.get_size_inches()[0]) for _, figure in figures]
+    paragraphs = [part.strip() for part in section.text.split("\n\n") if part.strip()]
+    drawn = bool(figures or section.video)
     return {
         "title": section.title,
         "name": f"part-{number}",
-        "first": section.first,
-        "paragraphs": [part.strip() for part in section.text.split("\n\n") if part.strip()],
+        "first": int(section.first),
+        "drawn": drawn,
+        # what stands above, and has nothing else, needs no section of its own
+        "shown": bool(paragraphs or (table and table.rows) or (drawn and not section.first)),
+        "paragraphs": paragraphs,
         "figures": [
             (caption, drawings[figure], inches >= WIDE, inches)
             for (caption, figure), inches in zip(figures, width, strict=True)

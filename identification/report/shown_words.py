@@ -129,7 +129,7 @@ def hiding(hidden: Sequence[Hidden]) -> str:
         return ""
     listed = "; ".join(map(_describe, hidden[:SHOWN]))
     return (
-        " The fitted noise may still hide effects up to these sizes (what the log seems to show of"
+        "The fitted noise may still hide effects up to these sizes (what the log seems to show of"
         f" each, by luck or not, and 1.96 std more): {listed}."
     )
 

@@ -11,7 +11,7 @@ from identification.estimation.identifiability import in_words
 from identification.estimation.scaling_symmetry import ScalingSymmetry
 from identification.model.parameter import Parameter
 from identification.quantities import matched
-from identification.report.effect_words import parameter_words
+from identification.report.effect_words import gathered, parameter_words
 from identification.shares import percent
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ def bound_sentences(parameters: Iterable[Parameter], at_bound: Iterable[str]) ->
     plain = [name for name, reason in each.items() if not reason]
     said = [f"At a bound: {name}; {reason}." for name, reason in each.items() if reason]
     if plain:
-        said.insert(0, f"At a bound: {', '.join(plain)}; widen it or fix the parameter.")
+        said.insert(0, f"At a bound: {', '.join(gathered(plain))}; widen it or fix the parameter.")
     return said
 
 
@@ -146,7 +146,8 @@ def too_weak(names: Sequence[str], what: str) -> str:
     """Returns a sentence on parameters whose std is too large for "noise" or "windows"."""
     their = "its" if len(names) == 1 else "their"
     this = "this" if what == "noise" else "these"
-    return f"Too weakly for {this} {what}: {', '.join(names)}, {their} std exceeds half the value."
+    which = ", ".join(gathered(names))
+    return f"Too weakly for {this} {what}: {which}, {their} std exceeds half the value."
 
 
 def cure(names: Sequence[str]) -> str:

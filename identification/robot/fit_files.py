@@ -16,6 +16,7 @@ from identification.model.predictor import Predictor
 from identification.prediction.records_fit import RecordsFit
 from identification.quantities import plain_unit, quantity
 from identification.report.figures import compare_figure, windows_figure
+from identification.report.fit_headline import fit_headline
 from identification.report.page import Section, Table, save_figures, write_report
 from identification.robot.confirmation import confirm, plant_with
 from identification.robot.fit_json import robot_fit_to_json
@@ -55,6 +56,7 @@ class RobotFitFiles:
         """Write the report; returns its path."""
         robot, found = self.fitted.robot, self.fitted
         logs = [log.name for log in (robot.log, *robot.others)]
+        units = {p.name: plain_unit(p.unit) for p in robot.plant.parameters}
         return write_report(
             path,
             f"{', '.join(logs)}: fitted",
@@ -62,6 +64,7 @@ class RobotFitFiles:
             self.sections,
             good=False if found.is_worse else None,
             data=[*logs, *(log.name for log in robot.records)],
+            headline=fit_headline(found.found, units),
         )
 
     def draw(self, folder: Path) -> None:

@@ -121,5 +121,5 @@ def _section(
         f" of the model are from it.{LARGER if is_beside else ''}",
         video=path,
         poster=picture,
-        first=True,
+        first=2,
     )

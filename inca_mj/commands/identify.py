@@ -177,6 +177,7 @@ def draw(
     result: inca.Identification, profiles: Sequence[Profile], shown: inca.Comparison, out: Path
 ) -> None:
     """Write figures and the one-file report into a folder."""
+    from identification.report.fit_headline import fit_headline
     from inca_mj.report.identification import fit_section, identification_verdict, profile_section
     from inca_mj.report.information import information_section
     from inca_mj.report.sections import compare_section
@@ -194,4 +195,6 @@ def draw(
         model_section(shown.run.twin),
     ]
     title, verdict = f"{result.log.name}: identified", identification_verdict(result)
-    draw_report(out, title, verdict, sections, data=[result.log.name])
+    units = {p.name: p.unit for p in result.fit.estimate.predictor.plant.parameters}
+    head = fit_headline(result.fit, units)
+    draw_report(out, title, verdict, sections, data=[result.log.name], headline=head)

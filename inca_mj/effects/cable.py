@@ -180,7 +180,8 @@ def pulley_radius(s, p):
 PULLEY_RADIUS = Effect(
     "pulley_radius", "swivelling pulley of radius r_p at A_i",
     (Size("r_p", "m", 0.03, 1e-3, sign=1, about="radius of the pulley"),),
-    (Shape("over", "", (0.0, 1.0), 0.0, 1.0, free=False, about="1: over it", usual=0.0),),
+    (Shape("over", "", (0.0, 1.0), 0.0, 1.0, free=False, about="1: over it", usual=0.0,
+           words=("the cable runs under the pulley", "the cable runs over the pulley")),),
     places=CABLES, phrase="cable: pulley at the exit point",
     reference="Pott 2012, Influence of pulley kinematics on cable-driven parallel robots",
     hooks={"path": pulley_radius},

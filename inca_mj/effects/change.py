@@ -40,7 +40,8 @@ LASTS = 0.1  # of a jump [s]: a step of the integrator that a jump divides would
 TIMES = (1.0, 1.7, 2.9, 4.9, 8.4, 14.0, 24.0)
 DRIFTING = 20.0  # [s] in which a parameter may lose as much as one drive may deviate
 HEATED = Shape("kind", "", (0.0, 1.0), 0.0, 1.0, free=False, usual=0.0,
-               about="0 with time, 1 with heat")  # fmt: skip
+               about="0 with time, 1 with heat",
+               words=("it changes with time", "it changes with heat"))  # fmt: skip
 PROBE = 0.1  # of the largest plausible size: a cable that is 3 % softer moves an angle by 0.1 mrad
 
 

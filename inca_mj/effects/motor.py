@@ -143,7 +143,7 @@ CURRENT_SATURATION = Effect(
           about="share of the clipping, 1 when there is a limit"),),
     (Shape("i_max", "A", GRID, 0.05, 20.0, about="the limit"),
      Shape("soft", "", (0.0, 1.0), 0.0, 1.0, free=False, usual=0.0,
-           about="1: it bends, does not clip")),
+           about="1: it bends, does not clip", words=("it clips", "it bends and does not clip"))),
     places=DRIVES_EACH, phrase="motor: current clipped", reference=_AMPLIFIER,
     hooks={"input": current_saturation},
 )  # fmt: skip

@@ -74,13 +74,13 @@ def test_a_record_that_repeats_another_is_no_further_witness():
     assert "on 1 of 1 unseen records. again repeats the motion of others and does not" in said
     (named,) = answer.named
     assert named.compared == 0
-    assert "the highest that is ever said, because no rival was near enough" in said
+    assert "no other came near enough to be refitted in its place, and 95 % is the highest" in said
     (other,) = (e for e in candidates(pendulum(), ("J", "d")) if e.name == "offset")
     twin = replace(answer, named=(replace(named, same_as=other),))
     assert '(or "force – constant": below the Coulomb friction it is' in discovery_text(twin)
     assert discovery_to_json(twin)["effects"][0]["same_as"] == "offset"
     beside = replace(answer, named=(replace(named, compared=2),))
-    assert "beside 2 rivals that were refitted in its place" in discovery_text(beside)
+    assert "2 rivals were refitted in its place" in discovery_text(beside)
 
 
 def test_records_too_short_to_confirm_are_refused():

@@ -1,12 +1,16 @@
 """The nodes that are told are those of the law: at node k a curve is c_k."""
 
+from dataclasses import replace
+
+import fake_discovery
 import numpy as np
 import pytest
 from joint_cases import arm, reached, seen, share, slider
 
 from identification.effects.effect import Candidate
+from identification.quantities import quantity
 from identification.report.effect_words import describe_there
-from identification.report.named_words import curve_nodes, nodes_sentence
+from identification.report.named_words import curve_nodes, curve_top, node_lines
 
 C = (1.0, -2.0, 3.0, -4.0, 5.0, -6.0, 7.0, -8.0)
 FIELD = {"speed": "v", "load": "f_u", "position": "q", "time": "time",
@@ -28,7 +32,8 @@ CASES = [
     ("plant", "effect", "where"), CASES, ids=[f"{e.name}-{w}" for _, e, w in CASES]
 )
 def test_a_curve_has_its_sizes_at_its_nodes(plant, effect, where):
-    (nodes,) = curve_nodes(Candidate(effect, where, {}), plant)
+    candidate = Candidate(effect, where, {})
+    (nodes,) = curve_nodes(candidate, plant)
     joint, field = where.removeprefix("joint "), FIELD[nodes.depends_on]
     beside = nodes.depends_on.endswith(("before", "behind"))
     neighbour = NEIGHBOUR[where] if beside else ""
@@ -42,7 +47,15 @@ def test_a_curve_has_its_sizes_at_its_nodes(plant, effect, where):
         assert law.py_func(s, C) == pytest.approx(c, rel=1e-9)
     assert (neighbour or joint) in nodes.reads or nodes.reads == "time"
     assert np.isfinite(nodes.at).all()
-    assert f"{nodes.unit} ({nodes.reads})" in nodes_sentence([nodes])
+    parameters = {f"c_{k + 1}": (c, 0.1, "N m") for k, c in enumerate(C)}
+    named = replace(fake_discovery.found().named[0], candidate=candidate, parameters=parameters)
+    size, place = curve_top(named, plant)
+    assert size == quantity(C[-1], 0.1, "N m")
+    assert place == f"{nodes.reads}: {quantity(nodes.at[-1], unit=nodes.unit)}"
+    first, *told = node_lines(named, plant)
+    assert nodes.reads in first
+    order = np.argsort(nodes.at, kind="stable")
+    assert [float(line.partition(": ")[2].split()[0]) for line in told] == [C[k] for k in order]
 
 
 @pytest.mark.parametrize(

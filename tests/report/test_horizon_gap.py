@@ -14,7 +14,14 @@ from identification.report.discovery_json import discovery_to_json
 from identification.report.discovery_report import discovery_text
 from identification.report.discovery_verdict import discovery_verdict
 from identification.report.horizon_gap import APART, WORST, find_gap
-from identification.report.horizon_section import NO_FORCE, TITLE, horizon_sections
+from identification.report.horizon_section import (
+    NEEDED,
+    NO_FORCE,
+    TITLE,
+    error_figures,
+    horizon_sections,
+)
+from identification.report.horizon_section import WORST as WORST_WINDOWS
 
 LEVEL = 0.03  # of the hidden friction [N m]
 EFFECTS = ("coulomb_friction", "curve_speed", "curve_position")
@@ -91,13 +98,13 @@ def test_once_the_friction_is_named_no_force_is_needed():
 
 def test_an_unknown_effect_is_shown_where_it_acts():
     answer = unknown()
-    (section,) = horizon_sections(answer)
-    assert section.title == TITLE
-    assert [caption for caption, _ in section.drawn] == [
-        f"Error of each window of {HORIZON:g} s",
-        "The fitted windows in which the final model fails most",
-        "The force that each joint would need",
+    fails, force = horizon_sections(answer)
+    assert (fails.title, force.title) == (TITLE, NEEDED)
+    assert [caption for caption, _ in (*fails.drawn, *force.drawn)] == [WORST_WINDOWS, NEEDED]
+    assert [caption for caption, _ in error_figures(answer)] == [
+        f"Error of each window of {HORIZON:g} s"
     ]
+    assert (fails.first, force.first) == (0, 1)  # the force is the answer
     assert "It looks like a force on hinge over the rate of hinge: " in discovery_verdict(answer)[0]
     assert "a force on hinge over the rate of hinge would take away" in discovery_text(answer)
     fails = discovery_to_json(answer)["fails"]

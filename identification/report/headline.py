@@ -1,0 +1,99 @@
+"""The answer at the head of a report: names in large letters, places, and tiles of numbers."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from identification.report.error_words import error_words
+
+UNBROKEN = "\u00a0"  # a space at which no line ends
+
+
+@dataclass(frozen=True)
+class Tile:
+    """One number of an answer.
+
+    Attributes:
+        label: what it is.
+        value: the number with its unit, in large letters; no line ends within a unit.
+        note: what stands below it in small letters.
+    """
+
+    label: str
+    value: str
+    note: str = ""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "value", re.sub(r"(?<=[^\W\d]) (?=[^\W\d])", UNBROKEN, self.value))
+
+
+@dataclass(frozen=True)
+class Answer:
+    """A name in large letters, with its place and its numbers.
+
+    Attributes:
+        name: what was found.
+        place: where it acts, or what limits the answer.
+        tiles: up to three.
+    """
+
+    name: str
+    place: str = ""
+    tiles: tuple[Tile, ...] = ()
+
+
+@dataclass(frozen=True)
+class Headline:
+    """What a reader of a report sees first.
+
+    Attributes:
+        lead: words above the first name, such as "Missing from the model".
+        answers: one or several; the first one has the tile on the error.
+    """
+
+    lead: str
+    answers: tuple[Answer, ...]
+
+
+def error_tile(
+    before: Mapping[str, float],
+    after: Mapping[str, float] | None,
+    noise: Mapping[str, float],
+    what: str,
+) -> Tile:
+    """Returns the tile on the errors of two models, or of one, beside the noise.
+
+    Args:
+        before: rms error by unit, of the model before.
+        after: of the model after; None where there is one model.
+        noise: rms of the noise by unit; zeros where it is not known.
+        what: the error is of.
+    """
+    told = [before, *([] if after is None else [after]), noise]
+    sizes = error_words(told, "")
+    if len(before) > 1:  # each has its kind of outputs in words, and a line of its own
+        value = "; ".join(" → ".join(_split(pair)) for pair in _by_kind(sizes[:-1]))
+    else:
+        value = " → ".join(_split(sizes[:-1]))
+    return Tile(what, value, f"the noise is {sizes[-1]}" if any(noise.values()) else "")
+
+
+def _by_kind(sizes: Sequence[str]) -> list[list[str]]:
+    """Returns errors of several units by unit, from words that list all units of each error."""
+    each = [size.replace(" and ", ", ").split(", ") for size in sizes]
+    return [list(column) for column in zip(*each, strict=True)]
+
+
+def _split(sizes: Sequence[str]) -> list[str]:
+    """Returns sizes of one unit, of which the last alone has the unit."""
+    units = [size.partition(" ")[2] for size in sizes]
+    if len(set(units)) > 1:
+        return list(sizes)
+    return [*(size.partition(" ")[0] for size in sizes[:-1]), sizes[-1]]
+
+
+def capital(words: str) -> str:
+    """Returns words that begin with a capital."""
+    return words[:1].upper() + words[1:]
