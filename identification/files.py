@@ -6,6 +6,7 @@ import errno
 import io
 import json
 import os
+import re
 import stat
 import tomllib
 from collections.abc import Iterator, Mapping
@@ -27,6 +28,7 @@ BY_PROGRAM = 64 * 2**20  # bytes of a JSON file that a program writes
 MAX_BYTES = 512 * 2**20  # hours at 1 kHz; more would fill the memory before it failed
 _ALIKE = 0.75  # share of letters of a file that may be meant
 _SAID = 120  # letters of another library's message
+_BARE = re.compile(r"[A-Za-z0-9_-]+")  # a key that TOML takes without quotes
 _UNPACKED = 8  # times as large an archive of arrays may be as the largest file
 # Opening a pipe waits for a writer unless it is told not to; Windows has no such flag.
 _FLAGS = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
@@ -272,7 +274,12 @@ def toml_value(value: object) -> str:
     return repr(value).lower() if isinstance(value, bool) else repr(value)
 
 
+def toml_key(name: str) -> str:
+    """Returns a name as a key of TOML, in quotes where it needs them."""
+    return name if _BARE.fullmatch(name) else toml_value(name)
+
+
 def toml_table(title: str, table: Mapping[str, object]) -> list[str]:
     """Returns the lines of a table of TOML, with an empty one before them; none of an empty one."""
-    lines = [f"{toml_value(key)} = {toml_value(value)}" for key, value in table.items()]
+    lines = [f"{toml_key(key)} = {toml_value(value)}" for key, value in table.items()]
     return ["", f"[{title}]", *lines] if lines else []

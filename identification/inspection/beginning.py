@@ -9,7 +9,7 @@ from pathlib import Path
 import mujoco
 
 from identification.errors import InputError
-from identification.files import exists, toml_table, toml_value, whole_file
+from identification.files import exists, toml_key, toml_table, toml_value, whole_file
 from identification.inspection.inspected import SAID, Inspection
 from identification.inspection.matching import Match, channels_of, match
 from identification.inspection.words import answer_sentence
@@ -77,7 +77,7 @@ def _lines(
         lines += ["", "[columns]  # actuator or sensor = column of the log"]
     for m in (*inputs, *outputs):
         note = f"  # {m.how}; {_what(model, m)}"
-        lines.append(f"{toml_value(m.channel.name)} = {toml_value(m.column)}{note}")
+        lines.append(f"{toml_key(m.channel.name)} = {toml_value(m.column)}{note}")
     answers = {a.output: a for a in found.answers}
     lines += [f"# {answer_sentence(answers[m.column])}" for m in outputs if m.column in answers]
     return [*lines, *_log_lines(found, matches)], needs

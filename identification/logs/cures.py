@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import json
-import re
 from collections.abc import Mapping, Sequence
 
+from identification.files import toml_key
 from identification.logs.names import listed
-
-_BARE = re.compile(r"[A-Za-z0-9_-]+")  # a key that TOML takes without quotes
 
 
 def how_to_turn(
@@ -64,11 +62,6 @@ def unit_lines(units: Mapping[str, str]) -> str:
     """Says how to give the units of some columns of a log, by column or by group."""
     text = lines_of([f"{toml_key(name)} = {json.dumps(word)}" for name, word in units.items()])
     return f"write {text} under [units] of the log's TOML"
-
-
-def toml_key(name: str) -> str:
-    """Returns a name as a key of TOML, in quotes where it needs them."""
-    return name if _BARE.fullmatch(name) else json.dumps(name)
 
 
 def lines_of(told: Sequence[str]) -> str:

@@ -22,7 +22,8 @@ from pathlib import Path
 import numpy as np
 
 from identification.errors import InputError
-from identification.logs.cures import lines_of, toml_key
+from identification.files import toml_key
+from identification.logs.cures import lines_of
 from identification.logs.log import Log
 from identification.logs.names import group, lookup
 from identification.logs.table import HUGE, Table

@@ -18,7 +18,8 @@ from decimal import Decimal
 import numpy as np
 
 from identification.errors import InputError
-from identification.logs.cures import lines_of, toml_key
+from identification.files import toml_key
+from identification.logs.cures import lines_of
 from identification.logs.names import quoted
 from identification.logs.sampling import FloatArray
 from identification.logs.sidecar import Sidecar

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from identification.errors import InputError, repeated, told_of, unknown_name
-from identification.logs.cures import toml_key
+from identification.files import toml_key
 from identification.logs.names import listed, lookup, quoted
 from identification.logs.sampling import FloatArray
 from identification.logs.sidecar import Sidecar

@@ -47,8 +47,9 @@ class RobotDiscoveryFiles(DiscoveryFiles):
         named = {n for each in found.named for n in (*each.candidate.sizes, *each.candidate.fixed)}
         kept = {*found.nominal.values, *named}
         values = {n: v for n, v in found.final.values.items() if n in kept}
-        of_records = found.final.own_values
-        write_robot(self.robot, values, folder / "robot.toml", place, own_values=of_records)
+        own = found.final.own_values
+        path, std = folder / "robot.toml", found.final.told_std
+        write_robot(self.robot, values, path, place, own_values=own, std=std)
         return {}
 
     @cached_property

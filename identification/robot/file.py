@@ -3,6 +3,7 @@
 model = "emps.xml"                   # MJCF, beside this file
 outputs = ["position"]               # sensors that the log has; all joint positions if not given
 free = ["M", "joint/slide.damping", "coulomb_friction.f_c@slide"]
+held = ["k"]                         # parameters that keep their value
 own = ["coulomb_friction.f_c@slide"] # of the free ones, those that differ from log to log
 horizon = 0.2                        # [s] to judge predictions over; a free run if not given
 every = 10                           # keep every n-th sample
@@ -18,6 +19,7 @@ drive = "vir"
 [parameters.M]                       # of a free parameter; every key may be left out
 path = "body/carriage.mass"          # into the model; the name itself if not given
 value = 95.11                        # where the search begins; the model's own if not given
+std = 0.6                            # of value by a fit, known for logs that it has not seen
 prior = 95.11                        # what is believed before the log speaks; value if not given
 known = 0.3                          # its std: relative where it must be positive, else in its unit
 unit = "kg"                          # a label; refused where it is not that of the numbers, in SI
@@ -33,6 +35,8 @@ std = 0.1
 joints = ["slide"]                   # where they may act; the measured joints if not given
 turns = [1, 7, 14]                   # periods of a turn to try, where a motor's are known
 only = ["stribeck_friction"]         # candidates; all if not given; slide_… where hinges are too
+[fitted]                             # the logs to which the values were fitted: robot/carried.py
+first = "5f0c3a9e21d4b7f8"
 
 A free name is a key under `parameters`, a path into the model or its start, or a size of an effect.
 """
@@ -69,6 +73,7 @@ class RobotFile:
     path: Path
     model: Path  # the MJCF
     free: tuple[str, ...]  # names of the free parameters
+    held: tuple[str, ...] = ()  # names of parameters that are told of and keep their value
     own: tuple[str, ...] = ()  # those of which each log has a value of its own
     outputs: tuple[str, ...] = ()  # sensors; empty for all joint positions
     horizon: float | None = None  # of the windows that are predicted [s]; None for a free run
@@ -83,6 +88,7 @@ class RobotFile:
     joints: tuple[str, ...] = ()  # where effects may act; empty for the measured ones
     only: tuple[str, ...] = ()  # candidates by name; empty for all
     turns: tuple[float, ...] = ()  # periods of a turn to try; empty for the catalogue's
+    fitted: Mapping[str, str] = field(default_factory=dict)  # digests of logs by name
     spread: tuple[Alike, ...] = ()  # their parameters are free too, behind those that it frees
 
     @property
@@ -91,14 +97,15 @@ class RobotFile:
         return tuple(n for n in self.free if n not in {m for a in self.spread for m in a.names})
 
     @property
-    def held(self) -> str:
-        """The error where it tells of a parameter that is not free; "" where there is none."""
-        held = [name for name in self.records if name not in self.free]
-        if not held:
+    def stray(self) -> str:
+        """The error where it tells of a parameter that is neither free nor held; "" without one."""
+        stray = [name for name in self.records if name not in (*self.free, *self.held)]
+        if not stray:
             return ""
         return (
-            f"{self.path} tells of parameter {held[0]!r}, which is not among its `free`"
-            f" ({', '.join(sorted(self.free))}); correct the name in one of the two places"
+            f"{self.path} tells of parameter {stray[0]!r}, which is not among its `free`"
+            f" ({', '.join(sorted(self.free))}); correct the name in one of the two places, or name"
+            " it under `held`, where it keeps its value"
         )
 
 
@@ -127,6 +134,9 @@ def read_robot_file(path: str | Path) -> RobotFile:
         if not isinstance(record, dict):
             raise InputError(f"parameters.{name} in {path} must be a table")
         check_table(record, PARAMETER_KEYS, f"parameters.{name} in {path}")
+    held = texts(content.get("held", []), "held", path)
+    if twice := [name for name in held if name in free]:
+        raise InputError(f"{path} has {twice[0]} under free and under held; keep one of both")
     columns, fixed = content.get("columns", {}), content.get("fixed", {})
     start = content.get("start", {})
     for key, table in (("fixed", fixed), ("start", start)):
@@ -143,6 +153,7 @@ def read_robot_file(path: str | Path) -> RobotFile:
         path=path,
         model=model,
         free=free,
+        held=held,
         own=read_own(content, path),
         outputs=texts(content.get("outputs", []), "outputs", path),
         horizon=horizon,
@@ -158,7 +169,15 @@ def read_robot_file(path: str | Path) -> RobotFile:
         only=texts(effects.get("only", []), "effects.only", path),
         turns=numbers(effects.get("turns", []), "effects.turns", path),
         spread=alike,
+        fitted=_fitted(content, path),
     )
+
+
+def _fitted(content: Mapping[str, Any], path: Path) -> dict[str, str]:
+    """Returns the digests of the logs to which the values were fitted, by name."""
+    logs = content.get("fitted", {})
+    check_table(logs, dict.fromkeys(logs, (str, "text in quotes")), f"fitted in {path}")
+    return dict(logs)
 
 
 def with_spread(file: RobotFile, word: str) -> RobotFile:

@@ -14,6 +14,7 @@ KEYS: Kinds = {
     "model": (str, "a path in quotes"),
     "outputs": (list, "a list of sensors"),
     "free": (list, "a list of parameters"),
+    "held": (list, "a list of parameters"),
     "own": (list, "a list of free parameters"),
     "horizon": ((int, float), "a number of seconds"),
     "every": (int, "a whole number of samples"),
@@ -26,11 +27,12 @@ KEYS: Kinds = {
     "own_values": (dict, "a table of tables, one for each log"),
     "spread": (dict, "a table of tables"),
     "effects": (dict, "a table"),
+    "fitted": (dict, "a table of text in quotes"),
 }
 PARAMETER_KEYS: Kinds = {  # of [parameters.NAME]
     **dict.fromkeys(("path", "unit", "about"), (str, "text in quotes")),
     **dict.fromkeys(
-        ("value", "prior", "known", "lower", "upper", "scale"), ((int, float), "a number")
+        ("value", "std", "prior", "known", "lower", "upper", "scale"), ((int, float), "a number")
     ),
 }
 EFFECTS_KEYS: Kinds = {  # of [effects]

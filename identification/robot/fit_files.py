@@ -49,7 +49,8 @@ class RobotFitFiles:
         found = self.fitted
         remark = self.record["verdict"][0] if found.is_worse or found.stopped else ""
         path = folder / "robot.toml"
-        write_robot(found.robot, found.shared, path, place, remark, found.own_values)
+        std = None if remark else found.std  # such values are not to be relied on
+        write_robot(found.robot, found.shared, path, place, remark, found.own_values, std)
         return {}
 
     def write_page(self, path: Path) -> Path:

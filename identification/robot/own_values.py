@@ -14,6 +14,7 @@ from identification.effects.effect import Effect, effect_parameters
 from identification.effects.joint_plant import JointPlant
 from identification.effects.named import damping_of, means_effect, unknown_number
 from identification.errors import InputError, told_of
+from identification.files import toml_key
 from identification.logs.log import Log
 from identification.model.parameter import Parameter
 from identification.model.plant import start_place
@@ -41,11 +42,36 @@ def value_parameters(
                     f"{where} give {name}, an entry of the start, which each log begins by itself;"
                     f" leave it out, or write it under [start] of {file.path}"
                 )
+            if name in file.held:
+                raise InputError(f"{where} give {name}, which {file.path} holds; keep one of both")
             if name in numbers or name in found:
                 continue
             with told_of(f"{where}, in its TOML or under log.values in {file.path}"):
                 found[name] = free_parameter(file, name, model, effects, log).parameter
     return [*found.values()]
+
+
+def held_parameters(
+    file: RobotFile, model: mujoco.MjModel, effects: Sequence[Effect], log: Log
+) -> list[Parameter]:
+    """Returns the parameters of a robot's file that keep the value which stands there.
+
+    Raises:
+        InputError: one has no table [parameters.NAME] with a value, or is an entry of the start.
+    """
+    out = []
+    for name in file.held:
+        said = file.records.get(name, {})
+        with told_of(f"held in {file.path}"):
+            if "value" not in said:
+                raise InputError(
+                    f"{name} has no value; write value = ... under [parameters.{toml_key(name)}],"
+                    " or leave it out: the model then keeps its own"
+                )
+            if start_place(str(said.get("path", name)), model) is not None:
+                raise InputError(f"{name} is an entry of the start; write it under [start]")
+            out.append(free_parameter(file, name, model, effects, log).parameter)
+    return out
 
 
 def with_fixed(file: RobotFile, plant: JointPlant, effects: Sequence[Effect]) -> JointPlant:

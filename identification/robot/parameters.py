@@ -115,6 +115,10 @@ def _free(
         alone = sum(p.startswith(f"{body}.inertia") for p in every) == 1
         refuse_unit(said, unit_of(model, path), "it")
         record, guess = _in_model(path, name, model, log, given, alone)
+    if "std" in said:  # of a fit of other logs
+        positive = _is_positive(record, record.value)
+        std = float(said["std"]) / (record.value if positive else record.scale)
+        return Free(record, record.value, std)
     mean = float(said.get("prior", record.value))
     if not record.lower <= mean <= record.upper:
         raise InputError(
@@ -133,9 +137,12 @@ def _alike(file: RobotFile, alike: Alike, name: str, model: mujoco.MjModel) -> F
     record, std = alike.parameters(model, unit)[name]
     said = file.records.get(name, {})
     refuse_unit(said, record.unit, f"parameters.{name} in {file.path}")
+    value = float(said.get("value", record.value))
     mean = float(said.get("prior", record.value))
     std = float(said.get("known", std))
-    return Free(replace(record, value=float(said.get("value", record.value))), mean, std)
+    if "std" in said:  # of a fit of other logs
+        mean, std = value, float(said["std"]) / (value if name == alike.name else 1.0)
+    return Free(replace(record, value=value), mean, std)
 
 
 def measured_start(model: mujoco.MjModel, path: str, log: Log, own: float) -> float:

@@ -16,7 +16,7 @@ from identification.effects.effect import Effect
 from identification.effects.joint_plant import JointPlant, candidates, joint_plant
 from identification.effects.named import unknown_effect
 from identification.errors import InputError, told_of, unknown_name
-from identification.logs.cures import toml_key
+from identification.files import toml_key
 from identification.logs.decimation import decimate
 from identification.logs.log import Log
 from identification.logs.names import listed
@@ -25,6 +25,7 @@ from identification.logs.table import MissingColumnsError
 from identification.model.plant import start_place
 from identification.model.predictor import output_columns
 from identification.refusals.unmeasured import refuse_unmeasured
+from identification.robot.carried import with_carried
 from identification.robot.checks import (
     outputs_of,
     refuse_every,
@@ -34,7 +35,12 @@ from identification.robot.checks import (
 )
 from identification.robot.file import RobotFile
 from identification.robot.model_file import robot_spec, unit_of, with_step
-from identification.robot.own_values import refuse_impossible, value_parameters, with_fixed
+from identification.robot.own_values import (
+    held_parameters,
+    refuse_impossible,
+    value_parameters,
+    with_fixed,
+)
 from identification.robot.parameters import free_parameter, measured_start
 from identification.robot.start import refuse_start, start_of
 
@@ -184,6 +190,8 @@ def robot_of(
 ) -> Robot:
     """Compile a robot for a log, for others that are fitted together with it, and for records."""
     spec, said = robot_spec(file)
+    file, carried = with_carried(file, (log, *others))
+    said += carried
     said += with_step(spec, [log, *others, *records])
     model = spec.copy().compile()
     refuse_start(file, model)
@@ -205,13 +213,14 @@ def robot_of(
     try:
         priors = [free_parameter(file, name, model, effects, log) for name in file.free]
     except InputError as wrong:  # a wrong name in free is told first
-        if not file.held:
+        if not file.stray:
             raise
-        raise InputError(f"{str(wrong).removesuffix('.')}. {file.held}") from None
-    if file.held:
-        raise InputError(file.held)
+        raise InputError(f"{str(wrong).removesuffix('.')}. {file.stray}") from None
+    if file.stray:
+        raise InputError(file.stray)
     logs = (log, *others, *records)
     valued = value_parameters(file, model, effects, logs)
+    valued += held_parameters(file, model, effects, log)
     start = start_of(file, model, log)
     with told_of(f"free in {file.path}"):
         plant = joint_plant(

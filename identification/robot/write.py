@@ -5,11 +5,13 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from math import inf, nan
 from pathlib import Path
 
 from identification.discovery.result import keep_of_robot
 from identification.effects.joint_group import SLIDE
-from identification.files import toml_table, toml_value, write_text
+from identification.files import toml_key, toml_table, toml_value, write_text
+from identification.robot.carried import digest
 from identification.robot.parameters import KNOWN, Free, effect_sizes
 from identification.robot.robot import Robot
 
@@ -21,12 +23,14 @@ def write_robot(
     place: Path,
     remark: str = "",
     own_values: Mapping[str, Mapping[str, float]] | None = None,
+    std: Mapping[str, float] | None = None,
 ) -> Path:
     """Write a robot with new values; sizes of named effects become free parameters.
 
     What was known of a parameter before the fit stays as it was: a fit of the same log would else
-    count that log twice. A shape that tells something of the fitted log alone, such as what an
-    input did before its first sample, is not written.
+    count that log twice. The std that the fit gives counts for other logs
+    (`identification.robot.carried`). A shape that tells something of the fitted log alone, such as
+    what an input did before its first sample, is not written.
 
     Args:
         robot: the robot that was fitted.
@@ -35,6 +39,7 @@ def write_robot(
         place: the folder from which the file will be read.
         remark: one line about the values that stands above them as a comment.
         own_values: by record and by name, what each record has for itself.
+        std: of the values by name, in their units; what is unknown or not finite is left out.
     """
     file, at = robot.file, robot.plant.parameters
     own_values = own_values or {}
@@ -54,6 +59,7 @@ def write_robot(
     if any(SLIDE in name for name in found):
         lines.append(f"# effects with {SLIDE} in their names act on slides, the others on hinges")
     lines.append(f"free = {toml_value([*file.by_itself, *found])}")
+    lines += [f"held = {toml_value(file.held)}"] if file.held else []
     lines += [f"own = {toml_value(own)}"] if own else []
     lines += [] if file.horizon is None else [f"horizon = {file.horizon!r}"]
     lines += [f"every = {file.every}"] if file.every > 1 else []
@@ -63,19 +69,25 @@ def write_robot(
         "fixed": dict(fixed),
     }  # fmt: skip
     for name in names:
-        said = {**file.records.get(name, {}), "unit": at[name].unit}
+        said = {k: v for k, v in file.records.get(name, {}).items() if k != "std"}
+        said["unit"] = at[name].unit
         value = float(values.get(name, at[name].value))
         known = {} if name in alike else _known(robot, name, value)
-        tables[f"parameters.{toml_value(name)}"] = {**said, "value": value, **known}
+        told = _std(robot, name, std or {}, own)
+        tables[f"parameters.{toml_key(name)}"] = {**said, "value": value, **told, **known}
+    for name in file.held:
+        tables[f"parameters.{toml_key(name)}"] = dict(file.records[name])
     for a in file.spread:
-        tables[f"spread.{toml_value(a.name)}"] = {"of": list(a.of), "std": a.std, "known": a.known}
+        tables[f"spread.{toml_key(a.name)}"] = {"of": list(a.of), "std": a.std, "known": a.known}
     for record, each in own_values.items():
-        tables[f"own_values.{toml_value(record)}"] = {n: float(v) for n, v in each.items()}
+        tables[f"own_values.{toml_key(record)}"] = {n: float(v) for n, v in each.items()}
     tables["effects"] = {
         key: list(given)
         for key, given in (("joints", file.joints), ("only", file.only), ("turns", file.turns))
         if given
     }
+    if std is not None:
+        tables["fitted"] = {log.name: digest(log) for log in (robot.log, *robot.others)}
     for title, table in tables.items():
         lines += toml_table(title, table)
     return write_text(path, "\n".join(lines) + "\n")
@@ -96,6 +108,16 @@ def _known(robot: Robot, name: str, value: float) -> dict[str, object]:
     found = Free(replace(record, value=value), value, 1.0)
     width = KNOWN * effect_sizes(robot.plant.effects)[name][1]
     return {"known": max(KNOWN, width / value) if found.is_relative else width}
+
+
+def _std(
+    robot: Robot, name: str, std: Mapping[str, float], own: Sequence[str]
+) -> dict[str, object]:
+    """Returns the std of a fitted value, if it is known and holds for other logs too."""
+    found = float(std.get(name, nan))
+    if name in (*own, *robot.starts) or not 0 < found < inf:
+        return {}
+    return {"std": found}
 
 
 def _unless(robot: Robot, name: str, known: float) -> dict[str, object]:

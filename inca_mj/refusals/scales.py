@@ -31,7 +31,8 @@ from dataclasses import replace
 import numpy as np
 
 from identification import Log
-from identification.logs.cures import how_to_turn, toml_key, unit_lines
+from identification.files import toml_key
+from identification.logs.cures import how_to_turn, unit_lines
 from identification.logs.names import listed
 from identification.logs.units import UNITS
 from identification.refusals.same_units import NEAR
