@@ -11,19 +11,21 @@ import tyro
 from identification.commands.common import import_without_graphics
 from identification.commands.inspect import Inspect
 from identification.commands.linearize import Linearize
+from identification.commands.new import New
 from identification.commands.program import run_program
 from identification.commands.robots import Discover, Fit
 from identification.commands.sweep import SweepCommand
 
 Command = (
-    Annotated[Fit, tyro.conf.subcommand("fit")]
+    Annotated[New, tyro.conf.subcommand("new")]
+    | Annotated[Fit, tyro.conf.subcommand("fit")]
     | Annotated[Discover, tyro.conf.subcommand("discover")]
     | Annotated[Inspect, tyro.conf.subcommand("inspect")]
     | Annotated[Linearize, tyro.conf.subcommand("linearize")]
     | Annotated[SweepCommand, tyro.conf.subcommand("sweep")]
 )
 EXAMPLES = (
-    "identification fit robot.toml log.csv",
+    "identification new robot.xml log.csv",
     "identification discover models/emps.toml log.csv --out out/emps",
 )
 

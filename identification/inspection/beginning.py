@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import mujoco
@@ -11,7 +12,7 @@ import mujoco
 from identification.errors import InputError
 from identification.files import exists, toml_key, toml_table, toml_value, whole_file
 from identification.inspection.inspected import SAID, Inspection
-from identification.inspection.matching import Match, channels_of, match
+from identification.inspection.matching import SAME, Match, channels_of, match
 from identification.inspection.words import answer_sentence
 from identification.logs.units import to_si
 from identification.model.tied import servo_kind
@@ -24,16 +25,30 @@ _DRIVES = {"position": "a position servo: its input is a setpoint",
            "velocity": "a velocity servo: its input is a setpoint"}  # fmt: skip
 
 
-def write_beginning(found: Inspection, model: Path, path: Path) -> tuple[Path, list[str]]:
+@dataclass(frozen=True)
+class Beginning:
+    """A robot's file to begin with, and sentences on what stands in it.
+
+    Attributes:
+        path: of the file.
+        found: what the model and the log say.
+        guessed: what is for the user to judge.
+        needs: what a fit will ask for.
+    """
+
+    path: Path
+    found: tuple[str, ...]
+    guessed: tuple[str, ...]
+    needs: tuple[str, ...]
+
+
+def write_beginning(found: Inspection, model: Path, path: Path) -> Beginning:
     """Write the robot's file to begin with, which nothing may stand in the place of.
 
     Args:
         found: what is in the log.
         model: path of the MJCF or URDF.
         path: of the file to write.
-
-    Returns:
-        Its path, and a sentence for each thing that it still needs.
 
     Raises:
         InputError: the file exists, or the model cannot be read.
@@ -45,33 +60,66 @@ def write_beginning(found: Inspection, model: Path, path: Path) -> tuple[Path, l
     spec, said = robot_spec(RobotFile(path=path, model=model, free=()))
     compiled = spec.compile()
     matches = match(channels_of(compiled), found)
-    lines, needs = _lines(found, compiled, matches, os.path.relpath(model, path.parent), said)
+    needs = _needs(compiled, matches)
+    place = os.path.relpath(model, path.parent)
+    lines = _lines(found, compiled, matches, place, [*said, *(f"NEEDED: {n}" for n in needs)])
     with whole_file(path) as draft:
         draft.write_text("\n".join(lines) + "\n", encoding="utf-8")
-    return path, needs
+    sure = [m for m in matches if m.how == SAME]
+    answers = [answer_sentence(a) for a in found.answers]
+    told = [*said, f"columns of the same name: {_listed(sure)}"] if sure else [*said]
+    return Beginning(path, (*told, *answers), _guesses(found, compiled, matches), tuple(needs))
+
+
+def _guesses(found: Inspection, model: mujoco.MjModel, matches: Sequence[Match]) -> tuple[str, ...]:
+    """Returns a sentence on each thing in the file that is a guess."""
+    free = [_free(model, joint) for joint in _measured(matches)]
+    columns = [
+        f"{m.channel.name} is column {m.column} ({m.how.removeprefix('guessed').strip(' :')});"
+        f" {_what(model, m)}"
+        for m in matches
+        if m.column and m.how != SAME
+    ]
+    units = [f"{line} (unit)" for line in _log_lines(found, matches) if "=" in line]
+    return (
+        *columns, *units,
+        f"free = {toml_value(free)}: one number for each measured joint; free what you want to"
+        " know",
+        f"horizon = {_horizon(found)!r} s: how far ahead the model must predict, a part of a swing",
+    )  # fmt: skip
+
+
+def _horizon(found: Inspection) -> float:
+    return float(f"{max(SHORTEST, FEWEST * found.step):.2g}")
+
+
+def _measured(matches: Sequence[Match]) -> list[str]:
+    """Returns the joints that a column measures."""
+    outputs = [m for m in matches if not m.channel.is_input and m.column]
+    return [*dict.fromkeys(m.channel.joint for m in outputs)]
+
+
+def _listed(matches: Sequence[Match]) -> str:
+    return ", ".join(m.channel.name for m in matches)
 
 
 def _lines(
     found: Inspection, model: mujoco.MjModel, matches: Sequence[Match], place: str,
     said: Sequence[str],
-) -> tuple[list[str], list[str]]:  # fmt: skip
-    """Returns the lines of the file, and what it still needs, a sentence each."""
-    needs = _needs(model, matches)
+) -> list[str]:  # fmt: skip
+    """Returns the lines of the file; `said` stands in comments at its head."""
     inputs = [m for m in matches if m.channel.is_input and m.column]
     outputs = [m for m in matches if not m.channel.is_input and m.column]
-    joints = [*dict.fromkeys(m.channel.joint for m in outputs)]
-    horizon = float(f"{max(SHORTEST, FEWEST * found.step):.2g}")
     lines = [
-        f"# What `identification inspect` found in {found.path.name} and {Path(place).name}.",
-        "# Lines with 'guessed' are to be judged by you. docs/robot tells all keys.",
+        f"# What `identification new` found in {found.path.name} and {Path(place).name}.",
+        "# Lines with 'guessed' are to be judged by you. docs/robot/keys.md tells all keys.",
         *(f"# {sentence}" for sentence in said),
-        *(f"# NEEDED: {sentence}" for sentence in needs),
         "",
         f"model = {toml_value(place)}",
         f"outputs = {toml_value([m.channel.name for m in outputs])}",
         "# guessed: a number of the model for each measured joint; free what you want to know",
-        f"free = {toml_value([_free(model, joint) for joint in joints])}",
-        f"horizon = {horizon!r}  # [s], guessed: a part of a swing that the model must predict",
+        f"free = {toml_value([_free(model, joint) for joint in _measured(matches)])}",
+        f"horizon = {_horizon(found)!r}  # [s], guessed: a part of a swing that it must predict",
     ]
     if inputs or outputs:
         lines += ["", "[columns]  # actuator or sensor = column of the log"]
@@ -80,7 +128,7 @@ def _lines(
         lines.append(f"{toml_key(m.channel.name)} = {toml_value(m.column)}{note}")
     answers = {a.output: a for a in found.answers}
     lines += [f"# {answer_sentence(answers[m.column])}" for m in outputs if m.column in answers]
-    return [*lines, *_log_lines(found, matches)], needs
+    return [*lines, *_log_lines(found, matches)]
 
 
 def _log_lines(found: Inspection, matches: Sequence[Match]) -> list[str]:

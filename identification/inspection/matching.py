@@ -15,6 +15,7 @@ import mujoco
 from identification.inspection.guesses import is_rate, words_of
 from identification.inspection.inspected import Inspection
 
+SAME = "the same name"  # how a column was found, which is no guess
 _RATE = int(mujoco.mjtSensor.mjSENS_JOINTVEL)
 _POSITION = int(mujoco.mjtSensor.mjSENS_JOINTPOS)
 _OF_JOINTS = (int(mujoco.mjtTrn.mjTRN_JOINT), int(mujoco.mjtTrn.mjTRN_JOINTINPARENT))
@@ -58,7 +59,7 @@ def match(channels: Sequence[Channel], found: Inspection) -> tuple[Match, ...]:
     out: dict[Channel, Match] = {}
     for channel in channels:
         if channel.name in free:
-            out[channel] = Match(channel, channel.name, "the same name")
+            out[channel] = Match(channel, channel.name, SAME)
             free.remove(channel.name)
     pairs = sorted(
         ((_alike(channel, name), i, k) for i, channel in enumerate(channels)

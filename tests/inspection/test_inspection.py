@@ -1,6 +1,5 @@
 """A log is told with its rates, gaps and answers, and a fit runs from the file that is written."""
 
-import json
 import tomllib
 from dataclasses import replace
 
@@ -136,8 +135,14 @@ def arm(tmp_path_factory):
 
 def test_a_fit_runs_from_the_file_that_is_written(arm, capsys, monkeypatch):
     monkeypatch.chdir(arm)
-    record = run(capsys, "inspect", "run", "--model", "arm.xml", "--out", "out")
-    assert record["needs"] == []
+    begun = run(capsys, "new", "arm.xml", "run")
+    assert begun["needs"] == []
+    assert begun["robot"] == "robot.toml"
+    assert any('free = ["joint/shoulder.damping", "joint/elbow.damping"]' in g
+               for g in begun["guessed"])  # fmt: skip
+    assert any("elbow_pos is column joint_states.position.elbow" in g for g in begun["guessed"])
+    assert any("answers desired.position.elbow" in f for f in begun["found"])
+    record = run(capsys, "inspect", "run", "--out", "out")
     said = {a["output"]: a["input"] for a in record["answers"]}
     assert said["joint_states.position.elbow"] == "desired.position.elbow"
     assert (arm / "out" / "log.png").stat().st_size > 1000
@@ -157,10 +162,10 @@ def test_a_fit_runs_from_the_file_that_is_written(arm, capsys, monkeypatch):
 def test_no_file_is_replaced(arm, capsys, monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "robot.toml").write_text("mine")
-    said = refused(capsys, "inspect", arm / "run", "--model", arm / "arm.xml")
+    said = refused(capsys, "new", arm / "arm.xml", arm / "run")
     assert "robot.toml exists, and nothing of yours is replaced" in said
     assert (tmp_path / "robot.toml").read_text() == "mine"
-    run(capsys, "inspect", arm / "run", "--model", arm / "arm.xml", "--robot", "other.toml")
+    run(capsys, "new", arm / "arm.xml", arm / "run", "--robot", "other.toml")
     assert tomllib.loads((tmp_path / "other.toml").read_text())["outputs"]
 
 
@@ -171,7 +176,7 @@ def test_what_a_fit_will_ask_for_is_told(arm, capsys, monkeypatch, tmp_path):
     write_log(log, tmp_path / "run.csv")
     xml = ARM.format(damping=0.1)
     (tmp_path / "arm.xml").write_text(xml[: xml.index("<sensor>")] + "</mujoco>")
-    first, second = run(capsys, "inspect", "run.csv", "--model", "arm.xml")["needs"]
+    first, second = run(capsys, "new", "arm.xml", "run.csv")["needs"]
     assert "no column was found for actuator elbow_servo" in first
     assert '<jointpos name="shoulder" joint="shoulder"/>' in second
 
@@ -184,6 +189,18 @@ def test_text_on_a_terminal(arm, capsys):
     assert "500 rows over 4.99 s, one every 0.01 s" in text
     assert "joint_states.position.elbow answers desired.position.elbow" in text
     assert "as it would answer the command of a position" in text
+    assert text.endswith(f"identification new MODEL.xml {arm / 'run'}\n")
+
+
+def test_the_command_says_what_it_guessed_and_what_comes_next(arm, capsys, monkeypatch, tmp_path):
+    from identification.__main__ import main
+
+    monkeypatch.chdir(tmp_path)
+    assert main(["new", str(arm / "arm.xml"), str(arm / "run")]) == 0
+    text = capsys.readouterr().out
+    assert text.startswith("Written: robot.toml\nfound:\n")
+    assert text.index("guessed, for you to judge:") < text.index("horizon = 0.3 s")
+    assert text.endswith(f"Next: identification fit robot.toml {arm / 'run'}\n")
 
 
 def test_logs_of_which_nothing_can_be_said_are_refused(tmp_path, refusal):
@@ -203,9 +220,10 @@ def test_the_keys_are_documented(arm, capsys, monkeypatch, tmp_path):
     from pathlib import Path
 
     page = (Path(__file__).parents[2] / "docs" / "json.md").read_text(encoding="utf-8")
-    part = page.split("## inspect\n")[1].split("\n## ")[0]
+    inspected, begun = (page.split(f"## {w}\n")[1].split("\n## ")[0] for w in ("inspect", "new"))
     monkeypatch.chdir(tmp_path)
-    record = run(capsys, "inspect", arm / "run", "--model", arm / "arm.xml")
+    record = run(capsys, "inspect", arm / "run")
     keys = {*record, *record["time"], *record["columns"][0], *record["answers"][0]}
-    assert all(f"`{key}`" in part for key in keys)
-    assert json.dumps(record)
+    assert all(f"`{key}`" in inspected for key in keys)
+    record = run(capsys, "new", arm / "arm.xml", arm / "run")
+    assert all(f"`{key}`" in begun for key in record)

@@ -31,9 +31,9 @@ def test_the_recordings_are_those_of_the_script(tmp_path):
 
 def test_the_robot_s_file_is_the_one_that_is_written_to_begin_with(tmp_path):
     found = inspect_log(FOLDER / "first.mcap")
-    path, needs = write_beginning(found, FOLDER / "arm.xml", tmp_path / "robot.toml")
-    written = read_robot_file(path)
-    assert not needs
+    begun = write_beginning(found, FOLDER / "arm.xml", tmp_path / "robot.toml")
+    written = read_robot_file(begun.path)
+    assert not begun.needs
     assert written.columns == ROBOT.columns
     assert written.outputs == ROBOT.outputs
     assert written.horizon == ROBOT.horizon
