@@ -22,7 +22,10 @@ NAV = {group: pages for entry in SITE["nav"] for group, pages in entry.items()}
 MADE = {"contributing.md", "changelog.md"}  # of files that lie outside docs/
 PAGES = sorted(path.relative_to(DOCS).as_posix() for path in DOCS.rglob("*.md"))
 NOTEBOOKS = sorted(DOCS.rglob("*.ipynb"))
-TUTORIALS = [page for page in NAV["Start"] + NAV["Tutorials"] + NAV["Your robot"] if page in PAGES]
+WITH_WORDS = {"command_line.md"}  # that stand for arguments
+TUTORIALS = [page for page in [*NAV["My robot"], NAV["The INCA"][0], NAV["How it works"][0]]
+             if page in PAGES and page not in WITH_WORDS]  # fmt: skip
+PATHS = ("My robot", "The INCA", "How it works")
 PROGRAMS = {
     "inca": (inca_mj.cli.Command, "inca"),
     "identification": (identification.commands.cli.Command, "identification"),
@@ -34,6 +37,15 @@ def test_every_page_is_in_the_navigation_once_and_no_other():
     shown = [*chain(*NAV.values())]
     from_notebooks = {path.relative_to(DOCS).with_suffix(".md").as_posix() for path in NOTEBOOKS}
     assert sorted(shown) == sorted({*PAGES, *MADE, *from_notebooks})
+
+
+def test_the_pages_are_three_paths_and_the_first_page_leads_to_each():
+    assert [*NAV] == ["Start", *PATHS]
+    first = (DOCS / "index.md").read_text(encoding="utf-8")
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    for path in PATHS:
+        assert f"]({NAV[path][0]})" in first
+        assert f"](docs/{NAV[path][0]})" in readme
 
 
 def anchors(text):
