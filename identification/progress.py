@@ -1,8 +1,8 @@
 """Progress of a long computation: told where it is known, shown by whoever watches.
 
 A computation tells the stage it is in and counts its steps. Nothing is shown unless a program
-watches, as the commands do on a terminal. A search does not know how many steps it will take; it
-gives a usual number, and the stage grows where it takes more.
+watches, as the commands do. A search does not know how many steps it will take, and gives no
+number; a bar then has a usual one, and grows where it takes more.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ USUAL = 15  # steps of a search
 Item = TypeVar("Item")
 Advance = Callable[[], None]
 Progress = Callable[[str], None]  # is told one line after each step
-Watch = Callable[[str, int], AbstractContextManager[Advance]]  # of a stage and its steps
+Watch = Callable[[str, int | None], AbstractContextManager[Advance]]  # of a stage and its steps
 
 _WATCH: ContextVar[Watch | None] = ContextVar("watch", default=None)
 
@@ -32,8 +32,13 @@ def watched(watch: Watch) -> Iterator[None]:
 
 
 @contextmanager
-def stage(what: str, steps: int = USUAL) -> Iterator[Advance]:
-    """Begins a stage of a computation; call what it yields after each step."""
+def stage(what: str, steps: int | None = None) -> Iterator[Advance]:
+    """Begins a stage of a computation; call what it yields after each step.
+
+    Args:
+        what: its steps are.
+        steps: how many; None where that is not known beforehand.
+    """
     watch = _WATCH.get()
     if watch is None:
         yield lambda: None
@@ -42,7 +47,7 @@ def stage(what: str, steps: int = USUAL) -> Iterator[Advance]:
         yield advance
 
 
-def counted(items: Iterable[Item], what: str, steps: int = USUAL) -> Iterator[Item]:
+def counted(items: Iterable[Item], what: str, steps: int | None = None) -> Iterator[Item]:
     """Yields the items of a stage, each counted when the next one is asked for."""
     with stage(what, steps) as advance:
         for item in items:

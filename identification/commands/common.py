@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import tyro
 
+from identification.commands.beat import told
 from identification.commands.stopping import leaving_out
 from identification.errors import InputError
 from identification.folders import draft_of
@@ -82,6 +83,7 @@ def assignments(texts: Sequence[str], option: str, example: str = "m=0.2") -> di
 
 def note(text: str) -> None:
     """Writes one line to stderr, above the bars of progress if there are some."""
+    told()
     if "tqdm" in sys.modules:
         sys.modules["tqdm"].tqdm.write(text, file=sys.stderr)
     else:

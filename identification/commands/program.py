@@ -8,31 +8,41 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import AbstractContextManager, contextmanager, nullcontext
+from contextlib import contextmanager
+from functools import partial
 from typing import Any
 
 from identification.commands.arguments import parsed
+from identification.commands.beat import Beat, beating
+from identification.commands.common import note
 from identification.commands.places import refuse_empty, refuse_place
 from identification.commands.stopping import STOPPED, stoppable
 from identification.errors import InputError
-from identification.progress import watched
+from identification.progress import USUAL, watched
 
 SLOW = 0.5  # [s] before a bar is drawn, so that short stages do not flicker
 
 
-def metered(quiet: bool) -> AbstractContextManager[None]:
+@contextmanager
+def metered(quiet: bool) -> Iterator[None]:
     """Show the stages of the block on stderr, with the time that each will still take.
 
-    Nothing is shown where stderr is no terminal, or when it shall be quiet.
+    A terminal has a bar for each; everywhere a line is said at least every `beat.EVERY` seconds.
+    Nothing is shown when it shall be quiet.
     """
-    return nullcontext() if quiet or not sys.stderr.isatty() else watched(_bar)
+    if quiet:
+        yield
+        return
+    show = _bar if sys.stderr.isatty() else None
+    with beating(Beat(note)) as beat, watched(partial(beat.stage, show=show)):
+        yield
 
 
 @contextmanager
-def _bar(what: str, steps: int) -> Iterator[Callable[[], None]]:
+def _bar(what: str, steps: int | None) -> Iterator[Callable[[], None]]:
     from tqdm import tqdm
 
-    with tqdm(total=steps, desc=what, leave=False, delay=SLOW, file=sys.stderr) as meter:
+    with tqdm(total=steps or USUAL, desc=what, leave=False, delay=SLOW, file=sys.stderr) as meter:
 
         def advance() -> None:
             meter.total = max(meter.total, meter.n + 1)

@@ -9,6 +9,7 @@ import numpy as np
 from identification.errors import InputError
 from identification.logs.log import Log
 from identification.logs.sampling import FloatArray
+from identification.shares import percent
 
 
 def by_unit(rms: np.ndarray, log: Log) -> dict[str, float]:
@@ -94,7 +95,9 @@ def mean_fit(fit: FloatArray) -> str:
     if not len(moving):
         return "undefined: no output moves"
     still = len(fit) - len(moving)
-    return f"{moving.mean():.3f} %" + (f" ({still} outputs never move)" if still else "")
+    return percent(float(moving.mean()) / 100, 5) + (
+        f" ({still} outputs never move)" if still else ""
+    )
 
 
 def rms(residual: FloatArray) -> FloatArray:

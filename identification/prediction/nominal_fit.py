@@ -100,7 +100,9 @@ def fit_alone(
         moves, _ = task.settled(q, no_moves(task))
         if factor == 1.0:
             task = with_longer_steps(task, q, moves, is_for_slopes=True)
-        found = solve(task, q, moves, tolerance=ROUGH_TOLERANCE, progress=_of(length, 0, progress))
+        found = solve(
+            task, q, moves, tolerance=ROUGH_TOLERANCE, progress=_of(length, horizon, 0, progress)
+        )
         _refuse_idle(found)
         values, scale = found.shared, _rms(found)
     if found is None:
@@ -110,7 +112,7 @@ def fit_alone(
     task = with_longer_steps(task, q, moves)
     for k in range(MAX_SCALE_FITS):
         task, old = with_scale(task, scale), scale
-        found = solve(task, q, moves, progress=_of(horizon, k + 1, progress))
+        found = solve(task, q, moves, progress=_of(horizon, horizon, k + 1, progress))
         q, moves = found.q, found.moves
         scale = _rms(found)
         if np.all(np.abs(np.log(scale / old)) < SETTLED_CHANGE):
@@ -118,11 +120,23 @@ def fit_alone(
     return found, old
 
 
-def _of(length: float, scale: int, progress: Progress | None) -> Progress | None:
-    """Returns a progress that adds the windows' length, and which fit over the horizon it is."""
+def _of(length: float, horizon: float, scale: int, progress: Progress | None) -> Progress | None:
+    """Returns a progress that says how far a fit is, and its error over the horizon.
+
+    Errors over windows of other lengths do not compare with it, and are not told.
+
+    Args:
+        length: of the windows [s].
+        horizon: that of the fit [s].
+        scale: which fit over the horizon it is; 0 for the first.
+        progress: is told.
+    """
     if progress is None:
         return None
     tell, which = progress, f", fit {scale + 1}" if scale else ""
+    if length < horizon:
+        grow = f"windows of {length:.3g} s, which grow to {horizon:.3g} s"
+        return lambda line: tell(f"{grow}: {line.rpartition(', ')[2]}")
     return lambda line: tell(f"windows of {length:.3g} s{which}: {line}")
 
 

@@ -27,6 +27,7 @@ from identification.prediction.screening import score_all
 from identification.prediction.task import RecordsTask, WindowSearch, finishing
 from identification.prediction.trial import find_doubt
 from identification.progress import Progress
+from identification.shares import change
 from identification.windows.blocks import count_blocks
 from identification.windows.comparison import compare, rise
 from identification.windows.dividing import divide_records
@@ -78,7 +79,7 @@ def first_state(task: RecordsTask, progress: Progress) -> WindowSearch:
         worse = nominal.unseen
         progress(
             "the fitted values predict unseen records worse (mean square"
-            f" {100 * rise(begun.select, worse.select):+z.0f} %) than those with which the fit"
+            f" {change(rise(begun.select, worse.select))}) than those with which the fit"
             " began: these are kept"
         )
         nominal = as_begun(base, nominal, begun)

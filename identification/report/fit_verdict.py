@@ -25,6 +25,7 @@ from identification.report.untold_words import (
     too_weak,
     weak_sentences,
 )
+from identification.shares import change
 
 if TYPE_CHECKING:  # both are slow to import
     from identification.prediction.records_fit import RecordsFit
@@ -192,10 +193,10 @@ def _worse(fit: RecordsFit) -> list[str]:
     if fit.worse is None:
         return []
     before, after = fit.unseen_rms
-    percent = 100 * ((after / before) ** 2 - 1)
+    rise = change((after / before) ** 2 - 1)
     return [
         "The fitted values predict what was not fitted worse than the values with which the fit"
-        f" began (mean square {percent:+z.0f} %, t = {fit.worse.t:z.1f}): do not use them. Fit"
+        f" began (mean square {rise}, t = {fit.worse.t:z.1f}): do not use them. Fit"
         " more records, state in the robot's file what is known of the free parameters (known), or"
         " leave some of them out."
     ]

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 FPS = 30.0  # frames per second of the film
 FIRST = 10  # frames whose rate is measured; the first of all also waits for the renderer
 SOON = 5.0  # [s] after which the rate of fewer frames is told
-EVERY = 15.0  # [s] between two lines
+EVERY = 10.0  # [s] between two lines
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -9,6 +9,7 @@ import numpy as np
 from identification.estimation.metrics import mean_fit
 from identification.report.figures import compare_figure
 from identification.report.page import Section, Table
+from identification.shares import percent
 from inca_mj.report.figures import crosscheck_figure, simulation_figures, tracking_figure
 
 if TYPE_CHECKING:
@@ -26,8 +27,8 @@ def compare_verdict(result: Comparison) -> list[str]:
     if not np.isnan(fit).all():
         worst = int(np.nanargmin(fit))
         lines = [
-            f"The twin explains {np.nanmean(fit):z.1f} % of the motor angles' motion (mean fit);"
-            f" drive {worst + 1} is worst with {fit[worst]:z.1f} %."
+            f"The twin explains {percent(np.nanmean(fit) / 100, 3)} of the motor angles' motion"
+            f" (mean fit); drive {worst + 1} is worst with {percent(fit[worst] / 100, 3)}."
         ]
     if still := [str(i + 1) for i in np.flatnonzero(np.isnan(fit))]:
         lines.append(f"No fit is said of drives that never move: {', '.join(still)}.")

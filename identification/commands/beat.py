@@ -1,0 +1,135 @@
+"""A line at least every ten seconds while a program computes, with the stage and the time left.
+
+A computation tells its stages and their steps (`identification.progress`). Where nothing else was
+said for a while, this says which stage it is, how far, and how long the rest will take; where the
+number of steps is not known beforehand, only how many were done.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, nullcontext
+from dataclasses import dataclass, field
+
+from identification.progress import Advance, Watch, duration
+
+EVERY = 10.0  # [s] after which a line is said
+
+
+@dataclass
+class Stage:
+    """A stage that is at work.
+
+    Attributes:
+        number: how many stages had begun with it.
+        what: its steps are.
+        steps: how many; None where that is not known beforehand.
+        begun: when [s].
+        done: steps that were done.
+    """
+
+    number: int
+    what: str
+    steps: int | None
+    begun: float
+    done: int = 0
+
+    def line(self, now: float) -> str:
+        """Returns how far it is, and how long it will still take where that can be told."""
+        if self.steps is None or self.done > self.steps:
+            return f"stage {self.number}, {self.what}: {self.done} done"
+        said = f"stage {self.number}, {self.what}: {self.done} of {self.steps}"
+        if not self.done:
+            return said
+        left = (now - self.begun) / self.done * (self.steps - self.done)
+        return f"{said}, about {duration(left)} left"
+
+
+@dataclass
+class Beat:
+    """Says where a computation is when nothing was said for a while.
+
+    Attributes:
+        say: writes a line; it may call `told`.
+        clock: the time [s].
+        begun: when the program began [s].
+        last: when the last line was said [s].
+        stages: that are at work, the innermost one last.
+        count: stages that have begun.
+        lines: that were said by others; before the first one, and without stages, it is silent.
+    """
+
+    say: Callable[[str], None]
+    clock: Callable[[], float] = time.monotonic
+    begun: float = field(default=0.0, init=False)
+    last: float = field(default=0.0, init=False)
+    stages: list[Stage] = field(default_factory=list, init=False)
+    count: int = field(default=0, init=False)
+    lines: int = field(default=0, init=False)
+
+    def __post_init__(self) -> None:
+        self.begun = self.last = self.clock()
+
+    def told(self) -> None:
+        """Counts a line that was said elsewhere."""
+        self.last, self.lines = self.clock(), self.lines + 1
+
+    @contextmanager
+    def stage(self, what: str, steps: int | None, show: Watch | None = None) -> Iterator[Advance]:
+        """Begins a stage, shown by a bar too where there is one."""
+        self.count += 1
+        mine = Stage(self.count, what, steps, self.clock())
+        self.stages.append(mine)
+        with nullcontext(_nothing) if show is None else show(what, steps) as shown:
+
+            def advance() -> None:
+                mine.done += 1
+                shown()
+
+            try:
+                yield advance
+            finally:
+                self.stages.remove(mine)
+
+    def check(self) -> None:
+        """Says a line where none was said for a while."""
+        now, stages = self.clock(), [*self.stages]
+        if now - self.last < EVERY or not (self.count or self.lines):
+            return
+        where = stages[-1].line(now) if stages else "still at work"
+        self.last = now
+        self.say(f"{duration(now - self.begun)}: {where}")
+
+
+def _nothing() -> None:
+    """Shows nothing."""
+
+
+BEATS: list[Beat] = []  # of the running program
+
+
+def told() -> None:
+    """Tells the running program that a line was said."""
+    for beat in BEATS:
+        beat.told()
+
+
+@contextmanager
+def beating(beat: Beat) -> Iterator[Beat]:
+    """Lets a beat look every second, in the block."""
+    end = threading.Event()
+
+    def look() -> None:
+        while not end.wait(1.0):
+            beat.check()
+
+    thread = threading.Thread(target=look, name="beat", daemon=True)
+    BEATS.append(beat)
+    thread.start()
+    try:
+        yield beat
+    finally:
+        end.set()
+        BEATS.remove(beat)

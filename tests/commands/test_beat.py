@@ -1,0 +1,128 @@
+"""A line is said at least every ten seconds, with the stage and the time that is left."""
+
+import re
+import time
+
+from robot_cases import TOML, simulated
+
+from identification.commands import beat as of_beat
+from identification.commands.beat import EVERY, Beat, beating
+from identification.commands.common import note
+from identification.progress import counted, stage, watched
+
+
+class Clock:
+    now = 100.0
+
+    def __call__(self):
+        return self.now
+
+
+def watching():
+    clock, said = Clock(), []
+    return clock, said, Beat(said.append, clock)
+
+
+def test_nothing_is_said_where_others_speak_often_enough_or_nothing_is_told():
+    clock, said, beat = watching()
+    clock.now += 5 * EVERY
+    beat.check()
+    assert said == []  # a program without stages, such as a viewer
+    for _ in range(5):
+        beat.told()
+        clock.now += EVERY - 1
+        beat.check()
+    assert said == []
+    clock.now += 1
+    beat.check()
+    assert said == ["96 s: still at work"]
+
+
+def test_the_time_left_is_told_where_the_steps_are_known():
+    clock, said, beat = watching()
+    with watched(beat.stage), stage("refits", 8) as advance:
+        clock.now += EVERY
+        beat.check()
+        advance()
+        clock.now += EVERY
+        beat.check()
+        with stage("steps of a fit") as inner:
+            inner()
+            inner()
+            clock.now += EVERY
+            beat.check()
+        advance()
+        clock.now += EVERY
+        beat.check()
+    assert said == [
+        "10 s: stage 1, refits: 0 of 8",
+        "20 s: stage 1, refits: 1 of 8, about 2 min left",
+        "30 s: stage 2, steps of a fit: 2 done",
+        "40 s: stage 1, refits: 2 of 8, about 2 min left",
+    ]
+
+
+def test_lines_come_at_least_every_ten_seconds():
+    clock, said, beat = watching()
+    with watched(beat.stage):
+        for _ in counted(range(300), "steps"):
+            clock.now += 1
+            beat.check()
+    times = [int(line.partition(" s:")[0]) for line in said[:11]]
+    assert max(b - a for a, b in zip([0, *times], times, strict=False)) <= EVERY
+
+
+def test_a_bar_counts_the_same_steps():
+    seen, (_, _, beat) = [], watching()
+
+    def bar(what, steps):
+        from contextlib import contextmanager
+
+        @contextmanager
+        def drawn():
+            yield lambda: seen.append((what, steps))
+
+        return drawn()
+
+    with beat.stage("frames", 3, show=bar) as advance:
+        advance()
+        assert beat.stages[0].done == 1
+    assert seen == [("frames", 3)]
+    assert beat.stages == []
+
+
+def test_a_line_of_the_program_counts(capsys):
+    _, _, beat = watching()
+    with beating(beat):
+        note("a line")
+    assert beat.lines == 1
+    assert of_beat.BEATS == []
+
+
+def test_a_fit_that_takes_long_says_where_it_is(tmp_path, capsys, monkeypatch):
+    """The whole program, with a beat that is always due."""
+    from joint_cases import SLIDER
+
+    from identification import write_log
+    from identification.__main__ import main
+
+    monkeypatch.setattr(of_beat, "EVERY", 0.0)
+    (tmp_path / "slider.xml").write_text(SLIDER)
+    (tmp_path / "robot.toml").write_text(TOML)
+    write_log(simulated({"damping": 3.0, "mass": 2.0}, 200), tmp_path / "log.csv")
+    from identification.robot import fitting
+
+    slow = fitting.fit
+
+    def patiently(robot, progress):
+        with stage("naps", 2) as advance:
+            time.sleep(1.2)
+            advance()
+        return slow(robot, progress)
+
+    monkeypatch.setattr(fitting, "fit", patiently)
+    arguments = ["fit", str(tmp_path / "robot.toml"), str(tmp_path / "log.csv")]
+    assert main(arguments) == 0
+    assert re.search(r"\d+ s: stage \d+, naps: 0 of 2\n", capsys.readouterr().err)
+    assert main([*arguments, "--quiet"]) == 0
+    assert capsys.readouterr().err == ""
