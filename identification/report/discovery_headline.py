@@ -17,8 +17,7 @@ from identification.report.effect_words import (
     without_colon,
 )
 from identification.report.headline import Answer, Headline, Tile, capital, error_tile
-from identification.report.horizon_gap import find_gap
-from identification.report.horizon_words import largest_force
+from identification.report.missing_place import MissingPlace, find_place
 from identification.report.named_words import curve_top, likely_rivals
 from identification.shares import percent
 
@@ -40,12 +39,14 @@ def discovery_headline(found: Discovery) -> Headline:
         found.errors_of(found.before), None, found.floor, f"{UNSEEN}{found.over}"
     )  # fmt: skip
     tried = len({s.candidate.effect.name for s in found.scores})
+    none = f"None of the {tried} known effects surely explains it."
     if found.verdict == "unknown effect":
         ratio = found.times_noise(found.before)
         much = Tile("times the noise", held(ratio)) if isfinite(ratio) else None
-        tiles = [*_needed(found), left, much]
-        place = f"None of the {tried} known effects surely explains it."
-        return Headline("", (Answer("Something is missing", place, _three(tiles)),))
+        at = find_place(found)
+        tiles = [*_missing(at), left, much]
+        where = f"{none}" if at is None else f"at joint {at.joint}. {none}"
+        return Headline("", (Answer("Something is missing", where, _three(tiles)),))
     seen = {d.candidate.effect.name for d in found.detectable if d.is_plausible}
     told = {d.candidate.effect.name for d in found.detectable}
     shown = Tile("known effects that would have shown", f"{len(seen)} of {len(told)}",
@@ -103,14 +104,11 @@ def _size(found: Discovery, named: NamedEffect) -> tuple[Tile, ...]:
     return (Tile(f"size {first}", size, "; ".join(note)),)
 
 
-def _needed(found: Discovery) -> list[Tile]:
-    """Returns the tile on the largest force that a joint would need; none where none is known."""
-    gap = find_gap(found)
-    if gap is None or not gap.forces:
+def _missing(at: MissingPlace | None) -> list[Tile]:
+    """Returns the tile on the force that is missing; none where none is known."""
+    if at is None:
         return []
-    first = gap.forces[0]
-    size, at = largest_force(first)
-    return [Tile(f"missing on {first.nodes.joint}", size, f"{first.nodes.reads}: {at}")]
+    return [Tile(f"missing on {at.joint}", at.size, at.range)]
 
 
 def _three(tiles: list[Tile | None]) -> tuple[Tile, ...]:

@@ -16,6 +16,7 @@ from identification.report.effect_words import (
 from identification.report.error_words import change_words, describe_scale, error_words
 from identification.report.finding_words import describe_finding, sentence
 from identification.report.horizon_words import needed_sentences
+from identification.report.missing_place import find_place
 from identification.report.named_words import basis_sentence, named_sentences
 from identification.report.parts_words import is_untouched
 from identification.report.shown_words import SHOWN, hiding, smallest, split_detectable
@@ -183,12 +184,22 @@ def _unknown(found: Discovery) -> str:
         [
             f"Something is missing that none of the {tried} known effects surely explains: the"
             f" fitted model is {left} off{found.over} on unseen data{times}{needed}.",
-            "It is not named here rather than named wrongly.",
+            "It gets no name rather than a wrong one.",
+            *_place(found),
             *needed_sentences(found),
             *_findings(found),
             *(sentence(describe_finding(f)) for f in found.located),
         ]
     )
+
+
+def _place(found: Discovery) -> list[str]:
+    """Returns the sentence that says where the largest force is missing; none where none is."""
+    place = find_place(found)
+    if place is None:
+        return []
+    figure = "" if found.horizon is None else "; see the figure"  # of a free run none has places
+    return [f"{sentence(str(place)).removesuffix('.')}{figure}."]
 
 
 def _unexplained(found: Discovery) -> str:

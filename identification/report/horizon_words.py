@@ -81,5 +81,5 @@ def needed_sentences(found: Discovery) -> list[str]:
     first = gap.forces[0]
     return [
         f"It looks like a force {each}: that on {first.nodes.joint} would take away"
-        f" {percent(first.fall)} of the fitted error and be largest at {_largest(first)}."
+        f" {percent(first.fall)} of the fitted error."
     ]

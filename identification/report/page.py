@@ -87,6 +87,7 @@ class Section:
         first: where its figures and its film stand above all sections: 1 above the verdict, 2 and
             3 below it in this order; 0 in the section itself.
         plain: what a terminal prints of it, without its title; paragraphs likewise.
+        code: a file that a reader may copy, folded.
     """
 
     title: str
@@ -97,6 +98,7 @@ class Section:
     poster: Path | None = None
     first: int = 0
     plain: str = ""
+    code: str = ""
 
     @property
     def drawn(self) -> Figures:
@@ -212,8 +214,9 @@ def _parts(section: Section, number: int, drawings: dict[Figure, str]) -> dict[s
         "first": int(section.first),
         "drawn": drawn,
         # what stands above, and has nothing else, needs no section of its own
-        "shown": bool(paragraphs or (table and table.rows) or (drawn and not section.first)),
+        "shown": any((paragraphs, section.code, table and table.rows, drawn and not section.first)),
         "paragraphs": paragraphs,
+        "code": section.code,
         "figures": [
             (caption, drawings[figure], inches >= WIDE, inches)
             for (caption, figure), inches in zip(figures, width, strict=True)

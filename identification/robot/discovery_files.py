@@ -2,20 +2,33 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+from identification.files import write_text
 from identification.quantities import plain
 from identification.report.discovery_files import DiscoveryFiles
 from identification.report.discovery_json import discovery_to_json
+from identification.report.missing_place import find_place
+from identification.report.own_stub import own_stub
+from identification.report.page import Section
 from identification.robot.confirmation import confirm
 from identification.robot.reading import doubtful
 from identification.robot.record_error import Confirmation, Repetition, find_repetitions
 from identification.robot.robot import Robot
 from identification.robot.write import write_robot
+
+STUB = "own_effect.py"
+OWN = "A law of your own"
+OWN_TEXT = (
+    "The largest force is missing at {place}. The file below, which is kept beside this page as"
+    f" {STUB}, has an effect there. Write the law that you suspect into it and run it: the search"
+    " then compares it with all known ones."
+)
 
 
 @dataclass(frozen=True)
@@ -48,9 +61,30 @@ class RobotDiscoveryFiles(DiscoveryFiles):
         kept = {*found.nominal.values, *named}
         values = {n: v for n, v in found.final.values.items() if n in kept}
         own = found.final.own_values
+        if stub := self._stub(place):
+            write_text(folder / STUB, stub)
         path, std = folder / "robot.toml", found.final.told_std
         write_robot(self.robot, values, path, place, own_values=own, std=std)
         return {}
+
+    @cached_property
+    def sections(self) -> list[Section]:
+        """The sections of the report; where something has no name, the last one is what to try."""
+        sections = super().sections
+        if (place := find_place(self.found)) is None:
+            return sections
+        return [*sections, Section(OWN, OWN_TEXT.format(place=place), code=self._stub())]
+
+    def _stub(self, folder: Path | None = None) -> str:
+        """Returns an effect of the user's own where a force is missing; "" where none is known.
+
+        Args:
+            folder: in which the file will lie; that of the program when None.
+        """
+        at, robot = find_place(self.found), str(self.robot.file.path)
+        if folder is not None:
+            robot = os.path.relpath(robot, folder)
+        return "" if at is None else own_stub(self.found, at, robot)
 
     @cached_property
     def _confirmed(self) -> Sequence[Confirmation]:

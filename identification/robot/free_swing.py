@@ -62,7 +62,7 @@ def without_untold(robot: Robot) -> Robot:
         own=tuple(n for n in file.own if n not in untold),
         records={n: record for n, record in file.records.items() if n not in untold},
     )
-    fitted = robot_of(model, robot.log, robot.others, robot.records)
+    fitted = robot_of(model, robot.log, robot.others, robot.records, robot.own_effects)
     it, keeps = ("it", "keeps its value") if len(names) == 1 else ("they", "keep their values")
     remark = f"{which[0].upper()}{which[1:]} does not tell {listed(names)}: {it} {keeps}."
     return replace(fitted, remarks=(*fitted.remarks, remark))

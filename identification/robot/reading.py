@@ -10,6 +10,7 @@ import mujoco
 import numpy as np
 
 from identification.effects.axes import axes
+from identification.effects.effect import Effect
 from identification.errors import InputError, refuse_kind
 from identification.logs.log import Log
 from identification.logs.plausible import still_sentence
@@ -46,6 +47,7 @@ def read_robot(
     confirm: Sequence[str | Path | Log] = (),
     trust: Sequence[str] = (),
     spread: str = "usual",
+    own_effects: Sequence[Effect] = (),
 ) -> Robot:
     """Read a robot and the logs that it is to explain; refuse files that do not belong together.
 
@@ -59,6 +61,7 @@ def read_robot(
             words of `identification.refusals.trust.TRUST`.
         spread: of values that are alike: "usual" for that of the file's [spread] tables, "none" for
             no deviations from their common values, or the path of a TOML with such tables.
+        own_effects: candidates of your own, which a search tries beside those of the catalogue.
 
     Raises:
         InputError: a file cannot be what it should be, a name is unknown, a sensor froze, no
@@ -77,7 +80,7 @@ def read_robot(
     first, *others = (
         _log(file, each) for each in ([log] if isinstance(log, str | Path | Log) else log)
     )
-    robot = without_untold(robot_of(file, first, others, records))
+    robot = without_untold(robot_of(file, first, others, records, own_effects))
     every = (robot.log, *robot.others, *records)
     touches = find_touches(robot, every)
     refuse_touching(robot, every, touches)  # no step is short enough for a body inside another

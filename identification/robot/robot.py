@@ -60,6 +60,7 @@ class Robot:
         remarks: what was taken for granted when its files were read, a sentence each.
         mean: means of these priors by name, in the parameters' units.
         touches: one sentence on what touches along its logs; "" where nothing does.
+        own_effects: candidates of the user's own, beside those of the catalogue.
     """
 
     file: RobotFile
@@ -71,6 +72,7 @@ class Robot:
     remarks: tuple[str, ...] = ()
     mean: Mapping[str, float] = field(default_factory=dict)
     touches: str = ""
+    own_effects: tuple[Effect, ...] = ()
 
     def __repr__(self) -> str:
         logs = listed(log.name for log in (self.log, *self.others, *self.records))
@@ -95,7 +97,8 @@ class Robot:
     def candidates(self) -> tuple[Effect, ...]:
         """The effects that may be missing."""
         found = candidates(self.plant, self.file.free)
-        return tuple(e for e in found if not self.file.only or e.name in self.file.only)
+        asked = {*self.file.only, *(e.name for e in self.own_effects)}
+        return tuple(e for e in found if not self.file.only or e.name in asked)
 
     @property
     def starts(self) -> tuple[str, ...]:
@@ -186,8 +189,9 @@ def read_robot_log(file: RobotFile, path: str | Path) -> Log:
 
 
 def robot_of(
-    file: RobotFile, log: Log, others: Sequence[Log] = (), records: Sequence[Log] = ()
-) -> Robot:
+    file: RobotFile, log: Log, others: Sequence[Log] = (), records: Sequence[Log] = (),
+    own_effects: Sequence[Effect] = (),
+) -> Robot:  # fmt: skip
     """Compile a robot for a log, for others that are fitted together with it, and for records."""
     spec, said = robot_spec(file)
     file, carried = with_carried(file, (log, *others))
@@ -210,6 +214,7 @@ def robot_of(
         if name not in {e.name for e in effects}:
             where = f"effect under effects.only in {file.path}:"
             raise unknown_effect(where, name, effects)
+    listed, effects = effects, (*effects, *own_effects)
     try:
         priors = [free_parameter(file, name, model, effects, log) for name in file.free]
     except InputError as wrong:  # a wrong name in free is told first
@@ -224,13 +229,14 @@ def robot_of(
     start = start_of(file, model, log)
     with told_of(f"free in {file.path}"):
         plant = joint_plant(
-            spec, [*(p.parameter for p in priors), *valued], log, joints=known, effects=effects,
-            start=start,
+            spec, [*(p.parameter for p in priors), *valued], log, joints=known, effects=listed,
+            own_effects=own_effects, start=start,
         )  # fmt: skip
     fixed = with_fixed(file, plant, effects)
     refuse_impossible(plant, logs)
     std = np.array([p.std for p in priors])
     mean = dict(zip(file.free, (p.mean for p in priors), strict=True))
     return Robot(
-        file, log, fixed, std, tuple(records), tuple(others), said, mean
+        file, log, fixed, std, tuple(records), tuple(others), said, mean,
+        own_effects=tuple(own_effects),
     )  # fmt: skip

@@ -145,7 +145,7 @@ def score_of(candidate: Candidate, size: float, gain: float) -> Score:
 
 
 def _pushed() -> MissingForce:
-    names, units = tuple(f"roller_{k}" for k in range(1, 9)), ("N m",) * 8
+    names, units = tuple(f"motor_{k}" for k in range(1, 9)), ("N m",) * 8
     force = 1e-3 * np.random.default_rng(5).standard_normal((50, 8))
     where = "the actuated joints"
     return MissingForce(where=where, names=names, units=units, force=force, gain=812.0, share=0.93)

@@ -1,0 +1,210 @@
+"""Where a force is missing: at which joint, in which part of its range and direction, how large.
+
+Over a horizon it is read off the curve that the joint would need, along a free run off the smooth
+force that would explain the residual:
+
+    f̄(i, ±) = mean of f over the samples in bin i of the position at which the rate is ± > 0
+
+The place is the bin and direction with the largest |f̄|, with the bins beside it that have at least
+half of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import nan
+
+import mujoco
+import numpy as np
+
+from identification.discovery.missing_forces import MissingForce
+from identification.discovery.result import Discovery
+from identification.logs.log import Log
+from identification.model.predictor import output_columns
+from identification.prediction.model import WindowModel
+from identification.quantities import alike, quantity
+from identification.report.horizon_gap import NeededForce, find_gap
+
+OWN = {  # what tells a place of a joint by itself: the words before its ends
+    "position of {}": "near",
+    "rate of {}": "at rates of",
+    "force of the drives of {}": "at forces of its drives of",
+    "time": "at times of",
+}
+DIGITS = 2  # of the ends of a place
+HALF = 0.5  # of the largest force: as much is of the same place
+BINS = 8  # of a range of positions
+FEWEST = 5  # samples, or windows, of a bin and a direction
+TWICE = 4.0  # times the mean square in the other direction: the error is of this one
+INSIDE = 0.5  # of the samples of a window: it then lies in the place
+
+
+@dataclass(frozen=True)
+class MissingPlace:
+    """A force that is missing, and where.
+
+    Attributes:
+        joint: on which it acts.
+        reads: what tells the place, such as "position of elbow" or "time".
+        unit: of that.
+        low: end of the place, in `unit`.
+        high: the other end.
+        moves: the direction of the motion, "rising", "falling" or, for both, "".
+        force: at the place, in `force_unit`.
+        std: of it; NaN where it is not known.
+        force_unit: N or N m.
+    """
+
+    joint: str
+    reads: str
+    unit: str
+    low: float
+    high: float
+    moves: str
+    force: float
+    std: float
+    force_unit: str
+
+    @property
+    def size(self) -> str:
+        """The force with its std and unit."""
+        return quantity(self.force, self.std, self.force_unit)
+
+    @property
+    def range(self) -> str:
+        """Where it is, in words."""
+        low, high = alike([self.low, self.high], self.unit, DIGITS)
+        number, _, unit = low.partition(" ")
+        ends = f"{number if high.endswith(unit) else low} to {high}"
+        if self.low == self.high:
+            ends = high
+        own = next((OWN[w] for w in OWN if self.reads == w.format(self.joint)), None)
+        if own is None:  # of a neighbour
+            return f"where the {self.reads} is {ends}"
+        return f"{own} {ends}{self._against}{f', {self.moves}' if self.moves else ''}"
+
+    @property
+    def _against(self) -> str:
+        """Whether a force that follows the rate drives or brakes, in words."""
+        if not self.reads.startswith("rate") or not self.low * self.high > 0:
+            return ""
+        return ", with the motion" if self.low * self.force > 0 else ", against the motion"
+
+    def __str__(self) -> str:
+        """Returns the answer as a clause."""
+        return f"joint {self.joint}, {self.range}: {self.size} are missing"
+
+
+def find_place(found: Discovery) -> MissingPlace | None:
+    """Returns where the largest force is missing; None where no force is known, or none is."""
+    if found.verdict != "unknown effect":
+        return None
+    gap = find_gap(found)
+    if gap is None:
+        return _along(found, found.missing_forces)
+    return place_of(found, gap.forces[0]) if gap.forces else None
+
+
+def place_of(found: Discovery, needed: NeededForce) -> MissingPlace:
+    """Returns the place of the force that a joint would need over a horizon."""
+    order = np.argsort(needed.nodes.at)
+    at, force, known = needed.nodes.at[order], needed.force[order], needed.known[order]
+    top = int(np.flatnonzero(order == needed.largest)[0])
+    same = known & (force * np.sign(force[top]) >= HALF * abs(force[top]))
+    first, last = _beside(same, top)
+    low, high = float(at[first]), float(at[last])
+    moves = ""
+    if needed.nodes.depends_on == "position" and isinstance(found.final, WindowModel):
+        moves = _direction(found.final, needed.nodes.joint, low, high)
+    return MissingPlace(
+        needed.nodes.joint, needed.nodes.reads, needed.nodes.unit, low, high, moves,
+        float(force[top]), float(needed.std[order][top]), needed.unit,
+    )  # fmt: skip
+
+
+def _beside(same: np.ndarray, top: int) -> tuple[int, int]:
+    """Returns the first and the last of the places about `top` that are of the same kind."""
+    first = last = top
+    while first > 0 and same[first - 1]:
+        first -= 1
+    while last < len(same) - 1 and same[last + 1]:
+        last += 1
+    return first, last
+
+
+def _direction(final: WindowModel, joint: str, low: float, high: float) -> str:
+    """Returns in which direction windows that lie in a place err far more; "" where in both."""
+    errors: dict[bool, list[float]] = {True: [], False: []}
+    for part, error in zip(final.fit.problem.parts, final.fit.errors, strict=True):
+        column = _measured(final.plant.model, part.predictor.log, joint)
+        if column is None:
+            return ""
+        y = part.cut.outputs[:, :, column]
+        inside = np.mean((y >= low) & (y <= high), axis=1) > INSIDE
+        for w in np.flatnonzero(inside):
+            errors[bool(y[w, -1] > y[w, 0])].append(float(np.mean(error[w] ** 2)))
+    if min(map(len, errors.values())) < FEWEST:
+        return ""
+    rising, falling = (float(np.mean(errors[way])) for way in (True, False))
+    if rising > TWICE * falling:
+        return "rising"
+    return "falling" if falling > TWICE * rising else ""
+
+
+def _measured(model: mujoco.MjModel, log: Log, joint: str) -> int | None:
+    """Returns the output that measures the position of a joint; None where none does."""
+    known = [model.joint(j).name for j in range(model.njnt)]
+    if joint not in known:
+        return None
+    place = ("qpos", int(model.joint(joint).qposadr[0]))
+    columns = output_columns(model, log.output_names)
+    return columns.index(place) if place in columns else None
+
+
+def _along(found: Discovery, forces: Sequence[MissingForce]) -> MissingPlace | None:
+    """Returns the place of the largest mean force along a free run."""
+    if found.run is None:
+        return None
+    for missing in sorted(forces, key=lambda m: -m.share):
+        every = [_along_joint(found, missing, k, joint) for k, joint in enumerate(missing.names)]
+        if places := [at for at in every if at is not None]:
+            return max(places, key=lambda at: abs(at.force))
+    return None
+
+
+def _along_joint(
+    found: Discovery, missing: MissingForce, k: int, joint: str
+) -> MissingPlace | None:
+    """Returns where a force on one joint is largest; None where no output measures the joint."""
+    log = found.run.log if found.run else found.records[0].log
+    model, unit = found.final.plant.model, missing.units[k]
+    column = _measured(model, log, joint)
+    if column is None:
+        return None
+    f = missing.force[:, k]
+    x = log.outputs[: len(f), column]
+    if len(x) < 2 or np.ptp(x) == 0:
+        return None
+    edges = np.linspace(x.min(), x.max(), BINS + 1)
+    bins = np.clip(np.searchsorted(edges, x, side="right") - 1, 0, BINS - 1)
+    rising = np.gradient(x) > 0
+    mean = np.zeros((2, BINS))
+    for way in (0, 1):
+        mine = rising == bool(way)
+        count = np.bincount(bins[mine], minlength=BINS)
+        total = np.bincount(bins[mine], f[mine], BINS)
+        enough = count >= FEWEST
+        mean[way, enough] = total[enough] / count[enough]
+    way, top = (int(i) for i in np.unravel_index(np.argmax(np.abs(mean)), mean.shape))
+    if not mean[way, top]:
+        return None
+    sign = np.sign(mean[way, top])
+    first, last = _beside(mean[way] * sign >= HALF * abs(mean[way, top]), top)
+    both = mean[1 - way, first : last + 1] * sign
+    is_one_way = bool(np.all(both < HALF * abs(mean[way, top])))
+    return MissingPlace(
+        joint, f"position of {joint}", log.units.get(log.output_names[column], ""),
+        float(edges[first]), float(edges[last + 1]),
+        ("falling", "rising")[way] if is_one_way else "", float(mean[way, top]), nan, unit,
+    )  # fmt: skip

@@ -1,0 +1,80 @@
+"""An effect of the user's own, written out for the joint at which a force is missing."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from identification.discovery.result import Discovery
+from identification.quantities import held
+from identification.report.missing_place import MissingPlace
+
+FIELDS = {"position": "s.q", "rate": "s.v", "time": "s.time", "force": "s.f_u"}  # by first words
+LARGEST, PROBE = 5.0, 0.1  # of the size that is to be believed, and of that which is tried
+
+
+def own_stub(found: Discovery, place: MissingPlace, robot: str) -> str:
+    """Returns a Python file with an effect at the place, and a search that tries it.
+
+    Args:
+        found: the discovery.
+        place: where a force is missing.
+        robot: path of the robot's TOML.
+    """
+    x = next(field for word, field in FIELDS.items() if place.reads.startswith(word))
+    middle, half = (place.low + place.high) / 2, (place.high - place.low) / 2
+    width = half or 0.1 * abs(middle) or 1.0
+    ways = {"rising": " if s.v > 0 else 0.0", "falling": " if s.v < 0 else 0.0"}
+    kind = "Torque" if place.force_unit == "N m" else "Force"
+    size, logs = abs(place.force), [r.log.name for r in found.records if r.role == "fit"]
+    confirm = [r.log.name for r in found.records if r.role == "confirm"]
+    also = [name for name in confirm if name not in logs]
+    confirming = f"confirm=[{_files(also)}], " if also else ""
+    bounds = f"largest={_number(LARGEST * size)}, probe={_number(PROBE * size)}"
+    return f'''"""An effect of your own: {place}.
+
+The search tried every known law, and none explains this. Write the law that you suspect in the
+place of this bump, and run the file: python own_effect.py
+"""
+
+from math import exp
+
+from numba import njit
+
+from identification import Effect, Size, discover, discovery_text, places, read_robot
+
+
+@njit
+def mine(s, p):
+    """{kind} on {place.joint} [{place.force_unit}]; nothing where the size p[0] is zero.
+
+    s.q: position, s.v: rate, s.f_u: force of the drives, s.f_g: of gravity, s.time: of the record.
+    """
+    x = ({x} - ({_number(middle)})) / {_number(width)}
+    return p[0] * exp(-x * x){ways.get(place.moves, "")}
+
+
+MINE = Effect(
+    "mine",
+    law="c exp(-x²)",
+    sizes=(Size("c", "{place.force_unit}", {bounds}),),
+    places=places("joint", ("{place.joint}",)),
+    phrase="force: my own",
+    hooks={{"force": mine}},
+)
+
+if __name__ == "__main__":
+    robot = read_robot(
+        # write the paths of your files
+        "{robot}", [{_files(logs)}], {confirming}own_effects=[MINE]
+    )
+    print(discovery_text(discover(robot)))
+'''
+
+
+def _files(names: Sequence[str]) -> str:
+    return ", ".join(f'"{name}.csv"' for name in names)
+
+
+def _number(value: float) -> str:
+    """Returns a number of code with two digits."""
+    return repr(float(held(value))) if abs(value) >= 1e-3 else f"{value:.2g}"

@@ -1,0 +1,146 @@
+"""With an unknown effect the answer is the joint, the place and the size of the missing force."""
+
+import re
+from dataclasses import replace
+from functools import cache
+
+import fake_discovery
+import numpy as np
+import pytest
+from records_cases import nominal_model, pendulum, records
+from robot_cases import TOML
+
+from identification import read_robot, write_log
+from identification.discovery.missing_forces import MissingForce
+from identification.effects.joint_plant import candidates
+from identification.prediction.discovery import discover_records
+from identification.report.discovery_verdict import discovery_verdict
+from identification.report.horizon_gap import NeededForce, find_gap
+from identification.report.missing_place import find_place, place_of
+from identification.report.named_words import Nodes
+from identification.report.own_stub import own_stub
+from identification.robot.discovery_files import STUB, RobotDiscoveryFiles
+
+LEVEL = 0.03  # [N m]
+
+
+@cache
+def unknown():
+    """A pendulum with dry friction, as if no law had been proven."""
+    logs = records(4, {"coulomb_friction.f_c@hinge": LEVEL}, samples=300)
+    effects = [e for e in candidates(pendulum(), ("J", "d")) if e.name.startswith("curve_")]
+    found = discover_records(nominal_model(), logs[:2], logs[2:], effects)
+    return replace(found, verdict="unknown effect", named=(), final=found.nominal,
+                   after=found.before, remaining=found.scores, findings=())  # fmt: skip
+
+
+def needed(force, std, depends_on="position", reads="position of hinge", unit="rad"):
+    nodes = Nodes("hinge", depends_on, reads, unit, np.linspace(-0.7, 0.7, 8))
+    return NeededForce(nodes, np.array(force), np.array(std), "N m", 0.5, 1e-6)
+
+
+def test_the_place_is_the_part_of_the_range_with_half_the_largest_force():
+    force = [0.0, 0.1, 0.0, -0.1, 0.2, 0.6, 0.4, 0.0]
+    place = place_of(unknown(), needed(force, [0.05] * 8))
+    assert (place.low, place.high) == pytest.approx((0.3, 0.5))
+    assert (place.joint, place.force, place.std) == ("hinge", 0.6, 0.05)
+    assert str(place) == "joint hinge, near 0.30 to 0.50 rad: 0.60 ± 0.05 N m are missing"
+    alone = place_of(unknown(), needed([0, 0, 0, 0, 0, 0.6, 0.2, 0], [0.05] * 8))
+    assert "near 0.30 rad: " in str(alone)
+
+
+def test_a_node_that_no_motion_tells_is_no_answer():
+    force, std = [0.0, 0.0, 0.3, 0.0, 0.0, 0.0, 0.0, 9.0], [0.05] * 7 + [np.inf]
+    assert place_of(unknown(), needed(force, std)).force == 0.3
+
+
+def test_over_the_rate_it_says_whether_the_force_brakes():
+    place = find_place(unknown())
+    assert place is not None
+    assert place.reads == "rate of hinge"
+    assert abs(place.force) == pytest.approx(LEVEL, abs=3 * place.std + 0.2 * LEVEL)
+    assert ", against the motion: " in str(place)
+    (said,) = discovery_verdict(unknown())
+    assert f"Joint hinge, {place.range}: {place.size} are missing; see the figure." in said
+    turned = replace(place, force=-place.force)
+    assert ", with the motion: " in str(turned)
+    assert find_place(replace(unknown(), verdict="named")) is None
+    assert find_place(replace(unknown(), remaining=())) is None
+
+
+@pytest.mark.parametrize("rising", [True, False])
+def test_along_a_free_run_the_direction_is_told(rising):
+    """A force in a part of the range of one motor, while it turns one way."""
+    answer = fake_discovery.found("unknown effect")
+    log = answer.run.log
+    x = log.outputs[:, 2]
+    way = (np.gradient(x) > 0) == rising
+    low, high = np.quantile(x[way], [0.4, 0.7])
+    force = np.zeros((len(x), 8))
+    force[:, 2] = 0.004 * ((x >= low) & (x <= high) & way)
+    names = tuple(f"motor_{k}" for k in range(1, 9))
+    missing = MissingForce(where="the actuated joints", names=names, units=("N m",) * 8,
+                           force=force, gain=9.0, share=0.9)  # fmt: skip
+
+    class Pushed(fake_discovery.ByHand):
+        def missing_forces(self):
+            return (missing,)
+
+    run = Pushed(log, answer.nominal, answer.final, answer.run.before, answer.run.after)
+    place = find_place(replace(answer, run=run))
+    assert place.joint == "motor_3"
+    assert place.moves == ("rising" if rising else "falling")
+    assert 0 < place.force <= 0.004
+    width = np.ptp(x) / 8
+    assert low - width < place.low < place.high < high + width
+    still = replace(missing, names=("nobody",) * 8)
+    Pushed.missing_forces = lambda self: (still,)
+    assert find_place(replace(answer, run=replace(run))) is None
+
+
+def test_the_stub_is_an_effect_at_the_place_that_a_search_takes(tmp_path):
+    place = find_place(unknown())
+    text = own_stub(unknown(), place, "robot.toml")
+    names = {"__name__": "stub"}
+    exec(compile(text, STUB, "exec"), names)
+    (size,) = names["MINE"].sizes
+    assert size.probe < abs(place.force) < size.largest
+
+    class At:
+        q = s = f_u = f_g = time = 0.0
+        v = (place.low + place.high) / 2
+
+    law = names["mine"].py_func
+    assert law(At, (2.0,)) == pytest.approx(2.0, rel=0.1)
+    assert law(At, (0.0,)) == 0.0
+    assert 'read_robot(\n        # write the paths of your files\n        "robot.toml"' in text
+    assert re.search(r'confirm=\["record 3.csv", "record 4.csv"\]', text)
+
+
+def test_an_own_effect_is_a_candidate_of_a_robot_beside_those_of_its_file(tmp_path):
+    from joint_cases import SLIDER
+    from robot_cases import simulated
+
+    place = replace(find_place(unknown()), joint="slide", force_unit="N")
+    names = {"__name__": "stub"}
+    exec(compile(own_stub(unknown(), place, "robot.toml"), STUB, "exec"), names)
+    (tmp_path / "slider.xml").write_text(SLIDER)
+    (tmp_path / "robot.toml").write_text(TOML + '\n[effects]\nonly = ["offset"]\n')
+    write_log(simulated({"damping": 3.0, "mass": 2.0}, 200), tmp_path / "log.csv")
+    robot = read_robot(tmp_path / "robot.toml", tmp_path / "log.csv", own_effects=[names["MINE"]])
+    assert [e.name for e in robot.candidates] == ["offset", "mine"]
+
+
+def test_the_folder_of_a_search_without_a_name_has_the_stub(tmp_path):
+    from elbow_cases import elbow
+
+    robot, found = elbow()
+    nothing = replace(found, verdict="unknown effect", named=(), final=found.nominal,
+                      after=found.before, remaining=found.scores)  # fmt: skip
+    files = RobotDiscoveryFiles(nothing, robot)
+    files.keep(tmp_path, tmp_path)
+    has_force = bool(find_gap(nothing).forces)
+    assert (tmp_path / STUB).exists() == has_force == bool(find_place(nothing))
+    assert [s.code != "" for s in files.sections][-1] == has_force
+    named = RobotDiscoveryFiles(found, robot)
+    assert not any(s.code for s in named.sections)
