@@ -134,7 +134,8 @@ def timed(output: Output, draw: Callable[[Path], object], beside: str) -> Callab
         began = time.monotonic()
         draw(out)
         took = duration(time.monotonic() - began)
-        output.tell(f"report and figures took {took}, beside the {beside}")
+        page = (output.out or out) / "report.html"
+        output.tell(f"report: {page} (drawn in {took}, beside the {beside})")
 
     return drawn
 

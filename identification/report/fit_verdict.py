@@ -209,14 +209,15 @@ def _blind(fit: RecordsFit) -> list[str]:
         moved, one = in_words(direction, names), names[int(abs(direction).argmax())]
         if "," in moved:
             out.append(
-                f"The windows tell less along ({moved}) than was known before the fit; what does"
-                " not change along it is known. Fix one of these, or record a motion that tells"
-                f" them apart.{scale_of_forces([r.log for r in fit.records if r.role == 'fit'])}"
+                f"The windows tell less along ({moved}) than was known before the fit, which"
+                " decides there; what does not change along it the windows tell. Where what was"
+                " known is not sure, hold one of these (held), or record a motion that tells them"
+                f" apart.{scale_of_forces([r.log for r in fit.records if r.role == 'fit'])}"
             )
         else:
             out.append(
-                f"The windows tell less of {one} than was known before the fit; fix it, or record a"
-                " motion that shows it."
+                f"The windows tell less of {one} than was known before the fit, which decides."
+                " Where that is not sure, record a motion that shows it."
             )
     return out
 

@@ -138,7 +138,7 @@ class Discover:
                 return
             names["report"] = Path("report.html")
             drawn = duration(time.monotonic() - begun)
-            tell(f"report and figures took {drawn}, beside the search")
+            tell(f"report: {draft.place / names['report']} (drawn in {drawn}, beside the search)")
 
         if blind or not self.film:
             write()

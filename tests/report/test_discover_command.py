@@ -117,7 +117,10 @@ def test_the_film_stands_in_the_report_before_the_model(
     monkeypatch.setattr(filmed, "film_discovery", film_discovery)
     monkeypatch.setattr("inca_mj.commands.discover.cannot_draw", lambda: "")
     assert run("discover", path, "--out", tmp_path) == 0
-    assert f"film:    {tmp_path / 'film.mp4'}" in capsys.readouterr().out
+    said = capsys.readouterr()
+    assert f"film:    {tmp_path / 'film.mp4'}" in said.out
+    first = said.err.index(f"report: {tmp_path / 'report.html'} (drawn in ")  # can be read by then
+    assert first < said.err.index("the film took")
     page = (tmp_path / "report.html").read_text()
     assert page.count("<video") == 1
     assert 0 < page.index("It moves.") < page.index("Parameter set ")
