@@ -38,9 +38,10 @@ class Stage:
 
     def line(self, now: float) -> str:
         """Returns how far it is, and how long it will still take where that can be told."""
+        said = f"stage {self.number}, {self.what}"
         if self.steps is None or self.done > self.steps:
-            return f"stage {self.number}, {self.what}: {self.done} done"
-        said = f"stage {self.number}, {self.what}: {self.done} of {self.steps}"
+            return f"{said}: {self.done} done" if self.done else said
+        said += f": {self.done} of {self.steps}"
         if not self.done:
             return said
         left = (now - self.begun) / self.done * (self.steps - self.done)

@@ -22,7 +22,7 @@ from identification.discovery.options import DiscoveryOptions
 from identification.discovery.result import Discovery
 from identification.effects.effect import Candidate, Effect
 from identification.pool import one_blas_thread
-from identification.progress import Progress
+from identification.progress import Progress, stage
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -184,7 +184,8 @@ class Evidence(Generic[State]):
         state = self.begin(task, say)
         while not state.is_finished:
             state = self.step(state, say)
-        return self.conclude(state)
+        with stage("what is left, and what the data could show"):
+            return self.conclude(state)
 
 
 T = TypeVar("T", bound=Trial)

@@ -23,6 +23,7 @@ from identification.logs.log import Log
 from identification.logs.noise import noise_floor
 from identification.model.predictor import Predictor
 from identification.model.sensitivity import sensitivity
+from identification.progress import stage
 
 # Std: a smaller shift, known to first order only, may have the other sign.
 MIN_TOLD_SHIFT = 2.0
@@ -156,6 +157,11 @@ def assess(estimate: Estimate, validation: Log | None = None) -> Fit:
         InputError: the robot cannot start with the estimated values.
         DivergenceError: a simulation near the estimate left the finite numbers.
     """
+    with stage("std of the values, and tests of what is left"):
+        return _assessed(estimate, validation)
+
+
+def _assessed(estimate: Estimate, validation: Log | None) -> Fit:
     predictor, space, q = estimate.predictor, estimate.space, estimate.q
     log = predictor.log
     predicted = predictor.predict(space.decode(q))[0]
