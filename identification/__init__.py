@@ -29,6 +29,8 @@ if TYPE_CHECKING:  # the public names, by what they are for
     from identification.robot.robot import Robot as Robot
     from identification.robot.fitting import fit as fit
     from identification.robot.robot_fit import RobotFit as RobotFit
+    from identification.robot.torques import fit_torques as fit_torques
+    from identification.robot.torque_fit import TorqueFit as TorqueFit
     from identification.robot.discovery import discover as discover
     from identification.robot.confirmation import confirm as confirm
     from identification.robot.record_error import Confirmation as Confirmation

@@ -13,13 +13,14 @@ from identification.commands.inspect import Inspect
 from identification.commands.linearize import Linearize
 from identification.commands.new import New
 from identification.commands.program import run_program
-from identification.commands.robots import Discover, Fit
+from identification.commands.robots import Discover, Fit, Torques
 from identification.commands.sweep import SweepCommand
 
 Command = (
     Annotated[New, tyro.conf.subcommand("new")]
     | Annotated[Fit, tyro.conf.subcommand("fit")]
     | Annotated[Discover, tyro.conf.subcommand("discover")]
+    | Annotated[Torques, tyro.conf.subcommand("torques")]
     | Annotated[Inspect, tyro.conf.subcommand("inspect")]
     | Annotated[Linearize, tyro.conf.subcommand("linearize")]
     | Annotated[SweepCommand, tyro.conf.subcommand("sweep")]

@@ -1,4 +1,4 @@
-"""identification fit|discover ROBOT LOG: the two searches on a robot that one TOML describes."""
+"""identification fit|discover|torques ROBOT LOG: the searches on a robot that a TOML describes."""
 
 from __future__ import annotations
 
@@ -52,8 +52,12 @@ class OnRobot:
     """How much values that are alike differ: usual (the robot's TOML), none, or a TOML file."""
     output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
 
-    def read(self) -> Robot:
-        """Returns the robot, compiled for its log, with the records that confirm."""
+    def read(self, but: tuple[str, ...] = ()) -> Robot:
+        """Returns the robot, compiled for its log, with the records that confirm.
+
+        Args:
+            but: checks that are left out.
+        """
         from identification.robot.file import read_robot_file
 
         if not self.logs:
@@ -61,7 +65,8 @@ class OnRobot:
         read_robot_file(self.robot)  # refuses a wrong file before the imports that are slow
         from identification.robot.reading import read_robot
 
-        robot = read_robot(self.robot, self.logs, flat(self.confirm), flat(self.trust), self.spread)
+        trust = [*flat(self.trust), *but]
+        robot = read_robot(self.robot, self.logs, flat(self.confirm), trust, self.spread)
         for remark in robot.remarks:
             note(remark)
         return robot
@@ -117,6 +122,29 @@ class Discover(OnRobot):
         files = RobotDiscoveryFiles(found, robot)
         text = "\n".join([discovery_text(found), *files.sentences])
         draw = timed(self.output, files.draw, "search")
+        conclude(self, files.record, text, kept(self.output, files), draw)
+        return 0
+
+
+@dataclass(frozen=True)
+class Torques(OnRobot):
+    """Compare the drives' forces with those of the motion: base parameters, friction, payloads.
+
+    Examples:
+        identification torques arm.toml a.csv b.csv --out out/torques
+        identification torques arm.toml a.csv --confirm c.csv --json
+    """
+
+    def run(self) -> int:
+        """Compare, say, keep."""
+        robot = self.read(but=("wiring",))  # the residual of the torques says it without simulation
+        from identification.report.torque_words import torque_text
+        from identification.robot.torques import fit_torques
+
+        found = fit_torques(robot, self.output.tell)
+        files = found.files
+        text = torque_text(files.record["verdict"], found.found)
+        draw = timed(self.output, files.draw, "comparison")
         conclude(self, files.record, text, kept(self.output, files), draw)
         return 0
 

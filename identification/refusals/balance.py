@@ -29,13 +29,13 @@ from identification.engine import quiet
 from identification.logs.log import Log
 from identification.model.predictor import output_columns
 from identification.refusals.forces import (
-    follow_bodies,
     inertial_force,
     point_force,
     tendon_forces,
     weights,
 )
 from identification.refusals.smoothing import Smooth, is_hidden, smoothed, widths
+from identification.torques.bodies import follow_bodies
 
 FACTOR = 4.0  # that a mass, an inertia or a stiffness may be off; more is a matter of units
 PAYLOAD = 1.0  # largest, of the mass of all that moves

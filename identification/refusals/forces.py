@@ -14,13 +14,12 @@ axes of the world, R: axes of the body; L: length of a tendon, J_t: its derivati
 from __future__ import annotations
 
 import copy
-from collections.abc import Sequence
-from dataclasses import dataclass
 
 import mujoco
 import numpy as np
 
 from identification.engine import quiet
+from identification.torques.bodies import MovedBody
 
 PASSIVE = (  # parts of MuJoCo's step that a model may leave out, and that are needed here
     mujoco.mjtDisableBit.mjDSBL_SPRING,
@@ -28,51 +27,7 @@ PASSIVE = (  # parts of MuJoCo's step that a model may leave out, and that are n
 )
 
 
-@dataclass(frozen=True)
-class MovingBody:
-    """One body at n samples, in the axes of the world."""
-
-    J_c: np.ndarray  # of its centre of mass, shape (n, 3, nv)
-    J_ω: np.ndarray  # of its rotation, shape (n, 3, nv)
-    a_c: np.ndarray  # acceleration of its centre of mass, without gravity, shape (n, 3) [m/s^2]
-    ω: np.ndarray  # angular velocity, shape (n, 3) [rad/s]
-    α: np.ndarray  # angular acceleration, shape (n, 3) [rad/s^2]
-    R: np.ndarray  # its axes, shape (n, 3, 3)
-    R_i: np.ndarray  # axes of its inertia, shape (n, 3, 3)
-
-
-def follow_bodies(
-    model: mujoco.MjModel, q: np.ndarray, v: np.ndarray, a: np.ndarray, bodies: Sequence[int]
-) -> dict[int, MovingBody]:
-    """Returns bodies of a robot of hinges and slides along a motion q, v, a of shape (n, nv)."""
-    free = copy.copy(model)
-    free.opt.gravity[:] = 0.0
-    data, n, nv = mujoco.MjData(free), len(q), model.nv
-    J = np.zeros((len(bodies), 2, n, 3, nv))
-    acceleration, axes = np.zeros((len(bodies), n, 6)), np.zeros((len(bodies), 2, n, 9))
-    for k in range(n):
-        data.qpos, data.qvel, data.qacc = q[k], v[k], a[k]
-        mujoco.mj_kinematics(free, data)
-        mujoco.mj_comPos(free, data)
-        mujoco.mj_comVel(free, data)
-        mujoco.mj_rnePostConstraint(free, data)  # accelerations of the bodies
-        for i, b in enumerate(bodies):
-            mujoco.mj_jacBodyCom(free, data, J[i, 0, k], J[i, 1, k], b)
-            mujoco.mj_objectAcceleration(
-                free, data, mujoco.mjtObj.mjOBJ_BODY, b, acceleration[i, k], 0
-            )
-            axes[i, 0, k], axes[i, 1, k] = data.xmat[b], data.ximat[b]
-    return {
-        b: MovingBody(
-            J_c=J[i, 0], J_ω=J[i, 1], a_c=acceleration[i, :, 3:], α=acceleration[i, :, :3],
-            ω=np.einsum("kcj,kj->kc", J[i, 1], v),
-            R=axes[i, 0].reshape(n, 3, 3), R_i=axes[i, 1].reshape(n, 3, 3),
-        )
-        for i, b in enumerate(bodies)
-    }  # fmt: skip
-
-
-def inertial_force(body: MovingBody, mass: float, inertia: np.ndarray) -> np.ndarray:
+def inertial_force(body: MovedBody, mass: float, inertia: np.ndarray) -> np.ndarray:
     """Returns the forces (n, nv) that move a body with a mass [kg] and inertias (3,) [kg m^2]."""
     In = body.R_i @ (inertia[:, None] * np.swapaxes(body.R_i, 1, 2))
     turned, twisted = (np.einsum("kij,kj->ki", In, x) for x in (body.ω, body.α))
@@ -80,14 +35,14 @@ def inertial_force(body: MovingBody, mass: float, inertia: np.ndarray) -> np.nda
     return mass * _on_joints(body.J_c, body.a_c) + _on_joints(body.J_ω, torque)
 
 
-def point_force(body: MovingBody, p: np.ndarray) -> np.ndarray:
+def point_force(body: MovedBody, p: np.ndarray) -> np.ndarray:
     """Returns the forces (n, nv) that move 1 kg at p [m] from the centre of mass, in body axes."""
     r = body.R @ p
     a = body.a_c + np.cross(body.α, r) + np.cross(body.ω, np.cross(body.ω, r))
     return _on_joints(_jacobian(body, r), a)
 
 
-def weights(body: MovingBody, p: np.ndarray) -> tuple[np.ndarray, ...]:
+def weights(body: MovedBody, p: np.ndarray) -> tuple[np.ndarray, ...]:
     """Returns the forces (n, nv) of 1 N along each axis of the world at p [m] in inertia axes."""
     J = _jacobian(body, body.R_i @ p)
     return J[:, 0], J[:, 1], J[:, 2]
@@ -124,7 +79,7 @@ def tendon_forces(
     return resisting, springs
 
 
-def _jacobian(body: MovingBody, r: np.ndarray) -> np.ndarray:
+def _jacobian(body: MovedBody, r: np.ndarray) -> np.ndarray:
     """Returns J(p), shape (n, 3, nv), of the point at r from the centre of mass, shape (n, 3)."""
     return np.asarray(body.J_c + np.cross(body.J_ω, r[:, :, None], axis=1))
 

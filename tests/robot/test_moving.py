@@ -8,7 +8,8 @@ import pytest
 import scipy.optimize
 
 from identification.refusals.balance import solve_bounded
-from identification.refusals.forces import follow_bodies, inertial_force, point_force, weights
+from identification.refusals.forces import inertial_force, point_force, weights
+from identification.torques.bodies import follow_bodies
 
 ARM = """
 <mujoco>

@@ -1,0 +1,119 @@
+"""The section of docs/benchmarks.md on torques, from its rows.
+
+python benchmarks/torque_page.py
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from rows import Row, rows_of, write_part
+
+from identification.sweep.statistics import median, rate, said
+
+HERE = Path(__file__).resolve().parent
+BEGIN, END = "<!-- torques: begin -->\n", "<!-- torques: end -->\n"
+LOADS = ("payload", "load")
+
+
+def _cells(rows: Sequence[Row]) -> list[str]:
+    """A column of the table of arms with as many joints."""
+    loaded, empty = ([r for r in rows if bool(r["load"]) is of] for of in (True, False))
+    weighed = [r for r in loaded if r["mass"] is not None]
+    errors = [abs(r["mass"] / r["load"] - 1) for r in weighed]
+    stds = [r["std"] / r["load"] for r in weighed]
+    return [
+        said(rate(loaded, lambda r: (r["first"] or "").partition(",")[0] in LOADS)),
+        said(
+            rate(loaded, lambda r: r["mass"] is not None and abs(r["mass"] / r["load"] - 1) < 0.05)
+        ),
+        f"{100 * (median(errors) or 0):.1f} %, {100 * max(errors, default=0):.0f} %",
+        f"{100 * (median(stds) or 0):.1f} %",
+        said(rate(weighed, lambda r: abs(r["mass"] - r["load"]) < 2 * r["std"])),
+        said(rate(empty, lambda r: not r["named"])),
+        f"{median([r['seconds'] for r in rows]) or 0:.1f} s",
+    ]
+
+
+def section(rows: Sequence[Row]) -> str:
+    """The section, Markdown."""
+    arms = [r for r in rows if "joints" in r and "robot" not in r]
+    kinds = sorted({r["joints"] for r in arms})
+    columns = [_cells([r for r in arms if r["joints"] == k]) for k in kinds]
+    words = (
+        "a load is first", "its mass within 5 %", "error of the mass: median, largest",
+        "std of the mass, median", "mass within 2 std",
+        "no name where nothing is missing, goal 95 %", "processor time, median",
+    )  # fmt: skip
+    lines = [
+        "## Torques of arms",
+        "",
+        "Arms of geared joints that follow two references of five harmonics, 0.1 to 0.5 Hz, for",
+        "20 s each; positions at 100 Hz with 50 µrad of noise, which the controller sees, torques",
+        "with 1 %.",
+        "Masses, armatures and frictions are drawn 10, 15 and 30 % about the model's, and are free",
+        "with these priors. A load of 10 to 20 % of the arm's mass is at the end of half of them.",
+        "",
+        "    python benchmarks/torques.py && python benchmarks/torque_page.py",
+        "",
+        "| | " + " | ".join(f"{k} joints" for k in kinds) + " |",
+        "|---" * (len(kinds) + 1) + "|",
+        *(f"| {w} | " + " | ".join(c[k] for c in columns) + " |" for k, w in enumerate(words)),
+        "",
+        f"{len(arms)} arms, commit {arms[-1]['commit'] if arms else '-'}. Slow motion of two joints"
+        " tells little of masses: the std says so.",
+    ]
+    for row in (r for r in rows if r.get("robot") == "ur10e"):
+        lines += _measured(row)
+    for row in (r for r in rows if r.get("robot") == "emps"):
+        lines += _axis(row)
+    return "\n".join(lines) + "\n"
+
+
+def _measured(row: Row) -> list[str]:
+    """The table of a measured arm, by one split of its records."""
+    models: dict[str, Any] = {
+        "torque": "torque", "authors": "the authors' parameters", "model": "the model, fitted",
+        "base_fit": "all inertial numbers free", "final": "with what was found",
+    }  # fmt: skip
+    return [
+        "",
+        f"UR10e, fitted to {' and '.join(row['fitted'])}, {row['seconds']:.0f} s of processor time,"
+        f" commit {row['commit']}: {'; '.join(row['named'])}. Rms of the two other records [N m]:",
+        "",
+        "| | " + " | ".join(j.replace("_", " ") for j in row["joints"]) + " |",
+        "|---" * (len(row["joints"]) + 1) + "|",
+        *(f"| {w} | " + " | ".join(f"{x:.2f}" for x in row[k]) + " |" for k, w in models.items()),
+    ]
+
+
+def _axis(row: Row) -> list[str]:
+    """The table of EMPS."""
+    cells = [
+        f"| {name} | {value:.1f} ± {std:.1f} | {published} |"
+        for (name, (value, std)), published in zip(
+            row["values"].items(), row["published"], strict=False
+        )
+    ]
+    return [
+        "",
+        f"EMPS, {row['seconds']:.1f} s of processor time, commit {row['commit']}:"
+        f" {'; '.join(row['named'])} (published: -36.85 N s/m). Residual force of unseen records"
+        f" {row['model'][0]:.2f} N, with what was found {row['final'][0]:.2f} N.",
+        "",
+        "| | by torques | published |",
+        "|---|---|---|",
+        *cells,
+    ]
+
+
+def main() -> None:
+    """Write the section."""
+    rows = rows_of(HERE / "results" / "torques.jsonl")
+    write_part(HERE.parent / "docs" / "benchmarks.md", BEGIN, END, section(rows))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,79 @@
+"""Sections and figures of a report on torques."""
+
+from __future__ import annotations
+
+import mujoco
+import numpy as np
+from matplotlib.figure import Figure
+
+from identification.report.page import Section, Table
+from identification.report.style import GREY, INK, SIMULATED, literal, styled
+from identification.report.torque_words import base_rows, friction_rows, joint_names, score_rows
+from identification.torques.evidence import Evidence
+
+
+def torque_sections(evidence: Evidence, model: mujoco.MjModel) -> list[Section]:
+    """Returns the sections of a report on torques."""
+    rows = evidence.equations.rows
+    figures = tuple(
+        (f"Torques, {r.name}", torque_figure(evidence, model, k)) for k, r in enumerate(rows)
+    )
+    return [
+        Section(
+            "Torques, joint by joint",
+            "What the drives gave without what of the model is known, beside what the final fit"
+            " makes of the measured motion, and what is left. A joint that is nearly at rest has no"
+            " equation, and a gap in its curve.",
+            figures=figures,
+        ),
+        Section(
+            "What the model may lack",
+            "The fall is that of the mean square on data that the fit has not seen. The chance is"
+            " that of the best of all candidates, by blocks that are longer than the memory of the"
+            " residual.",
+            table=Table(("candidate", "sizes", "fall", "t", "chance"),
+                        tuple(score_rows(evidence.scores))),
+        ),
+        Section(
+            "Base parameters",
+            "The combinations of inertial numbers that torques can tell, with all of them free. The"
+            " std is by blocks of samples.",
+            table=Table(("combination", "fitted", "model", "difference in std"),
+                        tuple(base_rows(evidence))),
+        ),
+        Section(
+            "Friction",
+            "Beside these base parameters: viscous and Coulomb friction and a constant force.",
+            table=Table(("friction", "fitted"),
+                        tuple(friction_rows(evidence.whole, evidence.equations.joints))),
+        ),
+    ]  # fmt: skip
+
+
+@styled
+def torque_figure(evidence: Evidence, model: mujoco.MjModel, record: int) -> Figure:
+    """Returns a figure of each joint's torque, measured, predicted and left, against time.
+
+    Args:
+        evidence: of the torques.
+        model: of the robot.
+        record: which.
+    """
+    names, units = joint_names(model)
+    rows = evidence.equations.rows[record]
+    first = sum(len(r.time) for r in evidence.equations.rows[:record])
+    some = slice(first, first + len(rows.time))
+    y = evidence.final.base.y[some]
+    predicted = evidence.final.predicted()[some]
+    y, predicted = (np.where(rows.used, x, np.nan) for x in (y, predicted))
+    figure = Figure((9.5, 1.0 + 1.6 * len(names)), layout="constrained")
+    panels = figure.subplots(len(names), sharex=True, squeeze=False)[:, 0]
+    for j, ax in enumerate(panels):
+        ax.plot(rows.time, y[:, j], color=INK, lw=1.8, alpha=0.5, label="measured")
+        ax.plot(rows.time, predicted[:, j], color=SIMULATED, lw=1.0, label="predicted")
+        ax.plot(rows.time, (y - predicted)[:, j], color=GREY, lw=0.8, label="left")
+        ax.set_ylabel(literal(f"{names[j]} [{units[j]}]"), fontsize=8)
+    panels[-1].set_xlabel("time [s]")
+    handles = panels[0].get_legend_handles_labels()
+    figure.legend(*handles, loc="outside upper right", ncols=3, fontsize=8)
+    return figure

@@ -1,0 +1,280 @@
+"""What torques say of a robot, in sentences, as rows of tables and as plain values."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import mujoco
+import numpy as np
+
+from identification.quantities import plain, quantity
+from identification.report.error_words import listed
+from identification.shares import decimal, fall_words, percent
+from identification.torques.evidence import Evidence
+from identification.torques.fits import Fitted
+from identification.torques.scores import CHANCE, FAR, PROOF, Score
+
+SHOWN = 8  # candidates that are told
+LATE = 1e-3  # shift of the clocks that is told [s]
+MATTERS = 2.0  # std that a value moves with the band: told
+FITS = ("whole", "model", "final")
+
+
+def joint_names(model: mujoco.MjModel) -> tuple[list[str], list[str]]:
+    """Returns names of the joints of a model, and the units of their forces."""
+    slide = int(mujoco.mjtJoint.mjJNT_SLIDE)
+    joints = [int(j) for j in model.dof_jntid]
+    return ([model.joint(j).name for j in joints],
+            ["N" if int(model.jnt_type[j]) == slide else "N m" for j in joints])  # fmt: skip
+
+
+def torque_verdict(evidence: Evidence, model: mujoco.MjModel) -> list[str]:
+    """Returns what torques say, the most important sentence first."""
+    return [
+        *_missing(evidence),
+        *_residual(evidence, model),
+        *_far(evidence),
+        *_differences(evidence),
+        *_doubts(evidence),
+    ]
+
+
+def torque_text(verdict: Sequence[str], evidence: Evidence) -> str:
+    """Returns what a command prints: the verdict, candidates, base parameters and friction."""
+    lines = [*verdict, "", "Candidates (fall on unseen data, t, chance of any):"]
+    lines += [f"  {t}: {s}; {f}, {tt}, {c}" for t, s, f, tt, c in score_rows(evidence.scores)]
+    lines += ["", "Base parameters (fitted; model; difference in std):"]
+    lines += [f"  {n}: {v}; {m}; {off}" for n, v, m, off in base_rows(evidence)]
+    lines += ["", "Friction:"]
+    lines += [f"  {n}: {v}" for n, v in friction_rows(evidence.whole, evidence.equations.joints)]
+    return "\n".join(lines)
+
+
+def size_words(score: Score) -> str:
+    """Returns the sizes of a candidate with their std."""
+    sizes = zip(score.missing.sizes, score.size, score.std, score.missing.units, strict=True)
+    said = [f"{n.rpartition('.')[2]} = {quantity(v, s, u)}" for n, v, s, u in sizes]
+    shapes = [
+        f"{n} = {quantity(v, unit=u) if u else decimal(v, 3)}" for n, v, u in score.missing.shape
+    ]
+    return ", ".join([*said, *shapes])
+
+
+def _missing(evidence: Evidence) -> list[str]:
+    on = "records" if evidence.equations.confirms.any() else "blocks of the records"
+    if not evidence.scores:
+        return ["No candidate acts on these joints otherwise than what is fitted already."]
+    if not evidence.found:
+        first = evidence.scores[0]
+        return [
+            f"No effect is proven by the torques: of {evidence.asked} candidates the nearest is"
+            f" {first.missing.title} ({size_words(first)}), with which the mean square on {on} that"
+            f" no fit has seen {fall_words(first.fall)}, t {first.t:.1f}, chance"
+            f" {chance_words(first.chance)}.",
+            *_imitated(evidence),
+        ]
+    out = []
+    for k, score in enumerate(evidence.named):
+        begins = "The torques need" if not k else "Beside it they need" if k == 1 else "And"
+        out.append(
+            f"{begins} {score.missing.title} ({score.missing.phrase}): {size_words(score)}. The"
+            f" mean square of their residual on {on} that no fit has seen {fall_words(score.fall)},"
+            f" t {score.t:.1f}, chance {chance_words(score.chance)}."
+        )
+        if score.t <= PROOF:
+            out[-1] += (
+                " Free parameters that are far from what was known of them make up for it; held at"
+                f" what was known, they do not (t {score.held_t:.1f})."
+            )
+        if len(rivals := rivals_of(evidence, score, k)):
+            out[-1] += f" As good by chance: {listed([r.missing.title for r in rivals])}."
+    return out
+
+
+def _imitated(evidence: Evidence) -> list[str]:
+    """Returns a sentence on a candidate that only what was known of free parameters speaks for."""
+    likely = [s for s in evidence.scores if s.chance < CHANCE and s.is_plausible]
+    if not (likely and evidence.model.inertial):
+        return []
+    best = min(likely, key=lambda s: (len(s.size), s.chance))
+    return [
+        f"What was known of the free parameters speaks for {best.missing.title}"
+        f" ({size_words(best)}; chance {chance_words(best.chance)}). But these parameters make up"
+        " for it on unseen data: free fewer of them, or record a motion with larger accelerations."
+    ]
+
+
+def rivals_of(evidence: Evidence, score: Score, step: int) -> list[Score]:
+    """Returns other candidates that predict as well as the first effect found, the best first."""
+    if step:
+        return []
+    others = [s for s in evidence.scores if s.missing.key != score.missing.key and s.is_proven]
+    return [s for s in others if s.is_like(score)][:SHOWN]
+
+
+def chance_words(chance: float) -> str:
+    """Returns the chance that the best of all candidates explains as much by luck."""
+    return percent(chance) if chance >= 0.01 else "below 1 %"
+
+
+def _residual(evidence: Evidence, model: mujoco.MjModel) -> list[str]:
+    names, units = joint_names(model)
+    whole, nominal, final = evidence.unseen
+    told = np.sqrt(np.nanmean((final / np.maximum(whole, 1e-300)) ** 2))
+    worst = int(np.nanargmax(np.nan_to_num(final / np.maximum(whole, 1e-300))))
+    out = [
+        "Residual torque (or force) that no fit has seen, by joint: "
+        + "; ".join(
+            f"{n} {quantity(f, unit=u)}" + (f" (model {quantity(m, unit=u)})" if m != f else "")
+            for n, f, m, u in zip(names, final, nominal, units, strict=True) if np.isfinite(f)
+        )
+        + "."
+    ]  # fmt: skip
+    if told > 1.1:
+        out.append(
+            f"A rigid arm whose inertial numbers and frictions are all free leaves less, most at"
+            f" {names[worst]} ({quantity(whole[worst], unit=units[worst])}): masses, places or"
+            " inertias of the model are off, or something acts like them."
+        )
+    return out
+
+
+def _far(evidence: Evidence) -> list[str]:
+    out, final = [], evidence.final
+    for i in range(final.inertial):
+        value, off = final.fit.θ[i], final.base.far[i]
+        if abs(off) > FAR:
+            out.append(
+                f"{final.names[i]} = {quantity(value, final.fit.std[i], final.units[i])} is"
+                f" {abs(off):.0f} std from what was known of it: it may stand for something that"
+                " the model lacks."
+            )
+    return out
+
+
+def _differences(evidence: Evidence) -> list[str]:
+    out = []
+    for score in evidence.differences[:1]:
+        if score.is_proven:
+            out.append(
+                f"The records differ by a load: {score.missing.title}, {size_words(score)}, with"
+                f" all inertial numbers free (t {score.t:.1f}, chance"
+                f" {chance_words(score.chance)})."
+            )
+    return out
+
+
+def _doubts(evidence: Evidence) -> list[str]:
+    moved = np.abs(evidence.other - evidence.whole.fit.θ) / np.maximum(
+        evidence.whole.fit.std, 1e-300
+    )
+    r = len(evidence.base.names)
+    worst, many = int(np.argmax(moved)), int(np.sum(moved > MATTERS))
+    out = [
+        "In closed loop the noise of the positions goes into the torques, so that noise and motion"
+        f" are correlated. With a band of the smooth motion narrower by {percent(1 - 0.6)},"
+        + (
+            f" {many} of {len(moved)} values move by more than {MATTERS:g} std, most"
+            f" {evidence.whole.names[worst]} ({moved[worst]:.1f} std)."
+            if many else f" no value moves by more than {moved.max():.1f} std."
+        )
+    ]  # fmt: skip
+    clock = evidence.whole.inertial + 3 * evidence.equations.joints
+    late, off = (float(x[clock]) for x in (evidence.whole.fit.θ, evidence.whole.fit.std))
+    if abs(late) > FAR * off and abs(late) > LATE:
+        out.append(
+            f"The torques act {quantity(abs(late), off, 's')} {'later' if late > 0 else 'earlier'}"
+            " than their stamps say; the fits make up for it."
+        )
+    std, scale = evidence.whole.fit.std[:r], np.abs(evidence.whole.fit.θ[:r])
+    told = int(np.sum(std < np.maximum(scale, np.abs(evidence.base.values)) / 2))
+    out.append(f"Of {r} base parameters, {told} are known to better than half of their value.")
+    if evidence.inconsistent:
+        names = listed([evidence.base.names[k] for k in evidence.inconsistent])
+        out.append(
+            f"No bodies with positive masses have {names} within 3 std of the fitted value: the"
+            " model's geometry, or what it lacks, is in them."
+        )
+    return out
+
+
+def base_rows(evidence: Evidence) -> list[tuple[str, str, str, str]]:
+    """Returns rows of base parameters: name, value with std, the model's, the difference in std."""
+    fit, rows = evidence.whole, []
+    for k, name in enumerate(evidence.base.names):
+        value, std, model = fit.fit.θ[k], fit.fit.std[k], evidence.base.values[k]
+        unit = evidence.base.units[k]
+        off = (value - model) / std if std > 0 else np.nan
+        rows.append((name, quantity(value, std, unit, like=model),
+                     quantity(model, unit=unit, like=value), f"{off:+.1f}"))  # fmt: skip
+    return rows
+
+
+def friction_rows(fit: Fitted, joints: int) -> list[tuple[str, str]]:
+    """Returns rows of frictions: name, value with std, of a base fit."""
+    some = slice(fit.inertial, fit.inertial + 3 * joints)
+    each = zip(fit.names[some], fit.fit.θ[some], fit.fit.std[some], fit.units[some], strict=True)
+    return [(n, quantity(v, s, u)) for n, v, s, u in each]
+
+
+def score_rows(scores: tuple[Score, ...]) -> list[tuple[str, str, str, str, str]]:
+    """Returns rows of candidates: title, sizes, fall on unseen blocks, its t, chance."""
+    return [
+        (s.missing.title, size_words(s), percent(s.fall), f"{s.t:.1f}", chance_words(s.chance))
+        for s in scores[:SHOWN]
+    ]
+
+
+def evidence_to_json(evidence: Evidence, model: mujoco.MjModel) -> dict[str, Any]:
+    """Returns what torques say as plain values."""
+    names, units = joint_names(model)
+    joints = {}
+    for j, name in enumerate(names):
+        of = {
+            fit: {
+                "residual": float(getattr(evidence, fit).fit.σ[j]),
+                "unseen": float(evidence.unseen[k, j]),
+            }
+            for k, fit in enumerate(FITS)
+        }
+        joints[name] = {"unit": units[j], **of}
+    return plain({
+        "joints": joints,
+        "base_parameters": _values(evidence.whole, evidence.base.values, evidence.other),
+        "values": _values(evidence.final, None, None),
+        "named": [_score(s) for s in evidence.named],
+        "scores": [_score(s) for s in evidence.scores[:SHOWN]],
+        "rest": [_score(s) for s in evidence.rest[:SHOWN]],
+        "differences": [_score(s) for s in evidence.differences[:SHOWN]],
+        "asked": evidence.asked,
+        "inconsistent": [evidence.base.names[k] for k in evidence.inconsistent],
+        "bands": {r.name: r.band for r in evidence.equations.rows},
+    })  # fmt: skip
+
+
+def _values(
+    fit: Fitted, model: np.ndarray | None, other: np.ndarray | None
+) -> dict[str, dict[str, Any]]:
+    out = {}
+    for k, name in enumerate(fit.names):
+        one: dict[str, Any] = {"value": fit.fit.θ[k], "std": fit.fit.std[k], "unit": fit.units[k]}
+        if model is not None and k < len(model):
+            one["model"] = model[k]
+        if other is not None:
+            one["narrower"] = other[k]
+        out[name] = one
+    return out
+
+
+def _score(score: Score) -> dict[str, Any]:
+    return {
+        "name": score.missing.name, "where": score.missing.where,
+        "sizes": {
+            n: {"value": v, "std": s, "unit": u}
+            for n, v, s, u in zip(score.missing.sizes, score.size, score.std, score.missing.units,
+                                  strict=True)
+        },
+        "shape": {n: v for n, v, _ in score.missing.shape}, "fall": score.fall, "t": score.t,
+        "held_t": score.held_t, "chance": score.chance, "proven": score.is_proven,
+    }  # fmt: skip

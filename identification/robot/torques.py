@@ -1,0 +1,94 @@
+"""What the torques of a robot's logs say: base parameters, friction, and what the model lacks."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Callable, Sequence
+
+import mujoco
+import numpy as np
+
+from identification.effects.jointed import JointPlant
+from identification.errors import refuse_kind
+from identification.logs.log import Log
+from identification.model.protocol import with_numbers
+from identification.robot.robot import Robot
+from identification.robot.torque_fit import TorqueFit
+from identification.torques.bodies import read_numbers
+from identification.torques.evidence import find_evidence
+from identification.torques.fits import FreeNumber
+from identification.written import Files
+
+STEP = 1e-3  # of a value, or of its scale where it is zero, by which it is moved
+
+
+def fit_torques(robot: Robot, progress: Callable[[str], None] | None = None) -> TorqueFit:
+    """Compare the drives' forces with those that the measured motion needs.
+
+    All positions must be measured, and the inputs must be what the drives gave. Nothing is
+    simulated, so that it takes seconds. Records that confirm judge what is found; where there are
+    none, blocks of the logs do that the fits did not see.
+
+    Args:
+        robot: the result of `read_robot`; its free masses, inertias and armatures are fitted with
+            their priors, and friction always.
+        progress: is told one line per step.
+
+    Raises:
+        InputError: a joint is neither hinge nor slide or is not measured, bodies are tied in a
+            loop, a drive has a state, or a log is too short.
+    """
+    refuse_kind(robot, Robot, "fit_torques takes a robot (read_robot)")
+    logs = (robot.log, *robot.others, *robot.records)
+    model = _without_effects(robot.plant)
+    own = [_without_effects(robot.plant_of(log)) if log.values else model for log in logs]
+    evidence = find_evidence(
+        model, logs, own=own,
+        confirm=len(robot.records), free=free_numbers(robot, logs), effects=robot.candidates,
+        bodies=robot.plant.bodies, say=progress,
+    )  # fmt: skip
+    return TorqueFit(robot, evidence, _files)
+
+
+def free_numbers(robot: Robot, logs: Sequence[Log]) -> tuple[FreeNumber, ...]:
+    """Returns the free parameters of a robot that change masses, inertias or armatures."""
+    plant, out = robot.plant, []
+    differ = {name for log in logs for name in log.values}
+    for name, std in zip(robot.file.free, robot.std, strict=True):
+        record = plant.parameters[name]
+        if name in differ or name not in robot.mean:
+            continue
+        mean = robot.mean[name]
+        known = float(std) * (mean if record.lower >= 0 and min(record.value, mean) > 0
+                              else record.scale)  # fmt: skip
+        step = STEP * (abs(record.value) or record.scale)
+        values = np.array([[record.value], [record.value + step]])
+        if values[1] > record.upper:
+            values[1] -= 2 * step
+        _, numbers = plant.settings((name,), values)
+        before, after = (_numbers(with_numbers(plant.model, numbers, k)) for k in range(2))
+        change = (after - before) / float(values[1, 0] - values[0, 0])
+        if np.abs(change).max() > 0:
+            out.append(FreeNumber(
+                name=name, where=record.where, unit=record.unit, value=record.value, mean=mean,
+                std=known, change=change,
+            ))  # fmt: skip
+    return tuple(out)
+
+
+def _numbers(model: mujoco.MjModel) -> np.ndarray:
+    return np.concatenate([read_numbers(model).ravel(), model.dof_armature])
+
+
+def _without_effects(plant: JointPlant) -> mujoco.MjModel:
+    """Returns a model whose joints have no effects: without their mark, the law leaves them."""
+    out = copy.copy(plant.without_states().model)
+    if out.nuser_jnt:
+        out.jnt_user[:, -1] = 0.0
+    return out
+
+
+def _files(found: TorqueFit) -> Files:
+    from identification.robot.torque_files import TorqueFiles  # what draws is slow to import
+
+    return TorqueFiles(found)

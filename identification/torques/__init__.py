@@ -1,0 +1,1 @@
+"""The evidence of torques: forces that a measured motion needs, linear in what is sought."""

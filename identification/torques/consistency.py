@@ -1,0 +1,69 @@
+"""Are there bodies that have the base parameters as fitted? (Wensing, Kim, Slotine 2018.)
+
+    min Σ_k ((K x - β)_k / σ_k)²   over   P_b = [½ tr I 1 - I, h; hᵀ, m] ⪰ 0,  armatures ≥ 0
+
+A body has ten numbers exactly if its pseudo-inertia P is positive semidefinite. The problem is
+convex, and is solved by Douglas and Rachford's splitting (Eckstein, Bertsekas 1992), whose steps
+are a linear equation and a cut of negative eigenvalues. What is left of a base parameter, in its
+std, says whether some bodies have it: no value is pinned, and inertias that nothing feels are free.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from identification.torques.base import BaseParameters
+
+STEPS = 2000
+LEFT = 3.0  # std of a base parameter that no bodies have
+CLOSE = 0.5  # std, below which the search ends
+_ROWS, _COLUMNS = np.triu_indices(4)
+_TWICE = np.where(_ROWS == _COLUMNS, 1.0, np.sqrt(2.0))  # so that norms of vectors are Frobenius'
+
+
+def find_inconsistent(base: BaseParameters, β: np.ndarray, std: np.ndarray) -> tuple[int, ...]:
+    """Returns places of the base parameters that no bodies have, within 3 std.
+
+    Args:
+        base: the combinations.
+        β: their fitted values, shape (r,).
+        std: of these, shape (r,).
+    """
+    inertia, n = base.inertia, base.inertia.bodies
+    at = np.argsort(inertia.place)  # the numbers of each body in turn, then the armatures
+    to_numbers = np.kron(np.eye(n), np.array([_numbers(e) for e in np.eye(10)]).T)
+    scale, first = inertia.own[at], 10 * n
+    A = base.K[:, at] * scale / std[:, None]
+    A[:, :first] = A[:, :first] @ to_numbers
+    z = inertia.values[at] / scale
+    z[:first] = np.linalg.solve(to_numbers, z[:first])
+    U, s, Vt = np.linalg.svd(A, full_matrices=False)
+    left = A @ z - β / std
+    for _ in range(STEPS):
+        y = z - Vt.T @ (s / (1 + s**2) * (U.T @ (A @ z - β / std)))
+        u = _cut(2 * y - z, n)
+        z = z + u - y
+        left = A @ u - β / std
+        if np.abs(left).max() < CLOSE:
+            break
+    return tuple(np.flatnonzero(np.abs(left) > LEFT).tolist())
+
+
+def _numbers(y: np.ndarray) -> np.ndarray:
+    """Returns the ten numbers of a body of the entries of its pseudo-inertia, shape (10,)."""
+    P = np.zeros((4, 4))
+    P[_ROWS, _COLUMNS] = P[_COLUMNS, _ROWS] = y / _TWICE
+    I_O = np.trace(P[:3, :3]) * np.eye(3) - P[:3, :3]
+    return np.array([P[3, 3], *P[:3, 3], *I_O[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]])
+
+
+def _cut(y: np.ndarray, bodies: int) -> np.ndarray:
+    """Returns the nearest pseudo-inertias and armatures that are not negative."""
+    out = np.maximum(y, 0.0)
+    entries = y[: 10 * bodies].reshape(bodies, 10) / _TWICE
+    P = np.zeros((bodies, 4, 4))
+    P[:, _ROWS, _COLUMNS] = P[:, _COLUMNS, _ROWS] = entries
+    w, V = np.linalg.eigh(P)
+    P = (V * np.maximum(w, 0.0)[:, None, :]) @ np.swapaxes(V, 1, 2)
+    out[: 10 * bodies] = (P[:, _ROWS, _COLUMNS] * _TWICE).ravel()
+    return out

@@ -1,0 +1,230 @@
+"""The equations of all records as moments of blocks, from which every fit and score follows.
+
+    M_jb = Σ_k (X_jk, y_jk)ᵀ (X_jk, y_jk)       over the equations k of joint j in block b
+    G_b = Σ_j w_j M_jb,   w_j = 1/(κ σ_j²)      σ_j: residual of the joint
+
+    θ̂ = (Σ_b A_b + P)⁻¹ (Σ_b a_b + P θ_0)       A_b, a_b: parts of G_b, P = diag(1/s²): priors
+    g_b = (1 - A_b H⁻¹)⁻¹ (a_b - A_b θ̂),        H = Σ_b A_b + P
+    cov θ̂ = H⁻¹ (Σ_b g_b g_bᵀ + P) H⁻¹
+    κ = Σ_b g_bᵀ H⁻¹ g_b / tr(Σ_b A_b H⁻¹)      1 where the residual is white
+
+A block is longer than the memory of the residual, so that its std need no model of the noise: it is
+the jackknife of blocks (Bell, McCaffrey 2002; Künsch 1989) beside the priors. κ is how much more
+the sizes scatter than white noise would make them, so that equations that say the same do not
+outweigh what was known.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from identification.torques.rows import Rows
+
+BLOCKS = 60  # at most, over all records
+LASTS = 0.5  # shortest block [s]
+ROUNDS = 6  # of weights
+FOLDS = 10  # of neighbouring blocks
+ROUNDING = 1e-13  # of a column that is a sum of others
+NO_NOISE = 1e-9  # of a joint's largest torque, that the residual is at least
+
+
+@dataclass(frozen=True)
+class Columns:
+    """Columns of the equations with a size each.
+
+    Attributes:
+        values: shape (N, nv, k).
+        joints: on which they act; on all where None.
+    """
+
+    values: np.ndarray
+    joints: tuple[int, ...] | None = None
+
+
+@dataclass(frozen=True)
+class Equations:
+    """The equations of all records, one behind the other.
+
+    Attributes:
+        rows: of each record.
+        block: of each short time, shape (N,).
+        record: of each block, shape (B,).
+        confirms: whether nothing is fitted to a block, shape (B,).
+    """
+
+    rows: tuple[Rows, ...]
+    block: np.ndarray
+    record: np.ndarray
+    confirms: np.ndarray
+
+    @classmethod
+    def of(cls, rows: Sequence[Rows], confirm: int = 0) -> Equations:
+        """Returns the equations of records, cut into blocks of about one length.
+
+        Args:
+            rows: of each record.
+            confirm: how many of them, the last ones, nothing is fitted to.
+        """
+        spans = [float(r.time[-1] - r.time[0]) for r in rows]
+        lasts = max(LASTS, sum(spans) / BLOCKS)
+        block, record, first = [], [], 0
+        for k, (r, span) in enumerate(zip(rows, spans, strict=True)):
+            count = max(1, round(span / lasts))
+            block.append(first + np.arange(len(r.time)) * count // len(r.time))
+            record += [k] * count
+            first += count
+        of = np.array(record)
+        return cls(tuple(rows), np.concatenate(block), of, of >= len(rows) - confirm)
+
+    def stacked(self, name: str) -> np.ndarray:
+        """Returns an array of all records, by the name of a field of `Rows`."""
+        return np.concatenate([getattr(r, name) for r in self.rows])
+
+    @property
+    def joints(self) -> int:
+        """Number of joints."""
+        return self.rows[0].y.shape[1]
+
+    def moments(self, left: np.ndarray, right: np.ndarray | None = None) -> np.ndarray:
+        """Returns Σ leftᵀ right by joint and block, shape (nv, B, k, l).
+
+        Args:
+            left: shape (N, nv, k).
+            right: shape (N, nv, l); `left` itself when None.
+        """
+        used, B = self.stacked("used"), len(self.record)
+        edges = np.searchsorted(self.block, np.arange(B + 1))
+        right = left if right is None else right
+        out = np.zeros((self.joints, B, left.shape[2], right.shape[2]))
+        for j in range(self.joints):
+            a = np.where(used[:, j, None], left[:, j], 0.0)
+            if not a.any():
+                continue
+            for b in range(B):
+                some = slice(edges[b], edges[b + 1])
+                out[j, b] = a[some].T @ right[some, j]
+        return out
+
+    def squares(self, y: np.ndarray) -> np.ndarray:
+        """Returns Σ y² by joint and block, shape (nv, B), of y (N, nv)."""
+        return self.moments(y[:, :, None])[:, :, 0, 0]
+
+    @property
+    def counts(self) -> np.ndarray:
+        """Number of equations by joint and block, shape (nv, B)."""
+        return self.squares(np.ones_like(self.stacked("y")))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Estimate:
+    """Sizes fitted to equations.
+
+    Attributes:
+        θ: shape (p,), in their units.
+        covariance: shape (p, p).
+        σ: residual of each joint, shape (nv,) [N m or N]; NaN without an equation.
+        κ: of the weights.
+        weights: w, shape (nv,).
+        H: shape (p, p).
+    """
+
+    θ: np.ndarray
+    covariance: np.ndarray
+    σ: np.ndarray
+    κ: float
+    weights: np.ndarray
+    H: np.ndarray
+
+    @property
+    def std(self) -> np.ndarray:
+        """Std of the sizes, shape (p,)."""
+        return np.sqrt(np.maximum(np.diag(self.covariance), 0.0))
+
+
+def solve(G: np.ndarray, P: np.ndarray, θ_0: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Returns θ̂ and H of moments G (..., p + 1, p + 1), with priors of precision P and mean θ_0."""
+    A, a = G[..., :-1, :-1], G[..., :-1, -1]
+    H = A + np.diag(P)
+    scale = 1 / np.sqrt(np.maximum(np.diagonal(H, axis1=-2, axis2=-1), 1e-300))
+    unit = H * scale[..., :, None] * scale[..., None, :] + ROUNDING * np.eye(len(P))
+    x = np.linalg.solve(unit, ((a + P * θ_0) * scale)[..., None])[..., 0]
+    return scale * x, H
+
+
+def left_over(G: np.ndarray, θ: np.ndarray) -> np.ndarray:
+    """Returns ‖y - X θ‖² of moments G (..., p + 1, p + 1)."""
+    t = np.concatenate([-θ, np.ones((*θ.shape[:-1], 1))], axis=-1)
+    return np.maximum(np.einsum("...i,...ij,...j->...", t, G, t), 0.0)
+
+
+def unseen_squares(
+    M: np.ndarray, weights: np.ndarray, P: np.ndarray, θ_0: np.ndarray, confirms: np.ndarray
+) -> np.ndarray:
+    """Returns ‖y - X θ‖² by joint and block, with fits that did not see the block, shape (nv, B).
+
+    The blocks of fitted records are cut into folds of neighbours, each predicted by a fit to all
+    other folds; those that confirm are predicted by a fit to all of these.
+
+    Args:
+        M: moments of columns and right side, shape (nv, B, p + 1, p + 1).
+        weights: of the joints, shape (nv,).
+        P: precision of the priors, shape (p,).
+        θ_0: their means, shape (p,).
+        confirms: blocks to which nothing is fitted, shape (B,).
+    """
+    G, seen = np.einsum("j,jbpq->bpq", weights, M), ~confirms
+    fold, n = np.zeros(len(G), int), int(seen.sum())
+    fold[seen] = 1 + np.arange(n) * min(FOLDS, n) // n
+    each = np.array([G[seen & (fold == k)].sum(axis=0) for k in range(fold.max() + 1)])
+    θ, _ = solve(each.sum(axis=0) - each, P, θ_0)
+    left = left_over(M, np.broadcast_to(θ[fold], (*M.shape[:2], len(P))))
+    return np.maximum(left, NO_NOISE**2 * M[:, :, -1, -1])
+
+
+def estimate(
+    M: np.ndarray, counts: np.ndarray, P: np.ndarray, θ_0: np.ndarray,
+    weights: np.ndarray | None = None,
+) -> Estimate:  # fmt: skip
+    """Fit sizes to equations, each joint weighted by its residual.
+
+    Args:
+        M: moments of columns and right side, shape (nv, B, p + 1, p + 1).
+        counts: of the equations, shape (nv, B).
+        P: precision of the priors, shape (p,).
+        θ_0: their means, shape (p,).
+        weights: of the joints, shape (nv,); their own when None.
+    """
+    n, own, κ = counts.sum(axis=1), M.sum(axis=1), 1.0
+    floor = NO_NOISE**2 * np.maximum(own[:, -1, -1], 1e-300)
+    has = n > 0
+    left = own[:, -1, -1]
+    w = np.zeros(len(n)) if weights is None else weights
+    for _ in range(ROUNDS):
+        if weights is None:
+            w = np.where(has, n / np.maximum(left, floor), 0.0) / κ
+        G = np.einsum("j,jbpq->bpq", w, M)
+        θ, H = solve(G.sum(axis=0), P, θ_0)
+        left = left_over(own, θ)
+        meat, inverse, κ_now = _scatter(G, θ, H)
+        κ = κ if weights is not None else max(1.0, κ * κ_now)
+    bread = inverse @ (meat + np.diag(P)) @ inverse
+    σ = np.sqrt(np.where(has, left / np.maximum(n, 1), np.nan))
+    return Estimate(θ=θ, covariance=bread, σ=σ, κ=κ, weights=w, H=H)
+
+
+def _scatter(G: np.ndarray, θ: np.ndarray, H: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
+    """Returns Σ g gᵀ, H⁻¹ and the factor by which κ must grow."""
+    A, a = G[:, :-1, :-1], G[:, :-1, -1]
+    scale = 1 / np.sqrt(np.maximum(np.diag(H), 1e-300))
+    inverse = np.linalg.pinv(H * np.outer(scale, scale), rcond=1e-14, hermitian=True)
+    inverse = inverse * np.outer(scale, scale)
+    g = a - A @ θ
+    eye = np.eye(len(θ))
+    lever = eye - A @ inverse
+    g = np.linalg.solve(lever + 1e-9 * eye, g[:, :, None])[:, :, 0]
+    meat = g.T @ g
+    felt = float(np.trace(A.sum(axis=0) @ inverse))
+    return meat, inverse, float(np.einsum("bp,pq,bq->", g, inverse, g)) / max(felt, 1e-12)

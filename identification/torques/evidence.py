@@ -1,0 +1,167 @@
+"""What torques say of a robot: its base parameters, its friction, and what its model lacks.
+
+    search       candidates beside the model fit, the best proven one added, until none is proven;
+                 then what has become needless is dropped
+    differences  a load at each body in one record alone, beside the base fit
+
+The fits are those of `identification.torques.fits`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import partial, reduce
+
+import mujoco
+import numpy as np
+
+from identification.effects.effect import Effect
+from identification.effects.moving_bodies import MovingBody
+from identification.logs.log import Log
+from identification.shares import fall_words
+from identification.torques.base import BaseParameters, find_base
+from identification.torques.candidates import in_record, list_missing
+from identification.torques.consistency import find_inconsistent
+from identification.torques.equations import Equations, unseen_squares
+from identification.torques.fits import (
+    Fitted,
+    FreeNumber,
+    base_fit,
+    expect_drives,
+    extended,
+    model_fit,
+)
+from identification.torques.laws import Missing
+from identification.torques.rows import make_rows
+from identification.torques.scores import Base, Score, choose, rank
+
+MOST_NAMED = 4  # effects that a search adds
+OTHER_BAND = 0.6  # factor of the bands of a second fit, which tells what they matter
+
+
+@dataclass(frozen=True, kw_only=True)
+class Evidence:
+    """What torques say.
+
+    Attributes:
+        equations: of the records.
+        base: the combinations of inertial numbers.
+        whole: the base fit.
+        other: sizes of the base fit in a narrower band, shape (p,).
+        model: the model fit, without effects.
+        final: the model fit with the effects that were found.
+        scores: of all candidates beside the model fit, the best first.
+        found: scores of the effects that were added, each when it was.
+        rest: scores beside the final fit; those of `scores` where nothing was found.
+        differences: scores of loads in single records beside the base fit, the best first.
+        asked: number of candidates beside the model fit, each shape counted.
+        unseen: residual of each joint by fits that did not see it, of base, model and final fit,
+            shape (3, nv) [N m or N].
+        inconsistent: places of base parameters that no bodies have, within 3 std.
+    """
+
+    equations: Equations
+    base: BaseParameters
+    whole: Fitted
+    other: np.ndarray
+    model: Fitted
+    final: Fitted
+    scores: tuple[Score, ...]
+    found: tuple[Score, ...]
+    rest: tuple[Score, ...]
+    differences: tuple[Score, ...]
+    asked: int
+    unseen: np.ndarray
+    inconsistent: tuple[int, ...]
+
+    @property
+    def named(self) -> tuple[Score, ...]:
+        """The effects that were added, each with its sizes and their std in the final fit."""
+        fit, begin, out = self.final.fit, len(self.model.names), []
+        for score in self.found:
+            some = slice(begin, begin + len(score.size))
+            out.append(replace(score, size=fit.θ[some], std=fit.std[some]))
+            begin += len(score.size)
+        return tuple(out)
+
+
+def find_evidence(
+    model: mujoco.MjModel, logs: Sequence[Log], *, own: Sequence[mujoco.MjModel] = (),
+    confirm: int = 0, free: Sequence[FreeNumber] = (), effects: Sequence[Effect] = (),
+    bodies: Sequence[MovingBody] = (), say: Callable[[str], None] | None = None,
+) -> Evidence:  # fmt: skip
+    """Returns what torques say of a robot.
+
+    Args:
+        model: of hinges and slides.
+        logs: records with all positions and all inputs.
+        own: the model of each log, where some of its values hold in that log alone.
+        confirm: how many of the logs, the last ones, nothing is fitted to.
+        free: parameters that are fitted with what was known of them.
+        effects: of the catalogue, that may be missing.
+        bodies: with places for payloads.
+        say: is told one line a step.
+
+    Raises:
+        InputError: no equations can be made of the model or of a log (`make_rows`).
+    """
+    say = say or (lambda text: None)
+    equations = Equations.of(make_rows(model, logs, own), confirm)
+    base = find_base(model)
+    expected = expect_drives(model, equations, base)
+    whole = base_fit(model, equations, base, expected)
+    narrow = Equations.of(make_rows(model, logs, own, OTHER_BAND), confirm)
+    other = base_fit(model, narrow, base, expect_drives(model, narrow, base)).fit.θ
+    nominal = model_fit(model, equations, free, expected)
+    say(f"{int(equations.counts.sum())} equations, {len(base.names)} base parameters")
+    candidates = list_missing(model, equations, expected, effects, bodies, [f.where for f in free])
+    scores = rank(equations, nominal.base, candidates)
+    first = f", {scores[0].missing.title} first" if scores else ""
+    say(f"{len(candidates)} candidates scored{first}")
+    final, rest = nominal, scores
+    found: list[Score] = []
+    while len(found) < MOST_NAMED and (score := choose(rest)) is not None:
+        final = extended(equations, final, score.missing)
+        found.append(score)
+        say(f"{score.missing.title}: {fall_words(score.fall)} on unseen blocks, t {score.t:.1f}")
+        # A law keeps the shape that was its best beside the model.
+        rest = rank(equations, final.base, [s.missing for s in rest if s is not score])
+    needed = [s for s in found if _is_needed(equations, nominal, found, s)]
+    if len(needed) < len(found):
+        found = needed
+        final = _extended(equations, nominal, [s.missing for s in found])
+    loads = [c for c in candidates if c.name == "load"]
+    fitted = len(logs) - confirm
+    single = [in_record(c, equations, k) for c in loads for k in range(fitted)]
+    differences = rank(equations, whole.base, single) if fitted > 1 else ()
+    unseen = [_unseen_residual(equations, f.base) for f in (whole, nominal, final)]
+    r = len(base.names)
+    return Evidence(
+        equations=equations, base=base, whole=whole, other=other, model=nominal, final=final,
+        scores=scores, found=tuple(found), rest=rest, differences=differences,
+        asked=len(candidates), unseen=np.array(unseen),
+        inconsistent=find_inconsistent(base, whole.fit.θ[:r], whole.fit.std[:r]),
+    )  # fmt: skip
+
+
+def _is_needed(equations: Equations, nominal: Fitted, found: Sequence[Score], score: Score) -> bool:
+    """Returns whether an effect is still proven beside all that were found after it."""
+    if len(found) < 2:
+        return True
+    others = [s.missing for s in found if s is not score]
+    again = rank(equations, _extended(equations, nominal, others).base, [score.missing])
+    return bool(again) and again[0].is_proven
+
+
+def _extended(equations: Equations, fitted: Fitted, effects: Sequence[Missing]) -> Fitted:
+    """Returns a fit with some effects more."""
+    return reduce(partial(extended, equations), effects, fitted)
+
+
+def _unseen_residual(equations: Equations, base: Base) -> np.ndarray:
+    """Returns the residual of each joint by fits that did not see it, shape (nv,)."""
+    of = equations.confirms if equations.confirms.any() else ~equations.confirms
+    squares = unseen_squares(base.M, base.fit.weights, base.P, base.θ_0, equations.confirms)
+    n = equations.counts[:, of].sum(axis=1)
+    return np.sqrt(np.where(n > 0, squares[:, of].sum(axis=1) / np.maximum(n, 1), np.nan))

@@ -1,0 +1,188 @@
+"""The fits of torques: with all inertial numbers free, and with those of the robot's file.
+
+    base fit     every inertial number and every friction is free, up to the size of the whole arm
+    model fit    the model's numbers are held but those of the robot's file, with their priors;
+                 friction is free
+    clock        in both, one shift of the inputs against the outputs, a nuisance: dτ̂_u/dt
+
+The base fit says how well a rigid arm with friction can do at all, and needs nothing of the model
+but its geometry. The model fit is where a payload can be told from the masses that are known.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+
+from identification.effects.inputs import SHIFT
+from identification.torques.base import BaseParameters, all_columns
+from identification.torques.bodies import read_numbers
+from identification.torques.candidates import rate_of
+from identification.torques.equations import Equations, Estimate, estimate
+from identification.torques.laws import Missing
+from identification.torques.rows import Rows
+from identification.torques.scores import Base
+
+FRICTION = ("viscous", "coulomb", "offset")
+CLOCK = "clock of the inputs"
+
+
+@dataclass(frozen=True, kw_only=True)
+class FreeNumber:
+    """A free parameter of the robot's file that changes inertial numbers.
+
+    Attributes:
+        name: as in the file.
+        where: path in the model.
+        unit: SI unit.
+        value: of the model.
+        mean: what was known.
+        std: of what was known.
+        change: of (bodies · 10 numbers, armatures) with it, shape (n,).
+    """
+
+    name: str
+    where: str
+    unit: str
+    value: float
+    mean: float
+    std: float
+    change: np.ndarray
+
+
+@dataclass(frozen=True, kw_only=True)
+class Fitted:
+    """A fit with its equations.
+
+    Attributes:
+        names: of the sizes.
+        units: of them.
+        base: what it was fitted to, and the estimate.
+        added: effects that are in it, their sizes last.
+        inertial: number of inertial sizes, the first ones; frictions follow, and then the clock.
+    """
+
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    base: Base
+    inertial: int
+    added: tuple[Missing, ...] = ()
+
+    @property
+    def fit(self) -> Estimate:
+        """The estimate."""
+        return self.base.fit
+
+    def predicted(self) -> np.ndarray:
+        """Returns the right side, shape (N, nv)."""
+        return np.asarray(self.base.Φ @ self.fit.θ)
+
+
+def friction_columns(rows: Sequence[Rows]) -> np.ndarray:
+    """Returns columns of viscous and Coulomb friction and offset of joints, (N, nv, 3 nv)."""
+    v, sign = (np.concatenate([getattr(r, n) for r in rows]) for n in ("v", "sign"))
+    nv = v.shape[1]
+    out = np.zeros((len(v), nv, 3 * nv))
+    for j in range(nv):
+        out[:, j, 3 * j], out[:, j, 3 * j + 1], out[:, j, 3 * j + 2] = v[:, j], sign[:, j], -1.0
+    return out
+
+
+def friction_names(model: mujoco.MjModel) -> tuple[list[str], list[str]]:
+    """Returns names and units of the frictions of all joints, as `friction_columns` has them."""
+    names, units = [], []
+    for j in model.dof_jntid:
+        is_slide = int(model.jnt_type[j]) == int(mujoco.mjtJoint.mjJNT_SLIDE)
+        f, x = ("N", "m") if is_slide else ("N m", "rad")
+        names += [f"{kind} of {model.joint(int(j)).name}" for kind in FRICTION]
+        units += [f"{f} s/{x}", f, f]
+    return names, units
+
+
+def _friction_scales(equations: Equations) -> np.ndarray:
+    """Returns how large frictions may be at most, roughly, shape (3 nv,)."""
+    v, y = (np.abs(equations.stacked(n)).max(axis=0) for n in ("v", "y"))
+    force = np.abs(equations.stacked("drives").sum(axis=2)).max(axis=0)
+    force = np.where(force > 0, force, np.where(y > 0, y, 1.0))
+    return np.stack([force / np.where(v > 0, v, 1.0), force, force], axis=1).ravel()
+
+
+def _nuisances(
+    model: mujoco.MjModel, equations: Equations, expected: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, list[str], list[str]]:
+    """Returns columns of friction and clock, the std of what is known, names and units."""
+    late = rate_of(equations, expected)[:, :, None]
+    names, units = friction_names(model)
+    columns = np.concatenate([friction_columns(equations.rows), late], axis=2)
+    return columns, np.append(_friction_scales(equations), SHIFT), [*names, CLOCK], [*units, "s"]
+
+
+def expect_drives(model: mujoco.MjModel, equations: Equations, base: BaseParameters) -> np.ndarray:
+    """Returns the drives' forces as a fit to all inertial numbers predicts them, shape (N, nv)."""
+    force = equations.stacked("drives").sum(axis=2)
+    first = base_fit(model, equations, base, np.zeros_like(force))
+    return np.asarray(first.predicted() + force - first.base.y)
+
+
+def base_fit(
+    model: mujoco.MjModel, equations: Equations, base: BaseParameters, expected: np.ndarray
+) -> Fitted:
+    """Returns the fit with all inertial numbers free; `expected` are the drives' forces (N, nv)."""
+    bodies, a, y = (equations.stacked(n) for n in ("bodies", "a", "y"))
+    more, scales, names, units = _nuisances(model, equations, expected)
+    Φ = np.concatenate([base.columns(bodies, a), more], axis=2)
+    P = 1 / np.concatenate([base.scales, scales]) ** 2
+    θ_0 = np.concatenate([base.values, np.zeros(len(scales))])
+    return Fitted(
+        names=(*base.names, *names), units=(*base.units, *units), inertial=len(base.names),
+        base=_fitted(equations, Φ, y, P, θ_0),
+    )  # fmt: skip
+
+
+def model_fit(
+    model: mujoco.MjModel, equations: Equations, free: Sequence[FreeNumber], expected: np.ndarray
+) -> Fitted:
+    """Returns the fit of free numbers; `expected` are the drives' forces (N, nv) [N m or N]."""
+    bodies, a = equations.stacked("bodies"), equations.stacked("a")
+    X = all_columns(bodies, a)
+    known = np.concatenate([read_numbers(model).ravel(), model.dof_armature])
+    change = np.array([f.change for f in free]).reshape(len(free), len(known))
+    start = np.array([f.value for f in free])
+    y = equations.stacked("y") - X @ (known - start @ change)
+    more, scales, names, units = _nuisances(model, equations, expected)
+    Φ = np.concatenate([X @ change.T, more], axis=2)
+    P = 1 / np.concatenate([[f.std for f in free], scales]) ** 2
+    θ_0 = np.concatenate([[f.mean for f in free], np.zeros(len(scales))])
+    return Fitted(
+        names=(*(f.name for f in free), *names), units=(*(f.unit for f in free), *units),
+        inertial=len(free), base=_fitted(equations, Φ, y, P, θ_0, len(free)),
+    )  # fmt: skip
+
+
+def extended(equations: Equations, fitted: Fitted, missing: Missing) -> Fitted:
+    """Returns a fit with one effect more, of which nothing was known."""
+    S, old, m = missing.columns().values, fitted.base, len(missing.sizes)
+    none = np.zeros(m)
+    return Fitted(
+        names=(*fitted.names, *(f"{missing.name}.{s}, {missing.where}" for s in missing.sizes)),
+        units=(*fitted.units, *missing.units),
+        base=_fitted(
+            equations, np.concatenate([old.Φ, S], axis=2), old.y,
+            np.concatenate([old.P, none]), np.concatenate([old.θ_0, none]), old.known,
+        ),
+        inertial=fitted.inertial,
+        added=(*fitted.added, missing),
+    )  # fmt: skip
+
+
+def _fitted(
+    equations: Equations, Φ: np.ndarray, y: np.ndarray, P: np.ndarray, θ_0: np.ndarray,
+    known: int = 0,
+) -> Base:  # fmt: skip
+    M = equations.moments(np.concatenate([Φ, y[:, :, None]], axis=2))
+    seen = ~equations.confirms
+    fit = estimate(M[:, seen], equations.counts[:, seen], P, θ_0)
+    return Base(Φ=Φ, y=y, P=P, θ_0=θ_0, fit=fit, M=M, known=known)

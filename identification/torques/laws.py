@@ -1,0 +1,169 @@
+"""A candidate as columns of the equations, and the laws of joints along a motion.
+
+force        -f(s) at the joint             f, b: a law of the catalogue, by its own hook
+friction     b(s) sign v at the joint
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cache
+from types import FunctionType
+from typing import Any
+
+import mujoco
+import numpy as np
+
+from identification.discovery.candidates import iterate_shapes
+from identification.effects.effect import Effect
+from identification.native.joint_callback import Joint
+from identification.torques.equations import Columns, Equations
+
+
+@dataclass(frozen=True, kw_only=True)
+class Missing:
+    """A candidate.
+
+    Attributes:
+        name: of the effect, as in the catalogue where it has one.
+        where: its place, in words.
+        phrase: what it is, in words.
+        sizes: names of its sizes.
+        units: of the sizes.
+        signs: that physics admits of the sizes, 0 where it admits both.
+        shape: name, value and unit of each of its shapes.
+        columns: returns its columns.
+        most: magnitudes of the sizes beyond which it is not believed.
+    """
+
+    name: str
+    where: str
+    phrase: str
+    sizes: tuple[str, ...]
+    units: tuple[str, ...]
+    signs: tuple[int, ...]
+    shape: tuple[tuple[str, float, str], ...] = ()
+    columns: Callable[[], Columns]
+    most: tuple[float, ...]
+
+    @property
+    def key(self) -> tuple[str, str]:
+        """Its effect and its place, whatever its shapes."""
+        return self.name, self.where
+
+    def only(self, some: np.ndarray) -> Missing:
+        """Returns it with some of its sizes, by a mask."""
+        places = np.flatnonzero(some).tolist()
+
+        def columns() -> Columns:
+            whole = self.columns()
+            return Columns(whole.values[:, :, places], whole.joints)
+
+        def kept(of: tuple[Any, ...]) -> tuple[Any, ...]:
+            return tuple(of[k] for k in places)
+
+        return replace(
+            self, columns=columns, sizes=kept(self.sizes), units=kept(self.units),
+            signs=kept(self.signs), most=kept(self.most),
+        )  # fmt: skip
+
+    @property
+    def title(self) -> str:
+        """Its effect and its place."""
+        return f"{self.name}, {self.where}"
+
+
+class Laws:
+    """Laws of joints at all equations.
+
+    Args:
+        model: of the robot.
+        equations: of its records.
+        f: the drives' forces, shape (N, nv) [N m or N].
+    """
+
+    def __init__(self, model: mujoco.MjModel, equations: Equations, f: np.ndarray) -> None:
+        self.names = [model.joint(int(j)).name for j in model.dof_jntid]
+        q, v, g = (equations.stacked(n) for n in ("q", "v", "gravity"))
+        time, self.sign = equations.stacked("time"), equations.stacked("sign")
+        self.used = equations.stacked("used")
+        self.states: dict[str, Joint] = {}
+        for j, name in enumerate(self.names):
+            some = self.used[:, j]
+            low, high = (float(x) for x in (q[:, j].min(), q[:, j].max()))
+            reach = (
+                (low + high) / 2, (high - low) / 2 or 1.0, float(np.abs(v[:, j]).max()) or 1.0,
+                float(np.abs(f[:, j]).max()) or 1.0, float(time.max()),
+            )  # fmt: skip
+            state = (time, q[:, j], v[:, j], f[:, j], g[:, j], np.sign(v[:, j]))
+            self.states[name] = Joint(*(*(x[some] for x in state), *reach))
+
+    def of(self, effect: Effect) -> Iterator[Missing]:
+        """Yields an effect at each of its places, with each of its shapes."""
+        for where, suffix in effect.places.items():
+            joints = [suffix[1:]] if suffix else [p[1:] for p in effect.places.values() if p]
+            for shape in iterate_shapes(effect):
+                yield listed(effect, where, shape, later(self.columns, effect, joints, shape))
+
+    def columns(self, effect: Effect, joints: Sequence[str], shape: dict[str, float]) -> Columns:
+        """Returns the columns of a law, of one size each, at joints that have it in common."""
+        (hook,) = effect.hooks
+        law = effect.hooks[hook]
+        at = [self.names.index(joint) for joint in joints]
+        out = np.zeros((*self.used.shape, len(effect.sizes)))
+        for k in range(len(effect.sizes)):
+            p = (*(float(i == k) for i in range(len(effect.sizes))), *shape.values())
+            for j in at:
+                some = self.used[:, j]
+                force = along(law, self.states[self.names[j]], p)
+                out[some, j, k] = -force if hook == "force" else force * self.sign[some, j]
+        return Columns(out, tuple(at))
+
+
+_ARRAYS = {  # of what a law calls, for all points at once
+    "exp": np.exp, "cos": np.cos, "sin": np.sin, "sqrt": np.sqrt, "floor": np.floor,
+    "abs": np.abs, "min": np.minimum, "max": np.maximum,
+}  # fmt: skip
+
+
+def along(law: Any, states: Joint, p: Sequence[float]) -> np.ndarray:
+    """Returns a law at many states of a joint, shape (n,), whose fields are arrays or numbers.
+
+    Its own Python is run once on the arrays; where it branches by a state, once for each of them.
+    """
+    try:
+        with np.errstate(all="ignore"):
+            return np.asarray(_on_arrays(law)(states, p) + np.zeros(len(states.q)))
+    except ValueError:  # the truth of an array
+        fields = [np.broadcast_to(x, states.q.shape).tolist() for x in states]
+        return np.array([law.py_func(Joint(*one), p) for one in zip(*fields, strict=True)])
+
+
+@cache
+def _on_arrays(law: Any) -> Any:
+    """Returns the Python of a compiled law, which calls numpy's functions."""
+    python = law.py_func
+    known = {**python.__globals__, **_ARRAYS}
+    for name in python.__code__.co_names:
+        if hasattr(known.get(name), "py_func"):
+            known[name] = _on_arrays(known[name])
+    return FunctionType(python.__code__, known, closure=python.__closure__)
+
+
+def listed(
+    effect: Effect, where: str, shape: dict[str, float], columns: Callable[[], Columns]
+) -> Missing:
+    """Returns an effect of the catalogue at a place as a candidate."""
+    return Missing(
+        name=effect.name, where=where, phrase=effect.phrase,
+        sizes=tuple(s.name for s in effect.sizes), units=tuple(s.unit for s in effect.sizes),
+        signs=tuple(s.sign for s in effect.sizes), columns=columns,
+        shape=tuple((s.name, shape[s.name], s.unit) for s in effect.shapes if shape),
+        most=tuple(s.farthest for s in effect.sizes),
+    )  # fmt: skip
+
+
+def later(make: Callable[..., Columns], *given: object) -> Callable[[], Columns]:
+    """Returns what makes columns when they are asked for: all of them at once fill the memory."""
+    return lambda: make(*given)

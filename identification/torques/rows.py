@@ -1,0 +1,239 @@
+"""The equations of a record: what its drives gave, and what its motion needs, joint by joint.
+
+    y = τ_u - (τ_inv(q, v, a) - Y π_0 - I_0 a - d_0 v)              I_0, d_0: armature, damping
+    y = Y π + I a + d v + f_c sign v - f_0 + what is missing
+
+τ_inv is MuJoCo's inverse dynamics of the model (`mj_inverse`), so that its springs, tendons and
+whatever else it has stay known; τ_u is what its actuators make of the logged inputs. τ_u and the
+signs of the rates go through the filter that makes the motion smooth, as the accelerations do:
+where a joint turns, friction and accelerations jump together. Both sides are then means over short
+times, a weak form of the equation with boxes as test functions. A joint that is nearly at rest has
+no equation, because friction may then be any force below its level; nor has one that turns, where
+the filter mixes both directions.
+"""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import mujoco
+import numpy as np
+
+from identification.engine import quiet
+from identification.errors import InputError
+from identification.logs.log import Log
+from identification.model.predictor import output_columns
+from identification.model.rollout import logged_inputs
+from identification.torques.bodies import read_numbers, regressor
+from identification.torques.smoothing import EDGE, Motion, choose_band, low_pass, smooth
+
+SCALAR = (int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE))
+PER_PERIOD = 4.0  # times of mean in a period of the band
+SAMPLES = 20_000  # of which the regressor is made at once
+MOST = 8_000  # equations of each joint, over all records
+SLOW = 0.02  # of the top rate of a joint in all records: slower it is at rest
+TURNING = 0.1  # of a filtered sign, that it may be off
+NOISY = 4.0  # std of a rate's noise: slower it may be at rest
+
+
+@dataclass(frozen=True, kw_only=True)
+class Rows:
+    """Means of N short times of a record.
+
+    Attributes:
+        name: of the record.
+        time: shape (N,) [s].
+        q: positions, shape (N, nv) [rad or m].
+        v: rates, shape (N, nv).
+        a: accelerations, shape (N, nv).
+        sign: of the rates, through the filter, shape (N, nv).
+        bodies: Y, shape (N, nv, bodies, 10).
+        gravity: its force on the joints, shape (N, nv) [N m or N].
+        drives: forces of each actuator on the joints, shape (N, nv, nu) [N m or N].
+        y: shape (N, nv) [N m or N].
+        used: where a joint moves, shape (N, nv).
+        band: of the motion [Hz].
+    """
+
+    name: str
+    time: np.ndarray
+    q: np.ndarray
+    v: np.ndarray
+    a: np.ndarray
+    sign: np.ndarray
+    bodies: np.ndarray
+    gravity: np.ndarray
+    drives: np.ndarray
+    y: np.ndarray
+    used: np.ndarray
+    band: float
+
+
+def refuse_unfit(model: mujoco.MjModel, log: Log) -> None:
+    """Refuse a model or a log of which no equations of torques can be made."""
+    for j, kind in enumerate(model.jnt_type):
+        if int(kind) not in SCALAR:
+            raise InputError(
+                f"joint {model.joint(j).name!r} is neither hinge nor slide; torques are compared"
+                " for robots of hinges and slides: use identification discover"
+            )
+    if model.neq:
+        raise InputError(
+            "the model has equality constraints, whose forces no motion tells; torques are compared"
+            " for robots without closed loops: use identification discover"
+        )
+    if model.na:
+        raise InputError(
+            "an actuator of the model has a state of its own; torques are compared where the force"
+            " follows from the input: log the torque, and write a motor in its place"
+        )
+    told = {i for field, i in output_columns(model, log.output_names) if field == "qpos"}
+    for j, i in enumerate(model.jnt_qposadr):
+        if int(i) not in told:
+            raise InputError(
+                f"no output of log {log.name!r} is the position of joint {model.joint(j).name!r};"
+                " torques are compared where all positions are measured: add a jointpos sensor"
+            )
+
+
+def make_rows(
+    model: mujoco.MjModel, logs: Sequence[Log], own: Sequence[mujoco.MjModel] = (),
+    wider: float = 1.0,
+) -> tuple[Rows, ...]:  # fmt: skip
+    """Returns the equations of records.
+
+    Args:
+        model: with the logs' actuators and sensors.
+        logs: of the robot.
+        own: the model of each log, where some of its values hold in that log alone.
+        wider: factor of the bands of the smooth motion.
+
+    Raises:
+        InputError: the model has other joints than hinges and slides, closed loops or drives with
+            states, a position is not measured, no input moves, a record is too short for its band,
+            or no joint moves long enough one way.
+    """
+    motions = [_motion(model, log, wider) for log in logs]
+    top = np.max([np.abs(m.v).max(axis=0) for m in motions], axis=0)
+    total = sum(len(log) for log in logs)
+    least = -(-total // MOST)
+    if not any(log.inputs.any() for log in logs):
+        raise InputError(
+            "no input moves in these logs, and without a drive's torque the masses of everything"
+            " have no scale: give a log with the drives' torques, or use identification fit"
+        )
+    known = read_numbers(model)
+    each = zip(own or [model] * len(logs), logs, motions, strict=True)
+    rows = tuple(_rows(m, known, log, motion, top, least) for m, log, motion in each)
+    if not any(r.used.any() for r in rows):
+        raise InputError(
+            "no joint moves for longer than its filter needs between two turns; give logs of a"
+            " slower motion, or sampled faster"
+        )
+    return rows
+
+
+def _motion(model: mujoco.MjModel, log: Log, wider: float) -> Motion:
+    refuse_unfit(model, log)
+    columns = output_columns(model, log.output_names)
+    at = {i: k for k, (field, i) in enumerate(columns) if field == "qpos"}
+    q, h = log.outputs[:, [at[int(i)] for i in model.jnt_qposadr]], log.sampling_time
+    chosen = [choose_band(x, h) for x in q.T]
+    # One band for all: the torque of a joint has the accelerations of all others in it.
+    moving = np.ptp(q, axis=0) > SLOW * np.ptp(q, axis=0).max()
+    band = float(np.median([f for (f, _), moves in zip(chosen, moving, strict=True) if moves]))
+    return smooth(q, h, wider * band, np.array([noise for _, noise in chosen]))
+
+
+def _rows(
+    model: mujoco.MjModel, numbers: np.ndarray, log: Log, motion: Motion, top: np.ndarray,
+    least: int,
+) -> Rows:  # fmt: skip
+    h, band = log.sampling_time, motion.band
+    width = max(least, round(1 / (PER_PERIOD * band * h)), 1)
+    cut = int(np.ceil(EDGE / (band * h)))
+    keep = slice(cut, len(log) - cut)
+    count = (len(log) - 2 * cut) // width
+    if count < 2:
+        raise InputError(
+            f"log {log.name!r} lasts {log.duration:g} s, and {2 * cut * h:.2g} s of its ends are"
+            " cut because its accelerations are not known there; give a longer log"
+        )
+    mean = partial(_means, count=count, width=width)
+    q, v, a = motion.q[keep], motion.v[keep], motion.a[keep]
+    u = log.inputs
+    held = (np.vstack([u[:1], u[:-1]]) + u) / 2 if log.hold == "zoh" else u
+    Y, gravity = _mean_regressor(model, q, v, a, count, width)
+    inverse, drives = _forces(model, motion.q, motion.v, motion.a, held)
+    drives = mean(low_pass(drives, h, band)[keep])
+    sign = low_pass(np.sign(motion.v), h, band)[keep]
+    known = mean(inverse[keep]) - np.einsum("kjbn,bn->kj", Y, numbers)
+    known -= mean(model.dof_armature * a + model.dof_damping * v)
+    limit = np.maximum(SLOW * top, NOISY * motion.noise)
+    resting = (np.abs(v) < limit) | (np.abs(np.abs(sign) - 1) > TURNING)
+    used = mean(resting.astype(float)) == 0
+    time = log.time[keep] - log.time[0] + log.begun
+    used &= _measured(log, time, mean, count)[:, None]
+    return Rows(
+        name=log.name, time=mean(time), q=mean(q), v=mean(v), a=mean(a), sign=mean(sign),
+        bodies=Y, gravity=gravity, drives=drives,
+        y=drives.sum(axis=2) - known, used=used, band=motion.band,
+    )  # fmt: skip
+
+
+def _mean_regressor(
+    model: mujoco.MjModel, q: np.ndarray, v: np.ndarray, a: np.ndarray, count: int, width: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Returns means of Y and of gravity's forces over short times, some at once to spare memory."""
+    at_once = max(1, SAMPLES // width)
+    out = []
+    for first in range(0, count, at_once):
+        n = min(at_once, count - first)
+        some = slice(first * width, (first + n) * width)
+        out.append([_means(x, n, width) for x in regressor(model, q[some], v[some], a[some])])
+    Y, gravity = (np.concatenate(part) for part in zip(*out, strict=True))
+    return Y, gravity
+
+
+def _means(x: np.ndarray, count: int, width: int) -> np.ndarray:
+    """Returns the means of `count` times of `width` samples each, of an array (n, ...)."""
+    return np.asarray(x[: count * width].reshape(count, width, *x.shape[1:]).mean(axis=1))
+
+
+def _measured(
+    log: Log, time: np.ndarray, mean: Callable[[np.ndarray], np.ndarray], count: int
+) -> np.ndarray:
+    """Returns which of the short times are not in a gap of the log, shape (count,)."""
+    out = np.ones(count, bool)
+    for begin, end in log.gaps:
+        inside = (time + log.time[0] - log.begun >= begin) & (time + log.time[0] - log.begun <= end)
+        out &= mean(inside.astype(float)) == 0
+    return out
+
+
+@quiet()
+def _forces(
+    model: mujoco.MjModel, q: np.ndarray, v: np.ndarray, a: np.ndarray, u: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Returns the forces of inverse dynamics (n, nv), and those of each actuator (n, nv, nu)."""
+    bare = copy.copy(model)  # without contacts, limits and dry friction, which no equation has
+    bare.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_CONSTRAINT)
+    bare.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
+    data, n = mujoco.MjData(bare), len(q)
+    inverse, drives = np.empty((n, model.nv)), np.zeros((n, model.nv, model.nu))
+    moment, logged = np.zeros((model.nu, model.nv)), logged_inputs(model)
+    for k in range(n):
+        data.qpos, data.qvel, data.qacc = q[k], v[k], a[k]
+        data.ctrl[:logged] = u[k]
+        mujoco.mj_inverse(bare, data)
+        mujoco.mj_fwdActuation(bare, data)
+        inverse[k] = data.qfrc_inverse
+        mujoco.mju_sparse2dense(
+            moment, data.actuator_moment, data.moment_rownnz, data.moment_rowadr,
+            data.moment_colind,
+        )  # fmt: skip
+        drives[k] = (moment * data.actuator_force[:, None]).T
+    return inverse, drives

@@ -1,0 +1,246 @@
+"""How much of the torques' residual each candidate would explain, also on unseen blocks.
+
+    S⊥ = S - Φ H⁻¹ Φᵀ S,   r = y - Φ θ̂                 Φ: columns of the fit, H with its priors
+    η̂ = (S⊥ᵀ S⊥)⁻¹ S⊥ᵀ r                               the sizes
+    g_b = ln ‖r_b‖² - ln ‖r_b - ...‖²                   of block b, both fits without its fold
+
+The chance is that of a test by blocks (`identification.estimation.block_test`), times the number of
+candidates that were asked (Bonferroni). The fall and its t are those of folds of neighbouring
+blocks, each predicted by fits to all others. Where a free parameter is more than 3 std from what
+was known of it, it may stand for the missing effect, and hide it: then t may also be that of fits
+in which these parameters are held at what was known. A candidate is proven if chance and t say so;
+of proven ones that predict alike, as t of their blocks' differences tells, the one with the fewest
+sizes is taken.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import chain, pairwise
+
+import numpy as np
+
+from identification.chances import mean_above_zero
+from identification.estimation.block_test import (
+    Scatter,
+    common_scatter,
+    covariance,
+    make_blocks,
+    p_values,
+    scatter_of,
+)
+from identification.torques.equations import Columns, Equations, Estimate, unseen_squares
+from identification.torques.laws import Missing
+
+CHANCE = 0.05  # of any candidate by luck
+PROOF = 3.0  # t of the fall on blocks that the fit did not see, or of a difference between two
+FAR = 3.0  # std of what was known, from which a free value may stand for something else
+HELD = 1e8  # times its precision, a prior holds a value
+UNFELT = 1e-6  # share of a column that the fit's columns leave, below which they imitate it
+
+
+@dataclass(frozen=True, kw_only=True)
+class Score:
+    """What a candidate would explain.
+
+    Attributes:
+        missing: which.
+        size: η̂, shape (m,), in the units of its sizes.
+        std: by blocks, shape (m,).
+        chance: of as much by luck, for the best of all that were asked.
+        fall: of the mean square on blocks that the fit did not see; negative where it rises.
+        t: of the fall.
+        gains: g of each block that the fits did not see, shape (B,).
+        held_t: t with the free parameters at what was known; 0 where it is not asked for.
+    """
+
+    missing: Missing
+    size: np.ndarray
+    std: np.ndarray
+    chance: float
+    fall: float
+    t: float
+    gains: np.ndarray
+    held_t: float = 0.0
+
+    @property
+    def is_proven(self) -> bool:
+        """Tells whether it is beyond chance and confirmed by blocks that the fit did not see."""
+        is_confirmed = max(self.t, self.held_t) > PROOF and self.fall > 0
+        return self.chance < CHANCE and is_confirmed and self.is_plausible
+
+    def is_like(self, other: Score) -> bool:
+        """Tells whether it predicts unseen blocks as well as another one, but for chance."""
+        difference = other.gains - self.gains
+        return not difference.any() or mean_above_zero(difference)[0] < PROOF
+
+    @property
+    def is_plausible(self) -> bool:
+        """Tells whether its sizes are some that a robot may have."""
+        pairs = zip(self.size, self.missing.signs, self.missing.most, strict=True)
+        return all(abs(s) <= most and s * sign >= 0 for s, sign, most in pairs)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Base:
+    """A fit to which candidates are added.
+
+    Attributes:
+        Φ: columns, shape (N, nv, p).
+        y: right side, shape (N, nv).
+        P: precision of the priors, shape (p,).
+        θ_0: their means, shape (p,).
+        fit: of these.
+        M: moments of (Φ, y), shape (nv, B, p + 1, p + 1).
+        known: number of sizes, the first ones, that are free with what was known of them.
+    """
+
+    Φ: np.ndarray
+    y: np.ndarray
+    P: np.ndarray
+    θ_0: np.ndarray
+    fit: Estimate
+    M: np.ndarray
+    known: int = 0
+
+    @property
+    def far(self) -> np.ndarray:
+        """Free sizes less what was known of them, in its std, shape (known,)."""
+        off = (self.fit.θ - self.θ_0) * np.sqrt(self.P)
+        return np.asarray(off[: self.known])
+
+
+def rank(equations: Equations, base: Base, candidates: Sequence[Missing]) -> tuple[Score, ...]:
+    """Returns the score of each candidate with its best shape, the best on unseen blocks first.
+
+    Args:
+        equations: of the records.
+        base: the fit without them.
+        candidates: which.
+    """
+    scale = 1 / np.sqrt(np.maximum(np.diag(base.fit.H), 1e-300))
+    inverse = np.linalg.pinv(base.fit.H * np.outer(scale, scale), rcond=1e-14, hermitian=True)
+    values, vectors = np.linalg.eigh(inverse)
+    root = (vectors * np.sqrt(np.maximum(values, 0.0))).T * scale  # Λ^½: rootᵀ root = H⁻¹
+    inverse = inverse * np.outer(scale, scale)
+    whole, seen = np.einsum("j,jbpq->bpq", base.fit.weights, base.M), ~equations.confirms
+    judged = equations.confirms if equations.confirms.any() else seen
+    judged = judged & (
+        equations.counts.sum(axis=0) > 0
+    )  # a block in which all joints rest has none
+    G = whole[seen]
+
+    priors = [base.P]
+    if (np.abs(base.far) > FAR).any():
+        priors.append(np.where(np.arange(len(base.P)) < base.known, HELD * base.P, base.P))
+
+    def squares_of(M: np.ndarray, more: int) -> list[np.ndarray]:
+        none = np.zeros(more)
+        given = np.ones(1), np.append(base.θ_0, none), equations.confirms
+        return [
+            np.log(unseen_squares(M[None], given[0], np.append(P, none), *given[1:])[0, judged])
+            for P in priors
+        ]
+
+    unseen = squares_of(whole, 0)
+    weighted = _Weighted(equations, base)
+    found: list[tuple[Missing, np.ndarray, Scatter, list[np.ndarray]]] = []
+    left_out: list[Missing] = []
+    for missing in chain(candidates, left_out):  # these are scored with the sizes that are apart
+        if (of := weighted.moments(missing.columns())) is None:
+            continue
+        joined = _joined(whole, *of)
+        cross, own = of[0][seen], of[1][seen]  # (B, p + 1, m), (B, m, m)
+        C = inverse @ cross[:, :-1].sum(axis=0)
+        P_b = cross[:, :-1] - G[:, :-1, :-1] @ C
+        G_b = own - C.T @ cross[:, :-1] - np.swapaxes(cross[:, :-1], 1, 2) @ C
+        G_b = G_b + C.T @ G[:, :-1, :-1] @ C
+        felt, left = np.diag(own.sum(axis=0)), np.diag(G_b.sum(axis=0))
+        apart = left > UNFELT * felt
+        if not apart.all():
+            if apart.any() and len(apart) > 1:
+                left_out.append(missing.only(apart))
+            continue
+        r_b = cross[:, -1] - np.einsum("bpm,p->bm", cross[:, :-1], base.fit.θ)
+        r_b = r_b - (G[:, :-1, -1] - G[:, :-1, :-1] @ base.fit.θ) @ C
+        prior = base.P * (base.θ_0 - base.fit.θ)
+        below = -np.sqrt(base.P)[:, None] * C  # rows of the priors, a last block
+        G_all = np.concatenate([G_b, (below.T @ below)[None]])
+        a_all = np.concatenate([r_b, (-C.T @ prior)[None]])
+        Z = np.concatenate([root @ P_b, (root @ (np.sqrt(base.P)[:, None] * below))[None]])
+        blocks = make_blocks(G_all[:, None], Z[:, :, None])
+        η = np.linalg.lstsq(G_all.sum(axis=0), a_all.sum(axis=0), rcond=1e-12)[0]
+        scatter = scatter_of(blocks, a_all[:, None], np.ones(1), np.array([missing.signs]))
+        found.append((missing, η, scatter, squares_of(joined, len(η))))
+    common = common_scatter([scatter for _, _, scatter, _ in found])
+    scores = []
+    for missing, η, scatter, squares in found:
+        p = float(p_values(scatter, common)[0])
+        gains, *held = (a - b for a, b in zip(unseen, squares, strict=True))
+        std = np.sqrt(np.maximum(np.diag(covariance(scatter, common)[0]), 0.0))
+        t, held_t = (_t_of(g) for g in (gains, *held, 0 * gains)[:2])
+        scores.append(Score(
+            missing=missing, size=η, std=std, chance=min(1.0, p * len(found)), t=t,
+            fall=1 - float(np.exp(squares[0]).sum() / np.exp(unseen[0]).sum()), gains=gains,
+            held_t=held_t,
+        ))  # fmt: skip
+    best: dict[tuple[str, str], Score] = {}
+    for score in sorted(scores, key=lambda s: (-s.is_plausible, -float(s.gains.sum()))):
+        best.setdefault(score.missing.key, score)
+    return tuple(sorted(best.values(), key=lambda s: (-s.is_proven, -float(s.gains.sum()))))
+
+
+def _t_of(gains: np.ndarray) -> float:
+    return float(mean_above_zero(gains)[0]) if gains.any() else 0.0
+
+
+def choose(scores: Sequence[Score]) -> Score | None:
+    """Returns the proven candidate to take: of those that predict alike the one of fewest sizes."""
+    proven = [s for s in scores if s.is_proven]
+    if not proven:
+        return None
+    first = proven[0]
+    alike = [s for s in proven if s.is_like(first)]
+    return min(alike, key=lambda s: (len(s.size), -float(s.gains.sum())))
+
+
+class _Weighted:
+    """The fit's columns and right side with their weights, joint by joint."""
+
+    def __init__(self, equations: Equations, base: Base) -> None:
+        rest = np.concatenate([base.Φ, base.y[:, :, None]], axis=2)
+        self.weight = np.sqrt(base.fit.weights) * equations.stacked("used")
+        weighted = rest * self.weight[:, :, None]
+        self.whole = weighted.reshape(-1, rest.shape[2])
+        self.each = [np.ascontiguousarray(weighted[:, j]) for j in range(equations.joints)]
+        self.edges = np.searchsorted(equations.block, np.arange(len(equations.record) + 1))
+
+    def moments(self, columns: Columns) -> tuple[np.ndarray, np.ndarray] | None:
+        """Returns moments of columns with the fit's (B, p + 1, m), and with themselves (B, m, m).
+
+        None where one of them is zero.
+        """
+        x = columns.values * self.weight[:, :, None]
+        if columns.joints is not None and len(columns.joints) == 1:
+            (j,) = columns.joints
+            rest, x, times = self.each[j], x[:, j], 1
+        else:
+            rest, x, times = self.whole, x.reshape(-1, x.shape[2]), len(self.each)
+        if not x.any(axis=0).all():
+            return None
+        blocks = [slice(times * a, times * b) for a, b in pairwise(self.edges.tolist())]
+        cross = np.array([rest[some].T @ x[some] for some in blocks])
+        return cross, np.array([x[some].T @ x[some] for some in blocks])
+
+
+def _joined(G: np.ndarray, cross: np.ndarray, own: np.ndarray) -> np.ndarray:
+    """Returns moments of (Φ, S, y), shape (B, p + m + 1, p + m + 1)."""
+    p, m = G.shape[1] - 1, own.shape[1]
+    out = np.empty((len(G), p + m + 1, p + m + 1))
+    out[:, :p, :p], out[:, -1, -1] = G[:, :-1, :-1], G[:, -1, -1]
+    out[:, :p, -1] = out[:, -1, :p] = G[:, :-1, -1]
+    out[:, :p, p:-1], out[:, p:-1, p:-1] = cross[:, :-1], own
+    out[:, p:-1, :p] = np.swapaxes(cross[:, :-1], 1, 2)
+    out[:, p:-1, -1] = out[:, -1, p:-1] = cross[:, -1]
+    return out

@@ -1,0 +1,95 @@
+"""Torques of an arm in closed loop: a hidden load is found; where nothing is missing, nothing."""
+
+import json
+
+import numpy as np
+import pytest
+from torque_cases import planar, planar_record, planar_robot
+
+from identification import fit_torques
+from identification.__main__ import main
+from identification.logs.csv_files import write_log
+
+LOAD = 0.7
+
+
+@pytest.fixture(scope="module")
+def loaded(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("loaded")
+    records = [planar_record(k, LOAD, name=f"r{k}") for k in (11, 12)]
+    return fit_torques(planar_robot(folder, records[0], confirm=[records[1]]))
+
+
+def test_a_hidden_load_is_found_first_and_weighed(loaded):
+    first = loaded.named[0]
+    assert first.missing.title == "payload, body fore"
+    assert first.size[0] == pytest.approx(LOAD, rel=0.03)
+    assert abs(first.size[0] - LOAD) < 4 * first.std[0]
+    assert first.fall > 0.9
+    assert "payload, body fore: M = " in repr(loaded)
+
+
+def test_frictions_and_base_parameters_are_those_of_the_truth(loaded):
+    truth = {
+        "h_z of upper + 0.5 m of fore": 2.0 + 0.5 * LOAD,
+        "h_z of fore": 0.4 + 0.5 * LOAD,
+        "I_yy of fore": 0.11 + 0.25 * LOAD,
+        "armature of elbow": 0.3,
+        "viscous of elbow": 2.0,
+        "coulomb of shoulder": 1.0,
+    }
+    for name, value in truth.items():
+        assert loaded.values[name] == pytest.approx(value, rel=0.05)
+        assert abs(loaded.values[name] - value) < 5 * loaded.std[name]
+
+
+@pytest.mark.parametrize("seed", [21, 31])
+def test_where_nothing_is_missing_nothing_is_named(seed, tmp_path):
+    robot = planar_robot(tmp_path, planar_record(seed), planar_record(seed + 1, name="other"))
+    found = fit_torques(robot)
+    assert found.named == ()
+    assert "No effect is proven" in found.to_dict()["verdict"][0]
+
+
+def test_a_load_of_one_record_is_told_without_any_prior(tmp_path):
+    records = planar_record(41, name="empty"), planar_record(42, LOAD, name="carrying")
+    toml = 'model = "arm.xml"\nfree = ["body/fore.mass"]\nhorizon = 0.2\n'
+    found = fit_torques(planar_robot(tmp_path, *records, toml=toml)).found.differences[0]
+    assert found.is_proven
+    assert found.missing.where == "body fore in carrying"
+    assert found.missing.sizes == ("m", "h_x", "h_z", "I_yy")  # the joints feel no other number
+    truth = np.array([LOAD, 0.0, 0.5 * LOAD, 0.25 * LOAD])
+    np.testing.assert_allclose(found.size, truth, atol=0.07 * LOAD)
+
+
+def test_the_command_tells_and_keeps_what_python_does(tmp_path, capsys):
+    (tmp_path / "arm.xml").write_text(planar())
+    (tmp_path / "arm.toml").write_text(
+        'model = "arm.xml"\nfree = ["body/fore.mass"]\ntrust = ["units", "steps"]\n'
+    )
+    write_log(planar_record(11, LOAD), tmp_path / "log.csv")
+    out = tmp_path / "out"
+    arguments = ["torques", str(tmp_path / "arm.toml"), str(tmp_path / "log.csv")]
+    assert main([*arguments, "--out", str(out), "--quiet"]) == 0
+    said = capsys.readouterr().out
+    assert said.startswith("The torques need payload, body fore")
+    record = json.loads((out / "result.json").read_text())
+    assert record["named"][0]["name"] == "payload"
+    assert record["joints"]["elbow"]["unit"] == "N m"
+    model = {n: v["model"] for n, v in record["base_parameters"].items() if "model" in v}
+    assert model["h_z of fore"] == pytest.approx(0.4)
+    assert (out / "report.html").stat().st_size > 10_000
+    assert len([*out.glob("torques-*.png")]) == 1
+    assert np.isfinite([j["final"]["unseen"] for j in record["joints"].values()]).all()
+
+
+def test_a_load_that_free_masses_hide_is_judged_with_them_at_what_was_known(tmp_path):
+    names = ("body/upper.mass", "body/fore.mass", "joint/shoulder.armature", "joint/elbow.armature")
+    toml = f"model = 'arm.xml'\nfree = {[*names]}\nhorizon = 0.2\n"
+    toml += "".join(f'[parameters."{n}"]\nknown = 0.05\n' for n in names)
+    records = [planar_record(k, LOAD, name=f"r{k}", noise=2e-4) for k in (51, 52)]
+    found = fit_torques(planar_robot(tmp_path, records[0], toml=toml, confirm=[records[1]])).found
+    assert np.abs(found.model.base.far).max() > 3.0
+    assert found.named[0].missing.title == "payload, body fore"
+    assert found.found[0].held_t > max(3.0, found.found[0].t)
+    assert abs(found.named[0].size[0] - LOAD) < 4 * found.named[0].std[0]
