@@ -44,8 +44,8 @@ def torque_sections(evidence: Evidence, model: mujoco.MjModel) -> list[Section]:
         Section(
             "Friction",
             "Beside these base parameters: viscous and Coulomb friction and a constant force.",
-            table=Table(("friction", "fitted"),
-                        tuple(friction_rows(evidence.whole, evidence.equations.joints))),
+            table=Table(("friction", "fitted", "model", "difference in std"),
+                        tuple(friction_rows(evidence))),
         ),
     ]  # fmt: skip
 

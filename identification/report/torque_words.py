@@ -34,6 +34,7 @@ def torque_verdict(evidence: Evidence, model: mujoco.MjModel) -> list[str]:
     return [
         *_missing(evidence),
         *_residual(evidence, model),
+        *_friction(evidence),
         *_far(evidence),
         *_differences(evidence),
         *_doubts(evidence),
@@ -46,8 +47,8 @@ def torque_text(verdict: Sequence[str], evidence: Evidence) -> str:
     lines += [f"  {t}: {s}; {f}, {tt}, {c}" for t, s, f, tt, c in score_rows(evidence.scores)]
     lines += ["", "Base parameters (fitted; model; difference in std):"]
     lines += [f"  {n}: {v}; {m}; {off}" for n, v, m, off in base_rows(evidence)]
-    lines += ["", "Friction:"]
-    lines += [f"  {n}: {v}" for n, v in friction_rows(evidence.whole, evidence.equations.joints)]
+    lines += ["", "Friction (fitted; model; difference in std):"]
+    lines += [f"  {n}: {v}; {m}; {off}" for n, v, m, off in friction_rows(evidence)]
     return "\n".join(lines)
 
 
@@ -68,7 +69,8 @@ def _missing(evidence: Evidence) -> list[str]:
     if not evidence.found:
         first = evidence.scores[0]
         return [
-            f"No effect is proven by the torques: of {evidence.asked} candidates the nearest is"
+            "Beside friction, which is always fitted, no effect is proven by the torques: of"
+            f" {evidence.asked} candidates the nearest is"
             f" {first.missing.title} ({size_words(first)}), with which the mean square on {on} that"
             f" no fit has seen {fall_words(first.fall)}, t {first.t:.1f}, chance"
             f" {chance_words(first.chance)}.",
@@ -138,6 +140,14 @@ def _residual(evidence: Evidence, model: mujoco.MjModel) -> list[str]:
             " inertias of the model are off, or something acts like them."
         )
     return out
+
+
+def _friction(evidence: Evidence) -> list[str]:
+    off = [(n, v, m) for n, v, m, d in friction_rows(evidence) if abs(float(d)) > FAR]
+    if not off:
+        return []
+    said = listed([f"{name} {value} (model {model})" for name, value, model in off])
+    return [f"Frictions that are not the model's: {said}."]
 
 
 def _far(evidence: Evidence) -> list[str]:
@@ -211,11 +221,14 @@ def base_rows(evidence: Evidence) -> list[tuple[str, str, str, str]]:
     return rows
 
 
-def friction_rows(fit: Fitted, joints: int) -> list[tuple[str, str]]:
-    """Returns rows of frictions: name, value with std, of a base fit."""
-    some = slice(fit.inertial, fit.inertial + 3 * joints)
-    each = zip(fit.names[some], fit.fit.θ[some], fit.fit.std[some], fit.units[some], strict=True)
-    return [(n, quantity(v, s, u)) for n, v, s, u in each]
+def friction_rows(evidence: Evidence) -> list[tuple[str, str, str, str]]:
+    """Returns rows of frictions: name, value with std, the model's, the difference in std."""
+    fit, rows = evidence.whole, []
+    for k, model in enumerate(evidence.friction, fit.inertial):
+        value, std, unit = fit.fit.θ[k], fit.fit.std[k], fit.units[k]
+        told = quantity(value, std, unit, like=model), quantity(model, unit=unit, like=value)
+        rows.append((fit.names[k], *told, f"{(value - model) / std:+.1f}"))
+    return rows
 
 
 def score_rows(scores: tuple[Score, ...]) -> list[tuple[str, str, str, str, str]]:
@@ -241,7 +254,9 @@ def evidence_to_json(evidence: Evidence, model: mujoco.MjModel) -> dict[str, Any
         joints[name] = {"unit": units[j], **of}
     return plain({
         "joints": joints,
-        "base_parameters": _values(evidence.whole, evidence.base.values, evidence.other),
+        "base_parameters": _values(
+            evidence.whole, np.append(evidence.base.values, evidence.friction), evidence.other
+        ),
         "values": _values(evidence.final, None, None),
         "named": [_score(s) for s in evidence.named],
         "scores": [_score(s) for s in evidence.scores[:SHOWN]],

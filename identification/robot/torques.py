@@ -16,7 +16,7 @@ from identification.robot.robot import Robot
 from identification.robot.torque_fit import TorqueFit
 from identification.torques.bodies import read_numbers
 from identification.torques.evidence import find_evidence
-from identification.torques.fits import FreeNumber
+from identification.torques.fits import FreeNumber, read_friction
 from identification.written import Files
 
 STEP = 1e-3  # of a value, or of its scale where it is zero, by which it is moved
@@ -45,7 +45,7 @@ def fit_torques(robot: Robot, progress: Callable[[str], None] | None = None) -> 
     evidence = find_evidence(
         model, logs, own=own,
         confirm=len(robot.records), free=free_numbers(robot, logs), effects=robot.candidates,
-        bodies=robot.plant.bodies, say=progress,
+        bodies=robot.plant.bodies, friction=_friction(robot, model), say=progress,
     )  # fmt: skip
     return TorqueFit(robot, evidence, _files)
 
@@ -78,6 +78,16 @@ def free_numbers(robot: Robot, logs: Sequence[Log]) -> tuple[FreeNumber, ...]:
 
 def _numbers(model: mujoco.MjModel) -> np.ndarray:
     return np.concatenate([read_numbers(model).ravel(), model.dof_armature])
+
+
+def _friction(robot: Robot, model: mujoco.MjModel) -> np.ndarray:
+    """Returns the frictions of a robot's joints, its effects among them, shape (3 nv,)."""
+    values, out = robot.plant.parameters.values(), read_friction(model)
+    for k, j in enumerate(model.dof_jntid):
+        for i, name in ((1, "coulomb_friction.f_c"), (2, "offset.f_0")):
+            places = (name, f"{name}@{model.joint(int(j)).name}")
+            out[3 * k + i] += sum(values.get(place, 0.0) for place in places)
+    return out
 
 
 def _without_effects(plant: JointPlant) -> mujoco.MjModel:

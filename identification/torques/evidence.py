@@ -31,6 +31,7 @@ from identification.torques.fits import (
     expect_drives,
     extended,
     model_fit,
+    read_friction,
 )
 from identification.torques.laws import Missing
 from identification.torques.rows import make_rows
@@ -58,6 +59,7 @@ class Evidence:
         asked: number of candidates beside the model fit, each shape counted.
         unseen: residual of each joint by fits that did not see it, of base, model and final fit,
             shape (3, nv) [N m or N].
+        friction: of the model, three numbers a joint as the fits have them, shape (3 nv,).
         inconsistent: places of base parameters that no bodies have, within 3 std.
     """
 
@@ -73,6 +75,7 @@ class Evidence:
     differences: tuple[Score, ...]
     asked: int
     unseen: np.ndarray
+    friction: np.ndarray
     inconsistent: tuple[int, ...]
 
     @property
@@ -89,7 +92,8 @@ class Evidence:
 def find_evidence(
     model: mujoco.MjModel, logs: Sequence[Log], *, own: Sequence[mujoco.MjModel] = (),
     confirm: int = 0, free: Sequence[FreeNumber] = (), effects: Sequence[Effect] = (),
-    bodies: Sequence[MovingBody] = (), say: Callable[[str], None] | None = None,
+    bodies: Sequence[MovingBody] = (), friction: np.ndarray | None = None,
+    say: Callable[[str], None] | None = None,
 ) -> Evidence:  # fmt: skip
     """Returns what torques say of a robot.
 
@@ -101,6 +105,7 @@ def find_evidence(
         free: parameters that are fitted with what was known of them.
         effects: of the catalogue, that may be missing.
         bodies: with places for payloads.
+        friction: of the model, shape (3 nv,); its damping and friction loss where None.
         say: is told one line a step.
 
     Raises:
@@ -141,6 +146,7 @@ def find_evidence(
         equations=equations, base=base, whole=whole, other=other, model=nominal, final=final,
         scores=scores, found=tuple(found), rest=rest, differences=differences,
         asked=len(candidates), unseen=np.array(unseen),
+        friction=read_friction(model) if friction is None else friction,
         inconsistent=find_inconsistent(base, whole.fit.θ[:r], whole.fit.std[:r]),
     )  # fmt: skip
 

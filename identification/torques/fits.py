@@ -102,6 +102,12 @@ def friction_names(model: mujoco.MjModel) -> tuple[list[str], list[str]]:
     return names, units
 
 
+def read_friction(model: mujoco.MjModel) -> np.ndarray:
+    """Returns damping, friction loss and zero of each joint of a model, shape (3 nv,)."""
+    none = np.zeros(model.nv)
+    return np.stack([model.dof_damping, model.dof_frictionloss, none], axis=1).ravel()
+
+
 def _friction_scales(equations: Equations) -> np.ndarray:
     """Returns how large frictions may be at most, roughly, shape (3 nv,)."""
     v, y = (np.abs(equations.stacked(n)).max(axis=0) for n in ("v", "y"))

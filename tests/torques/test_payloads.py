@@ -48,7 +48,16 @@ def test_where_nothing_is_missing_nothing_is_named(seed, tmp_path):
     robot = planar_robot(tmp_path, planar_record(seed), planar_record(seed + 1, name="other"))
     found = fit_torques(robot)
     assert found.named == ()
-    assert "No effect is proven" in found.to_dict()["verdict"][0]
+    assert "no effect is proven" in found.to_dict()["verdict"][0]
+
+
+def test_a_friction_that_the_model_lacks_is_told(tmp_path):
+    found = fit_torques(planar_robot(tmp_path, planar_record(61, f=1.6)))
+    (said,) = [s for s in found.to_dict()["verdict"] if "not the model's" in s]
+    assert "coulomb of shoulder" in said
+    assert "coulomb of elbow" in said
+    assert "(model 1 N m)" in said
+    assert found.values["coulomb of elbow"] == pytest.approx(1.6, rel=0.02)
 
 
 def test_a_load_of_one_record_is_told_without_any_prior(tmp_path):
