@@ -77,22 +77,15 @@ T = TypeVar("T")
 
 @dataclass(frozen=True)
 class Failed:
-    """Something that a search tried and that could not be evaluated.
+    """Something that a search tried and that could not be evaluated."""
 
-    Attributes:
-        name: of the effect; what the search was about to do, where that is no candidate.
-        where: its place, in words; "" where it has none.
-        diverged: whether a simulation diverged; else the values that were tried were refused, or
-            equations could not be solved.
-        reason: what the error said; "" where it said nothing.
-        dropped: whether it could be evaluated, and the search left it for that reason.
-    """
-
-    name: str
-    where: str
+    name: str  # of the effect; what the search was about to do, where that is no candidate
+    where: str  # its place, in words; "" where it has none
+    # whether a simulation diverged; else the values that were tried were refused, or equations
+    # could not be solved
     diverged: bool
-    reason: str
-    dropped: bool = False
+    reason: str  # what the error said; "" where it said nothing
+    dropped: bool = False  # whether it could be evaluated, and the search left it for that reason
 
     @property
     def key(self) -> tuple[str, str]:

@@ -30,41 +30,31 @@ Test = Literal["flips of signs", "Student's t"]
 
 @dataclass(frozen=True, kw_only=True)
 class Proof:
-    """The gain of an effect on samples that no fit has seen.
+    """The gain of an effect on samples that no fit has seen."""
 
-    Attributes:
-        test: the test that tells the chance.
-        t: Student's t of the gain, by blocks.
-        chance: of a gain as large as this by luck, by the test.
-        fall: relative fall of the mean square of the judged error.
-        gain: log likelihood of the unseen samples with it minus without, under one noise; NaN
-            where no likelihood judges them.
-        blocks: how many blocks there are.
-        share: of the mean square above sensors' noise and input errors, the share that it closes;
-            NaN where that is not known of it alone.
-        above: of the mean square above the sensors' noise, the share that it closes; likewise.
-        falls: `fall` by the length of the predicted windows; empty for a free run.
-        records: mean gain of each unseen record, over its blocks; empty for a free run.
-        is_everywhere: whether windows of every length are predicted better.
-        agrees: names of the records whose unseen samples it makes likelier.
-        disagrees: names of the records whose unseen samples it makes less likely, beyond chance.
-        untouched: the same on samples on which the search has not decided, as it has on those of
-            this proof (`identification.logs.parts`); None where no such part is kept.
-    """
-
-    test: Test = "flips of signs"
-    t: float
-    chance: float
-    fall: float
+    test: Test = "flips of signs"  # the test that tells the chance
+    t: float  # Student's t of the gain, by blocks
+    chance: float  # of a gain as large as this by luck, by the test
+    fall: float  # relative fall of the mean square of the judged error
+    # log likelihood of the unseen samples with it minus without, under one noise; NaN where no
+    # likelihood judges them
     gain: float = nan
-    blocks: int
+    blocks: int  # how many blocks there are
+    # of the mean square above sensors' noise and input errors, the share that it closes; NaN where
+    # that is not known of it alone
     share: float = nan
+    # of the mean square above the sensors' noise, the share that it closes; likewise
     above: float = nan
+    # `fall` by the length of the predicted windows; empty for a free run
     falls: tuple[float, ...] = ()
+    # mean gain of each unseen record, over its blocks; empty for a free run
     records: tuple[float, ...] = ()
-    is_everywhere: bool = True
-    agrees: tuple[str, ...] = ()
+    is_everywhere: bool = True  # whether windows of every length are predicted better
+    agrees: tuple[str, ...] = ()  # names of the records whose unseen samples it makes likelier
+    # names of the records whose unseen samples it makes less likely, beyond chance
     disagrees: tuple[str, ...] = ()
+    # the same on samples on which the search has not decided, as it has on those of this proof
+    # (`identification.logs.parts`); None where no such part is kept
     untouched: Proof | None = None
 
     @property
@@ -75,41 +65,28 @@ class Proof:
 
 @dataclass(frozen=True)
 class Gap:
-    """Error on the samples that no fit has seen.
+    """Error on the samples that no fit has seen."""
 
-    Attributes:
-        rms: over all outputs, in their unit; over a horizon, where they have several, each counts
-            in its own scale.
-        fit_percent: of each output, shape (ny,) [%].
-        rms_by_unit: rms by the outputs' units, each in it.
-    """
-
+    # over all outputs, in their unit; over a horizon, where they have several, each counts in its
+    # own scale
     rms: float
-    fit_percent: np.ndarray
+    fit_percent: np.ndarray  # of each output, shape (ny,) [%]
+    # rms by the outputs' units, each in it
     rms_by_unit: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
 class RecordError:
-    """Errors of two models on one record; NaN and empty where no sample of it is judged.
+    """Errors of two models on one record; NaN and empty where no sample of it is judged."""
 
-    Attributes:
-        name: of the record.
-        role: "fit" or "confirm".
-        before: rms of the model before (the nominal one, or the values with which a fit began),
-            over all outputs, in the outputs' unit where they have one, else in units of their
-            scale.
-        after: rms of the model after (the final one, or the fitted one).
-        before_by_unit: rms of the model before by the outputs' units, each in it.
-        after_by_unit: likewise of the model after.
-    """
-
-    name: str
-    role: str
+    name: str  # of the record
+    role: str  # "fit" or "confirm"
+    # rms of the model before (the nominal one, or the values with which a fit began), over all
+    # outputs, in the outputs' unit where they have one, else in units of their scale
     before: float
-    after: float
-    before_by_unit: Mapping[str, float]
-    after_by_unit: Mapping[str, float]
+    after: float  # rms of the model after (the final one, or the fitted one)
+    before_by_unit: Mapping[str, float]  # rms of the model before by the outputs' units, each in it
+    after_by_unit: Mapping[str, float]  # likewise of the model after
 
 
 class _HasCandidate(Protocol):
@@ -157,92 +134,62 @@ class Scored(Protocol):
 
 @dataclass(frozen=True)
 class Rival(OfCandidate):
-    """Another effect that may explain the same data.
+    """Another effect that may explain the same data."""
 
-    Attributes:
-        candidate: the effect.
-        confidence: probability that it is the right one of those considered.
-        alike: cosine between its sensitivity and that of the named effect, with the nominal
-            model's parameters projected out; None where it is not computed.
-        values: of parameters of the fit with it in the named effect's place, by name, in their
-            units; those of the effect are among them.
-    """
-
-    candidate: Candidate
-    confidence: float
+    candidate: Candidate  # the effect
+    confidence: float  # probability that it is the right one of those considered
+    # cosine between its sensitivity and that of the named effect, with the nominal model's
+    # parameters projected out; None where it is not computed
     alike: float | None = None
+    # of parameters of the fit with it in the named effect's place, by name, in their units; those
+    # of the effect are among them
     values: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
 class Retuned:
-    """The move of the nominal model's parameters that would explain the same without an effect.
+    """The move of the nominal model's parameters that would explain the same without an effect."""
 
-    Attributes:
-        parameter: name of the one that would move the farthest from what was known of it.
-        distance: how far it would move, in std of its prior.
-        confidence: probability that this is right and the effect is not, of those considered.
-    """
-
-    parameter: str
-    distance: float
-    confidence: float
+    parameter: str  # name of the one that would move the farthest from what was known of it
+    distance: float  # how far it would move, in std of its prior
+    confidence: float  # probability that this is right and the effect is not, of those considered
 
 
 @dataclass(frozen=True)
 class Outside:
-    """A curve outside the catalogue, drawn from the data, that may explain the same.
+    """A curve outside the catalogue, drawn from the data, that may explain the same."""
 
-    Attributes:
-        along: what it follows: "rate", "position", "input" or "time".
-        where: the joint on which it acts, or all actuated joints.
-        confidence: probability that this is right and the effect is not, of those considered.
-    """
-
-    along: str
-    where: str
-    confidence: float
+    along: str  # what it follows: "rate", "position", "input" or "time"
+    where: str  # the joint on which it acts, or all actuated joints
+    confidence: float  # probability that this is right and the effect is not, of those considered
 
 
 @dataclass(frozen=True)
 class RejectedEffect(OfCandidate):
-    """An effect that was refitted and not accepted.
+    """An effect that was refitted and not accepted."""
 
-    Attributes:
-        candidate: the effect.
-        parameters: its sizes and shapes by name: value, std, unit.
-        bic_gain: by how much it raises the negative BIC on the fitted samples; NaN over a horizon.
-        proof: what it does for unseen samples, which decided, and for those that are told of.
-        outside: something like it that no catalogue lists and that is likelier, where it was.
-        evidence: what speaks for it over all windows; NaN for a free run.
-        doubt: why it is not proven, a word of `identification.prediction.trial.Doubt`; None where
-            it is, or where no reason is told.
-        confidence: that its name would have had.
-    """
-
-    candidate: Candidate
+    candidate: Candidate  # the effect
+    # its sizes and shapes by name: value, std, unit
     parameters: Mapping[str, tuple[float, float, str]]
+    # by how much it raises the negative BIC on the fitted samples; NaN over a horizon
     bic_gain: float
-    proof: Proof
+    proof: Proof  # what it does for unseen samples, which decided, and for those that are told of
+    # something like it that no catalogue lists and that is likelier, where it was
     outside: Outside | None = None
-    evidence: float = nan
+    evidence: float = nan  # what speaks for it over all windows; NaN for a free run
+    # why it is not proven, a word of `identification.prediction.trial.Doubt`; None where it is, or
+    # where no reason is told
     doubt: str | None = None
-    confidence: float = 0.0
+    confidence: float = 0.0  # that its name would have had
 
 
 @dataclass(frozen=True)
 class RecordDifference(OfCandidate):
-    """Something that differs between records, counted for each by itself: it is no effect.
+    """Something that differs between records, counted for each by itself: it is no effect."""
 
-    Attributes:
-        candidate: what it is, with a size of each record.
-        values: value and std by name, `size [record]` [unit].
-        unit: of them.
-    """
-
-    candidate: Candidate
-    values: Mapping[str, tuple[float, float]]
-    unit: str
+    candidate: Candidate  # what it is, with a size of each record
+    values: Mapping[str, tuple[float, float]]  # value and std by name, `size [record]` [unit]
+    unit: str  # of them
 
     @property
     def spread(self) -> float:
@@ -255,63 +202,44 @@ class RecordDifference(OfCandidate):
 
 @dataclass(frozen=True)
 class Neighbour:
-    """The curve of the data that explains what a law leaves with the least chance of luck.
+    """The curve of the data that explains what a law leaves with the least chance of luck."""
 
-    Attributes:
-        curve: its name.
-        where: its place.
-        share: of the fitted error that it would take away beside the law, 0 to 1.
-        chance: of as much by luck, paid for by the number of curves.
-        of_both: what the curve explains of what law and curve explain together, 0 to 1.
-    """
-
-    curve: str
-    where: str
-    share: float
-    chance: float
-    of_both: float
+    curve: str  # its name
+    where: str  # its place
+    share: float  # of the fitted error that it would take away beside the law, 0 to 1
+    chance: float  # of as much by luck, paid for by the number of curves
+    of_both: float  # what the curve explains of what law and curve explain together, 0 to 1
 
 
 @dataclass(frozen=True, kw_only=True)
 class NamedEffect(OfCandidate):
-    """An effect that is missing from the nominal model.
+    """An effect that is missing from the nominal model."""
 
-    Attributes:
-        candidate: effect, place, and shapes as estimated.
-        parameters: its sizes and shapes by name: value, std, unit.
-        confidence: probability that the name is right among its rivals, 0 to 1.
-        rivals: other effects that were refitted in its place.
-        compared: how many others were refitted in its place; some may be no rivals any more.
-        one_of: whether the data cannot tell it from its first rival.
-        bic_gain: by how much it raises the negative BIC on the fitted samples; NaN over a horizon.
-        evidence: what speaks for it over all windows; NaN for a free run.
-        proof: what it does for unseen samples, which decided, and for those that are told of.
-        retuned: the explanation without an effect; None where it was not computed.
-        advice: the experiment that would tell it from its first rival, in a sentence.
-        outside: something like it that no catalogue lists; None where no curve explains anything
-            beside the named effects.
-        same_as: the effect that is the same force by another name, so that no record tells which
-            it is (`identification.prediction.trial`); None where there is none.
-        smooth_share: of what it and smooth forces of its joint could explain, the share that it
-            explains (`identification.discovery.smooth_force`); None where that is not known.
-        neighbour: what a smooth force of what it depends on would explain beside it; None where
-            that is not known.
-    """
-
-    candidate: Candidate
+    candidate: Candidate  # effect, place, and shapes as estimated
+    # its sizes and shapes by name: value, std, unit
     parameters: Mapping[str, tuple[float, float, str]]
-    confidence: float
-    rivals: tuple[Rival, ...]
-    compared: int
-    one_of: bool
+    confidence: float  # probability that the name is right among its rivals, 0 to 1
+    rivals: tuple[Rival, ...]  # other effects that were refitted in its place
+    compared: int  # how many others were refitted in its place; some may be no rivals any more
+    one_of: bool  # whether the data cannot tell it from its first rival
+    # by how much it raises the negative BIC on the fitted samples; NaN over a horizon
     bic_gain: float = nan
-    evidence: float = nan
-    proof: Proof
+    evidence: float = nan  # what speaks for it over all windows; NaN for a free run
+    proof: Proof  # what it does for unseen samples, which decided, and for those that are told of
+    # the explanation without an effect; None where it was not computed
     retuned: Retuned | None = None
-    advice: str = ""
+    advice: str = ""  # the experiment that would tell it from its first rival, in a sentence
+    # something like it that no catalogue lists; None where no curve explains anything beside the
+    # named effects
     outside: Outside | None = None
+    # the effect that is the same force by another name, so that no record tells which it is
+    # (`identification.prediction.trial`); None where there is none
     same_as: Effect | None = None
+    # of what it and smooth forces of its joint could explain, the share that it explains
+    # (`identification.discovery.smooth_force`); None where that is not known
     smooth_share: float | None = None
+    # what a smooth force of what it depends on would explain beside it; None where that is not
+    # known
     neighbour: Neighbour | None = None
 
     @property
@@ -324,54 +252,34 @@ class NamedEffect(OfCandidate):
 
 @dataclass(frozen=True)
 class Unlogged:
-    """The unlogged error of the inputs that a fitted noise model has.
+    """The unlogged error of the inputs that a fitted noise model has."""
 
-    Attributes:
-        rms: of each input, in `unit`.
-        unit: of the inputs; "" where they have none.
-        time: for how long it keeps its value [s].
-        is_of_inputs: whether inputs move that could err; else it is a force on the joints.
-    """
-
-    rms: float
-    unit: str
-    time: float
-    is_of_inputs: bool
+    rms: float  # of each input, in `unit`
+    unit: str  # of the inputs; "" where they have none
+    time: float  # for how long it keeps its value [s]
+    is_of_inputs: bool  # whether inputs move that could err; else it is a force on the joints
 
 
 @dataclass(frozen=True)
 class Hidden(OfCandidate):
-    """An effect that is not named and that the fitted noise may hide.
+    """An effect that is not named and that the fitted noise may hide."""
 
-    Attributes:
-        candidate: the effect.
-        sizes: estimate, largest magnitude that the log does not contradict (95 %), and unit, by
-            name of the size.
-        taken: share of the power of the unlogged error of the inputs that it would explain.
-        gain: of twice the log likelihood, as its score says it.
-    """
-
-    candidate: Candidate
+    candidate: Candidate  # the effect
+    # estimate, largest magnitude that the log does not contradict (95 %), and unit, by name of the
+    # size
     sizes: Mapping[str, tuple[float, float, str]]
-    taken: float
-    gain: float
+    taken: float  # share of the power of the unlogged error of the inputs that it would explain
+    gain: float  # of twice the log likelihood, as its score says it
 
 
 @dataclass(frozen=True)
 class Detectable(OfCandidate):
-    """The smallest effect of a kind that a log would have shown.
+    """The smallest effect of a kind that a log would have shown."""
 
-    Attributes:
-        candidate: the effect.
-        size: name of one of its sizes.
-        smallest: the magnitude that is found in 9 of 10 logs [unit]; inf when none is.
-        unit: SI unit.
-    """
-
-    candidate: Candidate
-    size: str
-    smallest: float
-    unit: str
+    candidate: Candidate  # the effect
+    size: str  # name of one of its sizes
+    smallest: float  # the magnitude that is found in 9 of 10 logs [unit]; inf when none is
+    unit: str  # SI unit
 
     @property
     def largest(self) -> float:

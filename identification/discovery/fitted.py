@@ -23,16 +23,12 @@ BOUND_TOLERANCE = 1e-6  # relative: a value this near to a bound lies on it
 
 @dataclass(frozen=True)
 class StepShift:
-    """The change of a fit with a quarter of the model's step, to first order.
+    """The change of a fit with a quarter of the model's step, to first order."""
 
-    Attributes:
-        values: change of each value, shape (p,), in their units; zero where the windows do not feel
-            a value, NaN where they cannot be simulated with finer steps.
-        error: rms error of the fitted windows then, over what it is now; NaN likewise.
-    """
-
+    # change of each value, shape (p,), in their units; zero where the windows do not feel a value,
+    # NaN where they cannot be simulated with finer steps
     values: np.ndarray
-    error: float
+    error: float  # rms error of the fitted windows then, over what it is now; NaN likewise
 
     @property
     def is_known(self) -> bool:

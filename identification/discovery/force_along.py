@@ -27,38 +27,26 @@ JOINTS = (int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE))
 
 @dataclass(frozen=True, kw_only=True)
 class ForceAlong:
-    """Forces along a trajectory, on the degrees of freedom on which the first of them acts.
+    """Forces along a trajectory, on the degrees of freedom on which the first of them acts."""
 
-    Attributes:
-        dofs: n of them, each of a hinge or a slide.
-        stretches: the linearisation along each, whose inputs are forces on these.
-        predicted: outputs of the first set of values, shape (N, ny).
-        forces: of each set of values beyond the base, shape (M, n) each [N or N m].
-        drives: forces of the base's actuators, shape (M, n) [N or N m].
-        position: shape (M, n) [rad or m].
-        rate: shape (M, n) [rad/s or m/s].
-        turning: where the rate changes by more than itself to the point before or behind, and one
-            point beside: in a step of the simulation in which a joint turns or stops, friction has
-            both signs, shape (M, n).
-        time: in its record, shape (M, n) [s].
-        kind: of the joints, `mujoco.mjtJoint`.
-        late: the first force at the same states and inputs, had the clock run backwards,
-            shape (M, n).
-        late_time: what that clock would say, shape (M, n) [s].
-    """
-
-    dofs: tuple[int, ...]
+    dofs: tuple[int, ...]  # n of them, each of a hinge or a slide
+    # the linearisation along each, whose inputs are forces on these
     stretches: tuple[Linearisation, ...]
-    predicted: np.ndarray
+    predicted: np.ndarray  # outputs of the first set of values, shape (N, ny)
+    # of each set of values beyond the base, shape (M, n) each [N or N m]
     forces: tuple[np.ndarray, ...]
-    drives: np.ndarray
-    position: np.ndarray
-    rate: np.ndarray
+    drives: np.ndarray  # forces of the base's actuators, shape (M, n) [N or N m]
+    position: np.ndarray  # shape (M, n) [rad or m]
+    rate: np.ndarray  # shape (M, n) [rad/s or m/s]
+    # where the rate changes by more than itself to the point before or behind, and one point
+    # beside: in a step of the simulation in which a joint turns or stops, friction has both signs,
+    # shape (M, n)
     turning: np.ndarray
-    time: np.ndarray
-    kind: int
+    time: np.ndarray  # in its record, shape (M, n) [s]
+    kind: int  # of the joints, `mujoco.mjtJoint`
+    # the first force at the same states and inputs, had the clock run backwards, shape (M, n)
     late: np.ndarray
-    late_time: np.ndarray
+    late_time: np.ndarray  # what that clock would say, shape (M, n) [s]
 
     @property
     def is_timed(self) -> bool:
@@ -69,16 +57,11 @@ class ForceAlong:
 
 @dataclass(frozen=True)
 class Stretch:
-    """A simulation from one state: of a record, or of a window of one.
+    """A simulation from one state: of a record, or of a window of one."""
 
-    Attributes:
-        predictor: of its outputs.
-        along: its trajectory, of M points.
-        reached: of θ₀ and of each θ, the model and the inputs that reach it, shape (M, nu).
-    """
-
-    predictor: Predictor
-    along: Trajectory
+    predictor: Predictor  # of its outputs
+    along: Trajectory  # its trajectory, of M points
+    # of θ₀ and of each θ, the model and the inputs that reach it, shape (M, nu)
     reached: Sequence[tuple[mujoco.MjModel, np.ndarray]]
 
 

@@ -24,15 +24,10 @@ MAX_FORCE_POINTS = 4000  # at which a recovered force is looked at: its curve ne
 
 @dataclass(frozen=True)
 class Nodes:
-    """Nodes of a curve.
+    """Nodes of a curve."""
 
-    Attributes:
-        x: where they are, shape (m,).
-        side: 1 or -1 where a node acts on that side of zero only, else 0, shape (m,).
-    """
-
-    x: np.ndarray
-    side: np.ndarray
+    x: np.ndarray  # where they are, shape (m,)
+    side: np.ndarray  # 1 or -1 where a node acts on that side of zero only, else 0, shape (m,)
 
     def hats(self, x: np.ndarray) -> np.ndarray:
         """Returns the hat functions of the nodes at some places, shape (*x.shape, m)."""

@@ -28,22 +28,14 @@ from identification.logs.parts import Parts
 
 @dataclass(frozen=True, eq=False)
 class FreeRun:
-    """The free runs of two fits along a log.
+    """The free runs of two fits along a log."""
 
-    Attributes:
-        log: the whole log of N samples; its part `estimation` was fitted, the rest is unseen.
-        nominal: the fit without effects.
-        final: the fit with the named effects.
-        before: y - ŷ of the nominal fit, shape (N, ny), in the outputs' units.
-        after: the same of the final fit.
-        parts: of the samples that no fit has seen; None where the search told none apart.
-    """
-
-    log: Log
-    nominal: Refit
-    final: Refit
-    before: np.ndarray
-    after: np.ndarray
+    log: Log  # the whole log of N samples; its part `estimation` was fitted, the rest is unseen
+    nominal: Refit  # the fit without effects
+    final: Refit  # the fit with the named effects
+    before: np.ndarray  # y - ŷ of the nominal fit, shape (N, ny), in the outputs' units
+    after: np.ndarray  # the same of the final fit
+    # of the samples that no fit has seen; None where the search told none apart
     parts: Parts | None = None
 
     @property

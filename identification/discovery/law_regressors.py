@@ -31,24 +31,17 @@ SLIDE = int(mujoco.mjtJoint.mjJNT_SLIDE)
 
 @dataclass(frozen=True, kw_only=True)
 class Regressor:
-    """A quantity that a force follows.
+    """A quantity that a force follows."""
 
-    Attributes:
-        along: "rate", "position", "phase", "time", "drive", "law" or "reading".
-        values: at the points of a trajectory, for each of n degrees of freedom, shape (M, n).
-        moving: where the force follows it: a joint that is held, or turns, shows no law; shape
-            (M, n).
-        turn: 1, or the sign against the motion where the force is a friction, shape (M, n).
-        unit: of the values.
-        force_unit: of the force.
-    """
-
-    along: str
+    along: str  # "rate", "position", "phase", "time", "drive", "law" or "reading"
+    # at the points of a trajectory, for each of n degrees of freedom, shape (M, n)
     values: np.ndarray
+    # where the force follows it: a joint that is held, or turns, shows no law; shape (M, n)
     moving: np.ndarray
+    # 1, or the sign against the motion where the force is a friction, shape (M, n)
     turn: np.ndarray
-    unit: str
-    force_unit: str
+    unit: str  # of the values
+    force_unit: str  # of the force
 
     @property
     def resists(self) -> bool:

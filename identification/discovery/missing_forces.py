@@ -41,23 +41,14 @@ FREE, SLIDE = int(mujoco.mjtJoint.mjJNT_FREE), int(mujoco.mjtJoint.mjJNT_SLIDE)
 
 @dataclass(frozen=True, kw_only=True)
 class MissingForce:
-    """Forces on some degrees of freedom that would explain a residual.
+    """Forces on some degrees of freedom that would explain a residual."""
 
-    Attributes:
-        where: "the actuated joints", or the name of a free body.
-        names: of the degrees of freedom, k of them.
-        units: N or N m, k of them.
-        force: the smoothed estimate over the fitted samples, shape (N, k), in their units.
-        gain: twice the log likelihood that they add to a model without them.
-        share: of the residual's mean square that they explain, 0 to 1.
-    """
-
-    where: str
-    names: tuple[str, ...]
-    units: tuple[str, ...]
-    force: np.ndarray
-    gain: float
-    share: float
+    where: str  # "the actuated joints", or the name of a free body
+    names: tuple[str, ...]  # of the degrees of freedom, k of them
+    units: tuple[str, ...]  # N or N m, k of them
+    force: np.ndarray  # the smoothed estimate over the fitted samples, shape (N, k), in their units
+    gain: float  # twice the log likelihood that they add to a model without them
+    share: float  # of the residual's mean square that they explain, 0 to 1
 
 
 def estimate_missing_forces(fit: Refit) -> tuple[MissingForce, ...]:

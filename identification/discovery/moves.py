@@ -27,17 +27,12 @@ from identification.progress import Progress, stage
 
 @dataclass(frozen=True, kw_only=True)
 class Task:
-    """The question of a search: what does this model lack? An evidence adds the data.
+    """The question of a search: what does this model lack? An evidence adds the data."""
 
-    Attributes:
-        nominal_model: the model with every candidate effect compiled in, and its free parameters.
-        effects: the candidates.
-        options: all judgement constants.
-    """
-
+    # the model with every candidate effect compiled in, and its free parameters
     nominal_model: NominalModel
-    effects: tuple[Effect, ...]
-    options: DiscoveryOptions
+    effects: tuple[Effect, ...]  # the candidates
+    options: DiscoveryOptions  # all judgement constants
 
 
 class Trial(Protocol):
@@ -54,33 +49,20 @@ class Trial(Protocol):
 
 @dataclass(frozen=True, kw_only=True)
 class SearchState:
-    """All that a search knows after a step; each kind of evidence adds what it needs.
+    """All that a search knows after a step; each kind of evidence adds what it needs."""
 
-    Attributes:
-        task: what is asked.
-        moves: those that are still to be asked, in their order; none of a finished search.
-        nominal: the fitted model without effects.
-        nominal_scores: of all candidates on the nominal fit, the best first.
-        model: the fitted model with the accepted effects.
-        accepted: the effects that were accepted, each a `Trial`, in that order.
-        scores: of the candidates that the model does not have, on it, the best first.
-        rejected: what the last round refitted and did not accept, the best first.
-        seconds: wall time by kind of work [s].
-        failed: what was tried and could not be evaluated.
-        made: names of the moves that changed the effects, in their order.
-    """
-
-    task: Any
+    task: Any  # what is asked
+    # those that are still to be asked, in their order; none of a finished search
     moves: tuple[Move[Any], ...]
-    nominal: Any
-    nominal_scores: tuple[Any, ...]
-    model: Any
-    accepted: tuple[Any, ...]
-    scores: tuple[Any, ...]
-    rejected: tuple[Any, ...]
-    seconds: Mapping[str, float]
-    failed: tuple[Failed, ...] = ()
-    made: tuple[str, ...] = ()
+    nominal: Any  # the fitted model without effects
+    nominal_scores: tuple[Any, ...]  # of all candidates on the nominal fit, the best first
+    model: Any  # the fitted model with the accepted effects
+    accepted: tuple[Any, ...]  # the effects that were accepted, each a `Trial`, in that order
+    scores: tuple[Any, ...]  # of the candidates that the model does not have, on it, the best first
+    rejected: tuple[Any, ...]  # what the last round refitted and did not accept, the best first
+    seconds: Mapping[str, float]  # wall time by kind of work [s]
+    failed: tuple[Failed, ...] = ()  # what was tried and could not be evaluated
+    made: tuple[str, ...] = ()  # names of the moves that changed the effects, in their order
 
     @property
     def is_finished(self) -> bool:
@@ -98,18 +80,14 @@ State = TypeVar("State", bound=SearchState)
 
 @dataclass(frozen=True)
 class Move(Generic[State]):
-    """A way to a better model.
+    """A way to a better model."""
 
-    Attributes:
-        name: by which options leave it out, of `identification.discovery.passes`. The move that
-            adds an effect is the search itself, and no option leaves it out.
-        make: returns the state after it; the state itself where it finds nothing better.
-        grows: whether it adds effects.
-    """
-
+    # by which options leave it out, of `identification.discovery.passes`. The move that adds an
+    # effect is the search itself, and no option leaves it out.
     name: str
+    # returns the state after it; the state itself where it finds nothing better
     make: Callable[[State, Progress], State]
-    grows: bool = False
+    grows: bool = False  # whether it adds effects
 
     def __str__(self) -> str:
         return self.name.replace("_", " ")
@@ -117,17 +95,12 @@ class Move(Generic[State]):
 
 @dataclass(frozen=True)
 class Evidence(Generic[State]):
-    """A way to tell one model from another, which alone knows how one is fitted and proven.
+    """A way to tell one model from another, which alone knows how one is fitted and proven."""
 
-    Attributes:
-        first: returns the state after the nominal fit of a task, with all candidates scored.
-        moves: those that a state is asked, in their order.
-        conclude: returns the outcome of a finished search.
-    """
-
+    # returns the state after the nominal fit of a task, with all candidates scored
     first: Callable[[Any, Progress], State]
-    moves: tuple[Move[State], ...]
-    conclude: Callable[[State], Discovery]
+    moves: tuple[Move[State], ...]  # those that a state is asked, in their order
+    conclude: Callable[[State], Discovery]  # returns the outcome of a finished search
 
     def begin(self, task: Task, progress: Progress) -> State:
         """Returns the state with which a search begins.

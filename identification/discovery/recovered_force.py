@@ -41,63 +41,41 @@ MAX_POINT_STD = 1.0  # of the law's largest force: a point with a larger std tel
 
 @dataclass(frozen=True)
 class LawLine:
-    """A law along what it depends on.
+    """A law along what it depends on."""
 
-    Attributes:
-        x: shape (n,).
-        force: shape (n,).
-        std: by the covariance of its parameters, shape (n,); zeros where that is not known.
-    """
-
-    x: np.ndarray
-    force: np.ndarray
+    x: np.ndarray  # shape (n,)
+    force: np.ndarray  # shape (n,)
+    # by the covariance of its parameters, shape (n,); zeros where that is not known
     std: np.ndarray
 
 
 @dataclass(frozen=True, kw_only=True)
 class RecoveredForce:
-    """A force recovered from the data, the law that was named for it, and those of its rivals.
+    """A force recovered from the data, the law that was named for it, and those of its rivals."""
 
-    Attributes:
-        candidate: the named effect.
-        along: what its force follows: "rate", "position", "phase", "time", "drive" (the force of
-            the joint's own drives), "law" (what the law multiplies by its size) or "reading" (of
-            a sensor, whose error is then what is recovered).
-        resists: whether the force is counted against the motion, as frictions are.
-        units: of what it follows, and of the force.
-        points: of the free curve; their std is that of the noise alone.
-        law: with the named effect's values.
-        rivals: what each rival's model has in the place of the law.
-        places: on how many degrees of freedom it acts.
-    """
-
-    candidate: Candidate
+    candidate: Candidate  # the named effect
+    # what its force follows: "rate", "position", "phase", "time", "drive" (the force of the joint's
+    # own drives), "law" (what the law multiplies by its size) or "reading" (of a sensor, whose
+    # error is then what is recovered)
     along: str
-    resists: bool
-    units: tuple[str, str]
-    points: LawLine
-    law: LawLine
+    resists: bool  # whether the force is counted against the motion, as frictions are
+    units: tuple[str, str]  # of what it follows, and of the force
+    points: LawLine  # of the free curve; their std is that of the noise alone
+    law: LawLine  # with the named effect's values
+    # what each rival's model has in the place of the law
     rivals: tuple[tuple[Candidate, LawLine], ...]
-    places: int
+    places: int  # on how many degrees of freedom it acts
 
 
 @dataclass(frozen=True)
 class Shown:
-    """Forces of some sets of values, the first of them the law's, and what they rest on.
+    """Forces of some sets of values, the first of them the law's, and what they rest on."""
 
-    Attributes:
-        follows: what the law's force follows, M points of n degrees of freedom.
-        nodes: m of them, of the free curve.
-        forces: of each set, shape (M, n) each.
-        predicted: outputs with the law, shape (N, ny).
-        response: of the outputs to a unit force at each node, shape (N, ny, m).
-    """
-
-    follows: Regressor
-    nodes: Nodes
-    forces: tuple[np.ndarray, ...]
-    predicted: np.ndarray
-    response: np.ndarray
+    follows: Regressor  # what the law's force follows, M points of n degrees of freedom
+    nodes: Nodes  # m of them, of the free curve
+    forces: tuple[np.ndarray, ...]  # of each set, shape (M, n) each
+    predicted: np.ndarray  # outputs with the law, shape (N, ny)
+    response: np.ndarray  # of the outputs to a unit force at each node, shape (N, ny, m)
 
     @property
     def is_mixed(self) -> bool:
@@ -148,15 +126,10 @@ def show_readings(
 
 @dataclass(frozen=True)
 class Moved:
-    """Steps by which the parameters of a law were moved, to see what is not known of it.
+    """Steps by which the parameters of a law were moved, to see what is not known of it."""
 
-    Attributes:
-        steps: in their units, shape (k,).
-        covariance: of the parameters, shape (k, k).
-    """
-
-    steps: np.ndarray
-    covariance: np.ndarray
+    steps: np.ndarray  # in their units, shape (k,)
+    covariance: np.ndarray  # of the parameters, shape (k, k)
 
 
 def law_steps(candidate: Candidate, std: Mapping[str, float]) -> dict[str, float]:

@@ -30,23 +30,15 @@ Set = tuple[int, ...]
 
 @dataclass(frozen=True)
 class Columns:
-    """What blocks of samples tell of all candidates' sizes, and of one size that does nothing.
+    """What blocks of samples tell of all candidates' sizes, and of one size that does nothing."""
 
-    Attributes:
-        G: SᵀS of each of F folds of blocks, shape (F, k + 1, k + 1); the last size does nothing.
-        a: Sᵀe, shape (F, k + 1).
-        of: the columns of each candidate, shape (c, m), filled up with k.
-        alike: a word for each candidate; of those with the same word, a set has one.
-        signs: that sizes must have, 0 for either, shape (k + 1,).
-        largest: that sizes may be, shape (k + 1,).
-    """
-
+    # SᵀS of each of F folds of blocks, shape (F, k + 1, k + 1); the last size does nothing
     G: np.ndarray
-    a: np.ndarray
-    of: np.ndarray
-    alike: Sequence[str]
-    signs: np.ndarray
-    largest: np.ndarray
+    a: np.ndarray  # Sᵀe, shape (F, k + 1)
+    of: np.ndarray  # the columns of each candidate, shape (c, m), filled up with k
+    alike: Sequence[str]  # a word for each candidate; of those with the same word, a set has one
+    signs: np.ndarray  # that sizes must have, 0 for either, shape (k + 1,)
+    largest: np.ndarray  # that sizes may be, shape (k + 1,)
 
     def gains(self, sets: Sequence[Set]) -> np.ndarray:
         """Returns gain_f of sets of equally many members, shape (n, F).

@@ -30,18 +30,12 @@ MAX_SWEEPS = 3  # over the curves, in each of which every ρ is chosen beside th
 
 @dataclass(frozen=True)
 class SmoothForce:
-    """The best smooth force.
+    """The best smooth force."""
 
-    Attributes:
-        gains: fall of the sum of squares of each block, by a force that was not fitted to it, shape
-            (B,).
-        ridges: ρ of each curve, shape (K,); infinite for one that explains nothing.
-        c: forces at all nodes, by all samples, shape (k,).
-    """
-
+    # fall of the sum of squares of each block, by a force that was not fitted to it, shape (B,)
     gains: np.ndarray
-    ridges: np.ndarray
-    c: np.ndarray
+    ridges: np.ndarray  # ρ of each curve, shape (K,); infinite for one that explains nothing
+    c: np.ndarray  # forces at all nodes, by all samples, shape (k,)
 
     @property
     def gain(self) -> float:

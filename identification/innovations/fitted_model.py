@@ -27,17 +27,11 @@ NEEDED_BIC_RATIO = 10.0
 
 @dataclass(frozen=True)
 class FittedModel:
-    """A model with some effects, fitted on a part of a log and validated on the rest.
+    """A model with some effects, fitted on a part of a log and validated on the rest."""
 
-    Attributes:
-        candidates: its effects.
-        refit: the fit on the fitted samples.
-        validation: its prediction of the whole log.
-    """
-
-    candidates: tuple[Candidate, ...]
-    refit: Refit
-    validation: Validation
+    candidates: tuple[Candidate, ...]  # its effects
+    refit: Refit  # the fit on the fitted samples
+    validation: Validation  # its prediction of the whole log
 
     @property
     def negative_bic(self) -> float:
@@ -64,18 +58,12 @@ class FittedModel:
 
 @dataclass(frozen=True)
 class AcceptedEffect:
-    """An effect that was added to a model.
+    """An effect that was added to a model."""
 
-    Attributes:
-        model: the model with it; the effect is the last of its candidates.
-        proof: what it does for unseen samples.
-        gain: of twice the log likelihood over the model without it, less what BIC asks.
-        alternatives: models with another effect that was refitted in its place.
-    """
-
-    model: FittedModel
-    proof: Proof
-    gain: float
+    model: FittedModel  # the model with it; the effect is the last of its candidates
+    proof: Proof  # what it does for unseen samples
+    gain: float  # of twice the log likelihood over the model without it, less what BIC asks
+    # models with another effect that was refitted in its place
     alternatives: tuple[FittedModel, ...]
 
     @property

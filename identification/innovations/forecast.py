@@ -58,19 +58,12 @@ _MIN_TOLD = 60.0, 2.0**30  # [s] and [bytes] from which a forecast is worth a li
 
 @dataclass(frozen=True)
 class Forecast:
-    """The memory and time that a search will take.
+    """The memory and time that a search will take."""
 
-    Attributes:
-        samples: of the log.
-        memory: [bytes], beside those of the program.
-        seconds: of processor time, of a search that finds nothing [s].
-        fixed: part of the memory that does not depend on the samples [bytes].
-    """
-
-    samples: int
-    memory: float
-    seconds: float
-    fixed: float = 0.0
+    samples: int  # of the log
+    memory: float  # [bytes], beside those of the program
+    seconds: float  # of processor time, of a search that finds nothing [s]
+    fixed: float = 0.0  # part of the memory that does not depend on the samples [bytes]
 
     def __str__(self) -> str:
         return (

@@ -51,18 +51,14 @@ from identification.progress import Progress, counted
 
 @dataclass(frozen=True)
 class Selection:
-    """The outcome of one round of forward selection.
+    """The outcome of one round of forward selection."""
 
-    Attributes:
-        accepted: the effect to add; none when no effect is worth it.
-        rejected: what was refitted instead, the best first; empty when an effect is accepted.
-        unproven: of those the most likely model that unseen samples speak for in one way only: they
-            are predicted better one step ahead, or the free run comes much nearer and the fitted
-            samples want the effect far more than BIC asks. None when there is none.
-    """
-
-    accepted: tuple[AcceptedEffect, ...] = ()
+    accepted: tuple[AcceptedEffect, ...] = ()  # the effect to add; none when no effect is worth it
+    # what was refitted instead, the best first; empty when an effect is accepted
     rejected: tuple[RejectedEffect, ...] = ()
+    # of those the most likely model that unseen samples speak for in one way only: they are
+    # predicted better one step ahead, or the free run comes much nearer and the fitted samples want
+    # the effect far more than BIC asks. None when there is none.
     unproven: FittedModel | None = None
 
 

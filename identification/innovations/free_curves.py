@@ -34,15 +34,10 @@ ALL = "the actuated joints"
 
 @dataclass(frozen=True)
 class Curve:
-    """A curve that explains a part of what a fit leaves.
+    """A curve that explains a part of what a fit leaves."""
 
-    Attributes:
-        sensitivity: of the outputs, to the force at each of its nodes.
-        level: the noise of the fit with the curve beside all that it has.
-    """
-
-    sensitivity: Sensitivity
-    level: NoiseLevel
+    sensitivity: Sensitivity  # of the outputs, to the force at each of its nodes
+    level: NoiseLevel  # the noise of the fit with the curve beside all that it has
 
 
 def find_curves(fit: Refit, options: DiscoveryOptions) -> tuple[Curve, ...]:

@@ -44,34 +44,21 @@ ERROR_KNOTS = 12  # of the curves over input, output and rate that an error of t
 
 @dataclass(frozen=True)
 class ErrorFamily:
-    """Errors of the inputs that follow one thing that was logged.
+    """Errors of the inputs that follow one thing that was logged."""
 
-    Attributes:
-        name: of what they follow.
-        r: the regressors, errors of the inputs, shape (N, nu, p), of rms 1 each or zero.
-    """
-
-    name: str
-    r: np.ndarray
+    name: str  # of what they follow
+    r: np.ndarray  # the regressors, errors of the inputs, shape (N, nu, p), of rms 1 each or zero
 
 
 @dataclass(frozen=True)
 class FamilyFit:
-    """The prediction of unseen samples by a family of errors.
+    """The prediction of unseen samples by a family of errors."""
 
-    Attributes:
-        name: of what the errors follow.
-        p_value: chance that a random error is predicted as well.
-        share: of the power of the unseen innovations that is predicted.
-        fall: of the mean square of the free run on unseen samples.
-        error: rms of the error of each input, in its unit, shape (nu,).
-    """
-
-    name: str
-    p_value: float
-    share: float
-    fall: float
-    error: np.ndarray
+    name: str  # of what the errors follow
+    p_value: float  # chance that a random error is predicted as well
+    share: float  # of the power of the unseen innovations that is predicted
+    fall: float  # of the mean square of the free run on unseen samples
+    error: np.ndarray  # rms of the error of each input, in its unit, shape (nu,)
 
 
 def find_input_error(

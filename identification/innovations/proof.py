@@ -44,27 +44,16 @@ ROUNDING = 1e-12  # of the blocks' sizes: sums that differ by less are one
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Validation:
-    """The prediction of a whole log by a model that was fitted on a part of it.
+    """The prediction of a whole log by a model that was fitted on a part of it."""
 
-    Attributes:
-        refit: the fit.
-        log: the whole log, of N samples.
-        e: residual of the free run, shape (N, ny).
-        innovations: whitened residual in units of σ, shape (N, ny).
-        filter: the whitening filter.
-        seen: true for the samples that were fitted, shape (N,).
-        parts: the samples on which the search decides, and those that are told of.
-        moved: variance over σ² that input errors cause in the free run, shape (N, ny).
-    """
-
-    refit: Refit
-    log: Log
-    e: np.ndarray
-    innovations: np.ndarray
-    filter: Whitener
-    seen: np.ndarray
-    parts: Parts
-    moved: np.ndarray
+    refit: Refit  # the fit
+    log: Log  # the whole log, of N samples
+    e: np.ndarray  # residual of the free run, shape (N, ny)
+    innovations: np.ndarray  # whitened residual in units of σ, shape (N, ny)
+    filter: Whitener  # the whitening filter
+    seen: np.ndarray  # true for the samples that were fitted, shape (N,)
+    parts: Parts  # the samples on which the search decides, and those that are told of
+    moved: np.ndarray  # variance over σ² that input errors cause in the free run, shape (N, ny)
 
     def rms(self, part: Part) -> float:
         """Returns the rms of the free run's error on a part, over all outputs."""

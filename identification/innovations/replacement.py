@@ -30,17 +30,11 @@ PRIOR_WIDENING = 3.0
 
 @dataclass(frozen=True)
 class Replacement:
-    """Something else in the place of an effect.
+    """Something else in the place of an effect."""
 
-    Attributes:
-        loss: of twice the log likelihood; below zero where it explains more.
-        share: gain of the effect as a share of its gain.
-        size: its most likely sizes, shape (m,).
-    """
-
-    loss: float
-    share: float
-    size: np.ndarray
+    loss: float  # of twice the log likelihood; below zero where it explains more
+    share: float  # gain of the effect as a share of its gain
+    size: np.ndarray  # its most likely sizes, shape (m,)
 
 
 def replace_effect(

@@ -38,15 +38,12 @@ from identification.quantities import held
 
 @dataclass(frozen=True, kw_only=True)
 class InnovationSearch(SearchState):
-    """A search by the innovations of a free run.
-
-    Attributes:
-        sensitivities: of all candidates, at the model; of those that it has, at the fit before.
-        unproven: the likeliest model of the last round that is half proven; None without one.
-    """
+    """A search by the innovations of a free run."""
 
     accepted: tuple[AcceptedEffect, ...]
+    # of all candidates, at the model; of those that it has, at the fit before
     sensitivities: tuple[Sensitivity, ...]
+    # the likeliest model of the last round that is half proven; None without one
     unproven: FittedModel | None = None
 
 

@@ -11,12 +11,8 @@ from identification.logs.parts import Parts
 
 @dataclass(frozen=True, kw_only=True)
 class DiscoveryTask(Task):
-    """The question what a model lacks to explain one log.
+    """The question what a model lacks to explain one log."""
 
-    Attributes:
-        log: its part `estimation` (or first half) is fitted; the rest is unseen and confirms.
-        parts: of what is unseen; None before the nominal fit, whose memory says how long they are.
-    """
-
-    log: Log
+    log: Log  # its part `estimation` (or first half) is fitted; the rest is unseen and confirms
+    # of what is unseen; None before the nominal fit, whose memory says how long they are
     parts: Parts | None = None

@@ -37,25 +37,15 @@ REFIT_TOLERANCE = 1e-3  # relative fall of the criterion at which the refit of a
 
 @dataclass(frozen=True)
 class Begun:
-    """An effect fitted to some of the windows.
+    """An effect fitted to some of the windows."""
 
-    Attributes:
-        cost: V there.
-        windows: how many of them.
-        candidate: the effect.
-        parent: the model without it, its plant with the states that the effect needs.
-        fixed: values that it holds fixed.
-        task: all windows.
-        q: the estimate, shape (p,).
-    """
-
-    cost: float
-    windows: int
-    candidate: Candidate
-    parent: WindowModel
-    fixed: Mapping[str, float]
-    task: Problem
-    q: np.ndarray
+    cost: float  # V there
+    windows: int  # how many of them
+    candidate: Candidate  # the effect
+    parent: WindowModel  # the model without it, its plant with the states that the effect needs
+    fixed: Mapping[str, float]  # values that it holds fixed
+    task: Problem  # all windows
+    q: np.ndarray  # the estimate, shape (p,)
 
 
 def begin(parent: WindowModel, scores: Sequence[WindowScore], is_loud: bool = True) -> Begun:

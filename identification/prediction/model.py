@@ -24,19 +24,12 @@ from identification.windows.unseen import LENGTHS, Unseen, predict
 
 @dataclass(frozen=True)
 class WindowModel:
-    """A model with some effects.
+    """A model with some effects."""
 
-    Attributes:
-        candidates: the effects, with their shapes as they began.
-        fit: on the windows of the fitted records.
-        unseen: its errors on the records that confirm.
-        scale: rms error of each output under the nominal model, shape (ny,), in its unit.
-    """
-
-    candidates: tuple[Candidate, ...]
-    fit: WindowFit
-    unseen: Unseen
-    scale: np.ndarray
+    candidates: tuple[Candidate, ...]  # the effects, with their shapes as they began
+    fit: WindowFit  # on the windows of the fitted records
+    unseen: Unseen  # its errors on the records that confirm
+    scale: np.ndarray  # rms error of each output under the nominal model, shape (ny,), in its unit
 
     @property
     def plant(self) -> Plant:

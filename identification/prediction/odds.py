@@ -18,19 +18,12 @@ from identification.prediction.trial import Contender, evidences, find_twin
 
 @dataclass(frozen=True)
 class Odds:
-    """The odds of an effect and of its rivals.
+    """The odds of an effect and of its rivals."""
 
-    Attributes:
-        own: share of the effect.
-        rivals: others that may be meant, each with its share.
-        compared: how many others were compared with it.
-        twin: name of the effect that is the same force by another name; "" where there is none.
-    """
-
-    own: float
-    rivals: tuple[tuple[Contender, float], ...]
-    compared: int
-    twin: str
+    own: float  # share of the effect
+    rivals: tuple[tuple[Contender, float], ...]  # others that may be meant, each with its share
+    compared: int  # how many others were compared with it
+    twin: str  # name of the effect that is the same force by another name; "" where there is none
 
     @property
     def likeliest(self) -> tuple[Contender, float] | None:

@@ -48,23 +48,14 @@ NO_HORIZON = (
 
 @dataclass(frozen=True, kw_only=True)
 class RecordsFit:
-    """The result of a fit of records, and its predictions of those that it has not seen.
+    """The result of a fit of records, and its predictions of those that it has not seen."""
 
-    Attributes:
-        records: what was fitted and what confirms.
-        horizon: over which records are predicted [s].
-        model: the fitted model.
-        start: the values with which the fit began, in their units, shape (p,).
-        begun: errors of these values on the records that confirm.
-        seconds: wall time [s].
-    """
-
-    records: tuple[Record, ...]
-    horizon: float
-    model: WindowModel
-    start: np.ndarray
-    begun: Unseen
-    seconds: float
+    records: tuple[Record, ...]  # what was fitted and what confirms
+    horizon: float  # over which records are predicted [s]
+    model: WindowModel  # the fitted model
+    start: np.ndarray  # the values with which the fit began, in their units, shape (p,)
+    begun: Unseen  # errors of these values on the records that confirm
+    seconds: float  # wall time [s]
 
     @property
     def values(self) -> dict[str, float]:

@@ -173,15 +173,10 @@ def _is_alike(rival: Candidate, is_reading: bool) -> bool:
 
 @dataclass(frozen=True)
 class HeldWindows:
-    """The windows of one record at one set of values.
+    """The windows of one record at one set of values."""
 
-    Attributes:
-        part: the windows, of a predictor with no free parameters.
-        moves: of their states, shape (W, nx).
-    """
-
-    part: Shooting
-    moves: np.ndarray
+    part: Shooting  # the windows, of a predictor with no free parameters
+    moves: np.ndarray  # of their states, shape (W, nx)
 
     @property
     def outputs(self) -> np.ndarray:

@@ -46,24 +46,16 @@ MAX_GROUP_COLUMNS = 24  # of candidates scored at once: bounds the memory of the
 
 @dataclass(frozen=True, kw_only=True)
 class WindowScore:
-    """The score of a candidate: what it would explain.
+    """The score of a candidate: what it would explain."""
 
-    Attributes:
-        candidate: which.
-        size: η̂, shape (m,), in the units of its sizes; where they are each record's own, those of
-            the first record come first.
-        std: of η̂ by blocks, shape (m,).
-        fall: share of the residual's square that it takes away, 0 to 1.
-        p_value: chance of as much by luck, by blocks.
-        along: Δq of the model's free parameters, which make room for it, shape (p,).
-    """
-
-    candidate: Candidate
+    candidate: Candidate  # which
+    # η̂, shape (m,), in the units of its sizes; where they are each record's own, those of the
+    # first record come first
     size: np.ndarray
-    std: np.ndarray
-    fall: float
-    p_value: float
-    along: np.ndarray
+    std: np.ndarray  # of η̂ by blocks, shape (m,)
+    fall: float  # share of the residual's square that it takes away, 0 to 1
+    p_value: float  # chance of as much by luck, by blocks
+    along: np.ndarray  # Δq of the model's free parameters, which make room for it, shape (p,)
 
     @property
     def explains(self) -> float:
@@ -105,17 +97,11 @@ def _judged(score: WindowScore, scatter: Scatter, common: Common) -> WindowScore
 
 @dataclass(frozen=True)
 class Condensed:
-    """What blocks of windows tell of k sizes; the last block are the priors of the parameters.
+    """What blocks of windows tell of k sizes; the last block are the priors of the parameters."""
 
-    Attributes:
-        G: S⊥ᵀS⊥ of each block, shape (B, k, k).
-        a: S⊥ᵀr⊥ of each, shape (B, k).
-        squares: ‖r⊥‖² of each, shape (B,).
-    """
-
-    G: np.ndarray
-    a: np.ndarray
-    squares: np.ndarray
+    G: np.ndarray  # S⊥ᵀS⊥ of each block, shape (B, k, k)
+    a: np.ndarray  # S⊥ᵀr⊥ of each, shape (B, k)
+    squares: np.ndarray  # ‖r⊥‖² of each, shape (B,)
 
 
 def condensed(

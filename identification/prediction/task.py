@@ -18,13 +18,9 @@ from identification.windows.unseen import Unseen
 
 @dataclass(frozen=True, kw_only=True)
 class RecordsTask(Task):
-    """The question what a model lacks to explain several records.
+    """The question what a model lacks to explain several records."""
 
-    Attributes:
-        records: to fit and to confirm.
-    """
-
-    records: tuple[Record, ...]
+    records: tuple[Record, ...]  # to fit and to confirm
 
     @property
     def horizon(self) -> float:
@@ -39,20 +35,17 @@ class RecordsTask(Task):
 
 @dataclass(frozen=True, kw_only=True)
 class WindowSearch(SearchState):
-    """A search by predictions over a horizon; its effects are `Contender`s.
-
-    Attributes:
-        begun: errors of the values with which the fit began, on the records that confirm; over the
-            horizon alone where that refutes them.
-        worse_fit: errors of the fitted values on the records that confirm, where they are worse
-            than those of the values with which the fit began: the search then begins with the
-            latter. None where they are not.
-        exchanged: the model with the roles of the records exchanged; None where it was not needed.
-    """
+    """A search by predictions over a horizon; its effects are `Contender`s."""
 
     accepted: tuple[Contender, ...]
+    # errors of the values with which the fit began, on the records that confirm; over the horizon
+    # alone where that refutes them
     begun: Unseen
+    # errors of the fitted values on the records that confirm, where they are worse than those of
+    # the values with which the fit began: the search then begins with the latter. None where they
+    # are not.
     worse_fit: Unseen | None = None
+    # the model with the roles of the records exchanged; None where it was not needed
     exchanged: WindowModel | None = None
 
     @property

@@ -52,24 +52,15 @@ LEVEL = "coulomb_friction.f_c"
 
 @dataclass(frozen=True, kw_only=True)
 class Contender:
-    """An effect that was refitted.
+    """An effect that was refitted."""
 
-    Attributes:
-        model: with it.
-        prediction: of unseen records, over the model without it.
-        gains: by block of the fitted windows, then of the unseen ones, shape (B,).
-        numbers: that it adds to the model, those of each record counted.
-        criterion: E, what speaks for it against the model without it (`evidence`).
-        doubt: why it is not proven; None where it is.
-        alternatives: what else was refitted in its place and may be meant, once it is accepted.
-    """
-
-    model: WindowModel
-    prediction: Prediction
-    gains: np.ndarray
-    numbers: int
-    criterion: float
-    doubt: Doubt | None
+    model: WindowModel  # with it
+    prediction: Prediction  # of unseen records, over the model without it
+    gains: np.ndarray  # by block of the fitted windows, then of the unseen ones, shape (B,)
+    numbers: int  # that it adds to the model, those of each record counted
+    criterion: float  # E, what speaks for it against the model without it (`evidence`)
+    doubt: Doubt | None  # why it is not proven; None where it is
+    # what else was refitted in its place and may be meant, once it is accepted
     alternatives: tuple[Contender, ...] = ()
 
     @property

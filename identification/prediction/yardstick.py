@@ -26,15 +26,10 @@ ON_JOINTS = {"force", "friction"}  # hooks of laws that a smooth force of a join
 
 @dataclass(frozen=True)
 class Yardstick:
-    """What smooth forces would still explain beside a model, over what the model leaves.
+    """What smooth forces would still explain beside a model, over what the model leaves."""
 
-    Attributes:
-        every: share of the sum of squares that forces at all joints would take.
-        of_joint: share that forces at one joint would take, by its name.
-    """
-
-    every: float
-    of_joint: Mapping[str, float]
+    every: float  # share of the sum of squares that forces at all joints would take
+    of_joint: Mapping[str, float]  # share that forces at one joint would take, by its name
 
     def share(self, before: float, after: float) -> float | None:
         """Returns what a model explains of what it and smooth forces at all joints could.

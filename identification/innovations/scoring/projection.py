@@ -27,17 +27,11 @@ MIN_EIGENVALUE_SHARE = 1e-14
 
 @dataclass(frozen=True)
 class Products:
-    """Products of the sensitivities of J candidates with m sizes each, under one noise.
+    """Products of the sensitivities of J candidates with m sizes each, under one noise."""
 
-    Attributes:
-        raw: sum of squares before the projection, shape (J,).
-        H: shape (J, m, m).
-        b: shape (J, m).
-    """
-
-    raw: np.ndarray
-    H: np.ndarray
-    b: np.ndarray
+    raw: np.ndarray  # sum of squares before the projection, shape (J,)
+    H: np.ndarray  # shape (J, m, m)
+    b: np.ndarray  # shape (J, m)
 
 
 class Projection:

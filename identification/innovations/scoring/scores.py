@@ -53,27 +53,16 @@ RATIO_FACTORS = (1.0, 0.3, 0.1, 0.03, 0.01, 0.0)  # of the nominal model's ρ, t
 
 @dataclass(frozen=True, kw_only=True)
 class Score:
-    """A candidate with what it would explain.
+    """A candidate with what it would explain."""
 
-    Attributes:
-        candidate: the effect, its place and its shapes.
-        size: η̂, shape (m,), in the units of its sizes.
-        std: of η̂, under the noise with the candidate, shape (m,).
-        gain: LR_j.
-        p_value: chance that as much is explained by luck.
-        freedom: degrees of freedom of that chance.
-        identifiable: share of its sensitivity that re-tuning cannot imitate, 0 to 1.
-        level: the noise with the candidate.
-    """
-
-    candidate: Candidate
-    size: np.ndarray
-    std: np.ndarray
-    gain: float
-    p_value: float
-    identifiable: float
-    level: NoiseLevel
-    freedom: float = np.inf
+    candidate: Candidate  # the effect, its place and its shapes
+    size: np.ndarray  # η̂, shape (m,), in the units of its sizes
+    std: np.ndarray  # of η̂, under the noise with the candidate, shape (m,)
+    gain: float  # LR_j
+    p_value: float  # chance that as much is explained by luck
+    identifiable: float  # share of its sensitivity that re-tuning cannot imitate, 0 to 1
+    level: NoiseLevel  # the noise with the candidate
+    freedom: float = np.inf  # degrees of freedom of that chance
 
     @property
     def explains(self) -> float:
@@ -124,21 +113,13 @@ def _groups(sensitivities: Sequence[Sensitivity], m: int) -> list[list[int]]:
 
 @dataclass
 class _Best:
-    """Results on J candidates under the likeliest noise that was tried for each.
+    """Results on J candidates under the likeliest noise that was tried for each."""
 
-    Attributes:
-        level: index of that noise, shape (J,).
-        likely: log likelihood with the candidate, shape (J,).
-        squares: the sum of squares, shape (J,).
-        size: η̂, shape (J, m).
-        products: under that noise.
-    """
-
-    level: np.ndarray
-    likely: np.ndarray
-    squares: np.ndarray
-    size: np.ndarray
-    products: Products
+    level: np.ndarray  # index of that noise, shape (J,)
+    likely: np.ndarray  # log likelihood with the candidate, shape (J,)
+    squares: np.ndarray  # the sum of squares, shape (J,)
+    size: np.ndarray  # η̂, shape (J, m)
+    products: Products  # under that noise
 
     def improve(self, places: np.ndarray, other: _Best) -> None:
         """Take over what another noise has found for the candidates at some places."""
@@ -152,19 +133,12 @@ class _Best:
 
 @dataclass(frozen=True)
 class _Known:
-    """A candidate that is scored, but for its chance, which depends on what others scatter.
+    """A candidate that is scored, but for its chance, which depends on what others scatter."""
 
-    Attributes:
-        sensitivity: of the candidate, which is kept so that its identity is no other's.
-        score: with a chance of 1.
-        scatter: of the candidates that were scored with it.
-        place: its own one among them.
-    """
-
-    sensitivity: Sensitivity
-    score: Score
-    scatter: Scatter
-    place: int
+    sensitivity: Sensitivity  # of the candidate, which is kept so that its identity is no other's
+    score: Score  # with a chance of 1
+    scatter: Scatter  # of the candidates that were scored with it
+    place: int  # its own one among them
 
 
 class _Scorer:

@@ -28,15 +28,10 @@ MAX_BATCH_COLUMNS = 128  # that are computed at once, which bounds the memory of
 
 @dataclass(frozen=True)
 class Sensitivity:
-    """Sensitivities of the outputs to one candidate.
+    """Sensitivities of the outputs to one candidate."""
 
-    Attributes:
-        candidate: the effect, its place and its shapes.
-        S: shape (N, ny, m), per unit of each of its m sizes.
-    """
-
-    candidate: Candidate
-    S: np.ndarray
+    candidate: Candidate  # the effect, its place and its shapes
+    S: np.ndarray  # shape (N, ny, m), per unit of each of its m sizes
 
 
 def compute_sensitivities(point: Point, candidates: Sequence[Candidate]) -> tuple[Sensitivity, ...]:

@@ -47,17 +47,11 @@ Key = tuple[str, str]
 
 @dataclass(frozen=True)
 class Place:
-    """What was refitted in the place of a member of a set, beside the others.
+    """What was refitted in the place of a member of a set, beside the others."""
 
-    Attributes:
-        without: the model without the member.
-        scores: on it.
-        tried: what was refitted.
-    """
-
-    without: WindowModel
-    scores: tuple[WindowScore, ...]
-    tried: tuple[Contender, ...]
+    without: WindowModel  # the model without the member
+    scores: tuple[WindowScore, ...]  # on it
+    tried: tuple[Contender, ...]  # what was refitted
 
 
 def add_set(
