@@ -40,6 +40,7 @@ from identification.discovery.free_run import FreeRun
 from identification.discovery.missing_forces import MissingForce
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.recovered_force import RecoveredForce
+from identification.discovery.second_opinion import TorqueOpinion
 from identification.effects.effect import Candidate, Effect
 from identification.estimation.metrics import output_units, relative
 from identification.logs.joined import Record
@@ -102,6 +103,8 @@ class Discovery(Shown, Written):
             free run.
         differences: what differs between records and is counted for each by itself, such as the
             zero of a sensor; likewise.
+        torques: what the torques that the measured motion needs say of the names; empty where they
+            tell nothing, and for a free run.
         repeats: names of the records that confirm, but whose motion is that of a fitted record or
             of one that confirms before them; likewise.
         seconds: wall time by stage [s].
@@ -149,6 +152,7 @@ class Discovery(Shown, Written):
     findings: tuple[Finding, ...]
     shifts: tuple[ShiftedRecord, ...] = ()
     differences: tuple[RecordDifference, ...] = ()
+    torques: tuple[TorqueOpinion, ...] = ()
     repeats: tuple[str, ...] = ()
     seconds: Mapping[str, float]
     failed: tuple[Failed, ...] = ()

@@ -61,6 +61,13 @@ def discovery_to_json(found: Discovery) -> dict[str, Any]:
                             for n, (v, std) in d.values.items()}}
             for d in found.differences
         ],
+        "torques": [
+            {**plain_fields(o, "name", "where", "fall", "t"),
+             "proven": o.is_proven, "named": o.is_named,
+             "sizes": {n: plain({"value": v, "std": std, "unit": unit})
+                       for n, (v, std, unit) in o.sizes.items()}}
+            for o in found.torques
+        ],
         "parts": parts_to_json(found),
         **plain_fields(found, "shifts", "repeats", "horizon"),
         "timestep": dict(zip(("simulated", "model"), steps_of(found.nominal.plant), strict=True)),

@@ -18,6 +18,7 @@ from identification.report.finding_words import describe_finding, sentence
 from identification.report.horizon_words import needed_sentences
 from identification.report.missing_place import find_place
 from identification.report.named_words import basis_sentence, named_sentences
+from identification.report.opinion_words import opinion_sentences
 from identification.report.parts_words import is_untouched
 from identification.report.shown_words import SHOWN, hiding, smallest, split_detectable
 from identification.report.untold_words import bound_sentences
@@ -34,7 +35,8 @@ NOISIER = 1.5  # times the rms noise of the other outputs of its unit: more is t
 def discovery_verdict(found: Discovery) -> list[str]:
     """Returns sentences: the verdict first, then what supports it."""
     bounds = bound_sentences(found.final.plant.parameters, found.at_bound)
-    return [*_verdict(found), *_noisier(found), *difference_sentences(found), *bounds]
+    told = [*_noisier(found), *difference_sentences(found), *bounds]
+    return [*_verdict(found), *opinion_sentences(found), *told]
 
 
 def further_sentences(found: Discovery) -> list[str]:

@@ -217,7 +217,7 @@ def base_rows(evidence: Evidence) -> list[tuple[str, str, str, str]]:
         unit = evidence.base.units[k]
         off = (value - model) / std if std > 0 else np.nan
         rows.append((name, quantity(value, std, unit, like=model),
-                     quantity(model, unit=unit, like=value), f"{off:+.1f}"))  # fmt: skip
+                     quantity(model, unit=unit, like=value), f"{off:+z.1f}"))  # fmt: skip
     return rows
 
 
@@ -227,7 +227,7 @@ def friction_rows(evidence: Evidence) -> list[tuple[str, str, str, str]]:
     for k, model in enumerate(evidence.friction, fit.inertial):
         value, std, unit = fit.fit.θ[k], fit.fit.std[k], fit.units[k]
         told = quantity(value, std, unit, like=model), quantity(model, unit=unit, like=value)
-        rows.append((fit.names[k], *told, f"{(value - model) / std:+.1f}"))
+        rows.append((fit.names[k], *told, f"{(value - model) / std:+z.1f}"))
     return rows
 
 

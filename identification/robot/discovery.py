@@ -19,6 +19,7 @@ from identification.report import discovery_verdict  # noqa: F401  how the resul
 from identification.robot.blame import told_of_factors
 from identification.robot.checks import refuse_horizon, refuse_unlike
 from identification.robot.robot import Robot
+from identification.robot.second_opinion import with_torques
 from identification.written import Files
 
 
@@ -106,7 +107,7 @@ def discover(
             found = discover_records(
                 model.nominal_model, fitted, model.records, model.candidates, progress, options
             )
-        return _written(found, model)
+        return _written(with_torques(found, model, progress), model)
     if log is None or effects is None:
         raise InputError("discover needs a log and candidate effects beside a nominal model")
     refuse_kind(log, Log, "discover takes a Log (read_log) beside a nominal model")

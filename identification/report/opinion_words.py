@@ -1,0 +1,43 @@
+"""What the joints' torques say of the names of a search, in sentences."""
+
+from __future__ import annotations
+
+from identification.discovery.result import Discovery
+from identification.discovery.second_opinion import TorqueOpinion
+from identification.report.effect_words import phrase, value_with_std
+from identification.shares import fall_words
+
+
+def opinion_sentences(found: Discovery) -> list[str]:
+    """Returns a sentence on each effect of which the joints' torques say something.
+
+    Args:
+        found: the outcome of a search.
+    """
+    phrases = {n.candidate.key: phrase(n.candidate.effect) for n in found.named}
+    return [
+        _sentence(o, phrases.get((o.name, o.where), o.name.replace("_", " ")))
+        for o in found.torques
+    ]
+
+
+def _sentence(o: TorqueOpinion, said: str) -> str:
+    sizes = ", ".join(f"{n} = {value_with_std(v, s, u)}" for n, (v, s, u) in o.sizes.items())
+    by = f"{o.t:.1f} std from what the model has"
+    if o.fall is not None:
+        by = f"their mean square on data that no fit has seen {fall_words(o.fall)}, t {o.t:z.1f}"
+    which = f"{said}, {o.where}"
+    if o.is_named and o.is_proven:
+        return (
+            "The torques that the measured motion needs, without a simulation, prove the same:"
+            f" {which}, {sizes}; {by}."
+        )
+    if o.is_named:
+        return (
+            "The torques that the measured motion needs, without a simulation, do not prove"
+            f" {which}: {by}. They may tell too little, or the name may be wrong."
+        )
+    return (
+        "The torques that the measured motion needs, without a simulation, name another effect"
+        f" first: {which}, {sizes}; {by}. The command `identification torques` tells more."
+    )

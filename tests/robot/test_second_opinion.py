@@ -1,0 +1,85 @@
+"""What the joints' torques say of the names of a search."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from elbow_cases import elbow
+
+from identification.errors import InputError
+from identification.report.opinion_words import opinion_sentences
+from identification.robot import second_opinion
+from identification.robot.second_opinion import opinions, with_torques
+
+
+def test_torques_find_the_size_that_a_search_over_windows_has_found():
+    _, found = elbow()
+    (told,) = found.torques
+    value, std, unit = told.sizes["f_c"]
+    assert (told.name, told.where, unit) == ("coulomb_friction", "joint elbow", "N m")
+    assert told.is_named
+    assert told.is_proven
+    assert value == pytest.approx(0.15, abs=3 * std)  # the level with which the logs were made
+    (sentence,) = opinion_sentences(found)
+    assert "prove the same: friction – Coulomb, joint elbow, f_c = " in sentence
+
+
+def score(name, is_proven=True, where="joint a"):
+    missing = SimpleNamespace(key=(name, where), name=name, where=where, sizes=(f"{name}.k@a",),
+                              units=("N m",))  # fmt: skip
+    return SimpleNamespace(
+        missing=missing, size=np.array([0.2]), std=np.array([0.01]), fall=0.5,
+        t=9.0 if is_proven else 0.4, is_proven=is_proven,
+    )  # fmt: skip
+
+
+def asked(names, scores=(), own=()):
+    """What torques with these scores, which name `own` themselves, say of the names."""
+    fit = SimpleNamespace(inertial=0, names=(), fit=None)
+    evidence = SimpleNamespace(scores=scores, named=own, friction=(), final=fit)
+    named = [SimpleNamespace(candidate=SimpleNamespace(key=(n, "joint a"))) for n in names]
+    told = opinions(SimpleNamespace(named=named), evidence)
+    return [(o.name, o.is_proven, o.is_named) for o in told]
+
+
+def test_an_opinion_is_given_on_names_that_torques_can_tell():
+    law = score("stiffness")
+    assert asked(["stiffness"], [law], [law]) == [("stiffness", True, True)]
+    assert asked(["encoder_lag"], [law], [law]) == []  # of a sensor: no contradiction
+    assert asked(["stiffness", "encoder_lag"], [law], [law]) == [("stiffness", True, True)]
+
+
+def test_another_effect_is_told_where_torques_prove_none_of_the_names():
+    law, other = score("stiffness", is_proven=False), score("cogging")
+    assert asked(["stiffness"], [other, law], [other]) == [
+        ("stiffness", False, True), ("cogging", True, False),
+    ]  # fmt: skip
+    assert asked(["stiffness"], [other, law]) == [("stiffness", False, True)]
+    assert asked([], [other], [other]) == [("cogging", True, False)]
+
+
+def test_sentences_say_which_of_the_two_proves_a_name():
+    law, other = score("stiffness", is_proven=False), score("cogging")
+    fit = SimpleNamespace(inertial=0, names=(), fit=None)
+    evidence = SimpleNamespace(scores=(other, law), named=(other,), friction=(), final=fit)
+    _, found = elbow()
+    (named,) = found.named
+    key = replace(named.candidate, effect=replace(named.candidate.effect, name="stiffness"))
+    found = replace(found, named=(replace(named, candidate=replace(key, where="joint a")),))
+    first, second = opinion_sentences(replace(found, torques=opinions(found, evidence)))
+    assert "do not prove friction – Coulomb, joint a" in first
+    assert "name another effect first: cogging, joint a, k = 0.200 ± 0.010 N m" in second
+
+
+def test_torques_are_asked_only_where_something_is_missing_and_they_can_tell_it(monkeypatch):
+    robot, found = elbow()
+
+    def refused(_):
+        raise InputError("a drive has a state")
+
+    monkeypatch.setattr(second_opinion, "fit_torques", refused)
+    assert with_torques(found, robot) is found
+    silent = replace(found, verdict="nothing missing", named=())
+    monkeypatch.setattr(second_opinion, "fit_torques", lambda _: pytest.fail("it was asked"))
+    assert with_torques(silent, robot) is silent
