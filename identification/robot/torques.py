@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import mujoco
 import numpy as np
@@ -19,6 +20,7 @@ from identification.torques.evidence import find_evidence
 from identification.torques.fits import FreeNumber, read_friction
 from identification.written import Files
 
+FRICTIONS = (".damping", ".frictionloss")  # endings of paths
 STEP = 1e-3  # of a value, or of its scale where it is zero, by which it is moved
 
 
@@ -51,7 +53,11 @@ def fit_torques(robot: Robot, progress: Callable[[str], None] | None = None) -> 
 
 
 def free_numbers(robot: Robot, logs: Sequence[Log]) -> tuple[FreeNumber, ...]:
-    """Returns the free parameters of a robot that change masses, inertias or armatures."""
+    """Returns the free parameters of a robot that change the equations of its torques.
+
+    Frictions of joints are left out, because every fit of torques has them. Where a value holds in
+    one log alone, only masses, inertias and armatures are free.
+    """
     plant, out = robot.plant, []
     differ = {name for log in logs for name in log.values}
     for name, std in zip(robot.file.free, robot.std, strict=True):
@@ -68,11 +74,16 @@ def free_numbers(robot: Robot, logs: Sequence[Log]) -> tuple[FreeNumber, ...]:
         _, numbers = plant.settings((name,), values)
         before, after = (_numbers(with_numbers(plant.model, numbers, k)) for k in range(2))
         change = (after - before) / float(values[1, 0] - values[0, 0])
+        number = FreeNumber(
+            name=name, where=record.where, unit=record.unit, value=record.value, mean=mean,
+            std=known, change=change,
+        )  # fmt: skip
         if np.abs(change).max() > 0:
-            out.append(FreeNumber(
-                name=name, where=record.where, unit=record.unit, value=record.value, mean=mean,
-                std=known, change=change,
-            ))  # fmt: skip
+            out.append(number)
+        elif not differ and not record.where.endswith(FRICTIONS):
+            moved = with_numbers(plant.model, numbers, 1)
+            by = float(values[1, 0] - values[0, 0])
+            out.append(replace(number, moved=_plain(moved), step=by))
     return tuple(out)
 
 
@@ -91,8 +102,13 @@ def _friction(robot: Robot, model: mujoco.MjModel) -> np.ndarray:
 
 
 def _without_effects(plant: JointPlant) -> mujoco.MjModel:
+    """Returns the model of a plant whose joints have no effects."""
+    return _plain(plant.without_states().model)
+
+
+def _plain(model: mujoco.MjModel) -> mujoco.MjModel:
     """Returns a model whose joints have no effects: without their mark, the law leaves them."""
-    out = copy.copy(plant.without_states().model)
+    out = copy.copy(model)
     if out.nuser_jnt:
         out.jnt_user[:, -1] = 0.0
     return out

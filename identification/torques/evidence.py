@@ -27,6 +27,7 @@ from identification.torques.equations import Equations, unseen_squares
 from identification.torques.fits import (
     Fitted,
     FreeNumber,
+    Others,
     base_fit,
     expect_drives,
     extended,
@@ -114,11 +115,13 @@ def find_evidence(
     say = say or (lambda text: None)
     equations = Equations.of(make_rows(model, logs, own), confirm)
     base = find_base(model)
-    expected = expect_drives(model, equations, base)
-    whole = base_fit(model, equations, base, expected)
+    others = Others.of(free, equations, logs)
+    expected = expect_drives(model, equations, base, others)
+    whole = base_fit(model, equations, base, expected, others)
     narrow = Equations.of(make_rows(model, logs, own, OTHER_BAND), confirm)
-    other = base_fit(model, narrow, base, expect_drives(model, narrow, base)).fit.θ
-    nominal = model_fit(model, equations, free, expected)
+    there = Others.of(free, narrow, logs, OTHER_BAND)
+    other = base_fit(model, narrow, base, expect_drives(model, narrow, base, there), there).fit.θ
+    nominal = model_fit(model, equations, free, expected, others)
     say(f"{int(equations.counts.sum())} equations, {len(base.names)} base parameters")
     candidates = list_missing(model, equations, expected, effects, bodies, [f.where for f in free])
     scores = rank(equations, nominal.base, candidates)

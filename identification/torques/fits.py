@@ -3,6 +3,8 @@
     base fit     every inertial number and every friction is free, up to the size of the whole arm
     model fit    the model's numbers are held but those of the robot's file, with their priors;
                  friction is free
+    others       free parameters of the file that change no inertial number, such as a spring's
+                 stiffness or a drive's gain, are in both: y(θ) = y(θ_0) + (θ - θ_0) dy/dθ
     clock        in both, one shift of the inputs against the outputs, a nuisance: dτ̂_u/dt
 
 The base fit says how well a rigid arm with friction can do at all, and needs nothing of the model
@@ -18,12 +20,13 @@ import mujoco
 import numpy as np
 
 from identification.effects.inputs import SHIFT
+from identification.logs.log import Log
 from identification.torques.base import BaseParameters, all_columns
 from identification.torques.bodies import read_numbers
 from identification.torques.candidates import rate_of
 from identification.torques.equations import Equations, Estimate, estimate
 from identification.torques.laws import Missing
-from identification.torques.rows import Rows
+from identification.torques.rows import Rows, make_rows
 from identification.torques.scores import Base
 
 FRICTION = ("viscous", "coulomb", "offset")
@@ -32,7 +35,7 @@ CLOCK = "clock of the inputs"
 
 @dataclass(frozen=True, kw_only=True)
 class FreeNumber:
-    """A free parameter of the robot's file that changes inertial numbers.
+    """A free parameter of the robot's file that changes what the equations say.
 
     Attributes:
         name: as in the file.
@@ -41,7 +44,9 @@ class FreeNumber:
         value: of the model.
         mean: what was known.
         std: of what was known.
-        change: of (bodies · 10 numbers, armatures) with it, shape (n,).
+        change: of (bodies · 10 numbers, armatures) with it, shape (n,); zero where it changes none.
+        moved: the model in which it is larger by `step`, where it changes no inertial number.
+        step: see `moved`.
     """
 
     name: str
@@ -51,6 +56,43 @@ class FreeNumber:
     mean: float
     std: float
     change: np.ndarray
+    moved: mujoco.MjModel | None = None
+    step: float = 0.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Others:
+    """Free parameters that change no inertial number, k of them, with their columns."""
+
+    free: tuple[FreeNumber, ...]
+    columns: np.ndarray  # -dy/dθ, shape (N, nv, k)
+
+    @classmethod
+    def of(
+        cls, free: Sequence[FreeNumber], equations: Equations, logs: Sequence[Log],
+        wider: float = 1.0,
+    ) -> Others:  # fmt: skip
+        """Returns those of some free parameters, by the equations of models that have them moved.
+
+        Args:
+            free: all free parameters.
+            equations: of the records.
+            logs: these records.
+            wider: factor of the bands with which the equations were made.
+        """
+        y = equations.stacked("y")
+        some, columns = list[FreeNumber](), [np.zeros((*y.shape, 0))]
+        for f in free:
+            if f.moved is not None:
+                rows = make_rows(f.moved, logs, wider=wider)
+                some.append(f)
+                columns.append((y - np.concatenate([r.y for r in rows]))[:, :, None] / f.step)
+        return cls(free=tuple(some), columns=np.concatenate(columns, axis=2))
+
+    @property
+    def start(self) -> np.ndarray:
+        """Their part of the right side at the values of the model, shape (N, nv)."""
+        return np.asarray(self.columns @ np.array([f.value for f in self.free]))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,7 +104,7 @@ class Fitted:
         units: of them.
         base: what it was fitted to, and the estimate.
         added: effects that are in it, their sizes last.
-        inertial: number of inertial sizes, the first ones; frictions follow, and then the clock.
+        inertial: number of sizes of the model, the first ones; frictions follow, then the clock.
     """
 
     names: tuple[str, ...]
@@ -126,45 +168,53 @@ def _nuisances(
     return columns, np.append(_friction_scales(equations), SHIFT), [*names, CLOCK], [*units, "s"]
 
 
-def expect_drives(model: mujoco.MjModel, equations: Equations, base: BaseParameters) -> np.ndarray:
+def expect_drives(
+    model: mujoco.MjModel, equations: Equations, base: BaseParameters, others: Others
+) -> np.ndarray:
     """Returns the drives' forces as a fit to all inertial numbers predicts them, shape (N, nv)."""
     force = equations.stacked("drives").sum(axis=2)
-    first = base_fit(model, equations, base, np.zeros_like(force))
+    first = base_fit(model, equations, base, np.zeros_like(force), others)
     return np.asarray(first.predicted() + force - first.base.y)
 
 
 def base_fit(
-    model: mujoco.MjModel, equations: Equations, base: BaseParameters, expected: np.ndarray
-) -> Fitted:
+    model: mujoco.MjModel, equations: Equations, base: BaseParameters, expected: np.ndarray,
+    others: Others,
+) -> Fitted:  # fmt: skip
     """Returns the fit with all inertial numbers free; `expected` are the drives' forces (N, nv)."""
     bodies, a, y = (equations.stacked(n) for n in ("bodies", "a", "y"))
     more, scales, names, units = _nuisances(model, equations, expected)
-    Φ = np.concatenate([base.columns(bodies, a), more], axis=2)
-    P = 1 / np.concatenate([base.scales, scales]) ** 2
-    θ_0 = np.concatenate([base.values, np.zeros(len(scales))])
+    Φ = np.concatenate([base.columns(bodies, a), others.columns, more], axis=2)
+    P = 1 / np.concatenate([base.scales, [f.std for f in others.free], scales]) ** 2
+    θ_0 = np.concatenate([base.values, [f.mean for f in others.free], np.zeros(len(scales))])
     return Fitted(
-        names=(*base.names, *names), units=(*base.units, *units), inertial=len(base.names),
-        base=_fitted(equations, Φ, y, P, θ_0),
+        names=(*base.names, *(f.name for f in others.free), *names),
+        units=(*base.units, *(f.unit for f in others.free), *units),
+        inertial=len(base.names) + len(others.free),
+        base=_fitted(equations, Φ, y + others.start, P, θ_0),
     )  # fmt: skip
 
 
 def model_fit(
-    model: mujoco.MjModel, equations: Equations, free: Sequence[FreeNumber], expected: np.ndarray
-) -> Fitted:
+    model: mujoco.MjModel, equations: Equations, free: Sequence[FreeNumber], expected: np.ndarray,
+    others: Others,
+) -> Fitted:  # fmt: skip
     """Returns the fit of free numbers; `expected` are the drives' forces (N, nv) [N m or N]."""
+    free = [f for f in free if f.moved is None]
     bodies, a = equations.stacked("bodies"), equations.stacked("a")
     X = all_columns(bodies, a)
     known = np.concatenate([read_numbers(model).ravel(), model.dof_armature])
     change = np.array([f.change for f in free]).reshape(len(free), len(known))
     start = np.array([f.value for f in free])
-    y = equations.stacked("y") - X @ (known - start @ change)
+    y = equations.stacked("y") - X @ (known - start @ change) + others.start
     more, scales, names, units = _nuisances(model, equations, expected)
-    Φ = np.concatenate([X @ change.T, more], axis=2)
-    P = 1 / np.concatenate([[f.std for f in free], scales]) ** 2
-    θ_0 = np.concatenate([[f.mean for f in free], np.zeros(len(scales))])
+    every = [*free, *others.free]
+    Φ = np.concatenate([X @ change.T, others.columns, more], axis=2)
+    P = 1 / np.concatenate([[f.std for f in every], scales]) ** 2
+    θ_0 = np.concatenate([[f.mean for f in every], np.zeros(len(scales))])
     return Fitted(
-        names=(*(f.name for f in free), *names), units=(*(f.unit for f in free), *units),
-        inertial=len(free), base=_fitted(equations, Φ, y, P, θ_0, len(free)),
+        names=(*(f.name for f in every), *names), units=(*(f.unit for f in every), *units),
+        inertial=len(every), base=_fitted(equations, Φ, y, P, θ_0, len(every)),
     )  # fmt: skip
 
 

@@ -37,7 +37,8 @@ PLANAR = """
 <body name="upper"><joint name="shoulder" axis="0 1 0" armature="0.8" damping="{d}"
  frictionloss="{f}"/><inertial pos="0 0 0.25" mass="4" diaginertia="0.09 0.09 0.01"/>
 <body name="fore" pos="0 0 0.5"><joint name="elbow" axis="0 1 0" armature="0.3" damping="{d}"
- frictionloss="{f}"/><inertial pos="0 0 0.2" mass="2" diaginertia="0.03 0.03 0.005"/>
+ frictionloss="{f}" stiffness="{k}"/>
+<inertial pos="0 0 0.2" mass="2" diaginertia="0.03 0.03 0.005"/>
 <site name="tool" pos="0 0 0.5"/>{load}</body></body></worldbody>
 <actuator><motor name="t1" joint="shoulder" gear="10"/><motor name="t2" joint="elbow" gear="5"/>
 </actuator><sensor><jointpos name="q1" joint="shoulder"/><jointpos name="q2" joint="elbow"/>
@@ -56,27 +57,27 @@ known = 0.05
 """
 
 
-def planar(load=0.0, d=2.0, f=1.0, step=STEP):
+def planar(load=0.0, d=2.0, f=1.0, step=STEP, k=0.0):
     more = LOAD.format(load, "1e-5 1e-5 1e-5") if load else ""
-    return PLANAR.format(step=step, d=d, f=f, load=more)
+    return PLANAR.format(step=step, d=d, f=f, load=more, k=k)
 
 
-def planar_record(seed, load=0.0, name="log", lasts=12.0, noise=2e-5, d=2.0, f=1.0):
+def planar_record(seed, load=0.0, name="log", lasts=12.0, noise=2e-5, d=2.0, f=1.0, k=0.0):
     """A record of the arm that follows five harmonics; its controller does not see the noise."""
-    model = mujoco.MjModel.from_xml_string(planar(load, d, f))
+    model = mujoco.MjModel.from_xml_string(planar(load, d, f, k=k))
     data, rng = mujoco.MjData(model), np.random.default_rng(seed)
     ω = 2 * np.pi * 0.15 * np.arange(1, 6)
     a, p = rng.uniform(0.05, 0.3, (2, 5)), rng.uniform(0, 2 * np.pi, (2, 5))
     data.qpos = (a * np.sin(p)).sum(axis=1)
     data.qvel = (a * ω * np.cos(p)).sum(axis=1)
     rows = []
-    for k in range(int(lasts / STEP)):
-        if k % EVERY == 0:
-            phase = ω * k * STEP + p
+    for n in range(int(lasts / STEP)):
+        if n % EVERY == 0:
+            phase = ω * n * STEP + p
             off = (a * np.sin(phase)).sum(axis=1) - data.qpos
             slow = (a * ω * np.cos(phase)).sum(axis=1) - data.qvel
             data.ctrl = (np.array([800.0, 300.0]) * off + np.array([60.0, 20.0]) * slow) / GEARS
-            rows.append([k * STEP, *data.ctrl, *(data.qpos + noise * rng.standard_normal(2))])
+            rows.append([n * STEP, *data.ctrl, *(data.qpos + noise * rng.standard_normal(2))])
         mujoco.mj_step(model, data)
     table = np.array(rows)
     return Log(
@@ -85,7 +86,7 @@ def planar_record(seed, load=0.0, name="log", lasts=12.0, noise=2e-5, d=2.0, f=1
     )  # fmt: skip
 
 
-def planar_robot(folder, *logs, toml=TOML, confirm=()):
-    (folder / "arm.xml").write_text(planar())
+def planar_robot(folder, *logs, toml=TOML, confirm=(), k=0.0):
+    (folder / "arm.xml").write_text(planar(k=k))
     (folder / "arm.toml").write_text(toml)
     return read_robot(folder / "arm.toml", logs, confirm, ("wiring", "units", "steps"))

@@ -7,7 +7,7 @@ from torque_cases import planar_record, planar_robot
 from identification.torques.base import find_base
 from identification.torques.candidates import list_missing
 from identification.torques.equations import Equations, estimate, unseen_squares
-from identification.torques.fits import base_fit, model_fit
+from identification.torques.fits import Others, base_fit, model_fit
 from identification.torques.laws import along
 from identification.torques.rows import make_rows
 from identification.torques.scores import rank
@@ -113,8 +113,13 @@ def test_laws_on_arrays_are_those_at_each_state(robot, equations):
             assert found[k] == pytest.approx(effect.hooks[hook].py_func(one, p), rel=1e-12)
 
 
+def others(equations):
+    """No free parameters beside those of inertia."""
+    return Others.of((), equations, ())
+
+
 def test_a_size_is_that_of_a_fit_with_its_column(robot, equations, candidates):
-    base = model_fit(robot.plant.model, equations, (), _force(equations)).base
+    base = model_fit(robot.plant.model, equations, (), _force(equations), others(equations)).base
     scores = rank(equations, base, candidates)
     used = equations.stacked("used")
     w = np.where(used, np.sqrt(base.fit.weights), 0.0)
@@ -132,11 +137,15 @@ def test_a_size_is_that_of_a_fit_with_its_column(robot, equations, candidates):
 
 
 def test_what_the_fit_has_is_no_candidate(robot, equations, candidates):
-    base = model_fit(robot.plant.model, equations, (), _force(equations)).base
+    base = model_fit(robot.plant.model, equations, (), _force(equations), others(equations)).base
     names = {s.missing.name for s in rank(equations, base, candidates)}
     assert {"coulomb_friction", "offset"} <= {c.name for c in candidates}
     assert not {"coulomb_friction", "offset"} & names
     whole = base_fit(
-        robot.plant.model, equations, find_base(robot.plant.model), _force(equations)
+        robot.plant.model,
+        equations,
+        find_base(robot.plant.model),
+        _force(equations),
+        others(equations),
     ).base
     assert "payload" not in {s.missing.name for s in rank(equations, whole, candidates)}

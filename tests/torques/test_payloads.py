@@ -4,11 +4,13 @@ import json
 
 import numpy as np
 import pytest
-from torque_cases import planar, planar_record, planar_robot
+from torque_cases import TOML, planar, planar_record, planar_robot
 
 from identification import fit_torques
 from identification.__main__ import main
 from identification.logs.csv_files import write_log
+from identification.robot.torques import free_numbers
+from identification.torques.fits import Others
 
 LOAD = 0.7
 
@@ -102,3 +104,35 @@ def test_a_load_that_free_masses_hide_is_judged_with_them_at_what_was_known(tmp_
     assert found.named[0].missing.title == "payload, body fore"
     assert found.found[0].held_t > max(3.0, found.found[0].t)
     assert abs(found.named[0].size[0] - LOAD) < 4 * found.named[0].std[0]
+
+
+SPRING = (
+    TOML.replace('["joint/', '["joint/elbow.stiffness", "joint/', 1)
+    + """
+[parameters."joint/elbow.stiffness"]
+known = 0.5
+"""
+)
+
+
+@pytest.mark.parametrize("toml", [TOML, SPRING])
+def test_a_free_spring_is_fitted_and_a_held_one_is_named(toml, tmp_path):
+    """The model has 20 N m/rad, the arm 26: what is free is no effect that is missing."""
+    robot = planar_robot(tmp_path, planar_record(71, k=26.0), toml=toml, k=20.0)
+    found = fit_torques(robot)
+    if toml == TOML:
+        assert "stiffness, joint elbow" in {s.missing.title for s in found.named}
+    else:
+        assert found.named == ()
+        assert found.values["joint/elbow.stiffness"] == pytest.approx(26.0, rel=0.02)
+
+
+def test_the_column_of_a_free_spring_is_the_position(tmp_path):
+    found = fit_torques(planar_robot(tmp_path, planar_record(71, k=26.0), toml=SPRING, k=20.0))
+    equations, (number,) = found.found.equations, [
+        f for f in free_numbers(found.robot, [found.robot.log]) if f.moved is not None
+    ]  # fmt: skip
+    others = Others.of([number], equations, [found.robot.log])
+    q = equations.stacked("q")
+    np.testing.assert_allclose(others.columns[:, 1, 0], q[:, 1], atol=1e-6)
+    np.testing.assert_allclose(others.columns[:, 0, 0], 0.0, atol=1e-6)
