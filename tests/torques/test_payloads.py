@@ -1,12 +1,13 @@
 """Torques of an arm in closed loop: a hidden load is found; where nothing is missing, nothing."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from torque_cases import planar, planar_record, planar_robot
 
-from identification import fit_torques
+from identification import InputError, fit_torques
 from identification.__main__ import main
 from identification.logs.csv_files import write_log
 
@@ -102,3 +103,19 @@ def test_a_load_that_free_masses_hide_is_judged_with_them_at_what_was_known(tmp_
     assert found.named[0].missing.title == "payload, body fore"
     assert found.found[0].held_t > max(3.0, found.found[0].t)
     assert abs(found.named[0].size[0] - LOAD) < 4 * found.named[0].std[0]
+
+
+def test_a_record_counts_once(tmp_path):
+    record = planar_record(11, LOAD, name="r")
+    with pytest.raises(InputError, match="log 'r' is given twice"):
+        fit_torques(planar_robot(tmp_path, record, confirm=[record]))
+
+
+def test_the_command_refuses_currents_in_another_unit(tmp_path, capsys):
+    record = planar_record(31, LOAD)
+    wrong = replace(record, inputs=1000 * record.inputs)
+    (tmp_path / "arm.xml").write_text(planar())
+    (tmp_path / "robot.toml").write_text('model = "arm.xml"\nfree = ["body/fore.mass"]\n')
+    write_log(wrong, tmp_path / "r.csv")
+    assert main(["torques", str(tmp_path / "robot.toml"), str(tmp_path / "r.csv")]) == 2
+    assert 't1 = "mA"' in capsys.readouterr().err
