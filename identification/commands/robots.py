@@ -62,6 +62,8 @@ class OnRobot:
 
         if not self.logs:
             raise InputError("no log is given; write LOG behind the robot's file")
+        if not all(self.confirm):
+            raise InputError("--confirm names no log; write LOG behind it, or leave it out")
         read_robot_file(self.robot)  # refuses a wrong file before the imports that are slow
         from identification.robot.reading import read_robot
 
