@@ -1,6 +1,7 @@
 """Torques of an arm in closed loop: a hidden load is found; where nothing is missing, nothing."""
 
 import json
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -10,6 +11,7 @@ from torque_cases import planar, planar_record, planar_robot
 from identification import InputError, fit_torques
 from identification.__main__ import main
 from identification.logs.csv_files import write_log
+from identification.report.torque_words import centre_words
 
 LOAD = 0.7
 
@@ -28,6 +30,19 @@ def test_a_hidden_load_is_found_first_and_weighed(loaded):
     assert abs(first.size[0] - LOAD) < 4 * first.std[0]
     assert first.fall > 0.9
     assert "payload, body fore: M = " in repr(loaded)
+
+
+def test_a_load_at_any_place_is_told_with_its_centre_of_mass(loaded):
+    load = next(s for s in loaded.found.scores if s.missing.title == "load, body fore")
+    size = dict(zip(load.missing.sizes, load.size, strict=True))
+    assert size["h_z"] / size["m"] == pytest.approx(0.5, abs=0.05)
+    sure = replace(load, std=0.01 * np.abs(load.size))
+    words = centre_words(sure)
+    assert words.endswith("in the frame of body fore.")
+    z = float(re.search(r"z = ([\d.]+) ± [\d.]+ m in", words)[1])
+    assert z == pytest.approx(size["h_z"] / size["m"], abs=0.006)
+    assert centre_words(replace(load, std=np.abs(load.size))) == ""  # m is not sure
+    assert centre_words(loaded.named[0]) == ""  # a payload has its place by its name
 
 
 def test_frictions_and_base_parameters_are_those_of_the_truth(loaded):
@@ -88,7 +103,10 @@ def test_the_command_tells_and_keeps_what_python_does(tmp_path, capsys):
     assert record["joints"]["elbow"]["unit"] == "N m"
     model = {n: v["model"] for n, v in record["base_parameters"].items() if "model" in v}
     assert model["h_z of fore"] == pytest.approx(0.4)
-    assert (out / "report.html").stat().st_size > 10_000
+    page = (out / "report.html").read_text()
+    assert "The torques need" in page
+    assert ">Payload<" in page
+    assert len(page) > 10_000
     assert len([*out.glob("torques-*.png")]) == 1
     assert np.isfinite([j["final"]["unseen"] for j in record["joints"].values()]).all()
 
