@@ -156,8 +156,8 @@ def balanced_otherwise(
     reading, rest = best
     before, after = (percent(1 - float(min(1.0, e.max()))) for e in (as_read, rest))
     return reading, (
-        f"explains {before} of the forces of the drives, whatever payload, gravity and friction it"
-        f" has, and {after} {reading.words}; {reading.cure}"
+        f"explains at most {before} of the force of a drive, whatever payload, gravity and friction"
+        f" it has, and would explain {after} {reading.words}; {reading.cure}"
     )
 
 
