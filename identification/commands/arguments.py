@@ -137,7 +137,8 @@ def _sentence(text: str, name: str, arguments: Sequence[str], commands: dict[str
     if command not in commands:
         return str(unknown_name("command", command, commands))
     see = f"; {name} {command} --help tells more"
-    options = [*_options(commands[command])]
+    options, places = [*_options(commands[command])], _positional(commands[command])
+    whole = " ".join([name, command, *places.values()])
     if found := re.search(r"Unrecognized (?:or misplaced )?options: ([^\s,]+)", text):
         if not found[1].startswith("-"):
             return f"{found[1]} is one argument too many{see}"
@@ -152,11 +153,12 @@ def _sentence(text: str, name: str, arguments: Sequence[str], commands: dict[str
         words = sorted({*re.findall(r"'([^']*)'", found[3])} - {"None"})  # their order varies
         return f"{found[2]} is {found[1]}; give one of {', '.join(words)}"
     if found := re.search(r"Missing value for argument '([^']+)'", text):
-        if what := _positional(commands[command]).get(found[1]):
-            return f"{what} is missing; write {name} {command} {what}{see}"
+        if what := places.get(found[1]):
+            return f"{what} is missing; write {whole}{see}"
         return f"{found[1]} has no value; give one behind it{see}"
     if found := re.search(r"Missing from [^:]+: (\S+)", text):
-        return f"{found[1]} is missing; write {name} {command} {found[1]}{see}"
+        text = whole if found[1] in places.values() else f"{name} {command} {found[1]}"
+        return f"{found[1]} is missing; write {text}{see}"
     return f"{text.partition('. ')[0].rstrip('.')}{see}"
 
 

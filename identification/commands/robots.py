@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -62,6 +62,8 @@ class OnRobot:
 
         if not self.logs:
             raise InputError("no log is given; write LOG behind the robot's file")
+        if not all(self.confirm):
+            raise InputError("--confirm names no log; write LOG behind it, or leave it out")
         read_robot_file(self.robot)  # refuses a wrong file before the imports that are slow
         from identification.robot.reading import read_robot
 
@@ -137,10 +139,16 @@ class Torques(OnRobot):
 
     def run(self) -> int:
         """Compare, say, keep."""
-        robot = self.read(but=("wiring",))  # the residual of the torques says it without simulation
+        robot = self.read(but=("wiring",))  # forces say it without a simulation
+        from identification.refusals.wiring import refuse_unbalanced
         from identification.report.torque_words import torque_text
+        from identification.robot.file import read_robot_file
         from identification.robot.torques import fit_torques
 
+        trust = (*flat(self.trust), *read_robot_file(self.robot).trust)
+        judged = replace(robot, file=replace(robot.file, trust=trust))
+        for log in (robot.log, *robot.others, *robot.records):
+            refuse_unbalanced(judged, log)
         found = fit_torques(robot, self.output.tell)
         files = found.files
         text = torque_text(files.record["verdict"], found.found)

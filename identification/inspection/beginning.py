@@ -13,7 +13,7 @@ from identification.errors import InputError
 from identification.files import exists, toml_key, toml_table, toml_value, whole_file
 from identification.inspection.inspected import SAID, Inspection
 from identification.inspection.matching import SAME, Match, channels_of, match
-from identification.inspection.words import answer_sentence
+from identification.inspection.words import answer_sentences
 from identification.logs.units import to_si
 from identification.model.tied import servo_kind
 from identification.robot.file import RobotFile
@@ -66,7 +66,7 @@ def write_beginning(found: Inspection, model: Path, path: Path) -> Beginning:
     with whole_file(path) as draft:
         draft.write_text("\n".join(lines) + "\n", encoding="utf-8")
     sure = [m for m in matches if m.how == SAME]
-    answers = [answer_sentence(a) for a in found.answers]
+    answers = answer_sentences(found.answers)
     told = [*said, f"columns of the same name: {_listed(sure)}"] if sure else [*said]
     return Beginning(path, (*told, *answers), _guesses(found, compiled, matches), tuple(needs))
 
@@ -127,7 +127,8 @@ def _lines(
         note = f"  # {m.how}; {_what(model, m)}"
         lines.append(f"{toml_key(m.channel.name)} = {toml_value(m.column)}{note}")
     answers = {a.output: a for a in found.answers}
-    lines += [f"# {answer_sentence(answers[m.column])}" for m in outputs if m.column in answers]
+    told = [answers[m.column] for m in outputs if m.column in answers]
+    lines += [f"# {sentence}" for sentence in answer_sentences(told)]
     return [*lines, *_log_lines(found, matches)]
 
 

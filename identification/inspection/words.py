@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from identification.inspection.answers import OF, Answer
@@ -9,6 +10,10 @@ from identification.inspection.inspected import Column, Inspection
 from identification.quantities import plain, plain_fields
 
 HEAD = ("column", "role", "unit", "rate", "from", "to", "gaps", "widest", "empty")
+HINT = (
+    "Such a correlation is a hint and no proof: a joint that swings, or that others move, answers"
+    " their inputs too, and late. fit and torques check which column is whose."
+)
 
 
 def rows(found: Inspection) -> list[tuple[str, ...]]:
@@ -36,12 +41,18 @@ def sentences(found: Inspection) -> list[str]:
     still = [c.name for c in found.columns if c.least == c.most]
     if still:
         out.append(f"Constant in all of the log: {', '.join(still)}.")
-    out += [answer_sentence(answer) for answer in found.answers]
+    out += answer_sentences(found.answers)
     silent = [c.name for c in found.columns if c.role == "output" and c.name not in still
               and c.name not in {a.output for a in found.answers}]  # fmt: skip
     if silent:
         out.append(f"No input of the log is clearly answered by {', '.join(silent)}.")
     return out
+
+
+def answer_sentences(answers: Sequence[Answer]) -> list[str]:
+    """Returns a sentence on each answer, and one on how much they tell."""
+    told = [answer_sentence(answer) for answer in answers]
+    return told if all(answer.is_setpoint for answer in answers) else [*told, HINT]
 
 
 def answer_sentence(answer: Answer) -> str:
@@ -56,7 +67,7 @@ def answer_sentence(answer: Answer) -> str:
         return f"{text}, as it would answer the command of a position."
     return (
         f"{text}."
-        if answer.of == OF[0]
+        if answer.of == OF[0] or answer.correlation < 0
         else f"{text}, as it would answer a torque, a force or a current."
     )
 

@@ -14,6 +14,7 @@ wider too, and the smallest η counts. A payload that the model lacks bars nothi
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import chain
@@ -25,7 +26,7 @@ from identification.logs.log import Log
 from identification.quantities import held
 from identification.refusals.balance import Freedom, unbalanced_share
 from identification.refusals.columns import Doubt, factor_readings, turned_units, unit_readings
-from identification.refusals.readings import EXPLAINED, NEARER, UNEXPLAINED, Reading
+from identification.refusals.readings import EXPLAINED, NEARER, SAME, UNEXPLAINED, Reading
 from identification.refusals.turned_inputs import with_turned_ranges
 from identification.shares import percent
 
@@ -122,6 +123,41 @@ def rescaled(
         f" payload and friction it has, and explains {percent(1 - float(rest.max()))} of them"
         f" {reading.words}; {reading.cure} (where the outputs are right, the inputs are in a larger"
         " unit: write that of the inputs)"
+    )
+
+
+def balanced_otherwise(
+    model: mujoco.MjModel, doubt: Doubt, readings: Iterable[Reading]
+) -> tuple[Reading, str] | None:
+    """Returns the reading with which forces balance, where they do not as the log is read.
+
+    Nothing is simulated, so that forces alone must tell: η of all outputs must fall below what is
+    unexplained, and to less than a fifth in all.
+
+    Args:
+        model: with the log's actuators and sensors.
+        doubt: the log.
+        readings: other ones.
+
+    Returns:
+        The reading that leaves least, and in words what it explains; None where the log may be as
+        it is read, or where no reading explains it.
+    """
+    as_read = unbalanced_share(model, doubt.log)
+    if as_read is None or as_read.max() <= UNEXPLAINED:
+        return None
+    best, least = None, NEARER * float(as_read.sum())
+    for reading in readings:
+        rest = unbalanced_share(with_turned_ranges(model, doubt.log, reading.log), reading.log)
+        if rest is not None and rest.max() < UNEXPLAINED and rest.sum() < least:
+            best, least = (reading, rest), (1 - SAME) * float(rest.sum())
+    if best is None:
+        return None
+    reading, rest = best
+    before, after = (percent(1 - float(min(1.0, e.max()))) for e in (as_read, rest))
+    return reading, (
+        f"explains at most {before} of the force of a drive, whatever payload, gravity and friction"
+        f" it has, and would explain {after} {reading.words}; {reading.cure}"
     )
 
 

@@ -117,6 +117,24 @@ def unit_readings(
         yield Reading(other, felt, text, unit_lines(units), ("units",))
 
 
+def input_unit_readings(doubt: Doubt, units: Mapping[str, str]) -> Iterator[Reading]:
+    """Yields other units of the inputs that drives turn into forces, all of a kind at once.
+
+    Args:
+        doubt: the log.
+        units: SI unit of such inputs, by name.
+    """
+    log = doubt.log
+    for si, word in ((si, w) for si in dict.fromkeys(units.values()) for w in UNITS):
+        if UNITS[word][0] != si or word == si:
+            continue
+        some = [n for n in log.input_names if units.get(n) == si]
+        scale = [UNITS[word][1] if n in some else 1.0 for n in log.input_names]
+        lines = unit_lines({doubt.column[n]: word for n in some})
+        other = replace(log, inputs=log.inputs * scale)
+        yield Reading(other, doubt.wrong, f"were its inputs in {word}", lines, ("units",))
+
+
 def output_readings(doubt: Doubt, mirrored: bool = True) -> Iterator[Reading]:
     """Yields other signs and places of the outputs that are not explained; see `output_turns`."""
     return chain(output_turns(doubt, mirrored), output_exchanges(doubt))

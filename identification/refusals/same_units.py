@@ -71,6 +71,21 @@ def wanted_units(model: mujoco.MjModel, log: Log) -> dict[str, str]:
     return found
 
 
+def drive_units(model: mujoco.MjModel, log: Log) -> dict[str, str]:
+    """Returns SI units of the inputs that drives turn into forces of joints, by name.
+
+    Where the log does not say it, a gear of one is that of a force, and another that of a current.
+    """
+    found, wanted = {}, wanted_units(model, log)
+    for i, name in enumerate(log.input_names):
+        if name in wanted or model.actuator_trntype[i] != int(mujoco.mjtTrn.mjTRN_JOINT):
+            continue
+        is_slide = model.jnt_type[model.actuator_trnid[i, 0]] == int(mujoco.mjtJoint.mjJNT_SLIDE)
+        force = "N" if is_slide else "N m"
+        found[name] = log.units.get(name) or (force if model.actuator_gear[i, 0] == 1 else "A")
+    return found
+
+
 def _pairs(model: mujoco.MjModel, log: Log) -> Iterator[Pair]:
     """Yields positions with the measured rates, and with what drives want, of hinges and slides."""
     places = dict(zip(output_columns(model, log.output_names), log.output_names, strict=True))

@@ -24,12 +24,13 @@ import numpy as np
 
 from identification.errors import InputError
 from identification.logs.log import Log
-from identification.refusals.by_forces import Balance, rescaled
+from identification.refusals.by_forces import Balance, balanced_otherwise, rescaled
 from identification.refusals.columns import (
     Doubt,
     Readings,
     factor_readings,
     input_readings,
+    input_unit_readings,
     output_readings,
     turned_exchanges,
     turned_units,
@@ -38,7 +39,7 @@ from identification.refusals.columns import (
 )
 from identification.refusals.judge import Judge, beginning, lengths_of
 from identification.refusals.readings import NEARER, SAME, UNEXPLAINED, Reading, misread
-from identification.refusals.same_units import different_units, wanted_units
+from identification.refusals.same_units import different_units, drive_units, wanted_units
 from identification.refusals.trust import Robot
 from identification.refusals.turned_inputs import all_inputs_turned
 
@@ -105,6 +106,36 @@ def refuse_miswired(robot: Robot, log: Log) -> None:
         found = rescaled(plant.model, every, wiring and is_small, is_small)
         if found is not None:
             raise _refusal(robot, log, *found)
+    if not is_explained:
+        refuse_unbalanced(robot, log)
+
+
+def refuse_unbalanced(robot: Robot, log: Log) -> None:
+    """Refuse a log whose drives' forces only another unit, sign or order of columns explains.
+
+    Nothing is simulated: a simulation of an arm in a closed loop says little of its log, because
+    what the model lacks grows over a window. Where a drive wants a position, its gain is a guess,
+    and nothing is told.
+
+    Args:
+        robot: with the values that its file gives, and what it trusts.
+        log: of the robot.
+
+    Raises:
+        InputError: there is such a reading.
+    """
+    file, model = robot.file, robot.plant_of(log).model
+    column = {n: file.columns.get(n, n) for n in (*log.output_names, *log.input_names)}
+    log = beginning(log)
+    if wanted_units(model, log) or len(column) > MOST_COLUMNS or not log.inputs.any():
+        return
+    doubt, readings = Doubt.of(log, column), []
+    if "units" not in file.trust:
+        readings += [input_unit_readings(doubt, drive_units(model, log)), unit_readings(doubt)]
+    if "wiring" not in file.trust:
+        readings += [input_readings(doubt), output_readings(doubt)]
+    if found := balanced_otherwise(model, doubt, chain(*readings)):
+        raise _refusal(robot, log, *found)
 
 
 def _of_outputs(judge: Judge, doubt: Doubt) -> Iterator[Reading]:

@@ -62,7 +62,8 @@ def settle(figure: Figure) -> None:
     """Place the parts of a figure for good: anew for each file it takes as long as drawing."""
     engine = figure.get_layout_engine()
     if engine is not None:
-        engine.execute(figure)
+        with matplotlib.rc_context(STYLE):  # ticks are made when they are asked for
+            engine.execute(figure)
         figure.set_layout_engine(None)
 
 

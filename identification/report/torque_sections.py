@@ -21,16 +21,18 @@ def torque_sections(evidence: Evidence, model: mujoco.MjModel) -> list[Section]:
     return [
         Section(
             "Torques, joint by joint",
-            "What the drives gave without what of the model is known, beside what the final fit"
-            " makes of the measured motion, and what is left. A joint that is nearly at rest has no"
-            " equation, and a gap in its curve.",
+            "The torque that the drives gave, without the part that is known of the model; the same"
+            " torque as the final fit predicts it from the measured motion; and the difference of"
+            " the two. A curve has a gap where its joint is nearly at rest, because friction may"
+            " then be anything below its level.",
             figures=figures,
         ),
         Section(
             "What the model may lack",
             "The fall is that of the mean square on data that the fit has not seen. The chance is"
             " that of the best of all candidates, by blocks that are longer than the memory of the"
-            " residual.",
+            " residual. Of a load, m is the mass, h the mass times the place of its centre, and I"
+            " its inertia, both in the frame of the body.",
             table=Table(("candidate", "sizes", "fall", "t", "chance"),
                         tuple(score_rows(evidence.scores))),
         ),
@@ -71,7 +73,7 @@ def torque_figure(evidence: Evidence, model: mujoco.MjModel, record: int) -> Fig
     for j, ax in enumerate(panels):
         ax.plot(rows.time, y[:, j], color=INK, lw=1.8, alpha=0.5, label="measured")
         ax.plot(rows.time, predicted[:, j], color=SIMULATED, lw=1.0, label="predicted")
-        ax.plot(rows.time, (y - predicted)[:, j], color=GREY, lw=0.8, label="left")
+        ax.plot(rows.time, (y - predicted)[:, j], color=GREY, lw=0.8, label="difference")
         ax.set_ylabel(literal(f"{names[j]} [{units[j]}]"), fontsize=8)
     panels[-1].set_xlabel("time [s]")
     handles = panels[0].get_legend_handles_labels()

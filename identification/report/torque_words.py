@@ -1,24 +1,22 @@
-"""What torques say of a robot, in sentences, as rows of tables and as plain values."""
+"""What torques say of a robot, in sentences and as rows of tables."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import mujoco
 import numpy as np
 
-from identification.quantities import plain, quantity
+from identification.quantities import quantity
 from identification.report.error_words import listed
 from identification.shares import decimal, fall_words, percent
 from identification.torques.evidence import Evidence
-from identification.torques.fits import Fitted
 from identification.torques.scores import CHANCE, FAR, PROOF, Score
 
 SHOWN = 8  # candidates that are told
+COLUMNS = "sizes; fall of the mean square on unseen data, its t, chance that luck alone does it"
 LATE = 1e-3  # shift of the clocks that is told [s]
 MATTERS = 2.0  # std that a value moves with the band: told
-FITS = ("whole", "model", "final")
 
 
 def joint_names(model: mujoco.MjModel) -> tuple[list[str], list[str]]:
@@ -43,7 +41,7 @@ def torque_verdict(evidence: Evidence, model: mujoco.MjModel) -> list[str]:
 
 def torque_text(verdict: Sequence[str], evidence: Evidence) -> str:
     """Returns what a command prints: the verdict, candidates, base parameters and friction."""
-    lines = [*verdict, "", "Candidates (fall on unseen data, t, chance of any):"]
+    lines = [*verdict, "", f"Candidates ({COLUMNS}):"]
     lines += [f"  {t}: {s}; {f}, {tt}, {c}" for t, s, f, tt, c in score_rows(evidence.scores)]
     lines += ["", "Base parameters (fitted; model; difference in std):"]
     lines += [f"  {n}: {v}; {m}; {off}" for n, v, m, off in base_rows(evidence)]
@@ -80,7 +78,8 @@ def _missing(evidence: Evidence) -> list[str]:
     for k, score in enumerate(evidence.named):
         begins = "The torques need" if not k else "Beside it they need" if k == 1 else "And"
         out.append(
-            f"{begins} {score.missing.title} ({score.missing.phrase}): {size_words(score)}. The"
+            f"{begins} {score.missing.title} ({score.missing.phrase}): {size_words(score)}."
+            f"{centre_words(score)} The"
             f" mean square of their residual on {on} that no fit has seen {fall_words(score.fall)},"
             f" t {score.t:.1f}, chance {chance_words(score.chance)}."
         )
@@ -92,6 +91,19 @@ def _missing(evidence: Evidence) -> list[str]:
         if len(rivals := rivals_of(evidence, score, k)):
             out[-1] += f" As good by chance: {listed([r.missing.title for r in rivals])}."
     return out
+
+
+def centre_words(score: Score) -> str:
+    """Returns a sentence on where a load is; "" of what is no load, or where m is not sure."""
+    sizes = dict(zip(score.missing.sizes, zip(score.size, score.std, strict=True), strict=True))
+    m, σ_m = sizes.get("m", (0.0, 1.0))
+    if score.missing.name != "load" or abs(m) <= FAR * σ_m:
+        return ""
+    at = [  # the std leaves out how m and h go together
+        f"{n[2:]} = {quantity(h / m, float(np.hypot(σ, h / m * σ_m) / m), 'm')}"
+        for n, (h, σ) in sizes.items() if n.startswith("h_")
+    ]  # fmt: skip
+    return f" Its centre of mass is at {listed(at)} in the frame of {score.missing.where}."
 
 
 def _imitated(evidence: Evidence) -> list[str]:
@@ -186,7 +198,7 @@ def _doubts(evidence: Evidence) -> list[str]:
         f" are correlated. With a band of the smooth motion narrower by {percent(1 - 0.6)},"
         + (
             f" {many} of {len(moved)} values move by more than {MATTERS:g} std, most"
-            f" {evidence.whole.names[worst]} ({moved[worst]:.1f} std)."
+            f" {evidence.whole.names[worst]} ({moved[worst]:.1f} std): their std may be too small."
             if many else f" no value moves by more than {moved.max():.1f} std."
         )
     ]  # fmt: skip
@@ -234,62 +246,7 @@ def friction_rows(evidence: Evidence) -> list[tuple[str, str, str, str]]:
 def score_rows(scores: tuple[Score, ...]) -> list[tuple[str, str, str, str, str]]:
     """Returns rows of candidates: title, sizes, fall on unseen blocks, its t, chance."""
     return [
-        (s.missing.title, size_words(s), percent(s.fall), f"{s.t:.1f}", chance_words(s.chance))
+        (f"{s.missing.title} ({s.missing.phrase})", size_words(s), percent(s.fall), f"{s.t:.1f}",
+         chance_words(s.chance))
         for s in scores[:SHOWN]
-    ]
-
-
-def evidence_to_json(evidence: Evidence, model: mujoco.MjModel) -> dict[str, Any]:
-    """Returns what torques say as plain values."""
-    names, units = joint_names(model)
-    joints = {}
-    for j, name in enumerate(names):
-        of = {
-            fit: {
-                "residual": float(getattr(evidence, fit).fit.σ[j]),
-                "unseen": float(evidence.unseen[k, j]),
-            }
-            for k, fit in enumerate(FITS)
-        }
-        joints[name] = {"unit": units[j], **of}
-    return plain({
-        "joints": joints,
-        "base_parameters": _values(
-            evidence.whole, np.append(evidence.base.values, evidence.friction), evidence.other
-        ),
-        "values": _values(evidence.final, None, None),
-        "named": [_score(s) for s in evidence.named],
-        "scores": [_score(s) for s in evidence.scores[:SHOWN]],
-        "rest": [_score(s) for s in evidence.rest[:SHOWN]],
-        "differences": [_score(s) for s in evidence.differences[:SHOWN]],
-        "asked": evidence.asked,
-        "inconsistent": [evidence.base.names[k] for k in evidence.inconsistent],
-        "bands": {r.name: r.band for r in evidence.equations.rows},
-    })  # fmt: skip
-
-
-def _values(
-    fit: Fitted, model: np.ndarray | None, other: np.ndarray | None
-) -> dict[str, dict[str, Any]]:
-    out = {}
-    for k, name in enumerate(fit.names):
-        one: dict[str, Any] = {"value": fit.fit.θ[k], "std": fit.fit.std[k], "unit": fit.units[k]}
-        if model is not None and k < len(model):
-            one["model"] = model[k]
-        if other is not None:
-            one["narrower"] = other[k]
-        out[name] = one
-    return out
-
-
-def _score(score: Score) -> dict[str, Any]:
-    return {
-        "name": score.missing.name, "where": score.missing.where,
-        "sizes": {
-            n: {"value": v, "std": s, "unit": u}
-            for n, v, s, u in zip(score.missing.sizes, score.size, score.std, score.missing.units,
-                                  strict=True)
-        },
-        "shape": {n: v for n, v, _ in score.missing.shape}, "fall": score.fall, "t": score.t,
-        "held_t": score.held_t, "chance": score.chance, "proven": score.is_proven,
-    }  # fmt: skip
+    ]  # fmt: skip

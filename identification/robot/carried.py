@@ -37,7 +37,8 @@ def with_carried(file: RobotFile, logs: Sequence[Log]) -> tuple[RobotFile, tuple
         file: of the robot.
         logs: that are to be fitted.
     """
-    stds = [name for name, record in file.records.items() if "std" in record]
+    # A held value is not fitted, so that its std says nothing.
+    stds = [n for n, record in file.records.items() if "std" in record and n not in file.held]
     if not stds:
         return file, ()
     again = [log.name for log in logs if digest(log) in file.fitted.values()]

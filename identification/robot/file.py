@@ -64,6 +64,7 @@ from identification.robot.file_checks import (
 )
 
 LONGEST = 1e6  # [s] of a horizon
+MODELS = (".xml", ".mjcf", ".urdf")  # endings of models, which are given by mistake
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -112,6 +113,11 @@ class RobotFile:
 def read_robot_file(path: str | Path) -> RobotFile:
     """Read a robot's TOML."""
     path = Path(path)
+    if path.suffix.lower() in MODELS and is_file(path):
+        raise InputError(
+            f"{path} is a model and no robot file; write identification new {path} LOG, which"
+            " writes one, robot.toml"
+        )
     content = read_toml(path, "robot file, such as robot.toml")
     check_table(content, KEYS, str(path))
     for key in ("model", "free"):

@@ -8,8 +8,10 @@ from pathlib import Path
 from typing import Any
 
 from identification.report.page import Section, save_figures, write_report
+from identification.report.torque_headline import torque_headline
+from identification.report.torque_json import evidence_to_json
 from identification.report.torque_sections import torque_sections
-from identification.report.torque_words import evidence_to_json, torque_verdict
+from identification.report.torque_words import torque_verdict
 from identification.robot.torque_fit import TorqueFit
 
 
@@ -44,7 +46,10 @@ class TorqueFiles:
         """Write the report; returns its path."""
         names = [rows.name for rows in self.fitted.found.equations.rows]
         title = f"{', '.join(names)}: torques"
-        return write_report(path, title, self.record["verdict"], self.sections, data=names)
+        headline = torque_headline(self.fitted.found, self.fitted.robot.plant.model)
+        return write_report(
+            path, title, self.record["verdict"], self.sections, data=names, headline=headline
+        )
 
     def draw(self, folder: Path) -> None:
         """Write the report and its figures into a folder."""

@@ -11,6 +11,7 @@ import numpy as np
 
 from identification.effects.jointed import JointPlant
 from identification.errors import refuse_kind
+from identification.logs.joined import refuse_different
 from identification.logs.log import Log
 from identification.model.protocol import with_numbers
 from identification.robot.robot import Robot
@@ -38,10 +39,11 @@ def fit_torques(robot: Robot, progress: Callable[[str], None] | None = None) -> 
 
     Raises:
         InputError: a joint is neither hinge nor slide or is not measured, bodies are tied in a
-            loop, a drive has a state, or a log is too short.
+            loop, a drive has a state, a log is too short, or two logs hold the same samples.
     """
     refuse_kind(robot, Robot, "fit_torques takes a robot (read_robot)")
     logs = (robot.log, *robot.others, *robot.records)
+    refuse_different(logs)
     model = _without_effects(robot.plant)
     own = [_without_effects(robot.plant_of(log)) if log.values else model for log in logs]
     evidence = find_evidence(

@@ -121,8 +121,12 @@ def _std(
 
 
 def _unless(robot: Robot, name: str, known: float) -> dict[str, object]:
-    """Returns the std, where the robot's file did not say it to the last digit."""
-    return {} if "known" in robot.file.records.get(name, {}) else {"known": known}
+    """Returns the std, where the robot's file did not say it to the last digit.
+
+    Its `known` is not what was known where the std of a fit of other logs counted.
+    """
+    said = robot.file.records.get(name, {})
+    return {} if "known" in said and "std" not in said else {"known": known}
 
 
 def _means(names: Sequence[str], own_values: Mapping[str, Mapping[str, float]]) -> dict[str, float]:

@@ -38,7 +38,8 @@ WRONG = [
     (inca, "compare a.csv b.csv", "b.csv is one argument too many"),
     (inca, "discover a.csv --spread", "--spread has no value; give one behind it"),
     (inca, "crosscheck --step 0.001", "unknown option of inca crosscheck: '--step'; did you mean"),
-    (identification, "fit", "ROBOT is missing; write identification fit ROBOT"),
+    (identification, "fit", "ROBOT is missing; write identification fit ROBOT LOG"),
+    (identification, "new arm.xml", "LOG is missing; write identification new MODEL LOG"),
     (identification, "find", "unknown command 'find'"),
     (identification, "fit robot.toml a.csv --horizon 1", "unknown option of identification fit:"),
 ]
@@ -90,3 +91,14 @@ def test_of_very_many_names_the_nearest_are_listed():
 )  # fmt: skip
 def test_what_is_repeated_adds_up(commands, written, read):
     assert gathered(commands, written.split()) == read.split()
+
+
+def test_a_model_in_place_of_a_robot_file_is_told_what_writes_one(capsys, tmp_path):
+    (tmp_path / "arm.xml").write_text("<mujoco/>")
+    assert identification(["fit", str(tmp_path / "arm.xml"), "log.csv"]) == 2
+    assert "arm.xml LOG, which writes one" in capsys.readouterr().err
+
+
+def test_confirm_without_a_log_is_no_wish(capsys):
+    assert identification(["fit", "robot.toml", "a.csv", "--confirm"]) == 2
+    assert "--confirm names no log" in capsys.readouterr().err

@@ -12,7 +12,7 @@ from touching_cases import simulated
 from identification import InputError, fit, inspect_log, read_robot, write_log
 from identification.inspection.answers import find_answers
 from identification.inspection.guesses import is_time, role_of, time_unit, unit_of
-from identification.inspection.words import answer_sentence
+from identification.inspection.words import answer_sentence, answer_sentences
 
 STEP = 0.01
 
@@ -73,6 +73,9 @@ def test_what_answers_what_and_how_late():
     assert (moved.input, moved.of) == ("u", "rate")
     assert moved.lag <= 2 * STEP
     assert "as it would answer a torque" in answer_sentence(moved)
+    (against,) = find_answers(STEP, inputs, {"y": -waves()[1]})
+    assert "as it would answer" not in answer_sentence(against)  # a motor's force does not
+    assert len(answer_sentences([moved])) == 2  # it is a hint and no proof
     assert find_answers(STEP, inputs, {"y": np.ones(len(u))}) == ()
 
 

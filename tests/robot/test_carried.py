@@ -54,6 +54,23 @@ def test_a_second_fit_is_nearer_to_the_first_than_without_it(kept):
     assert second.values == pytest.approx(fitted.values, rel=1e-3)
 
 
+def test_the_std_of_a_held_value_is_not_told_as_known(kept):
+    out, _ = kept
+    text = (out / "robot.toml").read_text()
+    text = text.replace('free = ["mass", "damping"]', 'free = ["damping"]\nheld = ["mass"]')
+    (out / "held.toml").write_text(text)
+    remarks = read_robot(out / "held.toml", ELBOW / "second.csv").remarks
+    assert any("count as known with their std (damping)" in remark for remark in remarks)
+
+
+def test_a_third_fit_of_the_second_log_knows_what_the_second_fit_knew(kept, tmp_path):
+    out, _ = kept
+    before = read_robot(out / "robot.toml", ELBOW / "second.csv")
+    again = read_robot(fit(before).save(tmp_path / "out") / "robot.toml", ELBOW / "second.csv")
+    assert again.mean == pytest.approx(before.mean)
+    np.testing.assert_allclose(again.std, before.std)
+
+
 def test_a_held_value_is_that_of_the_file_and_is_not_fitted(tmp_path):
     shutil.copy(ELBOW / "elbow.xml", tmp_path)
     text = (ELBOW / "elbow.toml").read_text().replace(

@@ -1,14 +1,17 @@
 """Torques of an arm in closed loop: a hidden load is found; where nothing is missing, nothing."""
 
 import json
+import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from torque_cases import TOML, planar, planar_record, planar_robot
 
-from identification import fit_torques
+from identification import InputError, fit_torques
 from identification.__main__ import main
 from identification.logs.csv_files import write_log
+from identification.report.torque_words import centre_words
 from identification.robot.torques import free_numbers
 from identification.torques.fits import Others
 
@@ -29,6 +32,19 @@ def test_a_hidden_load_is_found_first_and_weighed(loaded):
     assert abs(first.size[0] - LOAD) < 4 * first.std[0]
     assert first.fall > 0.9
     assert "payload, body fore: M = " in repr(loaded)
+
+
+def test_a_load_at_any_place_is_told_with_its_centre_of_mass(loaded):
+    load = next(s for s in loaded.found.scores if s.missing.title == "load, body fore")
+    size = dict(zip(load.missing.sizes, load.size, strict=True))
+    assert size["h_z"] / size["m"] == pytest.approx(0.5, abs=0.05)
+    sure = replace(load, std=0.01 * np.abs(load.size))
+    words = centre_words(sure)
+    assert words.endswith("in the frame of body fore.")
+    z = float(re.search(r"z = ([\d.]+) ± [\d.]+ m in", words)[1])
+    assert z == pytest.approx(size["h_z"] / size["m"], abs=0.006)
+    assert centre_words(replace(load, std=np.abs(load.size))) == ""  # m is not sure
+    assert centre_words(loaded.named[0]) == ""  # a payload has its place by its name
 
 
 def test_frictions_and_base_parameters_are_those_of_the_truth(loaded):
@@ -89,7 +105,10 @@ def test_the_command_tells_and_keeps_what_python_does(tmp_path, capsys):
     assert record["joints"]["elbow"]["unit"] == "N m"
     model = {n: v["model"] for n, v in record["base_parameters"].items() if "model" in v}
     assert model["h_z of fore"] == pytest.approx(0.4)
-    assert (out / "report.html").stat().st_size > 10_000
+    page = (out / "report.html").read_text()
+    assert "The torques need" in page
+    assert ">Payload<" in page
+    assert len(page) > 10_000
     assert len([*out.glob("torques-*.png")]) == 1
     assert np.isfinite([j["final"]["unseen"] for j in record["joints"].values()]).all()
 
@@ -136,3 +155,19 @@ def test_the_column_of_a_free_spring_is_the_position(tmp_path):
     q = equations.stacked("q")
     np.testing.assert_allclose(others.columns[:, 1, 0], q[:, 1], atol=1e-6)
     np.testing.assert_allclose(others.columns[:, 0, 0], 0.0, atol=1e-6)
+
+
+def test_a_record_counts_once(tmp_path):
+    record = planar_record(11, LOAD, name="r")
+    with pytest.raises(InputError, match="log 'r' is given twice"):
+        fit_torques(planar_robot(tmp_path, record, confirm=[record]))
+
+
+def test_the_command_refuses_currents_in_another_unit(tmp_path, capsys):
+    record = planar_record(31, LOAD)
+    wrong = replace(record, inputs=1000 * record.inputs)
+    (tmp_path / "arm.xml").write_text(planar())
+    (tmp_path / "robot.toml").write_text('model = "arm.xml"\nfree = ["body/fore.mass"]\n')
+    write_log(wrong, tmp_path / "r.csv")
+    assert main(["torques", str(tmp_path / "robot.toml"), str(tmp_path / "r.csv")]) == 2
+    assert 't1 = "mA"' in capsys.readouterr().err

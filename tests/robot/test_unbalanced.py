@@ -1,0 +1,66 @@
+"""Forces alone tell a wrong unit, sign or order of columns of an arm, and accuse no right log."""
+
+from dataclasses import replace
+
+import mujoco
+import pytest
+from tracked_cases import ARM, MOTION, friction, heavy, no_gravity, nothing, payload, robot, tracked
+
+from identification import InputError, Log
+from identification.refusals.columns import turned
+from identification.refusals.wiring import refuse_unbalanced
+
+
+def a_log(world=payload) -> Log:
+    model = mujoco.MjModel.from_xml_string(ARM)
+    world(model)
+    return tracked(model, MOTION[ARM])
+
+
+def in_millinewton(log: Log) -> Log:
+    return replace(log, inputs=1000 * log.inputs)
+
+
+def motor_turned(log: Log) -> Log:
+    return replace(log, inputs=turned(log.inputs, [0]))
+
+
+def motors_exchanged(log: Log) -> Log:
+    return replace(log, inputs=log.inputs[:, ::-1])
+
+
+def angles_exchanged(log: Log) -> Log:
+    return replace(log, outputs=log.outputs[:, ::-1])
+
+
+@pytest.mark.parametrize(
+    ("mistake", "cure", "word"),
+    [
+        (in_millinewton, r'write u1 = "mN m" and u2 = "mN m" .* under \[units\]', "units"),
+        (motor_turned, r"write u1 = -1 under \[factors\]", "wiring"),
+        (motors_exchanged, 'write u1 = "u2" and u2 = "u1"', "wiring"),
+        (angles_exchanged, 'write q1 = "q2" and q2 = "q1"', "wiring"),
+    ],
+    ids=lambda x: getattr(x, "__name__", ""),
+)
+def test_a_mistake_is_refused_with_its_cure(tmp_path, mistake, cure, word):
+    own, log = robot(tmp_path, ARM, mistake(a_log()), "horizon = 0.2")
+    with pytest.raises(InputError, match=cure) as refusal:
+        refuse_unbalanced(own, log)
+    assert f'trust = ["{word}"]' in str(refusal.value)
+    refuse_unbalanced(replace(own, file=replace(own.file, trust=(word,))), log)
+
+
+@pytest.mark.parametrize(
+    "world", [nothing, payload, no_gravity, friction, heavy], ids=lambda f: f.__name__
+)
+def test_a_right_log_is_never_refused(tmp_path, world):
+    refuse_unbalanced(*robot(tmp_path, ARM, a_log(world), "horizon = 0.2"))
+
+
+def test_the_unit_of_an_input_is_a_current_where_the_gear_is_not_one(tmp_path):
+    xml = ARM.replace('joint="q1"/><motor', 'joint="q1" gear="0.5"/><motor')
+    log = tracked(mujoco.MjModel.from_xml_string(xml), MOTION[ARM])
+    wrong = replace(log, inputs=log.inputs * [1000.0, 1.0])
+    with pytest.raises(InputError, match=r'write u1 = "mA" under \[units\]'):
+        refuse_unbalanced(*robot(tmp_path, xml, wrong, "horizon = 0.2"))
