@@ -23,13 +23,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class DiscoveryFiles:
-    """The files of a discovery on a model by hand, which no file describes.
+    """The files of a discovery on a model by hand, which no file describes."""
 
-    Attributes:
-        found: the discovery.
-    """
-
-    found: Discovery
+    found: Discovery  # the discovery
 
     @property
     def record(self) -> dict[str, Any]:

@@ -13,17 +13,11 @@ UNBROKEN = "\u00a0"  # a space at which no line ends
 
 @dataclass(frozen=True)
 class Tile:
-    """One number of an answer.
+    """One number of an answer."""
 
-    Attributes:
-        label: what it is.
-        value: the number with its unit, in large letters; no line ends within a unit.
-        note: what stands below it in small letters.
-    """
-
-    label: str
-    value: str
-    note: str = ""
+    label: str  # what it is
+    value: str  # the number with its unit, in large letters; no line ends within a unit
+    note: str = ""  # what stands below it in small letters
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "value", re.sub(r"(?<=[^\W\d]) (?=[^\W\d])", UNBROKEN, self.value))
@@ -31,30 +25,19 @@ class Tile:
 
 @dataclass(frozen=True)
 class Answer:
-    """A name in large letters, with its place and its numbers.
+    """A name in large letters, with its place and its numbers."""
 
-    Attributes:
-        name: what was found.
-        place: where it acts, or what limits the answer.
-        tiles: up to three.
-    """
-
-    name: str
-    place: str = ""
-    tiles: tuple[Tile, ...] = ()
+    name: str  # what was found
+    place: str = ""  # where it acts, or what limits the answer
+    tiles: tuple[Tile, ...] = ()  # up to three
 
 
 @dataclass(frozen=True)
 class Headline:
-    """What a reader of a report sees first.
+    """What a reader of a report sees first."""
 
-    Attributes:
-        lead: words above the first name, such as "Missing from the model".
-        answers: one or several; the first one has the tile on the error.
-    """
-
-    lead: str
-    answers: tuple[Answer, ...]
+    lead: str  # words above the first name, such as "Missing from the model"
+    answers: tuple[Answer, ...]  # one or several; the first one has the tile on the error
 
 
 def error_tile(

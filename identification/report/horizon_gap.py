@@ -40,21 +40,13 @@ class OutputError:
 
 @dataclass(frozen=True)
 class RecordWindows:
-    """Errors of the windows of the horizon in one record.
+    """Errors of the windows of the horizon in one record."""
 
-    Attributes:
-        name: of the record.
-        role: "fit" or "confirm".
-        time: at which each window begins, shape (W,) [s].
-        before: of the fitted model without effects, how many times the noise, shape (W,).
-        after: of the final model.
-    """
-
-    name: str
-    role: str
-    time: np.ndarray
-    before: np.ndarray
-    after: np.ndarray
+    name: str  # of the record
+    role: str  # "fit" or "confirm"
+    time: np.ndarray  # at which each window begins, shape (W,) [s]
+    before: np.ndarray  # of the fitted model without effects, how many times the noise, shape (W,)
+    after: np.ndarray  # of the final model
 
 
 @dataclass(frozen=True)
@@ -68,23 +60,14 @@ class LengthError:
 
 @dataclass(frozen=True)
 class NeededForce:
-    """The force at one joint that would take most of what the final model leaves.
+    """The force at one joint that would take most of what the final model leaves."""
 
-    Attributes:
-        nodes: of the curve, and what it is drawn over.
-        force: at the nodes, shape (8,), in `unit`.
-        std: of it.
-        unit: of the force.
-        fall: share of the fitted error that it would take away.
-        chance: of as much by luck.
-    """
-
-    nodes: Nodes
-    force: np.ndarray
-    std: np.ndarray
-    unit: str
-    fall: float
-    chance: float
+    nodes: Nodes  # of the curve, and what it is drawn over
+    force: np.ndarray  # at the nodes, shape (8,), in `unit`
+    std: np.ndarray  # of it
+    unit: str  # of the force
+    fall: float  # share of the fitted error that it would take away
+    chance: float  # of as much by luck
 
     @property
     def known(self) -> np.ndarray:
@@ -99,45 +82,29 @@ class NeededForce:
 
 @dataclass(frozen=True)
 class FailedWindow:
-    """A fitted window in which the final model fails, of the output that errs most.
+    """A fitted window in which the final model fails, of the output that errs most."""
 
-    Attributes:
-        record: its name.
-        output: its name.
-        unit: of the output.
-        time: of the samples, shape (L,) [s].
-        measured: shape (L,), in `unit`.
-        predicted: likewise.
-        ratio: how many times the noise the window errs.
-    """
-
-    record: str
-    output: str
-    unit: str
-    time: np.ndarray
-    measured: np.ndarray
-    predicted: np.ndarray
-    ratio: float
+    record: str  # its name
+    output: str  # its name
+    unit: str  # of the output
+    time: np.ndarray  # of the samples, shape (L,) [s]
+    measured: np.ndarray  # shape (L,), in `unit`
+    predicted: np.ndarray  # likewise
+    ratio: float  # how many times the noise the window errs
 
 
 @dataclass(frozen=True)
 class HorizonGap:
-    """What the fitted model without effects, and the final one, fail to predict over a horizon.
+    """What the fitted model without effects, and the final one, fail to predict over a horizon."""
 
-    Attributes:
-        outputs: the one first that errs most with the final model, in multiples of its noise.
-        records: those that were fitted, then those that confirm.
-        lengths: of windows, over which they were predicted, the shortest first.
-        forces: of each joint at which a curve would explain more than luck, the largest share
-            first.
-        windows: fitted ones in which the final model fails most.
-    """
-
+    # the one first that errs most with the final model, in multiples of its noise
     outputs: tuple[OutputError, ...]
-    records: tuple[RecordWindows, ...]
+    records: tuple[RecordWindows, ...]  # those that were fitted, then those that confirm
+    # of windows, over which they were predicted, the shortest first
     lengths: tuple[LengthError, ...]
+    # of each joint at which a curve would explain more than luck, the largest share first
     forces: tuple[NeededForce, ...]
-    windows: tuple[FailedWindow, ...]
+    windows: tuple[FailedWindow, ...]  # fitted ones in which the final model fails most
 
 
 def find_gap(found: Discovery) -> HorizonGap | None:

@@ -42,29 +42,17 @@ INSIDE = 0.5  # of the samples of a window: it then lies in the place
 
 @dataclass(frozen=True)
 class MissingPlace:
-    """A force that is missing, and where.
+    """A force that is missing, and where."""
 
-    Attributes:
-        joint: on which it acts.
-        reads: what tells the place, such as "position of elbow" or "time".
-        unit: of that.
-        low: end of the place, in `unit`.
-        high: the other end.
-        moves: the direction of the motion, "rising", "falling" or, for both, "".
-        force: at the place, in `force_unit`.
-        std: of it; NaN where it is not known.
-        force_unit: N or N m.
-    """
-
-    joint: str
-    reads: str
-    unit: str
-    low: float
-    high: float
-    moves: str
-    force: float
-    std: float
-    force_unit: str
+    joint: str  # on which it acts
+    reads: str  # what tells the place, such as "position of elbow" or "time"
+    unit: str  # of that
+    low: float  # end of the place, in `unit`
+    high: float  # the other end
+    moves: str  # the direction of the motion, "rising", "falling" or, for both, ""
+    force: float  # at the place, in `force_unit`
+    std: float  # of it; NaN where it is not known
+    force_unit: str  # N or N m
 
     @property
     def size(self) -> str:

@@ -31,21 +31,13 @@ READS = ("speed_before", "speed_behind", "before", "behind", "position", "speed"
 
 @dataclass(frozen=True)
 class Nodes:
-    """The nodes of a curve.
+    """The nodes of a curve."""
 
-    Attributes:
-        joint: on which the curve acts.
-        depends_on: the last words of the curve's name, such as "position" or "speed_before".
-        reads: what it is drawn over, in words.
-        unit: of that.
-        at: its values at the nodes, shape (8,).
-    """
-
-    joint: str
-    depends_on: str
-    reads: str
-    unit: str
-    at: np.ndarray
+    joint: str  # on which the curve acts
+    depends_on: str  # the last words of the curve's name, such as "position" or "speed_before"
+    reads: str  # what it is drawn over, in words
+    unit: str  # of that
+    at: np.ndarray  # its values at the nodes, shape (8,)
 
 
 def curve_nodes(candidate: Candidate, plant: Plant) -> tuple[Nodes, ...]:

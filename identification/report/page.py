@@ -40,15 +40,10 @@ QUANTITY = re.compile(  # a number, its std, and a unit such as N m s/rad
 
 @dataclass(frozen=True)
 class Table:
-    """A table of text and numbers.
+    """A table of text and numbers."""
 
-    Attributes:
-        columns: headings, with units.
-        rows: as many cells each; numbers are set to the right.
-    """
-
-    columns: tuple[str, ...]
-    rows: tuple[tuple[object, ...], ...]
+    columns: tuple[str, ...]  # headings, with units
+    rows: tuple[tuple[object, ...], ...]  # as many cells each; numbers are set to the right
 
     def __post_init__(self) -> None:
         for row in self.rows:
@@ -75,30 +70,20 @@ class Table:
 
 @dataclass(frozen=True)
 class Section:
-    """A part of a report.
+    """A part of a report."""
 
-    Attributes:
-        title: its heading.
-        text: paragraphs, parted by empty lines.
-        figures: figures by caption, or a cached function that draws them.
-        table: shown below the text; a long one is folded.
-        video: an mp4 file, shown last.
-        poster: a picture of the film, shown on paper.
-        first: where its figures and its film stand above all sections: 1 above the verdict, 2 and
-            3 below it in this order; 0 in the section itself.
-        plain: what a terminal prints of it, without its title; paragraphs likewise.
-        code: a file that a reader may copy, folded.
-    """
-
-    title: str
-    text: str = ""
+    title: str  # its heading
+    text: str = ""  # paragraphs, parted by empty lines
+    # figures by caption, or a cached function that draws them
     figures: Figures | Callable[[], Figures] = ()
-    table: Table | None = None
-    video: Path | None = None
-    poster: Path | None = None
+    table: Table | None = None  # shown below the text; a long one is folded
+    video: Path | None = None  # an mp4 file, shown last
+    poster: Path | None = None  # a picture of the film, shown on paper
+    # where its figures and its film stand above all sections: 1 above the verdict, 2 and 3 below it
+    # in this order; 0 in the section itself
     first: int = 0
-    plain: str = ""
-    code: str = ""
+    plain: str = ""  # what a terminal prints of it, without its title; paragraphs likewise
+    code: str = ""  # a file that a reader may copy, folded
 
     @property
     def drawn(self) -> Figures:

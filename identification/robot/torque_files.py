@@ -17,13 +17,9 @@ from identification.robot.torque_fit import TorqueFit
 
 @dataclass(frozen=True)
 class TorqueFiles:
-    """The files of a comparison of torques.
+    """The files of a comparison of torques."""
 
-    Attributes:
-        fitted: the result.
-    """
-
-    fitted: TorqueFit
+    fitted: TorqueFit  # the result
 
     @cached_property
     def record(self) -> dict[str, Any]:

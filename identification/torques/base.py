@@ -34,40 +34,24 @@ ORDER = (4, 7, 8, 5, 9, 6, 1, 2, 3, 0)  # of the numbers of a body: inertias, mo
 
 @dataclass(frozen=True)
 class Inertia:
-    """The inertial numbers of a model, in the order in which base parameters are looked for.
+    """The inertial numbers of a model, in the order in which base parameters are looked for."""
 
-    Attributes:
-        names: of n numbers, such as "h_x of forearm" and "armature of elbow".
-        units: of each.
-        values: of the model, shape (n,).
-        scales: of each, by the mass and the length of all that moves, shape (n,).
-        own: of each, by its body's own, shape (n,).
-        place: of each in (bodies · 10 numbers, joints), shape (n,).
-        bodies: number of bodies.
-    """
-
-    names: tuple[str, ...]
-    units: tuple[str, ...]
-    values: np.ndarray
-    scales: np.ndarray
-    own: np.ndarray
-    place: np.ndarray
-    bodies: int
+    names: tuple[str, ...]  # of n numbers, such as "h_x of forearm" and "armature of elbow"
+    units: tuple[str, ...]  # of each
+    values: np.ndarray  # of the model, shape (n,)
+    scales: np.ndarray  # of each, by the mass and the length of all that moves, shape (n,)
+    own: np.ndarray  # of each, by its body's own, shape (n,)
+    place: np.ndarray  # of each in (bodies · 10 numbers, joints), shape (n,)
+    bodies: int  # number of bodies
 
 
 @dataclass(frozen=True)
 class BaseParameters:
-    """Combinations of inertial numbers that the torques tell apart.
+    """Combinations of inertial numbers that the torques tell apart."""
 
-    Attributes:
-        inertia: the numbers.
-        independent: places of those that begin a combination, shape (r,).
-        K: x_i + K x_d as factors of all numbers, shape (r, n).
-    """
-
-    inertia: Inertia
-    independent: np.ndarray
-    K: np.ndarray
+    inertia: Inertia  # the numbers
+    independent: np.ndarray  # places of those that begin a combination, shape (r,)
+    K: np.ndarray  # x_i + K x_d as factors of all numbers, shape (r, n)
 
     @property
     def values(self) -> np.ndarray:

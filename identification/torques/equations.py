@@ -33,32 +33,20 @@ NO_NOISE = 1e-9  # of a joint's largest torque, that the residual is at least
 
 @dataclass(frozen=True)
 class Columns:
-    """Columns of the equations with a size each.
+    """Columns of the equations with a size each."""
 
-    Attributes:
-        values: shape (N, nv, k).
-        joints: on which they act; on all where None.
-    """
-
-    values: np.ndarray
-    joints: tuple[int, ...] | None = None
+    values: np.ndarray  # shape (N, nv, k)
+    joints: tuple[int, ...] | None = None  # on which they act; on all where None
 
 
 @dataclass(frozen=True)
 class Equations:
-    """The equations of all records, one behind the other.
+    """The equations of all records, one behind the other."""
 
-    Attributes:
-        rows: of each record.
-        block: of each short time, shape (N,).
-        record: of each block, shape (B,).
-        confirms: whether nothing is fitted to a block, shape (B,).
-    """
-
-    rows: tuple[Rows, ...]
-    block: np.ndarray
-    record: np.ndarray
-    confirms: np.ndarray
+    rows: tuple[Rows, ...]  # of each record
+    block: np.ndarray  # of each short time, shape (N,)
+    record: np.ndarray  # of each block, shape (B,)
+    confirms: np.ndarray  # whether nothing is fitted to a block, shape (B,)
 
     @classmethod
     def of(cls, rows: Sequence[Rows], confirm: int = 0) -> Equations:
@@ -120,23 +108,14 @@ class Equations:
 
 @dataclass(frozen=True, kw_only=True)
 class Estimate:
-    """Sizes fitted to equations.
+    """Sizes fitted to equations."""
 
-    Attributes:
-        θ: shape (p,), in their units.
-        covariance: shape (p, p).
-        σ: residual of each joint, shape (nv,) [N m or N]; NaN without an equation.
-        κ: of the weights.
-        weights: w, shape (nv,).
-        H: shape (p, p).
-    """
-
-    θ: np.ndarray
-    covariance: np.ndarray
-    σ: np.ndarray
-    κ: float
-    weights: np.ndarray
-    H: np.ndarray
+    θ: np.ndarray  # shape (p,), in their units
+    covariance: np.ndarray  # shape (p, p)
+    σ: np.ndarray  # residual of each joint, shape (nv,) [N m or N]; NaN without an equation
+    κ: float  # of the weights
+    weights: np.ndarray  # w, shape (nv,)
+    H: np.ndarray  # shape (p, p)
 
     @property
     def std(self) -> np.ndarray:

@@ -44,40 +44,26 @@ OTHER_BAND = 0.6  # factor of the bands of a second fit, which tells what they m
 
 @dataclass(frozen=True, kw_only=True)
 class Evidence:
-    """What torques say.
+    """What torques say."""
 
-    Attributes:
-        equations: of the records.
-        base: the combinations of inertial numbers.
-        whole: the base fit.
-        other: sizes of the base fit in a narrower band, shape (p,).
-        model: the model fit, without effects.
-        final: the model fit with the effects that were found.
-        scores: of all candidates beside the model fit, the best first.
-        found: scores of the effects that were added, each when it was.
-        rest: scores beside the final fit; those of `scores` where nothing was found.
-        differences: scores of loads in single records beside the base fit, the best first.
-        asked: number of candidates beside the model fit, each shape counted.
-        unseen: residual of each joint by fits that did not see it, of base, model and final fit,
-            shape (3, nv) [N m or N].
-        friction: of the model, three numbers a joint as the fits have them, shape (3 nv,).
-        inconsistent: places of base parameters that no bodies have, within 3 std.
-    """
-
-    equations: Equations
-    base: BaseParameters
-    whole: Fitted
-    other: np.ndarray
-    model: Fitted
-    final: Fitted
-    scores: tuple[Score, ...]
-    found: tuple[Score, ...]
+    equations: Equations  # of the records
+    base: BaseParameters  # the combinations of inertial numbers
+    whole: Fitted  # the base fit
+    other: np.ndarray  # sizes of the base fit in a narrower band, shape (p,)
+    model: Fitted  # the model fit, without effects
+    final: Fitted  # the model fit with the effects that were found
+    scores: tuple[Score, ...]  # of all candidates beside the model fit, the best first
+    found: tuple[Score, ...]  # scores of the effects that were added, each when it was
+    # scores beside the final fit; those of `scores` where nothing was found
     rest: tuple[Score, ...]
+    # scores of loads in single records beside the base fit, the best first
     differences: tuple[Score, ...]
-    asked: int
+    asked: int  # number of candidates beside the model fit, each shape counted
+    # residual of each joint by fits that did not see it, of base, model and final fit, shape (3,
+    # nv) [N m or N]
     unseen: np.ndarray
-    friction: np.ndarray
-    inconsistent: tuple[int, ...]
+    friction: np.ndarray  # of the model, three numbers a joint as the fits have them, shape (3 nv,)
+    inconsistent: tuple[int, ...]  # places of base parameters that no bodies have, within 3 std
 
     @property
     def named(self) -> tuple[Score, ...]:

@@ -35,29 +35,19 @@ CLOCK = "clock of the inputs"
 
 @dataclass(frozen=True, kw_only=True)
 class FreeNumber:
-    """A free parameter of the robot's file that changes what the equations say.
+    """A free parameter of the robot's file that changes what the equations say."""
 
-    Attributes:
-        name: as in the file.
-        where: path in the model.
-        unit: SI unit.
-        value: of the model.
-        mean: what was known.
-        std: of what was known.
-        change: of (bodies · 10 numbers, armatures) with it, shape (n,); zero where it changes none.
-        moved: the model in which it is larger by `step`, where it changes no inertial number.
-        step: see `moved`.
-    """
-
-    name: str
-    where: str
-    unit: str
-    value: float
-    mean: float
-    std: float
+    name: str  # as in the file
+    where: str  # path in the model
+    unit: str  # SI unit
+    value: float  # of the model
+    mean: float  # what was known
+    std: float  # of what was known
+    # of (bodies · 10 numbers, armatures) with it, shape (n,); zero where it changes none
     change: np.ndarray
+    # the model in which it is larger by `step`, where it changes no inertial number
     moved: mujoco.MjModel | None = None
-    step: float = 0.0
+    step: float = 0.0  # see `moved`
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -97,21 +87,13 @@ class Others:
 
 @dataclass(frozen=True, kw_only=True)
 class Fitted:
-    """A fit with its equations.
+    """A fit with its equations."""
 
-    Attributes:
-        names: of the sizes.
-        units: of them.
-        base: what it was fitted to, and the estimate.
-        added: effects that are in it, their sizes last.
-        inertial: number of sizes of the model, the first ones; frictions follow, then the clock.
-    """
-
-    names: tuple[str, ...]
-    units: tuple[str, ...]
-    base: Base
-    inertial: int
-    added: tuple[Missing, ...] = ()
+    names: tuple[str, ...]  # of the sizes
+    units: tuple[str, ...]  # of them
+    base: Base  # what it was fitted to, and the estimate
+    inertial: int  # number of sizes of the model, the first ones; frictions follow, then the clock
+    added: tuple[Missing, ...] = ()  # effects that are in it, their sizes last
 
     @property
     def fit(self) -> Estimate:

@@ -23,29 +23,17 @@ from identification.torques.equations import Columns, Equations
 
 @dataclass(frozen=True, kw_only=True)
 class Missing:
-    """A candidate.
+    """A candidate."""
 
-    Attributes:
-        name: of the effect, as in the catalogue where it has one.
-        where: its place, in words.
-        phrase: what it is, in words.
-        sizes: names of its sizes.
-        units: of the sizes.
-        signs: that physics admits of the sizes, 0 where it admits both.
-        shape: name, value and unit of each of its shapes.
-        columns: returns its columns.
-        most: magnitudes of the sizes beyond which it is not believed.
-    """
-
-    name: str
-    where: str
-    phrase: str
-    sizes: tuple[str, ...]
-    units: tuple[str, ...]
-    signs: tuple[int, ...]
-    shape: tuple[tuple[str, float, str], ...] = ()
-    columns: Callable[[], Columns]
-    most: tuple[float, ...]
+    name: str  # of the effect, as in the catalogue where it has one
+    where: str  # its place, in words
+    phrase: str  # what it is, in words
+    sizes: tuple[str, ...]  # names of its sizes
+    units: tuple[str, ...]  # of the sizes
+    signs: tuple[int, ...]  # that physics admits of the sizes, 0 where it admits both
+    shape: tuple[tuple[str, float, str], ...] = ()  # name, value and unit of each of its shapes
+    columns: Callable[[], Columns]  # returns its columns
+    most: tuple[float, ...]  # magnitudes of the sizes beyond which it is not believed
 
     @property
     def key(self) -> tuple[str, str]:

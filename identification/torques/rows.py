@@ -41,35 +41,20 @@ NOISY = 4.0  # std of a rate's noise: slower it may be at rest
 
 @dataclass(frozen=True, kw_only=True)
 class Rows:
-    """Means of N short times of a record.
+    """Means of N short times of a record."""
 
-    Attributes:
-        name: of the record.
-        time: shape (N,) [s].
-        q: positions, shape (N, nv) [rad or m].
-        v: rates, shape (N, nv).
-        a: accelerations, shape (N, nv).
-        sign: of the rates, through the filter, shape (N, nv).
-        bodies: Y, shape (N, nv, bodies, 10).
-        gravity: its force on the joints, shape (N, nv) [N m or N].
-        drives: forces of each actuator on the joints, shape (N, nv, nu) [N m or N].
-        y: shape (N, nv) [N m or N].
-        used: where a joint moves, shape (N, nv).
-        band: of the motion [Hz].
-    """
-
-    name: str
-    time: np.ndarray
-    q: np.ndarray
-    v: np.ndarray
-    a: np.ndarray
-    sign: np.ndarray
-    bodies: np.ndarray
-    gravity: np.ndarray
-    drives: np.ndarray
-    y: np.ndarray
-    used: np.ndarray
-    band: float
+    name: str  # of the record
+    time: np.ndarray  # shape (N,) [s]
+    q: np.ndarray  # positions, shape (N, nv) [rad or m]
+    v: np.ndarray  # rates, shape (N, nv)
+    a: np.ndarray  # accelerations, shape (N, nv)
+    sign: np.ndarray  # of the rates, through the filter, shape (N, nv)
+    bodies: np.ndarray  # Y, shape (N, nv, bodies, 10)
+    gravity: np.ndarray  # its force on the joints, shape (N, nv) [N m or N]
+    drives: np.ndarray  # forces of each actuator on the joints, shape (N, nv, nu) [N m or N]
+    y: np.ndarray  # shape (N, nv) [N m or N]
+    used: np.ndarray  # where a joint moves, shape (N, nv)
+    band: float  # of the motion [Hz]
 
 
 def refuse_unfit(model: mujoco.MjModel, log: Log) -> None:

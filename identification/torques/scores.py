@@ -42,27 +42,16 @@ UNFELT = 1e-6  # share of a column that the fit's columns leave, below which the
 
 @dataclass(frozen=True, kw_only=True)
 class Score:
-    """What a candidate would explain.
+    """What a candidate would explain."""
 
-    Attributes:
-        missing: which.
-        size: η̂, shape (m,), in the units of its sizes.
-        std: by blocks, shape (m,).
-        chance: of as much by luck, for the best of all that were asked.
-        fall: of the mean square on blocks that the fit did not see; negative where it rises.
-        t: of the fall.
-        gains: g of each block that the fits did not see, shape (B,).
-        held_t: t with the free parameters at what was known; 0 where it is not asked for.
-    """
-
-    missing: Missing
-    size: np.ndarray
-    std: np.ndarray
-    chance: float
-    fall: float
-    t: float
-    gains: np.ndarray
-    held_t: float = 0.0
+    missing: Missing  # which
+    size: np.ndarray  # η̂, shape (m,), in the units of its sizes
+    std: np.ndarray  # by blocks, shape (m,)
+    chance: float  # of as much by luck, for the best of all that were asked
+    fall: float  # of the mean square on blocks that the fit did not see; negative where it rises
+    t: float  # of the fall
+    gains: np.ndarray  # g of each block that the fits did not see, shape (B,)
+    held_t: float = 0.0  # t with the free parameters at what was known; 0 where it is not asked for
 
     @property
     def is_proven(self) -> bool:
@@ -84,25 +73,15 @@ class Score:
 
 @dataclass(frozen=True, kw_only=True)
 class Base:
-    """A fit to which candidates are added.
+    """A fit to which candidates are added."""
 
-    Attributes:
-        Φ: columns, shape (N, nv, p).
-        y: right side, shape (N, nv).
-        P: precision of the priors, shape (p,).
-        θ_0: their means, shape (p,).
-        fit: of these.
-        M: moments of (Φ, y), shape (nv, B, p + 1, p + 1).
-        known: number of sizes, the first ones, that are free with what was known of them.
-    """
-
-    Φ: np.ndarray
-    y: np.ndarray
-    P: np.ndarray
-    θ_0: np.ndarray
-    fit: Estimate
-    M: np.ndarray
-    known: int = 0
+    Φ: np.ndarray  # columns, shape (N, nv, p)
+    y: np.ndarray  # right side, shape (N, nv)
+    P: np.ndarray  # precision of the priors, shape (p,)
+    θ_0: np.ndarray  # their means, shape (p,)
+    fit: Estimate  # of these
+    M: np.ndarray  # moments of (Φ, y), shape (nv, B, p + 1, p + 1)
+    known: int = 0  # number of sizes, the first ones, that are free with what was known of them
 
     @property
     def far(self) -> np.ndarray:

@@ -33,21 +33,13 @@ EDGE = 1.0  # periods of the band that are cut at each end
 
 @dataclass(frozen=True)
 class Motion:
-    """A smooth motion.
+    """A smooth motion."""
 
-    Attributes:
-        q: positions, shape (n, nv) [rad or m].
-        v: rates, shape (n, nv).
-        a: accelerations, shape (n, nv).
-        band: f_c [Hz].
-        noise: std that the noise of the positions makes in the rates, shape (nv,).
-    """
-
-    q: np.ndarray
-    v: np.ndarray
-    a: np.ndarray
-    band: float
-    noise: np.ndarray
+    q: np.ndarray  # positions, shape (n, nv) [rad or m]
+    v: np.ndarray  # rates, shape (n, nv)
+    a: np.ndarray  # accelerations, shape (n, nv)
+    band: float  # f_c [Hz]
+    noise: np.ndarray  # std that the noise of the positions makes in the rates, shape (nv,)
 
 
 def smooth(q: np.ndarray, h: float, band: float, noise: np.ndarray) -> Motion:
