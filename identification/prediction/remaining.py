@@ -55,7 +55,7 @@ INPUT_STEP = 1e-3  # of an input's rms, by which it is moved
 MAX_OUTPUT_RATIO = 1.5
 # Of a record's rms error to that of the others: beyond it, and beyond chance, it is reported.
 DIFFERENT_RECORD_RATIO = 2.0
-MIN_COMPARED_RECORDS = 3  # of two nobody knows which one is different: they differ
+MIN_COMPARED_RECORDS = 3  # of two, only that they differ is known, and not which one is wrong
 
 
 def find_remaining(

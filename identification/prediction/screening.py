@@ -53,8 +53,7 @@ def score_all(
     """
     listed = _listed(model, effects, options)
     is_many = len(listed) > MAX_SCORED
-    some = some_windows(model.fit, options) if is_many else model.fit
-    few = window_scores(some, listed)
+    few = window_scores(some_windows(model.fit) if is_many else model.fit, listed)
     promising = _promising(few, options)
     again = {id(c) for c in promising}
     rest = [s for s in few if id(s.candidate) not in again]
@@ -76,9 +75,12 @@ def score_all(
     return tuple(sorted((*found, *several), key=lambda s: -s.fall))
 
 
-def some_windows(fit: WindowFit, options: DiscoveryOptions) -> WindowFit:
-    """Returns a fit seen through one window of `THIN`; its values are those of all windows."""
-    at = picks(fit.tangents, is_loud=uses(options, "loud_windows"))
+def some_windows(fit: WindowFit) -> WindowFit:
+    """Returns a fit seen through one window of `THIN`; its values are those of all windows.
+
+    They are spread evenly: shares of the error and chances of luck are those of all windows.
+    """
+    at = picks(fit.tangents, is_loud=False)
     return replace(
         fit, problem=thinned(fit.problem, at), moves=thinned_moves(fit.moves, at),
         tangents=thinned_tangents(fit.tangents, at),

@@ -48,7 +48,7 @@ def choose(
     """
     listed = [*members, *_listed(model, members, scores)]
     listed.sort(key=lambda c: c.effect.state or "")  # those of one plant are simulated at once
-    fit = model.fit if len(scores) <= MAX_SCORED else some_windows(model.fit, options)
+    fit = model.fit if len(scores) <= MAX_SCORED else some_windows(model.fit)
     held = {n for c in members for n in (*c.free, *shapes_of(c))}
     known = attempt(None, partial(condensed, fit, listed, held)) if listed else None
     if known is None:

@@ -73,9 +73,7 @@ def conclude(state: WindowSearch) -> Discovery:
         needed = _needed_input_error(nominal)
     findings = find_remaining(state, rejected, shifts, needed)
     limit = options.left_confidence if findings else options.max_confidence
-    stick = (
-        attempt(None, partial(measure, model, task.effects, options)) if state.accepted else None
-    )
+    stick = attempt(None, partial(measure, model, task.effects)) if state.accepted else None
     named = tuple(_named(state, a, limit, stick) for a in state.accepted if a not in differ)
     is_unexplained = _is_worse(state) or _errs(model, needed, options)
     verdict = decide(named, findings, is_unexplained, options)

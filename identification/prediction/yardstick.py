@@ -13,7 +13,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from identification.discovery.candidates import list_common
-from identification.discovery.options import DiscoveryOptions
 from identification.discovery.smooth_force import SmoothForce, explained_share, find_smooth_force
 from identification.effects.curves import OF_JOINT
 from identification.effects.effect import Candidate, Effect
@@ -62,15 +61,12 @@ def acts_on_joints(effect: Effect) -> bool:
     return bool(effect.hooks) and {*effect.hooks} <= ON_JOINTS
 
 
-def measure(
-    model: WindowModel, effects: Sequence[Effect], options: DiscoveryOptions
-) -> Yardstick | None:
+def measure(model: WindowModel, effects: Sequence[Effect]) -> Yardstick | None:
     """Returns what smooth forces would still explain beside a model; None where there are none.
 
     Args:
         model: fitted.
         effects: of the catalogue, of which the curves of a joint make the smooth forces.
-        options: which windows are taken of many.
 
     Raises:
         DivergenceError: the model cannot be simulated beside its values.
@@ -81,7 +77,7 @@ def measure(
     if not each:
         return None
     columns = [len(c.sizes) for c in each]
-    fit = some_windows(model.fit, options) if sum(columns) > MAX_SCORED else model.fit
+    fit = some_windows(model.fit) if sum(columns) > MAX_SCORED else model.fit
     known = condensed(fit, each)
     G, a, squares = known.G, known.a, known.squares
     ends = np.cumsum(columns)

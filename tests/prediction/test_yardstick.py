@@ -8,7 +8,6 @@ from records_cases import FREE, HORIZON, nominal_model, pendulum, records
 from scipy.optimize import lsq_linear
 
 from identification.discovery.candidates import list_common
-from identification.discovery.options import DiscoveryOptions
 from identification.effects.joint_plant import candidates
 from identification.prediction.extension import with_effect
 from identification.prediction.first_fit import begin
@@ -17,7 +16,6 @@ from identification.prediction.scores import condensed, window_scores
 from identification.prediction.yardstick import measure
 from identification.windows.records import as_records
 
-OPTIONS = DiscoveryOptions()
 EFFECTS = candidates(pendulum(), FREE)
 
 
@@ -58,7 +56,7 @@ def test_the_law_that_is_missing_leaves_nothing_to_a_smooth_force_and_a_neighbou
     share, left = {}, {}
     for name in ("coulomb_friction", "sublinear_friction"):
         after = with_law(name)
-        stick = measure(after, EFFECTS, OPTIONS)
+        stick = measure(after, EFFECTS)
         share[name] = stick.share(before.fit.cost, after.fit.cost)
         left[name] = stick.every
         fall = 1 - after.fit.cost / before.fit.cost
@@ -71,9 +69,9 @@ def test_the_law_that_is_missing_leaves_nothing_to_a_smooth_force_and_a_neighbou
 
 
 def test_what_is_no_law_of_a_joint_has_no_share():
-    stick = measure(rubbed(), EFFECTS, OPTIONS)
+    stick = measure(rubbed(), EFFECTS)
     assert stick.share_of(listed("delay")[0], 0.5) is None
 
 
 def test_without_curves_there_is_no_yardstick():
-    assert measure(rubbed(), [e for e in EFFECTS if not e.is_curve], OPTIONS) is None
+    assert measure(rubbed(), [e for e in EFFECTS if not e.is_curve]) is None
