@@ -57,7 +57,8 @@ def fit_torques(robot: Robot, progress: Callable[[str], None] | None = None) -> 
 def free_numbers(robot: Robot, logs: Sequence[Log]) -> tuple[FreeNumber, ...]:
     """Returns the free parameters of a robot that change the equations of its torques.
 
-    Frictions of joints are left out, because every fit of torques has them. Where a value holds in
+    Frictions of joints are left out, because every fit of torques has them, and so are numbers of
+    effects, which have no path in the model and are candidates. Where a value holds in
     one log alone, only masses, inertias and armatures are free.
     """
     plant, out = robot.plant, []
@@ -82,7 +83,7 @@ def free_numbers(robot: Robot, logs: Sequence[Log]) -> tuple[FreeNumber, ...]:
         )  # fmt: skip
         if np.abs(change).max() > 0:
             out.append(number)
-        elif not differ and not record.where.endswith(FRICTIONS):
+        elif not differ and "/" in record.where and not record.where.endswith(FRICTIONS):
             moved = with_numbers(plant.model, numbers, 1)
             by = float(values[1, 0] - values[0, 0])
             out.append(replace(number, moved=_plain(moved), step=by))

@@ -146,6 +146,16 @@ def test_a_free_spring_is_fitted_and_a_held_one_is_named(toml, tmp_path):
         assert found.values["joint/elbow.stiffness"] == pytest.approx(26.0, rel=0.02)
 
 
+def test_a_free_friction_is_no_number_of_the_model_beside_the_friction_of_every_fit(tmp_path):
+    free = TOML.replace(
+        "free = [", 'free = ["coulomb_friction.f_c@elbow", "joint/elbow.damping", ', 1
+    )
+    free += '[parameters."coulomb_friction.f_c@elbow"]\nvalue = 0.5\n'
+    robot = planar_robot(tmp_path, planar_record(71), toml=free)
+    found = free_numbers(robot, [robot.log])
+    assert [f.name for f in found] == ["joint/elbow.armature", "body/fore.mass"]
+
+
 def test_the_column_of_a_free_spring_is_the_position(tmp_path):
     found = fit_torques(planar_robot(tmp_path, planar_record(71, k=26.0), toml=SPRING, k=20.0))
     equations, (number,) = found.found.equations, [
