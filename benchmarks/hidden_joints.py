@@ -59,7 +59,6 @@ def answer(toml: Path, a: Path, b: Path, way: str, without: tuple[str, ...] = ()
     """What is named, and the errors on record b of what was fitted and of what was found."""
 
     from identification import DiscoveryOptions, discover, fit, read_robot
-    from identification.prediction.discovery import discover_records
     from identification.robot.confirmation import compare_values
 
     robot = read_robot(toml, a, confirm=[b])
@@ -67,12 +66,7 @@ def answer(toml: Path, a: Path, b: Path, way: str, without: tuple[str, ...] = ()
     begin = time.process_time()
     fitted = fit(robot).values
     between = time.process_time()
-    if way == "records":
-        found = discover_records(
-            robot.nominal_model, [robot.log], robot.records, robot.candidates, options=options
-        )
-    else:
-        found = discover(robot, options=options)
+    found = discover(robot, options=options)
     end = time.process_time()
     own = found.final.own_values.get(robot.records[0].name, {})
     after = {**found.final.values, **own}  # with what the other record has for itself
@@ -87,7 +81,7 @@ def answer(toml: Path, a: Path, b: Path, way: str, without: tuple[str, ...] = ()
              "rivals": [rival.name for rival in n.rivals],
              "shares": [rival.confidence for rival in n.rivals],
              "smooth_share": n.smooth_share,
-             "neighbour": (b := n.neighbour) and [b.curve, b.where, b.share, b.chance],
+             "neighbour": (b := n.neighbour) and [b.curve, b.where, b.share, b.chance, b.of_both],
              "compared": n.compared, "fall": n.proof.fall,
              "t": n.proof.t,
              "sizes": {name: p[0] for name, p in n.parameters.items()}}

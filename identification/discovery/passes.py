@@ -22,6 +22,12 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
     "add_pair": (
         RUN, "adds two effects of which none is proven alone, because each hides the other",
     ),
+    "suggested_effects": (
+        HORIZON, "refits effects that the joints' torques have named, whatever their scores are",
+    ),
+    "add_suggested": (
+        HORIZON, "adds several effects that the joints' torques have named, before any other",
+    ),
     "add_yielding_friction": (
         HORIZON, "fits a friction that gives before it slips from its largest compliance",
     ),
@@ -94,6 +100,9 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
     ),
     "neighbours_names": (
         HORIZON, "names no law beside which a curve of the data still explains much",
+    ),
+    "far_from_exact": (
+        HORIZON, "asks less of a curve beside a law that is far from what both explain together",
     ),
     "drop_beside_curves": (HORIZON, "drops laws that were found only beside a curve of the data"),
     "drop_drawn_laws": (HORIZON, "drops a law whose work a later curve of the data does"),

@@ -14,7 +14,7 @@ from functools import partial
 
 import numpy as np
 
-from identification.chances import mean_above_other
+from identification.chances import mean_above_other, student_above
 from identification.discovery.attempts import attempt
 from identification.discovery.effect_results import RejectedEffect
 from identification.discovery.findings.evidence import (
@@ -127,19 +127,19 @@ def find_robot_change(validation: Validation, options: DiscoveryOptions) -> tupl
         options: what is beyond chance, and large enough to matter.
     """
     told, E = validation.parts.report, validation.innovations
-    fitted, blocks = E[validation.seen], options.proof_blocks
-    if not _is_larger(fitted, E[told], options):
+    fitted, blocks = _power(E[validation.seen]), options.proof_blocks
+    if not has_changed(fitted, _power(E[told]), options):
         return ()
     # A small change of a parameter may make the simulation diverge.
     explained = attempt(None, partial(_explain, validation))
-    remaining = E if explained is None else E - explained
-    unseen = remaining[told]
-    if not _is_larger(fitted, unseen, options):
+    power = _power(E if explained is None else E - explained)
+    if not has_changed(fitted, power[told], options):
         return ()
-    ratio = _power(unseen).mean() / _power(fitted).mean()
     rest = ~validation.seen  # all of them, or the time would be known to a few blocks only
-    onset = find_onset(_power(fitted), _power(remaining[rest]), blocks)
+    onset = find_onset(fitted, power[rest], blocks)
     time = validation.log.time[rest][onset]
+    later = told & (validation.log.time >= time)
+    ratio = power[later if later.any() else told].mean() / fitted.mean()
     evidence = RobotChange(float(np.sqrt(ratio)), float(time))
     return (Finding(FindingKind.ROBOT_CHANGE, evidence),)
 
@@ -171,13 +171,39 @@ def _power(E: np.ndarray) -> np.ndarray:
     return np.asarray(np.mean(E**2, axis=1))
 
 
-def _is_larger(fitted: np.ndarray, unseen: np.ndarray, options: DiscoveryOptions) -> bool:
-    """Returns whether unseen innovations are larger, beyond chance and by enough to matter."""
-    a, b = (_means(_power(E), options.proof_blocks) for E in (fitted, unseen))
+def has_changed(fitted: np.ndarray, unseen: np.ndarray, options: DiscoveryOptions) -> bool:
+    """Returns whether unseen innovations are larger, beyond chance and by enough to matter.
+
+    They may be larger from any time on: a robot that changes a second before its log ends errs as
+    before in most blocks. Each block in which that may begin is asked, and paid for.
+
+    Args:
+        fitted: power of each fitted sample, shape (n,).
+        unseen: power of each unseen sample, shape (m,).
+        options: what is beyond chance, and large enough to matter.
+    """
+    a, b = (_means(power, options.proof_blocks) for power in (fitted, unseen))
     # The logarithm keeps a few blocks with large errors from looking like scatter only.
-    p = mean_above_other(np.log(b), np.log(a))
-    matters = b.mean() > (1 + options.min_structure_share) * a.mean()
-    return bool(p < options.structure_level and matters)
+    if _matters(a, b, options) and mean_above_other(np.log(b), np.log(a)) < options.structure_level:
+        return True
+    return any(
+        _matters(before := np.concatenate([a, b[:k]]), b[k:], options)
+        and len(b) * _chance_of_last(np.log(before), np.log(b[k:])) < options.structure_level
+        for k in range(1, len(b))
+    )
+
+
+def _matters(before: np.ndarray, after: np.ndarray, options: DiscoveryOptions) -> bool:
+    return bool(after.mean() > (1 + options.min_structure_share) * before.mean())
+
+
+def _chance_of_last(before: np.ndarray, after: np.ndarray) -> float:
+    """Returns the chance that the mean of a few last numbers is as far above that of the others.
+
+    Their scatter is that of the others, because that of two or three numbers may be small by luck.
+    """
+    std = before.std(ddof=1) * np.sqrt(1 / len(before) + 1 / len(after))
+    return float(student_above((after.mean() - before.mean()) / std, len(before) - 1))
 
 
 def _explain(validation: Validation) -> np.ndarray:

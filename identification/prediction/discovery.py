@@ -8,7 +8,7 @@ from identification.discovery.moves import Evidence
 from identification.discovery.nominal_model import NominalModel, without_starts
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.result import Discovery
-from identification.effects.effect import Effect
+from identification.effects.effect import Candidate, Effect
 from identification.errors import InputError
 from identification.logs.log import Log
 from identification.prediction.records_fit import NO_HORIZON
@@ -28,6 +28,7 @@ def discover_records(
     effects: Sequence[Effect],
     progress: Progress | None = None,
     options: DiscoveryOptions | None = None,
+    suggested: Sequence[Candidate] = (),
 ) -> Discovery:
     """Name what a model lacks to explain records, judged by predictions over its horizon.
 
@@ -40,6 +41,8 @@ def discover_records(
         effects: the candidates.
         progress: is told a line per step.
         options: what is believed; the defaults of `DiscoveryOptions` when None.
+        suggested: what another evidence has found missing: it is refitted whatever its score over
+            windows is.
 
     Raises:
         InputError: there is no horizon, windows do not fit a log, or a name is unknown.
@@ -50,6 +53,6 @@ def discover_records(
     records = as_records(fit, confirm)
     task = RecordsTask(
         nominal_model=without_starts(nominal_model), records=records, effects=tuple(effects),
-        options=options or DiscoveryOptions(),
+        options=options or DiscoveryOptions(), suggested=tuple(suggested),
     )  # fmt: skip
     return WINDOWS.search(task, progress)

@@ -11,7 +11,9 @@ the best curve at its joint, scored beside all that was found,
 
         g/(F + g),  g = f (1 - F)        F: fall by the law,  f: fall by the curve beside it
 
-though the curve itself, with its many numbers, is not proven. A law of a sensor, an input or a body
+though the curve itself, with its many numbers, is not proven. What acts in few windows, as a stop
+does, has a large chance whatever it explains. So where the curve explains more than `FAR_FROM_EXACT`
+of both, it need only be more likely than not that this is no luck. A law of a sensor, an input or a body
 has no joint of its own, and curves at all joints count.
 """
 
@@ -33,6 +35,9 @@ MOST_LEFT = 0.2
 # No law is right to more than a per mille of its power, which is 3 % of its force: steps of
 # the simulation and shapes of bodies are not known better.
 EXACT = 1e-3
+# Of the power of both, which is a sixth of their force: no right law is as far from a robot's.
+FAR_FROM_EXACT = 0.03
+MORE_LIKELY_THAN_NOT = 0.5  # chance
 
 
 def find_neighbour(
@@ -73,4 +78,6 @@ def has_neighbours_name(neighbour: Neighbour | None, options: DiscoveryOptions) 
     if neighbour is None or not uses(options, "neighbours_names"):
         return False
     is_much = neighbour.share > MOST_LEFT and neighbour.of_both > EXACT
-    return is_much and neighbour.chance < options.significance
+    is_far = neighbour.of_both > FAR_FROM_EXACT and uses(options, "far_from_exact")
+    most = MORE_LIKELY_THAN_NOT if is_far else options.significance
+    return is_much and neighbour.chance < most

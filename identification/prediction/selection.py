@@ -30,7 +30,7 @@ from identification.prediction.evidence import all_gains, count_windows, evidenc
 from identification.prediction.extension import with_effect
 from identification.prediction.first_fit import Begun, begin
 from identification.prediction.model import WindowModel
-from identification.prediction.scores import WindowScore
+from identification.prediction.scores import WindowScore, window_scores
 from identification.prediction.trial import (
     Contender,
     Doubt,
@@ -57,11 +57,13 @@ def refit_contenders(
     options: DiscoveryOptions,
     progress: Progress,
     worse_fit: Unseen | None = None,
+    suggested: Sequence[Candidate] = (),
 ) -> tuple[WindowModel, tuple[Contender, ...]]:
     """Refit the contenders of a round, the best first: proven ones before others, by evidence.
 
     Where the fit without effects was worse than the values with which it began, an effect must be
     proven against that fit, and be no worse than these values: it says why the fit went wrong.
+    Suggested effects are refitted whatever their scores are.
     Laws with fewer numbers that act as the best one does are refitted too. A law with fewer numbers
     comes before the best one where resamples cannot tell them apart and the evidence does not
     speak very strongly.
@@ -71,6 +73,9 @@ def refit_contenders(
     """
     windows = sum(len(p.cut.starts) for p in model.fit.problem.parts)
     chosen = list_contenders(scores, options, windows * len(model.scale))
+    if uses(options, "suggested_effects"):
+        has = {*(s.candidate.key for s in chosen), *(c.key for c in model.candidates)}
+        chosen += window_scores(model.fit, [c for c in suggested if c.key not in has])
     refits, crosses = len(chosen), uses(options, "states_of_others")
 
     def refit(each: Sequence[Begun]) -> list[WindowModel]:

@@ -8,6 +8,7 @@ from functools import partial
 
 from identification.discovery.attempts import attempt
 from identification.discovery.moves import SearchState, Task, Watch
+from identification.effects.effect import Candidate
 from identification.prediction.model import WindowModel
 from identification.prediction.screening import score_all
 from identification.prediction.trial import Contender
@@ -21,6 +22,8 @@ class RecordsTask(Task):
     """The question what a model lacks to explain several records."""
 
     records: tuple[Record, ...]  # to fit and to confirm
+    # what another evidence has found missing: it is refitted whatever its score over windows is
+    suggested: tuple[Candidate, ...] = ()
 
     @property
     def horizon(self) -> float:

@@ -19,7 +19,8 @@ from identification.report import discovery_verdict  # noqa: F401  how the resul
 from identification.robot.blame import told_of_factors
 from identification.robot.checks import refuse_horizon, refuse_unlike
 from identification.robot.robot import Robot
-from identification.robot.second_opinion import with_torques
+from identification.robot.second_opinion import ask_torques, with_torques
+from identification.robot.suggestions import suggest
 from identification.written import Files
 
 
@@ -103,11 +104,18 @@ def discover(
         fitted = (model.log, *model.others)
         for each in (*fitted, *model.records):
             refuse_horizon(model.file, each, is_whole=bool(model.records))
+        torques = ask_torques(model, progress)
         with told_of_factors(model):
             found = discover_records(
-                model.nominal_model, fitted, model.records, model.candidates, progress, options
+                model.nominal_model,
+                fitted,
+                model.records,
+                model.candidates,
+                progress,
+                options,
+                suggest(torques, model) if torques else (),
             )
-        return _written(with_torques(found, model, progress), model)
+        return _written(with_torques(found, torques), model)
     if log is None or effects is None:
         raise InputError("discover needs a log and candidate effects beside a nominal model")
     refuse_kind(log, Log, "discover takes a Log (read_log) beside a nominal model")

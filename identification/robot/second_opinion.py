@@ -1,4 +1,4 @@
-"""The joints' torques are asked what they say of the effects that a search has named."""
+"""The joints' torques are asked what is missing, and what they say of what a search has named."""
 
 from __future__ import annotations
 
@@ -19,27 +19,37 @@ FRICTIONS = (
 )  # fmt: skip
 
 
-def with_torques(
-    found: Discovery, robot: Robot, progress: Callable[[str], None] | None = None
-) -> Discovery:
-    """Returns a discovery with what the joints' torques say of its names.
+def ask_torques(robot: Robot, progress: Callable[[str], None] | None = None) -> Evidence | None:
+    """Returns what the joints' torques say of a robot.
 
-    A discovery in which nothing is missing is returned as it is, and so is that of a robot whose
-    torques tell nothing: a position is not measured, a drive has a state, bodies form a loop.
+    None where they tell nothing: a position is not measured, a drive has a state, bodies form a
+    loop.
 
     Args:
-        found: over a horizon.
-        robot: which was searched.
+        robot: with its logs.
         progress: is told one line.
     """
-    if found.verdict == "nothing missing":
-        return found
     try:
         evidence = fit_torques(robot).found
     except InputError:  # they need more than a search over windows does
-        return found
+        return None
     if progress is not None:
-        progress("the joints' torques are asked the same")
+        named = ", ".join(s.missing.title for s in evidence.named) or "nothing"
+        progress(f"the torques of the joints name {named}")
+    return evidence
+
+
+def with_torques(found: Discovery, evidence: Evidence | None) -> Discovery:
+    """Returns a discovery with what the joints' torques say of its names.
+
+    A discovery in which nothing is missing is returned as it is.
+
+    Args:
+        found: over a horizon.
+        evidence: of the torques of the same records; None where they tell nothing.
+    """
+    if evidence is None or found.verdict == "nothing missing":
+        return found
     return replace(found, torques=opinions(found, evidence))
 
 
@@ -55,7 +65,7 @@ def opinions(found: Discovery, evidence: Evidence) -> tuple[TorqueOpinion, ...]:
         evidence: of the torques of the same records.
     """
     scores = {s.missing.key: s for s in (*reversed(evidence.scores), *evidence.named)}
-    known = {key: _opinion(s, is_named=True) for key, s in scores.items()} | _frictions(evidence)
+    known = {key: _opinion(s, is_named=True) for key, s in scores.items()} | frictions(evidence)
     named = [n.candidate.key for n in found.named]
     told = [known[key] for key in named if key in known]
     is_asked = len(told) == len(named) and not any(o.is_proven for o in told)
@@ -63,7 +73,7 @@ def opinions(found: Discovery, evidence: Evidence) -> tuple[TorqueOpinion, ...]:
     return (*told, *(_opinion(s, is_named=False) for s in others[:1]))
 
 
-def _frictions(evidence: Evidence) -> dict[tuple[str, str], TorqueOpinion]:
+def frictions(evidence: Evidence) -> dict[tuple[str, str], TorqueOpinion]:
     """Returns how far frictions that every fit has are from those of the model, by effect."""
     fit, out = evidence.final, {}
     for k, model in enumerate(evidence.friction):

@@ -37,7 +37,7 @@ def add_effect(state: WindowSearch, progress: Progress) -> WindowSearch:
     task, watch = state.task, Watch(state.seconds)
     parent, tried = refit_contenders(
         state.model, state.scores, task.horizon, task.confirm, task.options, progress,
-        None if state.accepted else state.worse_fit,
+        None if state.accepted else state.worse_fit, task.suggested,
     )  # fmt: skip
     nominal = state.nominal if state.accepted else parent
     state = replace(state, model=parent, nominal=nominal)

@@ -1,0 +1,57 @@
+"""Effects that the joints' torques name, as candidates of a search over windows.
+
+A load at any place is another mass, another centre of mass or a payload at the body's end. Every
+fit of torques has Coulomb friction and an offset of each joint: where those are far from the
+model's, the model lacks them. A robot of one joint needs no such help with its frictions, because
+the search compares them with their rivals at that joint. A name that is no candidate of the search,
+such as a gain, is left out.
+"""
+
+from __future__ import annotations
+
+from identification.discovery.candidates import iterate_shapes
+from identification.effects.effect import Candidate, Effect
+from identification.prediction.screening import at_several
+from identification.robot.robot import Robot
+from identification.robot.second_opinion import frictions
+from identification.torques.evidence import Evidence
+
+OF_A_LOAD = ("payload", "mass_mismatch", "com_offset")
+
+
+def suggest(evidence: Evidence, robot: Robot) -> tuple[Candidate, ...]:
+    """Returns what torques name and a search over windows can fit, the first found first.
+
+    Args:
+        evidence: of the torques.
+        robot: with its candidates.
+    """
+    known = {effect.name: effect for effect in robot.candidates}
+    out: list[Candidate] = []
+    for score in evidence.named:
+        m = score.missing
+        shape = {name: value for name, value, _ in m.shape}
+        for name in OF_A_LOAD if m.name == "load" else (m.name,):
+            effect = known.get(name)
+            if effect and m.where in effect.places:
+                out.append(Candidate(effect, m.where, shape or next(iterate_shapes(effect))))
+                break
+    return (*out, *_frictions(evidence, robot, known))
+
+
+def _frictions(evidence: Evidence, robot: Robot, known: dict[str, Effect]) -> list[Candidate]:
+    """Returns the frictions and offsets that joints have and the model has not."""
+    if len(robot.plant.joints) < 2:
+        return []
+    far: dict[str, list[str]] = {}
+    for (name, where), opinion in frictions(evidence).items():
+        effect, joint = known.get(name), where.removeprefix("joint ")
+        is_fitted = f"joint/{joint}.frictionloss" in robot.file.free and name != "offset"
+        if effect and where in effect.places and opinion.is_proven and not is_fitted:
+            far.setdefault(name, []).append(where)
+    out = []
+    for name, places in far.items():
+        effect = at_several(known[name], places) if len(places) > 1 else known[name]
+        where = next(iter(effect.places)) if len(places) > 1 else places[0]
+        out.append(Candidate(effect, where, next(iterate_shapes(effect))))
+    return out
