@@ -65,13 +65,18 @@ def test_the_right_law_leaves_luck_to_a_curve_and_its_neighbour_leaves_the_patte
 
 
 @pytest.mark.parametrize(("share", "chance", "of_both", "has"), [
-    (0.5, 0.02, 0.1, False), (0.9 * MOST_LEFT, 1e-9, 0.1, False), (0.9, 1e-9, 0.9 * EXACT, False),
-    (1.1 * MOST_LEFT, 1e-3, 1.1 * EXACT, True),
+    (0.5, 0.02, 0.02, False), (0.9 * MOST_LEFT, 1e-9, 0.1, False), (0.9, 1e-9, 0.9 * EXACT, False),
+    (1.1 * MOST_LEFT, 1e-3, 1.1 * EXACT, True), (0.5, 0.4, 0.1, True), (0.5, 0.6, 0.1, False),
 ])  # fmt: skip
 def test_what_may_be_luck_or_is_little_is_no_reason_against_a_law(share, chance, of_both, has):
     found = Neighbour("curve_speed", "joint a", share, chance, of_both)
     assert has_neighbours_name(found, OPTIONS) == has
     assert not has_neighbours_name(None, OPTIONS)
+
+
+def test_without_its_pass_a_law_that_is_far_off_needs_the_same_chance_as_others():
+    found = Neighbour("curve_speed", "joint a", 0.5, 0.4, 0.1)
+    assert not has_neighbours_name(found, DiscoveryOptions(without=("far_from_exact",)))
 
 
 def test_the_chance_is_paid_for_by_the_number_of_curves_at_the_joint():
