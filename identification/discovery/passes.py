@@ -25,9 +25,6 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
     "suggested_effects": (
         HORIZON, "refits effects that the joints' torques have named, whatever their scores are",
     ),
-    "add_suggested": (
-        HORIZON, "adds several effects that the joints' torques have named, before any other",
-    ),
     "add_yielding_friction": (
         HORIZON, "fits a friction that gives before it slips from its largest compliance",
     ),

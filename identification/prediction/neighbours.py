@@ -12,9 +12,9 @@ the best curve at its joint, scored beside all that was found,
         g/(F + g),  g = f (1 - F)        F: fall by the law,  f: fall by the curve beside it
 
 though the curve itself, with its many numbers, is not proven. What acts in few windows, as a stop
-does, has a large chance whatever it explains. So where the curve explains more than `FAR_FROM_EXACT`
-of both, it need only be more likely than not that this is no luck. A law of a sensor, an input or a body
-has no joint of its own, and curves at all joints count.
+does, has a large chance whatever it explains. So where the curve explains more than
+`FAR_FROM_EXACT` of both, it need only be more likely than not that this is no luck. A law of a
+sensor, an input or a body has no joint of its own, and curves at all joints count.
 """
 
 from __future__ import annotations

@@ -14,7 +14,7 @@ from identification.discovery.moves import Move, Watch
 from identification.discovery.passes import uses
 from identification.errors import InputError
 from identification.prediction.moves.add_effect import add_effect
-from identification.prediction.moves.add_set import add_set, add_suggested, set_for_effects
+from identification.prediction.moves.add_set import add_set, set_for_effects
 from identification.prediction.moves.add_yielding_friction import add_yielding_friction
 from identification.prediction.moves.curve_for_laws import curve_for_laws
 from identification.prediction.moves.drop_beside_curves import drop_beside_curves
@@ -35,7 +35,6 @@ from identification.windows.unseen import HORIZON, Unseen, predict
 
 FEWEST_BLOCKS = 3  # of unseen windows, whose scatter is known
 MOVES = (
-    Move("add_suggested", add_suggested, grows=True),
     Move("add_effect", add_effect, grows=True),
     Move("add_yielding_friction", add_yielding_friction, grows=True),
     # before sets, which take most of the time where a force in no catalogue is missing

@@ -10,7 +10,7 @@ from elbow_cases import elbow
 from identification.errors import InputError
 from identification.report.opinion_words import opinion_sentences
 from identification.robot import second_opinion
-from identification.robot.second_opinion import opinions, with_torques
+from identification.robot.second_opinion import ask_torques, opinions, with_torques
 
 
 def test_torques_find_the_size_that_a_search_over_windows_has_found():
@@ -72,14 +72,17 @@ def test_sentences_say_which_of_the_two_proves_a_name():
     assert "name another effect first: cogging, joint a, k = 0.200 ± 0.010 N m" in second
 
 
-def test_torques_are_asked_only_where_something_is_missing_and_they_can_tell_it(monkeypatch):
+def test_torques_that_tell_nothing_are_no_opinion_and_where_nothing_is_missing_none_is_given(
+    monkeypatch,
+):
     robot, found = elbow()
+    evidence = ask_torques(robot)
+    silent = replace(found, verdict="nothing missing", named=())
+    assert with_torques(silent, evidence) is silent
+    assert with_torques(found, None) is found
 
     def refused(_):
         raise InputError("a drive has a state")
 
     monkeypatch.setattr(second_opinion, "fit_torques", refused)
-    assert with_torques(found, robot) is found
-    silent = replace(found, verdict="nothing missing", named=())
-    monkeypatch.setattr(second_opinion, "fit_torques", lambda _: pytest.fail("it was asked"))
-    assert with_torques(silent, robot) is silent
+    assert ask_torques(robot) is None

@@ -65,12 +65,6 @@ def search(hidden, suggested, *without):
     )  # fmt: skip
 
 
-def test_several_suggested_effects_are_asked_together_first():
-    found = search(HIDDEN, [e.partition(".")[0] for e in HIDDEN])
-    assert found.moves[0] == "add_suggested"
-    assert {n.name for n in found.named} == {e.partition(".")[0] for e in HIDDEN}
-
-
 def test_a_suggested_effect_is_refitted_whatever_its_score_is(monkeypatch):
     monkeypatch.setattr(selection, "list_contenders", lambda *_: [])
     monkeypatch.setattr(selection, "list_curves", lambda *_: [])

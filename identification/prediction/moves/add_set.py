@@ -55,9 +55,8 @@ class Place:
 
 
 def add_set(
-    state: WindowSearch, progress: Progress, present: WindowModel | None = None,
-    first: Sequence[Candidate] = (),
-) -> WindowSearch:  # fmt: skip
+    state: WindowSearch, progress: Progress, present: WindowModel | None = None
+) -> WindowSearch:
     """Returns the state with several effects more, or as it is where none are proven together.
 
     Args:
@@ -66,15 +65,13 @@ def add_set(
         present: the model that the set has to predict better than, on average over the blocks that
             decide, before its members are asked in their places, which takes most of the time; that
             of the state when None.
-        first: the set that is tried first, in place of one that is chosen by scores.
     """
     task, watch = state.task, Watch(state.seconds)
     if state.room < 2 or not state.scores or not is_much_left(state.model, task.options):
         return state
     model, places, refits, asked = state.model, dict[Key, Place](), 0, list[set[Key]]()
-    for k in range(MAX_ROUNDS):
-        given = _with_each(state, model, first, progress) if k == 0 and first else None
-        chosen = given or _with_set(state, model, progress)
+    for _ in range(MAX_ROUNDS):
+        chosen = _with_set(state, model, progress)
         is_worse = not compare((present or state.model).unseen, chosen.unseen).t > 0
         if is_worse or _keys(chosen) in asked:
             break
@@ -97,20 +94,6 @@ def add_set(
         state, model=model, accepted=(*state.accepted, *new), scores=scores, rejected=(),
         seconds=watch.seconds, exchanged=None,
     )  # fmt: skip
-
-
-def add_suggested(state: WindowSearch, progress: Progress) -> WindowSearch:
-    """Returns the state with the effects that another evidence has found, where they are proven.
-
-    The torques that a measured motion needs (`identification.torques`) judge all effects beside
-    masses, armatures and frictions that are free, in seconds. Over windows, the armatures that a
-    fit bends may hide a payload, and its score is then among the least. One suggested effect alone
-    is among those that `add_effect` refits.
-    """
-    suggested = state.task.suggested
-    if state.accepted or len(suggested) < 2:
-        return state
-    return add_set(state, progress, first=suggested[: state.room])
 
 
 def set_for_effects(state: WindowSearch, progress: Progress) -> WindowSearch:
@@ -183,17 +166,6 @@ def _with_set(state: WindowSearch, model: WindowModel, progress: Progress) -> Wi
         is_first = not find_members(best, state.model)
         best = model if is_first or _bic(model) < _bic(best) else best
     return best
-
-
-def _with_each(
-    state: WindowSearch, model: WindowModel, effects: Sequence[Candidate], progress: Progress
-) -> WindowModel | None:
-    """Returns the model refitted with effects; None where fewer than two explain anything."""
-    progress("tried together: " + " + ".join(f"{c.effect.name}, {c.where}" for c in effects))
-    count = len(model.candidates)
-    for c in effects:
-        model = with_one(state, model, c) or model
-    return model if len(model.candidates) > count + 1 else None
 
 
 def _bic(model: WindowModel) -> float:
