@@ -1,14 +1,14 @@
-"""Payloads and false names by torques: arms in closed loop whose armatures and masses are free.
+"""What torques name of arms in closed loop, whose armatures and masses are free.
 
-    python benchmarks/torques.py [--seeds 20] [--nulls 40] [--joints 2 6] [--measured DATA]
+    python benchmarks/torques.py [--hides payload nothing cogging ...] [--seeds 20] [--joints 2 6 7]
+    python benchmarks/torques.py --measured DATA
 
-An arm of 2 or 6 geared hinges follows two references of five harmonics, one record is fitted and
-one confirms. Its controller is unknown to the model. Positions have noise of 50 µrad, which the
-controller sees, and the torques noise of 1 % of their rms. The true masses, armatures and frictions
-differ from the model's by their priors (10, 15 and 30 %). In a half of the worlds the last body
-carries a load of 10 to 20 % of the arm's mass at its end, in the others nothing is missing.
-`--measured` compares the torques of a UR10e instead, by both splits of its records, with the
-authors' parameters on the same equations, and those of EMPS. Rows go to
+An arm of geared hinges (`torque_arms.py`) follows two references of five harmonics; one record is
+fitted and one confirms. Positions have noise of 50 µrad, which the controller sees, and the torques
+noise of 1 % of their rms. The true masses, armatures and frictions differ from the model's by their
+priors (10, 15 and 30 %). An arm hides nothing, a load of 10 to 20 % of its mass at its end, or an
+effect at one joint. `--measured` compares the torques of a UR10e instead, by both splits of its
+records, with the authors' parameters on the same equations, and those of EMPS. Rows go to
 `benchmarks/results/torques.jsonl`; seconds are those of the processor.
 """
 
@@ -17,102 +17,35 @@ from __future__ import annotations
 import argparse
 import json
 import time
+from itertools import product
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-import mujoco
 import numpy as np
 from rows import search_commit
+from torque_arms import AXES, LISTED, SPREAD, UNLISTED, arm, hidden, record
 
-from identification import Log, fit_torques, read_robot
-from identification.report.torque_words import size_words
+from identification import fit_torques, read_robot
+from identification.report.torque_words import rivals_of, size_words
 from identification.torques.bodies import read_numbers
 
 ROWS = Path(__file__).resolve().parent / "results" / "torques.jsonl"
-STEP, SAMPLED, LASTS = 0.0005, 20, 20.0  # the controller takes each step, the log every 20th
-Y, Z = "0 1 0", "0 0 1"
-AXES = {2: (Y, Y), 6: (Z, Y, Y, Y, Z, Y)}
-NOISE, TORQUE_NOISE, LOAD = 5e-5, 0.01, 0.2
-FILTER = 0.03  # of the rates that the controller makes of positions, in each step
-SPREAD = {"mass": 0.1, "armature": 0.15, "friction": 0.3}
-HARMONICS, SLOWEST = 5, 0.1  # of the reference, and its first frequency [Hz]
+PAYLOAD, NOTHING = "payload", "nothing"
+LARGEST = 0.2  # load, of the mass of an arm
+DRIVES = ("gain", "delay")  # effects whose place is an input
 
 
-def arm(joints: int, rng: np.random.Generator | None, load: float = 0.0) -> str:
-    """The MJCF of an arm: the model's numbers, or true ones drawn about them."""
-
-    def of(kind: str) -> float:
-        return 1.0 if rng is None else float(np.exp(SPREAD[kind] * rng.standard_normal()))
-
-    text = ""
-    for k in range(joints):
-        m, length = 6.0 * 0.6**k, 0.4 * 0.8**k
-        inertia = " ".join(f"{m * length**2 * x:.6g}" for x in (0.1, 0.1, 0.02))
-        m *= of("mass")
-        size = 4.0 * 0.5**k
-        text += (
-            f'<body name="b{k}" pos="0 0 {0.5 * 0.8**k if k else 0.3:.4f}"><joint name="j{k}"'
-            f' axis="{AXES[joints][k]}"'
-            f' armature="{size / 4 * of("armature"):.6g}" damping="{size * of("friction"):.6g}"'
-            f' frictionloss="{size * of("friction"):.6g}"/>'
-            f'<inertial pos="0.02 0.01 {length / 2:.4f}" mass="{m:.6g}" diaginertia="{inertia}"/>'
-            f'<site name="s{k}" pos="0 0 {length:.4f}"/>'
-        )
-    end = 0.4 * 0.8 ** (joints - 1)
-    if load:
-        text += (f'<body pos="0 0 {end:.4f}"><inertial pos="0 0 0" mass="{load:.6g}"'
-                 ' diaginertia="1e-5 1e-5 1e-5"/></body>')  # fmt: skip
-    text += "</body>" * joints
-    motors = "".join(f'<motor name="t{k}" joint="j{k}"/>' for k in range(joints))
-    sensors = "".join(f'<jointpos name="q{k}" joint="j{k}"/>' for k in range(joints))
-    return (
-        f'<mujoco><compiler angle="radian"/><option timestep="{STEP}" integrator="implicitfast"/>'
-        f"<worldbody>{text}</worldbody><actuator>{motors}</actuator><sensor>{sensors}</sensor>"
-        "</mujoco>"
-    )
-
-
-def record(truth: str, joints: int, rng: np.random.Generator, name: str) -> Log:
-    """A record of an arm that follows a reference."""
-    model = mujoco.MjModel.from_xml_string(truth)
-    data = mujoco.MjData(model)
-    frequency = SLOWEST * np.arange(1, HARMONICS + 1)
-    a = rng.uniform(0.1, 0.35, (joints, HARMONICS)) / np.sqrt(np.arange(1, HARMONICS + 1))
-    p = rng.uniform(0, 2 * np.pi, (joints, HARMONICS))
-    M = np.array([4.0 * 0.5**k for k in range(joints)])
-    kp, kd = 400.0 * M, 40.0 * M
-    data.qpos = (a * np.sin(p)).sum(axis=1)
-    rows, slow, seen = [], np.zeros(joints), data.qpos.copy()
-    for k in range(int(LASTS / STEP)):
-        phase = 2 * np.pi * frequency * k * STEP + p
-        ref = (a * np.sin(phase)).sum(axis=1)
-        rate = (a * 2 * np.pi * frequency * np.cos(phase)).sum(axis=1)
-        measured = data.qpos + NOISE * rng.standard_normal(joints)
-        slow += FILTER * ((measured - seen) / STEP - slow)
-        seen = measured
-        u = kp * (ref - measured) + kd * (rate - slow)
-        if k % SAMPLED == 0:
-            rows.append([k * STEP, *u, *measured])
-        data.ctrl = u
-        mujoco.mj_step(model, data)
-    table = np.array(rows)
-    torque = table[:, 1 : 1 + joints]
-    torque = torque + TORQUE_NOISE * torque.std(axis=0) * rng.standard_normal(torque.shape)
-    return Log(
-        time=table[:, 0], inputs=torque, outputs=table[:, 1 + joints :],
-        input_names=[f"t{k}" for k in range(joints)], output_names=[f"q{k}" for k in range(joints)],
-        name=name, hold="foh",
-    )  # fmt: skip
-
-
-def world(joints: int, seed: int, loaded: bool) -> dict[str, Any]:
-    """What torques say of one arm."""
-    rng = np.random.default_rng([seed, joints, loaded])
+def world(joints: int, seed: int, hides: str) -> dict[str, Any]:
+    """What torques say of one arm, which hides a load, an effect, or nothing."""
+    is_effect = hides in (*LISTED, *UNLISTED)
+    key = [*hides.encode()] if is_effect else []
+    rng = np.random.default_rng([seed, joints, hides == PAYLOAD, *key])
     mass = sum(6.0 * 0.6**k for k in range(joints))
-    load = LOAD * mass * float(rng.uniform(0.5, 1.0)) if loaded else 0.0
+    load = LARGEST * mass * float(rng.uniform(0.5, 1.0)) if hides == PAYLOAD else 0.0
     truth = arm(joints, rng, load)
-    first, second = (record(truth, joints, rng, name) for name in ("a", "b"))
+    effect = hidden(hides, joints, truth, rng) if is_effect else None
+    first, second = (record(truth, joints, rng, name, effect) for name in ("a", "b"))
     free = {f"joint/j{k}.armature": SPREAD["armature"] for k in range(joints)}
     free |= {f"body/b{k}.mass": SPREAD["mass"] for k in range(joints)}
     with TemporaryDirectory() as folder:
@@ -126,12 +59,16 @@ def world(joints: int, seed: int, loaded: bool) -> dict[str, Any]:
         began = time.process_time()
         found = fit_torques(robot)
         seconds = time.process_time() - began
-    first_name = found.named[0] if found.named else None
     payload = next((s for s in found.named if s.missing.name in ("payload", "load")), None)
+    place = "input t" if hides in DRIVES else "joint j"
     return {
-        "joints": joints, "seed": seed, "load": load, "seconds": round(seconds, 2),
+        "joints": joints, "seed": seed, "hides": hides, "load": load,
+        "where": None if effect is None else f"{place}{effect.joint}",
+        "s": effect and effect.s, "seconds": round(seconds, 2),
         "named": [s.missing.title for s in found.named],
-        "first": None if first_name is None else first_name.missing.title,
+        "first": found.named[0].missing.title if found.named else None,
+        "rivals": [r.missing.title for s in found.named[:1] for r in rivals_of(found.found, s, 0)],
+        "falls": [s.fall for s in found.named],
         "mass": None if payload is None else float(payload.size[0]),
         "std": None if payload is None else float(payload.std[0]),
         "nearest_chance": found.found.scores[0].chance, "commit": search_commit(),
@@ -193,27 +130,28 @@ def measured_axis(data: Path) -> dict[str, Any]:
 
 def main() -> None:
     """Make the rows of all worlds."""
+    every = (PAYLOAD, NOTHING, *LISTED, *UNLISTED)
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--seeds", type=int, default=20, help="arms with a load, of each kind")
-    parser.add_argument("--nulls", type=int, default=40, help="arms without, over all kinds")
+    parser.add_argument("--hides", nargs="+", default=every, choices=every)
+    parser.add_argument("--seeds", type=int, default=20, help="arms of each kind")
+    parser.add_argument("--first", type=int, default=0, help="first seed")
     parser.add_argument("--joints", type=int, nargs="+", default=[2, 6], choices=AXES)
     parser.add_argument("--measured", type=Path, help="folder of the measured robots")
+    parser.add_argument("--out", type=Path, default=ROWS)
     given = parser.parse_args()
     if given.measured is not None:
-        with ROWS.open("a", encoding="utf-8") as stream:
+        with given.out.open("a", encoding="utf-8") as stream:
             for turned in (False, True):
                 stream.write(json.dumps(measured(given.measured, turned)) + "\n")
             stream.write(json.dumps(measured_axis(given.measured)) + "\n")
         return
-    count = given.nulls // len(given.joints)
-    tasks = [(j, s, True) for j in given.joints for s in range(given.seeds)]
-    tasks += [(j, s, False) for j in given.joints for s in range(count)]
-    with ROWS.open("a", encoding="utf-8") as stream:
-        for task in tasks:
-            row = world(*task)
+    seeds = range(given.first, given.first + given.seeds)
+    with given.out.open("a", encoding="utf-8") as stream:
+        for seed, joints, hides in product(seeds, given.joints, given.hides):
+            row = world(joints, seed, hides)
             stream.write(json.dumps(row) + "\n")
             stream.flush()
-            print(row)
+            print(hides, row["where"], row["named"], row["rivals"][:3], row["seconds"], flush=True)
 
 
 if __name__ == "__main__":

@@ -37,8 +37,6 @@ FEWEST_BLOCKS = 3  # of unseen windows, whose scatter is known
 MOVES = (
     Move("add_effect", add_effect, grows=True),
     Move("add_yielding_friction", add_yielding_friction, grows=True),
-    # before sets, which take most of the time where a force in no catalogue is missing
-    Move("curve_for_laws", finishing(curve_for_laws)),
     Move("add_set", add_set, grows=True),
     Move("set_for_effects", set_for_effects),
     *(
