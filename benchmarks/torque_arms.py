@@ -128,7 +128,7 @@ def hidden(name: str, joints: int, truth: str, rng: np.random.Generator) -> Hidd
         "width": rng.uniform(0.3, 0.8),
     }  # fmt: skip
     if name == "delay":
-        shape["late"] = rng.uniform(0.002, 0.008)
+        shape["late"] = rng.uniform(0.0005, 0.002)
     return Hidden(
         name, joint, float(rng.uniform(*STRENGTH)), float(np.sqrt(np.mean(u**2))),
         float(np.sqrt(np.mean(rates[:, joint] ** 2))), float(q.std()), float(q.mean()), shape,

@@ -22,6 +22,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from identification.discovery.effect_results import Neighbour
+from identification.discovery.neighbour import FAR_FROM_EXACT, MOST_LEFT
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.passes import uses
 from identification.effects.effect import Candidate
@@ -29,14 +30,9 @@ from identification.prediction.scores import WindowScore
 from identification.prediction.screening import places_of
 from identification.prediction.yardstick import acts_on_joints
 
-# Of the fitted error. In hidden worlds curves that were beyond chance took 13 % or less beside laws
-# that were right, and 20 % or more beside neighbours (docs/discovery.md).
-MOST_LEFT = 0.2
 # No law is right to more than a per mille of its power, which is 3 % of its force: steps of
 # the simulation and shapes of bodies are not known better.
 EXACT = 1e-3
-# Of the power of both, which is a sixth of their force: no right law is as far from a robot's.
-FAR_FROM_EXACT = 0.03
 MORE_LIKELY_THAN_NOT = 0.5  # chance
 
 

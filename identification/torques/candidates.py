@@ -2,6 +2,7 @@
 
     law of a joint, force          -f(s) at the joint          of the catalogue, by its own hook
     law of a joint, friction       b(s) sign v at the joint
+    curve of a joint               -f(x) at the joint, x: its rate, position, drive or the time
     ten numbers of a body          Y_b Δπ                      of the catalogue, by its own hook
     load at a body                 Y_b (M, h, I_O)             any place and inertia
     rotor inertia of a joint       a at the joint
@@ -32,7 +33,7 @@ from identification.effects.moving_bodies import MovingBody
 from identification.torques.base import independent_columns, reach_of
 from identification.torques.bodies import NUMBERS, UNITS, label_of, list_bodies, read_numbers
 from identification.torques.equations import Columns, Equations
-from identification.torques.laws import Laws, Missing, later, listed
+from identification.torques.laws import CURVES, Laws, Missing, later, listed
 
 GAIN = 0.5  # largest change of a gain, also of one that drifts
 ROUNDING = 1e-9  # of the largest column
@@ -57,7 +58,8 @@ def list_missing(
     laws = Laws(model, equations, expected)
     out: list[Missing] = []
     for effect in effects:
-        if effect.hooks and {*effect.hooks} <= FORCES and not effect.is_curve:
+        is_of_neighbour = effect.is_curve and not effect.name.endswith(tuple(CURVES))
+        if effect.hooks and {*effect.hooks} <= FORCES and not is_of_neighbour:
             out += laws.of(effect)
         elif {*effect.hooks} == {HOOK}:
             out += [

@@ -20,6 +20,10 @@ from identification.effects.effect import Effect
 from identification.native.joint_callback import Joint
 from identification.torques.equations import Columns, Equations
 
+# What the curves of a joint depend on, by the ends of their names, as fields of its state.
+CURVES = {"_speed": "v", "_load": "f_u", "_position": "q", "_time": "time"}
+PLACES = 801  # of a curve, between which it is straight
+
 
 @dataclass(frozen=True, kw_only=True)
 class Missing:
@@ -104,7 +108,8 @@ class Laws:
             p = (*(float(i == k) for i in range(len(effect.sizes))), *shape.values())
             for j in at:
                 some = self.used[:, j]
-                force = along(law, self.states[self.names[j]], p)
+                states = self.states[self.names[j]]
+                force = (_along_curve if effect.is_curve else along)(law, states, p)
                 out[some, j, k] = -force if hook == "force" else force * self.sign[some, j]
         return Columns(out, tuple(at))
 
@@ -126,6 +131,21 @@ def along(law: Any, states: Joint, p: Sequence[float]) -> np.ndarray:
     except ValueError:  # the truth of an array
         fields = [np.broadcast_to(x, states.q.shape).tolist() for x in states]
         return np.array([law.py_func(Joint(*one), p) for one in zip(*fields, strict=True)])
+
+
+def _along_curve(law: Any, states: Joint, p: Sequence[float]) -> np.ndarray:
+    """Returns a curve at many states of a joint, shape (n,), between its values at many places."""
+    name = law.py_func.__name__
+    field = next(f for end, f in CURVES.items() if name.endswith(end))
+    z = np.linspace(-1.0, 1.0, PLACES)
+    if field in ("v", "f_u"):  # their nodes are dense near zero
+        x = z * np.abs(z) * (states.v_top if field == "v" else states.f_top)
+    else:
+        of = np.asarray(getattr(states, field))
+        x = (of.min() + of.max()) / 2 + z * (np.ptp(of) / 2)
+    one = states._replace(time=0.0, q=0.0, v=0.0, f_u=0.0, f_g=0.0, sign=0.0)
+    values = [law.py_func(one._replace(**{field: float(place)}), p) for place in x]
+    return np.interp(getattr(states, field), x, values)
 
 
 @cache

@@ -22,6 +22,7 @@ from itertools import chain, pairwise
 import numpy as np
 
 from identification.chances import mean_above_zero
+from identification.discovery.neighbour import falls_short
 from identification.estimation.block_test import (
     Scatter,
     common_scatter,
@@ -51,6 +52,8 @@ class Score:
     fall: float  # of the mean square on blocks that the fit did not see; negative where it rises
     t: float  # of the fall
     gains: np.ndarray  # g of each block that the fits did not see, shape (B,)
+    # share of the mean square, without it, of the joints on which it acts
+    share: float = 1.0
     held_t: float = 0.0  # t with the free parameters at what was known; 0 where it is not asked for
 
     @property
@@ -60,9 +63,14 @@ class Score:
         return self.chance < CHANCE and is_confirmed and self.is_plausible
 
     def is_like(self, other: Score) -> bool:
-        """Tells whether it predicts unseen blocks as well as another one, but for chance."""
+        """Returns whether it predicts unseen blocks as well as another one, but for chance.
+
+        A stop acts in few blocks, so that luck can always explain by how much a curve is better
+        than a spring. So what falls far short of the other one does not predict as well either.
+        """
         difference = other.gains - self.gains
-        return not difference.any() or mean_above_zero(difference)[0] < PROOF
+        is_chance = not difference.any() or mean_above_zero(difference)[0] < PROOF
+        return is_chance and not falls_short(self.fall / other.share, other.fall / other.share)
 
     @property
     def is_plausible(self) -> bool:
@@ -123,11 +131,14 @@ def rank(equations: Equations, base: Base, candidates: Sequence[Missing]) -> tup
         ]
 
     unseen = squares_of(whole, 0)
+    of_joints = unseen_squares(base.M, base.fit.weights, base.P, base.θ_0, equations.confirms)
+    of_joints = base.fit.weights * of_joints[:, judged].sum(axis=1)
     weighted = _Weighted(equations, base)
-    found: list[tuple[Missing, np.ndarray, Scatter, list[np.ndarray]]] = []
+    found: list[tuple[Missing, np.ndarray, Scatter, list[np.ndarray], float]] = []
     left_out: list[Missing] = []
     for missing in chain(candidates, left_out):  # these are scored with the sizes that are apart
-        if (of := weighted.moments(missing.columns())) is None:
+        columns = missing.columns()
+        if (of := weighted.moments(columns)) is None:
             continue
         joined = _joined(whole, *of)
         cross, own = of[0][seen], of[1][seen]  # (B, p + 1, m), (B, m, m)
@@ -151,10 +162,12 @@ def rank(equations: Equations, base: Base, candidates: Sequence[Missing]) -> tup
         blocks = make_blocks(G_all[:, None], Z[:, :, None])
         η = np.linalg.lstsq(G_all.sum(axis=0), a_all.sum(axis=0), rcond=1e-12)[0]
         scatter = scatter_of(blocks, a_all[:, None], np.ones(1), np.array([missing.signs]))
-        found.append((missing, η, scatter, squares_of(joined, len(η))))
-    common = common_scatter([scatter for _, _, scatter, _ in found])
+        acts = slice(None) if columns.joints is None else [*columns.joints]
+        share = float(of_joints[acts].sum() / of_joints.sum())
+        found.append((missing, η, scatter, squares_of(joined, len(η)), share))
+    common = common_scatter([scatter for _, _, scatter, _, _ in found])
     scores = []
-    for missing, η, scatter, squares in found:
+    for missing, η, scatter, squares, share in found:
         p = float(p_values(scatter, common)[0])
         gains, *held = (a - b for a, b in zip(unseen, squares, strict=True))
         std = np.sqrt(np.maximum(np.diag(covariance(scatter, common)[0]), 0.0))
@@ -162,7 +175,7 @@ def rank(equations: Equations, base: Base, candidates: Sequence[Missing]) -> tup
         scores.append(Score(
             missing=missing, size=η, std=std, chance=min(1.0, p * len(found)), t=t,
             fall=1 - float(np.exp(squares[0]).sum() / np.exp(unseen[0]).sum()), gains=gains,
-            held_t=held_t,
+            held_t=held_t, share=share,
         ))  # fmt: skip
     best: dict[tuple[str, str], Score] = {}
     for score in sorted(scores, key=lambda s: (-s.is_plausible, -float(s.gains.sum()))):

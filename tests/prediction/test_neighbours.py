@@ -8,17 +8,13 @@ from records_cases import FREE, HORIZON, nominal_model, pendulum, records
 
 from identification.discovery.candidates import list_common
 from identification.discovery.effect_results import Neighbour
+from identification.discovery.neighbour import MOST_LEFT
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.joint_plant import candidates
 from identification.prediction.extension import with_effect
 from identification.prediction.first_fit import begin
 from identification.prediction.moves.curve_for_laws import curve_for_laws
-from identification.prediction.neighbours import (
-    EXACT,
-    MOST_LEFT,
-    find_neighbour,
-    has_neighbours_name,
-)
+from identification.prediction.neighbours import EXACT, find_neighbour, has_neighbours_name
 from identification.prediction.nominal_fit import fit_nominal
 from identification.prediction.scores import window_scores
 from identification.prediction.screening import score_all
