@@ -5,7 +5,7 @@ from __future__ import annotations
 import mujoco
 import numpy as np
 
-from identification.quantities import alike
+from identification.quantities import alike, quantity
 from identification.report.effect_words import value_with_std
 from identification.report.headline import Answer, Headline, Tile, capital
 from identification.report.torque_words import joint_names
@@ -31,6 +31,9 @@ def torque_headline(evidence: Evidence, model: mujoco.MjModel) -> Headline:
 
 def _answer(score: Score) -> Answer:
     missing = score.missing
+    if missing.is_curve:
+        tile = Tile("change", quantity(score.reach, unit=missing.units[0]), missing.phrase)
+        return Answer("An unlisted force", missing.where, (tile,))
     value = value_with_std(float(score.size[0]), float(score.std[0]), missing.units[0])
     name = missing.name.replace("_", " ")
     return Answer(capital(name), missing.where, (Tile(missing.sizes[0], value, missing.phrase),))

@@ -10,6 +10,12 @@ from identification.report.page import Section, Table
 from identification.report.style import GREY, INK, SIMULATED, literal, styled
 from identification.report.torque_words import base_rows, friction_rows, joint_names, score_rows
 from identification.torques.evidence import Evidence
+from identification.torques.laws import CURVES
+from identification.torques.scores import Score
+
+AXES = {
+    "_position": "position", "_speed": "speed", "_load": "force of the drives", "_time": "time",
+}  # fmt: skip
 
 
 def torque_sections(evidence: Evidence, model: mujoco.MjModel) -> list[Section]:
@@ -19,6 +25,7 @@ def torque_sections(evidence: Evidence, model: mujoco.MjModel) -> list[Section]:
         (f"Torques, {r.name}", torque_figure(evidence, model, k)) for k, r in enumerate(rows)
     )
     return [
+        *_forces(evidence, model),
         Section(
             "Torques, joint by joint",
             "The torque that the drives gave, without the part that is known of the model; the same"
@@ -50,6 +57,59 @@ def torque_sections(evidence: Evidence, model: mujoco.MjModel) -> list[Section]:
                         tuple(friction_rows(evidence))),
         ),
     ]  # fmt: skip
+
+
+def _forces(evidence: Evidence, model: mujoco.MjModel) -> list[Section]:
+    """Returns the section on forces that no law explains; none where there is none."""
+    drawn = [s for s in evidence.named if s.missing.is_curve]
+    figures = tuple((s.missing.title, force_figure(evidence, s, model)) for s in drawn)
+    return [Section(
+        "Forces that no law explains",
+        "The force that the torques need at a joint, as a curve with a band of two std, and what"
+        " each sample leaves to it. Its mean is left out, because a constant force is friction.",
+        figures=figures,
+    )] if figures else []  # fmt: skip
+
+
+@styled
+def force_figure(evidence: Evidence, score: Score, model: mujoco.MjModel) -> Figure:
+    """Returns a figure of a force that no law explains, against what it depends on.
+
+    Args:
+        evidence: of the torques.
+        score: the curve, one of those that are named.
+        model: of the robot.
+    """
+    columns, fit = score.missing.columns(), evidence.final.fit
+    (j,) = columns.joints or (0,)
+    (name, unit), equations = [x[j] for x in joint_names(model)], evidence.equations
+    used = equations.stacked("used")[:, j]
+    ending = next(end for end in CURVES if score.missing.name.endswith(end))
+    x = {"_position": "q", "_speed": "v", "_time": "time"}.get(ending)
+    place = equations.stacked(x) if x else equations.stacked("drives").sum(axis=2)
+    place = (place if place.ndim == 1 else place[:, j])[used]
+    own = f"{score.missing.name}."
+    at = [k for k, n in enumerate(evidence.final.names)
+          if n.startswith(own) and n.endswith(f", {score.missing.where}")]  # fmt: skip
+    S, order = columns.values[used, j], np.argsort(place)
+    S = S - S.mean(axis=0)  # what is constant is friction as well, and known to neither
+    force, left = (
+        S @ fit.θ[at],
+        evidence.final.base.y[used, j] - evidence.final.predicted()[used, j],
+    )
+    std = np.sqrt(np.einsum("ni,ij,nj->n", S, fit.covariance[np.ix_(at, at)], S))
+    figure = Figure((6.5, 3.6), layout="constrained")
+    ax = figure.subplots()
+    ax.plot(
+        place, -(force + left), ".", color=GREY, ms=2, alpha=0.4, label="what samples leave to it"
+    )
+    ax.fill_between(place[order], -(force + 2 * std)[order], -(force - 2 * std)[order],
+                    color=SIMULATED, alpha=0.25, lw=0)  # fmt: skip
+    ax.plot(place[order], -force[order], color=SIMULATED, lw=1.5, label="curve")
+    ax.set_xlabel(literal(f"{AXES[ending]} of {name}"))
+    ax.set_ylabel(literal(f"force [{unit}]"))
+    ax.legend(fontsize=8)
+    return figure
 
 
 @styled

@@ -51,7 +51,9 @@ def torque_text(verdict: Sequence[str], evidence: Evidence) -> str:
 
 
 def size_words(score: Score) -> str:
-    """Returns the sizes of a candidate with their std."""
+    """Returns the sizes of a candidate with their std; of a curve, how far it changes."""
+    if score.missing.is_curve:
+        return f"it changes by {quantity(score.reach, unit=score.missing.units[0])}"
     sizes = zip(score.missing.sizes, score.size, score.std, score.missing.units, strict=True)
     said = [f"{n.rpartition('.')[2]} = {quantity(v, s, u)}" for n, v, s, u in sizes]
     shapes = [
@@ -77,6 +79,8 @@ def _missing(evidence: Evidence) -> list[str]:
     out = []
     for k, score in enumerate(evidence.named):
         begins = "The torques need" if not k else "Beside it they need" if k == 1 else "And"
+        if score.missing.is_curve:
+            begins += " a force that no law of the catalogue explains,"
         out.append(
             f"{begins} {score.missing.title} ({score.missing.phrase}): {size_words(score)}."
             f"{centre_words(score)} The"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from identification.quantities import quantity
+from identification.report.torque_words import size_words
 from identification.robot.robot import Robot
 from identification.torques.evidence import Evidence
 from identification.torques.scores import Score
@@ -27,14 +27,7 @@ class TorqueFit(Written):
     files_of: Callable[[TorqueFit], Files]
 
     def __repr__(self) -> str:
-        named = [
-            f"{score.missing.title}: " + ", ".join(
-                f"{n} = {quantity(v, s, u)}"
-                for n, v, s, u in zip(score.missing.sizes, score.size, score.std,
-                                      score.missing.units, strict=True)
-            )
-            for score in self.named
-        ]  # fmt: skip
+        named = [f"{score.missing.title}: {size_words(score)}" for score in self.named]
         return "; ".join(named) or "torques: no effect is proven"
 
     @property

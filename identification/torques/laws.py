@@ -16,7 +16,7 @@ import mujoco
 import numpy as np
 
 from identification.discovery.candidates import iterate_shapes
-from identification.effects.effect import Effect
+from identification.effects.effect import CURVE, Effect
 from identification.native.joint_callback import Joint
 from identification.torques.equations import Columns, Equations
 
@@ -38,6 +38,11 @@ class Missing:
     shape: tuple[tuple[str, float, str], ...] = ()  # name, value and unit of each of its shapes
     columns: Callable[[], Columns]  # returns its columns
     most: tuple[float, ...]  # magnitudes of the sizes beyond which it is not believed
+
+    @property
+    def is_curve(self) -> bool:
+        """Tells whether it is a force that is drawn from the data, and in no catalogue."""
+        return self.name.startswith(CURVE)
 
     @property
     def key(self) -> tuple[str, str]:

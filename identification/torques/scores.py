@@ -57,6 +57,12 @@ class Score:
     held_t: float = 0.0  # t with the free parameters at what was known; 0 where it is not asked for
 
     @property
+    def reach(self) -> float:
+        """How far it changes along the motion: a constant force is friction, which fits have."""
+        f = self.missing.columns().values @ self.size
+        return float(max(np.ptp(x[x != 0]) if x.any() else 0.0 for x in f.T))
+
+    @property
     def is_proven(self) -> bool:
         """Tells whether it is beyond chance and confirmed by blocks that the fit did not see."""
         is_confirmed = max(self.t, self.held_t) > PROOF and self.fall > 0

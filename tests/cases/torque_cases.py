@@ -62,8 +62,13 @@ def planar(load=0.0, d=2.0, f=1.0, step=STEP, k=0.0):
     return PLANAR.format(step=step, d=d, f=f, load=more, k=k)
 
 
-def planar_record(seed, load=0.0, name="log", lasts=12.0, noise=2e-5, d=2.0, f=1.0, k=0.0):
-    """A record of the arm that follows five harmonics; its controller does not see the noise."""
+def planar_record(
+    seed, load=0.0, name="log", lasts=12.0, noise=2e-5, d=2.0, f=1.0, k=0.0, force=None
+):
+    """A record of the arm that follows five harmonics; its controller does not see the noise.
+
+    A force of positions and rates acts at the elbow, where one is given.
+    """
     model = mujoco.MjModel.from_xml_string(planar(load, d, f, k=k))
     data, rng = mujoco.MjData(model), np.random.default_rng(seed)
     ω = 2 * np.pi * 0.15 * np.arange(1, 6)
@@ -78,6 +83,8 @@ def planar_record(seed, load=0.0, name="log", lasts=12.0, noise=2e-5, d=2.0, f=1
             slow = (a * ω * np.cos(phase)).sum(axis=1) - data.qvel
             data.ctrl = (np.array([800.0, 300.0]) * off + np.array([60.0, 20.0]) * slow) / GEARS
             rows.append([n * STEP, *data.ctrl, *(data.qpos + noise * rng.standard_normal(2))])
+        if force is not None:
+            data.qfrc_applied[1] = force(data.qpos, data.qvel)
         mujoco.mj_step(model, data)
     table = np.array(rows)
     return Log(
