@@ -71,6 +71,10 @@ def world(joints: int, seed: int, hides: str) -> dict[str, Any]:
         "falls": [s.fall for s in found.named],
         "mass": None if payload is None else float(payload.size[0]),
         "std": None if payload is None else float(payload.std[0]),
+        "scores": [
+            [s.missing.title, s.fall / s.share, float(s.gains.sum()), s.t, s.chance, s.is_proven]
+            for s in found.found.scores[:6]
+        ],
         "nearest_chance": found.found.scores[0].chance, "commit": search_commit(),
     }  # fmt: skip
 
