@@ -22,6 +22,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -182,6 +183,24 @@ def rate_of(equations: Equations, x: np.ndarray) -> np.ndarray:
     ends = np.cumsum([len(r.time) for r in equations.rows])[:-1]
     parts = zip(equations.rows, np.split(x, ends), strict=True)
     return np.concatenate([np.gradient(part, r.time, axis=0) for r, part in parts])
+
+
+def together(laws: Sequence[Missing]) -> Missing:
+    """Returns laws as one candidate with the sizes of all of them."""
+
+    def columns() -> Columns:
+        each = [law.columns() for law in laws]
+        joints = [j for c in each for j in c.joints or ()]
+        some = None if any(c.joints is None for c in each) else tuple(dict.fromkeys(joints))
+        return Columns(np.concatenate([c.values for c in each], axis=2), some)
+
+    def every(field: str) -> tuple[Any, ...]:
+        return tuple(x for law in laws for x in getattr(law, field))
+
+    return replace(
+        laws[0], name=" + ".join(law.name for law in laws), sizes=every("sizes"),
+        units=every("units"), signs=every("signs"), most=every("most"), columns=columns, shape=(),
+    )  # fmt: skip
 
 
 def in_record(missing: Missing, equations: Equations, record: int) -> Missing:

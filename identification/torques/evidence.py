@@ -1,7 +1,6 @@
 """What torques say of a robot: its base parameters, its friction, and what its model lacks.
 
-    search       candidates beside the model fit, the best proven one added, until none is proven;
-                 then what has become needless is dropped
+    search       laws and curves beside the model fit (`identification.torques.search`)
     differences  a load at each body in one record alone, beside the base fit
 
 The fits are those of `identification.torques.fits`.
@@ -11,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import partial, reduce
 
 import mujoco
 import numpy as np
@@ -19,7 +17,6 @@ import numpy as np
 from identification.effects.effect import Effect
 from identification.effects.moving_bodies import MovingBody
 from identification.logs.log import Log
-from identification.shares import fall_words
 from identification.torques.base import BaseParameters, find_base
 from identification.torques.candidates import in_record, list_missing
 from identification.torques.consistency import find_inconsistent
@@ -30,15 +27,14 @@ from identification.torques.fits import (
     Others,
     base_fit,
     expect_drives,
-    extended,
     model_fit,
     read_friction,
+    with_gains_held,
 )
-from identification.torques.laws import Missing
 from identification.torques.rows import make_rows
-from identification.torques.scores import Base, Score, choose, rank
+from identification.torques.scores import Base, Score, rank
+from identification.torques.search import add_laws, draw_curves, others_of
 
-MOST_NAMED = 4  # effects that a search adds
 OTHER_BAND = 0.6  # factor of the bands of a second fit, which tells what they matter
 
 
@@ -102,29 +98,23 @@ def find_evidence(
     equations = Equations.of(make_rows(model, logs, own), confirm)
     base = find_base(model)
     others = Others.of(free, equations, logs)
-    expected = expect_drives(model, equations, base, others)
-    whole = base_fit(model, equations, base, expected, others)
+    plain = others.without_gains()
+    expected = expect_drives(model, equations, base, plain)
+    whole = base_fit(model, equations, base, expected, plain)
     narrow = Equations.of(make_rows(model, logs, own, OTHER_BAND), confirm)
-    there = Others.of(free, narrow, logs, OTHER_BAND)
+    there = Others.of(free, narrow, logs, OTHER_BAND).without_gains()
     other = base_fit(model, narrow, base, expect_drives(model, narrow, base, there), there).fit.θ
     nominal = model_fit(model, equations, free, expected, others)
+    nominal = with_gains_held(nominal, others)
     say(f"{int(equations.counts.sum())} equations, {len(base.names)} base parameters")
     candidates = list_missing(model, equations, expected, effects, bodies, [f.where for f in free])
     scores = rank(equations, nominal.base, candidates)
     first = f", {scores[0].missing.title} first" if scores else ""
     say(f"{len(candidates)} candidates scored{first}")
-    final, rest = nominal, scores
-    found: list[Score] = []
-    while len(found) < MOST_NAMED and (score := choose(rest)) is not None:
-        final = extended(equations, final, score.missing)
-        found.append(score)
-        say(f"{score.missing.title}: {fall_words(score.fall)} on unseen blocks, t {score.t:.1f}")
-        # A law keeps the shape that was its best beside the model.
-        rest = rank(equations, final.base, [s.missing for s in rest if s is not score])
-    needed = [s for s in found if _is_needed(equations, nominal, found, s)]
-    if len(needed) < len(found):
-        found = needed
-        final = _extended(equations, nominal, [s.missing for s in found])
+    laws = [s for s in scores if not s.missing.is_curve]
+    found, _ = add_laws(equations, nominal, [], laws, say)
+    found, final = draw_curves(equations, nominal, found, scores, say)
+    rest = rank(equations, final.base, others_of(scores, found)) if found else scores
     loads = [c for c in candidates if c.name == "load"]
     fitted = len(logs) - confirm
     single = [in_record(c, equations, k) for c in loads for k in range(fitted)]
@@ -138,20 +128,6 @@ def find_evidence(
         friction=read_friction(model) if friction is None else friction,
         inconsistent=find_inconsistent(base, whole.fit.θ[:r], whole.fit.std[:r]),
     )  # fmt: skip
-
-
-def _is_needed(equations: Equations, nominal: Fitted, found: Sequence[Score], score: Score) -> bool:
-    """Returns whether an effect is still proven beside all that were found after it."""
-    if len(found) < 2:
-        return True
-    others = [s.missing for s in found if s is not score]
-    again = rank(equations, _extended(equations, nominal, others).base, [score.missing])
-    return bool(again) and again[0].is_proven
-
-
-def _extended(equations: Equations, fitted: Fitted, effects: Sequence[Missing]) -> Fitted:
-    """Returns a fit with some effects more."""
-    return reduce(partial(extended, equations), effects, fitted)
 
 
 def _unseen_residual(equations: Equations, base: Base) -> np.ndarray:

@@ -6,6 +6,9 @@
     others       free parameters of the file that change no inertial number, such as a spring's
                  stiffness or a drive's gain, are in both: y(θ) = y(θ_0) + (θ - θ_0) dy/dθ
     clock        in both, one shift of the inputs against the outputs, a nuisance: dτ̂_u/dt
+    gains        free gains of drives are fitted where the model's masses tell them, in the model
+                 fit without effects; elsewhere they are held, because a drive without a gain that
+                 moves an arm without masses leaves no residual at all
 
 The base fit says how well a rigid arm with friction can do at all, and needs nothing of the model
 but its geometry. The model fit is where a payload can be told from the masses that are known.
@@ -14,7 +17,7 @@ but its geometry. The model fit is where a payload can be told from the masses t
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import mujoco
 import numpy as np
@@ -31,6 +34,8 @@ from identification.torques.scores import Base
 
 FRICTION = ("viscous", "coulomb", "offset")
 CLOCK = "clock of the inputs"
+ALMOST = 1e-6  # share of a column that a sum may miss
+FIXED = 1e12  # times its precision, that a fitted number is held by
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -56,6 +61,8 @@ class Others:
 
     free: tuple[FreeNumber, ...]
     columns: np.ndarray  # -dy/dθ, shape (N, nv, k)
+    gains: np.ndarray  # whether each is a gain of drives, shape (k,)
+    held: np.ndarray  # part of the right side of numbers that are held at their mean, shape (N, nv)
 
     @classmethod
     def of(
@@ -70,19 +77,40 @@ class Others:
             logs: these records.
             wider: factor of the bands with which the equations were made.
         """
-        y = equations.stacked("y")
+        y, drives = equations.stacked("y"), equations.stacked("drives")
         some, columns = list[FreeNumber](), [np.zeros((*y.shape, 0))]
         for f in free:
             if f.moved is not None:
                 rows = make_rows(f.moved, logs, wider=wider)
                 some.append(f)
                 columns.append((y - np.concatenate([r.y for r in rows]))[:, :, None] / f.step)
-        return cls(free=tuple(some), columns=np.concatenate(columns, axis=2))
+        every = np.concatenate(columns, axis=2)
+        gains = np.array([_is_sum_of(c, drives) for c in np.moveaxis(every, 2, 0)], bool)
+        return cls(free=tuple(some), columns=every, gains=gains, held=np.zeros_like(y))
+
+    def without_gains(self) -> Others:
+        """Returns these but for the gains, which are held at their means."""
+        keep, off = ~self.gains, np.array([f.value - f.mean for f in self.free])
+        held = self.columns @ np.where(self.gains, off, 0.0)
+        free = tuple(f for f, k in zip(self.free, keep, strict=True) if k)
+        return Others(
+            free=free, columns=self.columns[:, :, keep], gains=self.gains[keep],
+            held=self.held + held,
+        )  # fmt: skip
 
     @property
     def start(self) -> np.ndarray:
         """Their part of the right side at the values of the model, shape (N, nv)."""
-        return np.asarray(self.columns @ np.array([f.value for f in self.free]))
+        return np.asarray(self.columns @ np.array([f.value for f in self.free]) + self.held)
+
+
+def _is_sum_of(column: np.ndarray, drives: np.ndarray) -> bool:
+    """Returns whether a column (N, nv) is a sum of the drives' forces (N, nv, nu) at each joint."""
+    for of_joint, forces in zip(column.T, np.moveaxis(drives, 1, 0), strict=True):
+        left = of_joint - forces @ np.linalg.lstsq(forces, of_joint, rcond=None)[0]
+        if np.linalg.norm(left) > ALMOST * np.linalg.norm(of_joint):
+            return False
+    return bool(column.any())
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -198,6 +226,22 @@ def model_fit(
         names=(*(f.name for f in every), *names), units=(*(f.unit for f in every), *units),
         inertial=len(every), base=_fitted(equations, Φ, y, P, θ_0, len(every)),
     )  # fmt: skip
+
+
+def with_gains_held(fitted: Fitted, others: Others) -> Fitted:
+    """Returns a model fit in which later fits hold the gains of drives at what it found.
+
+    Args:
+        fitted: the model fit.
+        others: its numbers beside inertial ones, the last ones of those that are free.
+    """
+    base, gains = fitted.base, np.zeros(len(fitted.names), bool)
+    gains[fitted.inertial - len(others.gains) : fitted.inertial] = others.gains
+    precision = FIXED / np.maximum(np.diag(base.fit.covariance), 1e-300)
+    held = replace(
+        base, P=np.where(gains, precision, base.P), θ_0=np.where(gains, base.fit.θ, base.θ_0)
+    )
+    return replace(fitted, base=held)
 
 
 def extended(equations: Equations, fitted: Fitted, missing: Missing) -> Fitted:
