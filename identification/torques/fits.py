@@ -35,7 +35,7 @@ from identification.torques.scores import Base
 FRICTION = ("viscous", "coulomb", "offset")
 CLOCK = "clock of the inputs"
 ALMOST = 1e-6  # share of a column that a sum may miss
-FIXED = 1e12  # times its precision, that a fitted number is held by
+FIXED = 1e8  # times its precision, that a fitted number is held by
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -237,11 +237,10 @@ def with_gains_held(fitted: Fitted, others: Others) -> Fitted:
     """
     base, gains = fitted.base, np.zeros(len(fitted.names), bool)
     gains[fitted.inertial - len(others.gains) : fitted.inertial] = others.gains
-    precision = FIXED / np.maximum(np.diag(base.fit.covariance), 1e-300)
-    held = replace(
-        base, P=np.where(gains, precision, base.P), θ_0=np.where(gains, base.fit.θ, base.θ_0)
-    )
-    return replace(fitted, base=held)
+    P = np.where(gains, FIXED / np.maximum(np.diag(base.fit.covariance), 1e-300), base.P)
+    fit = replace(base.fit, H=base.fit.H + np.diag(P - base.P))
+    θ_0 = np.where(gains, base.fit.θ, base.θ_0)
+    return replace(fitted, base=replace(base, P=P, θ_0=θ_0, fit=fit))
 
 
 def extended(equations: Equations, fitted: Fitted, missing: Missing) -> Fitted:
