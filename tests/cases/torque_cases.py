@@ -2,8 +2,9 @@
 
 import mujoco
 import numpy as np
+from plain_logs import plain_log
 
-from identification import Log, read_robot
+from identification import read_robot
 
 TREE = """
 <mujoco>
@@ -80,10 +81,7 @@ def planar_record(seed, load=0.0, name="log", lasts=12.0, noise=2e-5, d=2.0, f=1
             rows.append([n * STEP, *data.ctrl, *(data.qpos + noise * rng.standard_normal(2))])
         mujoco.mj_step(model, data)
     table = np.array(rows)
-    return Log(
-        time=table[:, 0], inputs=table[:, 1:3], outputs=table[:, 3:], input_names=("t1", "t2"),
-        output_names=("q1", "q2"), name=name,
-    )  # fmt: skip
+    return plain_log(table[:, 1:3], table[:, 3:], "t1 t2", "q1 q2", time=table[:, 0], name=name)
 
 
 def planar_robot(folder, *logs, toml=TOML, confirm=(), k=0.0):

@@ -4,8 +4,9 @@ from functools import cache
 
 import numpy as np
 import pytest
+from plain_logs import plain_log
 
-from identification import InputError, Log
+from identification import InputError
 from identification.linear.modes import minimal, modes
 from identification.model.rollout import State
 from inca_mj.linear.accuracy import interpolation_errors, run_error
@@ -36,8 +37,7 @@ def twin():
 
 def prbs_log(seconds, seed=0):
     u = make_input("prbs", seconds, seed=seed)
-    return Log(time=0.01 * np.arange(len(u)), inputs=u, outputs=np.zeros_like(u),
-               input_names=CURRENTS, output_names=ANGLES)  # fmt: skip
+    return plain_log(u, np.zeros_like(u), CURRENTS, ANGLES)
 
 
 def of_the_reference(x, i, q):

@@ -6,10 +6,11 @@ import mujoco
 import numpy as np
 import pytest
 from advice import advised
+from plain_logs import plain_log
 from tracked_cases import ARM, MOTION, PENDULUM, nothing, payload, robot, tracked
 from tracked_cases import MOTION as MOTION_MISTAKES
 
-from identification import InputError, Log, write_log
+from identification import InputError, write_log
 from identification.logs.units import UNITS
 from identification.refusals.balance import unbalanced_share
 from identification.refusals.forces import tendon_forces
@@ -66,8 +67,7 @@ def hung(mass, speed=1.0, gears=(1.0, 1.0), samples=500, seed=2):
         u[k] = data.ctrl[:] = np.clip(np.linalg.solve(-J.T, force), 1, 400)
         mujoco.mj_step(model, data, 4)
     y += 3e-4 * np.random.default_rng(seed).standard_normal(y.shape)
-    return Log(time=0.01 * np.arange(samples), inputs=u / gears, outputs=y,
-               input_names=["T1", "T2"], output_names=["x", "z"])  # fmt: skip
+    return plain_log(u / gears, y, "T1 T2", "x z")
 
 
 def refused(own, log):

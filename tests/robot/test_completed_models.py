@@ -6,10 +6,11 @@ import mujoco
 import numpy as np
 import pytest
 from joint_cases import SLIDER, run, slider, slider_log, steps
+from plain_logs import plain_log
 from robot_cases import TOML
 from touching_cases import simulated
 
-from identification import InputError, Log, fit, read_robot, write_log
+from identification import InputError, fit, read_robot, write_log
 from identification.robot.model_file import unit_of
 
 MESH = '<{0}><geometry><mesh filename="package://none/{1}.stl"/></geometry></{0}>'
@@ -46,13 +47,7 @@ def arm(tmp_path):
         mujoco.mj_step(model, data, 5)
     y += 2e-4 * np.random.default_rng(0).standard_normal(y.shape)
     t = 0.01 * np.arange(600)
-    log = Log(
-        time=t,
-        inputs=u,
-        outputs=y,
-        input_names=("shoulder_torque", "elbow_torque"),
-        output_names=("shoulder", "elbow"),
-    )
+    log = plain_log(u, y, "shoulder_torque elbow_torque", "shoulder elbow", time=t)
     write_log(log, tmp_path / "log.csv")
     (tmp_path / "two.urdf").write_text(URDF)
     (tmp_path / "robot.toml").write_text(

@@ -7,6 +7,7 @@ from pathlib import Path
 import mujoco
 import numpy as np
 import pytest
+from plain_logs import plain_log
 from tracked_cases import (
     ARM,
     MOTION,
@@ -182,8 +183,7 @@ def test_a_wanted_position_in_degrees_is_refused_by_the_robot(tmp_path):
         y[k] = data.qpos
         data.ctrl[0] = q[k]
         mujoco.mj_step(model, data, 4)
-    log = Log(time=0.01 * np.arange(len(q)), inputs=q[:, None], outputs=y,
-              input_names=("u1",), output_names=("q1",))  # fmt: skip
+    log = plain_log(q[:, None], y, "u1", "q1")
     own, read = robot(tmp_path, HOLDING, log, "horizon = 0.2")
     refuse_miswired(own, read)
     with pytest.raises(InputError, match='write u1 = "deg" under'):
