@@ -148,20 +148,15 @@ ROBOT = """<mujoco><worldbody><site name="wall" pos="0 0 2"/><body name="cart">
 </actuator></mujoco>"""
 
 
-@pytest.mark.parametrize(
-    ("path", "unit"),
-    [
+@pytest.mark.parametrize(("path", "unit"), [
     ("push.kp", "N/m"), ("turn.kv", "N m s/rad"), ("mixed.kp", ""), ("p*.kp", ""),
-],
-)  # fmt: skip
+])  # fmt: skip
 def test_a_gain_has_the_unit_of_its_place(path, unit):
     model = mujoco.MjModel.from_xml_string(ROBOT)
     assert unit_of(model, f"actuator/{path}") == unit
 
 
 def test_a_free_gain_is_printed_with_its_unit_and_read_in_no_other(tmp_path):
-    from touching_cases import simulated
-
     xml, toml = LINK.format(9.0, 0.5, 6.0), tmp_path / "link.toml"
     write_log(simulated(xml, samples=60, noise=1e-4), tmp_path / "log.csv")
     (tmp_path / "link.xml").write_text(xml)

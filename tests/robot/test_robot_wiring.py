@@ -5,7 +5,7 @@ from dataclasses import replace
 import mujoco
 import numpy as np
 import pytest
-from joint_cases import ARM, SLIDER, arm, run, slider, slider_log, steps
+from joint_cases import ARM, SLIDER, arm, arm_log, run, slider, slider_log, steps
 from plain_logs import plain_log
 
 from identification import Log, write_log
@@ -54,8 +54,7 @@ def cart(tmp_path_factory):
 @pytest.fixture(scope="module")
 def two_joints(tmp_path_factory):
     u = steps(240, 2, hold=30)
-    t = np.arange(len(u)) * 0.01
-    log = plain_log(u, np.stack([np.sin(2 * t), np.cos(3 * t)], axis=1), "up low", "a b", time=t)
+    log = arm_log(u)
     y = run(arm(), log)
     log = replace(log, outputs=y + 1e-3 * RNG.standard_normal(y.shape))
     return robot(tmp_path_factory.mktemp("arm"), ARM, log, "joint/elbow.damping")
