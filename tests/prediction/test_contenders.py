@@ -103,10 +103,10 @@ def test_one_refit_by_luck_is_expected_where_nothing_is_missing(count):
     """Chances of candidates are uniform then: the number of those below the level is one, or 5 %
     of few."""
     rng, refitted = np.random.default_rng(count), []
-    for _ in range(2000):
-        scores = [
-            score(effect(f"e{k}"), 0.5, p_value=p) for k, p in enumerate(rng.uniform(size=count))
-        ]
+    every = [score(effect(f"e{k}"), 0.5) for k in range(count)]
+    for _ in range(1000):
+        chances = rng.uniform(size=count)
+        scores = [replace(s, p_value=p) for s, p in zip(every, chances, strict=True)]
         level = refit_level(scores, OPTIONS)
         refitted.append(sum(s.p_value < level for s in scores))
     assert np.mean(refitted) == pytest.approx(min(1.0, 0.05 * count), abs=0.15)
