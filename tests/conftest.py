@@ -1,7 +1,5 @@
 """What all tests share: patience, files of logs, and the sentence that refuses one."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable, Iterator
 from pathlib import Path

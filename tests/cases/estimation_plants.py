@@ -1,7 +1,5 @@
 """Small robots without any of INCA: a slider with a spring, and a pendulum of two links."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import mujoco

@@ -1,7 +1,5 @@
 """A slider and an arm with every effect compiled in, and the forces of their effects by hand."""
 
-from __future__ import annotations
-
 from functools import cache
 
 import numpy as np

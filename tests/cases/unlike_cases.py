@@ -1,7 +1,5 @@
 """A robot with a hinge and a slide: model, file and two logs, of which the truth is known."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

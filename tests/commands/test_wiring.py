@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from identification import InputError, Log
+from identification import InputError
 from inca_mj.refusals.wiring import refuse_miswired
 from inca_mj.robot.inputs import make_input
 from inca_mj.twin.logs import JUDGED, read_inca_log, run_to_log
@@ -22,7 +22,7 @@ def plant():
     return build_twin()
 
 
-def changed(change) -> Log:
+def changed(change):
     log = read_inca_log(LOG)
     y = log.outputs.copy()
     change(y)
@@ -110,7 +110,7 @@ def test_all_signs_turned_are_those_of_angles_or_of_currents(plant):
     assert "angle_1 = -1" not in str(refused.value)
 
 
-def beside(plant, change) -> Log:
+def beside(plant, change):
     """The twin's own log of 3 s, changed, with the noise of its encoders."""
     log = run_to_log(simulate(plant, make_input("prbs", 3.0)))
     y = log.outputs + 5e-4 * np.random.default_rng(2).standard_normal(log.outputs.shape)

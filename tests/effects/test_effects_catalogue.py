@@ -165,7 +165,7 @@ def test_one_call_with_many_starts_is_many_calls():
 MODEL = [e for e in CATALOGUE if "input" not in e.hooks]
 
 
-def some_of_everything() -> dict[str, float]:
+def some_of_everything():
     out = {"cogging.n": 7.0, "torque_constant_drift.kind": 1.0, "cable_creep.tau": 2.0}
     for effect in MODEL:
         out |= probes(effect, list(effect.places)[-1], 0.5)

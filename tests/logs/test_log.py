@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 import pickle
 from dataclasses import FrozenInstanceError, replace
 from itertools import pairwise

@@ -1,7 +1,5 @@
 """Models compared at their best: no window begins where another model knows a better state."""
 
-from __future__ import annotations
-
 from dataclasses import fields, replace
 from functools import cache
 

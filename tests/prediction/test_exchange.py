@@ -1,7 +1,5 @@
 """Records exchange their roles: what holds for all stays, what one lacks is contradicted."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 
