@@ -32,13 +32,9 @@ UR10E = Path(__file__).parents[3] / "shared" / "data" / "ur10e" / "ur10e.xml"
 @pytest.mark.parametrize(
     ("xml", "horizon"), [(PENDULUM, ""), (ARM, "horizon = 0.2")], ids=["pendulum", "arm"]
 )
-@pytest.mark.parametrize(
-    ("world", "lacking"),
-    [
+@pytest.mark.parametrize(("world", "lacking"), [
     (payload, nothing), (nothing, no_gravity), (friction, nothing),
-],
-    ids=lambda f: f.__name__,
-)  # fmt: skip
+], ids=lambda f: f.__name__)  # fmt: skip
 def test_a_right_log_is_not_refused(tmp_path, xml, horizon, world, lacking):
     spec = mujoco.MjSpec.from_string(xml)
     truth = spec.compile()

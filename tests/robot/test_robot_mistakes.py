@@ -96,13 +96,10 @@ def test_how_long_a_horizon_may_be_is_told(folder, capsys, confirm, horizon, mos
     assert f"it may be 0.03 s, of 3 samples, to {most} s, to fit" in said
 
 
-@pytest.mark.parametrize(
-    ("change", "line"),
-    [
+@pytest.mark.parametrize(("change", "line"), [
     (("</body>", ""), "mismatched tag: line 4"),
     (('gear="5"', 'geer="5"'), "'geer' Element 'general', li"),
-],
-)  # fmt: skip
+])  # fmt: skip
 def test_a_model_that_is_broken_is_told_with_its_path_and_line(folder, capsys, change, line):
     (folder / "broken.xml").write_text(SLIDER.replace(*change, 1))
     path = folder / "broken.toml"

@@ -39,13 +39,10 @@ def robot(folder, log, option, records=None, horizon=None):
     return robot_of(file, log)
 
 
-@pytest.mark.parametrize(
-    ("option", "records", "words"),
-    [
+@pytest.mark.parametrize(("option", "records", "words"), [
     ('timestep="0.01"', None, "integrator Euler and timestep 0.01 s, more than the noise of"),
     ('timestep="0.01" integrator="RK4"', STIFF, "integrator RK4 and timestep 0.01 s"),
-],
-)  # fmt: skip
+])  # fmt: skip
 def test_the_cure_that_is_told_cures(tmp_path, log, option, records, words):
     with pytest.raises(InputError, match=words) as refusal:
         refuse_coarse_steps(robot(tmp_path, log, option, records))
