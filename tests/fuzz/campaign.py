@@ -4,6 +4,8 @@ A case is its reader, a seed and a number. Right is what is read, or refused by 
 line. Anything else is a find: another exception, a death of the process, or no end.
 """
 
+from __future__ import annotations
+
 import faulthandler
 import multiprocessing
 import os
