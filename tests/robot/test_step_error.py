@@ -35,8 +35,8 @@ def robot(folder, log, option, records=None, horizon=None):
     model = folder / "slider.xml"
     model.write_text(SLIDER.replace(OPTION, f'gravity="0 0 0" {option}'))
     records = records or {}
-    file = RobotFile(folder / "r.toml", model, tuple(records), records=records, horizon=horizon)
-    return robot_of(file, log)
+    known = {"free": tuple(records), "records": records, "horizon": horizon}
+    return robot_of(RobotFile(path=folder / "r.toml", model=model, **known), log)
 
 
 @pytest.mark.parametrize(("option", "records", "words"), [
