@@ -1,7 +1,5 @@
 """What all tests share: patience, files of logs, and the sentence that refuses one."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -22,16 +20,17 @@ settings.register_profile("patient", deadline=None, max_examples=50)
 settings.load_profile("patient")
 
 
-class ByLaws(LoadFileScheduling):
-    """A file's tests run in one worker, and so do all of a folder whose files compile the same.
+# Files of which one worker runs all, and their laws or searches once.
+TOGETHER = ("tests/worlds/", "tests/worlds_of_joints/", "tests/report/test_horizon_gap.py",
+            "tests/report/test_missing_place.py")  # fmt: skip
 
-    Hidden worlds are compiled by numba without a cache on the disk, anew in each process.
-    """
+
+class ByLaws(LoadFileScheduling):
+    """A file's tests run in one worker, and so do files that compile or search for the same."""
 
     def _split_scope(self, nodeid: str) -> str:
         file = nodeid.partition("::")[0]
-        folder = file.rpartition("/")[0]
-        return folder if folder in ("tests/worlds", "tests/worlds_of_joints") else file
+        return file.rpartition("/")[0] if file.startswith(TOGETHER) else file
 
 
 def pytest_xdist_make_scheduler(config: pytest.Config, log: Producer) -> ByLaws | None:

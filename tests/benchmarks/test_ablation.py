@@ -23,17 +23,14 @@ def pair(with_it, without):
     return {"key": "k", "with": with_it, "without": without}
 
 
-@pytest.mark.parametrize(
-    ("answer", "good"),
-    [
-        (row("nothing", []), True), (row("nothing", ["delay"]), False),
-        (row("delay", ["delay"]), True), (row("delay", ["lag"]), False), (row("delay", []), False),
-        (row("tide", ["lag"], curve="curve_time"), False),
-        (row("tide", ["curve_time"], curve="curve_time"), True),
-        (row("tide", [], curve="curve_time"), False),
-        ({**row("tide", [], curve="curve_time"), "verdict": "unknown effect"}, True),
-    ],
-)  # fmt: skip
+@pytest.mark.parametrize(("answer", "good"), [
+    (row("nothing", []), True), (row("nothing", ["delay"]), False),
+    (row("delay", ["delay"]), True), (row("delay", ["lag"]), False), (row("delay", []), False),
+    (row("tide", ["lag"], curve="curve_time"), False),
+    (row("tide", ["curve_time"], curve="curve_time"), True),
+    (row("tide", [], curve="curve_time"), False),
+    ({**row("tide", [], curve="curve_time"), "verdict": "unknown effect"}, True),
+])  # fmt: skip
 def test_silence_a_right_name_and_what_is_called_unknown_or_drawn_are_right(answer, good):
     assert ablation.is_good(answer) is good
 

@@ -1,7 +1,5 @@
 """The TOML that a message tells a user to write beside his log, and what it makes of the log."""
 
-from __future__ import annotations
-
 import re
 
 _LINE = r'(?:"[^"]*"|[\w-]+) = (?:"[^"]*"|-?\d+)'

@@ -7,8 +7,6 @@
 The model has the links' inertia and that of the motors, J, as armature.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cache
 

@@ -1,7 +1,5 @@
 """A robot whose drives differ in torque constant and viscous friction, and logs of it."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 

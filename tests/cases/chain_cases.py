@@ -1,7 +1,5 @@
 """An arm of several joints, and plants with some effects, those with states among them."""
 
-from __future__ import annotations
-
 import numpy as np
 from joint_cases import STEP, steps
 

@@ -1,7 +1,5 @@
 """Random linear plants with their dense covariance, and a slider with effects to find."""
 
-from __future__ import annotations
-
 from functools import cache
 from types import SimpleNamespace
 

@@ -4,8 +4,8 @@ from functools import cache
 
 import mujoco
 import numpy as np
+from plain_logs import plain_log
 
-from identification.logs.log import Log
 from identification.model.predictor import Predictor
 from identification.model.rollout import State
 from inca_mj.effects.catalogue import CATALOGUE
@@ -37,13 +37,7 @@ def probes(effect, where=None, factor=1.0) -> dict[str, float]:
 def simulate(twin, names=(), values=None, seconds=0.5, currents=None) -> np.ndarray:
     """Angles of n value sets under the thesis' input, or some currents, shape (n, N, 8)."""
     u = make_input("prbs", seconds) if currents is None else currents
-    log = Log(
-        time=np.arange(len(u)) * 0.01,
-        inputs=u,
-        outputs=np.zeros_like(u),
-        input_names=CURRENTS,
-        output_names=ANGLES,
-    )
+    log = plain_log(u, np.zeros_like(u), CURRENTS, ANGLES)
     values = np.zeros((1, 0)) if values is None else np.asarray(values)
     return Predictor(twin, log, tuple(names)).predict(values)
 

@@ -1,11 +1,12 @@
 """Small robots without any of INCA: a slider with a spring, and a pendulum of two links."""
 
-from __future__ import annotations
+from dataclasses import replace
 
 import mujoco
 import numpy as np
+from plain_logs import plain_log
 
-from identification import Log, Parameter, ParameterSet
+from identification import Parameter, ParameterSet
 from identification.model.plant import ModelPlant
 from identification.model.predictor import Predictor
 
@@ -77,22 +78,10 @@ def record(plant, outputs, n=250, noise=0.0, seed=0, inputs=None):
     u = steps(n) if inputs is None else inputs
     y = np.zeros((len(u), len(outputs)))
     names = tuple(plant.model.actuator(i).name for i in range(plant.model.nu))
-    log = Log(
-        time=STEP * np.arange(len(u)),
-        inputs=u,
-        outputs=y,
-        input_names=names,
-        output_names=tuple(outputs),
-    )
+    log = plain_log(u, y, names, tuple(outputs), STEP)
     clean = Predictor(plant, log, ()).predict(np.empty((1, 0)))[0]
     return measured(log, clean + noise * np.random.default_rng(seed).standard_normal(y.shape))
 
 
 def measured(log, outputs):
-    return Log(
-        time=log.time,
-        inputs=log.inputs,
-        outputs=outputs,
-        input_names=log.input_names,
-        output_names=log.output_names,
-    )
+    return replace(log, outputs=outputs)

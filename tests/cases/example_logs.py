@@ -1,7 +1,5 @@
 """A small log to make files of."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

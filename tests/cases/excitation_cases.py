@@ -1,7 +1,5 @@
 """A slider whose answer is known on paper: m v' = u - c v, x' = v, from rest."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

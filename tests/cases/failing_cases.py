@@ -1,7 +1,5 @@
 """An effect that fails as soon as its size is not zero, while a stage of a search runs."""
 
-from __future__ import annotations
-
 from contextlib import contextmanager
 from dataclasses import replace
 

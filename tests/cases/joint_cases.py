@@ -1,14 +1,12 @@
 """A slider and an arm with every effect compiled in, and the forces of their effects by hand."""
 
-from __future__ import annotations
-
 from functools import cache
 
 import numpy as np
+from plain_logs import plain_log
 
 from identification.effects.joint_plant import JointPlant, joint_plant
 from identification.effects.values import numbers_at
-from identification.logs.log import Log
 from identification.model.parameter import Parameter
 from identification.model.predictor import Predictor
 from identification.native.joint_callback import Joint
@@ -48,25 +46,12 @@ def steps(samples, nu=1, seed=1, hold=20):
 
 def slider_log(u, y=None):
     moved = 0.3 * np.sin(np.arange(len(u)) * STEP)[:, None] if y is None else y
-    return Log(
-        time=np.arange(len(u)) * STEP,
-        inputs=u,
-        outputs=moved,
-        input_names=("force",),
-        output_names=("position",),
-        units={"force": "V"},
-    )
+    return plain_log(u, moved, "force", "position", STEP, units={"force": "V"})
 
 
 def arm_log(u):
     t = np.arange(len(u)) * STEP
-    return Log(
-        time=t,
-        inputs=u,
-        outputs=np.stack([np.sin(2 * t), np.cos(3 * t)], axis=1),
-        input_names=("up", "low"),
-        output_names=("a", "b"),
-    )
+    return plain_log(u, np.stack([np.sin(2 * t), np.cos(3 * t)], axis=1), "up low", "a b", time=t)
 
 
 @cache

@@ -1,7 +1,5 @@
 """Poses inside the frame, and a robot that comes to rest quickly."""
 
-from __future__ import annotations
-
 import numpy as np
 from hypothesis import strategies as st
 

@@ -1,7 +1,5 @@
 """Models and systems whose linear models are known on paper."""
 
-from __future__ import annotations
-
 import mujoco
 import numpy as np
 

@@ -1,7 +1,5 @@
 """Records of a pendulum whose friction holds, and a task of naming what its model lacks."""
 
-from __future__ import annotations
-
 from functools import cache
 
 import numpy as np

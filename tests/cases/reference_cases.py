@@ -1,7 +1,5 @@
 """Random states of the robot, and the state without the rest of it."""
 
-from __future__ import annotations
-
 import numpy as np
 from hypothesis import strategies as st
 

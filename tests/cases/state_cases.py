@@ -5,8 +5,6 @@
 M is the link's inertia, J the motor's; the nominal model of `records_cases` has M + J in one piece.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from functools import cache
 

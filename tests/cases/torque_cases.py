@@ -2,8 +2,9 @@
 
 import mujoco
 import numpy as np
+from plain_logs import plain_log
 
-from identification import Log, read_robot
+from identification import read_robot
 
 TREE = """
 <mujoco>
@@ -87,10 +88,7 @@ def planar_record(
             data.qfrc_applied[1] = force(data.qpos, data.qvel)
         mujoco.mj_step(model, data)
     table = np.array(rows)
-    return Log(
-        time=table[:, 0], inputs=table[:, 1:3], outputs=table[:, 3:], input_names=("t1", "t2"),
-        output_names=("q1", "q2"), name=name,
-    )  # fmt: skip
+    return plain_log(table[:, 1:3], table[:, 3:], "t1 t2", "q1 q2", time=table[:, 0], name=name)
 
 
 def planar_robot(folder, *logs, toml=TOML, confirm=(), k=0.0):

@@ -2,8 +2,9 @@
 
 import mujoco
 import numpy as np
+from plain_logs import model_log
 
-from identification import Log, write_log
+from identification import write_log
 
 HEAD = '<mujoco><option timestep="0.002" integrator="implicitfast">{flag}</option>'
 # An arm beside a column that is fixed to the world: the log was made without their contact.
@@ -70,12 +71,7 @@ def simulated(xml, samples=600, seed=0, noise=2e-4):
         mujoco.mj_forward(model, data)
         y[k] = data.sensordata
         mujoco.mj_step(model, data, steps)
-    return Log(
-        time=0.01 * np.arange(samples), inputs=u, name="log",
-        outputs=y + noise * rng.standard_normal(y.shape),
-        input_names=[model.actuator(i).name for i in range(model.nu)],
-        output_names=[model.sensor(i).name for i in range(model.nsensor)],
-    )  # fmt: skip
+    return model_log(model, u, y + noise * rng.standard_normal(y.shape), name="log")
 
 
 def make_robot(folder, xml, log, joint, more="horizon = 0.3\n"):

@@ -2,8 +2,9 @@
 
 import mujoco
 import numpy as np
+from plain_logs import model_log
 
-from identification import Log, write_log
+from identification import write_log
 from identification.robot.file import read_robot_file
 from identification.robot.robot import read_robot_log, robot_of
 
@@ -80,9 +81,7 @@ def tracked(model, motion, seconds=6.0, seed=0):
         u[k] = data.ctrl[:] = force / gear
         mujoco.mj_step(model, data, 4)
     y += 2e-4 * rng.standard_normal(y.shape)
-    return Log(time=0.01 * np.arange(n), inputs=u, outputs=y,
-               input_names=[model.actuator(i).name for i in range(model.nu)],
-               output_names=[model.sensor(i).name for i in range(model.nsensor)])  # fmt: skip
+    return model_log(model, u, y)
 
 
 def _mass(model, data):

@@ -1,13 +1,12 @@
 """A robot with a hinge and a slide: model, file and two logs, of which the truth is known."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from plain_logs import plain_log
 
-from identification import Log, Parameter, Predictor, joint_plant, write_log
+from identification import Parameter, Predictor, joint_plant, write_log
 
 STEP, NOISE = 0.01, {"turn": 1e-3, "way": 2e-5}  # [s], [rad] and [m]
 MODEL = """<mujoco>
@@ -48,10 +47,7 @@ def write_robot_and_logs(path: Path) -> Path:
     rng = np.random.default_rng(3)
     for name in ("first", "second"):
         u = np.repeat(rng.choice([-1.0, 1.0], (25, 2)), 20, axis=0) * (0.5, 2.0)
-        log = Log(
-            time=STEP * np.arange(len(u)), inputs=u, outputs=0.01 * u, name=name,
-            input_names=("torque", "force"), output_names=("turn", "way"),
-        )  # fmt: skip
+        log = plain_log(u, 0.01 * u, "torque force", "turn way", STEP, name=name)
         plant = joint_plant(MODEL, PARAMETERS, log, effects=())
         y = Predictor(plant, log, (), TRUE).predict(np.empty((1, 0)))[0]
         y = y + np.array([*NOISE.values()]) * rng.standard_normal(y.shape)

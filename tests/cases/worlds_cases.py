@@ -1,7 +1,5 @@
 """Short plants and inputs for the laws of the worlds."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from inca_mj.reference import layout as base

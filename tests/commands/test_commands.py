@@ -1,7 +1,5 @@
 """The program as a user meets it: JSON keys, files, exit codes."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 
@@ -17,24 +15,24 @@ from inca_mj.twin.twin import build_twin
 LOG = Path(__file__).resolve().parents[2] / "examples" / "log.csv"
 
 
-def run(*arguments: object) -> int:
+def run(*arguments):
     return main([str(a) for a in arguments])
 
 
 @pytest.fixture
-def kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def kept(tmp_path, monkeypatch):
     """Where a run is kept that is not drawn."""
     monkeypatch.chdir(tmp_path)
     return tmp_path / "out" / "simulate"
 
 
-def last_json(capsys: pytest.CaptureFixture[str]) -> dict:
+def last_json(capsys):
     out = capsys.readouterr().out
     assert out.count("\n") == 1, "one JSON object on stdout and nothing else"
     return json.loads(out)
 
 
-def test_compare_says_the_contract(capsys: pytest.CaptureFixture[str]) -> None:
+def test_compare_says_the_contract(capsys):
     assert run("compare", LOG, "--json") == 0
     result = last_json(capsys)
     assert set(result) == {"fit_percent", "rms", "samples", "seconds_simulated"}
@@ -44,9 +42,7 @@ def test_compare_says_the_contract(capsys: pytest.CaptureFixture[str]) -> None:
     assert 70 < min(result["fit_percent"]) < max(result["fit_percent"]) < 100
 
 
-def test_a_simulated_log_is_explained_to_the_last_bit(
-    kept: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_simulated_log_is_explained_to_the_last_bit(kept, capsys):
     values = ("--param", "m=0.2", "x=0.01", "yaw=0.05")
     assert run("simulate", "--input", "multisine", "--duration", 1, *values) == 0
     capsys.readouterr()
@@ -56,7 +52,7 @@ def test_a_simulated_log_is_explained_to_the_last_bit(
     assert result["fit_percent"] == [100.0] * 8
 
 
-def test_simulate_keeps_states_tensions_figures_model_and_report(tmp_path: Path) -> None:
+def test_simulate_keeps_states_tensions_figures_model_and_report(tmp_path):
     out = tmp_path / "a" / "b"
     assert run("simulate", "--input", "prbs", "--duration", 0.5, "--out", out) == 0
     names = {p.name for p in out.iterdir()}
@@ -73,9 +69,7 @@ def test_simulate_keeps_states_tensions_figures_model_and_report(tmp_path: Path)
     assert {"mujoco", "numpy", "inca-mj"} <= set(record["versions"])
 
 
-def test_simulate_samples_as_often_as_is_asked(
-    kept: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_simulate_samples_as_often_as_is_asked(kept, capsys):
     asked = ("simulate", "--duration", 0.2)
     assert run(*asked, "--rate", 250) == 0
     log = read_inca_log(kept / "log.csv")
@@ -89,7 +83,7 @@ def test_simulate_samples_as_often_as_is_asked(
         assert "is not between 10 and 2000 Hz" in capsys.readouterr().err
 
 
-def test_simulate_takes_the_currents_of_a_log(kept: Path, tmp_path: Path) -> None:
+def test_simulate_takes_the_currents_of_a_log(kept, tmp_path):
     log = read_inca_log(LOG).between(0.0, 2.0)
     write_log(log, tmp_path / "first.csv")
     assert run("simulate", "--input", tmp_path / "first.csv") == 0
@@ -97,7 +91,7 @@ def test_simulate_takes_the_currents_of_a_log(kept: Path, tmp_path: Path) -> Non
     np.testing.assert_array_equal(written.inputs, log.inputs)
 
 
-def test_compare_keeps_a_report_that_needs_no_network(tmp_path: Path) -> None:
+def test_compare_keeps_a_report_that_needs_no_network(tmp_path):
     write_log(read_inca_log(LOG).between(0.0, 2.0), tmp_path.with_suffix(".csv"))
     assert run("compare", tmp_path.with_suffix(".csv"), "--out", tmp_path) == 0
     page = (tmp_path / "report.html").read_text()
@@ -107,9 +101,7 @@ def test_compare_keeps_a_report_that_needs_no_network(tmp_path: Path) -> None:
     assert (tmp_path / "measured-and-simulated-motor-angles.png").stat().st_size > 10_000
 
 
-def test_crosscheck_disagrees_aloud(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_crosscheck_disagrees_aloud(monkeypatch, capsys):
     """A reference of another robot must fail the check, with exit code 1."""
     from inca_mj.verification import check
 
@@ -121,7 +113,7 @@ def test_crosscheck_disagrees_aloud(
     assert last_json(capsys)["passed"] is False
 
 
-def test_a_log_with_a_pose_begins_there(kept: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_log_with_a_pose_begins_there(kept, capsys):
     moved = ("--param", "x=0.1", "z=1.3", "yaw=0.1")
     assert run("simulate", "--input", "prbs", "--duration", 1, *moved) == 0
     capsys.readouterr()

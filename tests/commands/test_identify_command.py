@@ -1,10 +1,7 @@
 """inca identify as a user meets it: what it keeps, and every option that changes what it does."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -24,7 +21,7 @@ FREE = ("--free", "b_v", "b_c", "--step", str(STEP))
 
 
 @pytest.fixture(scope="module")
-def log(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def log(tmp_path_factory):
     """A second of the robot, its drives' noise of two sizes."""
     robot = build_twin(parameter_set("trial", TRUTH), timestep=STEP)
     run = simulate(robot, make_input("prbs", 1.0, seed=0))
@@ -36,20 +33,18 @@ def log(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-def say(capsys: pytest.CaptureFixture[str], *arguments: object) -> dict:
+def say(capsys, *arguments):
     """Run with --json; returns the object on stdout."""
     assert main(["identify", *map(str, arguments), "--json"]) == 0
     return json.loads(capsys.readouterr().out)
 
 
-def refused(capsys: pytest.CaptureFixture[str], *arguments: object) -> str:
+def refused(capsys, *arguments):
     assert main(["identify", *map(str, arguments)]) == 2
     return capsys.readouterr().err
 
 
-def test_a_folder_of_results_is_whole_and_a_profile_brackets_the_estimate(
-    log: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_folder_of_results_is_whole_and_a_profile_brackets_the_estimate(log, tmp_path, capsys):
     out = tmp_path / "results"
     arguments = ("--profile", "b_c", "--seed", "7", "--out", out)
     result = say(capsys, log, *FREE, *arguments)
@@ -72,9 +67,7 @@ def test_a_folder_of_results_is_whole_and_a_profile_brackets_the_estimate(
         assert heading in page
 
 
-def test_starts_end_with_the_first_that_is_enough(
-    log: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_starts_end_with_the_first_that_is_enough(log, capsys):
     result = say(capsys, log, *FREE, "--starts", "3")
     assert len(result["starts"]) == 1
     assert 1 <= len(result["starts"][0]) <= 3
@@ -82,9 +75,7 @@ def test_starts_end_with_the_first_that_is_enough(
     assert "give one or more" in refused(capsys, log, *FREE, "--starts", "0")
 
 
-def test_det_weighs_each_drive_by_its_own_noise(
-    log: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_det_weighs_each_drive_by_its_own_noise(log, capsys):
     """Four drives are twenty times less noisy: who knows that is several times more certain."""
     trace, det = (say(capsys, log, *FREE, "--criterion", c)["parameters"] for c in ("trace", "det"))
     for name, value in TRUTH.items():
@@ -93,7 +84,7 @@ def test_det_weighs_each_drive_by_its_own_noise(
 
 
 @pytest.mark.long
-def test_windows_can_be_asked_for(log: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_windows_can_be_asked_for(log, capsys):
     result = say(capsys, log, *FREE, "--windows", "0.25")
     assert result["windows"]["count"] == 2
     assert set(result["parameters"]) == {*TRUTH, "x", "y", "z", "roll", "pitch", "yaw"}
@@ -106,15 +97,15 @@ def test_windows_can_be_asked_for(log: Path, capsys: pytest.CaptureFixture[str])
 
 @pytest.mark.parametrize("options", [[], ["--windows", "0.25"]])
 def test_an_interrupt_keeps_the_best_values_and_is_told_by_the_exit_code(
-    log: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-    options: list[str],
-) -> None:
-    def interrupt(output: Output, line: str) -> None:
+    log,
+    monkeypatch,
+    capsys,
+    options,
+):
+    def interrupt(output, line):
         raise KeyboardInterrupt
 
-    def sensitivities(*arguments: object) -> None:
+    def sensitivities(*arguments):
         raise AssertionError("nobody waits for these")
 
     monkeypatch.setattr(Output, "tell", interrupt)
@@ -128,9 +119,7 @@ def test_an_interrupt_keeps_the_best_values_and_is_told_by_the_exit_code(
     assert {known["std"] for known in result["parameters"].values()} == {None}
 
 
-def test_options_that_say_nothing_are_refused_and_what_they_leave_out_is_said(
-    log: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_options_that_say_nothing_are_refused_and_what_they_leave_out_is_said(log, capsys):
     assert "--free names no parameter" in refused(capsys, log, "--free")
     assert "profile one of R, R_s" in refused(capsys, log, "--profile", "k_p")
     assert "profile one of b_v, b_c" in refused(capsys, log, *FREE, "--profile", "J")
@@ -138,9 +127,7 @@ def test_options_that_say_nothing_are_refused_and_what_they_leave_out_is_said(
     assert any("start pose is held" in sentence for sentence in verdict)
 
 
-def test_innovations_tell_the_noise_of_sensors_and_currents(
-    log: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_innovations_tell_the_noise_of_sensors_and_currents(log, capsys):
     result = say(capsys, log, *FREE, "--innovations")
     assert set(result["parameters"]) == set(TRUTH)
     for name, value in TRUTH.items():
@@ -152,9 +139,7 @@ def test_innovations_tell_the_noise_of_sensors_and_currents(
 
 
 @pytest.mark.usefixtures("undrawn")
-def test_an_output_that_never_moves_has_no_fit_and_no_nan(
-    log: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_an_output_that_never_moves_has_no_fit_and_no_nan(log, tmp_path, capsys):
     rows = [line.split(",") for line in log.read_text().splitlines()]
     at = rows[0].index("angle_3")
     stuck = tmp_path / "stuck.csv"

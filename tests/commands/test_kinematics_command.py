@@ -13,12 +13,12 @@ from inca_mj.kinematics import inverse
 LOG = Path(__file__).parents[2] / "examples" / "log.csv"
 
 
-def run(*arguments: object) -> int:
+def run(*arguments):
     return main([str(a) for a in arguments])
 
 
 @pytest.fixture(scope="module")
-def short(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def short(tmp_path_factory):
     """A short log of the twin with its pose."""
     out = tmp_path_factory.mktemp("run")
     assert run("simulate", "--input", "prbs", "--duration", 1, "--out", out / "run") == 0

@@ -43,8 +43,7 @@ def test_a_folder_with_files_of_the_user_is_refused_before_anything_is_done(
 
 
 def test_no_folder_at_all_is_refused(capsys):
-    empty = ["--out="]
-    assert inca(["simulate", *empty]) == 2
+    assert inca(["simulate", "--out="]) == 2
     assert "name a folder, such as --out out/run" in capsys.readouterr().err
 
 
@@ -136,8 +135,7 @@ def test_a_link_that_leads_nowhere_is_no_folder_for_results(tmp_path, capsys):
 
 
 def test_a_draft_of_no_process_is_kept(tmp_path):
-    name = ".draft-²-x"
-    (tmp_path / name).mkdir()
+    (tmp_path / ".draft-²-x").mkdir()
     made(tmp_path, a="1")
-    assert (tmp_path / name).is_dir()
+    assert (tmp_path / ".draft-²-x").is_dir()
     assert list_foreign(tmp_path) == []

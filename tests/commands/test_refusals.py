@@ -80,15 +80,12 @@ def test_of_very_many_names_the_nearest_are_listed():
     assert "joint_7.damping" in listed
 
 
-@pytest.mark.parametrize(
-    ("commands", "written", "read"),
-    [
+@pytest.mark.parametrize(("commands", "written", "read"), [
     (IncaCommand, "identify a.csv --free A --free B", "identify a.csv --free A B"),
     (IncaCommand, "identify a.csv --param m=1 --seed 3 --param=b=2",
-         "identify a.csv --param m=1 b=2 --seed 3"),
+     "identify a.csv --param m=1 b=2 --seed 3"),
     (Command, "fit --help", "fit --help"),
-],
-)  # fmt: skip
+])  # fmt: skip
 def test_what_is_repeated_adds_up(commands, written, read):
     assert gathered(commands, written.split()) == read.split()
 

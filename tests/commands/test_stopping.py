@@ -79,7 +79,7 @@ def test_what_was_there_before_is_put_back():
     assert signal.set_wakeup_fd(woken) == woken
 
 
-def wrap() -> None:
+def wrap():
     try:
         signal.raise_signal(signal.SIGINT)
     except KeyboardInterrupt as error:

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from identification import InputError, Log
+from identification import InputError
 from inca_mj.refusals.wiring import refuse_miswired
 from inca_mj.robot.inputs import make_input
 from inca_mj.twin.logs import JUDGED, read_inca_log, run_to_log
@@ -22,37 +22,11 @@ def plant():
     return build_twin()
 
 
-def changed(change) -> Log:
+def changed(change):
     log = read_inca_log(LOG)
     y = log.outputs.copy()
     change(y)
     return replace(log, outputs=y)
-
-
-def test_a_model_that_lacks_something_is_still_the_robot(plant):
-    refuse_miswired(read_inca_log(LOG), plant)
-
-
-def test_swapped_encoders(plant):
-    i = 6
-    j = 7
-
-    def swap(y):
-        y[:, [i, j]] = y[:, [j, i]]
-
-    with pytest.raises(InputError, match="were they exchanged") as refused:
-        refuse_miswired(changed(swap), plant)
-    assert f"exchange angle_{i + 1} and angle_{j + 1} under [columns]" in str(refused.value)
-
-
-def test_a_reversed_encoder(plant):
-    drive = 4
-
-    def reverse(y):
-        y[:, drive] *= -1
-
-    with pytest.raises(InputError, match=f"turn the sign of angle_{drive + 1}: write"):
-        refuse_miswired(changed(reverse), plant)
 
 
 def test_an_encoder_that_freezes(plant):
@@ -65,35 +39,16 @@ def test_an_encoder_that_freezes(plant):
 
 def test_an_encoder_that_another_sign_hardly_mends_is_not_refused(plant):
     """Of a log whose anchor was 0.1 m off, one angle had a correlation of -0.5 with the model's."""
-    drive = 0
-    n, rng = 200, np.random.default_rng(drive)
+    n, rng = 200, np.random.default_rng(0)
 
     def astray(y):
-        own = y[:n, drive] - y[0, drive]
+        own = y[:n, 0] - y[0, 0]
         other = np.cumsum(np.cumsum(rng.standard_normal(n)))
         other -= own * (own @ other) / (own @ own)
         other *= np.linalg.norm(own) / np.linalg.norm(other)
-        y[:n, drive] = y[0, drive] - 0.5 * own + 0.75**0.5 * (other - other[0])
+        y[:n, 0] = y[0, 0] - 0.5 * own + 0.75**0.5 * (other - other[0])
 
     refuse_miswired(changed(astray), plant)
-
-
-def test_a_dead_encoder(plant):
-    def kill(y):
-        y[:, 4] = 0.0
-
-    with pytest.raises(InputError, match="angle_5: stands still"):
-        refuse_miswired(changed(kill), plant)
-
-
-def test_another_unit(plant):
-    unit = np.pi / 180
-
-    def convert(y):
-        y /= unit
-
-    with pytest.raises(InputError, match="must be in radians"):
-        refuse_miswired(changed(convert), plant)
 
 
 def test_several_encoders_at_once(plant):
@@ -155,7 +110,7 @@ def test_all_signs_turned_are_those_of_angles_or_of_currents(plant):
     assert "angle_1 = -1" not in str(refused.value)
 
 
-def beside(plant, change) -> Log:
+def beside(plant, change):
     """The twin's own log of 3 s, changed, with the noise of its encoders."""
     log = run_to_log(simulate(plant, make_input("prbs", 3.0)))
     y = log.outputs + 5e-4 * np.random.default_rng(2).standard_normal(log.outputs.shape)
@@ -194,35 +149,11 @@ def test_who_knows_better_overrules_a_check_and_only_this_check(plant, word, cha
     refuse_miswired(log, plant, [word])
 
 
-def currents(log, change):
-    u = log.inputs.copy()
-    change(u)
-    return replace(log, inputs=u)
-
-
-def test_a_current_of_the_wrong_sign(plant):
-    drive = 5
-
-    def reverse(u):
-        u[:, drive] *= -1
-
-    wrong = currents(read_inca_log(LOG), reverse)
-    with pytest.raises(InputError, match=rf"current_{drive + 1} = -1 under \[factors\]") as refused:
-        refuse_miswired(wrong, plant)
-    assert "write --trust wiring" in str(refused.value)
-    refuse_miswired(wrong, plant, ["wiring", "units"])  # it moves as if all were in another unit
-
-
 def test_swapped_currents(plant):
-    i = 6
-    j = 1
-
-    def swap(u):
-        u[:, [i, j]] = u[:, [j, i]]
-
-    a, b = sorted((i + 1, j + 1))
-    with pytest.raises(InputError, match=f"exchange current_{a} and current_{b} under"):
-        refuse_miswired(currents(read_inca_log(LOG), swap), plant)
+    log = read_inca_log(LOG)
+    swapped = replace(log, inputs=log.inputs[:, [0, 6, 2, 3, 4, 5, 1, 7]])
+    with pytest.raises(InputError, match="exchange current_2 and current_7 under"):
+        refuse_miswired(swapped, plant)
 
 
 def test_beside_an_angle_that_stands_still_the_others_are_judged(plant):

@@ -79,20 +79,19 @@ def test_degrees_and_a_turned_sign_are_told_in_one_sentence_and_overruled_by_two
 
 def test_compare_judges_a_log_as_the_searches_do(plant, tmp_path, capsys):
     wrong = mistaken(back=(2,))
-    word = "wiring"
     path = str(written(wrong, tmp_path))
     assert main(["compare", path, "--json"]) == 2
     said = capsys.readouterr()
     assert "turn the sign of angle_3" in said.err
     assert said.err.count("\n") == 1
     assert said.out == ""
-    assert main(["compare", path, "--trust", word, "--json"]) == 0
+    assert main(["compare", path, "--trust", "wiring", "--json"]) == 0
     shown = json.loads(capsys.readouterr().out)
     assert shown["samples"] == len(wrong)
     for judged in (compare, lambda log, **trust: compare_twin(log, plant, **trust)):
-        with pytest.raises(InputError, match=f"write --trust {word}, with which `inca compare`"):
+        with pytest.raises(InputError, match="write --trust wiring, with which `inca compare`"):
             judged(wrong)
-        np.testing.assert_allclose(judged(wrong, trust=[word]).rms, shown["rms"], rtol=1e-9)
+        np.testing.assert_allclose(judged(wrong, trust=["wiring"]).rms, shown["rms"], rtol=1e-9)
 
 
 def test_compare_judges_currents_and_large_numbers_too(tmp_path, capsys):

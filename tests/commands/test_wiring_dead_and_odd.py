@@ -51,11 +51,10 @@ def test_both_are_told(plant, dead, angle, factor, told):
 
 
 def test_both_must_be_overruled(plant):
-    word = "wiring"
-    log = wrong(4, 5, (-1.0))
-    with pytest.raises(InputError, match=f"write --trust sensors {word}, with which"):
+    log = wrong(4, 5, -1.0)
+    with pytest.raises(InputError, match="write --trust sensors wiring, with which"):
         refuse_miswired(log, plant, ("sensors",))
-    refuse_miswired(log, plant, ("sensors", word))
+    refuse_miswired(log, plant, ("sensors", "wiring"))
 
 
 def test_what_is_told_of_the_angle_mends_it(plant, tmp_path):
@@ -71,10 +70,9 @@ def test_what_is_told_of_the_angle_mends_it(plant, tmp_path):
 
 @pytest.mark.parametrize("factor", [-1.0, 180 / np.pi])
 def test_the_cables_tell_an_odd_angle_without_a_current(plant, factor):
-    drive = 7
     y = some(LOG.outputs)
     assert odd_angle(plant, y) is None
-    found = odd_angle(plant, y * np.where(np.arange(8) == drive, factor, 1.0))
+    found = odd_angle(plant, y * np.where(np.arange(8) == 7, factor, 1.0))
     assert found is not None
-    assert found[0] == drive
+    assert found[0] == 7
     assert found[1] * factor == pytest.approx(1.0, rel=0.1)

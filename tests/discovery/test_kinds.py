@@ -6,7 +6,7 @@ import pytest
 from discovery_cases import EFFECTS, SENSOR, record, slider, task, wander
 
 from identification.discovery.effect_results import Proof
-from identification.effects.effect import Candidate, Effect
+from identification.effects.effect import Candidate
 from identification.effects.sizes import Shape
 from identification.innovations import kinds
 from identification.innovations.fitted_model import AcceptedEffect, fit_model
@@ -20,7 +20,7 @@ KIND = Shape("kind", "", (0.0, 1.0), 0.0, 1.0, free=False)
 PROOF = Proof(gain=1.0, t=3.0, chance=1e-3, blocks=20, share=1.0, fall=0.5, above=0.5)
 
 
-def of_kinds(name: str) -> Effect:
+def of_kinds(name):
     """An effect of the slider as one that comes in two kinds."""
     (effect,) = (e for e in EFFECTS if e.name == name)
     return replace(effect, shapes=(KIND,))

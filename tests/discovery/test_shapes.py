@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 from discovery_cases import OPTIONS
 from effect_cases import full
+from plain_logs import plain_log
 
-from identification import Log, Predictor
+from identification import Predictor
 from identification.discovery.candidates import list_between
 from identification.effects.effect import Candidate, Effect
 from identification.effects.sizes import Shape, Size
@@ -130,8 +131,7 @@ def test_every_jump_of_the_robots_numbers_says_when_it_begins():
 
 def test_columns_of_many_times_are_those_of_each_time_alone():
     plant, u = full(), make_input("prbs", 2.0)
-    log = Log(time=0.01 * np.arange(len(u)), inputs=u, outputs=np.zeros_like(u),
-              input_names=CURRENTS, output_names=ANGLES)  # fmt: skip
+    log = plain_log(u, np.zeros_like(u), CURRENTS, ANGLES)
     names = ("b_c", "K_t", "lambda")
     first = np.array([plant.parameters[name].value for name in names])
     space = coordinates(plant.parameters, names, first)

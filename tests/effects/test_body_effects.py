@@ -21,19 +21,16 @@ def said(text, log=LOG):
     return run(ModelPlant(mujoco.MjModel.from_xml_string(text), empty), log)
 
 
-@pytest.mark.parametrize(
-    ("values", "inertial"),
-    [
-        ({"mass_mismatch.dm@lower": 0.1},
-         '<inertial pos="0 0 -0.1" mass="0.6" diaginertia="0.012 0.012 0.006"/>'),
-        ({"com_offset.x@lower": 0.03, "com_offset.z@lower": -0.02},
-         '<inertial pos="0.03 0 -0.12" mass="0.5" diaginertia="0.01 0.01 0.005"/>'),
-        ({"inertia_mismatch.delta@lower": -0.3},
-         '<inertial pos="0 0 -0.1" mass="0.5" diaginertia="0.007 0.007 0.0035"/>'),
-        ({"mass_mismatch.dm@lower": 0.1, "inertia_mismatch.delta@lower": 0.5},
-         '<inertial pos="0 0 -0.1" mass="0.6" diaginertia="0.017 0.017 0.0085"/>'),
-    ],
-)  # fmt: skip
+@pytest.mark.parametrize(("values", "inertial"), [
+    ({"mass_mismatch.dm@lower": 0.1},
+     '<inertial pos="0 0 -0.1" mass="0.6" diaginertia="0.012 0.012 0.006"/>'),
+    ({"com_offset.x@lower": 0.03, "com_offset.z@lower": -0.02},
+     '<inertial pos="0.03 0 -0.12" mass="0.5" diaginertia="0.01 0.01 0.005"/>'),
+    ({"inertia_mismatch.delta@lower": -0.3},
+     '<inertial pos="0 0 -0.1" mass="0.5" diaginertia="0.007 0.007 0.0035"/>'),
+    ({"mass_mismatch.dm@lower": 0.1, "inertia_mismatch.delta@lower": 0.5},
+     '<inertial pos="0 0 -0.1" mass="0.6" diaginertia="0.017 0.017 0.0085"/>'),
+])  # fmt: skip
 def test_an_effect_of_a_body_is_what_a_file_says(values, inertial):
     expected = said(ARM.replace(LOWER, inertial))
     np.testing.assert_allclose(run(arm(), LOG, **values), expected, rtol=0, atol=1e-10)

@@ -5,8 +5,9 @@ import numpy as np
 import pytest
 from effect_cases import CATALOGUE, EVERYWHERE, bare, forward, full, probes, simulate
 from numba import njit
+from plain_logs import plain_log
 
-from identification import Log, Predictor
+from identification import Predictor
 from identification.effects.effect import Effect
 from identification.effects.sizes import Size
 from identification.kalman.linear import linearise
@@ -164,7 +165,7 @@ def test_one_call_with_many_starts_is_many_calls():
 MODEL = [e for e in CATALOGUE if "input" not in e.hooks]
 
 
-def some_of_everything() -> dict[str, float]:
+def some_of_everything():
     out = {"cogging.n": 7.0, "torque_constant_drift.kind": 1.0, "cable_creep.tau": 2.0}
     for effect in MODEL:
         out |= probes(effect, list(effect.places)[-1], 0.5)
@@ -219,25 +220,13 @@ SMALL = 1e-4  # of a current's error [A]
 def test_the_answer_to_an_unlogged_current_is_that_of_the_simulation():
     """To what the Jacobian changes within a sample; without the activations it is 200 % off."""
     u = make_input("prbs", 2.0)
-    log = Log(
-        time=0.01 * np.arange(len(u)),
-        inputs=u,
-        outputs=np.zeros_like(u),
-        input_names=CURRENTS,
-        output_names=ANGLES,
-    )
+    log = plain_log(u, np.zeros_like(u), CURRENTS, ANGLES)
     error = SMALL * np.random.default_rng(0).standard_normal(u.shape)
     none = np.empty((1, 0))
     plain, moved = (
         Predictor(
             full(),
-            Log(
-                time=log.time,
-                inputs=inputs,
-                outputs=log.outputs,
-                input_names=CURRENTS,
-                output_names=ANGLES,
-            ),
+            plain_log(inputs, log.outputs, CURRENTS, ANGLES, time=log.time),
             (),
         ).predict(none)[0]
         for inputs in (u, u + error)

@@ -12,29 +12,29 @@ TAUS = [0.0, 1e-7, 3.3e-4, 1e-3, 1.7e-3, 4e-3, 2.5e-2, 10.0]
 ANY_ROBOT = {e.name: e for e in input_effects([Drive("u", 1.0)])}
 
 
-def currents() -> np.ndarray:
+def currents():
     return np.repeat(np.random.default_rng(0).normal(0.7, 0.2, (12, 8)), 5, axis=0)
 
 
-def stepwise(mean: np.ndarray, moment: np.ndarray) -> np.ndarray:
+def stepwise(mean, moment):
     """What a model is given that has mean and moment of a signal, each moment a step later."""
     return mean - moment + np.concatenate([[0.0], moment[:-1]])
 
 
-def by_brute_force(fine: np.ndarray) -> np.ndarray:
+def by_brute_force(fine):
     """Steps that have the impulse and the moment of a finely sampled signal (steps, FINE)."""
     middle = (np.arange(FINE) + 0.5) / FINE - 0.5
     return stepwise(fine.mean(axis=1), (fine * middle).mean(axis=1))
 
 
-def filtered(effect, u: np.ndarray, values: dict, things=("1",)) -> np.ndarray:
+def filtered(effect, u, values, things=("1",)):
     """An input after one effect, shape (steps, nu)."""
     every = {name: 0.0 for thing in things for parts in effect.parameters_at(thing)
              for name in parts} | values  # fmt: skip
     return changed_inputs([effect], things, every, u, STEP, 1).reshape(u.shape)
 
 
-def at_taus(effect, u: np.ndarray, before: float) -> np.ndarray:
+def at_taus(effect, u, before):
     """Currents of eight drives, each with a time of its own."""
     drives = [str(k) for k in range(1, 9)]
     values = {f"{effect.name}.tau@{k}": tau for k, tau in zip(drives, TAUS, strict=True)}

@@ -171,7 +171,7 @@ PULLEY, ANCHOR = (BY_NAME[n].hooks["path"].py_func for n in ("pulley_radius", "a
 SPANS = [(1.2, -1.4, 1.3), (-1.5, 1.5, -1.6), (0.4, 1.9, 0.2), (0.05, 0.3, -2.0)]
 
 
-def at(r) -> object:
+def at(r):
     return drive(**dict(zip(("rx", "ry", "rz"), map(float, r), strict=True)))
 
 

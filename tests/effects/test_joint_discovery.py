@@ -7,8 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from joint_cases import DAMPING, MASS, SLIDER, STEP, run, slider_log, steps
+from plain_logs import plain_log
 
-from identification import Log, Parameter
+from identification import Parameter
 from identification.discovery.nominal_model import NominalModel
 from identification.effects.axes import Axis
 from identification.effects.joint_plant import candidates, joint_plant
@@ -94,10 +95,7 @@ WEIGHT = 0.5 * 9.81 * 0.1  # of the arm, level [N m]
 def released(angle, seconds=5.0, **values):
     """Angle of a pendulum that is let go without a drive, shape (N,)."""
     t = np.arange(round(seconds / STEP)) * STEP
-    log = Log(
-        time=t, inputs=1e-12 * np.sin(t)[:, None], outputs=np.sin(t)[:, None],
-        input_names=("drive",), output_names=("angle",),
-    )  # fmt: skip
+    log = plain_log(1e-12 * np.sin(t)[:, None], np.sin(t)[:, None], "drive", "angle", time=t)
     start = Parameter(name="q", value=0.0, unit="rad", where="qpos[0]", scale=0.1)
     plant = joint_plant(PENDULUM, (start,), log)
     return run(plant, log, q=angle, **values)[:, 0]

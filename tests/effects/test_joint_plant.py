@@ -162,7 +162,7 @@ HINGE, RAIL = Axis("pivot", "hinge", 1.0, 1.0, 1.0), Axis("rail", "slide", 1.0, 
 BOTH = joint_effects((HINGE, RAIL), TURNS)
 
 
-def test_words_tell_the_kind_where_there_are_both() -> None:
+def test_words_tell_the_kind_where_there_are_both():
     for effect in BOTH:
         kind = "(slides)" if SLIDE in effect.name else "(hinges)"
         assert effect.phrase.endswith(kind), effect.name
@@ -171,7 +171,7 @@ def test_words_tell_the_kind_where_there_are_both() -> None:
 
 
 @pytest.mark.parametrize("axis", [HINGE, RAIL])
-def test_nothing_is_added_where_there_is_one_kind(axis: Axis) -> None:
+def test_nothing_is_added_where_there_is_one_kind(axis):
     for effect in joint_effects((axis,), TURNS):
         assert SLIDE not in effect.name
         assert "(" not in effect.phrase

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from joint_cases import DAMPING, MASS, SLIDER, arm, arm_log, run, slider, slider_log, steps
+from plain_logs import plain_log
 
-from identification import Log
 from identification.effects.axes import Axis
 from identification.effects.joint_plant import joint_plant
 from identification.model.predictor import Predictor
@@ -98,10 +98,7 @@ def test_no_sensor_knows_the_future_and_not_all_of_them_are_late():
 
 def test_each_value_set_of_a_batch_has_its_readings_and_a_rate_is_scaled_only():
     u = steps(100)
-    log = Log(
-        time=0.01 * np.arange(100), inputs=u, outputs=np.stack([np.sin(u[:, 0]), u[:, 0]], axis=1),
-        input_names=("force",), output_names=("position", "rate"),
-    )  # fmt: skip
+    log = plain_log(u, np.stack([np.sin(u[:, 0]), u[:, 0]], axis=1), "force", "position rate")
     axis = Axis("slide", "slide", force=5.0, speed=1.0, travel=1.0)
     plant = joint_plant(BOTH, (MASS, DAMPING), log, joints=(axis,))
     known = {e.name: set(e.places.values()) for e in plant.effects if "reading" in e.hooks}
@@ -118,10 +115,7 @@ def test_windows_begin_at_the_true_state_and_not_at_the_measured_one():
     plant = arm()
     wrong = {"encoder_offset.c@a": 0.2, "encoder_scale.s@b": 0.03}
     measured = arm_log(steps(200, 2))
-    measured = Log(
-        time=log.time, inputs=log.inputs, outputs=run(plant, log, **wrong),
-        input_names=log.input_names, output_names=log.output_names,
-    )  # fmt: skip
+    measured = replace(log, outputs=run(plant, log, **wrong))
     error = window_error(plant, measured, 0.25, wrong)
     assert np.sqrt(np.mean(error**2)) < 1e-6
     # an arm under gravity feels a wrong zero: no start of the windows makes up for it

@@ -1,25 +1,23 @@
 """The bridge to `mujoco.sysid`: the same values predict the same outputs on both sides."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from identification import InputError, Log, bridge_sysid
+from identification import InputError, bridge_sysid
 from identification.bridge_sysid import from_sysid, sysid_residual, to_sysid, to_sysid_parameters
 from identification.model.predictor import Predictor
 from inca_mj.robot.inputs import make_input
 from inca_mj.twin.logs import run_to_log
 from inca_mj.twin.run import simulate
-from inca_mj.twin.twin import Twin, build_twin
+from inca_mj.twin.twin import build_twin
 
 NAMES = ("lambda", "J", "b_c", "m", "x", "roll")
 VALUES = np.array([23000.0, 9e-5, 0.004, 0.18, 0.01, 0.02])
 
 
-def missing() -> str:
+def missing():
     """Why `mujoco.sysid` cannot be used here, or nothing."""
     try:
         from identification.bridge_sysid import _sysid
@@ -34,12 +32,12 @@ needs_sysid = pytest.mark.skipif(bool(missing()), reason=missing() or "mujoco.sy
 
 
 @pytest.fixture(scope="module")
-def robot() -> Twin:
+def robot():
     return build_twin()
 
 
 @pytest.fixture(scope="module")
-def log(robot) -> Log:
+def log(robot):
     return run_to_log(simulate(robot, make_input("prbs", 0.6)))
 
 

@@ -1,7 +1,5 @@
 """A search simulates nothing twice and nothing that it does not use, and ends where it should."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -9,7 +7,6 @@ import pytest
 from estimation_plants import record, slider
 from threadpoolctl import threadpool_info, threadpool_limits
 
-from identification import Log
 from identification.estimation.estimation import Options, estimate
 from identification.estimation.search import Slopes
 from identification.model.coordinates import coordinates
@@ -19,24 +16,24 @@ from identification.pool import one_blas_thread
 from inca_mj.robot.inputs import make_input
 from inca_mj.twin.logs import run_to_log
 from inca_mj.twin.run import simulate
-from inca_mj.twin.twin import Twin, build_twin
+from inca_mj.twin.twin import build_twin
 
 NAMES = ("J", "b_c", "K_t", "x")
 START = {"J": 1e-4, "b_c": 0.004, "K_t": 0.09, "x": 0.01}
 
 
 @pytest.fixture(scope="module")
-def robot() -> Twin:
+def robot():
     return build_twin()
 
 
 @pytest.fixture(scope="module")
-def log(robot) -> Log:
+def log(robot):
     return run_to_log(simulate(robot, make_input("prbs", 1.0)))
 
 
 @pytest.fixture(scope="module")
-def noisy(log) -> Log:
+def noisy(log):
     error = np.random.default_rng(0).normal(0, 6.7e-4, log.outputs.shape)
     return replace(log, outputs=log.outputs + error)
 

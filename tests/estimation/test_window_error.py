@@ -1,10 +1,11 @@
 """The error over a horizon: that of the sensors for a right model, whatever pushed it before."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from estimation_plants import record, slider
 
-from identification import Log
 from identification.windows.held import held_records, held_windows
 from identification.windows.settling import settle
 from identification.windows.window_error import _fixed, window_error
@@ -21,13 +22,7 @@ NOISE = 1e-4
 def noisy(seed=3, **values):
     log = record(slider(**values), ("position",), n=200)
     y = log.outputs + NOISE * np.random.default_rng(seed).standard_normal(log.outputs.shape)
-    return Log(
-        time=log.time,
-        inputs=log.inputs,
-        outputs=y,
-        input_names=log.input_names,
-        output_names=log.output_names,
-    )
+    return replace(log, outputs=y)
 
 
 def test_a_right_model_leaves_the_noise_less_what_each_start_takes():

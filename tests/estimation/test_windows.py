@@ -6,8 +6,9 @@ import mujoco
 import numpy as np
 import pytest
 from estimation_plants import SLIDER, measured, record, slider, steps
+from plain_logs import plain_log
 
-from identification import InputError, Log, ParameterSet
+from identification import InputError, ParameterSet
 from identification.estimation.estimation import estimate
 from identification.model.plant import ModelPlant
 from identification.windows.window_error import joined
@@ -114,15 +115,7 @@ def record_joined(n, seed, step=0.01, hold="foh"):
     rng = np.random.default_rng(seed)
     time = step * np.arange(n)
     u, y = rng.standard_normal((n, 2)), rng.standard_normal((n, 1))
-    return Log(
-        time=time,
-        inputs=u,
-        outputs=y,
-        input_names=("a", "b"),
-        output_names=("x",),
-        hold=hold,
-        name=f"record {seed}",
-    )
+    return plain_log(u, y, "a b", "x", time=time, hold=hold, name=f"record {seed}")
 
 
 def test_windows_of_joined_records_are_those_of_each():

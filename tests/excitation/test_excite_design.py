@@ -1,9 +1,6 @@
 """The designed input keeps its limits, repeats itself, and is no worse than what people try."""
 
-from __future__ import annotations
-
 import json
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,7 +9,7 @@ from identification import InputError
 from inca_mj.cli import main
 from inca_mj.robot.inputs import make_input
 from inca_mj.twin.run import simulate
-from inca_mj.twin.twin import Twin, build_twin
+from inca_mj.twin.twin import build_twin
 from inca_mj.workflows.excitation import excite
 from inca_mj.workflows.limits import Limits, remarks
 from inca_mj.workflows.pulled import with_force
@@ -23,11 +20,11 @@ STEP = 2e-3  # [s]
 
 
 @pytest.fixture(scope="module")
-def robot() -> Twin:
+def robot():
     return build_twin(timestep=STEP)
 
 
-def test_the_design_keeps_its_limits_and_repeats(robot: Twin) -> None:
+def test_the_design_keeps_its_limits_and_repeats(robot):
     limits = Limits(0.2, 1.2, 2.0, 0.1, 0.3)
     one, two = (excite(robot, 0.3, free=NAMES, limits=limits, budget=2, seed=4) for _ in range(2))
     assert np.array_equal(one.best.run.currents, two.best.run.currents)
@@ -41,7 +38,7 @@ def test_the_design_keeps_its_limits_and_repeats(robot: Twin) -> None:
     assert one.worst_gain >= 1
 
 
-def test_recipes_stay_inside_the_currents() -> None:
+def test_recipes_stay_inside_the_currents():
     rng, limits = np.random.default_rng(0), Limits(0.3, 1.7)
     for kind in ("multisine", "prbs"):
         recipe = draw(kind, rng)
@@ -56,13 +53,13 @@ def test_recipes_stay_inside_the_currents() -> None:
     ("limits", "word"),
     [(lambda: Limits(2.0, 1.0), "largest current"), (lambda: Limits(reach=0.0), "workspace")],
 )
-def test_a_bad_limit_is_one_sentence(limits, word: str) -> None:
+def test_a_bad_limit_is_one_sentence(limits, word):
     with pytest.raises(InputError, match=word) as caught:
         limits()
     assert len(str(caught.value).splitlines()) == 1
 
 
-def test_bad_designs_are_refused(robot: Twin) -> None:
+def test_bad_designs_are_refused(robot):
     for keywords, word in (
         ({"duration": 0.01}, "cannot be designed"),
         ({"budget": 0}, "budget"),
@@ -76,7 +73,7 @@ def test_bad_designs_are_refused(robot: Twin) -> None:
 
 
 @pytest.mark.usefixtures("undrawn")
-def test_excite_writes_what_simulate_replays(tmp_path: Path, capsys) -> None:
+def test_excite_writes_what_simulate_replays(tmp_path, capsys):
     arguments = ["excite", "--duration", "0.3", "--budget", "1", "--free", "J", "b_v",
                  "--step", str(STEP), "--out", str(tmp_path), "--json"]  # fmt: skip
     assert main(arguments) == 0
@@ -90,7 +87,7 @@ def test_excite_writes_what_simulate_replays(tmp_path: Path, capsys) -> None:
     assert again["tension_min"] == pytest.approx(result["tension_min"], rel=1e-9)
 
 
-def test_sensitivity_names_what_trades_off(tmp_path: Path, capsys) -> None:
+def test_sensitivity_names_what_trades_off(tmp_path, capsys):
     arguments = ["sensitivity", "--duration", "0.3", "--free", "R_s", "k_s", "J"]
     assert main([*arguments, "--json", "--out", str(tmp_path)]) == 0
     result = json.loads(capsys.readouterr().out)

@@ -1,7 +1,5 @@
 """Fisher information against paper and against the scatter of fits."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -16,11 +14,11 @@ from identification.estimation.information import determinable
 NAMES = ("mass", "damping")
 
 
-def rough(seed: int) -> np.ndarray:
+def rough(seed):
     return np.random.default_rng(seed).normal(0, 5, (101, 1))
 
 
-def test_the_information_is_the_one_on_paper() -> None:
+def test_the_information_is_the_one_on_paper():
     found = information(pushed(), NAMES)
     S = step_sensitivity(np.arange(101) * STEP) / SIGMA
     assert found.std == pytest.approx(np.sqrt(np.diag(np.linalg.inv(S.T @ S))), rel=1e-5)
@@ -32,14 +30,14 @@ def test_the_information_is_the_one_on_paper() -> None:
     assert found.condition == pytest.approx(np.sqrt(values[1] / values[0]), rel=1e-5)
 
 
-def test_a_nuisance_costs_what_the_inverse_says() -> None:
+def test_a_nuisance_costs_what_the_inverse_says():
     S = step_sensitivity(np.arange(101) * STEP) / SIGMA
     found = information(pushed(), ("mass",), ("damping",))
     assert found.e_value == pytest.approx(1 / np.linalg.inv(S.T @ S)[0, 0], rel=1e-5)
     assert found.std == pytest.approx(information(pushed(), NAMES).std[:1], rel=1e-6)
 
 
-def test_more_data_never_lowers_E() -> None:
+def test_more_data_never_lowers_E():
     whole = information(pushed(rough(0)), NAMES)
     for seed in range(1, 6):
         more = whole.with_data(information(pushed(rough(seed)), NAMES))
@@ -50,12 +48,12 @@ def test_more_data_never_lowers_E() -> None:
     assert information(pushed(rough(7)), NAMES).e_value >= short.e_value * (1 - 1e-9)
 
 
-def test_twice_the_noise_is_twice_the_std() -> None:
+def test_twice_the_noise_is_twice_the_std():
     quiet, loud = (information(pushed(sigma=s), NAMES) for s in (SIGMA, 2 * SIGMA))
     assert loud.std == pytest.approx(2 * quiet.std, rel=1e-9)
 
 
-def test_the_scatter_of_fits_is_the_bound() -> None:
+def test_the_scatter_of_fits_is_the_bound():
     trial = pushed(rough(3))
     found = information(trial, NAMES)
     clean = trial.log()
@@ -73,7 +71,7 @@ def test_the_scatter_of_fits_is_the_bound() -> None:
     assert np.abs(np.mean(fits, axis=0) - np.log([2.0, 3.0])).max() < 4 * found.std.max() / 24**0.5
 
 
-def test_what_cannot_be_told_apart_is_said_and_held() -> None:
+def test_what_cannot_be_told_apart_is_said_and_held():
     found = information(pushed(), ("mass", "damping", "gain"))
     assert found.e_value == 0
     assert found.d_value == -np.inf
@@ -94,7 +92,7 @@ def test_what_cannot_be_told_apart_is_said_and_held() -> None:
         (lambda: information(pushed(), ("mas",)), "did you mean"),
     ],
 )
-def test_bad_input_is_one_sentence(call, word: str) -> None:
+def test_bad_input_is_one_sentence(call, word):
     with pytest.raises(InputError, match=word) as caught:
         call()
     assert len(str(caught.value).splitlines()) == 1

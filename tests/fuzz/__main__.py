@@ -4,8 +4,6 @@ Prints what came of the cases of each reader, and keeps each find with its file 
 code 1: there are finds.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import os

@@ -4,8 +4,6 @@ Half of the changes keep a text's grammar and replace one number, word or line b
 that they pass the parser and reach what stands behind it; the others change bytes.
 """
 
-from __future__ import annotations
-
 import io
 import random
 import re

@@ -1,7 +1,5 @@
 """The readers of files, each with right files that a fuzzer changes."""
 
-from __future__ import annotations
-
 import shutil
 from collections.abc import Callable
 from dataclasses import dataclass

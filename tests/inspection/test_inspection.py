@@ -17,16 +17,13 @@ from identification.inspection.words import answer_sentence, answer_sentences
 STEP = 0.01
 
 
-@pytest.mark.parametrize(
-    ("name", "role", "unit"),
-    [
-        ("joint_states.position.elbow", "output", "rad"), ("joint_states.effort.elbow", "input",
-        "N m"), ("action.elbow", "input", ""), ("observation.state.elbow", "output", "rad"),
-        ("desired.position.elbow", "input", "rad"), ("i_motor", "input", "A"), ("supply", "", ""),
-        ("motorCurrent [mA]", "input", "mA"), ("angle_deg", "output", "deg"),
-        ("field.velocity0", "output", "rad/s"), ("tool_force_2", "input", "N"),
-    ],
-)  # fmt: skip
+@pytest.mark.parametrize(("name", "role", "unit"), [
+    ("joint_states.position.elbow", "output", "rad"), ("joint_states.effort.elbow", "input",
+    "N m"), ("action.elbow", "input", ""), ("observation.state.elbow", "output", "rad"),
+    ("desired.position.elbow", "input", "rad"), ("i_motor", "input", "A"), ("supply", "", ""),
+    ("motorCurrent [mA]", "input", "mA"), ("angle_deg", "output", "deg"),
+    ("field.velocity0", "output", "rad/s"), ("tool_force_2", "input", "N"),
+])  # fmt: skip
 def test_names_tell_roles_and_units(name, role, unit):
     assert role_of(name) == role
     assert unit_of(name, 1.0)[0] == unit

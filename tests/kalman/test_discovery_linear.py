@@ -6,6 +6,7 @@ from dataclasses import replace
 import mujoco
 import numpy as np
 import pytest
+from plain_logs import plain_log
 
 from identification import Log, Parameter, ParameterSet
 from identification.kalman.linear import extend, linearise
@@ -42,13 +43,7 @@ def crane(outputs):
     model = mujoco.MjModel.from_xml_string(CRANE)
     start = State(np.array([0.1, 0.4, 0.0]), np.array([0.2, -0.5, 1.0]), np.array([0.3]))
     u = np.random.default_rng(0).uniform(-1, 1, (N, 2))
-    log = Log(
-        time=H * np.arange(N),
-        inputs=u,
-        outputs=np.zeros((N, len(outputs))),
-        input_names=("drive", "spinner"),
-        output_names=outputs,
-    )
+    log = plain_log(u, np.zeros((N, len(outputs))), "drive spinner", outputs, H)
     return Predictor(ModelPlant(model, ParameterSet("crane", ()), start), log, ())
 
 

@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 from effect_cases import bare
 from estimation_plants import SLIDER
+from plain_logs import plain_log
 
-from identification import Log, ParameterSet, Predictor
+from identification import ParameterSet, Predictor
 from identification.kalman import linear
 from identification.kalman.linear import input_derivatives, state_derivatives
 from identification.kalman.sensitivity_equations import solve_sensitivities
@@ -21,8 +22,7 @@ STEEP = {"b_c": 0.01, "beta": 3.0}
 
 
 def log_of(u):
-    return Log(time=0.01 * np.arange(len(u)), inputs=u, outputs=np.zeros_like(u),
-               input_names=CURRENTS, output_names=ANGLES)  # fmt: skip
+    return plain_log(u, np.zeros_like(u), CURRENTS, ANGLES)
 
 
 def value(plant, name):
@@ -79,8 +79,7 @@ def test_an_input_at_its_limit_has_two_slopes():
     assert model.actuator_ctrllimited[0]
     plant = ModelPlant(model, ParameterSet("limited", ()))
     u = np.array([1.0, 1.0, 0.3, 0.3, -1.0, -1.0, -1.0])[:, None]
-    log = Log(time=0.02 * np.arange(7), inputs=u, outputs=np.zeros((7, 1)),
-              input_names=("force",), output_names=("position",))  # fmt: skip
+    log = plain_log(u, np.zeros((7, 1)), "force", "position", 0.02)
     along = follow(Predictor(plant, log, ()), np.empty(0), COARSE_POINTS)
     up, down = (each[:, 0, 0] for each in input_derivatives(along))
     sent = along.inputs[:, 0]

@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 from effect_cases import full
 from estimation_plants import SLIDER_PARAMETERS, slider
+from plain_logs import plain_log
 
-from identification import Log, Parameter, ParameterSet, Predictor
+from identification import Parameter, ParameterSet, Predictor
 from identification.discovery.candidates import list_common
 from identification.effects.effect import Candidate
 from identification.innovations.scoring.sensitivities import compute_beside, compute_sensitivities
@@ -48,8 +49,7 @@ def miss(S, expected):
 
 def slider_log(n, seed, hold="zoh", h=H):
     u = np.random.default_rng(seed).standard_normal((n, 1))
-    return Log(time=h * np.arange(n), inputs=u, outputs=np.zeros((n, 2)), name=f"{seed}",
-               hold=hold, input_names=("force",), output_names=("position", "rate"))  # fmt: skip
+    return plain_log(u, np.zeros((n, 2)), "force", "position rate", h, name=f"{seed}", hold=hold)
 
 
 @pytest.mark.parametrize("hold", ["zoh", "foh"])
@@ -75,8 +75,7 @@ def test_the_error_falls_with_the_square_of_the_interval():
     for h in (0.04, 0.02, 0.01):
         t = h * np.arange(round(4 / h))
         u = np.sin(3 * t)[:, None]
-        log = Log(time=t, inputs=u, outputs=np.zeros_like(u), hold="foh",
-                  input_names=("torque",), output_names=("angle",))  # fmt: skip
+        log = plain_log(u, np.zeros_like(u), "torque", "angle", time=t, hold="foh")
         predictor, at, move = Predictor(plant, log, ("mass",)), np.array([0.5]), [1e-5]
         missed.append(miss(solve(predictor, at, move), simulate(predictor, at, move))[0])
     rates = np.log2(np.array(missed[:-1]) / missed[1:])
@@ -107,8 +106,7 @@ def test_where_a_joint_hits_its_limit_they_are_not_believed():
     mass = Parameter(name="mass", value=1.0, unit="kg", where="body/b.mass", lower=0)
     plant = ModelPlant(model, ParameterSet("stopped", (mass,)))
     log = slider_log(200, 3)
-    log = Log(time=log.time, inputs=log.inputs, outputs=log.outputs[:, :1],
-              input_names=("force",), output_names=("position",))  # fmt: skip
+    log = plain_log(log.inputs, log.outputs[:, :1], "force", "position", time=log.time)
     predictor = Predictor(plant, log, ("mass",))
     space = coordinates(plant.parameters, ("mass",), np.array([1.0]))
     point = evaluate_point(predictor, space, space.encode(np.array([1.0])))
@@ -120,8 +118,7 @@ def test_where_a_joint_hits_its_limit_they_are_not_believed():
 
 def inca_log(seconds=2.0):
     u = make_input("prbs", seconds)
-    return Log(time=0.01 * np.arange(len(u)), inputs=u, outputs=np.zeros_like(u),
-               input_names=CURRENTS, output_names=ANGLES)  # fmt: skip
+    return plain_log(u, np.zeros_like(u), CURRENTS, ANGLES)
 
 
 NAMES = ("R", "k_s", "lambda", "J", "b_v", "b_c", "K_t", "m", "x", "pitch")
@@ -195,8 +192,7 @@ def test_candidates_are_those_of_simulations(robot, monkeypatch):
 def test_of_another_kind_they_go_along_the_trajectory_with_the_effect():
     """Under ±0.3 A a motor's heat is 0.09 of the time, and so is what a drift with heat does."""
     plant, u = full(), np.where(np.random.default_rng(5).integers(0, 2, (100, 8)), 0.3, -0.3)
-    log = Log(time=0.01 * np.arange(100), inputs=u, outputs=np.zeros_like(u),
-              input_names=CURRENTS, output_names=ANGLES)  # fmt: skip
+    log = plain_log(u, np.zeros_like(u), CURRENTS, ANGLES)
     names, first = ("b_c", "torque_constant_drift.alpha"), np.array([0.02, 0.03])
     space = coordinates(plant.parameters, names, first, linear=names[1:])
     predictor = Predictor(plant, log, names, {"torque_constant_drift.kind": 0.0})

@@ -116,13 +116,10 @@ def test_the_angle_of_a_rotor_that_more_than_its_cable_feels_is_no_share(robot):
     assert ("qpos", int(model.joint("motor_2").qposadr[0])) in owners
 
 
-@pytest.mark.parametrize(
-    ("field", "value"),
-    [
+@pytest.mark.parametrize(("field", "value"), [
     ("actuator_forcelimited", 1), ("actuator_gainprm", 1.0), ("dof_dampingpoly", 1e-3),
     ("actuator_damping", 1e-3),
-],
-)  # fmt: skip
+])  # fmt: skip
 def test_a_force_that_mujoco_limits_or_adds_to_is_evaluated_whole(robot, field, value):
     model = without_sensors(robot.model)
     assert {name for name, _ in owners_of(model)} == ALONE

@@ -1,7 +1,5 @@
 """Each kind of bad file is refused in one sentence that names the bad thing and the way on."""
 
-from __future__ import annotations
-
 import os
 import warnings
 from pathlib import Path

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
+from plain_logs import plain_log
 
-from identification import InputError, Log, read_log
+from identification import InputError, read_log
 from identification.logs.coarse import evened_stamps
 from identification.logs.fitting_steps import EXACT, judged
 from identification.logs.log import halves
@@ -218,8 +219,7 @@ def test_the_steps_that_fit_are_those_of_all_pairs_of_rows(n, width, seed):
 
 def log_of(time):
     n = len(time)
-    return Log(time=time, inputs=np.zeros((n, 0)), outputs=np.zeros((n, 1)), input_names=(),
-               output_names=("q",))  # fmt: skip
+    return plain_log(np.zeros((n, 0)), np.zeros((n, 1)), "", "q", time=time)
 
 
 @st.composite

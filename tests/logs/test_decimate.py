@@ -2,20 +2,15 @@
 
 import numpy as np
 import pytest
+from plain_logs import plain_log
 
-from identification import InputError, Log, Parameter
+from identification import InputError, Parameter
 from identification.logs.decimation import decimate
 from identification.logs.units import UNITS, dimension, refuse_not_si, refuse_other_unit
 
 T = 0.001
 U = np.sin(np.arange(1001) * 0.01)[:, None] * [1.0, 2.0]
-LOG = Log(
-    time=np.arange(1001) * T,
-    inputs=U,
-    outputs=np.cumsum(U, axis=0),
-    input_names=("a", "b"),
-    output_names=("x", "y"),
-)
+LOG = plain_log(U, np.cumsum(U, axis=0), "a b", "x y", T)
 
 
 def test_outputs_are_every_nth_and_means_are_kept():
@@ -43,13 +38,7 @@ def test_straight_lines_are_kept_and_are_the_nearest_ones():
 def test_both_moments_of_a_pulse_between_samples_are_kept():
     pulse = np.zeros((401, 1))
     pulse[203:207] = 1.0
-    log = Log(
-        time=np.arange(401) * T,
-        inputs=pulse,
-        outputs=pulse,
-        input_names=("u",),
-        output_names=("y",),
-    )
+    log = plain_log(pulse, pulse, "u", "y", T)
     few = decimate(log, 10)
     weight = (np.arange(2000) + 0.5) / 2000
     u = (1 - weight) * few.inputs[:-1] + weight * few.inputs[1:]
@@ -66,8 +55,7 @@ def test_what_makes_no_log_is_refused():
 
 def lines_of(u, every=7, hold="foh"):
     n = len(u)
-    log = Log(time=T * np.arange(n), inputs=u[:, None], outputs=np.arange(n)[:, None],
-              input_names=("u",), output_names=("y",), hold="foh")  # fmt: skip
+    log = plain_log(u[:, None], np.arange(n)[:, None], "u", "y", T, hold="foh")
     return decimate(log, every, hold)
 
 

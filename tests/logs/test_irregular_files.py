@@ -2,7 +2,6 @@
 
 import json
 import os
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -24,15 +23,15 @@ pytestmark = pytest.mark.skipif(os.name != "posix", reason="pipes and devices of
 LARGE = 3 * 2**30  # [bytes]
 
 
-def pipe(path: Path) -> None:
+def pipe(path):
     os.mkfifo(path)
 
 
-def device(path: Path) -> None:
+def device(path):
     path.symlink_to("/dev/zero")
 
 
-def sparse(path: Path) -> None:
+def sparse(path):
     with path.open("wb") as file:
         file.truncate(LARGE)
 

@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 import pickle
 from dataclasses import FrozenInstanceError, replace
 from itertools import pairwise
@@ -9,6 +7,7 @@ import pytest
 from example_logs import wave
 from hypothesis import given
 from hypothesis import strategies as st
+from plain_logs import plain_log
 
 from identification import Log
 from identification.logs.joined import JoinedLog, join_logs, records_of
@@ -20,13 +19,7 @@ def test_printed_digits_do_not_spoil_the_sampling_time(rate):
     digits = 6
     time = np.arange(20 * rate) / rate
     printed = np.array([float(f"{t:.{digits}g}") for t in time])
-    log = Log(
-        time=printed,
-        inputs=np.zeros((len(time), 0)),
-        outputs=np.zeros((len(time), 1)),
-        input_names=(),
-        output_names=("q",),
-    )
+    log = plain_log(np.zeros((len(time), 0)), np.zeros((len(time), 1)), "", "q", time=printed)
     assert log.sampling_time == pytest.approx(1 / rate, rel=1e-5)
 
 

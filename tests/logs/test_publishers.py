@@ -172,12 +172,9 @@ def second(rate, late, fresh, kind, seed=0, n=900, value=0.0):
 
 
 @pytest.mark.parametrize("kind", KINDS[:5])
-@pytest.mark.parametrize(
-    ("rate", "late", "fresh"),
-    [
+@pytest.mark.parametrize(("rate", "late", "fresh"), [
     (20, 0.5, False), (33, 0.1, False), (20, 0.3, True),
-],
-)  # fmt: skip
+])  # fmt: skip
 def test_rows_of_another_clock_are_refused(refusal, kind, rate, late, fresh):
     said = refusal(judge_clock, *second(rate, late, fresh, kind))
     assert f"that come on a clock of their own, every {1 / rate:.3g} s, as of a second" in said

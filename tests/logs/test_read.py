@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 import json
 import tomllib
 from dataclasses import replace
@@ -14,14 +12,14 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from scipy.io import savemat
 
-from identification import Log, write_log
+from identification import write_log
 from identification.files import toml_table, toml_value
 from identification.logs.units import UNITS as WORDS
 
 TEXT = "time,current_1,current_2,angle_1,angle_2\n0,1,2,3,4\n0.1,1,2,3,5\n0.2,1,2,3,6\n"
 
 
-def _as_csv(names, columns) -> str:
+def _as_csv(names, columns):
     rows = zip(*(map(repr, columns[name].tolist()) for name in names), strict=True)
     return "\n".join([",".join(names), *map(",".join, rows)]) + "\n"
 
@@ -148,7 +146,7 @@ texts = st.text(st.characters(exclude_categories=["Cs"]), max_size=30)
 
 
 @st.composite
-def logs(draw) -> Log:
+def logs(draw):
     n = draw(st.integers(3, 12))
     ends = st.one_of(st.floats(0.5, 9), st.just(np.inf))
     return replace(
@@ -166,7 +164,7 @@ def logs(draw) -> Log:
     )
 
 
-def assert_same(a: Log, b: Log) -> None:
+def assert_same(a, b):
     """Equal to the bit, the sign of zero included."""
     for x, y in ((a.time, b.time), (a.inputs, b.inputs), (a.outputs, b.outputs)):
         assert x.tobytes() == y.tobytes()

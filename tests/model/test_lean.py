@@ -1,7 +1,5 @@
 """A model whose steps leave out what cannot act moves as the whole one does."""
 
-from __future__ import annotations
-
 import mujoco
 import numpy as np
 import pytest

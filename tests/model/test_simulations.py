@@ -1,7 +1,5 @@
 """Simulations that are prepared once and run many times are those of a call for each run."""
 
-from __future__ import annotations
-
 import mujoco
 import numpy as np
 import pytest

@@ -6,9 +6,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from joint_cases import run
+from plain_logs import plain_log
 from scipy.optimize import lsq_linear
 
-from identification import Log, joint_plant
+from identification import joint_plant
 from identification.native.holding import held
 
 SEEDS = st.integers(0, 10**6)
@@ -79,10 +80,7 @@ TWO = """<mujoco><option timestep="0.002" integrator="RK4"/><worldbody>
 def test_a_joint_that_friction_holds_does_not_creep_while_another_one_moves(level):
     t = 0.01 * np.arange(200)
     u = np.column_stack([8 * np.sin(6 * t), 0 * t])
-    log = Log(
-        time=t, inputs=u, outputs=np.sin(6 * t)[:, None] * [0.5, 0.1], input_names=("u", "w"),
-        output_names=("qa", "qb"),
-    )  # fmt: skip
+    log = plain_log(u, np.sin(6 * t)[:, None] * [0.5, 0.1], "u w", "qa qb", time=t)
     plant = joint_plant(TWO, (), log)
     y = run(plant, log, **{"coulomb_friction.f_c@b": level})
     assert np.ptp(y[:, 0]) > 0.3

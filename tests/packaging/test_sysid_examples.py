@@ -39,16 +39,6 @@ def test_the_same_parameter_is_found_where_the_model_reads_it(example):
     assert np.all(np.abs(values - motor.TRUTH) < 5 * fit.std)
 
 
-def elbow_inertia(v):
-    """J₂ [kg m²]."""
-    return v["I_2"] + v["m_2"] * v["c_2"] ** 2
-
-
-def coupling(v):
-    """h/l₁ [kg m]."""
-    return v["m_2"] * v["c_2"]
-
-
 def test_what_joints_cannot_tell_has_no_std_and_the_friction_keeps_its_own(example):
     arm = example("inertials_and_bounds")
     fit = arm.from_drawing(arm.record())

@@ -1,7 +1,5 @@
 """Effects that hide each other: none is proven alone, and all are named together."""
 
-from __future__ import annotations
-
 from functools import cache
 
 import numpy as np

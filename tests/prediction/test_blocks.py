@@ -1,7 +1,5 @@
 """Gains of blocks: what one model predicts better than another."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import numpy as np
@@ -18,21 +16,21 @@ from identification.windows.problem import MIN_WINDOWS
 lengths = st.lists(st.integers(2, 90), min_size=1, max_size=3)
 
 
-def squares(lengths: list[int], seed: int) -> list[np.ndarray]:
+def squares(lengths, seed):
     """Mean squares of windows of some records."""
     rng = np.random.default_rng(seed)
     return [rng.chisquare(3, n) for n in lengths]
 
 
 @given(lengths, st.integers(0, 9))
-def test_what_one_gains_the_other_loses(lengths: list[int], seed: int) -> None:
+def test_what_one_gains_the_other_loses(lengths, seed):
     a, b = squares(lengths, seed), squares(lengths, seed + 100)
     for there, back in zip(block_gains(a, b, 0.1), block_gains(b, a, 0.1), strict=True):
         np.testing.assert_allclose(there, -back, atol=1e-12)
 
 
 @given(lengths, st.integers(0, 9), st.floats(0.1, 10))
-def test_the_unit_of_the_error_does_not_matter(lengths: list[int], seed: int, unit: float) -> None:
+def test_the_unit_of_the_error_does_not_matter(lengths, seed, unit):
     a, b = squares(lengths, seed), squares(lengths, seed + 100)
     scaled = block_gains([unit * x for x in a], [unit * x for x in b], unit * 0.1)
     for one, other in zip(block_gains(a, b, 0.1), scaled, strict=True):
@@ -40,13 +38,13 @@ def test_the_unit_of_the_error_does_not_matter(lengths: list[int], seed: int, un
 
 
 @given(lengths, st.integers(0, 9), st.floats(0.1, 0.9))
-def test_a_constant_factor_is_its_logarithm(lengths: list[int], seed: int, factor: float) -> None:
+def test_a_constant_factor_is_its_logarithm(lengths, seed, factor):
     a = squares(lengths, seed)
     for gains in block_gains(a, [factor * x for x in a], 0.0):
         np.testing.assert_allclose(gains, -np.log(factor), rtol=1e-9)
 
 
-def test_windows_in_which_nothing_happens_do_not_decide() -> None:
+def test_windows_in_which_nothing_happens_do_not_decide():
     a = np.tile([100.0, 1e-3], 40)  # every second window has nearly no error
     b = np.tile([50.0, 4e-3], 40)  # half of what matters is gone; what does not matter is worse
     (gains,) = block_gains([a], [b], 0.0)
@@ -55,7 +53,7 @@ def test_windows_in_which_nothing_happens_do_not_decide() -> None:
 
 
 @pytest.mark.parametrize(("windows", "blocks"), [(1, 1), (3, 1), (10, 5), (40, 20), (999, 20)])
-def test_every_record_has_the_same_blocks_at_most(windows: int, blocks: int) -> None:
+def test_every_record_has_the_same_blocks_at_most(windows, blocks):
     assert count_blocks(windows) == blocks <= MAX_BLOCKS_PER_RECORD
 
 

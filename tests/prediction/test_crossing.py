@@ -1,7 +1,5 @@
 """Models compared at their best: no window begins where another model knows a better state."""
 
-from __future__ import annotations
-
 from dataclasses import fields, replace
 from functools import cache
 
@@ -134,12 +132,6 @@ def test_each_window_gets_the_state_with_the_smaller_sum_of_squares():
 NEAR = 0.2  # of what is believed of a state
 
 
-@cache
-def fitted_again():
-    logs = records(4, samples=300)
-    return fit_nominal(nominal_model(), as_records(logs[:2], logs[2:]))
-
-
 def counted(monkeypatch):
     """How many windows each call of `HeldWindows.residual` simulates."""
     whole, count = HeldWindows.residual, []
@@ -153,7 +145,7 @@ def counted(monkeypatch):
 
 
 def test_windows_whose_residuals_are_known_are_sought_from_others_without_them(monkeypatch):
-    fit = fitted_again().fit
+    fit = fitted()[1].fit
     held = fit.problem.held(fit.q)
     starts = [(d + NEAR, np.arange(len(d)) % 2 == 0) for d in fit.moves]
     count = counted(monkeypatch)
@@ -168,7 +160,7 @@ def test_windows_whose_residuals_are_known_are_sought_from_others_without_them(m
 
 
 def test_a_fit_whose_first_residuals_are_known_ends_where_it_ends_without_them(monkeypatch):
-    fit = fitted_again().fit
+    fit = fitted()[1].fit
     q = fit.problem.prior.space.inside(fit.q + 0.1)
     moves, r = fit.problem.settled(q, fit.moves)
     count = counted(monkeypatch)

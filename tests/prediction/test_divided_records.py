@@ -12,7 +12,6 @@ from identification.effects.joint_plant import candidates
 from identification.logs.parts import MEMORIES, inside
 from identification.prediction.discovery import WINDOWS
 from identification.prediction.exchange import exchanged
-from identification.prediction.model import WindowModel
 from identification.prediction.nominal_fit import fit_alone, predicted
 from identification.prediction.task import RecordsTask
 from identification.prediction.verdict import conclude
@@ -35,7 +34,7 @@ def alone(samples=500):
 
 
 @cache
-def divided(samples=500) -> WindowModel:
+def divided(samples=500):
     told, found, scale = alone(samples)
     parts = divide_records(found.problem.plant, told, found, HORIZON, scale)
     return parts, predicted(found, scale, parts, HORIZON)

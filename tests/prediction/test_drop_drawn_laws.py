@@ -144,46 +144,19 @@ def test_a_law_needs_a_size_that_is_known_and_a_curve_a_size(name, std, has):
         assert has_size(whole, DiscoveryOptions()) == is_there
 
 
-@dataclass(frozen=True)
-class Accepted_curves:
-    """What a contender is asked here."""
+def test_laws_behind_a_curve_go_and_the_rest_is_refitted_once(monkeypatch):
+    refits, told = [], []
 
-    candidate: Candidate
-    doubt: str | None = None
+    def refit(whole, candidates, base, confirm):
+        refits.append(names_of(candidates))
+        return model(1.0, *candidates)
 
-
-def accepted_curves(*names):
-    return [Accepted_curves(Candidate(Effect(n, "", SIZES, places={"joint": ""}), "joint", {}))
-            for n in names]  # fmt: skip
-
-
-@pytest.fixture
-def kept(monkeypatch):
-    """Names that stay, names that are in doubt, and what was refitted."""
-
-    def of(*names, cannot=False):
-        refits, told = [], []
-
-        def refit(model, candidates, base, confirm):
-            refits.append([c.effect.name for c in candidates])
-            return None if cannot else SimpleNamespace(candidates=candidates)
-
-        monkeypatch.setattr(drop_beside_curves, "refitted", refit)
-        every = accepted_curves(*names)
-        model = SimpleNamespace(candidates=[a.candidate for a in every])
-        task = SimpleNamespace(nominal_model=None, confirm=())
-        state = SimpleNamespace(model=model, accepted=tuple(every), task=task)
-        new, stay, lost = drop_beside_curves.drop_beside_curves(state, told.append)
-        assert (new is model) == (not lost)
-        assert all(a.doubt == "curve" for a in lost)
-        assert [replace(a, doubt=None) for a in lost] == [a for a in every if a not in stay]
-        assert len(told) == len(lost)
-        return [a.candidate.effect.name for a in stay], refits
-
-    return of
-
-
-def test_laws_behind_a_curve_go_and_the_rest_is_refitted_once(kept):
-    names, refits = kept("offset", "curve_time", "cogging", "curve_before", "stiffness")
-    assert names == ["offset", "curve_time", "curve_before"]
-    assert refits == [["offset", "curve_time", "curve_before"]]
+    monkeypatch.setattr(drop_beside_curves, "refitted", refit)
+    every = [accepted(n) for n in ("offset", "curve_time", "cogging", "curve_before", "stiffness")]
+    whole = model(1.0, *(a.candidate for a in every))
+    new, stay, lost = drop_beside_curves.drop_beside_curves(state(whole, every), told.append)
+    assert names(stay) == names_of(new.candidates) == ["offset", "curve_time", "curve_before"]
+    assert refits == [names(stay)]
+    assert [replace(a, doubt=None) for a in lost] == [a for a in every if a not in stay]
+    assert all(a.doubt == "curve" for a in lost)
+    assert len(told) == len(lost)

@@ -45,10 +45,10 @@ def plant():
     return joint_plant(text(0.002, "implicitfast"), (FREE,), LOG)
 
 
-def record(seed, **sizes):
+def record(seed, sizes, samples=300):
     rng = np.random.default_rng(seed)
-    u = np.repeat(rng.uniform(-1, 1, (15, 2)) * (4.0, 1.5), 20, axis=0)
-    log = replace(LOG, time=0.01 * np.arange(300), inputs=u, outputs=np.zeros((300, 2)))
+    u = np.repeat(rng.uniform(-1, 1, (samples // 20, 2)) * (4.0, 1.5), 20, axis=0)
+    log = replace(LOG, time=0.01 * np.arange(samples), inputs=u, outputs=np.zeros((samples, 2)))
     y = Predictor(plant(), log, tuple(sizes)).predict(np.array([[*sizes.values()]]))[0]
     return replace(log, outputs=y + NOISE * rng.standard_normal(y.shape), name=f"record {seed}")
 
@@ -57,7 +57,8 @@ def record(seed, **sizes):
 def named(shoulder, elbow):
     """The nominal model, what confirms, the model with friction at both joints, its claim."""
     truth = dict(zip(SIZES, (shoulder, elbow), strict=True))
-    roles = as_records([record(k, **truth) for k in (1, 2)], [record(k, **truth) for k in (3, 4)])
+    first, second, *rest = (record(k, truth) for k in (1, 2, 3, 4))
+    roles = as_records([first, second], rest)
     base = NominalModel(plant(), ("d",), np.array([0.5]), HORIZON)
     parent = fit_nominal(base, roles)
     every = next(e for e in candidates(plant(), ("d",)) if e.name == "quadratic_friction")
@@ -157,15 +158,7 @@ def test_places_stay_where_the_size_is_admitted_and_beyond_its_std(sizes, std, k
 
 JOINTS = "shoulder", "elbow"
 BOTH = "joint shoulder and joint elbow"
-TRUTH = {"quadratic_friction.c@shoulder": 0.08, "quadratic_friction.c@elbow": 0.03}
-
-
-def record_several(seed):
-    rng = np.random.default_rng(seed)
-    u = np.repeat(rng.uniform(-1, 1, (10, 2)) * (4.0, 1.5), 20, axis=0)
-    log = replace(LOG, time=0.01 * np.arange(200), inputs=u, outputs=np.zeros((200, 2)))
-    y = Predictor(plant(), log, tuple(TRUTH)).predict(np.array([[*TRUTH.values()]]))[0]
-    return replace(log, outputs=y + NOISE * rng.standard_normal(y.shape), name=f"record {seed}")
+TRUTH = dict(zip(SIZES, (0.08, 0.03), strict=True))
 
 
 def effect(name):
@@ -182,7 +175,7 @@ def state_with_a_curve():
     """A state whose model has a curve of speed at both joints; nothing judged whether it should."""
     task = RecordsTask(
         nominal_model=NominalModel(plant(), ("d",), np.array([0.5]), HORIZON),
-        records=as_records([record_several(1)], [record_several(2), record_several(3)]),
+        records=as_records([record(1, TRUTH, 200)], [record(k, TRUTH, 200) for k in (2, 3)]),
         effects=(effect("curve_speed"),), options=DiscoveryOptions(),
     )  # fmt: skip
     state = WINDOWS.begin(task, lambda line: None)

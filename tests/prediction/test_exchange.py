@@ -1,7 +1,5 @@
 """Records exchange their roles: what holds for all stays, what one lacks is contradicted."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 
@@ -111,15 +109,10 @@ def test_what_is_contradicted_is_told_and_not_named():
     assert any("contradicted where the records exchange their roles" in line for line in said)
 
 
-MU_LENGTHS = "transmitted_load_friction.mu@hinge"
-
-
-@cache
-def fitted(mu=0.15):
-    """Records with friction under load, and the model without it."""
-    logs = records(4, {MU_LENGTHS: mu}, samples=SAMPLES)
-    every = as_records(logs[:2], logs[2:])
-    return [r for r in every if r.role == "confirm"], fit_nominal(nominal_model(), every)
+def fitted():
+    """Records that confirm with friction under load, and the model without it."""
+    every, without, _ = pair("has it")
+    return [r for r in every if r.role == "confirm"], without
 
 
 def predicted(model, confirm, **lengths):

@@ -7,7 +7,6 @@ one stage of the search runs; the other candidates are tried all the same.
 from dataclasses import replace
 from functools import cache
 
-import numpy as np
 import pytest
 from failing_cases import ERRORS, Failing
 from page_text import text_of
@@ -27,7 +26,7 @@ from identification.windows.records import as_records
 
 SIZE, NAME, WHERE = "quadratic_friction.c@hinge", "quadratic_friction", "joint hinge"
 KEY, TRUE = (NAME, WHERE), 0.01
-SAMPLES, ONE = 200, np.ones((1, 1))
+SAMPLES = 200
 
 
 @cache
@@ -74,21 +73,12 @@ def test_a_candidate_whose_columns_fail_is_told_and_the_others_are_scored(monkey
     assert str(first.failed[0]) in said
 
 
-@pytest.mark.parametrize(
-    ("module", "function", "how"),
-    [
+@pytest.mark.parametrize(("module", "function", "how"), [
     (selection, "begin", "gives NaN"), (selection, "with_effect", "is refused"),
     (extension, "predict_fitted", "diverges"),
-],
-)  # fmt: skip
+])  # fmt: skip
 def test_a_candidate_whose_refit_fails_is_told_and_not_named(module, function, how, monkeypatch):
     bad, said = failing(monkeypatch, how), []
-    if function == "with_fitting_steps":  # the steps are short enough here: it asks all the same
-        whole = add_effect.with_fitting_steps
-        monkeypatch.setattr(
-            add_effect, function,
-            lambda m, *rest: m.plant.settings((SIZE,), ONE) and whole(m, *rest),
-        )  # fmt: skip
     bad.within(monkeypatch, module, function)
     answer = conclude(ended(begun(), said.append))
     assert bad.reached

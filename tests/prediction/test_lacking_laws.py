@@ -7,11 +7,11 @@ import mujoco
 import numpy as np
 import pytest
 from arm_cases import LOG, text
+from plain_logs import plain_log
 
 from identification.discovery.nominal_model import NominalModel
 from identification.effects.axes import axes
 from identification.effects.joint_plant import candidates, joint_plant
-from identification.logs.log import Log
 from identification.model.parameter import Parameter
 from identification.prediction.discovery import discover_records
 
@@ -80,10 +80,7 @@ def test_a_torque_that_grows_with_time_is_named_on_a_shaft_that_turns_on_and_on(
         rng = np.random.default_rng(seed)
         u = sign * np.repeat(rng.uniform(0.02, 0.12, 30), 20)[:, None]
         y = measured(SHAFT, u, seed, lambda t: growth * t)
-        logs.append(Log(
-            time=STEP * np.arange(len(u)), inputs=u, outputs=y, input_names=("torque",),
-            output_names=("angle",), name=f"record {seed}",
-        ))  # fmt: skip
+        logs.append(plain_log(u, y, "torque", "angle", STEP, name=f"record {seed}"))
     names = ("joint/shaft.damping",)
     model = mujoco.MjModel.from_xml_string(SHAFT)
     plant = joint_plant(SHAFT, [free(names[0], 2e-3)], logs[0], joints=axes(model, logs[0]))

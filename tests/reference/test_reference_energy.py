@@ -60,7 +60,7 @@ class Power(NamedTuple):
     wound: float  # −Σ ½ λ ε⁺² R ω_m d₀/d, carried onto the rollers with the strained cable
 
 
-def energy(x: np.ndarray, q: np.ndarray) -> Energy:
+def energy(x, q):
     """Returns the energy stored at a state.
 
     Args:
@@ -87,7 +87,7 @@ def energy(x: np.ndarray, q: np.ndarray) -> Energy:
     )
 
 
-def power(x: np.ndarray, i: np.ndarray, q: np.ndarray) -> Power:
+def power(x, i, q):
     """Returns the power into the robot at a state.
 
     Args:

@@ -1,11 +1,8 @@
 """inca discover as a user meets it, what it finds being given."""
 
-from __future__ import annotations
-
 import json
 import re
 import sys
-from pathlib import Path
 from types import ModuleType
 
 import pytest
@@ -20,7 +17,7 @@ from inca_mj.twin.saved import load_twin
 
 
 @pytest.fixture(autouse=True)
-def outcome(monkeypatch: pytest.MonkeyPatch) -> list:
+def outcome(monkeypatch):
     """What the discovery finds, to be changed for another, and the options that it was given."""
     result = [found()]
     module = ModuleType("inca_mj.workflows.discovery")
@@ -35,24 +32,24 @@ def outcome(monkeypatch: pytest.MonkeyPatch) -> list:
 
 
 @pytest.fixture(scope="module")
-def path(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def path(tmp_path_factory):
     path = tmp_path_factory.mktemp("log") / "second.csv"
     write_log(log(), path)
     return path
 
 
-def run(*arguments: object) -> int:
+def run(*arguments):
     return main([str(a) for a in arguments])
 
 
-def test_the_verdict_comes_first(path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_verdict_comes_first(path, capsys):
     assert run("discover", path) == 0
     out = capsys.readouterr().out
     assert out.startswith("Missing from the model: friction – Stribeck peak, all drives")
     assert "+ friction – Stribeck peak, all drives: f_s = 4.12 ± 0.21 mN m" in out
 
 
-def test_json_is_the_contract(path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_json_is_the_contract(path, capsys):
     assert run("discover", path, "--json") == 0
     out = capsys.readouterr().out
     assert out.count("\n") == 1
@@ -81,10 +78,7 @@ def test_json_is_the_contract(path: Path, capsys: pytest.CaptureFixture[str]) ->
         ),
     ],
 )
-def test_a_folder_of_results_is_whole(
-    case: dict, says: str, path: Path, tmp_path: Path, outcome: list,
-    capsys: pytest.CaptureFixture[str],
-) -> None:  # fmt: skip
+def test_a_folder_of_results_is_whole(case, says, path, tmp_path, outcome, capsys):
     outcome[0] = found(**case)
     assert run("discover", path, "--out", tmp_path, "--no-film", "--json") == 0
     record = json.loads(capsys.readouterr().out)
@@ -104,11 +98,8 @@ def test_a_folder_of_results_is_whole(
     assert {e.name for e in twin.effects} == {e["name"] for e in record["effects"]}
 
 
-def test_the_film_stands_in_the_report_before_the_model(
-    path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-) -> None:  # fmt: skip
-    def film_discovery(found: object, folder: Path, progress: object) -> Section:
+def test_the_film_stands_in_the_report_before_the_model(path, tmp_path, monkeypatch, capsys):
+    def film_discovery(found, folder, progress):
         files = [folder / name for name in ("film.mp4", "film.jpg")]
         for file in files:
             file.write_bytes(b"moving")
@@ -129,9 +120,7 @@ def test_the_film_stands_in_the_report_before_the_model(
     assert titles[0] == titles[1] != []
 
 
-def test_options_of_a_file_are_passed_on_and_bad_ones_refused(
-    path: Path, tmp_path: Path, outcome: list, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_options_of_a_file_are_passed_on_and_bad_ones_refused(path, tmp_path, outcome, capsys):
     options = tmp_path / "options.toml"
     options.write_text("min_proof_t = 3.0\n")
     assert run("discover", path, "--options", options) == 0
@@ -148,9 +137,7 @@ def test_options_of_a_file_are_passed_on_and_bad_ones_refused(
 
 
 @pytest.mark.usefixtures("undrawn")
-def test_the_demo_opens_with_the_verdict_and_ends_with_the_report(
-    path: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_demo_opens_with_the_verdict_and_ends_with_the_report(path, tmp_path, capsys):
     assert run("demo", path, "--no-film", "--out", tmp_path / "demo") == 0
     out = capsys.readouterr().out
     assert out.startswith("Missing from the model: ")

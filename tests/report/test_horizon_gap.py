@@ -1,15 +1,13 @@
 """Where a model fails over a horizon: the errors that are told, and the force that is missing."""
 
 from dataclasses import replace
-from functools import cache
 
 import numpy as np
 import pytest
 from fake_discovery import found as free_run
-from records_cases import HORIZON, nominal_model, pendulum, records
+from gap_cases import LEVEL, named, unknown
+from records_cases import HORIZON
 
-from identification.effects.joint_plant import candidates
-from identification.prediction.discovery import discover_records
 from identification.report.discovery_json import discovery_to_json
 from identification.report.discovery_report import discovery_text
 from identification.report.discovery_verdict import discovery_verdict
@@ -22,24 +20,6 @@ from identification.report.horizon_section import (
     horizon_sections,
 )
 from identification.report.horizon_section import WORST as WORST_WINDOWS
-
-LEVEL = 0.03  # of the hidden friction [N m]
-EFFECTS = ("coulomb_friction", "curve_speed", "curve_position")
-
-
-@cache
-def named():
-    """A discovery that names the friction."""
-    logs = records(4, {"coulomb_friction.f_c@hinge": LEVEL}, samples=300)
-    effects = [e for e in candidates(pendulum(), ("J", "d")) if e.name in EFFECTS]
-    return discover_records(nominal_model(), logs[:2], logs[2:], effects)
-
-
-def unknown():
-    """The same, as if no candidate had been proven."""
-    answer = named()
-    return replace(answer, verdict="unknown effect", named=(), final=answer.nominal,
-                   after=answer.before, remaining=answer.scores, findings=())  # fmt: skip
 
 
 def test_errors_are_those_that_the_discovery_tells():

@@ -32,7 +32,7 @@ BY_NAME = (
 NESTED = {FindingKind.OVERSIZED_EFFECT: ("value", "std", "unit", "limit")}
 
 
-def keys_of(value) -> set[str]:
+def keys_of(value):
     if isinstance(value, list):
         return set().union(*map(keys_of, value))
     if not isinstance(value, dict):
@@ -45,7 +45,7 @@ def keys_of(value) -> set[str]:
     return found
 
 
-def section(command: str) -> set[str]:
+def section(command):
     text = PAGE.split(f"## {command}\n")[1].split("\n## ")[0]
     return set(re.findall(r"`(\w+)`", text))
 

@@ -2,36 +2,21 @@
 
 import re
 from dataclasses import replace
-from functools import cache
 
 import fake_discovery
 import numpy as np
 import pytest
-from records_cases import nominal_model, pendulum, records
+from gap_cases import LEVEL, unknown
 from robot_cases import TOML
 
 from identification import read_robot, write_log
 from identification.discovery.missing_forces import MissingForce
-from identification.effects.joint_plant import candidates
-from identification.prediction.discovery import discover_records
 from identification.report.discovery_verdict import discovery_verdict
 from identification.report.horizon_gap import NeededForce, find_gap
 from identification.report.missing_place import find_place, place_of
 from identification.report.named_words import Nodes
 from identification.report.own_stub import own_stub
 from identification.robot.discovery_files import STUB, RobotDiscoveryFiles
-
-LEVEL = 0.03  # [N m]
-
-
-@cache
-def unknown():
-    """A pendulum with dry friction, as if no law had been proven."""
-    logs = records(4, {"coulomb_friction.f_c@hinge": LEVEL}, samples=300)
-    effects = [e for e in candidates(pendulum(), ("J", "d")) if e.name.startswith("curve_")]
-    found = discover_records(nominal_model(), logs[:2], logs[2:], effects)
-    return replace(found, verdict="unknown effect", named=(), final=found.nominal,
-                   after=found.before, remaining=found.scores, findings=())  # fmt: skip
 
 
 def needed(force, std, depends_on="position", reads="position of hinge", unit="rad"):

@@ -19,11 +19,11 @@ EXAMPLE = Path(__file__).parents[2] / "examples" / "own_effect.py"
 
 
 @pytest.fixture(scope="module")
-def own() -> dict:
+def own():
     return runpy.run_path(str(EXAMPLE))
 
 
-def test_it_acts_and_is_nothing_at_zero(own: dict) -> None:
+def test_it_acts_and_is_nothing_at_zero(own):
     u = make_input("prbs", 0.5)
     robot = own["robot_with_it"]()
     nominal = simulate(build_twin(), u).motor_angle
@@ -32,7 +32,7 @@ def test_it_acts_and_is_nothing_at_zero(own: dict) -> None:
     assert np.abs(simulate(robot, u).motor_angle - nominal).max() > 0.01
 
 
-def test_it_is_kept_and_asked_for_by_name(own: dict, tmp_path: Path) -> None:
+def test_it_is_kept_and_asked_for_by_name(own, tmp_path):
     save_twin(own["robot_with_it"](), tmp_path)
     with pytest.raises(InputError, match="winding_friction; pass them"):
         load_twin(tmp_path)
@@ -41,7 +41,7 @@ def test_it_is_kept_and_asked_for_by_name(own: dict, tmp_path: Path) -> None:
 
 
 @pytest.mark.long
-def test_it_is_found(own: dict) -> None:
+def test_it_is_found(own):
     found = own["find"](
         own["log_with_it"](4.0), effects=(STRIBECK_FRICTION, own["WINDING_FRICTION"])
     )
@@ -50,7 +50,7 @@ def test_it_is_found(own: dict) -> None:
     assert abs(value - 5e-4) < 5 * std
 
 
-def test_one_of_a_joint_is_found_beside_the_catalogue(own: dict) -> None:
+def test_one_of_a_joint_is_found_beside_the_catalogue(own):
     found = own["find_on_slider"](own["slider_log"]())
     assert [n.candidate.effect.name for n in found.named] == ["guide_friction"]
     value, std, unit = found.named[0].parameters["c"]
@@ -59,12 +59,12 @@ def test_one_of_a_joint_is_found_beside_the_catalogue(own: dict) -> None:
 
 
 @pytest.fixture
-def saved(tmp_path: Path) -> Path:
+def saved(tmp_path):
     save_twin(named_twin(found()), tmp_path)
     return tmp_path
 
 
-def test_the_trajectory_comes_back_bit_for_bit(saved: Path) -> None:
+def test_the_trajectory_comes_back_bit_for_bit(saved):
     robot, again = named_twin(found()), load_twin(saved)
     assert again.parameters.values() == robot.parameters.values()
     assert again.effects == (STRIBECK_FRICTION,)
@@ -73,7 +73,7 @@ def test_the_trajectory_comes_back_bit_for_bit(saved: Path) -> None:
         np.testing.assert_array_equal(getattr(a, name), getattr(b, name))
 
 
-def test_every_place_and_input_effect_comes_back(tmp_path: Path) -> None:
+def test_every_place_and_input_effect_comes_back(tmp_path):
     robot = truth().with_values({"friction_mismatch.delta@3": 0.1 / 3, "delay.tau": 0.001 / 7})
     save_twin(robot, tmp_path)
     again = load_twin(tmp_path)
@@ -81,19 +81,19 @@ def test_every_place_and_input_effect_comes_back(tmp_path: Path) -> None:
     np.testing.assert_array_equal(rerun(robot, log()).qpos, rerun(again, log()).qpos)
 
 
-def test_the_named_twin_is_the_final_fit() -> None:
+def test_the_named_twin_is_the_final_fit():
     robot = named_twin(found())
     np.testing.assert_allclose(
         rerun(robot, log()).motor_angle, log().outputs - found().run.after, rtol=0, atol=1e-9
     )
 
 
-def test_a_law_that_is_not_at_hand_is_named(saved: Path) -> None:
+def test_a_law_that_is_not_at_hand_is_named(saved):
     with pytest.raises(InputError, match=r"stribeck_friction; pass them"):
         load_twin(saved, effects=CATALOGUE[1:])
 
 
-def test_files_that_do_not_belong_together_are_refused(saved: Path) -> None:
+def test_files_that_do_not_belong_together_are_refused(saved):
     path = saved / "effects.json"
     record = json.loads(path.read_text())
     record["values"]["m"] = 0.2
@@ -109,14 +109,14 @@ def test_files_that_do_not_belong_together_are_refused(saved: Path) -> None:
         (lambda t: t[:40], "cannot be read as JSON"),
     ],
 )
-def test_damaged_files(saved: Path, change, names: str) -> None:
+def test_damaged_files(saved, change, names):
     path = saved / "effects.json"
     path.write_text(change(path.read_text()))
     with pytest.raises(InputError, match=names):
         load_twin(saved)
 
 
-def test_missing_files(tmp_path: Path, saved: Path) -> None:
+def test_missing_files(tmp_path, saved):
     (saved / "model.xml").unlink()
     with pytest.raises(InputError, match=r"no .*model\.xml"):
         load_twin(saved)

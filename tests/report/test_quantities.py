@@ -38,11 +38,11 @@ MINUS_ZERO = re.compile(r"-0(?:\.0*)?(?:e[-+]?\d+)?(?![\d.])")
         (2.38e-6, NAN, "1/s", "2.38e-06 1/s"),
     ],
 )
-def test_quantities(value: float, std: float, unit: str, said: str) -> None:
+def test_quantities(value, std, unit, said):
     assert quantity(value, std, unit) == said
 
 
-def test_one_prefix_for_all() -> None:
+def test_one_prefix_for_all():
     assert alike([0.0805, 0.000499], "rad") == ["80.5 mrad", "0.499 mrad"]
     assert alike([0.131, 0.000676], "rad") == ["131 mrad", "0.676 mrad"]
     assert alike([0.131, 0.0676], "rad") == ["0.131 rad", "0.0676 rad"]
@@ -60,7 +60,7 @@ def test_an_error_of_a_model_has_two_digits():
 
 
 @given(VALUES, STDS, UNITS)
-def test_what_rounds_to_zero_has_no_minus_sign(value: float, std: float, unit: str) -> None:
+def test_what_rounds_to_zero_has_no_minus_sign(value, std, unit):
     said = [
         quantity(value, std, unit),
         *(matched(value, std, sign)[0] for sign in ("", "+")),
@@ -71,22 +71,20 @@ def test_what_rounds_to_zero_has_no_minus_sign(value: float, std: float, unit: s
     assert not [text for text in said if MINUS_ZERO.search(text)]
 
 
-def test_a_column_of_a_table_has_plain_decimals_and_four_digits_without_a_std() -> None:
+def test_a_column_of_a_table_has_plain_decimals_and_four_digits_without_a_std():
     assert matched(2.98818, float("inf")) == ("2.988", "unknown")
     assert matched(0.02300003, 3e-8) == ("0.023000030", "3.0e-08")
     assert matched(2.3e-7, 3e-8)[0] == "2.30e-07"
 
 
 @given(st.floats(1e-9, 1e9), STDS, UNITS)
-def test_a_negative_number_is_said_as_the_positive_one_behind_a_minus_sign(
-    value: float, std: float, unit: str
-) -> None:
+def test_a_negative_number_is_said_as_the_positive_one_behind_a_minus_sign(value, std, unit):
     said, of = quantity(-value, std, unit), quantity(value, std, unit)
     assert said in (f"-{of}", of)
     assert (said == of) == (float(said.split(" ")[0]) == 0)
 
 
-def test_every_number_that_is_written_with_its_sign_says_zero_without_minus() -> None:
+def test_every_number_that_is_written_with_its_sign_says_zero_without_minus():
     """`+` writes the sign of what may be negative; the `z` behind it takes it from minus zero."""
     for package in (identification, inca_mj):
         for file in Path(package.__file__).parent.rglob("*.py"):
@@ -109,22 +107,18 @@ def test_values_that_stand_side_by_side_have_one_prefix():
         (0.04, 0.15, "N", "0.04 ± 0.15 N"),
     ],
 )
-def test_a_value_about_zero_has_the_prefix_and_the_digits_of_its_std(
-    value: float, std: float, unit: str, said: str
-) -> None:
+def test_a_value_about_zero_has_the_prefix_and_the_digits_of_its_std(value, std, unit, said):
     assert quantity(value, std, unit) == said
     assert quantity(value, std, unit, like=abs(value)) == said
 
 
 @given(st.floats(1e-12, 1e6), st.floats(1e-12, 1e6), UNITS)
-def test_the_prefix_is_that_of_the_larger_of_value_and_std(
-    value: float, std: float, unit: str
-) -> None:
+def test_the_prefix_is_that_of_the_larger_of_value_and_std(value, std, unit):
     said = quantity(value, std, unit).split(" ")
     assert said[3:] == quantity(max(value, std), std, unit).split(" ")[3:]
 
 
-def test_brackets_stand_only_around_products() -> None:
+def test_brackets_stand_only_around_products():
     assert per("m", "N") == "m/N"
     assert per("rad", "N m") == "rad/(N m)"
     assert (per("1", "N", 2), per("1", "N m", 2)) == ("1/N^2", "1/(N m)^2")
@@ -175,7 +169,7 @@ WORDS = {"b": "damping b, elbow"}
         ),
     ],
 )
-def test_what_no_output_feels(symmetries: list[ScalingSymmetry], said: str) -> None:
+def test_what_no_output_feels(symmetries, said):
     assert untold(symmetries, NAMES, WORDS) == said
     moved = {name for s in symmetries for name in s.powers}
     assert np.all([WORDS.get(name, name) in said for name in moved])

@@ -28,12 +28,12 @@ from inca_mj.robot.parameters import parameter_set
 from inca_mj.robot.spread import with_spread
 
 
-def effect(name: str, *sizes: Size) -> Candidate:
+def effect(name, *sizes):
     made = Effect(name, "-f", sizes or (Size("f", "N", 2.0, 0.01),), places={"joint hip": "@hip"})
     return Candidate(made, "joint hip", {})
 
 
-def one(name: str, smallest: float) -> Detectable:
+def one(name, smallest):
     return Detectable(effect(name), "f", smallest, "N")
 
 
@@ -41,7 +41,7 @@ MANY = [one(f"law_{k}", 0.01 * (k + 1)) for k in range(60)]
 BLIND = [one("creep", np.inf), one("backlash", 3.0)]
 
 
-def test_every_line_has_a_place_and_few_have_one() -> None:
+def test_every_line_has_a_place_and_few_have_one():
     lines = shown_lines([*MANY, *BLIND])
     assert len(lines) == len(BLIND) + LISTED + 4  # two headings, what has no line, and where
     told = [line for line in lines if (line.startswith("  ") and "law_" in line) or "creep" in line]
@@ -52,13 +52,13 @@ def test_every_line_has_a_place_and_few_have_one() -> None:
     assert rest.startswith("  and 52 more effects, which show from 26 % of the largest plausible")
 
 
-def test_the_hardest_is_first_and_what_never_shows_before_it() -> None:
+def test_the_hardest_is_first_and_what_never_shows_before_it():
     seen, never = shown_effects([*MANY, *BLIND])
     names = [s.sizes[0].candidate.effect.name for s in (*never, *seen)]
     assert names == ["creep", "backlash", *(f"law_{k}" for k in reversed(range(60)))]
 
 
-def test_the_table_has_every_effect_and_the_paragraph_what_matters() -> None:
+def test_the_table_has_every_effect_and_the_paragraph_what_matters():
     rows = shown_rows([*MANY, *BLIND])
     assert len(rows) == 62
     assert rows[1] == ("backlash, joint hip", "not by this log", "2 N")

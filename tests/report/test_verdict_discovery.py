@@ -14,7 +14,7 @@ from identification.report.finding_words import describe_finding, sentence
 from identification.report.named_words import nearest_law
 
 
-def test_a_named_effect_is_said_with_size_place_confidence_and_proof() -> None:
+def test_a_named_effect_is_said_with_size_place_confidence_and_proof():
     said = discovery_verdict(found())
     assert said[0] == (
         "Missing from the model: friction – Stribeck peak, all drives, f_s = 4.12 ± 0.21 mN m"
@@ -50,12 +50,12 @@ def test_a_named_effect_is_said_with_size_place_confidence_and_proof() -> None:
     [("named", 1e-3, True), ("nothing missing", 1e-3, True), ("named", 1.0, False),
      ("unknown effect", 1e-3, False)],
 )  # fmt: skip
-def test_input_errors_that_cannot_be_believed_are_no_noise(verdict, input_error, counts) -> None:
+def test_input_errors_that_cannot_be_believed_are_no_noise(verdict, input_error, counts):
     disturbed = replace(found(verdict), disturbance_rms=0.05, input_error=input_error)
     assert disturbed.floor_rms == pytest.approx(hypot(NOISE, 0.05) if counts else NOISE)
 
 
-def test_a_sensor_is_called_noisy_beside_those_of_its_unit_only() -> None:
+def test_a_sensor_is_called_noisy_beside_those_of_its_unit_only():
     names = [*found().outputs]
     alike = dict.fromkeys(names, NOISE)
     assert len(discovery_verdict(replace(found(), noise_by_output=alike))) == 3
@@ -67,7 +67,7 @@ def test_a_sensor_is_called_noisy_beside_those_of_its_unit_only() -> None:
     assert "The noise of" not in " ".join(discovery_verdict(missing))
 
 
-def test_look_alikes_are_a_set() -> None:
+def test_look_alikes_are_a_set():
     first = discovery_verdict(found(one_of=True))[0]
     assert first.startswith("Missing from the model is one of these, which the data do not surely")
     assert "Stribeck peak, all drives (61 %)" in first
@@ -75,7 +75,7 @@ def test_look_alikes_are_a_set() -> None:
     assert "together 97 %" in first
 
 
-def test_what_is_left_is_said_last() -> None:
+def test_what_is_left_is_said_last():
     said = discovery_verdict(found(unexplained=True))
     assert said[-1].startswith("Something is left beside what is named that no known effect")
     assert said[-1].endswith(sentence(describe_finding(DRIVE_3)))
@@ -91,7 +91,7 @@ def test_what_is_left_is_said_last() -> None:
     assert "(t = 8.3, chance 1e-06 by flips of signs)" in said[-1]
 
 
-def test_two_effects_are_two_sentences() -> None:
+def test_two_effects_are_two_sentences():
     said = discovery_verdict(found(several=True))
     assert said[1].startswith("Missing too: ")
     assert "delta = 20.0 ± 3.0 %" in said[1]
@@ -101,14 +101,14 @@ def test_two_effects_are_two_sentences() -> None:
     assert said[1].startswith("Missing too is one of these")
 
 
-def test_nothing_missing_says_what_would_have_been_seen() -> None:
+def test_nothing_missing_says_what_would_have_been_seen():
     (said,) = discovery_verdict(found("nothing missing"))
     assert said.startswith("Nothing is missing: ")
     assert "Stribeck peak, all drives, f_s 200 µN m" in said
     assert "No plausible size would show in it of these: motor – current comes late." in said
 
 
-def test_an_unknown_effect_is_not_named() -> None:
+def test_an_unknown_effect_is_not_named():
     (said,) = discovery_verdict(found("unknown effect"))
     assert said.startswith("Something is missing that none of the 3 known effects surely explains")
     assert sentence(describe_finding(SLOW)) in said
@@ -116,7 +116,7 @@ def test_an_unknown_effect_is_not_named() -> None:
 
 
 @pytest.mark.parametrize("verdict", ["named", "nothing missing", "unknown effect"])
-def test_text_begins_with_the_verdict_and_holds_no_nan(verdict: str) -> None:
+def test_text_begins_with_the_verdict_and_holds_no_nan(verdict):
     outcome = found(verdict)
     text = discovery_text(outcome)
     assert text.startswith(discovery_verdict(outcome)[0])
@@ -126,7 +126,7 @@ def test_text_begins_with_the_verdict_and_holds_no_nan(verdict: str) -> None:
     assert ("+ friction – Stribeck peak" in text) == (verdict == "named")
 
 
-def test_what_was_tried_and_not_believed_is_told_with_its_size_and_why() -> None:
+def test_what_was_tried_and_not_believed_is_told_with_its_size_and_why():
     text = discovery_text(found())
     told = text[text.index("tried beside what is named, and not believed:") :]
     assert "all drives: tau = 250 ± 100 µs (delay)" in told
@@ -141,7 +141,7 @@ def test_what_was_tried_and_not_believed_is_told_with_its_size_and_why() -> None
     assert "times the noise" in line  # one number is neither before nor after
 
 
-def test_beside_a_curve_the_listed_law_that_comes_nearest_is_told() -> None:
+def test_beside_a_curve_the_listed_law_that_comes_nearest_is_told():
     """That law was left for the curve at its own joint; others are not told there."""
     proof = replace(REJECTED.proof, fall=0.59)
     law = replace(REJECTED, doubt="drawn", evidence=5.0, proof=proof)

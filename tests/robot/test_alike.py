@@ -6,9 +6,10 @@ import mujoco
 import numpy as np
 import pytest
 from joint_cases import steps
+from plain_logs import plain_log
 from robot_cases import refused, run
 
-from identification import InputError, Log, ParameterSet, Predictor, read_robot, write_log
+from identification import InputError, ParameterSet, Predictor, read_robot, write_log
 from identification.discovery.options import DiscoveryOptions
 from identification.innovations.fit import fit_with_effects
 from identification.model.plant import ModelPlant
@@ -50,8 +51,7 @@ def folder(tmp_path_factory):
     (here / "axes.xml").write_text(MODEL)
     (here / "robot.toml").write_text(TOML + SPREAD)
     u = np.hstack([steps(400, seed=k, hold=25) for k in range(3)])
-    still = Log(time=0.01 * np.arange(400), inputs=u, outputs=np.zeros_like(u),
-                input_names=tuple(f"u_{a}" for a in AXES), output_names=AXES)  # fmt: skip
+    still = plain_log(u, np.zeros_like(u), tuple(f"u_{a}" for a in AXES), AXES)
     for name, off in (("differ", OFF), ("alike", dict.fromkeys(AXES, 0.0))):
         dampings = {a: 1.2 * d * (1 + off[a]) for a, d in DAMPINGS.items()}
         model = mujoco.MjModel.from_xml_string(mjcf(dampings))

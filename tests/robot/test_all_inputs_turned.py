@@ -6,10 +6,10 @@ import mujoco
 import numpy as np
 import pytest
 from advice import advised
-from tracked_cases import ARM, MOTION, PENDULUM, nothing, payload, robot, tracked
-from tracked_cases import MOTION as MOTION_MISTAKES
+from plain_logs import plain_log
+from tracked_cases import ARM, MOTION, PENDULUM, payload, robot, tracked
 
-from identification import InputError, Log, write_log
+from identification import InputError
 from identification.logs.units import UNITS
 from identification.refusals.balance import unbalanced_share
 from identification.refusals.forces import tendon_forces
@@ -66,8 +66,7 @@ def hung(mass, speed=1.0, gears=(1.0, 1.0), samples=500, seed=2):
         u[k] = data.ctrl[:] = np.clip(np.linalg.solve(-J.T, force), 1, 400)
         mujoco.mj_step(model, data, 4)
     y += 3e-4 * np.random.default_rng(seed).standard_normal(y.shape)
-    return Log(time=0.01 * np.arange(samples), inputs=u / gears, outputs=y,
-               input_names=["T1", "T2"], output_names=["x", "z"])  # fmt: skip
+    return plain_log(u / gears, y, "T1 T2", "x z")
 
 
 def refused(own, log):
@@ -105,12 +104,8 @@ def test_one_winch_that_pushes_is_told_by_its_name(tmp_path):
 
 
 def test_all_motors_of_joints_turned_are_told(tmp_path):
-    xml = ARM
-    truth = mujoco.MjModel.from_xml_string(xml)
-    nothing(truth)
-    log = tracked(truth, MOTION[xml])
-    own, read = robot(tmp_path, xml, replace(log, inputs=-log.inputs), "horizon = 0.2")
-    said = refused(own, read)
+    log = tracked(mujoco.MjModel.from_xml_string(ARM), MOTION[ARM])
+    said = refused(*robot(tmp_path, ARM, replace(log, inputs=-log.inputs), "horizon = 0.2"))
     assert all(name in said for name in log.input_names)
     assert "[factors]" in said
 
@@ -124,10 +119,9 @@ def test_all_outputs_turned_are_told_and_not_taken_for_inputs_where_gravity_tell
 
 
 def test_without_gravity_both_are_told_because_none_can_tell_them_apart(tmp_path):
-    turned = "outputs"
     log = tracked(mujoco.MjModel.from_xml_string(WEIGHTLESS), MOTION[WEIGHTLESS])
     refuse_miswired(*robot(tmp_path, WEIGHTLESS, log, "horizon = 0.2"))
-    wrong = replace(log, **{turned: -getattr(log, turned)})
+    wrong = replace(log, outputs=-log.outputs)
     said = refused(*robot(tmp_path, WEIGHTLESS, wrong, "horizon = 0.2"))
     assert "turn the sign of q1, q2, or of u1, u2" in said
     both = replace(log, inputs=-log.inputs, outputs=-log.outputs)
@@ -164,20 +158,16 @@ CASES = [
 ]
 
 
-def mistaken(xml, word, signs, world=lambda model: None):
+def mistaken(xml, word, signs):
     """A log of a robot that is written in another unit and with other signs."""
-    truth = mujoco.MjModel.from_xml_string(xml)
-    world(truth)
-    log = tracked(truth, MOTION_MISTAKES[xml])
+    log = tracked(mujoco.MjModel.from_xml_string(xml), MOTION[xml])
     return replace(log, outputs=log.outputs * signs / UNITS[word][1])
 
 
 @pytest.mark.parametrize(("xml", "signs", "word", "horizon"), CASES)
 def test_both_are_told_and_what_is_told_mends_the_log(tmp_path, xml, signs, word, horizon):
     own, read = robot(tmp_path, xml, mistaken(xml, word, signs), horizon)
-    with pytest.raises(InputError) as refused:
-        refuse_miswired(own, read)
-    said = str(refused.value)
+    said = refused(own, read)
     assert f"were it in {word} and with the other sign" in said
     assert f'write trust = ["units", "wiring"] into {own.file.path}' in said
     (tmp_path / "log.toml").write_text(advised(said))
@@ -197,9 +187,7 @@ def test_what_a_model_lacks_is_no_unit_and_no_sign(tmp_path):
     """Forces decide: where a payload or gravity explains them, no two mistakes are looked for."""
     truth = mujoco.MjModel.from_xml_string(ARM)
     payload(truth)
-    log = tracked(truth, MOTION_MISTAKES[ARM], seed=3)
-    write_log(log, tmp_path / "log.csv")
-    refuse_miswired(*robot(tmp_path, ARM, log, HORIZON))
+    refuse_miswired(*robot(tmp_path, ARM, tracked(truth, MOTION[ARM], seed=3), HORIZON))
 
 
 def exchanged(log, of, signs, turned):
@@ -213,7 +201,7 @@ def exchanged(log, of, signs, turned):
     [("outputs", "inputs", [1, -1], HORIZON), ("inputs", "outputs", [-1, 1], HORIZON)],
 )
 def test_an_exchange_beside_a_turned_sign_is_told_and_mended(tmp_path, of, turned, signs, horizon):
-    right = tracked(mujoco.MjModel.from_xml_string(ARM), MOTION_MISTAKES[ARM])
+    right = tracked(mujoco.MjModel.from_xml_string(ARM), MOTION[ARM])
     own, read = robot(tmp_path, ARM, exchanged(right, of, signs, turned), horizon)
     with pytest.raises(InputError, match="exchanged and with the other sign") as refused:
         refuse_miswired(own, read)
@@ -230,7 +218,7 @@ def test_an_exchange_beside_a_turned_sign_is_told_and_mended(tmp_path, of, turne
 
 
 def test_two_turned_signs_are_told_and_mended(tmp_path):
-    right = tracked(mujoco.MjModel.from_xml_string(ARM), MOTION_MISTAKES[ARM])
+    right = tracked(mujoco.MjModel.from_xml_string(ARM), MOTION[ARM])
     wrong = replace(right, outputs=right.outputs * (-1, 1), inputs=right.inputs * (1, -1))
     own, read = robot(tmp_path, ARM, wrong, HORIZON)
     with pytest.raises(InputError, match=r'turn the sign of .*trust = \["wiring"\]') as refused:

@@ -88,15 +88,12 @@ def test_a_held_value_is_that_of_the_file_and_is_not_fitted(tmp_path):
     assert again.plant.model.body("forearm").mass[0] == 1.35
 
 
-@pytest.mark.parametrize(
-    ("was", "becomes", "said"),
-    [
-        ('free = ["mass", "damping"]', 'free = ["mass", "damping"]\nheld = ["mass"]',
-         "mass under free and under held"),
-        ('free = ["mass", "damping"]', 'free = ["damping"]\nheld = ["mass"]', "mass has no value"),
-        ('free = ["mass", "damping"]', 'free = ["damping"]', "or name it under `held`"),
-    ],
-)  # fmt: skip
+@pytest.mark.parametrize(("was", "becomes", "said"), [
+    ('free = ["mass", "damping"]', 'free = ["mass", "damping"]\nheld = ["mass"]',
+     "mass under free and under held"),
+    ('free = ["mass", "damping"]', 'free = ["damping"]\nheld = ["mass"]', "mass has no value"),
+    ('free = ["mass", "damping"]', 'free = ["damping"]', "or name it under `held`"),
+])  # fmt: skip
 def test_what_is_held_is_told_once_and_with_a_value(was, becomes, said, tmp_path):
     shutil.copy(ELBOW / "elbow.xml", tmp_path)
     toml = tmp_path / "elbow.toml"

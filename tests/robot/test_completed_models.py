@@ -6,10 +6,11 @@ import mujoco
 import numpy as np
 import pytest
 from joint_cases import SLIDER, run, slider, slider_log, steps
+from plain_logs import plain_log
 from robot_cases import TOML
 from touching_cases import simulated
 
-from identification import InputError, Log, fit, read_robot, write_log
+from identification import InputError, fit, read_robot, write_log
 from identification.robot.model_file import unit_of
 
 MESH = '<{0}><geometry><mesh filename="package://none/{1}.stl"/></geometry></{0}>'
@@ -46,13 +47,7 @@ def arm(tmp_path):
         mujoco.mj_step(model, data, 5)
     y += 2e-4 * np.random.default_rng(0).standard_normal(y.shape)
     t = 0.01 * np.arange(600)
-    log = Log(
-        time=t,
-        inputs=u,
-        outputs=y,
-        input_names=("shoulder_torque", "elbow_torque"),
-        output_names=("shoulder", "elbow"),
-    )
+    log = plain_log(u, y, "shoulder_torque elbow_torque", "shoulder elbow", time=t)
     write_log(log, tmp_path / "log.csv")
     (tmp_path / "two.urdf").write_text(URDF)
     (tmp_path / "robot.toml").write_text(
@@ -153,20 +148,15 @@ ROBOT = """<mujoco><worldbody><site name="wall" pos="0 0 2"/><body name="cart">
 </actuator></mujoco>"""
 
 
-@pytest.mark.parametrize(
-    ("path", "unit"),
-    [
+@pytest.mark.parametrize(("path", "unit"), [
     ("push.kp", "N/m"), ("turn.kv", "N m s/rad"), ("mixed.kp", ""), ("p*.kp", ""),
-],
-)  # fmt: skip
+])  # fmt: skip
 def test_a_gain_has_the_unit_of_its_place(path, unit):
     model = mujoco.MjModel.from_xml_string(ROBOT)
     assert unit_of(model, f"actuator/{path}") == unit
 
 
 def test_a_free_gain_is_printed_with_its_unit_and_read_in_no_other(tmp_path):
-    from touching_cases import simulated
-
     xml, toml = LINK.format(9.0, 0.5, 6.0), tmp_path / "link.toml"
     write_log(simulated(xml, samples=60, noise=1e-4), tmp_path / "log.csv")
     (tmp_path / "link.xml").write_text(xml)

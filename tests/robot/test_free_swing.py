@@ -8,9 +8,10 @@ import mujoco
 import numpy as np
 import pytest
 from joint_cases import SLIDER, run, slider_log, steps
+from plain_logs import model_log
 from records_cases import MJCF, pendulum, record
 
-from identification import Log, fit, joint_plant, read_robot, write_log
+from identification import fit, joint_plant, read_robot, write_log
 from identification.__main__ import main
 from identification.errors import InputError
 from identification.estimation.identifiability import identifiability
@@ -43,13 +44,7 @@ def swing(xml, start, samples, h=0.02, noise=3e-4, force=0.0):
         y[k] = data.qpos
         mujoco.mj_step(model, data, round(h / model.opt.timestep))
     y += noise * np.random.default_rng(4).standard_normal(y.shape)
-    return Log(
-        time=h * np.arange(samples),
-        inputs=np.full((samples, model.nu), force),
-        outputs=y,
-        input_names=[model.actuator(i).name for i in range(model.nu)],
-        output_names=[model.sensor(i).name for i in range(model.nsensor)],
-    )
+    return model_log(model, np.full((samples, model.nu), force), y, h)
 
 
 def robot(folder, xml, log, free, more=""):

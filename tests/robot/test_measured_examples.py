@@ -15,6 +15,7 @@ import pytest
 import winch
 import winch_strokes as strokes
 import xl330
+from plain_logs import plain_log
 
 from identification import Log, Predictor, estimate_windows, read_robot, window_error
 from identification.effects.rows import read_model
@@ -66,14 +67,7 @@ def made_up(n=300, seed=2):
     levels = np.random.default_rng(seed).uniform(-5, 5, n // 10 + 1)
     u = np.repeat(levels, 10)[:n, None]
     time = xl330.STEP * np.arange(n)
-    return Log(
-        time=time,
-        inputs=u,
-        outputs=np.sin(3 * time)[:, None],
-        input_names=("motor",),
-        output_names=("angle",),
-        hold="foh",
-    )
+    return plain_log(u, np.sin(3 * time)[:, None], "motor", "angle", time=time, hold="foh")
 
 
 def test_a_record_is_read_on_an_even_grid_with_signs_and_without_what_the_motor_left_alone(

@@ -125,9 +125,8 @@ def without_time(record):
 
 
 def test_fit_and_confirm_say_what_the_command_says(folder, capsys):
-    horizon = "horizon = 0.5\n"
-    path = folder / f"verbs{len(horizon)}.toml"
-    path.write_text(horizon + TOML)
+    path = folder / "verbs.toml"
+    path.write_text("horizon = 0.5\n" + TOML)
     logs = folder / "short.csv", folder / "short too.csv"
     for log, seed in zip(logs, (1, 5), strict=True):
         write_log(simulated({"damping": 3.6, "mass": 1.8}, 400, seed), log)
@@ -143,9 +142,8 @@ def test_fit_and_confirm_say_what_the_command_says(folder, capsys):
 
 @pytest.mark.long
 def test_without_records_the_part_that_was_not_fitted_confirms(folder, tmp_path):
-    horizon = "horizon = 0.5\n"
-    path = folder / f"unseen{len(horizon)}.toml"
-    path.write_text(horizon + TOML)
+    path = folder / "unseen.toml"
+    path.write_text("horizon = 0.5\n" + TOML)
     log = simulated({"damping": 3.6, "mass": 1.8}, 600)
     write_log(log, tmp_path / "plain.csv")
     robot = read_robot(path, tmp_path / "plain.csv")
@@ -154,8 +152,6 @@ def test_without_records_the_part_that_was_not_fitted_confirms(folder, tmp_path)
     assert there.log == "plain [validation]"
     assert 4e-4 < there.after < 8e-4  # the noise is 5e-4, and a free run drifts a little
     assert there.before > 2 * there.after
-    if not horizon:
-        assert there.after == pytest.approx(found.found.validation_rms, rel=1e-6)
 
 
 def test_a_log_that_is_read_already_is_the_same_robot(folder):

@@ -96,24 +96,10 @@ def test_how_long_a_horizon_may_be_is_told(folder, capsys, confirm, horizon, mos
     assert f"it may be 0.03 s, of 3 samples, to {most} s, to fit" in said
 
 
-def test_time_in_milliseconds_is_asked_for_and_converted(folder, capsys):
-    log = simulated({})
-    write_log(replace(log, time=1e3 * log.time), folder / "slow.csv")
-    said = refused(capsys, "fit", folder / "robot.toml", folder / "slow.csv")
-    assert "is sampled every 10 s, 5000 steps of" in said
-    assert f'in ms? then write time = "ms" under [units] in {folder / "slow.toml"}' in said
-    (folder / "slow.toml").write_text('units.time = "ms"')
-    read = read_robot_log(read_robot_file(folder / "robot.toml"), folder / "slow.csv")
-    assert read.sampling_time == pytest.approx(0.01)
-
-
-@pytest.mark.parametrize(
-    ("change", "line"),
-    [
+@pytest.mark.parametrize(("change", "line"), [
     (("</body>", ""), "mismatched tag: line 4"),
     (('gear="5"', 'geer="5"'), "'geer' Element 'general', li"),
-],
-)  # fmt: skip
+])  # fmt: skip
 def test_a_model_that_is_broken_is_told_with_its_path_and_line(folder, capsys, change, line):
     (folder / "broken.xml").write_text(SLIDER.replace(*change, 1))
     path = folder / "broken.toml"

@@ -5,7 +5,8 @@ from dataclasses import replace
 import mujoco
 import numpy as np
 import pytest
-from joint_cases import ARM, SLIDER, arm, run, slider, slider_log, steps
+from joint_cases import ARM, SLIDER, arm, arm_log, run, slider, slider_log, steps
+from plain_logs import plain_log
 
 from identification import Log, write_log
 from identification.__main__ import main
@@ -53,14 +54,7 @@ def cart(tmp_path_factory):
 @pytest.fixture(scope="module")
 def two_joints(tmp_path_factory):
     u = steps(240, 2, hold=30)
-    t = np.arange(len(u)) * 0.01
-    log = Log(
-        time=t,
-        inputs=u,
-        outputs=np.stack([np.sin(2 * t), np.cos(3 * t)], axis=1),
-        input_names=("up", "low"),
-        output_names=("a", "b"),
-    )
+    log = arm_log(u)
     y = run(arm(), log)
     log = replace(log, outputs=y + 1e-3 * RNG.standard_normal(y.shape))
     return robot(tmp_path_factory.mktemp("arm"), ARM, log, "joint/elbow.damping")
@@ -78,13 +72,7 @@ def crane(z, feedback, samples=600):
         u[k] = data.ctrl[0] = push[k] + np.dot(feedback, [*data.qpos, *data.qvel])
         mujoco.mj_step(model, data, 4)
     y += 3e-4 * RNG.standard_normal(y.shape)
-    return Log(
-        time=np.arange(samples) * 0.01,
-        inputs=u,
-        outputs=y,
-        input_names=("push",),
-        output_names=("pos", "ang"),
-    )
+    return plain_log(u, y, "push", "pos ang")
 
 
 @pytest.fixture(scope="module")

@@ -35,25 +35,14 @@ def robot(folder, log, option, records=None, horizon=None):
     model = folder / "slider.xml"
     model.write_text(SLIDER.replace(OPTION, f'gravity="0 0 0" {option}'))
     records = records or {}
-    return robot_of(
-        RobotFile(
-            path=folder / "r.toml",
-            model=model,
-            free=tuple(records),
-            records=records,
-            horizon=horizon,
-        ),
-        log,
-    )
+    known = {"free": tuple(records), "records": records, "horizon": horizon}
+    return robot_of(RobotFile(path=folder / "r.toml", model=model, **known), log)
 
 
-@pytest.mark.parametrize(
-    ("option", "records", "words"),
-    [
+@pytest.mark.parametrize(("option", "records", "words"), [
     ('timestep="0.01"', None, "integrator Euler and timestep 0.01 s, more than the noise of"),
     ('timestep="0.01" integrator="RK4"', STIFF, "integrator RK4 and timestep 0.01 s"),
-],
-)  # fmt: skip
+])  # fmt: skip
 def test_the_cure_that_is_told_cures(tmp_path, log, option, records, words):
     with pytest.raises(InputError, match=words) as refusal:
         refuse_coarse_steps(robot(tmp_path, log, option, records))
@@ -135,9 +124,8 @@ def refused(*where, **written):
 
 @pytest.mark.parametrize("toml", [FREE_RUN, HORIZON], ids=["free run", "horizon"])
 def test_a_factor_beyond_what_robots_have_is_named(folder, toml):
-    column = "current"
-    said = refused(folder, toml, own=f"[factors]\n{column} = 1e20\n")
-    assert f"the factor 1e+20 of {column} under 'factors' in {folder / 'first.toml'}" in said
+    said = refused(folder, toml, own="[factors]\ncurrent = 1e20\n")
+    assert f"the factor 1e+20 of current under 'factors' in {folder / 'first.toml'}" in said
     assert "step" not in said
 
 
@@ -180,9 +168,8 @@ def test_a_start_that_a_horizon_does_not_use_is_remarked(folder):
 
 
 def test_a_wrong_factor_of_an_output_is_named_over_a_horizon(folder):
-    factor = "1000"
-    said = refused(folder, HORIZON, own=f"[factors]\nangle = {factor}\n")
-    assert f"without the factor {factor} of angle that the log's TOML gives" in said
+    said = refused(folder, HORIZON, own="[factors]\nangle = 1000\n")
+    assert "without the factor 1000 of angle that the log's TOML gives" in said
     assert "correct the factor of angle under [factors] there" in said
     assert "[units]" not in said
     assert 'or write trust = ["units"] into' in said
@@ -199,11 +186,10 @@ def test_a_right_factor_of_an_output_is_not_blamed(folder):
 
 
 def test_a_start_beyond_all_that_the_log_shows_is_refused(folder):
-    entry = '"qvel[0]" = -1e5'
     own = '\ntrust = ["steps"]\n'
-    said = refused(folder, own + FREE_RUN, start=f"[start]\n{entry}\n")
-    assert said.startswith(f"start in {folder / 'robot.toml'}: it gives {entry[1:8]} = ")
-    assert f"correct {entry[1:8]}, or delete it to begin where the log does" in said
+    said = refused(folder, own + FREE_RUN, start='[start]\n"qvel[0]" = -1e5\n')
+    assert said.startswith(f"start in {folder / 'robot.toml'}: it gives qvel[0] = ")
+    assert "correct qvel[0], or delete it to begin where the log does" in said
     assert robot_in(folder, own + FREE_RUN, start='[start]\n"qpos[0]" = 500.0\n').remarks
 
 
@@ -226,10 +212,9 @@ def said(monkeypatch):
 
 
 def test_a_factor_is_named_as_what_may_be_wrong(said):
-    column = "current"
-    sentence = said({column: 1000.0})
+    sentence = said({"current": 1000.0})
     assert sentence.startswith("it diverged; use a smaller step. First see whether it is right: ")
-    assert f"the factor 1000 of {column} under [factors] for log 'first', which makes" in sentence
+    assert "the factor 1000 of current under [factors] for log 'first', which makes" in sentence
 
 
 def test_without_one_the_place_of_the_step_is_told(said):

@@ -6,30 +6,30 @@ import mujoco
 import pytest
 from tracked_cases import ARM, MOTION, friction, heavy, no_gravity, nothing, payload, robot, tracked
 
-from identification import InputError, Log
+from identification import InputError
 from identification.refusals.columns import turned
 from identification.refusals.wiring import refuse_unbalanced
 
 
-def a_log(world=payload) -> Log:
+def a_log(world=payload):
     model = mujoco.MjModel.from_xml_string(ARM)
     world(model)
     return tracked(model, MOTION[ARM])
 
 
-def in_millinewton(log: Log) -> Log:
+def in_millinewton(log):
     return replace(log, inputs=1000 * log.inputs)
 
 
-def motor_turned(log: Log) -> Log:
+def motor_turned(log):
     return replace(log, inputs=turned(log.inputs, [0]))
 
 
-def motors_exchanged(log: Log) -> Log:
+def motors_exchanged(log):
     return replace(log, inputs=log.inputs[:, ::-1])
 
 
-def angles_exchanged(log: Log) -> Log:
+def angles_exchanged(log):
     return replace(log, outputs=log.outputs[:, ::-1])
 
 

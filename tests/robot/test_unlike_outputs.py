@@ -126,44 +126,31 @@ def test_the_worse_outputs_are_named_beside_the_others():
     assert "before you rely on what it predicts of angles." in said
 
 
-def test_records_count_together():
+def test_no_outputs_are_called_worse_that_are_not_given_up_for_others_in_all_records():
     one = confirmation({"m": 1.0, "rad": 1.0}, {"m": 0.5, "rad": 1.2})
     other = confirmation({"m": 1.0, "rad": 2.0}, {"m": 0.5, "rad": 1.0})
     assert worse_unit([one])
     assert not worse_unit([one, other])
-
-
-@pytest.mark.parametrize("after", [{"m": 0.9, "rad": 0.9}], ids=["both better"])
-def test_nothing_is_said_where_no_unit_is_given_up_for_another(after):
-    assert worse_unit([confirmation({"m": 1.0, "rad": 1.0}, after)]) == []
-
-
-def test_outputs_of_one_unit_are_told_by_their_own_sentence():
-    assert worse_unit([confirmation({"rad": 1.0}, {"rad": 2.0})]) == []
+    assert not worse_unit([confirmation({"m": 1.0, "rad": 1.0}, {"m": 0.9, "rad": 0.9})])
+    assert not worse_unit([confirmation({"rad": 1.0}, {"rad": 2.0})])  # has its own sentence
 
 
 ERRORS, SIZES = PAIR.format(" rms"), PAIR.format("")
 
 
 @pytest.fixture(scope="module")
-def folder_horizon(tmp_path_factory):
+def over_windows(tmp_path_factory):
     path = write_robot_and_logs(tmp_path_factory.mktemp("unlike"))
     lines = TOML.replace("free = ", "horizon = 0.3\nfree = ").replace("robot.xml", "stiff.xml")
     stiff = (path / "robot.xml").read_text().replace('stiffness="200"', 'stiffness="201"')
     (path / "stiff.xml").write_text(stiff)
     known = "[effects]\njoints = ['slide']\nonly = ['stiffness', 'offset']\n"
     (path / "horizon.toml").write_text(lines + known)
-    return path
+    return path / "horizon.toml", path / "first.csv", "--confirm", path / "second.csv"
 
 
-def test_a_fit_over_a_horizon_tells_each_unit_by_itself(folder_horizon, capsys):
-    logs = (
-        folder_horizon / "horizon.toml",
-        folder_horizon / "first.csv",
-        "--confirm",
-        folder_horizon / "second.csv",
-    )
-    said = run(capsys, "fit", *logs)
+def test_a_fit_over_a_horizon_tells_each_unit_by_itself(over_windows, capsys):
+    said = run(capsys, "fit", *over_windows)
     text = " ".join(said["verdict"])
     for words in (
         rf"windows of 0.3 s leave {ERRORS}, [\d.]+ and [\d.]+ times the noise floor of {SIZES}\.",
@@ -178,14 +165,8 @@ def test_a_fit_over_a_horizon_tells_each_unit_by_itself(folder_horizon, capsys):
     assert there["after_by_unit"] == second["after_by_unit"] == said["validation_rms_by_unit"]
 
 
-def test_a_discovery_over_a_horizon_tells_each_unit_by_itself(folder_horizon, capsys, tmp_path):
-    logs = (
-        folder_horizon / "horizon.toml",
-        folder_horizon / "first.csv",
-        "--confirm",
-        folder_horizon / "second.csv",
-    )
-    said = run(capsys, "discover", *logs, "--out", tmp_path / "out")
+def test_a_discovery_over_a_horizon_tells_each_unit_by_itself(over_windows, capsys, tmp_path):
+    said = run(capsys, "discover", *over_windows, "--out", tmp_path / "out")
     page = (tmp_path / "out" / "report.html").read_text()
     text = re.sub(r"</?span[^>]*>", "", page)
     assert re.search(rf"{SIZES}</td>", text)

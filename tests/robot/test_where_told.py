@@ -168,12 +168,6 @@ def none_at_rest(s, p):
     return p[0] * s.v if s.v > 0 else None
 
 
-def raises_behind(s, p):
-    if s.q < 0:
-        raise ValueError("no way back")
-    return p[0] * s.v
-
-
 def root(s, p):
     return p[0] * s.q**0.5
 

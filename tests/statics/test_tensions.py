@@ -20,18 +20,18 @@ poses = st.tuples(coordinate, coordinate, st.floats(0.9, 2.2), small_angle, smal
 forces = st.tuples(*[st.floats(-6, 6)] * 3, *[st.floats(-0.2, 0.2)] * 3).map(np.array)
 
 
-def wrench_matrix(pose: np.ndarray) -> np.ndarray:
+def wrench_matrix(pose):
     return -length_jacobian(pose[:3], rotation(*pose[3:]), INCA).T
 
 
-def possible(W: np.ndarray, w: np.ndarray, low: float, high: float) -> bool:
+def possible(W, w, low, high):
     """Whether a linear program finds tensions within the limits."""
     return linprog(np.zeros(8), A_eq=W, b_eq=w, bounds=[(low, high)] * 8, method="highs").success
 
 
 @given(poses, forces, st.floats(0, 20))
 @settings(max_examples=50, deadline=None)
-def test_closed_form_balances_and_leaves_t_0_along_the_row_space_only(pose, w, t_0) -> None:
+def test_closed_form_balances_and_leaves_t_0_along_the_row_space_only(pose, w, t_0):
     W = wrench_matrix(pose)
     T, N = nearest(W, w, t_0), null_space(W)
     assert N.shape == (8, 2)
@@ -41,14 +41,14 @@ def test_closed_form_balances_and_leaves_t_0_along_the_row_space_only(pose, w, t
 
 @given(poses, forces)
 @settings(max_examples=50, deadline=None)
-def test_minimum_norm_is_the_pseudo_inverse(pose, w) -> None:
+def test_minimum_norm_is_the_pseudo_inverse(pose, w):
     W = wrench_matrix(pose)
     np.testing.assert_allclose(nearest(W, w, 0.0), np.linalg.pinv(W) @ w, atol=1e-8)
 
 
 @given(poses, forces, st.floats(0.2, 3), st.floats(4, 25), st.floats(0, 20))
 @settings(max_examples=80, deadline=None)
-def test_limits_hold_and_the_conditions_of_optimality_too(pose, w, low, high, t_0) -> None:
+def test_limits_hold_and_the_conditions_of_optimality_too(pose, w, low, high, t_0):
     """KKT: along null-space directions, T − t₀ is balanced by multipliers of active limits ≥ 0."""
     W = wrench_matrix(pose)
     try:
@@ -74,7 +74,7 @@ def test_limits_hold_and_the_conditions_of_optimality_too(pose, w, low, high, t_
     assert left.fun < 1e-6 * scale
 
 
-def test_a_general_solver_finds_the_same() -> None:
+def test_a_general_solver_finds_the_same():
     rng = np.random.default_rng(0)
     compared = 0
     for _ in range(30):
@@ -93,7 +93,7 @@ def test_a_general_solver_finds_the_same() -> None:
     assert compared >= 10
 
 
-def test_each_cable_has_its_own_limits() -> None:
+def test_each_cable_has_its_own_limits():
     W, w = wrench_matrix(np.array([0, 0, 1.43, 0, 0, 0])), np.array([0, 0, 1.7, 0, 0, 0])
     low = np.array([6.0, 0, 0, 0, 0, 0, 0, 0])
     T = distribute(W, w, low, 30.0)
@@ -109,7 +109,7 @@ def test_each_cable_has_its_own_limits() -> None:
         ({"W": np.zeros((6, 8))}, "rank 0 of 6"),
     ],
 )
-def test_refusals(change, sentence) -> None:
+def test_refusals(change, sentence):
     usual = {"W": wrench_matrix(np.array([0, 0, 1.43, 0, 0, 0])), "low": 1.0, "high": 20.0,
              "w": np.array([0, 0, 1.7, 0, 0, 0])}  # fmt: skip
     with pytest.raises(InputError, match=sentence):

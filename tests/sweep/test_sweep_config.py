@@ -96,9 +96,7 @@ def test_files_of_a_folder_are_an_axis(tmp_path, monkeypatch):
     assert chosen.task(0).settings["marker"] == str(data / "b.csv")
 
 
-@pytest.mark.parametrize(
-    ("text", "words"),
-    [
+@pytest.mark.parametrize(("text", "words"), [
     ("seed = 1", "has no [[study]]"),
     ("speed = 1\n[[study]]\nmethod = 'trial'", "unknown key .*'speed'; did you mean 'seed'"),
     ("[[study]]\nmethod = 'trail'", "unknown method 'trail'; did you mean 'trial'"),
@@ -119,9 +117,8 @@ def test_files_of_a_folder_are_an_axis(tmp_path, monkeypatch):
     (WORLDS + "\n[study.settings]\nduration=-1", "'world-score': duration = -1 .* 0.02 s"),
     (WORLDS + "\n[study.settings]\nworld=-1", "world -1 is negative"),
     (PRACTICE + "\n[study.settings]\nlog='$NO_SUCH/a.csv'",
-         "needs the variable NO_SUCH"),
-],
-)  # fmt: skip
+     "needs the variable NO_SUCH"),
+])  # fmt: skip
 def test_bad_sweeps_are_refused_before_anything_runs(tmp_path, refusal, text, words):
     import re
 
