@@ -4,18 +4,21 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import mujoco
+import numpy as np
 
 from identification.errors import InputError
 from identification.files import exists, toml_key, toml_table, toml_value, whole_file
 from identification.inspection.inspected import SAID, Inspection
-from identification.inspection.matching import SAME, Match, channels_of, match
+from identification.inspection.matching import SAME, Channel, Match, channels_of, match
 from identification.inspection.words import answer_sentences
+from identification.logs.names import listed
 from identification.logs.units import to_si
 from identification.model.tied import servo_kind
+from identification.robot.completed import torques_without_motor
 from identification.robot.file import RobotFile
 from identification.robot.model_file import robot_spec
 
@@ -57,8 +60,12 @@ def write_beginning(found: Inspection, model: Path, path: Path) -> Beginning:
         raise InputError(
             f"{path} exists, and nothing of yours is replaced; give another name behind --robot"
         )
-    spec, said = robot_spec(RobotFile(path=path, model=model, free=()))
+    file = RobotFile(path=path, model=model, free=())
+    spec, said = robot_spec(file)
     compiled = spec.compile()
+    if motors := _motors(spec, compiled, found):
+        spec, said = robot_spec(replace(file, columns=motors))
+        compiled = spec.compile()
     matches = match(channels_of(compiled), found)
     needs = _needs(compiled, matches)
     place = os.path.relpath(model, path.parent)
@@ -69,6 +76,31 @@ def write_beginning(found: Inspection, model: Path, path: Path) -> Beginning:
     answers = answer_sentences(found.answers)
     told = [*said, f"columns of the same name: {_listed(sure)}"] if sure else [*said]
     return Beginning(path, (*told, *answers), _guesses(found, compiled, matches), tuple(needs))
+
+
+def _motors(spec: mujoco.MjSpec, model: mujoco.MjModel, found: Inspection) -> dict[str, str]:
+    """Returns the motors that a model without actuators needs for the torques in a log."""
+    forces = {c.name for c in found.columns if c.unit and to_si(c.unit)[0] in ("N m", "N")}
+    if model.nu or not forces:
+        return {}
+    lacking = [Channel(name, name.rpartition("_")[0], True) for name in torques_without_motor(spec)]
+    matches = match([*lacking, *channels_of(model)], found)
+    return {m.channel.name: m.column for m in matches if m.channel.is_input and m.column in forces}
+
+
+def _unanswered(
+    found: Inspection, model: mujoco.MjModel, matches: Sequence[Match]
+) -> tuple[str, ...]:
+    """Returns a sentence on the columns that look like inputs and are those of no actuator."""
+    taken = {m.column for m in matches}
+    columns = [c.name for c in found.columns if c.role == "input" and c.name not in taken]
+    if not columns:
+        return ()
+    drives = listed(model.actuator(k).name for k in range(model.nu)) if model.nu else "none"
+    return (
+        f"{listed(columns)}: no actuator of the model takes"
+        f" {'it' if len(columns) == 1 else 'them'}; its actuators: {drives}",
+    )
 
 
 def _guesses(found: Inspection, model: mujoco.MjModel, matches: Sequence[Match]) -> tuple[str, ...]:
@@ -82,7 +114,7 @@ def _guesses(found: Inspection, model: mujoco.MjModel, matches: Sequence[Match])
     ]
     units = [f"{line} (unit)" for line in _log_lines(found, matches) if "=" in line]
     return (
-        *columns, *units,
+        *columns, *units, *_unanswered(found, model, matches),
         f"free = {toml_value(free)}: one number for each measured joint; free what you want to"
         " know",
         f"horizon = {_horizon(found)!r} s: how far ahead the model must predict, a part of a swing",
@@ -96,7 +128,7 @@ def _horizon(found: Inspection) -> float:
 def _measured(matches: Sequence[Match]) -> list[str]:
     """Returns the joints that a column measures."""
     outputs = [m for m in matches if not m.channel.is_input and m.column]
-    return [*dict.fromkeys(m.channel.joint for m in outputs)]
+    return [*dict.fromkeys(m.channel.joint for m in outputs if m.channel.joint)]
 
 
 def _listed(matches: Sequence[Match]) -> str:
@@ -150,6 +182,8 @@ def _log_lines(found: Inspection, matches: Sequence[Match]) -> list[str]:
 
 def _what(model: mujoco.MjModel, m: Match) -> str:
     """Returns what a channel is, for a comment."""
+    if not m.channel.is_input and not m.channel.joint:
+        return "the length of a tendon, which tells joints"
     if not m.channel.is_input:
         return f"the {'rate' if m.channel.is_rate else 'position'} of joint {m.channel.joint}"
     row = int(model.actuator(m.channel.name).id)
@@ -166,11 +200,19 @@ def _needs(model: mujoco.MjModel, matches: Sequence[Match]) -> list[str]:
                 f"no column was found for actuator {m.channel.name}; name it under [columns], or"
                 " take the actuator out of the model"
             )
+    for j in np.flatnonzero(model.jnt_type == int(mujoco.mjtJoint.mjJNT_FREE)):
+        body = model.body(int(model.jnt_bodyid[j])).name
+        name = model.joint(int(j)).name or body or "NAME"
+        out.append(
+            f"body {body or 'without a name'} has a free joint; write {toml_key(name)} = [seven"
+            " columns: x, y, z and the quaternion w, x, y, z] under [columns] if the log has its"
+            " pose, or delete the free joint if it is fixed"
+        )
     if not any(m.column for m in matches if not m.channel.is_input):
         joint = model.joint(0).name if model.njnt else "NAME"
         out.append(
             "no sensor of the model has a column; give the model a sensor for each measured joint,"
-            f' such as <jointpos name="{joint}" joint="{joint}"/>, and name its column'
+            f' such as <jointpos name="{joint}" joint="{joint}"/>, or name its column'
         )
     return out
 

@@ -18,6 +18,7 @@ from identification.inspection.inspected import Inspection
 SAME = "the same name"  # how a column was found, which is no guess
 _RATE = int(mujoco.mjtSensor.mjSENS_JOINTVEL)
 _POSITION = int(mujoco.mjtSensor.mjSENS_JOINTPOS)
+_LENGTH = int(mujoco.mjtSensor.mjSENS_TENDONPOS)
 _OF_JOINTS = (int(mujoco.mjtTrn.mjTRN_JOINT), int(mujoco.mjtTrn.mjTRN_JOINTINPARENT))
 
 
@@ -26,7 +27,7 @@ class Channel:
     """An actuator or a sensor of a model that a column of a log may be."""
 
     name: str
-    joint: str  # on which it acts, or which it measures; "" for another thing
+    joint: str  # on which it acts, or which it measures; "" for another thing, such as a tendon
     is_input: bool
     is_rate: bool = False
 
@@ -41,14 +42,14 @@ class Match:
 
 
 def channels_of(model: mujoco.MjModel) -> tuple[Channel, ...]:
-    """Returns the actuators of a model, and its sensors of positions and rates of joints."""
+    """Returns the actuators of a model, and its sensors of joints and of lengths of tendons."""
     inputs = [
         Channel(model.actuator(k).name, _joint(model, k), True) for k in range(model.nu)
     ]  # fmt: skip
     outputs = [
-        Channel(model.sensor(k).name, model.joint(int(model.sensor_objid[k])).name, False,
+        Channel(model.sensor(k).name, _measured(model, k), False,
                 int(model.sensor_type[k]) == _RATE)
-        for k in range(model.nsensor) if int(model.sensor_type[k]) in (_RATE, _POSITION)
+        for k in range(model.nsensor) if int(model.sensor_type[k]) in (_RATE, _POSITION, _LENGTH)
     ]  # fmt: skip
     return (*inputs, *outputs)
 
@@ -100,6 +101,12 @@ def _may_be(channel: Channel, name: str, found: Inspection) -> bool:
     if channel.is_input:
         return role != "output"
     return role != "input" and is_rate(name) == channel.is_rate
+
+
+def _measured(model: mujoco.MjModel, sensor: int) -> str:
+    if int(model.sensor_type[sensor]) == _LENGTH:
+        return ""
+    return str(model.joint(int(model.sensor_objid[sensor])).name)
 
 
 def _joint(model: mujoco.MjModel, actuator: int) -> str:

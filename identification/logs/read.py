@@ -17,6 +17,7 @@ from identification.logs.formats import log_table, refuse_no_log
 from identification.logs.log import Log
 from identification.logs.names import check_column_names, check_keys, lookup
 from identification.logs.plausible import check_plausible, check_possible
+from identification.logs.poses import Pose, measured_columns, with_angles
 from identification.logs.publishers import (
     refuse_interleaved,
     refuse_second_publisher,
@@ -52,6 +53,7 @@ def read_log(
     said: Mapping[str, Any] | None = None,
     overrule: str = "",
     trust_rows: bool = False,
+    poses: Sequence[Pose] = (),
 ) -> Log:
     """Read a log; columns may stand in any order, and a file that cannot be right is refused.
 
@@ -76,6 +78,7 @@ def read_log(
         overrule: how a user may overrule `limits` and `rates`, for their messages.
         trust_rows: whether rows that look like those of a second publisher are read; else they are
             refused where `lenient`, and in any case where most stamps have such rows.
+        poses: outputs that are made of the columns of a pose; these are read in their place.
 
     Returns:
         The log in SI units, named after the file.
@@ -85,7 +88,8 @@ def read_log(
             to do.
     """
     path, units, limits, rates = Path(path), units or {}, limits or {}, rates or {}
-    columns = (*inputs, *outputs, *optional)
+    measured = measured_columns(outputs, poses)
+    columns = (*inputs, *measured, *optional)
     check_column_names(columns)
     for what, keys in (("unit", units), ("limit", limits), ("rate", rates)):
         check_keys(f"{what} for column", keys, columns)
@@ -99,7 +103,7 @@ def read_log(
             f"{sidecar.file_of('values')} gives values of a robot under [values], which only the"
             " robots of read_robot have; leave them out"
         )
-    table = _read_table(path, inputs, outputs, optional, sidecar, lenient)
+    table = _read_table(path, inputs, measured, optional, sidecar, lenient)
     for key in ("units", "factors"):
         check_keys(
             f"column under {key!r} in {sidecar.file_of(key)}:",
@@ -115,10 +119,10 @@ def read_log(
     remarks = (*table.remarks, remark) if remark else table.remarks
     if "time" not in table.names and sidecar.sampling_time:
         table = _with_time(table, sidecar.sampling_time)
-    check_columns(table, ("time", *inputs, *outputs), optional, sidecar, named_in)
+    check_columns(table, ("time", *inputs, *measured), optional, sidecar, named_in)
 
     si, factors = conversions(table, sidecar, {**units, "time": "s"})
-    table = converted(table, sidecar, factors)
+    table = with_angles(converted(table, sidecar, factors), poses)
     gaps: tuple[tuple[float, float], ...] = ()
     if lenient:
         check_stamps(table)
@@ -152,7 +156,7 @@ def read_log(
         input_names=tuple(inputs),
         output_names=tuple(outputs),
         extras={name: table[name] for name in optional if name in table.names},
-        units={name: unit for name, unit in si.items() if name != "time"},
+        units={n: u for n, u in si.items() if n in table.names and n != "time"},
         name=readable(path.stem),
         notes=sidecar.notes,
         hold=sidecar.hold,

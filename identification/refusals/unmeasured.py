@@ -3,7 +3,8 @@
 A simulation begins with such a joint where the model's file has it, at rest, and so does each
 window of a horizon. A base with a free joint then falls, and a search takes what the fall does for
 a force that is missing. So does one on a slide that nothing holds. Hinges, and slides that rest,
-may stay unmeasured; sensors of a pose are no outputs today.
+may stay unmeasured. A free joint whose pose the robot's file measures is none any more
+(`identification.robot.measured_base`).
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ import numpy as np
 
 from identification.engine import quiet
 from identification.errors import InputError
-from identification.files import MODEL, read_bytes
+from identification.files import MODEL, read_bytes, toml_key
 from identification.logs.log import Log
 from identification.model.predictor import output_columns
 from identification.refusals.trust import RobotFile
@@ -81,6 +82,12 @@ def _refusal(file: RobotFile, model: mujoco.MjModel, log: Log, j: int) -> InputE
     begin = "the simulation" if file.horizon is None else f"each window of {file.horizon:g} s"
     falls = kind == "slide" or (kind == "free" and bool(model.opt.gravity.any()))
     cure = f"weld {name} if it is fixed: delete the {kind} joint{_line(file, kind)}"
+    if kind == "free":
+        key = joint or (name if model.body(body).name else "NAME")
+        cure += (
+            f"; write {toml_key(key)} = [seven columns: x, y, z, and the quaternion w, x, y, z]"
+            f" under [columns] in {file.path} if the log has its pose"
+        )
     if kind == "slide":
         cure += "; add a jointpos sensor and its column if the log has it"
     if kind == "ball":

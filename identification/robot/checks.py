@@ -16,6 +16,8 @@ from identification.logs.sidecar import read_sidecar
 from identification.logs.units import to_si, units_that_fit
 from identification.model.predictor import sensor_word
 from identification.robot.file import RobotFile
+from identification.robot.measured_base import pose_names
+from identification.robot.measured_tendons import measured_tendons
 
 FEW = 3  # sensors that a message tells
 MOST_STEPS = 100.0  # of the model in a sample; with more, time is most often in ms, us or ns
@@ -46,21 +48,29 @@ def refuse_unnamed(model: mujoco.MjModel, file: RobotFile) -> None:
 
 
 def outputs_of(model: mujoco.MjModel, file: RobotFile) -> tuple[str, ...]:
-    """Returns the sensors that a log has: those that the file names, or all joint positions."""
+    """Returns the sensors of a log's outputs: what the file names, or all joint positions.
+
+    A measured pose or length stands for the joints that it tells.
+    """
     sensors = {model.sensor(i).name: sensor_word(model, i) for i in range(model.nsensor)}
     outputs = file.outputs or tuple(n for n, kind in sensors.items() if kind == "a jointpos")
     if outputs:
-        return outputs
+        made = {n: pose_names(model, n) for n in outputs if n in sensors}
+        tendons = measured_tendons(model, file)
+        made |= dict.fromkeys(tendons.sensors, tendons.joints)
+        return tuple(dict.fromkeys(each for n in outputs for each in made.get(n) or (n,)))
     if not sensors:
         raise InputError(
             f"{file.model} has no sensor; it needs a jointpos or jointvel sensor for every output,"
             " and an actuator for every input"
         )
-    rates = ", ".join(f'"{n}"' for n, kind in sensors.items() if kind == "a jointvel" and n)
-    if rates:
+    others = ", ".join(
+        f'"{n}"' for n, kind in sensors.items() if kind in ("a jointvel", "a tendonpos") and n
+    )
+    if others:
         raise InputError(
             f"{file.model} has no jointpos sensor, and {file.path} names no outputs; write outputs"
-            f" = [{rates}] into {file.path}"
+            f" = [{others}] into {file.path}"
         )
     of, rest = f" of {file.model}", [*sensors.items()]
     kinds = [f"{n!r}{of * (k == 0)} is {kind}" for k, (n, kind) in enumerate(rest[:FEW])]

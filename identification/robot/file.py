@@ -16,6 +16,7 @@ trust = ["wiring"]                   # judgements that are not to refuse a log: 
 columns = ["time", "vir", "skip"]    # of files without a header, in their order
 [columns]                            # actuator or sensor = column of the log, where they differ
 drive = "vir"
+base = ["x", "y", "z", "qw", "qx", "qy", "qz"]  # a free joint whose pose is measured
 [parameters.M]                       # of a free parameter; every key may be left out
 path = "body/carriage.mass"          # into the model; the name itself if not given
 value = 95.11                        # where the search begins; the model's own if not given
@@ -83,6 +84,7 @@ class RobotFile:
     start: Mapping[str, float] = field(default_factory=dict)  # entries of the state by path
     log: Mapping[str, Any] = field(default_factory=dict)  # what a log's own TOML may say otherwise
     columns: Mapping[str, str] = field(default_factory=dict)  # by actuator or sensor
+    poses: Mapping[str, tuple[str, ...]] = field(default_factory=dict)  # by free joint or sensor
     fixed: Mapping[str, float] = field(default_factory=dict)  # of effects, by parameter
     records: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)  # by free parameter
     own_values: Mapping[str, Mapping[str, float]] = field(default_factory=dict)  # by log, name
@@ -143,7 +145,9 @@ def read_robot_file(path: str | Path) -> RobotFile:
     held = texts(content.get("held", []), "held", path)
     if twice := [name for name in held if name in free]:
         raise InputError(f"{path} has {twice[0]} under free and under held; keep one of both")
-    columns, fixed = content.get("columns", {}), content.get("fixed", {})
+    every, fixed = content.get("columns", {}), content.get("fixed", {})
+    columns = {name: each for name, each in every.items() if not isinstance(each, list)}
+    poses = {n: texts(every[n], f"columns.{n}", path) for n in every if n not in columns}
     start = content.get("start", {})
     for key, table in (("fixed", fixed), ("start", start)):
         check_table(table, dict.fromkeys(table, ((int, float), "a number")), f"{key} in {path}")
@@ -168,6 +172,7 @@ def read_robot_file(path: str | Path) -> RobotFile:
         start={name: float(value) for name, value in start.items()},
         log=content.get("log", {}),
         columns=dict(zip(columns, texts([*columns.values()], "columns", path), strict=True)),
+        poses=poses,
         fixed={name: float(value) for name, value in fixed.items()},
         records=records,
         own_values=read_own_values(content, path),

@@ -1,6 +1,8 @@
 """The model of a robot's file: an MJCF as it is, or a URDF that is completed for a log.
 
-An MJCF may lack files that tell only its look (`identification.model.missing_files`).
+An MJCF may lack files that tell only its look (`identification.model.missing_files`). Sensors and
+motors that it lacks are added (`completed`), a free joint whose pose is measured becomes slides and
+hinges (`measured_base`), and joints whose tendons are measured get sensors (`measured_tendons`).
 
 A URDF has no actuators, no sensors and no integrator, and most often names meshes that lie
 elsewhere. Dynamics need no meshes: they are left out. Each joint that moves gets a sensor of its
@@ -24,10 +26,14 @@ from identification.errors import InputError
 from identification.files import MODEL, read_bytes
 from identification.logs.log import Log
 from identification.logs.names import listed
+from identification.logs.poses import Pose
 from identification.logs.units import refuse_not_si, refuse_other_unit
 from identification.model.plant import start_place
 from identification.model.rollout import substeps
+from identification.robot.completed import add_position, motor_of, with_missing
 from identification.robot.file import RobotFile
+from identification.robot.measured_base import base_poses, with_free_joints, with_measured_base
+from identification.robot.measured_tendons import with_measured_joints
 
 UNITS = {  # unit for a slide, unit for a hinge
     "damping": ("N s/m", "N m s/rad"), "armature": ("kg", "kg m^2"),
@@ -46,7 +52,10 @@ def robot_spec(file: RobotFile) -> tuple[mujoco.MjSpec, tuple[str, ...]]:
     raw = read_bytes(file.model, _LARGEST, MODEL)
     if file.model.suffix.lower() != ".urdf" and b"<robot" not in raw[:HEAD]:
         spec, left_out = read_told_model(file.model)
-        return spec, (left_out,) if left_out else ()
+        said: tuple[str, ...] = (left_out,) if left_out else ()
+        said += with_missing(spec, file)
+        said += with_measured_joints(spec, file)
+        return spec, (*said, *with_measured_base(spec, file))
     try:
         root = ElementTree.fromstring(raw)
     except ElementTree.ParseError as error:
@@ -54,6 +63,16 @@ def robot_spec(file: RobotFile) -> tuple[mujoco.MjSpec, tuple[str, ...]]:
     if b"xmlns:xacro" in raw and b"<xacro:" in raw:
         raise InputError(f"the model {file.model} is a xacro; expand it first: xacro FILE > URDF")
     return _urdf(root, file)
+
+
+def measured_poses(file: RobotFile) -> tuple[Pose, ...]:
+    """Returns the poses of free joints that a robot's file says to be measured."""
+    if not file.poses and not file.outputs:
+        return ()
+    raw = read_bytes(file.model, _LARGEST, MODEL)
+    if file.model.suffix.lower() == ".urdf" or b"<robot" in raw[:HEAD]:
+        return ()
+    return base_poses(with_free_joints(read_told_model(file.model)[0]), file)
 
 
 def with_step(spec: mujoco.MjSpec, logs: Sequence[Log]) -> tuple[str, ...]:
@@ -170,14 +189,10 @@ def _urdf(root: ElementTree.Element, file: RobotFile) -> tuple[mujoco.MjSpec, tu
     spec.option.integrator = mujoco.mjtIntegrator.mjINT_RK4
     motors = []
     for name, kind in [(joint.name, joint.type) for joint in spec.joints]:
-        slides = kind == mujoco.mjtJoint.mjJNT_SLIDE
-        motors.append(f"{name}_{'force' if slides else 'torque'}")
+        motors.append(motor_of(name, kind == mujoco.mjtJoint.mjJNT_SLIDE))
         motor = spec.add_actuator(name=motors[-1], target=name, trntype=mujoco.mjtTrn.mjTRN_JOINT)
         motor.set_to_motor()
-        spec.add_sensor(
-            name=name, type=mujoco.mjtSensor.mjSENS_JOINTPOS,
-            objtype=mujoco.mjtObj.mjOBJ_JOINT, objname=name,
-        )  # fmt: skip
+        add_position(spec, name, name)
     return spec, (
         f"{file.model.name} is a URDF: {forms} visual and collision shapes were left out, and"
         f" each joint got a sensor of its position, called as the joint, and a motor of gear 1:"

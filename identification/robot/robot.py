@@ -33,8 +33,10 @@ from identification.robot.checks import (
     refuse_same_stem,
     refuse_unnamed,
 )
+from identification.robot.completed import refuse_unread_torques, torques_without_motor
 from identification.robot.file import RobotFile
-from identification.robot.model_file import robot_spec, unit_of, with_step
+from identification.robot.measured_tendons import joint_positions, measured_tendons
+from identification.robot.model_file import measured_poses, robot_spec, unit_of, with_step
 from identification.robot.own_values import (
     held_parameters,
     refuse_impossible,
@@ -143,10 +145,14 @@ def _said_of_turning(known: Sequence[Axis], only: Sequence[str]) -> tuple[str, .
 def read_robot_log(file: RobotFile, path: str | Path) -> Log:
     """Read a log with the columns of a robot."""
     refuse_same_stem(file, Path(path))
-    model = robot_spec(file)[0].compile()
+    spec = robot_spec(file)[0]
+    unread = torques_without_motor(spec)
+    model, poses = spec.compile(), measured_poses(file)
     refuse_unnamed(model, file)
     inputs = tuple(model.actuator(i).name for i in range(model.nu))
     outputs = outputs_of(model, file)  # without an actuator the log is one of a free swing
+    tendons = measured_tendons(model, file)
+    told = outputs
     with told_of(f"outputs in {file.path}") if file.outputs else nullcontext():
         places = output_columns(model, outputs)
     units = {
@@ -160,14 +166,19 @@ def read_robot_log(file: RobotFile, path: str | Path) -> Log:
                 f' {toml_key(file.columns[name])} = "time" under [columns] in'
                 f" {Path(path).with_suffix('.toml')}, or under [log.columns] in {file.path}"
             )
-        if name not in (*inputs, *outputs):
+        if name not in (*inputs, *outputs, *tendons.sensors):
             raise unknown_name(f"actuator or sensor under columns in {file.path}:", name,
-                               (*inputs, *outputs))  # fmt: skip
+                               (*inputs, *outputs, *tendons.sensors))  # fmt: skip
+    if tendons.sensors:  # they stand in the place of the joints that they tell
+        outputs = (*tendons.sensors, *(n for n in outputs if n not in tendons.joints))
     column = {name: file.columns.get(name, name) for name in (*inputs, *outputs)}
+    made = {name for pose in poses for name in pose.names}
+    asked = {column[n]: u for n, u in units.items() if n in outputs and n not in made}
+    asked |= {name: "m" for pose in poses for name in pose.columns[:3]}
     try:
         log = read_log(
-            path, [column[n] for n in inputs], [column[n] for n in outputs],
-            units={column[n]: u for n, u in units.items()}, named_in=file.path,
+            path, [column[n] for n in inputs], [column[n] for n in outputs], unread,
+            poses=poses, units=asked, named_in=file.path,
             lenient=True, said=file.log, trust_rows="rows" in file.trust,
         )  # fmt: skip
     except MissingColumnsError as error:
@@ -183,8 +194,12 @@ def read_robot_log(file: RobotFile, path: str | Path) -> Log:
     refuse_every(file, log)
     given = {n: u for n in inputs if (u := log.units.get(column[n]))}
     factors = {n: log.factors[column[n]] for n in column if column[n] in log.factors}
-    log = replace(log, input_names=inputs, output_names=outputs, units={**units, **given},
-                  factors=factors)  # fmt: skip
+    refuse_unread_torques(file, log)
+    log = replace(log, input_names=inputs, output_names=outputs, units=given, factors=factors,
+                  extras={})  # fmt: skip
+    if tendons.sensors:
+        log = joint_positions(model, tendons, log, told)
+    log = replace(log, units={**units, **given})
     return decimate(log, file.every) if file.every > 1 else log
 
 

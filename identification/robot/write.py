@@ -65,7 +65,7 @@ def write_robot(
     lines += [f"every = {file.every}"] if file.every > 1 else []
     lines += [f"trust = {toml_value(file.trust)}"] if file.trust else []
     tables: dict[str, dict[str, object]] = {
-        "start": dict(file.start), "log": dict(file.log), "columns": dict(file.columns),
+        "start": dict(file.start), "log": dict(file.log), "columns": {**file.columns, **file.poses},
         "fixed": dict(fixed),
     }  # fmt: skip
     for name in names:

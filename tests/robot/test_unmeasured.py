@@ -48,7 +48,7 @@ def test_no_verb_begins_with_a_base_that_falls(tmp_path, capsys, log, verb):
     said = refused(capsys, verb, path, tmp_path / "log.csv", "--out", tmp_path / "out")
     assert f"{tmp_path / 'robot.xml'} has a free joint of body trunk, whose pose no sensor" in said
     assert "each window of 0.3 s begins with it where the model has it, at rest, and it fal" in said
-    assert "weld trunk if it is fixed: delete the free joint in line 5 of robot.xml; or" in said
+    assert "weld trunk if it is fixed: delete the free joint in line 5 of robot.xml; write" in said
     assert not (tmp_path / "out").exists()
 
 
