@@ -26,7 +26,11 @@ KINDS = {
     "actuator": ("nactuator", mujoco.mjtObj.mjOBJ_ACTUATOR),
 }
 DOF = ("damping", "armature", "frictionloss")  # of a joint, kept per degree of freedom
-_MORE = {"joint": DOF, "body": ("spread",), "actuator": ("kp", "kv")}  # beside the arrays
+_MORE = {
+    "joint": DOF,
+    "body": ("spread",),
+    "actuator": ("kp", "kv", "timeconst", "resistance", "motorconst"),
+}  # beside the arrays
 _JOINT = int(mujoco.mjtTrn.mjTRN_JOINT)
 _ON_A_BODY = ("joint", "site", "geom")
 # What MuJoCo computes of other numbers: nobody gives it, and to write it is in vain.

@@ -7,7 +7,13 @@
 
 gain is gainprm[0], b_1 and b_2 are biasprm[1] and biasprm[2], u is the command and l the length of
 the actuator. A gain that is moved alone multiplies the command: a servo of gain 17.8 whose command
-counts 16.6/17.8 is no servo. So the two numbers are moved together or both are free.
+counts 16.6/17.8 is no servo. So the two numbers are moved together or both are free. An
+<intvelocity> is a position servo whose command is integrated, and has its gains. Other names:
+
+    <damper>                 F = -kv u dl/dt          actuator/NAME.kv, gainprm[2] = -kv
+    filter, filterexact      da/dt = (u - a)/T        actuator/NAME.timeconst, T = dynprm[0]
+    <dcmotor>                u = R i + K ω, τ = K i   actuator/NAME.resistance, .motorconst
+    a limited force          |F| <= f                 actuator/NAME.forcerange, both of its ends
 
 `body/NAME.spread[k]` is the spread of a body's mass, an inertia that cannot become impossible:
 
@@ -45,18 +51,25 @@ _DCMOTOR = int(mujoco.mjtDyn.mjDYN_DCMOTOR) if hasattr(mujoco.mjtDyn, "mjDYN_DCM
 Entry = tuple[str, int]  # array of the model and its column
 _GAINPRM, _BIASPRM, _DYNPRM = "actuator_gainprm", "actuator_biasprm", "actuator_dynprm"
 _BASE: Mapping[Entry, str] = {(_GAINPRM, 0): "resistance R", (_GAINPRM, 1): "motor constant K"}
-_GAIN = re.compile(r"(?P<actuator>actuator/[^.]+)\.(?P<gain>kp|kv)")
+NAMES = ("kp", "kv", "timeconst", "resistance", "motorconst", "forcerange")
+_NAME = re.compile(rf"(?P<actuator>actuator/[^.]+)\.(?P<name>{'|'.join(NAMES)})")
+_DYNAMICS = {int(getattr(mujoco.mjtDyn, f"mjDYN_{d}")) for d in ("FILTER", "FILTEREXACT")}
 _FIXED, _AFFINE = int(mujoco.mjtGain.mjGAIN_FIXED), int(mujoco.mjtBias.mjBIAS_AFFINE)
+_AFFINE_GAIN, _NO_BIAS = int(mujoco.mjtGain.mjGAIN_AFFINE), int(mujoco.mjtBias.mjBIAS_NONE)
 _WANTS = {"position": 1, "velocity": 2}  # what a servo follows, and where its bias stands
 
 
 def parts(model: mujoco.MjModel, path: str) -> tuple[tuple[str, float], ...]:
     """Returns the paths to single numbers of a model that a path writes, each with its factor."""
-    match = _GAIN.fullmatch(path)
+    match = _NAME.fullmatch(path)
     if match is None:
         return ((path, 1.0),)
-    at, gain = match["actuator"], match["gain"]
+    at, gain = match["actuator"], match["name"]
     rows = resolve(model, f"{at}.gainprm[0]").rows
+    if gain not in ("kp", "kv"):
+        return _named(model, at, gain, rows)
+    if gain == "kv" and all(is_damper(model, row) for row in rows):
+        return ((f"{at}.gainprm[2]", -1.0),)
     kinds = {servo_kind(model, row) for row in rows}
     if kinds == {"position"}:
         if gain == "kv":
@@ -64,11 +77,42 @@ def parts(model: mujoco.MjModel, path: str) -> tuple[tuple[str, float], ...]:
         return ((f"{at}.gainprm[0]", 1.0), (f"{at}.biasprm[1]", -1.0))
     if kinds == {"velocity"} and gain == "kv":
         return ((f"{at}.gainprm[0]", 1.0), (f"{at}.biasprm[2]", -1.0))
-    wanted = "<position> servo" if gain == "kp" else "<position> or <velocity> servo"
+    wanted = "<position> servo" if gain == "kp" else "<position> or <velocity> servo, or <damper>"
     many = "are not all of one kind of" if len(rows) > 1 else "is no"
     raise InputError(
         f"{path!r}: {at.removeprefix('actuator/')!r} {many} {wanted}, whose gain this would be;"
         f" free the numbers that the actuator has, such as {at}.gainprm[0] or {at}.gear[0]"
+    )
+
+
+def _named(
+    model: mujoco.MjModel, at: str, name: str, rows: Sequence[int]
+) -> tuple[tuple[str, float], ...]:
+    """Returns the numbers of actuators that are called by a name of MJCF."""
+    if name == "timeconst":
+        if all(int(model.actuator_dyntype[row]) in _DYNAMICS for row in rows):
+            return ((f"{at}.dynprm[0]", 1.0),)
+        lacks = "has no filter between command and force; give it dyntype, or free another number"
+    elif name == "forcerange":
+        ends = model.actuator_forcerange[list(rows)]
+        if all(model.actuator_forcelimited[list(rows)]) and (ends[:, 0] == -ends[:, 1]).all():
+            return ((f"{at}.forcerange[1]", 1.0), (f"{at}.forcerange[0]", -1.0))
+        lacks = "has no forcerange with ends -f and f; give it one, or free forcerange[0] and [1]"
+    else:
+        if all(int(model.actuator_dyntype[row]) == _DCMOTOR for row in rows):
+            return ((f"{at}.gainprm[{int(name == 'motorconst')}]", 1.0),)
+        lacks = "is no <dcmotor>; free the numbers that it has, such as gear[0] or gainprm[0]"
+    raise InputError(f"'{at}.{name}': {at.removeprefix('actuator/')!r} {lacks}")
+
+
+def is_damper(model: mujoco.MjModel, row: int) -> bool:
+    """Returns whether an actuator is a <damper>, whose command is its damping."""
+    gain = model.actuator_gainprm[row]
+    return bool(
+        int(model.actuator_gaintype[row]) == _AFFINE_GAIN
+        and int(model.actuator_biastype[row]) == _NO_BIAS
+        and not gain[:2].any()
+        and gain[2] < 0
     )
 
 

@@ -38,9 +38,10 @@ from identification.robot.measured_tendons import with_measured_joints
 UNITS = {  # unit for a slide, unit for a hinge
     "damping": ("N s/m", "N m s/rad"), "armature": ("kg", "kg m^2"),
     "stiffness": ("N/m", "N m/rad"), "frictionloss": ("N", "N m"),
-    "qpos": ("m", "rad"), "qvel": ("m/s", "rad/s"),
+    "qpos": ("m", "rad"), "qvel": ("m/s", "rad/s"), "force": ("N", "N m"),
 }  # fmt: skip
-GAINS = {"kp": "stiffness", "kv": "damping"}  # a servo is a spring and a damper to its command
+# A servo is a spring and a damper to its command.
+GAINS = {"kp": "stiffness", "kv": "damping", "forcerange": "force"}
 HEAD = 4096  # bytes in which the first element of a file stands
 FINER = 50  # times as many steps in a sample are tried, to find some that divide several logs
 FORM = ("visual", "collision")  # of a link: how it looks, not how it moves
@@ -117,6 +118,8 @@ def unit_of(model: mujoco.MjModel, path: str) -> str:
         joints = np.flatnonzero(at <= place[1])[-1:].tolist()
     elif kind == "joint":
         joints = [j for j in range(model.njnt) if fnmatchcase(model.joint(j).name, name)]
+    elif kind == "actuator" and attribute == "timeconst":
+        return "s"
     elif kind == "actuator" and attribute in GAINS:
         return _unit_of_gain(model, name, GAINS[attribute])
     if not joints or attribute not in UNITS:

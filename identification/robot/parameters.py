@@ -34,6 +34,7 @@ KNOWN = 0.3  # std of the prior unless given: relative if positive, else of the 
 SURE = 0.01  # of a joint's motion in the log: std of the prior of a start that was measured
 POSITIVE = (
     "mass", "inertia", "spread", "damping", "armature", "stiffness", "frictionloss", "kp", "kv",
+    "timeconst", "resistance", "motorconst",
 )  # fmt: skip
 
 
@@ -175,7 +176,8 @@ def _in_model(
     )
     attribute = path.rpartition(".")[2].partition("[")[0]
     scale = abs(value) or 1.0
-    fields |= {"value": value, "scale": scale, "lower": 0.0 if attribute in POSITIVE else -np.inf}
+    positive = attribute in POSITIVE or path.endswith(".forcerange")  # and not one of its ends
+    fields |= {"value": value, "scale": scale, "lower": 0.0 if positive else -np.inf}
     if attribute == "inertia":
         fields |= _possible(model, resolve(model, path), alone)
     if {"lower", "upper"} & {*given}:

@@ -1,0 +1,105 @@
+"""Record two logs of each robot of this folder, with an effect that its model does not have.
+
+A robot is simulated with a quarter of its model's step. Dry friction is MuJoCo's, springs and
+forces are added to the joint. Run it: python examples/linkages/record.py FOLDER
+"""
+
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import mujoco
+import numpy as np
+
+HERE = Path(__file__).parent
+SAMPLING, SECONDS, FINER = 0.01, 8.0, 4  # [s], [s], steps of the simulation in one of the model
+STIFF = (0.002, 1.0)  # how dry friction holds: time constant [s] and damping ratio
+
+
+@dataclass(frozen=True)
+class Truth:
+    """What a robot is driven with, and what its model lacks."""
+
+    joint: str  # where
+    effect: str  # as a search calls it
+    size: float  # of it, in SI units
+    columns: tuple[str, ...]  # of outputs: joints or tendons
+    noise: float  # std of the outputs [m or rad]
+    middle: float  # of the inputs; NaN for the lengths that hold the load
+    reach: float  # of the inputs about the middle
+
+
+ROBOTS = {
+    "leg": Truth("knee", "coulomb_friction", 0.6, ("hip", "knee"), 3e-4, -0.3, 0.6),
+    "cart": Truth("rail", "coulomb_friction", 1.2, ("x",), 2e-4, 0.0, 6.0),
+    "four_bar": Truth(
+        "rocker", "stiffness", 0.8, ("crank_angle", "pin_angle", "rocker_angle"), 3e-4, 0.0, 0.25
+    ),
+    "crane": Truth(
+        "x", "quadratic_friction", 25.0, ("rope_left", "rope_right"), 1e-4, np.nan, 0.25
+    ),
+}  # fmt: skip
+
+
+def compiled(name):
+    """The robot with a finer step, and with its dry friction where it has some."""
+    spec = mujoco.MjSpec.from_file(str(HERE / name / "model.xml"))
+    truth = ROBOTS[name]
+    spec.option.timestep /= FINER
+    if truth.effect == "coulomb_friction":
+        joint = spec.joint(truth.joint)
+        joint.frictionloss, joint.solref_friction[:] = truth.size, STIFF
+    return spec.compile()
+
+
+def force(truth, q, v):
+    """The force of a hidden spring or drag at its joint [N m or N]."""
+    if truth.effect == "stiffness":
+        return -truth.size * q
+    return -truth.size * v * abs(v) if truth.effect == "quadratic_friction" else 0.0
+
+
+def measured(model, data, name):
+    """What a joint or a tendon of that name is at [rad or m]."""
+    names = [model.sensor(k).name for k in range(model.nsensor)]
+    if name in names:
+        return data.sensordata[model.sensor_adr[names.index(name)]]
+    return data.qpos[model.joint(name).qposadr[0]]
+
+
+def record(name, seed):
+    """One log: times, inputs and outputs in SI units, shape (N, 1 + nu + ny), and its header."""
+    truth, model, chance = ROBOTS[name], compiled(name), np.random.default_rng(seed)
+    data, time = mujoco.MjData(model), np.arange(round(SECONDS / SAMPLING)) * SAMPLING
+    mujoco.mj_forward(model, data)
+    middle = data.ten_length if np.isnan(truth.middle) else truth.middle
+    waves = chance.uniform(0.1, 1.6, (5, model.nu)), chance.uniform(0, 2 * np.pi, (5, model.nu))
+    shape = np.sin(2 * np.pi * waves[0] * time[:, None, None] + waves[1]).sum(1) / 2.5
+    inputs = np.round(middle + truth.reach * shape, 4)
+    joint, rows = model.joint(truth.joint), []
+    for u in inputs:
+        mujoco.mj_forward(model, data)
+        rows.append([measured(model, data, c) for c in truth.columns])
+        data.ctrl[:] = u
+        for _ in range(round(SAMPLING / model.opt.timestep)):
+            q, v = data.qpos[joint.qposadr[0]], data.qvel[joint.dofadr[0]]
+            data.qfrc_applied[joint.dofadr[0]] = force(truth, q, v)
+            mujoco.mj_step(model, data)
+    outputs = np.array(rows) + truth.noise * chance.standard_normal((len(time), len(rows[0])))
+    drives = [model.actuator(k).name for k in range(model.nu)]
+    header = ",".join(("time", *drives, *truth.columns))
+    return np.column_stack([time, inputs, np.round(outputs, 6)]), header
+
+
+def write(folder):
+    """Write both logs of each robot into the folder of the robot there."""
+    for name in ROBOTS:
+        (Path(folder) / name).mkdir(exist_ok=True)
+        for log, seed in (("first", 1), ("second", 2)):
+            table, header = record(name, seed)
+            path = Path(folder) / name / f"{log}.csv"
+            np.savetxt(path, table, "%.7g", ",", header=header, comments="")
+
+
+if __name__ == "__main__":
+    write(sys.argv[1])

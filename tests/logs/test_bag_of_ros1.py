@@ -1,0 +1,91 @@
+"""A bag of ROS 1 gives the numbers of the same log as CSV."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from example_logs import wave
+from rosbags.rosbag1 import Writer
+from rosbags.typesys import Stores, get_typestore
+
+from identification import InputError, inspect_log, read_log, write_log
+
+STORE = get_typestore(Stores.ROS1_NOETIC)
+TIME, HEADER, STATE = (
+    STORE.types[name]
+    for name in ("builtin_interfaces/msg/Time", "std_msgs/msg/Header", "sensor_msgs/msg/JointState")
+)
+JOINTS = ("shoulder", "elbow")
+OUTPUTS = tuple(f"joint_states.position.{joint}" for joint in JOINTS)
+INPUTS = tuple(f"joint_states.effort.{joint}" for joint in JOINTS)
+BEGIN, STEP = 1_748_873_654_316_744_521, 10_000_000  # [ns]
+
+
+def state(seq, ns, position, effort, joints=JOINTS):
+    """A message of sensor_msgs/JointState of ROS 1, whose header counts."""
+    header = HEADER(seq=seq, stamp=TIME(sec=ns // 10**9, nanosec=ns % 10**9), frame_id="")
+    return STATE(header, [*joints], *map(np.array, (position, (), effort)))
+
+
+def write_bag(path, messages):
+    """Write messages of the states of joints, each with the time at which it was recorded [ns]."""
+    with Writer(path) as writer:
+        kind = STATE.__msgtype__
+        connection = writer.add_connection("/joint_states", kind, typestore=STORE)
+        for recorded, message in messages:
+            writer.write(connection, recorded, STORE.serialize_ros1(message, kind))
+    return path
+
+
+@pytest.fixture
+def first():
+    return replace(
+        wave(200), input_names=INPUTS, output_names=OUTPUTS, extras={}, units={}
+    )  # fmt: skip
+
+
+def states(log, late=0, turned=False):
+    """The states of a log; every second message names its joints in the other order where asked."""
+    out = []
+    for k, (y, u) in enumerate(zip(log.outputs, log.inputs, strict=True)):
+        order = slice(None, None, -1 if turned and k % 2 else 1)
+        ns = BEGIN + STEP * k
+        out.append((ns + late, state(k, ns, y[order], u[order], JOINTS[order])))
+    return out
+
+
+def read(path):
+    return read_log(path, INPUTS, OUTPUTS, lenient=True)
+
+
+def test_it_holds_the_log_that_a_csv_holds(tmp_path, first):
+    write_log(first, tmp_path / "run.csv")
+    back, csv = read(write_bag(tmp_path / "run.bag", states(first))), read(tmp_path / "run.csv")
+    assert back.inputs.tobytes() == csv.inputs.tobytes()
+    assert back.outputs.tobytes() == csv.outputs.tobytes()
+    assert back.time == pytest.approx(csv.time, abs=1e-12)
+    assert back.remarks == ()
+
+
+def test_names_say_which_number_is_whose_and_stamps_when(tmp_path, first):
+    late = 3_000_000 * np.random.default_rng(0).integers(0, 3, 200)
+    messages = [(ns + int(d), m) for (ns, m), d in zip(states(first, 0, True), late, strict=True)]
+    back = read(write_bag(tmp_path / "run.bag", sorted(messages, key=lambda each: each[0])))
+    assert back.outputs.tobytes() == first.outputs.tobytes()
+    assert back.inputs.tobytes() == first.inputs.tobytes()
+    assert back.sampling_time == pytest.approx(0.01, abs=1e-12)
+
+
+def test_inspect_tells_its_columns(tmp_path, first):
+    found = inspect_log(write_bag(tmp_path / "run.bag", states(first)))
+    assert {(c.name, c.role) for c in found.columns} >= {
+        (OUTPUTS[1], "output"), (INPUTS[1], "input")
+    }  # fmt: skip
+
+
+def test_a_bag_that_was_cut_off_is_refused_in_one_sentence(tmp_path, first):
+    path = write_bag(tmp_path / "run.bag", states(first))
+    path.write_bytes(path.read_bytes()[:2000])
+    with pytest.raises(InputError, match="cannot be read as a recording of ROS") as caught:
+        read(path)
+    assert len(str(caught.value).splitlines()) == 1
