@@ -41,10 +41,9 @@ ROBOTS = {
 }  # fmt: skip
 
 
-def compiled(name):
+def compiled(path, truth):
     """The robot with a finer step, and with its dry friction where it has some."""
-    spec = mujoco.MjSpec.from_file(str(HERE / name / "model.xml"))
-    truth = ROBOTS[name]
+    spec = mujoco.MjSpec.from_file(str(path))
     spec.option.timestep /= FINER
     if truth.effect == "coulomb_friction":
         joint = spec.joint(truth.joint)
@@ -67,9 +66,9 @@ def measured(model, data, name):
     return data.qpos[model.joint(name).qposadr[0]]
 
 
-def record(name, seed):
+def record(path, truth, seed):
     """One log: times, inputs and outputs in SI units, shape (N, 1 + nu + ny), and its header."""
-    truth, model, chance = ROBOTS[name], compiled(name), np.random.default_rng(seed)
+    model, chance = compiled(path, truth), np.random.default_rng(seed)
     data, time = mujoco.MjData(model), np.arange(round(SECONDS / SAMPLING)) * SAMPLING
     mujoco.mj_forward(model, data)
     middle = data.ten_length if np.isnan(truth.middle) else truth.middle
@@ -96,7 +95,7 @@ def write(folder):
     for name in ROBOTS:
         (Path(folder) / name).mkdir(exist_ok=True)
         for log, seed in (("first", 1), ("second", 2)):
-            table, header = record(name, seed)
+            table, header = record(HERE / name / "model.xml", ROBOTS[name], seed)
             path = Path(folder) / name / f"{log}.csv"
             np.savetxt(path, table, "%.7g", ",", header=header, comments="")
 

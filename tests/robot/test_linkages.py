@@ -1,0 +1,44 @@
+"""The logs of the small robots are those of their script, and each robot reads its own."""
+
+import importlib.util
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from identification import fit, read_robot
+from identification.robot.file import read_robot_file
+from identification.robot.robot import read_robot_log
+
+FOLDER = Path(__file__).parents[2] / "examples" / "linkages"
+spec = importlib.util.spec_from_file_location("linkages_record", FOLDER / "record.py")
+script = importlib.util.module_from_spec(spec)
+spec.loader.exec_module(script)
+
+
+@pytest.mark.parametrize("name", [*script.ROBOTS])
+def test_the_logs_are_those_of_the_script(name):
+    path = FOLDER / name / "first.csv"
+    table, header = script.record(path.with_name("model.xml"), script.ROBOTS[name], 1)
+    assert path.read_text().partition("\n")[0] == header
+    assert np.loadtxt(path, delimiter=",", skiprows=1) == pytest.approx(table, abs=2e-6)
+    assert sum(each.stat().st_size for each in path.parent.iterdir()) < 300_000
+
+
+@pytest.mark.parametrize(
+    ("name", "outputs"),
+    [
+        ("leg", ("hip", "knee")), ("cart", ("x",)), ("crane", ("x", "z")),
+        ("four_bar", ("crank_angle", "pin_angle", "rocker_angle")),
+    ],
+)  # fmt: skip
+def test_each_robot_reads_its_log(name, outputs):
+    file = read_robot_file(FOLDER / name / "robot.toml")
+    assert read_robot_log(file, FOLDER / name / "first.csv").output_names == outputs
+
+
+def test_without_its_friction_a_leg_s_gains_are_wrong():
+    folder = FOLDER / "leg"
+    robot = read_robot(folder / "robot.toml", folder / "first.csv")
+    values = fit(robot).values
+    assert values["actuator/hip_target.kp"] == pytest.approx(40, rel=0.05)
