@@ -6,7 +6,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from identification import fit, read_robot
 from identification.robot.file import read_robot_file
 from identification.robot.robot import read_robot_log
 
@@ -35,10 +34,3 @@ def test_the_logs_are_those_of_the_script(name):
 def test_each_robot_reads_its_log(name, outputs):
     file = read_robot_file(FOLDER / name / "robot.toml")
     assert read_robot_log(file, FOLDER / name / "first.csv").output_names == outputs
-
-
-def test_without_its_friction_a_leg_s_gains_are_wrong():
-    folder = FOLDER / "leg"
-    robot = read_robot(folder / "robot.toml", folder / "first.csv")
-    values = fit(robot).values
-    assert values["actuator/hip_target.kp"] == pytest.approx(40, rel=0.05)
