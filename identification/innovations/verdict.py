@@ -37,6 +37,7 @@ from identification.innovations.scoring.scores import Score
 from identification.innovations.scoring.sensitivities import compute_sensitivities
 from identification.innovations.scoring.significance import correct_p_value, list_hidden
 from identification.innovations.state import InnovationSearch
+from identification.innovations.unexpected import find_unexpected_error
 from identification.kalman.refit import Refit
 
 # With these findings a model is not believed, and nothing is named that leaves anything.
@@ -54,7 +55,7 @@ def find_remaining(state: InnovationSearch) -> tuple[Finding, ...]:
     samples = len(model.refit.point.log)
     findings = (
         *find_structure(model, options),
-        *find_robot_change(model.validation, options),
+        *(find_robot_change(model.validation, options) or find_unexpected_error(model.validation)),
         *find_input_error(model.validation, options, "report"),
         *(() if named else find_doubtful_effect(state.rejected, samples, options)),
         *_find_oversized(state, named),

@@ -22,7 +22,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from identification.discovery.effect_results import Neighbour
-from identification.discovery.neighbour import FAR_FROM_EXACT, MOST_LEFT
+from identification.discovery.neighbour import FAR_FROM_EXACT, MORE_LIKELY_THAN_NOT, MOST_LEFT
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.passes import uses
 from identification.effects.effect import Candidate
@@ -33,7 +33,6 @@ from identification.prediction.yardstick import acts_on_joints
 # No law is right to more than a per mille of its power, which is 3 % of its force: steps of
 # the simulation and shapes of bodies are not known better.
 EXACT = 1e-3
-MORE_LIKELY_THAN_NOT = 0.5  # chance
 
 
 def find_neighbour(

@@ -118,6 +118,14 @@ def _robot_change(e: evidence.RobotChange) -> str:
     )
 
 
+def _unexpected_error(e: evidence.UnexpectedError) -> str:
+    return (
+        f"the free run errs on unseen data by {decimal(e.ratio, HELD)} times what the sensors,"
+        " unlogged disturbances and the std of the fitted values make: the robot is another one"
+        " there, or it does what the fitted samples never show"
+    )
+
+
 def _structured_input_error(e: evidence.StructuredInputError) -> str:
     return (
         f"an unlogged error of the inputs, {quantity(e.rms, unit=e.unit)} rms, is not random:"
@@ -210,6 +218,7 @@ WORDS: dict[FindingKind, Callable[[Any], str]] = {
     FindingKind.PARAMETERS_AT_LIMIT: _parameters_at_limit,
     FindingKind.LARGE_INPUT_ERROR: _large_input_error,
     FindingKind.ROBOT_CHANGE: _robot_change,
+    FindingKind.UNEXPECTED_ERROR: _unexpected_error,
     FindingKind.STRUCTURED_INPUT_ERROR: _structured_input_error,
     FindingKind.DOUBTFUL_EFFECT: _doubtful_effect,
     FindingKind.OVERSIZED_EFFECT: _oversized_effect,

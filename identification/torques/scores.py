@@ -8,9 +8,9 @@ The chance is that of a test by blocks (`identification.estimation.block_test`),
 candidates that were asked (Bonferroni). The fall and its t are those of folds of neighbouring
 blocks, each predicted by fits to all others. Where a free parameter is more than 3 std from what
 was known of it, it may stand for the missing effect, and hide it: then t may also be that of fits
-in which these parameters are held at what was known. A candidate is proven if chance and t say so;
-of proven ones that predict alike, as t of their blocks' differences tells, the one with the fewest
-sizes is taken.
+in which these parameters are held at what was known, if these fits predict better with it than the
+free ones without. A candidate is proven if chance and t say so; of proven ones that predict alike,
+as t of their blocks' differences tells, the one with the fewest sizes is taken.
 """
 
 from __future__ import annotations
@@ -178,6 +178,8 @@ def rank(equations: Equations, base: Base, candidates: Sequence[Missing]) -> tup
         gains, *held = (a - b for a, b in zip(unseen, squares, strict=True))
         std = np.sqrt(np.maximum(np.diag(covariance(scatter, common)[0]), 0.0))
         t, held_t = (_t_of(g) for g in (gains, *held, 0 * gains)[:2])
+        if held and not float((unseen[0] - squares[1]).sum()) > 0:
+            held_t = 0.0  # it does not make up for what the free values do
         scores.append(Score(
             missing=missing, size=η, std=std, chance=min(1.0, p * len(found)), t=t,
             fall=1 - float(np.exp(squares[0]).sum() / np.exp(unseen[0]).sum()), gains=gains,

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from functools import partial, reduce
 
+from identification.discovery.neighbour import MORE_LIKELY_THAN_NOT
 from identification.shares import fall_words
 from identification.torques.candidates import together
 from identification.torques.equations import Equations
@@ -54,7 +55,9 @@ def draw_curves(
     """Returns effects with curves where laws do not explain a joint, and the fit with them.
 
     A curve takes the place of all laws of a joint that together predict unseen blocks worse, as
-    the laws nearest to a force in no catalogue do. Where no law is proven, curves may be.
+    the laws nearest to a force in no catalogue do. Where the curve is not proven, and is more
+    likely than not to be no luck, they are left out all the same. Where no law is proven, curves
+    may be.
     """
     curves, out = [s.missing for s in scores if s.missing.is_curve], [*found]
     for where in dict.fromkeys(s.missing.where for s in found):
@@ -64,11 +67,12 @@ def draw_curves(
         if not there:
             continue
         bare = _extended(equations, nominal, [s.missing for s in rest])
-        best = choose(rank(equations, bare.base, there))
+        likely = [s for s in rank(equations, bare.base, there) if s.chance < MORE_LIKELY_THAN_NOT]
         own = rank(equations, bare.base, [together([s.missing for s in mine])])
+        best = choose(likely) or next(iter(likely), None)
         if best is not None and not any(o.is_like(best) for o in own):
             say(f"{best.missing.title}: predicts unseen blocks better than the laws there")
-            out = [*rest, best]
+            out = [*rest, *([best] if best.is_proven else [])]
     final = _extended(equations, nominal, [s.missing for s in out])
     places = {s.missing.where for s in out}
     beside = rank(equations, final.base, [c for c in curves if c.where not in places])

@@ -19,6 +19,7 @@ EVIDENCE_OF = {
     FindingKind.PARAMETERS_AT_LIMIT: evidence.ParametersAtLimit(("b_v", "J")),
     FindingKind.LARGE_INPUT_ERROR: evidence.LargeInputError("A", 0.09, 0.35, 0.12),
     FindingKind.ROBOT_CHANGE: evidence.RobotChange(2.4, 10.5),
+    FindingKind.UNEXPECTED_ERROR: evidence.UnexpectedError(9.4),
     FindingKind.STRUCTURED_INPUT_ERROR: evidence.StructuredInputError(
         "output rate", "current_3", "A", 0.004, 0.4
     ),

@@ -102,6 +102,13 @@ class RobotChange:
 
 
 @dataclass(frozen=True)
+class UnexpectedError:
+    """An error of the free run on unseen samples that noise and std do not make."""
+
+    ratio: float  # of its rms to that which they make
+
+
+@dataclass(frozen=True)
 class StructuredInputError:
     """An unlogged error of the inputs that follows something that was logged."""
 

@@ -25,6 +25,7 @@ class FindingKind(StrEnum):
     PARAMETERS_AT_LIMIT = "parameters at limit"
     LARGE_INPUT_ERROR = "large input error"
     ROBOT_CHANGE = "robot change"
+    UNEXPECTED_ERROR = "unexpected error"
     STRUCTURED_INPUT_ERROR = "structured input error"
     DOUBTFUL_EFFECT = "doubtful effect"
     OVERSIZED_EFFECT = "oversized effect"
@@ -46,6 +47,7 @@ FindingEvidence = (
     | evidence.ParametersAtLimit
     | evidence.LargeInputError
     | evidence.RobotChange
+    | evidence.UnexpectedError
     | evidence.StructuredInputError
     | evidence.DoubtfulEffect
     | evidence.OversizedEffect
@@ -66,6 +68,7 @@ EVIDENCE: dict[FindingKind, type[FindingEvidence]] = {
     FindingKind.PARAMETERS_AT_LIMIT: evidence.ParametersAtLimit,
     FindingKind.LARGE_INPUT_ERROR: evidence.LargeInputError,
     FindingKind.ROBOT_CHANGE: evidence.RobotChange,
+    FindingKind.UNEXPECTED_ERROR: evidence.UnexpectedError,
     FindingKind.STRUCTURED_INPUT_ERROR: evidence.StructuredInputError,
     FindingKind.DOUBTFUL_EFFECT: evidence.DoubtfulEffect,
     FindingKind.OVERSIZED_EFFECT: evidence.OversizedEffect,
