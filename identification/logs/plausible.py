@@ -21,6 +21,7 @@ from pathlib import Path
 
 import numpy as np
 
+from identification.chances import f_above
 from identification.errors import InputError
 from identification.files import toml_key
 from identification.logs.cures import lines_of
@@ -37,6 +38,8 @@ FEW = 0.1  # of the differences may be smaller than a step
 SPAN = 2  # samples that a jump takes: one where it is measured, two where it is put on a grid
 BEYOND = 2.0  # times the farthest motion in as many samples elsewhere, from which a jump is none
 STEPS = 3  # that the encoder crosses in the `FEWEST` samples before it freezes
+PAST = 8  # samples back to which an output is compared with itself and with the inputs
+LUCK = 1e-3  # chance of noise to look as if its past told of it, below which it is a motion
 TURN = 0.1  # of a turn: a jump of a wrapped angle differs from a whole turn by less
 
 
@@ -110,6 +113,39 @@ def stands_still(y: np.ndarray) -> bool:
     return bool(width <= STEPS * np.quantile(moves, FEW))
 
 
+def is_noise(y: np.ndarray, inputs: np.ndarray) -> bool:
+    """Returns whether neither its own past nor any input tells anything of a channel.
+
+        y_k = c + Σ a_i y_k-i + Σ b_i u_k-i + e_k       i = 1 to `PAST`, with and without a and b
+
+    A joint that moves keeps on moving for a while, and does so after its inputs; white noise of a
+    sensor does neither. The F test of the two sums of squares decides.
+
+    Args:
+        y: shape (n,).
+        inputs: shape (n, nu).
+    """
+    if not np.ptp(y) or not _is_untold(y, y[:, None]):  # most channels are told by their own past
+        return False
+    moving = inputs[:, np.ptp(inputs, axis=0) > 0]
+    return _is_untold(y, np.column_stack([y, moving]))
+
+
+def _is_untold(y: np.ndarray, columns: np.ndarray) -> bool:
+    """Returns whether the past of columns, shape (n, m), tells nothing of a channel; see above."""
+    numbers = PAST * columns.shape[1]
+    free = len(y) - PAST - 1 - numbers
+    if free < numbers:
+        return False
+    past = np.column_stack([columns[PAST - i : len(y) - i] for i in range(1, PAST + 1)])
+    now = y[PAST:] - y[PAST:].mean()
+    past = past - past.mean(axis=0)
+    past /= np.maximum(past.std(axis=0), np.finfo(float).tiny)  # units must not count
+    left = float(np.sum((now - past @ np.linalg.lstsq(past, now, rcond=None)[0]) ** 2))
+    ratio = (float(now @ now) - left) / numbers / (left / free) if left else np.inf
+    return bool(f_above(ratio, numbers, free) > LUCK)
+
+
 def still_sentence(log: Log) -> str | None:
     """Tells of outputs that stand still in all of a log; None where there is none.
 
@@ -117,8 +153,9 @@ def still_sentence(log: Log) -> str | None:
     """
     still = []
     for name, y in zip(log.output_names, log.outputs.T, strict=True):
-        if stands_still(y):
-            within = f" (within {width:.2g})" if (width := float(np.ptp(y))) else ""
+        if (noise := is_noise(y, log.inputs)) or stands_still(y):
+            of = ", all of it noise" * noise
+            within = f" (within {width:.2g}{of})" if (width := float(np.ptp(y))) else ""
             still.append(
                 f"{name} is {np.median(y):.4g} {log.units.get(name, '')}".rstrip() + within
             )

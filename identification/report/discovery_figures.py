@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from textwrap import wrap
 from typing import TYPE_CHECKING
 
@@ -58,16 +58,28 @@ def where_figures(found: Discovery, run: FreeRun) -> Figures:
 
 
 def score_figures(found: Discovery, best: Sequence[Scored], axis: str, caption: str) -> Figures:
-    """Returns the figure of the best scores."""
-    named = {n.candidate.effect.name for n in found.named}
+    """Returns the figure of the best scores; that of a named effect is of the place of its name."""
+    named = [n.candidate for n in found.named]
     # What the data cannot tell from a named effect is named with it.
-    named |= {r.candidate.effect.name for n in found.named if n.one_of for r in n.rivals[:1]}
+    named += [r.candidate for n in found.named if n.one_of for r in n.rivals[:1]]
+    places = {c.effect.name: c.where for c in reversed(named)}
+    shown = sorted((_at_place(found, s, places) for s in best), key=lambda s: -s.explains)
     figure = gains_figure(
-        [describe_there(s.candidate, found.final.plant) for s in best],
-        np.array([s.explains for s in best]),
-        [s.candidate.effect.name in named for s in best], axis,
+        [describe_there(s.candidate, found.final.plant) for s in shown],
+        np.array([s.explains for s in shown]),
+        [s.candidate.effect.name in places for s in shown], axis,
     )  # fmt: skip
     return ((caption, figure),)
+
+
+def _at_place(found: Discovery, score: Scored, places: Mapping[str, str]) -> Scored:
+    """Returns the score of the same effect at a place of `places`; the score if there is none."""
+    wanted = places.get(score.candidate.effect.name)
+    return next(
+        (s for s in found.scores
+         if s.candidate.where == wanted and s.candidate.effect.name == score.candidate.effect.name),
+        score,
+    )  # fmt: skip
 
 
 @styled

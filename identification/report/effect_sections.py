@@ -30,15 +30,16 @@ FAILED = "tried, and not possible to simulate"
 DROPPED = "begun, and left by the search"
 MEASURES = {  # of a score: what its bars are, their axis, and the title of the figure
     "gain": (
-        "What each effect, at its best place and shape, would explain of the fitted nominal model's"
-        " residual, the model's parameters tuned again. The bars are the gains that the nominal fit"
-        " promises before an effect is fitted; a gain that is said in words is that of the refitted"
-        " model, so that the two differ.",
+        "What each effect, at its best place and shape (one that is named at the place of its"
+        " name), would explain of the fitted nominal model's residual, the model's parameters tuned"
+        " again. The bars are the gains that the nominal fit promises before an effect is fitted; a"
+        " gain that is said in words is that of the refitted model, so that the two differ.",
         GAIN,
         "Gain of the best candidates on the nominal fit",
     ),
     "fall": (
-        "Share of the fitted error that each effect would explain at its best place and shape.",
+        "Share of the fitted error that each effect would explain at its best place and shape; one"
+        " that is named at the place of its name.",
         "share of the mean square of the fitted error",
         "Share of the fitted error",
     ),

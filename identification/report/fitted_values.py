@@ -9,22 +9,23 @@ the worst known of many.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from math import isfinite
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from identification.discovery.fitted import TOLD_SHIFT, Fitted
+from identification.discovery.fitted import TOLD_SHIFT, Fitted, StepShift
 from identification.model.parameter import Parameter
 from identification.model.protocol import FINER
-from identification.quantities import held, quantity
+from identification.quantities import alike, held, quantity
 from identification.report.effect_words import value_with_std, words_of
 from identification.report.page import Table
 
 if TYPE_CHECKING:  # a search is slow to import
     from identification.discovery.result import Discovery
 
+TOLD_DIGITS = 4  # of values that finer steps would give
 SHOWN = 3  # values that are told, those that move most first
 FEW = 3  # single parts that are shown where there are more than MANY
 MANY = 8
@@ -169,7 +170,9 @@ def _changed(model: Fitted, words: Mapping[str, str]) -> list[str]:
     if finer is None:
         return []
     if far := _far(model):
-        told = first_few([f"{words.get(n, n)} by {held(std)} std" for n, std in far.items()])
+        value = _at_finer_steps(model, finer, far)
+        told = first_few([f"{words.get(n, n)} by {held(std)} std to {value[n]}"
+                          for n, std in far.items()])  # fmt: skip
         said.append(f"move {told}, of which the std tell nothing")
     if finer.is_lower():
         said.append(
@@ -177,6 +180,14 @@ def _changed(model: Fitted, words: Mapping[str, str]) -> list[str]:
             " is of the steps, and nothing that is missing"
         )
     return said
+
+
+def _at_finer_steps(model: Fitted, shift: StepShift, names: Iterable[str]) -> dict[str, str]:
+    """Returns the values that a fit with finer steps would have, to first order, in words."""
+    parameters = {p.name: p for p in model.plant.parameters}
+    moved, values = dict(zip(model.told_std, shift.values.tolist(), strict=True)), model.told_values
+    units = {n: _of(n, parameters).unit for n in names}
+    return {n: alike([values[n] + moved[n]], u, TOLD_DIGITS)[0] for n, u in units.items()}
 
 
 def _far(model: Fitted) -> dict[str, float]:

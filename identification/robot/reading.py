@@ -137,13 +137,15 @@ def doubtful(robot: Robot) -> list[str]:
     """Returns sentences of the remarks on which a result depends, to stand beside it.
 
     They say that a free run of the robot's log begins elsewhere than the log does, in short, that
-    the model clips inputs, and that its geoms touch.
+    outputs stand still, that the model clips inputs, and that its geoms touch.
     """
     text = None
     if robot.file.horizon is None:
         text = made_up_sentence(robot.file, robot.plant.model, robot.log)
-    clipped = (clipped_sentence(robot.plant.model, log) for log in (robot.log, *robot.others))
-    return [*filter(None, (text, *clipped, robot.touches))]
+    fitted = (robot.log, *robot.others)
+    still = (still_sentence(log) for log in fitted)
+    clipped = (clipped_sentence(robot.plant.model, log) for log in fitted)
+    return [*filter(None, (text, *still, *clipped, robot.touches))]
 
 
 def _remarks(robot: Robot, logs: Sequence[Log]) -> tuple[str, ...]:

@@ -1,5 +1,6 @@
 """What the step of a simulation does to an estimate is what a search with a finer step finds."""
 
+import re
 import runpy
 from dataclasses import replace
 from pathlib import Path
@@ -66,7 +67,7 @@ def test_the_error_that_finer_steps_leave_is_that_of_a_search_with_them(elbow):
 
 
 def test_it_is_said_where_it_exceeds_the_std(elbow):
-    coarse = elbow[0].model
+    coarse, fine = (found.model for found in elbow)
     (said,) = step_sentences(coarse, {"mass": "the forearm's mass"})
     assert said.startswith(
         "Simulations took steps of 5 ms, as the model says. The last fit was checked with a quarter"
@@ -75,12 +76,16 @@ def test_it_is_said_where_it_exceeds_the_std(elbow):
     assert said.endswith(
         'write timestep="0.00125" into the <option> of the model, and do this once more.'
     )
+    mass = float(re.search(r"mass by 4[.\d]* std to ([.\d]+) kg", said)[1])
+    # rounded as it is told; the value that was fitted is 4 std away
+    assert abs(mass - fine.fit.values["mass"]) < 2.0 * coarse.told_std["mass"]
     std = np.array([*coarse.told_std.values()])
     for values, error, words in (
         (0.9 * std, 0.95, None),
         (np.nan * std, np.nan, None),
         (0.9 * std, 0.43, "would lower the error of the fitted windows to 0.43 of what it is"),
-        (2.3 * std, 0.43, "by 2.3 std, of which the std tell nothing, and would lower the error"),
+        (2.3 * std, np.nan, "by 2.3 std to 1"),
+        (2.3 * std, 0.43, ", of which the std tell nothing, and would lower the error"),
     ):
         sentences = step_sentences(with_finer(coarse, values, error))
         assert bool(sentences) == bool(words)
