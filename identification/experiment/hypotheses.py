@@ -2,7 +2,7 @@
 
     F = Σ_w S_wᵀ(I - P_w) S_w,   P = F_logs + W²               information of windows, and before
     std = √diag (P + F)⁻¹                                       expected after the experiment
-    λ_ij = min over x of ‖(ŷ_i - ŷ_j) - S_j x‖² + xᵀ P_j x      what j cannot imitate where i is right
+    λ_ij = min over x of ‖(ŷ_i - ŷ_j) - S_j x‖² + xᵀ P_j x     what j cannot imitate, i is right
 
 The windows, the sensitivities S (with the windows' initial states projected out) and the priors W
 are those of a fit (`identification.windows`). Along a free run there is one window. The errors are

@@ -205,8 +205,10 @@ def _limit(
     if own is not None:
         return Limit(what, name, float(own[0]), float(own[1]), "model")
     if seen is None or not seen[1] > seen[0]:
-        return None if what != "input" or seen is None else Limit(
-            what, name, float(seen[0]), float(seen[1]), "logs"
+        return (
+            None
+            if what != "input" or seen is None
+            else Limit(what, name, float(seen[0]), float(seen[1]), "logs")
         )
     more = widen * float(seen[1] - seen[0])
     return Limit(what, name, float(seen[0]) - more, float(seen[1]) + more, "logs")

@@ -71,7 +71,8 @@ class Played:
     qpos: np.ndarray  # at the samples, shape (N, nq)
     qvel: np.ndarray  # shape (N, nv)
     margins: tuple[Margin, ...]  # the nearest limit first
-    aim: np.ndarray | None = None  # positions of the drives' joints to follow, shape (N, n)
+    # positions, rates and accelerations of the drives' joints to follow, shape (3, N, n)
+    aim: np.ndarray | None = None
 
 
 @dataclass(frozen=True)
@@ -202,7 +203,7 @@ class Stage:
             aim = None
         else:
             u, run = self._follow(x, v, a)
-            log, aim = replace(log, inputs=u), x
+            log, aim = replace(log, inputs=u), np.stack([x, v, a])
         y = self._predictor(log).outputs(NONE, run)[0]
         log = replace(log, outputs=y)
         qpos, qvel = run["qpos"][0], run["qvel"][0]

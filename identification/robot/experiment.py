@@ -3,57 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
 from identification.errors import InputError, refuse_kind, refuse_negative
-from identification.experiment.design import Design, design
+from identification.experiment.design import design
 from identification.experiment.hypotheses import Hypothesis, fitted
 from identification.experiment.limits import limits_of
 from identification.experiment.playing import stage_of
 from identification.logs.log import Log
 from identification.pool import one_blas_thread
 from identification.results import RESULT, read_result
+from identification.robot.next_experiment import NextExperiment
 from identification.robot.reading import read_robot
 from identification.robot.rivals import Model, read_rivals
 from identification.robot.robot import Robot
-from identification.written import Files, Written
+from identification.written import Files
 
 ROBOT = "robot.toml"  # in the folder of a result: the robot with what was found
-
-
-@dataclass(frozen=True)
-class NextExperiment(Written):
-    """The result of `design_experiment`.
-
-    Attributes:
-        robot: whose next experiment it is, with what was found.
-        found: the design: the experiment, its limits, and what it is expected to tell.
-        files_of: returns what writes its files (`identification.written`).
-    """
-
-    robot: Robot
-    found: Design
-    files_of: Callable[[NextExperiment], Files]
-
-    def __repr__(self) -> str:
-        return f"next experiment of {self.robot.file.path.name}, {self.log.duration:g} s"
-
-    @property
-    def log(self) -> Log:
-        """The inputs to play, and the outputs that the model expects: nothing was measured."""
-        return self.found.best.played.log
-
-    @property
-    def before(self) -> dict[str, float]:
-        """Std of the free values by name before the experiment, in their units."""
-        return dict(zip(self.found.hypotheses[0].names, self.found.before.tolist(), strict=True))
-
-    @property
-    def after(self) -> dict[str, float]:
-        """Expected std of the free values by name after it, in their units."""
-        return dict(zip(self.found.hypotheses[0].names, self.found.best.std.tolist(), strict=True))
 
 
 @one_blas_thread()
@@ -119,9 +87,7 @@ def with_result(robot: Robot, result: str | Path) -> Robot:
             " written with --out"
         )
     # These logs have passed the checks of wiring already, with the model as it was.
-    return read_robot(
-        folder / ROBOT, [robot.log, *robot.others], robot.records, trust=("wiring",)
-    )
+    return read_robot(folder / ROBOT, [robot.log, *robot.others], robot.records, trust=("wiring",))
 
 
 def _hypotheses(
