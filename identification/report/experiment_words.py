@@ -9,7 +9,6 @@ import numpy as np
 
 from identification.experiment.design import Design
 from identification.experiment.limits import Margin
-from identification.logs.names import listed
 from identification.model.parameter import ParameterSet
 from identification.quantities import alike, plain, plain_unit, quantity
 from identification.shares import percent
@@ -31,7 +30,7 @@ def experiment_verdict(found: Design, at: ParameterSet) -> list[str]:
     log = found.best.played.log
     lasts = f"The next experiment lasts {log.duration:.4g} s"
     if found.stage.form == "inputs":
-        what = f"{lasts} and plays the inputs {listed(log.input_names)} as they are."
+        what = f"{lasts} and plays the inputs {_and(log.input_names)} as they are."
     else:
         what = (
             f"{lasts} and is a motion for your controller to follow: the file has the positions as"
@@ -83,10 +82,16 @@ def experiment_to_json(found: Design, at: ParameterSet) -> dict[str, Any]:
     }  # fmt: skip
 
 
+def _and(words: Sequence[str]) -> str:
+    """Returns words in a list: a, b and c."""
+    *first, last = words
+    return f"{', '.join(first)} and {last}" if first else last
+
+
 def _rivals(found: Design) -> list[str]:
     """Returns what the experiment is expected to say of the rivals."""
-    names = listed([h.name for h in found.hypotheses])
-    now = listed([percent(s) for s in found.shares])
+    names = _and([h.name for h in found.hypotheses])
+    now = _and([percent(s) for s in found.shares])
     least, λ = float(found.shares_after.min()), found.best.separations
     odds, random = 0.5 * float(λ.min()), 0.5 * float(found.random.separations.min())
     out = [
@@ -120,7 +125,7 @@ def _values(found: Design, at: ParameterSet) -> list[str]:
         gain = _mean(before[order] / after[order])
         random = _mean(found.random.std[order] / after[order])
         out.append(
-            f"Expected std after it, the worst-known first: {listed(told)}{more}. The std fall"
+            f"Expected std after it, the worst-known first: {_and(told)}{more}. The std fall"
             f" {gain:.3g} times in the mean; those of a random experiment within the same limits"
             f" would be {random:.3g} times as large."
         )
@@ -128,7 +133,7 @@ def _values(found: Design, at: ParameterSet) -> list[str]:
     if same:
         it = "it" if len(same) == 1 else "them"
         out.append(
-            f"It tells little more of {listed(same)}: no motion within these limits shows {it}"
+            f"It tells little more of {_and(same)}: no motion within these limits shows {it}"
             " better than what is known already."
         )
     return out
