@@ -66,7 +66,7 @@ def test_the_csv_has_the_columns_of_the_log_and_can_be_played(robot, tmp_path, c
 
 
 def test_the_rivals_of_a_saved_discovery_are_models_of_the_robot(robot, result):
-    toml, log = robot
+    _, log = robot
     named, rival = read_rivals(read_robot(result / "robot.toml", log), result)
     assert (named.share, rival.share) == (0.55, 0.4)
     assert NAMED in named.nominal.names
