@@ -52,8 +52,11 @@ class Margin:
 
     @property
     def share(self) -> float:
-        """The distance left, of half the limit's width."""
-        return self.left / (0.5 * (self.limit.high - self.limit.low) or 1.0)
+        """The distance left, of half the limit's width; infinite where nothing may move or does."""
+        width = 0.5 * (self.limit.high - self.limit.low)
+        if not width and not self.left:
+            return np.inf
+        return self.left / (width or 1.0)
 
 
 @dataclass(frozen=True)

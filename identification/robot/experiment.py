@@ -87,7 +87,12 @@ def with_result(robot: Robot, result: str | Path) -> Robot:
             " written with --out"
         )
     # These logs have passed the checks of wiring already, with the model as it was.
-    return read_robot(folder / ROBOT, [robot.log, *robot.others], robot.records, trust=("wiring",))
+    return read_robot(
+        folder / ROBOT,
+        [robot.log, *robot.others],
+        robot.records,
+        trust=(*robot.file.trust, "wiring"),
+    )
 
 
 def _hypotheses(
