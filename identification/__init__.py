@@ -35,6 +35,8 @@ if TYPE_CHECKING:  # the public names, by what they are for
     from identification.robot.confirmation import confirm as confirm
     from identification.robot.record_error import Confirmation as Confirmation
     from identification.robot.write import write_robot as write_robot
+    from identification.robot.experiment import design_experiment as design_experiment
+    from identification.robot.next_experiment import NextExperiment as NextExperiment
 
     # results that were saved
     from identification.saved import load as load

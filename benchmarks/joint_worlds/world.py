@@ -53,6 +53,13 @@ class Acting:
     size: float
 
 
+@dataclass(frozen=True)
+class _Control:
+    p: np.ndarray
+    computed: bool
+    bandwidth: float
+
+
 @dataclass(frozen=True, kw_only=True)
 class World:
     """A robot, what is wrong with its nominal model, and its records."""
@@ -77,22 +84,18 @@ class World:
     also: str = ""  # the name of a second effect; "" where there is none
     acting: tuple[Acting, ...] = ()  # the effects, where several of the catalogue act at once
     records: tuple[Record, Record]  # the one to fit and the one that confirms
+    true: Numbers  # of the robot as it is
+    control: _Control
 
 
 class UnseenError(Exception):
     """No size of the effect that is allowed shows in a log of this robot, under its controller."""
 
 
-@dataclass(frozen=True)
-class _Control:
-    p: np.ndarray
-    computed: bool
-    bandwidth: float
-
-
 def make_world(
-    name: str, effect: str, seed: int, duration: float = 20.0, departure: Departure = USUAL
-) -> World:
+    name: str, effect: str, seed: int, duration: float = 20.0, departure: Departure = USUAL,
+    reach: float = 1.0,
+) -> World:  # fmt: skip
     """Draw a world and simulate its records.
 
     Args:
@@ -101,6 +104,7 @@ def make_world(
         seed: of all that is drawn.
         duration: of a record [s].
         departure: from what is usual.
+        reach: share of the robot's travel and speed that its references take.
 
     Raises:
         UnseenError: the largest size of the effect shows less than `LEAST`.
@@ -109,15 +113,16 @@ def make_world(
     rng = np.random.default_rng([seed, robot.code, zlib.crc32(effect.encode())])
     for _ in range(DRAWS - 1 if effect == THREE else 0):  # some effects do not show on some robots
         try:
-            return _world(robot, effect, rng, duration, departure)
+            return _world(robot, effect, rng, duration, departure, reach)
         except UnseenError:
             continue
-    return _world(robot, effect, rng, duration, departure)
+    return _world(robot, effect, rng, duration, departure, reach)
 
 
 def _world(
-    robot: JointRobot, effect: str, rng: np.random.Generator, duration: float, departure: Departure
-) -> World:
+    robot: JointRobot, effect: str, rng: np.random.Generator, duration: float,
+    departure: Departure, reach: float,
+) -> World:  # fmt: skip
     """Returns what `make_world` draws.
 
     Raises:
@@ -144,8 +149,8 @@ def _world(
         control = replace(control, bandwidth=robot.bandwidth * rng.uniform(*CONTROLLERS))
     count = round(duration / robot.sampling_time)
     aims = [
-        reference(str(kind), np.array(robot.travel), np.array(robot.speed), robot.sampling_time,
-                  count, rng)
+        reference(str(kind), reach * np.array(robot.travel), reach * np.array(robot.speed),
+                  robot.sampling_time, count, rng)
         for kind in kinds
     ]  # fmt: skip
     still = _quiet(robot, base, control, aims[0])
@@ -201,8 +206,17 @@ def _world(
         size=size, shape=shape, ratio=shown, free=free, coulomb="coulomb" not in known,
         truth={f.name: float(base.p[f.number] if f.number is not None else base.joints[f.slot])
                for f in free},
-        push=share, records=(records[0], records[1]),
+        push=share, records=(records[0], records[1]), true=true, control=control,
     )  # fmt: skip
+
+
+def further_record(world: World, aim: np.ndarray, seed: int) -> Record:
+    """Returns another record of a world, which follows a motion (3, N, n): q, q̇ and q̈."""
+    robot, h = world.robot, world.robot.sampling_time
+    rng = np.random.default_rng([seed, robot.code])
+    rms = world.push * world.records[0].inputs.std(axis=0)
+    push = USUAL.error(np.zeros(aim.shape[1:]), h, rms, rng.uniform(*COLOUR), rng)
+    return _record(robot, world.true, world.control, aim, "further", push, USUAL, rng)
 
 
 def _drawn(robot: JointRobot, rng: np.random.Generator) -> tuple[Hidden, ...]:

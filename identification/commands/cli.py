@@ -1,4 +1,4 @@
-"""identification: fit any robot, find what its model lacks, and linearise it."""
+"""identification: fit any robot, find what its model lacks, design its next experiment."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import Annotated
 import tyro
 
 from identification.commands.common import import_without_graphics
+from identification.commands.excite import Excite
 from identification.commands.inspect import Inspect
 from identification.commands.linearize import Linearize
 from identification.commands.new import New
@@ -21,6 +22,7 @@ Command = (
     | Annotated[Fit, tyro.conf.subcommand("fit")]
     | Annotated[Discover, tyro.conf.subcommand("discover")]
     | Annotated[Torques, tyro.conf.subcommand("torques")]
+    | Annotated[Excite, tyro.conf.subcommand("excite")]
     | Annotated[Inspect, tyro.conf.subcommand("inspect")]
     | Annotated[Linearize, tyro.conf.subcommand("linearize")]
     | Annotated[SweepCommand, tyro.conf.subcommand("sweep")]

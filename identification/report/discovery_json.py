@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from identification.discovery.effect_results import NamedEffect, Proof, RejectedEffect
+from identification.discovery.effect_results import NamedEffect, Proof, RejectedEffect, Rival
 from identification.discovery.findings.evidence import DoubtfulEffect, OversizedEffect
 from identification.discovery.findings.finding import Finding
 from identification.discovery.fitted import Fitted
@@ -138,13 +138,20 @@ def _named_to_json(named: NamedEffect, plant: Plant) -> dict[str, Any]:
         **plain_fields(named, *NAMED),
         "parameters": _parameters_to_json(named.parameters),
         "rivals": [
-            {**_called(r.candidate, plant), "confidence": r.confidence} for r in named.rivals
+            {**_called(r.candidate, plant), "confidence": r.confidence, "values": _law_of(r)}
+            for r in named.rivals
         ],
         "same_as": named.same_as.name if named.same_as else None,
         "advice": named.advice or None,
         **_proofs_to_json(named.proof),
         **plain_fields(named.proof.told, "agrees", "disagrees"),
     }
+
+
+def _law_of(rival: Rival) -> dict[str, Any]:
+    """Returns the sizes and shapes of a rival in its own fit, by the plant's names."""
+    own = {*rival.candidate.sizes, *rival.candidate.fixed}
+    return {n: plain(v) for n, v in rival.values.items() if n in own}
 
 
 def _rejected_to_json(rejected: RejectedEffect) -> dict[str, Any]:

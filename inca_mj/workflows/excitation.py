@@ -18,6 +18,7 @@ import numpy as np
 from identification.errors import DivergenceError, InputError, refuse_negative
 from identification.estimation.experiment import Experiment
 from identification.estimation.information import Information, determinable
+from identification.experiment.search import search
 from identification.progress import counted
 from inca_mj.robot.parameters import UNKNOWN
 from inca_mj.twin.logs import ANGLES
@@ -29,7 +30,6 @@ from inca_mj.workflows.sensitivity import DURATION, NOISE, robot_information
 
 SCALES = (1.0, 0.7, 0.5, 0.35, 0.2)  # tried on a swing that breaks a limit
 MOVES = ((0.3, 0.1), (0.1, 0.1), (0.1, 0.3), (0.03, 0.5))  # size of a change, share of numbers
-TRIES = 20  # simulations without information, per evaluation of the information
 
 Progress = Callable[[str], None]
 
@@ -183,25 +183,20 @@ class Bench:
 
 def _search(bench: Bench, n: int, budget: int, seed: int) -> Iterator[tuple[Recipe, Tried]]:
     """Yields recipes within the limits, with their information: half random, half near the best."""
-    rng = np.random.default_rng(seed)
-    best: tuple[Recipe, float] | None = None
-    count = 0
-    for attempt in range(TRIES * budget):
-        if count == budget:
-            return
-        if attempt == 0:
-            recipe = draw("multisine", rng, guess=True)
-        elif best is None or count < budget // 2:
-            recipe = draw("multisine" if rng.random() < 0.5 else "prbs", rng)
-        else:
-            recipe = changed(best[0], rng, *rng.choice(MOVES))
-        if (fit := bench.fitted(recipe, n)) is None:
-            continue
-        candidate = bench.attempt(f"designed {recipe.kind}", fit[1])
-        count += 1
-        yield fit[0], candidate
-        if best is None or best[1] < candidate.found.e_value:
-            best = fit[0], candidate.found.e_value
+
+    def drawn(tried: int, rng: np.random.Generator) -> Recipe:
+        if tried == 0:
+            return draw("multisine", rng, guess=True)
+        return draw("multisine" if rng.random() < 0.5 else "prbs", rng)
+
+    def attempt(recipe: Recipe) -> tuple[Recipe, Tried] | None:
+        fit = bench.fitted(recipe, n)
+        return fit and (fit[0], bench.attempt(f"designed {fit[0].kind}", fit[1]))
+
+    return search(
+        drawn, lambda best, rng: changed(best, rng, *rng.choice(MOVES)), attempt,
+        lambda tried: tried.found.e_value, budget, np.random.default_rng(seed),
+    )  # fmt: skip
 
 
 def _samples(duration: float) -> int:

@@ -1,0 +1,1 @@
+"""The next experiment: a motion or an input, within limits, that tells what is not known yet."""

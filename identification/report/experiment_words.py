@@ -1,0 +1,191 @@
+"""The next experiment in sentences, and as plain values."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from identification.experiment.design import Design
+from identification.experiment.limits import Margin
+from identification.model.parameter import ParameterSet
+from identification.quantities import alike, plain, plain_unit, quantity
+from identification.shares import percent
+
+FILE = "next_experiment.csv"  # in the folder of results
+SAID = 4  # values that the verdict tells of, the worst-known first
+SURE = 0.95  # expected probability of the right rival, below which they stay a set
+BETTER = 1.05  # ratio of std, below which an experiment tells nothing of a value
+UNITS = {"position": ("rad", "m"), "speed": ("rad/s", "m/s"), "input": ("", ""), "force": ("", "")}
+
+
+def experiment_verdict(found: Design, at: ParameterSet) -> list[str]:
+    """Returns what the experiment is, what it is expected to tell, and how near limits are.
+
+    Args:
+        found: the design.
+        at: the robot's parameters, with their units.
+    """
+    log = found.best.played.log
+    lasts = f"The next experiment lasts {log.duration:.4g} s"
+    if found.stage.form == "inputs":
+        what = f"{lasts} and plays the inputs {_and(log.input_names)} as they are."
+    else:
+        what = (
+            f"{lasts} and is a motion for your controller to follow: the file has the positions as"
+            " a reference, and the inputs that the model expects."
+        )
+    gain = _rivals(found) if len(found.hypotheses) > 1 else _values(found, at)
+    return [
+        what,
+        *gain,
+        *_margins(found),
+        "This holds for noise that is white and as large as the error of the fit, and near the"
+        " values that are believed now; nothing was measured yet.",
+    ]
+
+
+def experiment_to_json(found: Design, at: ParameterSet) -> dict[str, Any]:
+    """Returns the design as plain values; see `experiment_verdict`."""
+    log, first = found.best.played.log, found.hypotheses[0]
+    values = first.values
+    rows = zip(first.names, found.before, found.best.std, found.random.std, strict=True)
+    rivals = len(found.hypotheses) > 1
+    return {
+        "verdict": experiment_verdict(found, at),
+        "file": FILE,
+        "form": found.stage.form,
+        "duration": log.duration,
+        "sampling_time": log.sampling_time,
+        "values": {
+            name: plain({"value": values[name], "unit": plain_unit(at[name].unit),
+                         "before": before, "after": after, "random": random})
+            for name, before, after, random in rows
+        },
+        "rivals": [
+            plain({"name": h.name, "before": before, "after": float(after)})
+            for h, before, after in zip(found.hypotheses, found.shares, found.shares_after,
+                                        strict=True)
+        ] if rivals else [],
+        "log_odds": plain(0.5 * found.best.separations) if rivals else None,
+        "random_log_odds": 0.5 * float(found.random.separations.min()) if rivals else None,
+        "margins": [
+            plain({"what": m.limit.what, "name": m.limit.name, "low": m.limit.low,
+                   "high": m.limit.high, "least": m.least, "most": m.most, "share": m.share,
+                   "of": m.limit.source})
+            for m in found.best.played.margins
+        ],
+        "contacts": found.stage.limits.looks,
+        "evaluations": found.evaluations,
+        "seed": found.seed,
+    }  # fmt: skip
+
+
+def _and(words: Sequence[str]) -> str:
+    """Returns words in a list: a, b and c."""
+    *first, last = words
+    return f"{', '.join(first)} and {last}" if first else last
+
+
+def _rivals(found: Design) -> list[str]:
+    """Returns what the experiment is expected to say of the rivals."""
+    names = _and([h.name for h in found.hypotheses])
+    now = _and([percent(s) for s in found.shares])
+    least, λ = float(found.shares_after.min()), found.best.separations
+    odds, random = 0.5 * float(λ.min()), 0.5 * float(found.random.separations.min())
+    out = [
+        f"It is to tell {names} apart, which are as likely as {now} now. Whichever is right, its"
+        f" probability is expected to be at least {percent(least)} afterwards: log odds of"
+        f" {odds:.2g} between the two that are most alike, where a random experiment within the"
+        f" same limits gives {random:.2g}."
+    ]
+    if least < SURE:
+        out.append(
+            "No experiment that was tried within these limits tells them apart: allow a wider range"
+            " or a longer experiment, or measure something else."
+        )
+    return out
+
+
+def _values(found: Design, at: ParameterSet) -> list[str]:
+    """Returns what the experiment is expected to tell of the free values."""
+    first = found.hypotheses[0]
+    before, after = found.before, found.best.std
+    size = np.abs(first.space.slope(first.fit.q[: len(first.names)]))
+    order = np.argsort(-before / size, kind="stable")
+    better = [k for k in order if before[k] > BETTER * after[k]]
+    out = []
+    if better:
+        told = [
+            f"{first.names[k]} {' instead of '.join(_std(after[k], before[k], first, at, k))}"
+            for k in better[:SAID]
+        ]
+        more = f" ({len(better) - SAID} more in the report)" if len(better) > SAID else ""
+        gain = _mean(before[order] / after[order])
+        random = _mean(found.random.std[order] / after[order])
+        out.append(
+            f"Expected std after it, the worst-known first: {_and(told)}{more}. The std fall"
+            f" {gain:.3g} times in the mean; those of a random experiment within the same limits"
+            f" would be {random:.3g} times as large."
+        )
+    same = [first.names[k] for k in order if k not in better]
+    if same:
+        it = "it" if len(same) == 1 else "them"
+        out.append(
+            f"It tells little more of {_and(same)}: no motion within these limits shows {it}"
+            " better than what is known already."
+        )
+    return out
+
+
+def _mean(ratio: np.ndarray) -> float:
+    """Returns the geometric mean of ratios."""
+    return float(np.exp(np.mean(np.log(np.maximum(ratio, 1e-12)))))
+
+
+def _std(after: float, before: float, first: Any, at: ParameterSet, k: int) -> list[str]:
+    return alike([after, before], plain_unit(at[first.names[k]].unit), 2)
+
+
+def _margins(found: Design) -> list[str]:
+    """Returns how near the simulated experiment comes to its limits."""
+    nearest = found.best.played.margins[:1]
+    out = [f"In the simulation it keeps all limits; the nearest is {_near(m, found)}."
+           for m in nearest]  # fmt: skip
+    if found.stage.limits.looks:
+        out.append("No bodies touch that do not touch where it begins.")
+    else:
+        out.append("Contacts were not looked for, because the model has none.")
+    return out
+
+
+def _near(m: Margin, found: Design) -> str:
+    """Returns a margin in words."""
+    limit = m.limit
+    end, bound = (m.least, limit.low) if m.least - limit.low <= m.left else (m.most, limit.high)
+    unit = limit_unit(m, found)
+    whose = "the model's" if limit.source == "model" else "that of the logs"
+    what = "the force of " if limit.what == "force" else f"the {limit.what} of "
+    return (
+        f"{what}{limit.name}, which reaches {quantity(end, unit=unit)} of"
+        f" {quantity(bound, unit=unit)} ({whose})"
+    )
+
+
+def limit_unit(m: Margin, found: Design) -> str:
+    """Returns the unit of a limit; "" where it is not known."""
+    if m.limit.what in ("input", "force"):
+        return found.stage.like.units.get(m.limit.name, "") if m.limit.what == "input" else ""
+    model, slide = found.stage.model, 2
+    kinds = {model.joint(j).name: int(model.jnt_type[j]) for j in found.stage.limits.joints}
+    return UNITS[m.limit.what][int(kinds.get(m.limit.name) == slide)]
+
+
+def value_rows(found: Design, at: ParameterSet) -> Sequence[tuple[str, ...]]:
+    """Returns each free value with its std before, after, and after a random experiment."""
+    first = found.hypotheses[0]
+    rows = zip(first.names, found.before, found.best.std, found.random.std, strict=True)
+    return [
+        (name, *alike([*each], plain_unit(at[name].unit), 2)) for name, *each in rows
+    ]  # fmt: skip
