@@ -103,6 +103,9 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
     ),
     "drop_beside_curves": (HORIZON, "drops laws that were found only beside a curve of the data"),
     "drop_drawn_laws": (HORIZON, "drops a law whose work a later curve of the data does"),
+    "priors_of_last_fit": (
+        HORIZON, "lets priors of the last fit weigh against its own errors, which are smaller",
+    ),
     "likeliest_of_set": (HORIZON, "puts the likeliest effect of a set of names into the model"),
 })  # fmt: skip
 

@@ -18,10 +18,12 @@ from identification.model.predictor import Plant
 from identification.model.protocol import FINER
 from identification.prediction.first_fit import REFIT_TOLERANCE, Begun, shapes_of
 from identification.prediction.model import WindowModel, predict_fitted
+from identification.prediction.nominal_fit import MAX_SCALE_FITS, SETTLED_CHANGE
 from identification.windows.coarse import steps_of
 from identification.windows.fit import solve
 from identification.windows.problem import (
     Problem,
+    with_lighter_priors,
     with_longer_steps,
     with_own_steps,
     with_unknowns,
@@ -112,22 +114,43 @@ def with_finer_steps(
     return _refitted(model, replace(problem, parts=tuple(parts)), horizon, confirm)
 
 
-def at_own_steps(model: WindowModel, horizon: float, confirm: Sequence[Record]) -> WindowModel:
-    """Returns the model refitted with the steps of the user's model, as the last fit of a search.
+def as_last_fit(
+    model: WindowModel, horizon: float, confirm: Sequence[Record], is_weighed: bool = True
+) -> WindowModel:
+    """Returns the model refitted as the last fit of a search.
 
-    Longer steps err by a share of what is left, and in the same direction in every window: beside
-    the std of many windows that is much.
+    It takes the steps of the user's model. Longer ones err by a share of what is left, and in the
+    same direction in every window: beside the std of many windows that is much.
+
+    Its priors weigh against its own errors. In a search errors count in the scale of the nominal
+    model's, so that models can be compared: where an effect has taken most of them away, priors
+    would outweigh the data, pull values to their means, and make the std of all values too large.
 
     Args:
         model: fitted.
         horizon: [s].
         confirm: records that no fit may see.
+        is_weighed: whether priors weigh against its own errors.
 
     Raises:
-        DivergenceError: it cannot be simulated with these steps.
+        DivergenceError: it cannot be simulated with the steps of the user's model.
     """
-    task = with_own_steps(model.fit.problem)
-    return model if task is model.fit.problem else _refitted(model, task, horizon, confirm)
+    weight, task = 1.0, with_own_steps(model.fit.problem)
+    for _ in range(MAX_SCALE_FITS):
+        share = share_of_scale(model) if is_weighed else 1.0
+        if share < (1 - SETTLED_CHANGE) * weight:
+            task, weight = with_lighter_priors(task, share / weight), share
+        if task is model.fit.problem:
+            break
+        model = _refitted(model, task, horizon, confirm)
+        task = model.fit.problem
+    return model
+
+
+def share_of_scale(model: WindowModel) -> float:
+    """Returns the rms of a model's fitted errors over the scale in which they count."""
+    squares = sum(float(np.sum((e / model.scale) ** 2)) for e in model.fit.errors)
+    return float(np.sqrt(squares / sum(e.size for e in model.fit.errors)))
 
 
 def _refitted(

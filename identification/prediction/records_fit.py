@@ -21,7 +21,7 @@ from identification.discovery.options import DiscoveryOptions
 from identification.errors import InputError
 from identification.logs.log import Log
 from identification.pool import one_blas_thread
-from identification.prediction.extension import at_own_steps
+from identification.prediction.extension import as_last_fit
 from identification.prediction.model import WindowModel
 from identification.prediction.nominal_fit import begin, fit_nominal
 from identification.prediction.record_errors import (
@@ -203,7 +203,9 @@ def fit_records(
     records = as_records(fit, confirm)
     unseen = [r for r in records if r.role == "confirm"]
     found = fit_nominal(base, records, progress)
-    model = attempt(None, partial(at_own_steps, found, base.horizon, unseen)) or found
+    model = (
+        attempt(None, partial(as_last_fit, found, base.horizon, unseen, is_weighed=False)) or found
+    )
     begun = predict(model.plant, unseen, base.horizon, model.scale, {}, model.unseen)
     unknowns = model.fit.problem.unknowns
     start = unknowns.all.space.decode(begin(base, unknowns))

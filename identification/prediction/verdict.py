@@ -27,12 +27,13 @@ from identification.discovery.effect_results import (
 )
 from identification.discovery.findings.finding import Finding, FindingKind
 from identification.discovery.options import DiscoveryOptions
+from identification.discovery.passes import uses
 from identification.discovery.result import Discovery, Verdict
 from identification.effects.effect import Candidate
 from identification.logs.joined import REPLAYED, replayed_share
 from identification.logs.log import Log
 from identification.prediction.clocks import record_shifts
-from identification.prediction.extension import at_own_steps, refitted
+from identification.prediction.extension import as_last_fit, refitted
 from identification.prediction.model import WindowModel
 from identification.prediction.neighbours import find_neighbour, has_neighbours_name
 from identification.prediction.odds import find_odds
@@ -60,7 +61,7 @@ def conclude(state: WindowSearch) -> Discovery:
     Args:
         state: the finished state.
     """
-    state = _at_own_steps(state)
+    state = _with_last_fit(state)
     task, model = state.task, state.model
     options = task.options
     rejected = listed_once([_rejected(state, c) for c in state.rejected])
@@ -161,15 +162,17 @@ def _failed(state: WindowSearch) -> tuple[Failed, ...]:
     return tuple(f for f in state.failed if not (f.dropped and f.key in refitted))
 
 
-def _at_own_steps(state: WindowSearch) -> WindowSearch:
-    """Returns the state whose final model is fitted with the steps of the user's model.
+def _with_last_fit(state: WindowSearch) -> WindowSearch:
+    """Returns the state whose final model is fitted as the last one (`as_last_fit`).
 
     Values that are worse after a fit than before it are kept as they were, and none is fitted.
     """
     task, model = state.task, state.model
     if state.worse_fit is not None and not model.candidates:
         return state
-    final = attempt(None, partial(at_own_steps, model, task.horizon, task.confirm)) or model
+    is_weighed = bool(model.candidates) and uses(task.options, "priors_of_last_fit")
+    last = partial(as_last_fit, model, task.horizon, task.confirm, is_weighed)
+    final = attempt(None, last) or model
     return replace(state, model=final, nominal=final if state.nominal is model else state.nominal)
 
 

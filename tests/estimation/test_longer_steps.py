@@ -15,7 +15,7 @@ from identification.estimation.priors import Priors
 from identification.model.coordinates import coordinates
 from identification.model.predictor import Predictor
 from identification.model.rollout import substeps
-from identification.prediction.extension import at_own_steps
+from identification.prediction.extension import as_last_fit
 from identification.prediction.model import WindowModel, predict_fitted
 from identification.windows.coarse import OUTPUT_ERROR, with_longest_slope_steps, with_longest_steps
 from identification.windows.fit import solve
@@ -169,9 +169,9 @@ def test_the_last_fit_is_that_of_a_search_with_the_steps_of_the_model():
     own = plant(stiffness=900.0)
     rough, confirm = rough_model(own, 1e-6, 4)
     exact, _ = rough_model(own, 1e-6, 1)
-    last = at_own_steps(rough, 0.2, confirm)
+    last = as_last_fit(rough, 0.2, confirm, is_weighed=False)
     assert last.plant.steps == 1
-    assert at_own_steps(last, 0.2, confirm) is last
+    assert as_last_fit(last, 0.2, confirm, is_weighed=False) is last
     std = np.array([*exact.std.values()])
     far, left = (
         np.abs(np.array([*m.fit.values.values()]) - [*exact.fit.values.values()]) / std
