@@ -14,7 +14,7 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
-from math import isfinite, nan
+from math import isfinite
 from typing import Any, Generic, Protocol, TypeVar
 
 from identification.discovery.attempts import Failed, attempt, collected
@@ -178,7 +178,9 @@ class Evidence(Generic[State]):
 
     def _told(self, state: State) -> str:
         """Returns how far the model of a state is from the data, and what it has, in words."""
-        ratio = nan if self.times_noise is None else self.times_noise(state)
+        if self.times_noise is None:
+            return ""
+        ratio = self.times_noise(state)
         far = f"the error on the unseen data that decide is {held(ratio)} times the noise"
         names = [f"{a.candidate.effect.name}, {a.candidate.where}" for a in state.accepted]
         return "; ".join([*([far] if isfinite(ratio) else []),

@@ -29,9 +29,11 @@ from identification.report.horizon_section import error_figures
 from identification.report.page import Section, Table
 from identification.report.parts_words import parts_sentence
 from identification.report.shown_words import shown_lines, shown_rows, shown_sentences
+from identification.shares import decimal
 from identification.windows.coarse import steps_of
 
 DIGITS = 3  # of errors of records
+FIT_DIGITS = 4  # of a fit [%]: 99.96
 FITTED = "all of it was fitted"
 LATER = (
     "Inputs that seem to act earlier may also be the answer of a controller to what the robot did."
@@ -74,7 +76,7 @@ def gap_section(found: Discovery) -> Section:
     for (when, model, gap), size, rms in zip(told, sizes, error_words(errors), strict=True):
         ratio, fit = found.times_noise(gap), gap.fit_percent[np.isfinite(gap.fit_percent)]
         times = held(ratio) if isfinite(ratio) else None
-        rows.append((model, size, times, float(fit.mean()) if len(fit) else None))
+        rows.append((model, size, times, decimal(fit.mean(), FIT_DIGITS) if len(fit) else None))
         lines.append(f"  {when:<7}{rms}" + (f", {times} times the noise" if times else ""))
     title, said = "error on unseen data:", parts_sentence(found)
     return Section(
@@ -108,7 +110,14 @@ def records_section(found: Discovery) -> list[Section]:
         Section(
             "Error by record",
             " ".join([said, *steps_taken(found)]),
-            table=Table(("record", "nominal model", "final model", "role"), tuple(rows)),
+            table=Table(
+                (
+                    "record",
+                    *(("nominal model", "final model") if found.named else ("error",)),
+                    "role",
+                ),
+                tuple(rows if found.named else ((n, before, r) for n, before, _, r in rows)),
+            ),
             plain="\n".join(lines),
         )
     ]
@@ -166,7 +175,7 @@ def shifts_section(found: Discovery) -> list[Section]:
     shifts = shown_shifts(found.shifts, found.records, found.options)
     if not shifts:
         return []
-    rows = tuple((s.record, describe_shift(s), 100 * s.fall) for s in shifts)
+    rows = tuple((s.record, describe_shift(s), round(100 * s.fall)) for s in shifts)
     lines = [f"  {name}: {shift}, {fall:z.0f} % of its mean square" for name, shift, fall in rows]
     return [
         Section(

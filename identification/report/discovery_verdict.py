@@ -27,7 +27,7 @@ from identification.shown import verdict_of
 
 NOT_FITTED = "the fit has not seen, but on which the search has decided"
 NO_ERROR = 1e-3  # of the inputs' rms: less is not told from none
-ALMOST = 0.999  # more than 99 %, and not all
+ALMOST = 0.999  # nearly all
 NOISIER = 1.5  # times the rms noise of the other outputs of its unit: more is told
 
 
@@ -50,6 +50,11 @@ def further_sentences(found: Discovery) -> list[str]:
 
 def is_above_noise(found: Discovery) -> bool:
     """Tells whether the nominal model's error on unseen data is more than noise makes."""
+    return _is_above_sensors(found) or found.before.rms > NOISIER * found.floor_rms > 0
+
+
+def _is_above_sensors(found: Discovery) -> bool:
+    """Tells whether it is more than sensors make, where nothing else is known to disturb."""
     ratio = found.before.rms / found.noise_rms if found.noise_rms else 1.0
     is_noise = found.unlogged is not None or found.input_error < NO_ERROR
     return not is_noise and ratio**2 > 1 + found.options.min_gap_share
@@ -114,7 +119,7 @@ def _off(found: Discovery) -> tuple[str, str, str]:
 def _nothing(found: Discovery) -> str:
     """Returns the paragraph: nothing is missing, or no effect is named as no candidate helps."""
     left, noise, alone = _off(found)
-    if is_above_noise(found):
+    if _is_above_sensors(found):
         ratio = found.before.rms / found.noise_rms
         return (
             "No effect is named: no candidate lowers the error of prediction on unseen data beyond"
@@ -122,12 +127,22 @@ def _nothing(found: Discovery) -> str:
             f" make. {_either(found)}"
         )
     seen, unseen = split_detectable(found.detectable)
-    said = (
-        f"Nothing is missing{'' if found.detectable else ', as far as these data can tell'}: what"
-        f" the fitted model leaves unexplained is noise, {left}{found.over} on unseen data where"
-        f" the sensors{' and unlogged disturbances' if found.unlogged else ''} make {noise}."
-    )
-    said += _rest(found, alone)
+    who = f"the sensors{' and unlogged disturbances' if found.unlogged else ''}"
+    if is_above_noise(found):
+        said = (
+            "No effect is named: no candidate lowers the error on unseen data beyond chance. But"
+            f" this error is {left}{found.over}, {times(found.before.rms / found.floor_rms)} the"
+            f" {noise} that {who} make, and noise does not explain all of it: either something is"
+            " missing that no candidate explains, or the robot does something there that the fitted"
+            " data never show."
+        )
+    else:
+        said = (
+            f"Nothing is missing{'' if found.detectable else ', as far as these data can tell'}:"
+            f" what the fitted model leaves unexplained is noise, {left}{found.over} on unseen data"
+            f" where {who} make {noise}."
+        )
+        said += _rest(found, alone)
     if seen:
         listed = "; ".join(f"{describe_effect(d.candidate)}, {smallest(d)}" for d in seen[:SHOWN])
         said += f" The log would have shown, in 9 cases of 10, effects as small as: {listed}."

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import cache, partial
 
 from identification.discovery.attempts import Failed
@@ -14,6 +14,7 @@ from identification.report.effect_words import (
     describe_gains,
     describe_rejected,
     describe_there,
+    phrase,
     say_choice,
     shown_parameters,
     value_with_std,
@@ -55,7 +56,7 @@ def added_section(found: Discovery, files: str = "") -> Section:
     for named in found.named:
         effect = describe_there(named.candidate, found.final.plant)
         law, gains = named.candidate.effect.law, describe_gains(named)
-        once = (f"+ {effect}", percent(named.confidence), law)
+        once = (effect, percent(named.confidence), law)
         for k, (name, value) in enumerate(_numbers(named)):
             rows.append((name, value, *(once if k == 0 else ("",) * 3)))
         proofs.append(sentence(f"{effect}: {gains}"))
@@ -100,9 +101,10 @@ def rivals_section(found: Discovery) -> Section:
     if not rows and found.named:
         parts.append("No other explanation comes near those that are named.")
     title, tried = describe_rejected(found)
+    words = {s.candidate.effect.name: phrase(s.candidate.effect) for s in found.scores}
     others = {
-        FAILED: failed_lines([f for f in found.failed if not f.dropped]),
-        DROPPED: failed_lines([f for f in found.failed if f.dropped]),
+        FAILED: failed_lines([f for f in found.failed if not f.dropped], words),
+        DROPPED: left_lines([f for f in found.failed if f.dropped], words),
     }
     if tried:
         parts += [f"{title.capitalize()}:", *map(sentence, tried)]
@@ -141,14 +143,37 @@ def describe_score(found: Discovery, score: Scored) -> str:
     return f"{effect}: {value}, chance {score.p_value:.2g}"
 
 
-def failed_lines(failed: Sequence[Failed]) -> list[str]:
-    """Returns a line for each candidate that failed or was left, and one for further ones."""
-    lines = [
-        f"{one.name.replace('_', ' ')}{f', {one.where}' if one.where else ''}: {one.outcome}"
-        for one in failed[:MANY]
-    ]
+def failed_lines(failed: Sequence[Failed], words: Mapping[str, str]) -> list[str]:
+    """Returns a line for each candidate that failed, and one for further ones.
+
+    Args:
+        failed: what could not be evaluated.
+        words: of effects by name.
+    """
+    lines = [f"{_called(one, words)}: {one.outcome}" for one in failed[:MANY]]
     more = len(failed) - len(lines)
     return [*lines, f"and {more} more"] if more > 0 else lines
+
+
+def left_lines(failed: Sequence[Failed], words: Mapping[str, str]) -> list[str]:
+    """Returns a line for each reason for which a search left candidates that it had begun.
+
+    Args:
+        failed: what was left.
+        words: of effects by name.
+    """
+    each: dict[str, list[str]] = {}
+    for one in failed:
+        each.setdefault(one.reason, []).append(_called(one, words))
+    return [
+        f"{sentence(reason).removesuffix('.')}: {'; '.join(names[:MANY])}"
+        + (f"; and {len(names) - MANY} more" if len(names) > MANY else "")
+        for reason, names in each.items()
+    ]
+
+
+def _called(one: Failed, words: Mapping[str, str]) -> str:
+    return ", ".join(filter(None, [words.get(one.name, one.name.replace("_", " ")), one.where]))
 
 
 def listed_below(title: str, lines: Sequence[str]) -> str:

@@ -8,7 +8,7 @@ from typing import Any
 from identification.discovery.findings import evidence, records_evidence
 from identification.discovery.findings.finding import Finding, FindingKind
 from identification.discovery.impossible import IMPOSSIBLE
-from identification.quantities import alike, probability, quantity
+from identification.quantities import alike, error, probability, quantity
 from identification.report.effect_words import (
     DOUBTS,
     describe_chance,
@@ -52,7 +52,7 @@ def sentence(clause: str) -> str:
 def _worst_output(e: evidence.WorstOutput) -> str:
     return (
         f"on the fitted samples the error is largest on {e.output}: {quantity(e.rms, unit=e.unit)}"
-        f" rms, {percent(e.share)} of the power over all outputs, {e.noise_ratio:.1f} times the"
+        f" rms, {percent(e.share)} of the power over all outputs, {times(e.noise_ratio)} the"
         " sensors' noise"
     )
 
@@ -66,7 +66,7 @@ def _median_frequency(e: evidence.MedianFrequency) -> str:
 
 
 def _missing_force(e: evidence.ForceEvidence) -> str:
-    sizes = " and ".join(f"{rms:.2g} {unit}" for rms, unit in zip(e.rms, e.units, strict=True))
+    sizes = " and ".join(map(error, e.rms, e.units))
     said = f"generalised forces of {sizes} rms on {e.where} would explain {percent(e.share)} of it"
     if e.regressor is None:
         return said

@@ -222,6 +222,9 @@ def _agreement(found: Discovery, named: NamedEffect) -> str:
         what = "curve" if named.candidate.effect.is_curve else "named effect"
         which = f" ({listed(helped)})" if 0 < len(helped) < len(distinct) else ""
         said = f" The {what} lowers the error on {len(helped)} of {len(distinct)} unseen records"
+        if len(distinct) == 1:
+            does = "lowers" if helped else "does not lower"
+            said = f" The {what} {does} the error on the unseen record"
         said += f"{which}."
     elif names:
         said = " All unseen records repeat what was fitted, so that they hardly confirm it."

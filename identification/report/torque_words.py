@@ -71,7 +71,7 @@ def _missing(evidence: Evidence) -> list[str]:
         return [
             "Beside friction, which is always fitted, no effect is proven by the torques: of"
             f" {evidence.asked} candidates the nearest is"
-            f" {first.missing.title} ({size_words(first)}), with which the mean square on {on} that"
+            f" {called(first)}, {size_words(first)}, with which the mean square on {on} that"
             f" no fit has seen {fall_words(first.fall)}, t {first.t:.1f}, chance"
             f" {chance_words(first.chance)}.",
             *_imitated(evidence),
@@ -82,7 +82,7 @@ def _missing(evidence: Evidence) -> list[str]:
         if score.missing.is_curve:
             begins += " a force that no law of the catalogue explains,"
         out.append(
-            f"{begins} {score.missing.title} ({score.missing.phrase}): {size_words(score)}."
+            f"{begins} {called(score)}: {size_words(score)}."
             f"{centre_words(score)} The"
             f" mean square of their residual on {on} that no fit has seen {fall_words(score.fall)},"
             f" t {score.t:.1f}, chance {chance_words(score.chance)}."
@@ -93,8 +93,19 @@ def _missing(evidence: Evidence) -> list[str]:
                 f" what was known, they do not (t {score.held_t:.1f})."
             )
         if len(rivals := rivals_of(evidence, score, k)):
-            out[-1] += f" As good by chance: {listed([r.missing.title for r in rivals])}."
+            out[-1] += f" As good by chance: {listed([called(r) for r in rivals])}."
     return out
+
+
+def called(score: Score) -> str:
+    """Returns the name of a candidate, its place, and what it is, in words."""
+    what = f" ({score.missing.phrase})" if score.missing.phrase else ""
+    return f"{score.missing.title.replace('_', ' ', 2)}{what}"
+
+
+def _model(model: float, value: float, std: float, unit: str) -> str:
+    """Returns the model's value with the prefix of the fitted value beside it."""
+    return quantity(model, unit=unit, like=max(abs(value), std))
 
 
 def centre_words(score: Score) -> str:
@@ -117,7 +128,7 @@ def _imitated(evidence: Evidence) -> list[str]:
         return []
     best = min(likely, key=lambda s: (len(s.size), s.chance))
     return [
-        f"What was known of the free parameters speaks for {best.missing.title}"
+        f"What was known of the free parameters speaks for {called(best)}"
         f" ({size_words(best)}; chance {chance_words(best.chance)}). But these parameters make up"
         " for it on unseen data: free fewer of them, or record a motion with larger accelerations."
     ]
@@ -233,7 +244,7 @@ def base_rows(evidence: Evidence) -> list[tuple[str, str, str, str]]:
         unit = evidence.base.units[k]
         off = (value - model) / std if std > 0 else np.nan
         rows.append((name, quantity(value, std, unit, like=model),
-                     quantity(model, unit=unit, like=value), f"{off:+z.1f}"))  # fmt: skip
+                     _model(model, value, std, unit), f"{off:+z.1f}"))  # fmt: skip
     return rows
 
 
@@ -242,7 +253,7 @@ def friction_rows(evidence: Evidence) -> list[tuple[str, str, str, str]]:
     fit, rows = evidence.whole, []
     for k, model in enumerate(evidence.friction, fit.inertial):
         value, std, unit = fit.fit.θ[k], fit.fit.std[k], fit.units[k]
-        told = quantity(value, std, unit, like=model), quantity(model, unit=unit, like=value)
+        told = quantity(value, std, unit, like=model), _model(model, value, std, unit)
         rows.append((fit.names[k], *told, f"{(value - model) / std:+z.1f}"))
     return rows
 
@@ -250,7 +261,7 @@ def friction_rows(evidence: Evidence) -> list[tuple[str, str, str, str]]:
 def score_rows(scores: tuple[Score, ...]) -> list[tuple[str, str, str, str, str]]:
     """Returns rows of candidates: title, sizes, fall on unseen blocks, its t, chance."""
     return [
-        (f"{s.missing.title} ({s.missing.phrase})", size_words(s), percent(s.fall), f"{s.t:.1f}",
+        (called(s), size_words(s), percent(s.fall), f"{s.t:.1f}",
          chance_words(s.chance))
         for s in scores[:SHOWN]
     ]  # fmt: skip

@@ -29,7 +29,10 @@ def bound_sentences(parameters: Iterable[Parameter], at_bound: Iterable[str]) ->
     reasons = {p.name: p.bounded_by for p in parameters}
     each = {name: reasons.get(name.partition(" [")[0], "") for name in at_bound}
     plain = [name for name, reason in each.items() if not reason]
-    said = [f"At a bound: {name}; {reason}." for name, reason in each.items() if reason]
+    said = [
+        f"At a bound: {', '.join(gathered(n for n in each if each[n] == reason))}; {reason}."
+        for reason in dict.fromkeys(filter(None, each.values()))
+    ]
     if plain:
         said.insert(0, f"At a bound: {', '.join(gathered(plain))}; widen it or fix the parameter.")
     return said

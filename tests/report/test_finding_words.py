@@ -21,7 +21,7 @@ SAYS = {
     FindingKind.WORST_OUTPUT: "largest on angle_5: 14.3 mrad rms, 16 % of the power",
     FindingKind.WORST_INTERVAL: "from 2.0 to 3.0 s (25 %",
     FindingKind.MEDIAN_FREQUENCY: "below 0.4 Hz",
-    FindingKind.MISSING_FORCE: "0.0049 N and 0.00031 N m rms on platform would explain 97 %",
+    FindingKind.MISSING_FORCE: "4.9 mN and 310 µN m rms on platform would explain 97 %",
     FindingKind.INPUT_HOLD: 'err by only 2 mA rms and not by 50 mA (write hold = "foh"',
     FindingKind.SPECTRAL_LINE: "of angle_2 have a line at 2.30 Hz that no candidate explains (ch",
     FindingKind.CORRELATED_INNOVATIONS: "26 % of their power follows from the samples before",

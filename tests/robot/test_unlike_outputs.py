@@ -22,7 +22,7 @@ from identification.robot.fit_json import worse_unit
 from identification.robot.record_error import AS_WRITTEN, FITTED, Confirmation
 
 PAIR = r"[\d.]+ [mµ]*rad{0} \(angles\) and [\d.]+ [mµ]*m{0} \(slides\)"
-FALL = r"(?:-\d+ %|less by more than 99 %)"
+FALL = r"(?:-\d+ %|less by (?:99\.\d|more than 99\.9) %)"
 
 
 @pytest.fixture(scope="module")
