@@ -20,7 +20,7 @@ from identification.logs.joined import records_of, rows_of
 from identification.logs.log import Log
 from identification.progress import Progress
 
-RESTS: Rests = {}
+RESTS: Rests = {}  # of searches along a free run none is timed yet: no forecast is told
 
 
 def times_noise(state: InnovationSearch) -> float:

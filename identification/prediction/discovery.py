@@ -10,7 +10,7 @@ import numpy as np
 from identification.discovery.moves import Evidence
 from identification.discovery.nominal_model import NominalModel, without_starts
 from identification.discovery.options import DiscoveryOptions
-from identification.discovery.outlook import Rests
+from identification.discovery.outlook import CHECKS, EFFECT, LEFT, SCORES, Rests
 from identification.discovery.result import Discovery
 from identification.effects.effect import Candidate, Effect
 from identification.errors import InputError
@@ -22,7 +22,17 @@ from identification.prediction.verdict import conclude
 from identification.progress import Progress
 from identification.windows.records import as_records
 
-RESTS: Rests = {}
+# What is left of a search over what has passed where a stage begins, by the effects that it has:
+# the range of the few searches that benchmarks/forecast.py --worlds has timed so far, rounded
+# outwards. `--rests` prints it anew.
+RESTS: Rests = {
+    (SCORES, 0): (4.0, 50.0),
+    (EFFECT, 0): (2.0, 20.0),
+    (EFFECT, 1): (0.7, 5.0),
+    (EFFECT, 2): (0.5, 2.0),
+    (CHECKS, 0): (0.0, 0.8),
+    (LEFT, 0): (0.0, 0.4),
+}
 
 
 def times_noise(state: WindowSearch) -> float:

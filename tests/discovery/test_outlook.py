@@ -12,7 +12,6 @@ from identification.discovery.outlook import (
     Outlook,
     between,
 )
-from identification.innovations.discovery import INNOVATIONS
 from identification.prediction.discovery import WINDOWS
 
 RESTS = {(SCORES, 0): (2.0, 10.0), (EFFECT, 0): (1.0, 4.0), (EFFECT, 1): (0.5, 2.0)}
@@ -67,10 +66,16 @@ def test_a_range_is_said_as_a_person_says_it(low, high, said):
     assert between(low, high) == said
 
 
-@pytest.mark.parametrize("evidence", [WINDOWS, INNOVATIONS])
-def test_forecasts_are_ranges_of_stages_and_end_with_the_search(evidence):
-    assert {stage for stage, _ in evidence.rests} == {*STAGES} - {FIT}
-    for low, high in evidence.rests.values():
+def test_forecasts_are_ranges_of_stages_and_become_narrower_with_each():
+    rests = WINDOWS.rests
+    assert {stage for stage, _ in rests} == {*STAGES} - {FIT}
+    for low, high in rests.values():
         assert 0 <= low < high
-    assert evidence.rests[LEFT, 0][1] < evidence.rests[SCORES, 0][1]
-    assert {CHECKS, EFFECT} < {stage for stage, _ in evidence.rests}
+    ends = [rests[stage, 0][1] for stage in (SCORES, EFFECT, CHECKS, LEFT)]
+    assert ends == sorted(ends, reverse=True)
+
+
+def test_a_search_whose_kind_was_never_timed_gives_its_stage_alone():
+    said = []
+    Outlook(said.append, {}).enter(SCORES)
+    assert said == [f"stage 2 of 5, {SCORES}"]

@@ -89,6 +89,18 @@ def test_a_load_of_one_record_is_told_without_any_prior(tmp_path):
     np.testing.assert_allclose(found.size, truth, atol=0.07 * LOAD)
 
 
+def test_torques_need_no_free_value_and_a_fit_does(tmp_path, capsys):
+    (tmp_path / "arm.xml").write_text(planar())
+    (tmp_path / "arm.toml").write_text('model = "arm.xml"\nfree = []\ntrust = ["units", "steps"]\n')
+    write_log(planar_record(11, LOAD), tmp_path / "log.csv")
+    arguments = [str(tmp_path / "arm.toml"), str(tmp_path / "log.csv"), "--quiet"]
+    assert main(["torques", *arguments]) == 0
+    assert capsys.readouterr().out.startswith("The torques need payload, body fore")
+    for command in ("fit", "discover"):
+        assert main([command, *arguments]) == 2
+        assert "is empty, so that there is nothing to fit" in capsys.readouterr().err
+
+
 def test_the_command_tells_and_keeps_what_python_does(tmp_path, capsys):
     (tmp_path / "arm.xml").write_text(planar())
     (tmp_path / "arm.toml").write_text(
