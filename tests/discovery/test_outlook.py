@@ -52,7 +52,7 @@ def test_what_passes_is_taken_off_and_what_takes_longer_is_said():
     assert str(outlook).endswith("it takes longer than most searches do")
     outlook.enter(EFFECT, 7, "so far nothing")  # the table of the most effects serves for more
     assert outlook.left == pytest.approx((32.5, 130))
-    assert said[-1] == f"stage 3 of 5, {EFFECT}: 35 s to 2 min left; so far nothing"
+    assert said[-1] == f"stage 3 of 5, {EFFECT}: 30 s to 2 min left; so far nothing"
     outlook.enter(LEFT)
     assert said[-1] == f"stage 5 of 5, {LEFT}"
 
