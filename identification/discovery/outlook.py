@@ -3,12 +3,11 @@
     rest = elapsed · (low … high)       where a stage begins, in wall time
     rest - passed                       within the stage, of which `passed` has gone by
 
-A search has five stages. The third comes once for each effect that is found, so that nobody knows
-beforehand how long a search takes. What is known is how long the rest took in other searches, as a
-share of what each had taken when it began the same stage with as many effects: the tables of
-`RESTS` hold the 10th and the 90th percentile (benchmarks/forecast.py). A slower machine, a longer
-log or a larger model makes both longer, and the range is one of this search; it becomes narrower
-with each stage.
+A search has five stages. The third is repeated for each effect that is found, so that nobody knows
+beforehand how long a search takes. `RESTS` of an evidence holds the range of the rest, as a share
+of the time passed, for each stage and number of effects. On a slower machine, or with a longer log,
+both times grow. benchmarks/forecast.py times searches and prints such ranges (the 10th and the 90th
+percentile); one search is timed so far.
 """
 
 from __future__ import annotations
@@ -85,7 +84,7 @@ class Outlook:
     def _told(self) -> str:
         if self.left is not None:
             return f"{between(*self.left)} left"
-        return "" if self.rest is None else "it takes longer than most searches do"
+        return "" if self.rest is None else "it takes longer than forecast"
 
 
 def between(low: float, high: float) -> str:

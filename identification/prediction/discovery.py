@@ -22,9 +22,9 @@ from identification.prediction.verdict import conclude
 from identification.progress import Progress
 from identification.windows.records import as_records
 
-# What is left of a search over what has passed where a stage begins, by the effects that it has:
-# the range of the few searches that benchmarks/forecast.py --worlds has timed so far, rounded
-# outwards. `--rests` prints it anew.
+# Time left over time passed when a stage begins, by the number of effects that the model has then.
+# One timed search gave these ranges, and they were widened by hand: they are guesses.
+# `python benchmarks/forecast.py --worlds` times more searches, `--rests` prints their ranges.
 RESTS: Rests = {
     (SCORES, 0): (4.0, 50.0),
     (EFFECT, 0): (2.0, 20.0),

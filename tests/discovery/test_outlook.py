@@ -49,7 +49,7 @@ def test_what_passes_is_taken_off_and_what_takes_longer_is_said():
     assert outlook.left == pytest.approx((0, 20))
     clock.now += 30
     assert outlook.left is None
-    assert str(outlook).endswith("it takes longer than most searches do")
+    assert str(outlook).endswith("it takes longer than forecast")
     outlook.enter(EFFECT, 7, "so far nothing")  # the table of the most effects serves for more
     assert outlook.left == pytest.approx((32.5, 130))
     assert said[-1] == f"stage 3 of 5, {EFFECT}: 30 s to 2 min left; so far nothing"
