@@ -22,7 +22,7 @@ from identification.report.discovery_verdict import (
     further_sentences,
     is_above_noise,
 )
-from identification.report.effect_sections import added_section, rivals_section
+from identification.report.effect_sections import added_section, rivals_section, tried_section
 from identification.report.horizon_section import horizon_sections
 from identification.report.law import law_sections
 from identification.report.page import Section, save_figures, write_report
@@ -42,6 +42,7 @@ def discovery_text(found: Discovery) -> str:
         *where_section(found),
         *horizon_sections(found),
         rivals_section(found),
+        *tried_section(found),
         *unseen_section(found),
     ]
     parts = [
@@ -63,6 +64,7 @@ def discovery_sections(found: Discovery, files: str = "") -> list[Section]:
         *where_section(found),
         *horizon_sections(found),
         rivals_section(found),
+        *tried_section(found),
         added_section(found, files),
         parameters_section(found),
         *shifts_section(found),
