@@ -50,7 +50,7 @@ GAPS = {  # by what errors are of: what the gap on unseen data is
 }
 RECORDS = {  # likewise: the errors of records, on a page and in a terminal
     "free run": (
-        "Rms error of free runs over the unseen samples of each record that are told of.",
+        "Rms error of free runs over the unseen samples of each record on which errors are told.",
         "unseen samples of each record",
     ),
     "windows": (
@@ -61,8 +61,8 @@ RECORDS = {  # likewise: the errors of records, on a page and in a terminal
 }
 STD = {  # likewise: what a std rests on
     "free run": "A std holds if the model is right; that of a wrong model is too small.",
-    "windows": "Std by blocks of windows, whose errors need not be white; unknown where too few"
-    " windows tell of a value.",
+    "windows": "Std from blocks of windows, whose errors need not be white; unknown if too few"
+    " windows depend on a value.",
 }
 
 
@@ -193,8 +193,8 @@ def unseen_section(found: Discovery) -> list[Section]:
         return []
     said = (
         "The smallest size of each effect that is found in 9 of 10 logs like this one, beside the"
-        " largest that is plausible, the hardest to see first. What is missing and smaller stays"
-        f" hidden.\n\n{shown_sentences(found.detectable)}"
+        " largest plausible size, the hardest to see first. A smaller effect stays hidden."
+        f"\n\n{shown_sentences(found.detectable)}"
     )
     head = ("effect", "smallest seen", "largest plausible")
     table, plain = Table(head, tuple(shown_rows(found.detectable))), shown_lines(found.detectable)

@@ -133,28 +133,29 @@ def _gathered(what: str, sign: str, at: Sequence[int]) -> str:
 
 
 FEW = 0.01  # a chance above it is told as a share, and not as a power of ten
-NOT_TOLD = "(std not known, because too few data tell of it)"
+NOT_TOLD = "(std not known, because too few data depend on it)"
 DOUBTS = {
-    "numbers": "its gain does not pay for its numbers",
-    "chance": "with as many effects tried, its gain may be luck",
+    "numbers": "its gain is too small for so many parameters",
+    "chance": "so many effects were tried that its gain may be luck",
     "lengths": "windows of some length are predicted worse with it",
     "record": "a record is predicted worse with it",
-    "little": "it takes away too little to matter over windows of some length",
+    "little": "it removes too little of the error to matter over windows of some length",
     "size": "its size is not known well enough to differ from zero",
-    "bound": "its size ends on the bound beyond which it is not believed, so that it stands for"
-    " something else",
-    "exchange": "where the other records are fitted instead, it predicts a record worse, or all of"
+    "bound": "its size ends on the largest value that is believed, so that it stands for something"
+    " else",
+    "exchange": "if the other records are fitted instead, it predicts a record worse, or all of"
     " them on average",
-    "drawn": "a curve of the data at the same joint does the same, and more",
-    "neighbour": "a curve of the data still explains much of what it leaves, beyond chance",
-    "curve": "it was found beside a curve of the data, which leaves what its nodes cannot draw",
-    "differ": "it explains what was fitted and makes unseen records much worse, so that the records"
+    "drawn": "a curve from the data at the same joint explains the same, and more",
+    "neighbour": "a curve from the data still explains much of what it leaves, beyond chance",
+    "curve": "it was found together with a curve from the data, and may be what the nodes of the"
+    " curve cannot draw",
+    "differ": "it explains the fitted records and makes unseen ones much worse, so that the records"
     " differ in something that it stands for",
-    "steps": "the steps of the simulation make half of what it explains, or more",
-    "mass": "the body would lose half or more of the mass that the model's file says, which no"
-    " error of a drawing does",
-    "gain": "the gain would leave 0.5 to 1.5 times its value within a record",
-    "command": "the outputs would move before their servo is told to",
+    "steps": "the error of the simulation's steps makes half of what it explains, or more",
+    "mass": "the body would lose half or more of the mass in the model's file, and no drawing is so"
+    " wrong",
+    "gain": "the gain would leave the range of 0.5 to 1.5 times its value within a record",
+    "command": "the outputs would move before the command of their servo",
 }
 
 
@@ -246,7 +247,7 @@ def difference_sentences(found: Discovery) -> list[str]:
         f"{phrase(d.candidate.effect).capitalize()}, {d.candidate.where.replace(BY_RECORD, '')}: by"
         f" {quantity(d.spread, unit=d.unit)} between two of them at most"
         f" ({'; '.join(_in_each_record(d))})."
-        " Each record has its own in the model; it is no effect of the robot."
+        " In the model each record has its own value; this is no effect of the robot."
         for d in found.differences
     ]
 
@@ -300,7 +301,7 @@ def describe_doubt(rejected: RejectedEffect, options: DiscoveryOptions) -> str:
     elif rejected.doubt is None and proof.fall <= 0:
         why = "it does not predict unseen data better"
     elif rejected.doubt is None and proof.fall <= options.min_fall:
-        why = "it takes away too little of the error to matter"
+        why = "it removes too little of the error to matter"
     if rejected.doubt == "differ" and proof.disagrees:
         why += f" (worse: {', '.join(proof.disagrees)})"
     if rejected.outside is not None:

@@ -78,7 +78,7 @@ def _input_hold(e: evidence.InputHold) -> str:
     then, now = alike([e.rms, e.rms_now], e.unit)
     return (
         f"if the inputs {HOLDS[e.hold]}, they would have to err by only {then} rms and not by {now}"
-        f' (write hold = "{e.hold}" into the log\'s TOML if they did)'
+        f' (if they did, write hold = "{e.hold}" into the log\'s TOML)'
     )
 
 
@@ -99,22 +99,22 @@ def _correlated_innovations(e: evidence.CorrelatedInnovations) -> str:
 def _parameters_at_limit(e: evidence.ParametersAtLimit) -> str:
     names = " and ".join(e.parameters)
     end = f"parameters {names} end" if len(e.parameters) > 1 else f"parameter {names} ends"
-    return f"the {end} at the limit of what is plausible, by the nominal values that were given"
+    return f"the {end} at the limit of what is plausible for the given nominal values"
 
 
 def _large_input_error(e: evidence.LargeInputError) -> str:
     return (
-        f"the inputs would have to err by {quantity(e.rms, unit=e.unit)} rms beside what the log"
-        f" says, {ratio_of(e.share, 'their own motion')}, for"
-        f" {decimal(e.correlation_time, HELD)} s at a time"
+        f"the inputs would need errors that are not in the log, {quantity(e.rms, unit=e.unit)} rms"
+        f" ({ratio_of(e.share, 'their own motion')}), lasting about"
+        f" {decimal(e.correlation_time, HELD)} s"
     )
 
 
 def _robot_change(e: evidence.RobotChange) -> str:
     return (
         f"from about {decimal(e.time, 3)} s on the unseen samples are predicted worse than the"
-        f" fitted ones, with errors {times(e.ratio)} as large one sample ahead: the robot changed,"
-        " or it does there what the fitted samples never show"
+        f" fitted ones (errors one sample ahead are {times(e.ratio)} as large): the robot changed,"
+        " or it does something there that the fitted samples never show"
     )
 
 
@@ -148,12 +148,12 @@ def _oversized_effect(e: evidence.OversizedEffect) -> str:
     values = dict(zip(units, e.score.size, strict=True))
     said = ", ".join(
         f"{name} = {quantity(values[name], unit=units[name])} where"
-        f" {quantity(limit, unit=units[name])} is thought to be the most"
+        f" {quantity(limit, unit=units[name])} is the largest plausible value"
         for name, limit in e.limits.items()
     )
     return (
         f"{describe_effect(e.score.candidate)}, would explain more than what is named (gain"
-        f" {e.score.explains:z.4g}), but only at {said}"
+        f" {e.score.explains:z.4g}), but only with {said}"
     )
 
 
@@ -172,9 +172,9 @@ def _different_record(e: records_evidence.DifferentRecord) -> str:
 
 def _shifted_record(e: records_evidence.ShiftedRecord) -> str:
     return (
-        f"record {e.record} looks as if its inputs acted {describe_shift(e)} than their time stamps"
-        f" say, which takes {percent(e.fall)} off its mean square; check how it was logged, and"
-        " shift its inputs if that is so"
+        f"the inputs of record {e.record} seem to act {describe_shift(e)} than their time stamps"
+        f" say: with this shift its mean square falls by {percent(e.fall)}; check how it was"
+        " logged, and shift its inputs if this is right"
     )
 
 
@@ -186,7 +186,7 @@ def describe_shift(e: records_evidence.ShiftedRecord) -> str:
 def _worse_fit(e: records_evidence.WorseFit) -> str:
     return (
         "without effects the fitted values predicted unseen data worse than those of the model"
-        f" (mean square {change(e.rise)}), so that the search began with the latter"
+        f" (mean square {change(e.rise)}), so that the search began with the model's values"
     )
 
 

@@ -65,20 +65,20 @@ def size_words(score: Score) -> str:
 def _missing(evidence: Evidence) -> list[str]:
     on = "records" if evidence.equations.confirms.any() else "blocks of the records"
     if not evidence.scores:
-        return ["No candidate acts on these joints otherwise than what is fitted already."]
+        return ["No candidate differs on these joints from what is fitted already."]
     if not evidence.found:
         first = evidence.scores[0]
         return [
-            "Beside friction, which is always fitted, no effect is proven by the torques: of"
+            "Apart from friction, which is always fitted, the torques prove no effect. Of"
             f" {evidence.asked} candidates the nearest is"
-            f" {called(first)}, {size_words(first)}, with which the mean square on {on} that"
+            f" {called(first)}, {size_words(first)}: with it the mean square on {on} that"
             f" no fit has seen {fall_words(first.fall)}, t {first.t:.1f}, chance"
             f" {chance_words(first.chance)}.",
             *_imitated(evidence),
         ]
     out = []
     for k, score in enumerate(evidence.named):
-        begins = "The torques need" if not k else "Beside it they need" if k == 1 else "And"
+        begins = "They also need" if k else "The torques need"
         if score.missing.is_curve:
             begins += " a force that no law of the catalogue explains,"
         out.append(
@@ -89,11 +89,11 @@ def _missing(evidence: Evidence) -> list[str]:
         )
         if score.t <= PROOF:
             out[-1] += (
-                " Free parameters that are far from what was known of them make up for it; held at"
-                f" what was known, they do not (t {score.held_t:.1f})."
+                " Free parameters imitate it, with values far from what was known of them; if they"
+                f" are held at what was known, they do not (t {score.held_t:.1f})."
             )
         if len(rivals := rivals_of(evidence, score, k)):
-            out[-1] += f" As good by chance: {listed([called(r) for r in rivals])}."
+            out[-1] += f" Within chance as good: {listed([called(r) for r in rivals])}."
     return out
 
 
@@ -129,8 +129,8 @@ def _imitated(evidence: Evidence) -> list[str]:
     best = min(likely, key=lambda s: (len(s.size), s.chance))
     return [
         f"What was known of the free parameters speaks for {called(best)}"
-        f" ({size_words(best)}; chance {chance_words(best.chance)}). But these parameters make up"
-        " for it on unseen data: free fewer of them, or record a motion with larger accelerations."
+        f" ({size_words(best)}; chance {chance_words(best.chance)}). But these parameters imitate"
+        " it on unseen data: free fewer of them, or record a motion with larger accelerations."
     ]
 
 
@@ -153,7 +153,7 @@ def _residual(evidence: Evidence, model: mujoco.MjModel) -> list[str]:
     told = np.sqrt(np.nanmean((final / np.maximum(whole, 1e-300)) ** 2))
     worst = int(np.nanargmax(np.nan_to_num(final / np.maximum(whole, 1e-300))))
     out = [
-        "Residual torque (or force) that no fit has seen, by joint: "
+        "Residual torque (or force) of each joint on data that no fit has seen: "
         + "; ".join(
             f"{n} {quantity(f, unit=u)}" + (f" (model {quantity(m, unit=u)})" if m != f else "")
             for n, f, m, u in zip(names, final, nominal, units, strict=True) if np.isfinite(f)
@@ -162,9 +162,9 @@ def _residual(evidence: Evidence, model: mujoco.MjModel) -> list[str]:
     ]  # fmt: skip
     if told > 1.1:
         out.append(
-            f"A rigid arm whose inertial numbers and frictions are all free leaves less, most at"
-            f" {names[worst]} ({quantity(whole[worst], unit=units[worst])}): masses, places or"
-            " inertias of the model are off, or something acts like them."
+            "A rigid arm whose inertial numbers and frictions are all free leaves less, above all"
+            f" at {names[worst]} ({quantity(whole[worst], unit=units[worst])}): masses, positions"
+            " or inertias of the model are wrong, or something acts like them."
         )
     return out
 
@@ -174,7 +174,7 @@ def _friction(evidence: Evidence) -> list[str]:
     if not off:
         return []
     said = listed([f"{name} {value} (model {model})" for name, value, model in off])
-    return [f"Frictions that are not the model's: {said}."]
+    return [f"Frictions that differ from the model: {said}."]
 
 
 def _far(evidence: Evidence) -> list[str]:
@@ -210,7 +210,7 @@ def _doubts(evidence: Evidence) -> list[str]:
     worst, many = int(np.argmax(moved)), int(np.sum(moved > MATTERS))
     out = [
         "In closed loop the noise of the positions goes into the torques, so that noise and motion"
-        f" are correlated. With a band of the smooth motion narrower by {percent(1 - 0.6)},"
+        f" are correlated. If the band of the smooth motion is narrower by {percent(1 - 0.6)},"
         + (
             f" {many} of {len(moved)} values move by more than {MATTERS:g} std, most"
             f" {evidence.whole.names[worst]} ({moved[worst]:.1f} std): their std may be too small."
@@ -222,7 +222,7 @@ def _doubts(evidence: Evidence) -> list[str]:
     if abs(late) > FAR * off and abs(late) > LATE:
         out.append(
             f"The torques act {quantity(abs(late), off, 's')} {'later' if late > 0 else 'earlier'}"
-            " than their stamps say; the fits make up for it."
+            " than their stamps say; the fits correct this."
         )
     std, scale = evidence.whole.fit.std[:r], np.abs(evidence.whole.fit.θ[:r])
     told = int(np.sum(std < np.maximum(scale, np.abs(evidence.base.values)) / 2))
@@ -230,8 +230,8 @@ def _doubts(evidence: Evidence) -> list[str]:
     if evidence.inconsistent:
         names = listed([evidence.base.names[k] for k in evidence.inconsistent])
         out.append(
-            f"No bodies with positive masses have {names} within 3 std of the fitted value: the"
-            " model's geometry, or what it lacks, is in them."
+            f"No bodies with positive masses can have {names} within 3 std of the fitted value: the"
+            " geometry of the model is wrong, or the model lacks something."
         )
     return out
 

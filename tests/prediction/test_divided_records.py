@@ -130,5 +130,5 @@ def test_a_result_says_of_which_part_it_tells(without):
         assert "decided on the same unseen data" in said
         assert parts[0]["block"] is None
     else:
-        assert "is untouched, and errors and gains are told of it" in said
+        assert "is untouched, and errors and gains are computed on it" in said
         assert parts[0]["select"] + parts[0]["report"] == pytest.approx(logs[2].duration, abs=0.02)

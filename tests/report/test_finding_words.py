@@ -22,22 +22,22 @@ SAYS = {
     FindingKind.WORST_INTERVAL: "from 2.0 to 3.0 s (25 %",
     FindingKind.MEDIAN_FREQUENCY: "below 0.4 Hz",
     FindingKind.MISSING_FORCE: "4.9 mN and 310 µN m rms on platform would explain 97 %",
-    FindingKind.INPUT_HOLD: 'err by only 2 mA rms and not by 50 mA (write hold = "foh"',
+    FindingKind.INPUT_HOLD: 'only 2 mA rms and not by 50 mA (if they did, write hold = "foh"',
     FindingKind.SPECTRAL_LINE: "of angle_2 have a line at 2.30 Hz that no candidate explains (ch",
     FindingKind.CORRELATED_INNOVATIONS: "26 % of their power follows from the samples before",
     FindingKind.PARAMETERS_AT_LIMIT: "the parameters b_v and J end at the limit of what",
-    FindingKind.LARGE_INPUT_ERROR: "err by 90 mA rms beside what the log says, 35 % of their own",
+    FindingKind.LARGE_INPUT_ERROR: "not in the log, 90 mA rms (35 % of their own motion)",
     FindingKind.ROBOT_CHANGE: "from about 10.5 s on the unseen samples are predicted worse",
     FindingKind.UNEXPECTED_ERROR: "by 9.4 times what the sensors, unlogged disturbances and",
     FindingKind.STRUCTURED_INPUT_ERROR: "follows the rate of its output, most of all on current_3",
     FindingKind.DOUBTFUL_EFFECT: "tau = 250 ± 100 µs (delay), explains",
-    FindingKind.OVERSIZED_EFFECT: "tau = 0.300 s where 0.100 s is thought to be the most",
+    FindingKind.OVERSIZED_EFFECT: "tau = 0.300 s where 0.100 s is the largest plausible value",
     FindingKind.REMAINING_ERROR: "error of x on unseen data that is 7.1 times its sensor's noise",
     FindingKind.DIFFERENT_RECORD: "c.csv is predicted 4.2 times worse",
-    FindingKind.SHIFTED_RECORD: "c.csv looks as if its inputs acted 14.0 ± 3.0 ms earlier than",
+    FindingKind.SHIFTED_RECORD: "inputs of record c.csv seem to act 14.0 ± 3.0 ms earlier than",
     FindingKind.WORSE_FIT: "worse than those of the model (mean square 9 times as large)",
     FindingKind.UNPROVEN_EFFECT: "body – centre of mass displaced, body arm, predicts unseen data "
-    "better on average (mean square -20 %, t = 1.9), but is not proven: with",
+    "better on average (mean square -20 %, t = 1.9), but is not proven: so",
 }
 
 

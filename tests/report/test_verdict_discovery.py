@@ -39,10 +39,10 @@ def test_a_named_effect_is_said_with_size_place_confidence_and_proof():
     assert said[1].count("mrad") == 3
     assert said[2] == "Nothing else is missing that this log shows."
     assert further_sentences(found())[-1] == (
-        "The fitted noise may still hide effects up to these sizes (what the log seems to show of"
-        " each, by luck or not, and 1.96 std more): "
+        "The fitted noise may still hide effects up to these sizes (the size that the log seems to"
+        " show, possibly by luck, plus 1.96 std): "
         "friction – Coulomb part differs at one drive, drive 3, delta 0.600 % (it"
-        " would be 30 % of what passes for errors of the inputs)."
+        " would be 30 % of what counts as errors of the inputs)."
     )
     assert len(said) == 3
     assert len(discovery_verdict(replace(found(), hidden=()))) == 2
@@ -80,11 +80,13 @@ def test_look_alikes_are_a_set():
 
 def test_what_is_left_is_said_last():
     said = discovery_verdict(found(unexplained=True))
-    assert said[-1].startswith("Something is left beside what is named that no known effect")
+    assert said[-1].startswith(
+        "Something is left that no known effect surely explains: with the named effect in"
+    )
     assert said[-1].endswith(sentence(describe_finding(DRIVE_3)))
     proven = replace(REJECTED, bic_gain=50.0, proof=replace(REJECTED.proof, t=8.3, chance=1e-6))
     said = discovery_verdict(replace(found(unexplained=True), nearest=proven))
-    nearest = f"Nearest comes {describe_effect(REJECTED.candidate)}: it predicts each next unseen"
+    nearest = f"The nearest candidate is {describe_effect(REJECTED.candidate)}: with it each next"
     assert nearest in said[-1]
     rise = -100 * REJECTED.proof.fall
     assert f"the mean square of the free run rises by {rise:.2g} %" in said[-1]
@@ -108,7 +110,9 @@ def test_nothing_missing_says_what_would_have_been_seen():
     (said,) = discovery_verdict(found("nothing missing"))
     assert said.startswith("Nothing is missing: ")
     assert "Stribeck peak, all drives, f_s 200 µN m" in said
-    assert "No plausible size would show in it of these: motor – current comes late." in said
+    assert (
+        "It would not show these effects at any plausible size: motor – current comes late." in said
+    )
 
 
 def test_an_unknown_effect_is_not_named():
@@ -158,7 +162,7 @@ def test_what_was_tried_and_not_believed_is_told_with_its_size_and_why():
         ({"doubt": "chance"}, DOUBTS["chance"]),
         ({"bic_gain": -1.0}, DOUBTS["numbers"]),
         ({"proof": replace(WORSE, fall=0.5)}, ""),
-        ({"proof": replace(WORSE, fall=1e-4)}, "it takes away too little of the error to matter"),
+        ({"proof": replace(WORSE, fall=1e-4)}, "it removes too little of the error to matter"),
         ({"doubt": "differ", "proof": replace(WORSE, disagrees=("b",))}, "(worse: b)"),
         ({"outside": Outside("speed", "joint hip", 0.7)}, "likelier is some force that follows"),
     ],

@@ -121,8 +121,8 @@ def confirmation(before, after):
 
 def test_the_worse_outputs_are_named_beside_the_others():
     (said,) = worse_unit([confirmation({"m": 1.9, "rad": 0.4}, {"m": 0.5, "rad": 0.7})])
-    assert "the angles (mean square 3.1 times as large) of what was not fitted worse than" in said
-    assert "fit began, and not the slides (mean square -93 %). This may be chance" in said
+    assert "the angles (mean square 3.1 times as large) of the unseen data worse than" in said
+    assert "fit began, but not the slides (mean square -93 %). This may be chance" in said
     assert "before you rely on what it predicts of angles." in said
 
 

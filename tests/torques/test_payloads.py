@@ -71,7 +71,7 @@ def test_where_nothing_is_missing_nothing_is_named(seed, tmp_path):
 
 def test_a_friction_that_the_model_lacks_is_told(tmp_path):
     found = fit_torques(planar_robot(tmp_path, planar_record(61, f=1.6)))
-    (said,) = [s for s in found.to_dict()["verdict"] if "not the model's" in s]
+    (said,) = [s for s in found.to_dict()["verdict"] if "differ from the model" in s]
     assert "coulomb of shoulder" in said
     assert "coulomb of elbow" in said
     assert "(model 1 N m)" in said
