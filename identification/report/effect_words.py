@@ -77,8 +77,9 @@ def _size_words(effect: Effect, size: str, where: str) -> str:
 def words_of(found: Discovery) -> dict[str, str]:
     """Returns the words of all values of a discovery by name, also of those of single records."""
     told = [*found.nominal.told_values, *found.final.told_values]
-    effects = [each.candidate.effect for each in (*found.differences, *found.named)]
-    return value_words(told, found.final.plant, effects)
+    effects = [named.candidate.effect for named in found.named]
+    differing = [each.candidate.effect for each in found.differences]
+    return value_words(told, found.final.plant, [*differing, *effects])
 
 
 def value_words(

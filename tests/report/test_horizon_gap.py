@@ -88,7 +88,8 @@ def test_an_unknown_effect_is_shown_where_it_acts():
     ]
     assert (fails.first, force.first) == (0, 1)  # the force is the answer
     assert LOOKS_LIKE in discovery_verdict(answer)[0]
-    assert "a force on hinge that depends on the rate of hinge would remove" in discovery_text(answer)
+    said = discovery_text(answer)
+    assert "a force on hinge that depends on the rate of hinge would remove" in said
     fails = discovery_to_json(answer)["fails"]
     assert [f["joint"] for f in fails["forces"]] == ["hinge"]
     assert len(fails["forces"][0]["force"]) == len(fails["forces"][0]["nodes"])
