@@ -58,16 +58,19 @@ def _worst_output(e: evidence.WorstOutput) -> str:
 
 
 def _worst_interval(e: evidence.WorstInterval) -> str:
-    return f"it is largest from {e.start:.1f} to {e.end:.1f} s ({percent(e.share)} of its power)"
+    return f"the error is largest from {e.start:.1f} to {e.end:.1f} s ({percent(e.share)} of its power)"
 
 
 def _median_frequency(e: evidence.MedianFrequency) -> str:
-    return f"half of its power lies below {e.frequency:.2g} Hz"
+    return f"half of the power of the error lies below {e.frequency:.2g} Hz"
 
 
 def _missing_force(e: evidence.ForceEvidence) -> str:
     sizes = " and ".join(map(error, e.rms, e.units))
-    said = f"generalised forces of {sizes} rms on {e.where} would explain {percent(e.share)} of it"
+    said = (
+        f"generalised forces of {sizes} rms on {e.where} would explain {percent(e.share)} of the"
+        " error"
+    )
     if e.regressor is None:
         return said
     follows = f"{percent(e.regressor_share)} of their power follows {REGRESSORS[e.regressor]}"
