@@ -58,7 +58,8 @@ def _worst_output(e: evidence.WorstOutput) -> str:
 
 
 def _worst_interval(e: evidence.WorstInterval) -> str:
-    return f"the error is largest from {e.start:.1f} to {e.end:.1f} s ({percent(e.share)} of its power)"
+    share = percent(e.share)
+    return f"the error is largest from {e.start:.1f} to {e.end:.1f} s ({share} of its power)"
 
 
 def _median_frequency(e: evidence.MedianFrequency) -> str:
