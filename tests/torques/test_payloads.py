@@ -66,7 +66,7 @@ def test_where_nothing_is_missing_nothing_is_named(seed, tmp_path):
     robot = planar_robot(tmp_path, planar_record(seed), planar_record(seed + 1, name="other"))
     found = fit_torques(robot)
     assert found.named == ()
-    assert "no effect is proven" in found.to_dict()["verdict"][0]
+    assert "the torques prove no effect" in found.to_dict()["verdict"][0]
 
 
 def test_a_friction_that_the_model_lacks_is_told(tmp_path):
