@@ -124,9 +124,9 @@ def _robot_change(e: evidence.RobotChange) -> str:
 
 def _unexpected_error(e: evidence.UnexpectedError) -> str:
     return (
-        f"the free run errs on unseen data by {decimal(e.ratio, HELD)} times what the sensors,"
-        " unlogged disturbances and the std of the fitted values make: the robot is another one"
-        " there, or it does what the fitted samples never show"
+        f"the error of the free run on unseen data is {decimal(e.ratio, HELD)} times what the"
+        " sensors, unlogged disturbances and the std of the fitted values explain: the robot has"
+        " changed there, or it does something there that the fitted samples never show"
     )
 
 
