@@ -1,13 +1,21 @@
-"""What a discovery said that it would take, and what it took then: memory and processor time.
+"""What a discovery said that it would take, and what it took then: memory, time, and time left.
 
     python benchmarks/forecast.py [--samples 500 1000 2000] [--spread none usual]
     python benchmarks/forecast.py --joints 1 --samples 2000 20000 200000
+    python benchmarks/forecast.py --worlds 20 [--seed 1]     the time left, as a search goes on
+    python benchmarks/forecast.py --rests                    tables of that, from all rows
 
 Each log is simulated with other values than those of the drawing and with the noise of encoders, so
 that nothing is missing: of the twin, or of a chain of bodies with a motor and an encoder at each
 joint. Each search is a process of its own, whose memory is what it holds at most beyond what it
 held when it began to search. A row is added to results/forecast.jsonl; benchmarks/robustness.py
 makes the page.
+
+The worlds of `--worlds` are those of joint_worlds: a pendulum, a cart and a two-link arm that hide
+nothing, one effect, several, or a force in no catalogue, on records of 8 to 12 s; every sixth is a
+search of the INCA, by a free run. A row holds when each stage began, the time that was told to be
+left (`identification/discovery/outlook.py`), and when the search ended. `--rests` prints the
+percentiles of what was left over what had passed, from which the tables are written.
 """
 
 from __future__ import annotations
@@ -22,6 +30,7 @@ import tempfile
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -55,8 +64,21 @@ def main() -> int:
     parser.add_argument("--spread", nargs="*", default=["none"])
     parser.add_argument("--joints", type=int, nargs="*", default=[0], help="of a chain; 0: INCA")
     parser.add_argument("--record", type=Path, default=RECORD)
+    parser.add_argument("--worlds", type=int, default=0, help="searches whose time left is kept")
+    parser.add_argument("--seed", type=int, default=1, help="of the first world")
+    parser.add_argument("--rests", action="store_true", help="print the tables of the time left")
     parser.add_argument("--one", action="store_true", help="search in this process, print the row")
     options = parser.parse_args()
+    if options.rests:
+        print(rests([*map(json.loads, options.record.read_text().splitlines())]))
+        return 0
+    if options.worlds:
+        for seed in range(options.seed, options.seed + options.worlds):
+            row = json.dumps(watched(seed))
+            print(row, flush=True)
+            with options.record.open("a") as record:
+                record.write(row + "\n")
+        return 0
     each = [(j, s, n) for j in options.joints for s in options.spread for n in options.samples]
     for joints, spread, samples in each:
         if options.one:
@@ -96,6 +118,95 @@ def measured(joints: int, samples: int, spread: str) -> dict[str, object]:
         "seconds": {"forecast": needs.seconds, "measured": time.process_time() - began},
         "commit": commit(),
     }  # fmt: skip
+
+
+def watched(seed: int) -> dict[str, object]:
+    """The stages of one search: when each began, what was left then as it was told, and its end."""
+    from identification.discovery import moves
+    from identification.discovery.outlook import Outlook
+
+    told: list[Outlook] = []
+    marks: list[list[object]] = []
+
+    class Kept(Outlook):
+        def enter(self, stage: str, effects: int = 0, said: str = "") -> None:
+            super().enter(stage, effects, said)
+            told.append(self)
+            marks.append([stage, effects, self.entered - self.began, self.rest])
+
+    is_free = seed % 6 == 0
+    name, run = free_run(seed) if is_free else world(seed)
+    moves.Outlook = Kept  # type: ignore[misc]
+    found = run()
+    return {"world": name, "seed": seed, "kind": "innovations" if is_free else "windows",
+            "verdict": found.verdict, "effects": len(found.named), "marks": marks,
+            "took": time.monotonic() - told[0].began, "commit": commit()}  # fmt: skip
+
+
+def world(seed: int) -> tuple[str, Callable[[], Any]]:
+    """A search over a horizon of a robot of joints."""
+    import numpy as np
+    from joint_worlds.files import write_world
+    from joint_worlds.hidden import NULL, THREE, effects_of
+    from joint_worlds.motion import ROBOTS
+    from joint_worlds.world import UnseenError, make_world
+
+    from identification import discover, read_robot
+
+    rng = np.random.default_rng(seed)
+    while True:  # an effect that cannot be seen in the record is replaced
+        robot = rng.choice([*ROBOTS], p=[p_of(r) for r in ROBOTS])
+        effect = rng.choice([NULL, THREE, "bump", *rng.choice(effects_of(ROBOTS[robot]), 5)])
+        try:
+            made = make_world(str(robot), str(effect), seed, float(rng.integers(8, 13)))
+        except UnseenError:
+            continue
+        with tempfile.TemporaryDirectory() as folder:
+            toml, a, b = write_world(made, Path(folder))
+            read = read_robot(toml, a, confirm=[b])
+        return f"{robot}, {effect}", partial(discover, read)
+
+
+def p_of(robot: str) -> float:
+    """The chance of a robot: an arm takes minutes to an hour a search."""
+    return {"pendulum": 0.5, "cart": 0.4, "two_link": 0.1}.get(robot, 0.0)
+
+
+def free_run(seed: int) -> tuple[str, Callable[[], Any]]:
+    """A search of the INCA by a free run."""
+    import numpy as np
+
+    from inca_mj.files import example_path
+    from inca_mj.twin.logs import read_inca_log
+
+    samples = int(np.random.default_rng(seed).integers(400, 900))
+    if seed % 12:
+        return "inca", twin(samples, "none")
+    from inca_mj import discover
+    from inca_mj.workflows.spread import spread_of
+
+    log = read_inca_log(example_path())
+    return "inca, example", lambda: discover(log, spread=spread_of("none"))
+
+
+def rests(rows: list[dict[str, Any]]) -> str:
+    """What was left over what had passed where a stage began: 10th and 90th percentile."""
+    import numpy as np
+
+    from identification.discovery.outlook import STAGES
+
+    lines = []
+    for kind in ("windows", "innovations"):
+        ratios: dict[tuple[int, int], list[float]] = {}
+        for row in (r for r in rows if r.get("kind") == kind):
+            for stage, effects, at, _ in row["marks"][1:]:
+                key = STAGES.index(stage), min(effects, 2)
+                ratios.setdefault(key, []).append((row["took"] - at) / at)
+        lines.append(f"{kind}:")
+        for (k, n), each in sorted(ratios.items()):
+            low, high = np.percentile(each, [10, 90])
+            lines.append(f"    {STAGES[k]!r}, {n}: ({low:.2f}, {high:.2f})  of {len(each)}")
+    return "\n".join(lines)
 
 
 def twin(samples: int, spread: str) -> Callable[[], Any]:

@@ -203,24 +203,26 @@ def section(rows: Sequence[Row]) -> str:
     lines = [
         "## Worlds outside the class of models",
         "",
-        "Usual worlds differ from the model in what the model can be told. These depart from what",
-        "a search takes for granted, one way at a time (`benchmarks/departures.py`): half of them",
-        "are INCA as built, 10 s along a free run, the others a pendulum, a cart and a two-link",
-        "arm over a horizon. Every other world hides nothing, except where the departure is itself",
-        "what is hidden. A name is false where no such law acts; a curve is no name.",
+        "These simulated worlds violate what a search takes for granted, each in one way",
+        "(`benchmarks/departures.py`). Half of them are INCA as built, 10 s along a free run; the",
+        "others are a pendulum, a cart and a two-link arm over a horizon. Every other world hides",
+        "nothing, except where the violation is itself what is hidden. A name is false if no such",
+        "law acts. A curve does not count as a name.",
         "",
         "    python benchmarks/wrong_worlds.py --processes 2",
         "",
     ]
     if not done:
         return "\n".join([*lines, "The present search has not answered any of them yet.", ""])
-    words = {"refused": "refused", "error": "met by an error", "unseen": "not made, because too"
-             " little shows"}  # fmt: skip
-    rest = [f"{sum(w in r for r in rows)} more were {said_so}" for w, said_so in words.items()]
+    words = {"refused": "refused", "error": "ended with an error",
+             "unseen": "not made because too little shows"}  # fmt: skip
+    rest = [f"{sum(w in r for r in rows)}{' were' * (w != 'error')} {said_so}"
+            for w, said_so in words.items()]  # fmt: skip
     lines += [
         f"Of {len(done)} worlds (commit {done[-1]['commit']}; brackets are 95 % intervals)"
-        f" {said(found['false_or_wrong'])} got a false name, and of those that hide nothing"
-        f' {said(found["unknown_on_null"])} were called "unknown effect"; {", ".join(rest)}.',
+        f" {said(found['false_or_wrong'])} got a false name. Of those that hide nothing"
+        f' {said(found["unknown_on_null"])} were called "unknown effect". Further worlds:'
+        f" {', '.join(rest)}.",
         "",
         "| departure | " + " | ".join(name for name, _, _ in COLUMNS) + " |",
         "|---" * (1 + len(COLUMNS)) + "|",

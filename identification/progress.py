@@ -1,8 +1,9 @@
 """Progress of a long computation: told where it is known, shown by whoever watches.
 
-A computation tells the stage it is in and counts its steps. Nothing is shown unless a program
+A computation tells what it is at and counts its steps. Nothing is shown unless a program
 watches, as the commands do. A search does not know how many steps it will take, and gives no
-number; a bar then has a usual one, and grows where it takes more.
+number; a bar then has a usual one, and grows where it takes more. What has several stages tells
+where it is among them, too (`following`).
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import AbstractContextManager, contextmanager
 from contextvars import ContextVar
-from typing import TypeVar
+from typing import Protocol, TypeVar
 
 USUAL = 15  # steps of a search
 Item = TypeVar("Item")
@@ -18,17 +19,51 @@ Advance = Callable[[], None]
 Progress = Callable[[str], None]  # is told one line after each step
 Watch = Callable[[str, int | None], AbstractContextManager[Advance]]  # of a stage and its steps
 
+
+class Whole(Protocol):
+    """A computation of several stages: where it is now is its text."""
+
+    def enter(self, stage: str) -> None:
+        """Begins a stage."""
+
+
+Follow = Callable[[Whole | None], object]  # is given what is computed, and None at its end
 _WATCH: ContextVar[Watch | None] = ContextVar("watch", default=None)
+_FOLLOW: ContextVar[Follow | None] = ContextVar("follow", default=None)
+_WHOLE: ContextVar[Whole | None] = ContextVar("whole", default=None)
 
 
 @contextmanager
-def watched(watch: Watch) -> Iterator[None]:
+def watched(watch: Watch, follow: Follow | None = None) -> Iterator[None]:
     """Show the stages of what is computed in the block."""
-    token = _WATCH.set(watch)
+    token, other = _WATCH.set(watch), _FOLLOW.set(follow)
     try:
         yield
     finally:
         _WATCH.reset(token)
+        _FOLLOW.reset(other)
+
+
+@contextmanager
+def following(whole: Whole) -> Iterator[None]:
+    """Tells whoever watches, in the block, among which stages the computation is."""
+    token, follow = _WHOLE.set(whole), _FOLLOW.get() or _nobody
+    follow(whole)
+    try:
+        yield
+    finally:
+        follow(None)
+        _WHOLE.reset(token)
+
+
+def enter(stage: str) -> None:
+    """Begins a stage of the computation that is followed; does nothing where none is."""
+    if (whole := _WHOLE.get()) is not None:
+        whole.enter(stage)
+
+
+def _nobody(whole: Whole | None) -> None:
+    """Ignores what is followed."""
 
 
 @contextmanager

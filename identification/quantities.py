@@ -75,7 +75,8 @@ def quantity(value: float, std: float = float("nan"), unit: str = "", like: floa
         return f"{_percentage(value, std if known else 0.0)} %"
     if not known:
         return f"{_plain(value, _DIGITS)} {unit}".strip()
-    places = min(max(0, _shared(value, std)), _MOST)
+    places = min(_shared(value, std), _MOST)
+    value, std, places = _whole(value, std, places)
     if std < _FINEST:
         return f"{value:z.{places}f} ± {std:.1e} {unit}".strip()
     return f"{value:z.{places}f} ± {std:.{places}f} {unit}".strip()
@@ -203,6 +204,13 @@ def _shared(value: float, std: float) -> int:
     places = _decimals(std)
     is_lost = value != 0 and abs(value) < 0.5 * 10.0**-places
     return places + 1 if is_lost and std / 10.0 ** floor(log10(std)) >= 3.5 else places
+
+
+def _whole(value: float, std: float, places: int) -> tuple[float, float, int]:
+    """Returns a value and its std of whole numbers, rounded to the digits of the std: 520 ± 580."""
+    if places >= 0:
+        return value, std, places
+    return round(value, places), round(std, places), 0
 
 
 def _rounded(value: float, digits: int) -> float:

@@ -1,6 +1,6 @@
 """Shares and ratios in words: percent below one, times above; nothing that rounding alone makes so.
 
-0.12 -> 12 %      0.9996 -> more than 99 %      0.002 -> less than 1 %      8 -> 8 times
+0.12 -> 12 %      0.9964 -> 99.6 %      0.9998 -> more than 99.9 %      0.002 -> less than 1 %
 
 No number has a power of ten. All is said to be 100 % only where it is all, and nothing to be 0 %
 only where it is nothing.
@@ -13,11 +13,12 @@ from math import floor, isfinite, log10
 WHOLE = 0  # digits: whole percents
 HELD = 2  # digits of a ratio
 _LEAST = 1e-3  # percent: smaller shares are less than it
+_ALMOST = 0.9995  # larger shares, but for all, are more than 99.9 %
 _MOST = 15  # decimals, beyond which a number of a computer has none
 
 
 def percent(share: float, digits: int = WHOLE) -> str:
-    """Returns a share in percent, such as "12 %" or "more than 99 %".
+    """Returns a share in percent, such as "12 %" or "more than 99.9 %".
 
     Args:
         share: of one; it may be larger than one, or negative.
@@ -25,12 +26,12 @@ def percent(share: float, digits: int = WHOLE) -> str:
     """
     if not isfinite(share):
         return "unknown"
-    least, most = (1.0, "99") if digits == WHOLE else (_LEAST, "99.9" if digits > HELD else "99")
+    least = 1.0 if digits == WHOLE else _LEAST
     text = f"{100 * share:z.0f}" if digits == WHOLE else decimal(100 * share, digits)
     if share > 0 and (text == "0" or 100 * share < least / 2):
         return f"less than {decimal(least, 1)} %"
     if share < 1 and text == "100":
-        return f"more than {most} %"
+        return f"{100 * share:.1f} %" if share < _ALMOST else "more than 99.9 %"
     return f"{text} %"
 
 
@@ -52,13 +53,13 @@ def times(ratio: float) -> str:
 
 
 def change(rise: float) -> str:
-    """Returns a relative change in words: "-12 %", "less by more than 99 %", "3 times as large"."""
+    """Returns a relative change in words: "-12 %", "less by 99.6 %", "3 times as large"."""
     if not isfinite(rise):
         return "unknown"
     if rise >= 0.995:
         return f"{times(1 + rise)} as large"
     if -1 < rise <= -0.995:
-        return "less by more than 99 %"
+        return f"less by {percent(-rise)}"
     return f"{100 * rise:+z.0f} %"
 
 

@@ -2,7 +2,8 @@
 
 A computation tells its stages and their steps (`identification.progress`). Where nothing else was
 said for a while, this says which stage it is, how far, and how long the rest will take; where the
-number of steps is not known beforehand, only how many were done.
+number of steps is not known beforehand, only how many were done. Of a search the text of the whole
+comes first: its stages have a number, and a forecast of the rest.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass, field
 
-from identification.progress import Advance, Watch, duration
+from identification.progress import Advance, Watch, Whole, duration
 
 EVERY = 10.0  # [s] after which a line is said
 
@@ -23,14 +24,12 @@ class Stage:
     """A stage that is at work.
 
     Attributes:
-        number: how many stages had begun with it.
         what: its steps are.
         steps: how many; None where that is not known beforehand.
         begun: when [s].
         done: steps that were done.
     """
 
-    number: int
     what: str
     steps: int | None
     begun: float
@@ -38,7 +37,7 @@ class Stage:
 
     def line(self, now: float) -> str:
         """Returns how far it is, and how long it will still take where that can be told."""
-        said = f"stage {self.number}, {self.what}"
+        said = self.what
         if self.steps is None or self.done > self.steps:
             return f"{said}: {self.done} done" if self.done else said
         said += f": {self.done} of {self.steps}"
@@ -59,6 +58,7 @@ class Beat:
         last: when the last line was said [s].
         stages: that are at work, the innermost one last.
         count: stages that have begun.
+        whole: the computation of several stages that is at work; None without one.
         lines: that were said by others; before the first one, and without stages, it is silent.
     """
 
@@ -68,6 +68,7 @@ class Beat:
     last: float = field(default=0.0, init=False)
     stages: list[Stage] = field(default_factory=list, init=False)
     count: int = field(default=0, init=False)
+    whole: Whole | None = field(default=None, init=False)
     lines: int = field(default=0, init=False)
 
     def __post_init__(self) -> None:
@@ -77,11 +78,15 @@ class Beat:
         """Counts a line that was said elsewhere."""
         self.last, self.lines = self.clock(), self.lines + 1
 
+    def follow(self, whole: Whole | None) -> None:
+        """Begins or ends a computation of several stages."""
+        self.whole = whole
+
     @contextmanager
     def stage(self, what: str, steps: int | None, show: Watch | None = None) -> Iterator[Advance]:
         """Begins a stage, shown by a bar too where there is one."""
         self.count += 1
-        mine = Stage(self.count, what, steps, self.clock())
+        mine = Stage(what, steps, self.clock())
         self.stages.append(mine)
         with nullcontext(_nothing) if show is None else show(what, steps) as shown:
 
@@ -99,7 +104,9 @@ class Beat:
         now, stages = self.clock(), [*self.stages]
         if now - self.last < EVERY or not (self.count or self.lines):
             return
-        where = stages[-1].line(now) if stages else "still at work"
+        each = [str(self.whole)] if self.whole is not None else []
+        each += [stages[-1].line(now)] if stages else []
+        where = "; ".join(each) or "still at work"
         self.last = now
         self.say(f"{duration(now - self.begun)}: {where}")
 

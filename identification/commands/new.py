@@ -45,6 +45,11 @@ class New:
             lines += [f"{title}:", *(f"  {each}" for each in said)] if said else []
         ready = f"Next: {next_step}"
         lines.append(f"When that is done: {next_step}" if begun.needs else ready)
+        if begun.torques:
+            lines.append(
+                "Its inputs are forces and all joints are measured, so that this answers too, in"
+                f" seconds and without a simulation: identification torques {begun.path} {self.log}"
+            )
         record = plain_fields(begun, "found", "guessed", "needs") | {"robot": str(begun.path)}
         conclude(self, record, "\n".join(lines))
         return 0

@@ -34,7 +34,7 @@ def metered(quiet: bool) -> Iterator[None]:
         yield
         return
     show = _bar if sys.stderr.isatty() else None
-    with beating(Beat(note)) as beat, watched(partial(beat.stage, show=show)):
+    with beating(Beat(note)) as beat, watched(partial(beat.stage, show=show), beat.follow):
         yield
 
 

@@ -52,19 +52,22 @@ class OnRobot:
     """How much values that are alike differ: usual (the robot's TOML), none, or a TOML file."""
     output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
 
-    def read(self, but: tuple[str, ...] = ()) -> Robot:
+    def read(self, but: tuple[str, ...] = (), *, fits: bool = True) -> Robot:
         """Returns the robot, compiled for its log, with the records that confirm.
 
         Args:
             but: checks that are left out.
+            fits: whether free parameters are fitted, so that some must be.
         """
-        from identification.robot.file import read_robot_file
+        from identification.robot.file import read_robot_file, refuse_nothing_free
 
         if not self.logs:
             raise InputError("no log is given; write LOG behind the robot's file")
         if not all(self.confirm):
             raise InputError("--confirm names no log; write LOG behind it, or leave it out")
-        read_robot_file(self.robot)  # refuses a wrong file before the imports that are slow
+        file = read_robot_file(self.robot)  # refuses a wrong one before the imports that are slow
+        if fits:
+            refuse_nothing_free(file)
         from identification.robot.reading import read_robot
 
         trust = [*flat(self.trust), *but]
@@ -139,7 +142,7 @@ class Torques(OnRobot):
 
     def run(self) -> int:
         """Compare, say, keep."""
-        robot = self.read(but=("wiring",))  # forces say it without a simulation
+        robot = self.read(but=("wiring",), fits=False)  # forces say it without a simulation
         from identification.refusals.wiring import refuse_unbalanced
         from identification.report.torque_words import torque_text
         from identification.robot.file import read_robot_file

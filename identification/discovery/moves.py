@@ -12,17 +12,20 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
+from math import isfinite
 from typing import Any, Generic, Protocol, TypeVar
 
 from identification.discovery.attempts import Failed, attempt, collected
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
+from identification.discovery.outlook import CHECKS, EFFECT, FIT, LEFT, Outlook, Rests
 from identification.discovery.result import Discovery
 from identification.effects.effect import Candidate, Effect
 from identification.pool import one_blas_thread
-from identification.progress import Progress, stage
+from identification.progress import Progress, following, stage
+from identification.quantities import held
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -101,6 +104,9 @@ class Evidence(Generic[State]):
     first: Callable[[Any, Progress], State]
     moves: tuple[Move[State], ...]  # those that a state is asked, in their order
     conclude: Callable[[State], Discovery]  # returns the outcome of a finished search
+    # rms error of a state's model on the unseen data that decide, over that of the sensors
+    times_noise: Callable[[State], float] | None = None
+    rests: Rests = field(default_factory=dict)  # what is left of a search where a stage begins
 
     def begin(self, task: Task, progress: Progress) -> State:
         """Returns the state with which a search begins.
@@ -154,11 +160,31 @@ class Evidence(Generic[State]):
             DivergenceError: as `begin`.
         """
         say = progress or _say_nothing
-        state = self.begin(task, say)
-        while not state.is_finished:
-            state = self.step(state, say)
-        with stage("what is left, and what the data could show"):
-            return self.conclude(state)
+        outlook = Outlook(say, self.rests)
+        with following(outlook):
+            outlook.enter(FIT)
+            state, asked = self.begin(task, say), -1
+            while not state.is_finished:
+                grown, effects = asked != len(state.accepted), len(state.accepted)
+                if state.moves[0].grows and grown:
+                    outlook.enter(EFFECT, effects, self._told(state))
+                elif not state.moves[0].grows and outlook.stage != CHECKS:
+                    outlook.enter(CHECKS, effects)
+                asked = effects
+                state = self.step(state, say)
+            outlook.enter(LEFT, len(state.accepted), self._told(state))
+            with stage("what is left, and what the data could show"):
+                return self.conclude(state)
+
+    def _told(self, state: State) -> str:
+        """Returns how far the model of a state is from the data, and what it has, in words."""
+        if self.times_noise is None:
+            return ""
+        ratio = self.times_noise(state)
+        far = f"the error on the unseen data that decide is {held(ratio)} times the noise"
+        names = [f"{a.candidate.effect.name}, {a.candidate.where}" for a in state.accepted]
+        return "; ".join([*([far] if isfinite(ratio) else []),
+                          *([f"in the model: {', '.join(names)}"] if names else [])])  # fmt: skip
 
 
 T = TypeVar("T", bound=Trial)

@@ -3,22 +3,33 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import inf
 
 from identification.discovery.moves import Evidence
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
+from identification.discovery.outlook import Rests
 from identification.discovery.result import Discovery
 from identification.effects.effect import Effect
 from identification.errors import InputError
 from identification.innovations.forecast import forecast, refuse_large
-from identification.innovations.state import MOVES, first_state
+from identification.innovations.state import MOVES, InnovationSearch, first_state
 from identification.innovations.task import DiscoveryTask
 from identification.innovations.verdict import conclude
 from identification.logs.joined import records_of, rows_of
 from identification.logs.log import Log
 from identification.progress import Progress
 
-INNOVATIONS = Evidence(first_state, MOVES, conclude)
+RESTS: Rests = {}  # of searches along a free run none is timed yet: no forecast is told
+
+
+def times_noise(state: InnovationSearch) -> float:
+    """Returns the rms error of the free run on unseen samples that decide, over the noise."""
+    sigma, rms = state.model.refit.level.sigma, state.model.validation.rms("select")
+    return rms / sigma if sigma > 0 else inf
+
+
+INNOVATIONS = Evidence(first_state, MOVES, conclude, times_noise, RESTS)
 
 
 def discover(

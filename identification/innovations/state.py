@@ -14,6 +14,7 @@ from functools import partial
 from identification.discovery.attempts import collected, tell_lost
 from identification.discovery.candidates import list_common, list_single
 from identification.discovery.moves import Move, SearchState, Watch, drop_needless
+from identification.discovery.outlook import SCORES
 from identification.discovery.passes import uses
 from identification.innovations.deviants import accept_deviants, within_bounds
 from identification.innovations.fitted_model import (
@@ -32,7 +33,7 @@ from identification.innovations.scoring.scores import Score
 from identification.innovations.scoring.sensitivities import Sensitivity, compute_sensitivities
 from identification.innovations.task import DiscoveryTask
 from identification.model.sensitivity import refuse_without_effect
-from identification.progress import Progress
+from identification.progress import Progress, enter
 from identification.quantities import held
 
 
@@ -68,6 +69,7 @@ def first_state(task: DiscoveryTask, progress: Progress) -> InnovationSearch:
     nominal = replace(nominal, validation=replace(nominal.validation, parts=parts))
     watch.stop("nominal fit")
     progress(f"nominal fit: {held(1e3 * nominal.validation.rms('select'))}e-3 on unseen data")
+    enter(SCORES)
     with collected(progress) as failed:
         sensitivities = _compute_all_sensitivities(task, nominal, ())
     watch.stop("sensitivities")

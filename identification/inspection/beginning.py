@@ -24,6 +24,7 @@ from identification.robot.model_file import robot_spec
 
 SHORTEST = 0.3  # [s] of a horizon to begin with: a part of a swing
 FEWEST = 10  # samples of it
+SLOWEST = 0.02  # [s] between samples, above which positions hardly tell an arm's accelerations
 _DRIVES = {"position": "a position servo: its input is a setpoint",
            "velocity": "a velocity servo: its input is a setpoint"}  # fmt: skip
 
@@ -37,12 +38,15 @@ class Beginning:
         found: what the model and the log say.
         guessed: what is for the user to judge.
         needs: what a fit will ask for.
+        torques: whether `identification torques` has what it needs: all joints measured, and forces
+            as inputs, often enough that positions tell accelerations.
     """
 
     path: Path
     found: tuple[str, ...]
     guessed: tuple[str, ...]
     needs: tuple[str, ...]
+    torques: bool = False
 
 
 def write_beginning(found: Inspection, model: Path, path: Path) -> Beginning:
@@ -75,7 +79,26 @@ def write_beginning(found: Inspection, model: Path, path: Path) -> Beginning:
     sure = [m for m in matches if m.how == SAME]
     answers = answer_sentences(found.answers)
     told = [*said, f"columns of the same name: {_listed(sure)}"] if sure else [*said]
-    return Beginning(path, (*told, *answers), _guesses(found, compiled, matches), tuple(needs))
+    return Beginning(
+        path, (*told, *answers), _guesses(found, compiled, matches), tuple(needs),
+        torques=not needs and _serves_torques(found, compiled, matches),
+    )  # fmt: skip
+
+
+def _serves_torques(found: Inspection, model: mujoco.MjModel, matches: Sequence[Match]) -> bool:
+    """Returns whether each joint has a drive's force and its position in the log, often enough."""
+    turning = {mujoco.mjtJoint.mjJNT_HINGE, mujoco.mjtJoint.mjJNT_SLIDE}
+    joints = {model.joint(k).name for k in range(model.njnt)}
+    inputs = [m for m in matches if m.channel.is_input]
+    seen = {m.channel.joint for m in matches
+            if m.column and not m.channel.is_input and not m.channel.is_rate}  # fmt: skip
+    forces = all(m.column and servo_kind(model, model.actuator(m.channel.name).id) is None
+                 for m in inputs)  # fmt: skip
+    return (
+        bool(joints) and joints <= seen and joints <= {m.channel.joint for m in inputs} and forces
+        and {mujoco.mjtJoint(int(kind)) for kind in model.jnt_type} <= turning
+        and model.neq == 0 and found.step <= SLOWEST
+    )  # fmt: skip
 
 
 def _motors(spec: mujoco.MjSpec, model: mujoco.MjModel, found: Inspection) -> dict[str, str]:

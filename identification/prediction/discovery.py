@@ -3,22 +3,46 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import inf, sqrt
+
+import numpy as np
 
 from identification.discovery.moves import Evidence
 from identification.discovery.nominal_model import NominalModel, without_starts
 from identification.discovery.options import DiscoveryOptions
+from identification.discovery.outlook import CHECKS, EFFECT, LEFT, SCORES, Rests
 from identification.discovery.result import Discovery
 from identification.effects.effect import Candidate, Effect
 from identification.errors import InputError
 from identification.logs.log import Log
 from identification.prediction.records_fit import NO_HORIZON
 from identification.prediction.state import MOVES, first_state
-from identification.prediction.task import RecordsTask
+from identification.prediction.task import RecordsTask, WindowSearch
 from identification.prediction.verdict import conclude
 from identification.progress import Progress
 from identification.windows.records import as_records
 
-WINDOWS = Evidence(first_state, MOVES, conclude)
+# Time left over time passed when a stage begins, by the number of effects that the model has then.
+# One timed search gave these ranges, and they were widened by hand: they are guesses.
+# `python benchmarks/forecast.py --worlds` times more searches, `--rests` prints their ranges.
+RESTS: Rests = {
+    (SCORES, 0): (4.0, 50.0),
+    (EFFECT, 0): (2.0, 20.0),
+    (EFFECT, 1): (0.7, 5.0),
+    (EFFECT, 2): (0.5, 2.0),
+    (CHECKS, 0): (0.0, 0.8),
+    (LEFT, 0): (0.0, 0.4),
+}
+
+
+def times_noise(state: WindowSearch) -> float:
+    """Returns the rms error over unseen windows of the horizon that decide, over the noise."""
+    unseen = state.model.unseen.select
+    square = float(np.mean(np.concatenate(unseen.at_horizon)))
+    return sqrt(square / unseen.floor) if unseen.floor > 0 else inf
+
+
+WINDOWS = Evidence(first_state, MOVES, conclude, times_noise, RESTS)
 
 
 def discover_records(

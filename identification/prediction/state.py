@@ -11,6 +11,7 @@ from dataclasses import replace
 
 from identification.discovery.attempts import collected
 from identification.discovery.moves import Move, Watch
+from identification.discovery.outlook import SCORES
 from identification.discovery.passes import uses
 from identification.errors import InputError
 from identification.prediction.moves.add_effect import add_effect
@@ -26,7 +27,7 @@ from identification.prediction.nominal_fit import as_begun, fit_alone, predicted
 from identification.prediction.screening import score_all
 from identification.prediction.task import RecordsTask, WindowSearch, finishing
 from identification.prediction.trial import find_doubt
-from identification.progress import Progress
+from identification.progress import Progress, enter
 from identification.shares import change
 from identification.windows.blocks import count_blocks
 from identification.windows.comparison import compare, rise
@@ -84,6 +85,7 @@ def first_state(task: RecordsTask, progress: Progress) -> WindowSearch:
         )
         nominal = as_begun(base, nominal, begun)
     watch.stop("nominal fit")
+    enter(SCORES)
     with collected(progress) as failed:
         scores = score_all(nominal, task.effects, task.options)
     watch.stop("scores")

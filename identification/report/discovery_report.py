@@ -17,8 +17,12 @@ from identification.report.discovery_sections import (
     unseen_section,
     where_section,
 )
-from identification.report.discovery_verdict import discovery_verdict, further_sentences
-from identification.report.effect_sections import added_section, rivals_section
+from identification.report.discovery_verdict import (
+    discovery_verdict,
+    further_sentences,
+    is_above_noise,
+)
+from identification.report.effect_sections import added_section, rivals_section, tried_section
 from identification.report.horizon_section import horizon_sections
 from identification.report.law import law_sections
 from identification.report.page import Section, save_figures, write_report
@@ -38,6 +42,7 @@ def discovery_text(found: Discovery) -> str:
         *where_section(found),
         *horizon_sections(found),
         rivals_section(found),
+        *tried_section(found),
         *unseen_section(found),
     ]
     parts = [
@@ -59,6 +64,7 @@ def discovery_sections(found: Discovery, files: str = "") -> list[Section]:
         *where_section(found),
         *horizon_sections(found),
         rivals_section(found),
+        *tried_section(found),
         added_section(found, files),
         parameters_section(found),
         *shifts_section(found),
@@ -109,13 +115,14 @@ def write_page(
     Raises:
         InputError: the file cannot be written.
     """
+    is_open = found.verdict == "nothing missing" and is_above_noise(found)
     fitted = [record.log.name for record in found.records if record.role == "fit"]
     return write_report(
         path,
         f"{', '.join(fitted)}: what the model lacks",
         [*discovery_verdict(found), *sentences],
         sections,
-        good=found.is_good,
+        good=None if is_open else found.is_good,
         data=[record.log.name for record in found.records],
         drawings=drawings,
         headline=discovery_headline(found),

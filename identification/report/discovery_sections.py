@@ -29,9 +29,11 @@ from identification.report.horizon_section import error_figures
 from identification.report.page import Section, Table
 from identification.report.parts_words import parts_sentence
 from identification.report.shown_words import shown_lines, shown_rows, shown_sentences
+from identification.shares import decimal
 from identification.windows.coarse import steps_of
 
 DIGITS = 3  # of errors of records
+FIT_DIGITS = 4  # of a fit [%]: 99.96
 FITTED = "all of it was fitted"
 LATER = (
     "Inputs that seem to act earlier may also be the answer of a controller to what the robot did."
@@ -48,7 +50,7 @@ GAPS = {  # by what errors are of: what the gap on unseen data is
 }
 RECORDS = {  # likewise: the errors of records, on a page and in a terminal
     "free run": (
-        "Rms error of free runs over the unseen samples of each record that are told of.",
+        "Rms error of free runs over the unseen samples of each record on which errors are told.",
         "unseen samples of each record",
     ),
     "windows": (
@@ -59,8 +61,8 @@ RECORDS = {  # likewise: the errors of records, on a page and in a terminal
 }
 STD = {  # likewise: what a std rests on
     "free run": "A std holds if the model is right; that of a wrong model is too small.",
-    "windows": "Std by blocks of windows, whose errors need not be white; unknown where too few"
-    " windows tell of a value.",
+    "windows": "Std from blocks of windows, whose errors need not be white; unknown if too few"
+    " windows depend on a value.",
 }
 
 
@@ -74,7 +76,7 @@ def gap_section(found: Discovery) -> Section:
     for (when, model, gap), size, rms in zip(told, sizes, error_words(errors), strict=True):
         ratio, fit = found.times_noise(gap), gap.fit_percent[np.isfinite(gap.fit_percent)]
         times = held(ratio) if isfinite(ratio) else None
-        rows.append((model, size, times, float(fit.mean()) if len(fit) else None))
+        rows.append((model, size, times, decimal(fit.mean(), FIT_DIGITS) if len(fit) else None))
         lines.append(f"  {when:<7}{rms}" + (f", {times} times the noise" if times else ""))
     title, said = "error on unseen data:", parts_sentence(found)
     return Section(
@@ -108,7 +110,14 @@ def records_section(found: Discovery) -> list[Section]:
         Section(
             "Error by record",
             " ".join([said, *steps_taken(found)]),
-            table=Table(("record", "nominal model", "final model", "role"), tuple(rows)),
+            table=Table(
+                (
+                    "record",
+                    *(("nominal model", "final model") if found.named else ("error",)),
+                    "role",
+                ),
+                tuple(rows if found.named else ((n, before, r) for n, before, _, r in rows)),
+            ),
             plain="\n".join(lines),
         )
     ]
@@ -166,7 +175,7 @@ def shifts_section(found: Discovery) -> list[Section]:
     shifts = shown_shifts(found.shifts, found.records, found.options)
     if not shifts:
         return []
-    rows = tuple((s.record, describe_shift(s), 100 * s.fall) for s in shifts)
+    rows = tuple((s.record, describe_shift(s), round(100 * s.fall)) for s in shifts)
     lines = [f"  {name}: {shift}, {fall:z.0f} % of its mean square" for name, shift, fall in rows]
     return [
         Section(
@@ -184,8 +193,8 @@ def unseen_section(found: Discovery) -> list[Section]:
         return []
     said = (
         "The smallest size of each effect that is found in 9 of 10 logs like this one, beside the"
-        " largest that is plausible, the hardest to see first. What is missing and smaller stays"
-        f" hidden.\n\n{shown_sentences(found.detectable)}"
+        " largest plausible size, the hardest to see first. A smaller effect stays hidden."
+        f"\n\n{shown_sentences(found.detectable)}"
     )
     head = ("effect", "smallest seen", "largest plausible")
     table, plain = Table(head, tuple(shown_rows(found.detectable))), shown_lines(found.detectable)

@@ -27,7 +27,7 @@ from identification.shown import verdict_of
 
 NOT_FITTED = "the fit has not seen, but on which the search has decided"
 NO_ERROR = 1e-3  # of the inputs' rms: less is not told from none
-ALMOST = 0.999  # more than 99 %, and not all
+ALMOST = 0.9999  # nearly all: "more than 99.9 %"
 NOISIER = 1.5  # times the rms noise of the other outputs of its unit: more is told
 
 
@@ -50,6 +50,11 @@ def further_sentences(found: Discovery) -> list[str]:
 
 def is_above_noise(found: Discovery) -> bool:
     """Tells whether the nominal model's error on unseen data is more than noise makes."""
+    return _is_above_sensors(found) or found.before.rms > NOISIER * found.floor_rms > 0
+
+
+def _is_above_sensors(found: Discovery) -> bool:
+    """Tells whether it is more than sensors make, where nothing else is known to disturb."""
     ratio = found.before.rms / found.noise_rms if found.noise_rms else 1.0
     is_noise = found.unlogged is not None or found.input_error < NO_ERROR
     return not is_noise and ratio**2 > 1 + found.options.min_gap_share
@@ -114,33 +119,45 @@ def _off(found: Discovery) -> tuple[str, str, str]:
 def _nothing(found: Discovery) -> str:
     """Returns the paragraph: nothing is missing, or no effect is named as no candidate helps."""
     left, noise, alone = _off(found)
-    if is_above_noise(found):
+    if _is_above_sensors(found):
         ratio = found.before.rms / found.noise_rms
         return (
             "No effect is named: no candidate lowers the error of prediction on unseen data beyond"
-            f" chance. It is {left}{found.over}, {held(ratio)} times the {alone} that the sensors"
-            f" make. {_either(found)}"
+            f" chance. This error is {left}{found.over}, {held(ratio)} times the sensors' noise of"
+            f" {alone}. {_either(found)}"
         )
     seen, unseen = split_detectable(found.detectable)
-    said = (
-        f"Nothing is missing{'' if found.detectable else ', as far as these data can tell'}: what"
-        f" the fitted model leaves unexplained is noise, {left}{found.over} on unseen data where"
-        f" the sensors{' and unlogged disturbances' if found.unlogged else ''} make {noise}."
-    )
-    said += _rest(found, alone)
+    who = f"the sensors{' and unlogged disturbances' if found.unlogged else ''}"
+    if is_above_noise(found):
+        said = (
+            "No effect is named: no candidate lowers the error on unseen data beyond chance. But"
+            f" this error is {left}{found.over}, {times(found.before.rms / found.floor_rms)} the"
+            f" {noise} that {who} cause, so that noise does not explain all of it. Either something"
+            " is missing that no candidate explains, or the robot does something in the unseen data"
+            " that the fitted data never show."
+        )
+    else:
+        said = (
+            f"Nothing is missing{'' if found.detectable else ', as far as these data can tell'}:"
+            f" the error of the fitted model on unseen data is noise. It is {left}{found.over}, and"
+            f" {who} cause {noise}."
+        )
+        said += _rest(found, alone)
     if seen:
         listed = "; ".join(f"{describe_effect(d.candidate)}, {smallest(d)}" for d in seen[:SHOWN])
-        said += f" The log would have shown, in 9 cases of 10, effects as small as: {listed}."
+        said += f" In 9 cases of 10 this log would have shown effects as small as: {listed}."
     if unseen:
         names = dict.fromkeys(phrase(d.candidate.effect) for d in unseen)
-        said += f" No plausible size would show in it of these: {'; '.join(names)}."
+        said += f" It would not show these effects at any plausible size: {'; '.join(names)}."
     return said
 
 
 def _either(found: Discovery) -> str:
     """Says what else than an effect may make the error: the inputs, where any input moves."""
     if not isfinite(found.input_error):
-        return "No input moves that could err: something is missing that no candidate explains."
+        return (
+            "No input moves, so that none can err: something is missing that no candidate explains."
+        )
     return (
         f"Either the inputs err by {ratio_of(found.input_error, 'their rms')}, or something is"
         " missing that no candidate explains."
@@ -152,23 +169,24 @@ def _rest(found: Discovery, alone: str) -> str:
     unlogged = found.unlogged
     if unlogged is None:
         if found.input_error < NO_ERROR:
-            return " The sensors alone would make it."
+            return " The noise of the sensors alone explains it."
         if not isfinite(found.input_error):
             return ""
         size = ratio_of(found.input_error, "their rms")
-        return f" Inputs that err by {size} would make the rest."
+        return f" Inputs that err by {size} would explain the rest."
     if not found.floor_rms > found.noise_rms:
         return ""
-    lasts = f"for {decimal(unlogged.time, HELD)} s at a time"
+    lasts = f"lasting about {decimal(unlogged.time, HELD)} s"
     if not unlogged.is_of_inputs:
         return (
-            f" The sensors alone make {alone}; the rest is what unlogged forces on the joints do,"
-            f" {lasts}. If surely none act, something is missing."
+            f" The sensors alone cause {alone}. Forces on the joints that are not in the log"
+            f" ({lasts}) explain the rest. If you are sure that no such forces act, something is"
+            " missing."
         )
     return (
-        f" The sensors alone make {alone}; the rest is what inputs do that err by"
-        f" {quantity(unlogged.rms, unit=unlogged.unit)} rms beside what the log says, {lasts}. If"
-        " they are surely known better, something is missing."
+        f" The sensors alone cause {alone}. Errors of the inputs that are not in the log"
+        f" ({quantity(unlogged.rms, unit=unlogged.unit)} rms, {lasts}) explain the rest. If you"
+        " are sure that the inputs are more accurate, something is missing."
     )
 
 
@@ -177,16 +195,16 @@ def _unknown(found: Discovery) -> str:
     tried = len({s.candidate.effect.name for s in found.scores})
     left, noise, _ = _off(found)
     ratio = found.times_noise(found.before)
-    times = f", {held(ratio)} times the {noise} that the sensors make" if isfinite(ratio) else ""
+    times = f", {held(ratio)} times the sensors' noise of {noise}" if isfinite(ratio) else ""
     needed = ""
     if found.unlogged is None and 0 < found.input_error < inf:
         size = ratio_of(found.input_error, "their rms")
-        needed = f"; inputs would have to err by {size} to make that"
+        needed = f"; the inputs would have to err by {size} to cause this"
     return " ".join(
         [
             f"Something is missing that none of the {tried} known effects surely explains: the"
-            f" fitted model is {left} off{found.over} on unseen data{times}{needed}.",
-            "It gets no name rather than a wrong one.",
+            f" error of the fitted model on unseen data is {left}{found.over}{times}{needed}.",
+            "The program gives no name rather than a wrong one.",
             *_place(found),
             *needed_sentences(found),
             *_findings(found),
@@ -209,14 +227,14 @@ def _unexplained(found: Discovery) -> str:
     findings = _findings(found)
     if findings and all(f.kind is FindingKind.WORSE_FIT for f in found.findings):
         return " ".join(findings)  # which says how the search began, and not what is left
-    more = "what is named" if len(found.named) == 1 else "all that is named"
+    more = "named effect" if len(found.named) == 1 else "named effects"
     ratio = found.times_noise(found.after)
     times = f", {held(ratio)} times the noise" if 1 < ratio < inf else ""
     (left,) = error_words([found.errors_of(found.after)])
     return " ".join(
         [
-            f"Something is left beside {more} that no known effect surely explains: the model is"
-            f" still {left} off{found.over} on unseen data{times}.",
+            f"Something is left that no known effect surely explains: with the {more} in the model,"
+            f" the error on unseen data is still {left}{found.over}{times}.",
             *findings,
             *_nearest(found),
         ]
@@ -229,9 +247,10 @@ def _nearest(found: Discovery) -> list[str]:
         return []
     told = nearest.proof.told
     return [
-        f"Nearest comes {describe_effect(nearest.candidate)}: it predicts each next unseen sample"
-        f" better ({describe_chance(told)}), and with it the mean square of the free run"
-        f" {fall_words(told.fall, HELD)}. It is too small to matter, or not the likeliest."
+        f"The nearest candidate is {describe_effect(nearest.candidate)}: with it each next unseen"
+        f" sample is predicted better ({describe_chance(told)}), and the mean square of the free"
+        f" run {fall_words(told.fall, HELD)}. It is too small to matter, or another effect is"
+        " likelier."
     ]
 
 
@@ -240,7 +259,7 @@ def _proof(found: Discovery) -> str:
     errors = found.errors_of(found.before), found.errors_of(found.after)
     moved, (noise, own) = change_words(*errors, [found.floor, found.sensors])
     whom = "it" if len(found.named) == 1 else "them"
-    rest = f", of which sensors make {own} and unlogged errors of the inputs the rest"
+    rest = f", of which the sensors cause {own} and unlogged errors of the inputs the rest"
     made = rest if found.floor_rms > found.noise_rms else ""
     of = found.over and f" of prediction{found.over}"
     square = (found.after.rms / found.before.rms) ** 2 - 1 if found.before.rms > 0 else 0.0
@@ -254,7 +273,7 @@ def _proof(found: Discovery) -> str:
     if found.share is not None:
         # Of outputs of several units one may be above its noise while the sum of all is not.
         share = min(found.share, ALMOST) if found.times_noise(found.after) > 1 else found.share
-        said += f" That is {percent(share)} of the power that was above the noise."
+        said += f" This removes {percent(share)} of the power above the noise."
     return f"{said}{_smooth(found)}"
 
 
@@ -263,8 +282,9 @@ def _smooth(found: Discovery) -> str:
     if found.smooth_share is None:
         return ""
     is_one, share = len(found.named) == 1, found.smooth_share
-    who, whom = ("This effect explains", "it") if is_one else ("These effects explain", "they")
+    who, whom = ("This effect alone explains", "it explains") if is_one else (
+        "These effects alone explain", "they explain")  # fmt: skip
     return (
-        f" {who} {percent(share)} of what {whom} and any smooth forces of rate, position, drive and"
-        " time at the joints could explain together."
+        f" {who} {percent(share)} of what {whom} together with any smooth forces at the joints"
+        " (functions of rate, position, drive or time)."
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import cache, partial
 
 from identification.discovery.attempts import Failed
@@ -10,10 +10,16 @@ from identification.discovery.effect_results import NamedEffect
 from identification.discovery.result import Discovery, Scored
 from identification.report.discovery_figures import GAIN, score_figures
 from identification.report.effect_words import (
+    chance_words,
+    describe_doubt,
     describe_effect,
     describe_gains,
+    describe_next,
     describe_rejected,
+    describe_sizes,
     describe_there,
+    phrase,
+    rejected_once,
     say_choice,
     shown_parameters,
     value_with_std,
@@ -22,12 +28,18 @@ from identification.report.effect_words import (
 from identification.report.finding_words import sentence
 from identification.report.named_words import SHOWN, diff_line, node_lines
 from identification.report.page import Section, Table
-from identification.shares import percent
+from identification.shares import fall_words, percent
 
 BEST, LISTED = 10, 6  # candidates with the best scores, in a figure and in a list
 MANY = 8  # lines on what failed; of more the count is told
 FAILED = "tried, and not possible to simulate"
 DROPPED = "begun, and left by the search"
+BLANK = ("", "", "")  # size, mean square and chance of what was not fitted
+TRIED = (
+    "These effects were tried too. The change of the mean square and the chance that luck makes it"
+    " are those of unseen data."
+)
+TRIED_HEAD = ("effect", "size", "mean square", "chance", "why it is not believed")
 MEASURES = {  # of a score: what its bars are, their axis, and the title of the figure
     "gain": (
         "What each effect, at its best place and shape (one that is named at the place of its"
@@ -55,7 +67,7 @@ def added_section(found: Discovery, files: str = "") -> Section:
     for named in found.named:
         effect = describe_there(named.candidate, found.final.plant)
         law, gains = named.candidate.effect.law, describe_gains(named)
-        once = (f"+ {effect}", percent(named.confidence), law)
+        once = (effect, percent(named.confidence), law)
         for k, (name, value) in enumerate(_numbers(named)):
             rows.append((name, value, *(once if k == 0 else ("",) * 3)))
         proofs.append(sentence(f"{effect}: {gains}"))
@@ -99,29 +111,48 @@ def rivals_section(found: Discovery) -> Section:
     parts = [text]
     if not rows and found.named:
         parts.append("No other explanation comes near those that are named.")
-    title, tried = describe_rejected(found)
-    others = {
-        FAILED: failed_lines([f for f in found.failed if not f.dropped]),
-        DROPPED: failed_lines([f for f in found.failed if f.dropped]),
-    }
-    if tried:
-        parts += [f"{title.capitalize()}:", *map(sentence, tried)]
-    for word, lines in others.items():
-        parts += [f"{word.capitalize()}:", *lines] if lines else []
     explained = "what each effect would explain at its best place, before it is fitted"
     scores = [describe_score(found, score) for score in best[:LISTED]]
-    plain = [
-        listed_below(title, tried),
-        *(listed_below(word, lines) for word, lines in others.items()),
-        listed_below(explained, scores),
-    ]
+    after = describe_next(found)
     return Section(
         "Who could explain it",
-        "\n\n".join(parts),
+        "\n\n".join(filter(None, [*parts, after])),
         figures=cache(partial(score_figures, found, best[:BEST], axis, caption)) if best else (),
         table=Table(("rival", "confidence", "named", "alike"), rows) if rows else None,
-        plain="\n\n".join(filter(None, plain)),
+        plain="\n\n".join(filter(None, [after, listed_below(explained, scores)])),
     )
+
+
+def tried_section(found: Discovery) -> list[Section]:
+    """Returns the section on effects that were tried and not accepted; none where none was."""
+    words = {s.candidate.effect.name: phrase(s.candidate.effect) for s in found.scores}
+    failed, left = ([f for f in found.failed if f.dropped == d] for d in (False, True))
+    tried, plant = rejected_once(found), found.final.plant
+    beside = " beside what is named" if found.named else ""
+    rows = [
+        (describe_there(r.candidate, plant), describe_sizes(r), fall_words(r.proof.told.fall, 3),
+         chance_words(r.proof.told), describe_doubt(r, found.options))
+        for r in tried
+    ]  # fmt: skip
+    rows += [(name, *BLANK, why) for name, why in failed_rows(failed, words)]
+    rows += [(names, *BLANK, f"left by the search: {why}") for names, why in left_rows(left, words)]
+    if not rows:
+        return []
+    plain = [
+        listed_below(
+            f"tried{beside}, and not believed", [describe_rejected(r, found) for r in tried]
+        ),
+        listed_below(FAILED, [f"{n}: {why}" for n, why in failed_rows(failed, words)]),
+        listed_below(DROPPED, [f"{sentence(why)[:-1]}: {n}" for n, why in left_rows(left, words)]),
+    ]
+    return [
+        Section(
+            "Tried, and not believed",
+            TRIED,
+            table=Table(TRIED_HEAD, tuple(rows)),
+            plain="\n\n".join(filter(None, plain)),
+        )
+    ]
 
 
 def best_scores(found: Discovery) -> list[Scored]:
@@ -141,14 +172,37 @@ def describe_score(found: Discovery, score: Scored) -> str:
     return f"{effect}: {value}, chance {score.p_value:.2g}"
 
 
-def failed_lines(failed: Sequence[Failed]) -> list[str]:
-    """Returns a line for each candidate that failed or was left, and one for further ones."""
-    lines = [
-        f"{one.name.replace('_', ' ')}{f', {one.where}' if one.where else ''}: {one.outcome}"
-        for one in failed[:MANY]
-    ]
-    more = len(failed) - len(lines)
-    return [*lines, f"and {more} more"] if more > 0 else lines
+def failed_rows(failed: Sequence[Failed], words: Mapping[str, str]) -> list[tuple[str, str]]:
+    """Returns each candidate that failed with its reason, and in one row how many more there are.
+
+    Args:
+        failed: what could not be evaluated.
+        words: of effects by name.
+    """
+    rows = [(_called(one, words), one.outcome) for one in failed[:MANY]]
+    more = len(failed) - len(rows)
+    return [*rows, (f"{more} more", "see the JSON")] if more > 0 else rows
+
+
+def left_rows(failed: Sequence[Failed], words: Mapping[str, str]) -> list[tuple[str, str]]:
+    """Returns the candidates that a search had begun and left, a row for each reason.
+
+    Args:
+        failed: what was left.
+        words: of effects by name.
+    """
+    each: dict[str, list[str]] = {}
+    for one in failed:
+        each.setdefault(one.reason, []).append(_called(one, words))
+    return [
+        ("; ".join(names[:MANY])
+         + (f"; and {len(names) - MANY} more" if len(names) > MANY else ""), reason)
+        for reason, names in each.items()
+    ]  # fmt: skip
+
+
+def _called(one: Failed, words: Mapping[str, str]) -> str:
+    return ", ".join(filter(None, [words.get(one.name, one.name.replace("_", " ")), one.where]))
 
 
 def listed_below(title: str, lines: Sequence[str]) -> str:

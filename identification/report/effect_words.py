@@ -16,8 +16,10 @@ if TYPE_CHECKING:  # a search is slow to import, and a page may tell of a model 
         NamedEffect,
         Outside,
         Proof,
+        RecordDifference,
         RejectedEffect,
     )
+    from identification.discovery.options import DiscoveryOptions
     from identification.discovery.result import Discovery
     from identification.effects.effect import Candidate, Effect
     from identification.model.parameter import Parameter
@@ -55,17 +57,56 @@ def parameter_words(
         what = phrase(effect)
         words |= {f"{effect.name}.{shape.name}": f"{shape.name}, {what}" for shape in effect.shapes}
         words |= {
-            effect.parameter(size.name, where): f"{size.name}, {what}, {where}"
+            effect.parameter(size.name, where): _size_words(effect, size.name, where)
             for size in effect.sizes
             for where in effect.places
         }
     return words
 
 
+def _size_words(effect: Effect, size: str, where: str) -> str:
+    """Returns what a size is called: in few words where the name of a record will follow."""
+    if not effect.own:
+        return f"{size}, {phrase(effect)}, {where}"
+    from identification.effects.effect import BY_RECORD  # slow to import
+
+    letter = f" {size}" if len(effect.sizes) > 1 else ""
+    return f"{effect.name.replace('_', ' ')}{letter}, {where.removesuffix(BY_RECORD)}"
+
+
 def words_of(found: Discovery) -> dict[str, str]:
-    """Returns the words of all parameters of a discovery by name."""
+    """Returns the words of all values of a discovery by name, also of those of single records."""
+    told = [*found.nominal.told_values, *found.final.told_values]
     effects = [named.candidate.effect for named in found.named]
-    return parameter_words(found.final.plant.parameters, effects)
+    differing = [each.candidate.effect for each in found.differences]
+    return value_words(told, found.final.plant, [*differing, *effects])
+
+
+def value_words(
+    names: Iterable[str], plant: Plant, effects: Iterable[Effect] = ()
+) -> dict[str, str]:
+    """Returns the words of fitted values by name.
+
+    The value of a single record, such as `time_shift.tau@u [a]`, is "time shift of record a, input
+    u".
+
+    Args:
+        names: of the values.
+        plant: that has them.
+        effects: whose sizes are told with what they are.
+    """
+    own = [e for e in getattr(plant, "effects", ()) if e.own]  # a model without effects has none
+    words = parameter_words(plant.parameters, [*own, *effects])
+    return words | {n: said for n in names if n not in words and (said := in_record(n, words)) != n}
+
+
+def in_record(name: str, words: Mapping[str, str]) -> str:
+    """Returns what `NAME [RECORD]` is called; the name itself where it has no record."""
+    common, bracket, record = name.partition(" [")
+    if not bracket:
+        return name
+    what, comma, where = words.get(common, common).partition(",")
+    return f"{what} of record {record.removesuffix(']')}{comma}{where}"
 
 
 PART = re.compile(r"(?P<what>.+?)(?P<sign>, [^\W\d]+ |@)(?P<number>\d+)")  # one of several alike
@@ -93,28 +134,29 @@ def _gathered(what: str, sign: str, at: Sequence[int]) -> str:
 
 
 FEW = 0.01  # a chance above it is told as a share, and not as a power of ten
-NOT_TOLD = "(std not known, because too few data tell of it)"
+NOT_TOLD = "(std not known, because too few data depend on it)"
 DOUBTS = {
-    "numbers": "its gain does not pay for its numbers",
-    "chance": "with as many effects tried, its gain may be luck",
+    "numbers": "its gain is too small for so many parameters",
+    "chance": "so many effects were tried that its gain may be luck",
     "lengths": "windows of some length are predicted worse with it",
     "record": "a record is predicted worse with it",
-    "little": "it takes away too little to matter over windows of some length",
+    "little": "it removes too little of the error to matter over windows of some length",
     "size": "its size is not known well enough to differ from zero",
-    "bound": "its size ends on the bound beyond which it is not believed, so that it stands for"
-    " something else",
-    "exchange": "where the other records are fitted instead, it predicts a record worse, or all of"
+    "bound": "its size ends on the largest value that is believed, so that it stands for something"
+    " else",
+    "exchange": "if the other records are fitted instead, it predicts a record worse, or all of"
     " them on average",
-    "drawn": "a curve of the data at the same joint does the same, and more",
-    "neighbour": "a curve of the data still explains much of what it leaves, beyond chance",
-    "curve": "it was found beside a curve of the data, which leaves what its nodes cannot draw",
-    "differ": "it explains what was fitted and makes unseen records much worse, so that the records"
+    "drawn": "a curve from the data at the same joint explains the same, and more",
+    "neighbour": "a curve from the data still explains much of what it leaves, beyond chance",
+    "curve": "it was found together with a curve from the data, and may be what the nodes of the"
+    " curve cannot draw",
+    "differ": "it explains the fitted records and makes unseen ones much worse, so that the records"
     " differ in something that it stands for",
-    "steps": "the steps of the simulation make half of what it explains, or more",
-    "mass": "the body would lose half or more of the mass that the model's file says, which no"
-    " error of a drawing does",
-    "gain": "the gain would leave 0.5 to 1.5 times its value within a record",
-    "command": "the outputs would move before their servo is told to",
+    "steps": "the error of the simulation's steps makes half of what it explains, or more",
+    "mass": "the body would lose half or more of the mass in the model's file, and no drawing is so"
+    " wrong",
+    "gain": "the gain would leave the range of 0.5 to 1.5 times its value within a record",
+    "command": "the outputs would move before the command of their servo",
 }
 
 
@@ -165,7 +207,7 @@ def describe_sizes(found: NamedEffect | RejectedEffect) -> str:
         say_choice(found.candidate, name, value)
         or (f"{name} not felt" if isinf(std) else f"{name} = {value_with_std(value, std, unit)}")
         + (f" ({about[name]})" if about.get(name) else "")
-        for name, (value, std, unit) in shown.items()
+        for name, (value, std, unit) in {in_record(n, {}): v for n, v in shown.items()}.items()
     )
 
 
@@ -205,47 +247,67 @@ def difference_sentences(found: Discovery) -> list[str]:
     return [
         f"{phrase(d.candidate.effect).capitalize()}, {d.candidate.where.replace(BY_RECORD, '')}: by"
         f" {quantity(d.spread, unit=d.unit)} between two of them at most"
-        f" ({', '.join(f'{n} = {quantity(v, s, d.unit)}' for n, (v, s) in d.values.items())})."
-        " Each record has its own in the model; it is no effect of the robot."
+        f" ({'; '.join(_in_each_record(d))})."
+        " In the model each record has its own value; this is no effect of the robot."
         for d in found.differences
     ]
 
 
-def describe_rejected(found: Discovery) -> tuple[str, list[str]]:
-    """Returns the effects that were refitted and not accepted: a title and a line each.
+def _in_each_record(difference: RecordDifference) -> list[str]:
+    return [
+        f"{in_record(name, {})} = {quantity(value, std, difference.unit)}"
+        for name, (value, std) in difference.values.items()
+    ]
 
-    Each effect is told at each place once, as it did best. Where an effect is named and no other
-    one was refitted beside it, the candidate with the best score that is left is told instead.
-    """
-    beside = " beside what is named" if found.named else ""
+
+def rejected_once(found: Discovery) -> list[RejectedEffect]:
+    """Returns the effects that were refitted and not accepted, at each place as they did best."""
     each: dict[tuple[str, str], RejectedEffect] = {}
     for rejected in found.rejected:
         each.setdefault(rejected.candidate.key, rejected)
-    if each:
-        told = [_rejected(r, found.final.plant) for r in each.values()]
-        return f"tried{beside}, and not believed", told
-    if found.next_best is None:
-        return "", []
+    return [*each.values()]
+
+
+def describe_next(found: Discovery) -> str:
+    """Returns the best candidate that was not refitted, where none was refused; "" without one."""
+    if found.rejected or found.next_best is None:
+        return ""
     best, luck = found.next_best
     why = f"chance {luck:.2g} that one of {len(found.remaining)} does as well by luck"
     if luck < found.options.significance:
-        why = "beyond chance, but at a size of the wrong sign, or larger than physics admits"
-    line = f"{describe_effect(best.candidate)}: gain {best.explains:z.3g}, {why}"
-    return f"next{beside}, and not refitted", [line]
-
-
-def _rejected(rejected: RejectedEffect, plant: Plant) -> str:
-    """Returns a rejected effect with its sizes, what it would do, and what is against it."""
-    proof, outside, fall = rejected.proof, rejected.outside, rejected.proof.told.fall
-    doubt = f"; {DOUBTS[rejected.doubt]}" if rejected.doubt else ""
-    if rejected.doubt == "differ" and proof.disagrees:
-        doubt += f" (worse: {', '.join(proof.disagrees)})"
-    instead = f"; instead of it, {describe_outside(outside)}" if outside is not None else ""
+        why = "beyond chance, but its size has the wrong sign or is larger than physics admits"
+    beside = " beside what is named" if found.named else ""
     return (
-        f"{describe_there(rejected.candidate, plant)}: {describe_sizes(rejected)};"
-        f" {_fitted(rejected)}; on unseen data {describe_chance(proof)}; {_where_told(proof)} the"
-        f" mean square {fall_words(fall, 3)}{doubt}{instead}"
+        f"Next best{beside}, and not refitted: {describe_effect(best.candidate)}, gain"
+        f" {best.explains:z.3g}, {why}."
     )
+
+
+def describe_rejected(rejected: RejectedEffect, found: Discovery) -> str:
+    """Returns a rejected effect in a line: its size, what it does on unseen data, and why not."""
+    proof, why = rejected.proof, describe_doubt(rejected, found.options)
+    return (
+        f"{describe_there(rejected.candidate, found.final.plant)}: {describe_sizes(rejected)};"
+        f" {_where_told(proof)} the mean square {fall_words(proof.told.fall, 3)}"
+        f" (t = {proof.told.t:z.1f}, chance {chance_words(proof.told)}){why and f'; {why}'}"
+    )
+
+
+def describe_doubt(rejected: RejectedEffect, options: DiscoveryOptions) -> str:
+    """Returns in words why an effect is not believed; "" where no number of its own says so."""
+    proof = rejected.proof
+    why = DOUBTS.get(rejected.doubt or "", "")
+    if rejected.doubt is None and rejected.bic_gain <= 0:
+        why = DOUBTS["numbers"]
+    elif rejected.doubt is None and proof.fall <= 0:
+        why = "it does not predict unseen data better"
+    elif rejected.doubt is None and proof.fall <= options.min_fall:
+        why = "it removes too little of the error to matter"
+    if rejected.doubt == "differ" and proof.disagrees:
+        why += f" (worse: {', '.join(proof.disagrees)})"
+    if rejected.outside is not None:
+        why = "; ".join(filter(None, [why, f"likelier is {describe_outside(rejected.outside)}"]))
+    return why
 
 
 def _fitted(found: NamedEffect | RejectedEffect) -> str:
@@ -257,8 +319,12 @@ def _fitted(found: NamedEffect | RejectedEffect) -> str:
 
 def describe_chance(proof: Proof) -> str:
     """Returns in words how far unseen samples are from chance, and by which test."""
-    chance = f"{proof.chance:.2g}" if proof.chance > FEW else probability(proof.chance)
-    return f"t = {proof.t:z.1f}, chance {chance} by {proof.test}"
+    return f"t = {proof.t:z.1f}, chance {chance_words(proof)} by {proof.test}"
+
+
+def chance_words(proof: Proof) -> str:
+    """Returns the chance of a gain as large as this by luck."""
+    return f"{proof.chance:.2g}" if proof.chance > FEW else probability(proof.chance)
 
 
 def describe_gains(named: NamedEffect) -> str:

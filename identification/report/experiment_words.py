@@ -30,7 +30,7 @@ def experiment_verdict(found: Design, at: ParameterSet) -> list[str]:
     log = found.best.played.log
     lasts = f"The next experiment lasts {log.duration:.4g} s"
     if found.stage.form == "inputs":
-        what = f"{lasts} and plays the inputs {_and(log.input_names)} as they are."
+        what = f"{lasts}. Play the inputs {_and(log.input_names)} of the file unchanged."
     else:
         what = (
             f"{lasts} and is a motion for your controller to follow: the file has the positions as"
@@ -41,8 +41,8 @@ def experiment_verdict(found: Design, at: ParameterSet) -> list[str]:
         what,
         *gain,
         *_margins(found),
-        "This holds for noise that is white and as large as the error of the fit, and near the"
-        " values that are believed now; nothing was measured yet.",
+        "These numbers hold for white noise that is as large as the error of the fit, and near the"
+        " present values; nothing was measured yet.",
     ]
 
 
@@ -95,10 +95,10 @@ def _rivals(found: Design) -> list[str]:
     least, λ = float(found.shares_after.min()), found.best.separations
     odds, random = 0.5 * float(λ.min()), 0.5 * float(found.random.separations.min())
     out = [
-        f"It is to tell {names} apart, which are as likely as {now} now. Whichever is right, its"
-        f" probability is expected to be at least {percent(least)} afterwards: log odds of"
-        f" {odds:.2g} between the two that are most alike, where a random experiment within the"
-        f" same limits gives {random:.2g}."
+        f"It is designed to tell {names} apart, whose probabilities are {now} now. Whichever is"
+        f" right, its probability is expected to be at least {percent(least)} afterwards. The log"
+        f" odds between the two that are most alike are {odds:.2g}; a random experiment within the"
+        f" same limits would give {random:.2g}."
     ]
     if least < SURE:
         out.append(
@@ -125,16 +125,16 @@ def _values(found: Design, at: ParameterSet) -> list[str]:
         gain = _mean(before[order] / after[order])
         random = _mean(found.random.std[order] / after[order])
         out.append(
-            f"Expected std after it, the worst-known first: {_and(told)}{more}. The std fall"
-            f" {gain:.3g} times in the mean; those of a random experiment within the same limits"
+            f"Expected std after it, the worst-known first: {_and(told)}{more}. On average the std"
+            f" become {gain:.3g} times smaller; those of a random experiment within the same limits"
             f" would be {random:.3g} times as large."
         )
     same = [first.names[k] for k in order if k not in better]
     if same:
         it = "it" if len(same) == 1 else "them"
         out.append(
-            f"It tells little more of {_and(same)}: no motion within these limits shows {it}"
-            " better than what is known already."
+            f"It tells little more about {_and(same)}: no motion that was tried within these limits"
+            f" shows {it} better than what is known already."
         )
     return out
 
@@ -154,7 +154,7 @@ def _margins(found: Design) -> list[str]:
     out = [f"In the simulation it keeps all limits; the nearest is {_near(m, found)}."
            for m in nearest]  # fmt: skip
     if found.stage.limits.looks:
-        out.append("No bodies touch that do not touch where it begins.")
+        out.append("No bodies touch that do not touch at its beginning.")
     else:
         out.append("Contacts were not looked for, because the model has none.")
     return out

@@ -8,7 +8,7 @@ from typing import Any
 from identification.discovery.findings import evidence, records_evidence
 from identification.discovery.findings.finding import Finding, FindingKind
 from identification.discovery.impossible import IMPOSSIBLE
-from identification.quantities import alike, probability, quantity
+from identification.quantities import alike, error, probability, quantity
 from identification.report.effect_words import (
     DOUBTS,
     describe_chance,
@@ -52,22 +52,26 @@ def sentence(clause: str) -> str:
 def _worst_output(e: evidence.WorstOutput) -> str:
     return (
         f"on the fitted samples the error is largest on {e.output}: {quantity(e.rms, unit=e.unit)}"
-        f" rms, {percent(e.share)} of the power over all outputs, {e.noise_ratio:.1f} times the"
+        f" rms, {percent(e.share)} of the power over all outputs, {times(e.noise_ratio)} the"
         " sensors' noise"
     )
 
 
 def _worst_interval(e: evidence.WorstInterval) -> str:
-    return f"it is largest from {e.start:.1f} to {e.end:.1f} s ({percent(e.share)} of its power)"
+    share = percent(e.share)
+    return f"the error is largest from {e.start:.1f} to {e.end:.1f} s ({share} of its power)"
 
 
 def _median_frequency(e: evidence.MedianFrequency) -> str:
-    return f"half of its power lies below {e.frequency:.2g} Hz"
+    return f"half of the power of the error lies below {e.frequency:.2g} Hz"
 
 
 def _missing_force(e: evidence.ForceEvidence) -> str:
-    sizes = " and ".join(f"{rms:.2g} {unit}" for rms, unit in zip(e.rms, e.units, strict=True))
-    said = f"generalised forces of {sizes} rms on {e.where} would explain {percent(e.share)} of it"
+    sizes = " and ".join(map(error, e.rms, e.units))
+    said = (
+        f"generalised forces of {sizes} rms on {e.where} would explain {percent(e.share)} of the"
+        " error"
+    )
     if e.regressor is None:
         return said
     follows = f"{percent(e.regressor_share)} of their power follows {REGRESSORS[e.regressor]}"
@@ -78,7 +82,7 @@ def _input_hold(e: evidence.InputHold) -> str:
     then, now = alike([e.rms, e.rms_now], e.unit)
     return (
         f"if the inputs {HOLDS[e.hold]}, they would have to err by only {then} rms and not by {now}"
-        f' (write hold = "{e.hold}" into the log\'s TOML if they did)'
+        f' (if they did, write hold = "{e.hold}" into the log\'s TOML)'
     )
 
 
@@ -99,30 +103,30 @@ def _correlated_innovations(e: evidence.CorrelatedInnovations) -> str:
 def _parameters_at_limit(e: evidence.ParametersAtLimit) -> str:
     names = " and ".join(e.parameters)
     end = f"parameters {names} end" if len(e.parameters) > 1 else f"parameter {names} ends"
-    return f"the {end} at the limit of what is plausible, by the nominal values that were given"
+    return f"the {end} at the limit of what is plausible for the given nominal values"
 
 
 def _large_input_error(e: evidence.LargeInputError) -> str:
     return (
-        f"the inputs would have to err by {quantity(e.rms, unit=e.unit)} rms beside what the log"
-        f" says, {ratio_of(e.share, 'their own motion')}, for"
-        f" {decimal(e.correlation_time, HELD)} s at a time"
+        f"the inputs would need errors that are not in the log, {quantity(e.rms, unit=e.unit)} rms"
+        f" ({ratio_of(e.share, 'their own motion')}), lasting about"
+        f" {decimal(e.correlation_time, HELD)} s"
     )
 
 
 def _robot_change(e: evidence.RobotChange) -> str:
     return (
         f"from about {decimal(e.time, 3)} s on the unseen samples are predicted worse than the"
-        f" fitted ones, with errors {times(e.ratio)} as large one sample ahead: the robot changed,"
-        " or it does there what the fitted samples never show"
+        f" fitted ones (errors one sample ahead are {times(e.ratio)} as large): the robot changed,"
+        " or it does something there that the fitted samples never show"
     )
 
 
 def _unexpected_error(e: evidence.UnexpectedError) -> str:
     return (
-        f"the free run errs on unseen data by {decimal(e.ratio, HELD)} times what the sensors,"
-        " unlogged disturbances and the std of the fitted values make: the robot is another one"
-        " there, or it does what the fitted samples never show"
+        f"the error of the free run on unseen data is {decimal(e.ratio, HELD)} times what the"
+        " sensors, unlogged disturbances and the std of the fitted values explain: the robot has"
+        " changed there, or it does something there that the fitted samples never show"
     )
 
 
@@ -148,12 +152,12 @@ def _oversized_effect(e: evidence.OversizedEffect) -> str:
     values = dict(zip(units, e.score.size, strict=True))
     said = ", ".join(
         f"{name} = {quantity(values[name], unit=units[name])} where"
-        f" {quantity(limit, unit=units[name])} is thought to be the most"
+        f" {quantity(limit, unit=units[name])} is the largest plausible value"
         for name, limit in e.limits.items()
     )
     return (
         f"{describe_effect(e.score.candidate)}, would explain more than what is named (gain"
-        f" {e.score.explains:z.4g}), but only at {said}"
+        f" {e.score.explains:z.4g}), but only with {said}"
     )
 
 
@@ -172,9 +176,9 @@ def _different_record(e: records_evidence.DifferentRecord) -> str:
 
 def _shifted_record(e: records_evidence.ShiftedRecord) -> str:
     return (
-        f"record {e.record} looks as if its inputs acted {describe_shift(e)} than their time stamps"
-        f" say, which takes {percent(e.fall)} off its mean square; check how it was logged, and"
-        " shift its inputs if that is so"
+        f"the inputs of record {e.record} seem to act {describe_shift(e)} than their time stamps"
+        f" say: with this shift its mean square falls by {percent(e.fall)}; check how it was"
+        " logged, and shift its inputs if this is right"
     )
 
 
@@ -186,7 +190,7 @@ def describe_shift(e: records_evidence.ShiftedRecord) -> str:
 def _worse_fit(e: records_evidence.WorseFit) -> str:
     return (
         "without effects the fitted values predicted unseen data worse than those of the model"
-        f" (mean square {change(e.rise)}), so that the search began with the latter"
+        f" (mean square {change(e.rise)}), so that the search began with the model's values"
     )
 
 

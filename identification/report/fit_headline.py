@@ -58,7 +58,7 @@ def _values(fit: Fit | RecordsFit, units: Mapping[str, str]) -> list[Tile]:
     started = dict(zip(rows, map(float, fit.start), strict=True))
     if len(rows) <= FEW:
         return [
-            Tile(name, value_with_std(value, std, unit),
+            Tile(name, value_with_std(value, 0.0 if bound[name] else std, unit),
                  "on its bound" if bound[name]
                  else f"began at {value_with_std(started[name], 0.0, unit)}")
             for name, (value, std, unit) in rows.items()

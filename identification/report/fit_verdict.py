@@ -75,8 +75,8 @@ def _of_records(fit: RecordsFit) -> list[str]:
     ]
     if any(floor.values()) and relative(rms, floor) > MUCH:
         said.append(
-            "That is far more than the sensors make: the model lacks something, or a column is not"
-            " what the model takes it for; discover looks for what is missing."
+            "That is far more than the noise of the sensors: the model lacks something, or a column"
+            " is not what the model expects; discover looks for what is missing."
         )
     scale = describe_scale(output_units(fit.records[0].log), model.scale)
     return [*said, *scale, *departure_sentences(model), *step_sentences(model)]
@@ -87,7 +87,9 @@ def window_sentences(found: WindowEstimate, floor: float, unit: str) -> list[str
     bound = [n for n, at in zip(found.values, found.at_bound, strict=True) if at]
     said = [CONVERGED[found.converged], *bound_sentences((), bound)]
     if unknown := [n for n, u in zip(found.values, found.found.undetermined, strict=True) if u]:
-        said.append(f"The windows cannot tell {' and '.join(unknown)}; fix one, or widen them.")
+        said.append(
+            f"The windows do not tell {' and '.join(unknown)}; fix one, or take longer windows."
+        )
     left = _left_by_windows(len(found.residual), found.length, {unit: found.rms}, {unit: floor})
     return [*said, *weak_sentences(found), left]
 
@@ -117,8 +119,8 @@ def _steps(fit: Fit) -> list[str]:
     told = [f"{name} by {moves[name]:+z.2g}, {held(std)} std" for name, std in far.items()]
     return [
         f"A quarter of the model's step, {quantity(step, unit='s')}, would move"
-        f" {first_few(told, '; ')}; the std tell nothing of this. Where this matters, write"
-        f' timestep="{step:.6g}" into the <option> of the model, and do this once more.'
+        f" {first_few(told, '; ')}; the std do not include this. If it matters, write"
+        f' timestep="{step:.6g}" into the <option> of the model, and run the command again.'
     ]
 
 
@@ -151,8 +153,8 @@ def _enough(fit: Fit) -> list[str]:
         )
     elif coloured:
         sentences.append(
-            f"The residual of {_outputs(coloured)} is coloured, none depends on the input: noise"
-            " that is not white, or an effect that the input does not excite."
+            f"The residual of {_outputs(coloured)} is coloured, and none depends on the input: the"
+            " noise is not white, or there is an effect that the input does not excite."
         )
     elif ratio > ABOVE:
         sentences.append("It is white and independent of the input: look at the sensors first.")
@@ -168,23 +170,23 @@ def _outputs(count: int) -> str:
 def _unseen(fit: Fit) -> list[str]:
     there, expected = fit.validation_rms_by_unit, fit.validation_expected_by_unit
     if there is None or expected is None:
-        return ["There is no unseen data to confirm it on."]
+        return ["There are no unseen data that could confirm it."]
     (unseen,) = error_words([there])
     ratio, grown = relative(there, expected), relative(there, fit.rms_by_unit)
     if ratio < HOLDS and grown > GROWN:
         return [
-            f"On unseen data the residual is {unseen}, {grown:.0f} times that of the fitted part;"
-            " so small errors of the parameters may do that there, and it says little. Judge over"
-            " a horizon."
+            f"On unseen data the residual is {unseen}, {grown:.0f} times that of the fitted part."
+            " Small errors of the parameters may cause this along a free run, so that it says"
+            " little. Judge the model over a horizon."
         ]
-    said = "it does not hold: too many parameters, or an effect missing"
+    said = "it does not hold there: it has too many parameters, or an effect is missing"
     if ratio < HOLDS:
         said = "what was fitted holds there too"
         if relative(fit.rms_by_unit, fit.floor_by_unit) > ABOVE:
             said = "no worse than on what was fitted, but what is missing is missing there too"
     return [
         f"On unseen data the residual is {unseen}, {times_words(there, expected)} times what the"
-        f" fit leads one to expect: {said}."
+        f" fit leads us to expect: {said}."
     ]
 
 
@@ -195,7 +197,7 @@ def _worse(fit: RecordsFit) -> list[str]:
     before, after = fit.unseen_rms
     rise = change((after / before) ** 2 - 1)
     return [
-        "The fitted values predict what was not fitted worse than the values with which the fit"
+        "The fitted values predict unseen data worse than the values with which the fit"
         f" began (mean square {rise}, t = {fit.worse.t:z.1f}): do not use them. Fit"
         " more records, state in the robot's file what is known of the free parameters (known), or"
         " leave some of them out."
@@ -209,15 +211,16 @@ def _blind(fit: RecordsFit) -> list[str]:
         moved, one = in_words(direction, names), names[int(abs(direction).argmax())]
         if "," in moved:
             out.append(
-                f"The windows tell less along ({moved}) than was known before the fit, which"
-                " decides there; what does not change along it the windows tell. Where what was"
-                " known is not sure, hold one of these (held), or record a motion that tells them"
-                f" apart.{scale_of_forces([r.log for r in fit.records if r.role == 'fit'])}"
+                f"Along ({moved}) the windows tell less than was known before the fit, so that the"
+                " prior knowledge decides there. The windows do tell what does not change along"
+                " this direction. If the prior knowledge is not sure, hold one of these parameters"
+                " (held), or record a motion that tells them apart."
+                f"{scale_of_forces([r.log for r in fit.records if r.role == 'fit'])}"
             )
         else:
             out.append(
-                f"The windows tell less of {one} than was known before the fit, which decides."
-                " Where that is not sure, record a motion that shows it."
+                f"The windows tell less about {one} than was known before the fit, so that the"
+                " prior knowledge decides. If it is not sure, record a motion that shows more."
             )
     return out
 
@@ -237,18 +240,18 @@ def _unknown_std(fit: RecordsFit) -> list[str]:
     if not few:
         return []
     count = _count_windows(fit)
-    values, it, they, are = (
-        ("value", "it", "it", "is") if len(few) == 1 else ("values", "them", "they", "are")
+    values, it, their, are = (
+        ("value", "it", "its", "is") if len(few) == 1 else ("values", "them", "their", "are")
     )
     told = (
         "the only window cannot be compared with another"
         if count == 1
-        else f"too few of the {count} windows tell of {it}"
+        else f"too few of the {count} windows depend on {it}"
     )
     return [
-        f"The {values} of {', '.join(few)} {are} fitted, but how far off {they} may be is not"
-        f" known: a std comes from how much windows differ, and {told}. Record longer or give more"
-        f" logs for a std, or compare the {values} with those of a fit of another log."
+        f"The {values} of {', '.join(few)} {are} fitted, but {their} std is not known: a std comes"
+        f" from how much windows differ, and {told}. For a std record longer or give more logs, or"
+        f" compare the {values} with those of a fit of another log."
     ]
 
 

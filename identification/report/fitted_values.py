@@ -129,7 +129,7 @@ def step_sentences(
     if taken < own:
         return [
             f"Simulations took steps of {quantity(taken, unit='s')} where the model has"
-            f" {model_step}: those of the model made what an effect would explain, or moved its"
+            f" {model_step}: the error of the model's steps looked like an effect, or moved its"
             f' size. Write timestep="{taken:.6g}" into the <option> of the model.'
         ]
     if model.finer is None or not model.finer.is_known:
@@ -140,8 +140,8 @@ def step_sentences(
     if not changed:
         return [f"{said}: no value would move by more than {held(TOLD_SHIFT)} std."]
     return [
-        f"{said}: it would {', and would '.join(changed)}. Where this matters, write"
-        f' timestep="{finer:.6g}" into the <option> of the model, and do this once more.'
+        f"{said}: it would {', and would '.join(changed)}. If this matters, write"
+        f' timestep="{finer:.6g}" into the <option> of the model, and run the command again.'
     ]
 
 
@@ -153,7 +153,7 @@ def std_sentence(model: Fitted, words: Mapping[str, str] | None = None) -> str:
     if not (far := _far(model)):
         return ""
     return (
-        "The std leave out the error of the simulation's steps, which is more than"
+        "The std do not include the error of the simulation's steps, which is more than"
         f" {held(TOLD_SHIFT)} std for {first_few([(words or {}).get(n, n) for n in far])}."
     )
 
@@ -173,11 +173,11 @@ def _changed(model: Fitted, words: Mapping[str, str]) -> list[str]:
         value = _at_finer_steps(model, finer, far)
         told = first_few([f"{words.get(n, n)} by {held(std)} std to {value[n]}"
                           for n, std in far.items()])  # fmt: skip
-        said.append(f"move {told}, of which the std tell nothing")
+        said.append(f"move {told}, which the std do not include")
     if finer.is_lower():
         said.append(
             f"lower the error of the fitted windows to {held(finer.error)} of what it is: that part"
-            " is of the steps, and nothing that is missing"
+            " comes from the steps, and not from something that is missing"
         )
     return said
 

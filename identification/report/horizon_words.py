@@ -22,8 +22,10 @@ from identification.shares import percent
 def output_line(o: OutputError) -> str:
     """Returns the error of an output, beside its sensor's noise."""
     size, noise = alike([o.after, o.noise], o.unit, 3)
-    times = f", {held(o.after / o.noise)} times the {noise} of its sensor" if o.noise > 0 else ""
-    return f"{o.name} errs by {size} rms on untouched data{times}"
+    times = (
+        f", {held(o.after / o.noise)} times its sensor's noise of {noise}" if o.noise > 0 else ""
+    )
+    return f"the error of {o.name} on untouched data is {size} rms{times}"
 
 
 def worst_lines(gap: HorizonGap) -> list[str]:
@@ -34,9 +36,9 @@ def worst_lines(gap: HorizonGap) -> list[str]:
     at, every = int(np.argmax(most.after)), np.concatenate([r.after for r in gap.records])
     begin, ratio = float(most.time[at]), float(most.after[at])
     return [
-        f"the worst of all windows begins at {quantity(begin, unit='s')} of {most.name}, with"
+        f"the worst window begins at {quantity(begin, unit='s')} of {most.name}, with"
         f" {held(ratio)} times the noise; the median of all windows is"
-        f" {held(float(np.median(every)))} times it"
+        f" {held(float(np.median(every)))} times the noise"
     ]
 
 
@@ -46,13 +48,13 @@ def length_lines(lengths: Sequence[LengthError]) -> list[str]:
         return []
     over = listed([f"{n.length:g} s" for n in lengths])
     ratios = listed([held(n.after) for n in lengths])
-    return [f"over {over} it errs by {ratios} times the noise on untouched data"]
+    return [f"over {over} the error on untouched data is {ratios} times the noise"]
 
 
 def force_line(needed: NeededForce) -> str:
     """Returns what a force at a joint would explain, and where it would be largest."""
     return (
-        f"a force on {needed.nodes.joint} over the {needed.nodes.reads} would take away"
+        f"a force on {needed.nodes.joint} that depends on the {needed.nodes.reads} would remove"
         f" {percent(needed.fall)} of the fitted error; it would be largest at {_largest(needed)}"
     )
 
@@ -77,9 +79,9 @@ def needed_sentences(found: Discovery) -> list[str]:
     gap = find_gap(found)
     if gap is None or not gap.forces:
         return []
-    each = listed([f"on {f.nodes.joint} over the {f.nodes.reads}" for f in gap.forces])
+    each = listed([f"on {f.nodes.joint} that depends on the {f.nodes.reads}" for f in gap.forces])
     first = gap.forces[0]
     return [
-        f"It looks like a force {each}: that on {first.nodes.joint} would take away"
+        f"It looks like a force {each}: the force on {first.nodes.joint} would remove"
         f" {percent(first.fall)} of the fitted error."
     ]

@@ -120,7 +120,7 @@ def _named(found: Discovery, named: NamedEffect) -> str:
     plant, own = found.final.plant, named.confidence
     first = "Missing from the model" if named is found.named[0] else "Missing too"
     if named.candidate.effect.is_curve:
-        first += ", in no catalogue and drawn from the data"
+        first += " (in no catalogue, drawn from the data)"
     mine = f"{describe_there(named.candidate, plant)}{_twin(named)}"
     is_set = named.one_of and bool(named.rivals)
     rivals = likely_rivals(named)
@@ -148,7 +148,7 @@ def likely_rivals(named: NamedEffect) -> list[Rival]:
 
 def basis_sentence(found: Discovery, named: NamedEffect) -> str:
     """Returns a sentence on what the confidence of a named effect rests on."""
-    among = "" if named.candidate.effect.is_curve else "it compares known effects: "
+    among = "" if named.candidate.effect.is_curve else "it compares known effects; "
     said = f"Confidence of {describe_there(named.candidate, found.final.plant)}: {among}"
     if named.compared:
         rivals = "1 rival was" if named.compared == 1 else f"{named.compared} rivals were"
@@ -157,8 +157,8 @@ def basis_sentence(found: Discovery, named: NamedEffect) -> str:
     limits = found.options.max_confidence, found.options.left_confidence
     if named.confidence < limits[found.unexplained]:
         return f"{said}."
-    when = "while something is left" if found.unexplained else "at all"
-    return f"{said}, and {percent(named.confidence)} is the highest that is said {when}."
+    when = " while something is left" if found.unexplained else ""
+    return f"{said}, and {percent(named.confidence)} is the highest confidence that is given{when}."
 
 
 def nearest_law(found: Discovery, named: NamedEffect) -> str:
@@ -176,8 +176,8 @@ def nearest_law(found: Discovery, named: NamedEffect) -> str:
         return ""
     said, change = describe_there(best.candidate, found.final.plant), best.proof.told.fall
     return (
-        f" Of the listed laws this one comes nearest: {said}, {describe_sizes(best)}; with it in"
-        f" the curve's place the mean square {fall_words(change)}."
+        f" The nearest listed law is {said}, {describe_sizes(best)}; with it in place of the curve"
+        f" the mean square {fall_words(change)}."
     )
 
 
@@ -187,7 +187,7 @@ def _twin(named: NamedEffect) -> str:
         return ""
     return (
         f' (or "{phrase(named.same_as)}": below the Coulomb friction it is the same force, and no'
-        " record tells which of the two it is)"
+        " record tells the two apart)"
     )
 
 
@@ -197,10 +197,10 @@ def _retuned(found: Discovery, named: NamedEffect) -> str:
     if other is None or other.confidence < RETUNED:
         return ""
     what = words_of(found)[other.parameter]
+    far = f"{abs(other.distance):.2g} std {'above' if other.distance > 0 else 'below'}"
     return (
-        f" Or it is no effect ({percent(other.confidence)}): with {what}"
-        f" {abs(other.distance):.2g} std {'above' if other.distance > 0 else 'below'} what was said"
-        " to be known of it, the model explains the same. Measure it, or record another motion."
+        f" Or no effect is missing ({percent(other.confidence)}): the model explains the same if"
+        f" {what} is {far} what was given as known. Measure it, or record another motion."
     )
 
 
@@ -222,6 +222,9 @@ def _agreement(found: Discovery, named: NamedEffect) -> str:
         what = "curve" if named.candidate.effect.is_curve else "named effect"
         which = f" ({listed(helped)})" if 0 < len(helped) < len(distinct) else ""
         said = f" The {what} lowers the error on {len(helped)} of {len(distinct)} unseen records"
+        if len(distinct) == 1:
+            does = "lowers" if helped else "does not lower"
+            said = f" The {what} {does} the error on the unseen record"
         said += f"{which}."
     elif names:
         said = " All unseen records repeat what was fitted, so that they hardly confirm it."
@@ -230,5 +233,5 @@ def _agreement(found: Discovery, named: NamedEffect) -> str:
         said += f" {', '.join(found.repeats)} {'repeats' if one else 'repeat'} the motion of others"
         said += " and does not count." if one else " and do not count."
     if worse := named.proof.told.disagrees:
-        said += f" It raises the error on {', '.join(worse)}, beyond chance."
+        said += f" It raises the error on {', '.join(worse)} beyond chance."
     return said

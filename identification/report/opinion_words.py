@@ -29,15 +29,15 @@ def _sentence(o: TorqueOpinion, said: str) -> str:
     which = f"{said}, {o.where}"
     if o.is_named and o.is_proven:
         return (
-            "The torques that the measured motion needs, without a simulation, prove the same:"
+            "The torques of the measured motion, computed without a simulation, prove the same:"
             f" {which}, {sizes}; {by}."
         )
     if o.is_named:
         return (
-            "The torques that the measured motion needs, without a simulation, do not prove"
+            "The torques of the measured motion, computed without a simulation, do not prove"
             f" {which}: {by}. They may tell too little, or the name may be wrong."
         )
     return (
-        "The torques that the measured motion needs, without a simulation, name another effect"
+        "The torques of the measured motion, computed without a simulation, name another effect"
         f" first: {which}, {sizes}; {by}. The command `identification torques` tells more."
     )

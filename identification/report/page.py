@@ -31,6 +31,7 @@ WIDE = 9.0  # a figure of so many inches has a row of its own
 PACKAGE = "inca-mj"
 PROGRAMS = ("inca", "inca_mj", "identification")
 NUMBER = re.compile(r"[-+]?\d+(\.\d+)?(e[-+]?\d+)?")
+PATH = re.compile(r"(?<=[^\W\d])[/.@](?=[^\W\d])(?![^<]*>|[^<]*</span)")  # in body/arm.mass
 EMPTY = ("–", "unknown", None)  # in the place of a number
 UNIT = r"[nµmkM]?(?:kg|rad|Hz|min|[gNmsAVWJh])(?:\^?-?[\d²³]+)?(?:/(?:\([^)]*\)|[\w²³^]+))?"
 QUANTITY = re.compile(  # a number, its std, and a unit such as N m s/rad
@@ -51,6 +52,16 @@ class Table:
                 raise InputError(
                     f"a table of {len(self.columns)} columns has a row of {len(row)} cells"
                 )
+
+    @property
+    def filled(self) -> Table:
+        """The table without columns in which no row says anything."""
+        if not self.rows:
+            return self
+        kept = [k for k, cells in enumerate(zip(*self.rows, strict=True))
+                if k == 0 or any(c not in (None, "", "–") for c in cells)]  # fmt: skip
+        rows = tuple(tuple(row[k] for k in kept) for row in self.rows)
+        return Table(tuple(self.columns[k] for k in kept), rows)
 
     @property
     def last_first(self) -> Table:
@@ -135,6 +146,7 @@ def write_report(
         lstrip_blocks=True,
     )
     environment.filters["whole"] = whole_quantities
+    environment.filters["cell"] = breakable
     page = environment.get_template("report.html").render(
         title=title,
         file=Path(path).name,
@@ -184,9 +196,16 @@ def whole_quantities(text: str) -> Markup:
     return Markup(QUANTITY.sub(r'<span class="whole">\g<0></span>', str(escape(text))))
 
 
+def breakable(text: str) -> Markup:
+    """Returns a cell of a table, in which a line of a page may end within a long name or path."""
+    from markupsafe import Markup
+
+    return Markup(PATH.sub(r"\g<0><wbr />", str(whole_quantities(text))))
+
+
 def _parts(section: Section, number: int, drawings: dict[Figure, str]) -> dict[str, Any]:
     """Returns what the template needs of a section."""
-    figures, table = section.drawn, section.table
+    figures, table = section.drawn, section.table and section.table.filled
     for k, (caption, figure) in enumerate(figures, 1):
         if figure not in drawings:
             drawings[figure] = drawing(figure, f"f{number}_{k}_", caption)

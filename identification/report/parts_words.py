@@ -17,21 +17,21 @@ def parts_sentence(found: Discovery) -> str:
     kept = [r for r in unseen if _is_kept(r)]
     short = [r.log.name for r in unseen if not _is_kept(r)]
     if not uses(found.options, "untouched_part"):
-        return "The search has decided on the same unseen data of which errors and gains are told."
+        return "Errors and gains are those of the same unseen data on which the search has decided."
     said = []
     if kept:
         decided, told = (held(sum(_seconds(r)[k] for r in kept)) for k in ("select", "report"))
         said.append(
-            "What no fit has seen lies in blocks in two parts: the search has decided on one"
-            f" ({decided} s); the other ({told} s) is untouched, and errors and gains are told of"
-            " it."
+            "The blocks of the unseen data form two parts. The search has decided on one part"
+            f" ({decided} s). The other part ({told} s) is untouched, and errors and gains are"
+            " computed on it."
         )
     if short:
         one = len(short) == 1
         said.append(
-            f"{listed(short)} {'is' if one else 'are'} too short to keep a part untouched: the"
-            " search has decided on the same data of which errors and gains are told, so that they"
-            " flatter what it names."
+            f"{listed(short)} {'is' if one else 'are'} too short to keep a part untouched: errors"
+            " and gains are those of the same data on which the search has decided, so that they"
+            " are somewhat too good."
         )
     return " ".join(said)
 

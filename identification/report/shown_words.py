@@ -19,10 +19,11 @@ SHOWN = 4  # of the effects that a log would have shown, or that its noise hides
 SHARE = 0.1  # of the inputs' error, by power: an effect that would be less of it has no share told
 LISTED = 8  # effects that have a line; the others are counted
 FEW = 4  # that are told in a paragraph, above the table of all
-NEVER = "what this log would not have shown, at no plausible size"
+NEVER = "effects that this log would not have shown at any plausible size"
+SEEN = "effects that this log would have shown in 9 cases of 10, the hardest to see first:"
 WHERE = (
-    "An effect is judged on all places alike or, where it acts on one at a time, at the place where"
-    " it is hardest to see."
+    "An effect is judged at all places together or, if it acts at one place only, at the place"
+    " where it is hardest to see."
 )
 
 
@@ -71,7 +72,7 @@ def shown_lines(detectable: Sequence[Detectable]) -> list[str]:
     seen, never = shown_effects(detectable)
     lines = [f"{NEVER}:", *(f"  {s}" for s in never)] if never else []
     if seen:
-        lines.append("what this log would have shown in 9 cases of 10, the hardest to see first:")
+        lines.append(SEEN)
         lines += [f"  {s}: {s.bounds}" for s in seen[:LISTED]]
         lines += [f"  {more}" for more in _more(seen)]
     return [*lines, f"  {WHERE}"] if lines else []
@@ -94,7 +95,7 @@ def shown_rows(detectable: Sequence[Detectable]) -> list[tuple[str, str, str]]:
     for s in (*never, *seen):
         names = [f"{d.size} " if len(s.sizes) > 1 else "" for d in s.sizes]
         least = "; ".join(
-            name + (sized(d.smallest, d.unit) if d.is_plausible else "at no plausible size")
+            name + (sized(d.smallest, d.unit) if d.is_plausible else "not at any plausible size")
             for name, d in zip(names, s.sizes, strict=True)
         )
         most = "; ".join(
@@ -129,14 +130,14 @@ def hiding(hidden: Sequence[Hidden]) -> str:
         return ""
     listed = "; ".join(map(_describe, hidden[:SHOWN]))
     return (
-        "The fitted noise may still hide effects up to these sizes (what the log seems to show of"
-        f" each, by luck or not, and 1.96 std more): {listed}."
+        "The fitted noise may still hide effects up to these sizes (the size that the log seems to"
+        f" show, possibly by luck, plus 1.96 std): {listed}."
     )
 
 
 def _describe(h: Hidden) -> str:
     sizes = ", ".join(f"{n} {quantity(most, unit=unit)}" for n, (_, most, unit) in h.sizes.items())
-    taken = f" (it would be {percent(h.taken)} of what passes for errors of the inputs)"
+    taken = f" (it would be {percent(h.taken)} of what counts as errors of the inputs)"
     return f"{describe_effect(h.candidate)}, {sizes}{taken if h.taken >= SHARE else ''}"
 
 

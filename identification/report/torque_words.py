@@ -65,36 +65,47 @@ def size_words(score: Score) -> str:
 def _missing(evidence: Evidence) -> list[str]:
     on = "records" if evidence.equations.confirms.any() else "blocks of the records"
     if not evidence.scores:
-        return ["No candidate acts on these joints otherwise than what is fitted already."]
+        return ["No candidate differs on these joints from what is fitted already."]
     if not evidence.found:
         first = evidence.scores[0]
         return [
-            "Beside friction, which is always fitted, no effect is proven by the torques: of"
+            "Apart from friction, which is always fitted, the torques prove no effect. Of"
             f" {evidence.asked} candidates the nearest is"
-            f" {first.missing.title} ({size_words(first)}), with which the mean square on {on} that"
+            f" {called(first)}, {size_words(first)}: with it the mean square on {on} that"
             f" no fit has seen {fall_words(first.fall)}, t {first.t:.1f}, chance"
             f" {chance_words(first.chance)}.",
             *_imitated(evidence),
         ]
     out = []
     for k, score in enumerate(evidence.named):
-        begins = "The torques need" if not k else "Beside it they need" if k == 1 else "And"
+        begins = "They also need" if k else "The torques need"
         if score.missing.is_curve:
             begins += " a force that no law of the catalogue explains,"
         out.append(
-            f"{begins} {score.missing.title} ({score.missing.phrase}): {size_words(score)}."
+            f"{begins} {called(score)}: {size_words(score)}."
             f"{centre_words(score)} The"
             f" mean square of their residual on {on} that no fit has seen {fall_words(score.fall)},"
             f" t {score.t:.1f}, chance {chance_words(score.chance)}."
         )
         if score.t <= PROOF:
             out[-1] += (
-                " Free parameters that are far from what was known of them make up for it; held at"
-                f" what was known, they do not (t {score.held_t:.1f})."
+                " Free parameters imitate it, with values far from what was known of them; if they"
+                f" are held at what was known, they do not (t {score.held_t:.1f})."
             )
         if len(rivals := rivals_of(evidence, score, k)):
-            out[-1] += f" As good by chance: {listed([r.missing.title for r in rivals])}."
+            out[-1] += f" Within chance as good: {listed([called(r) for r in rivals])}."
     return out
+
+
+def called(score: Score) -> str:
+    """Returns the name of a candidate, its place, and what it is, in words."""
+    what = f" ({score.missing.phrase})" if score.missing.phrase else ""
+    return f"{score.missing.title.replace('_', ' ', 2)}{what}"
+
+
+def _model(model: float, value: float, std: float, unit: str) -> str:
+    """Returns the model's value with the prefix of the fitted value beside it."""
+    return quantity(model, unit=unit, like=max(abs(value), std))
 
 
 def centre_words(score: Score) -> str:
@@ -117,9 +128,9 @@ def _imitated(evidence: Evidence) -> list[str]:
         return []
     best = min(likely, key=lambda s: (len(s.size), s.chance))
     return [
-        f"What was known of the free parameters speaks for {best.missing.title}"
-        f" ({size_words(best)}; chance {chance_words(best.chance)}). But these parameters make up"
-        " for it on unseen data: free fewer of them, or record a motion with larger accelerations."
+        f"What was known of the free parameters speaks for {called(best)}"
+        f" ({size_words(best)}; chance {chance_words(best.chance)}). But these parameters imitate"
+        " it on unseen data: free fewer of them, or record a motion with larger accelerations."
     ]
 
 
@@ -142,7 +153,7 @@ def _residual(evidence: Evidence, model: mujoco.MjModel) -> list[str]:
     told = np.sqrt(np.nanmean((final / np.maximum(whole, 1e-300)) ** 2))
     worst = int(np.nanargmax(np.nan_to_num(final / np.maximum(whole, 1e-300))))
     out = [
-        "Residual torque (or force) that no fit has seen, by joint: "
+        "Residual torque (or force) of each joint on data that no fit has seen: "
         + "; ".join(
             f"{n} {quantity(f, unit=u)}" + (f" (model {quantity(m, unit=u)})" if m != f else "")
             for n, f, m, u in zip(names, final, nominal, units, strict=True) if np.isfinite(f)
@@ -151,9 +162,9 @@ def _residual(evidence: Evidence, model: mujoco.MjModel) -> list[str]:
     ]  # fmt: skip
     if told > 1.1:
         out.append(
-            f"A rigid arm whose inertial numbers and frictions are all free leaves less, most at"
-            f" {names[worst]} ({quantity(whole[worst], unit=units[worst])}): masses, places or"
-            " inertias of the model are off, or something acts like them."
+            "A rigid arm whose inertial numbers and frictions are all free leaves less, above all"
+            f" at {names[worst]} ({quantity(whole[worst], unit=units[worst])}): masses, positions"
+            " or inertias of the model are wrong, or something acts like them."
         )
     return out
 
@@ -163,7 +174,7 @@ def _friction(evidence: Evidence) -> list[str]:
     if not off:
         return []
     said = listed([f"{name} {value} (model {model})" for name, value, model in off])
-    return [f"Frictions that are not the model's: {said}."]
+    return [f"Frictions that differ from the model: {said}."]
 
 
 def _far(evidence: Evidence) -> list[str]:
@@ -199,7 +210,7 @@ def _doubts(evidence: Evidence) -> list[str]:
     worst, many = int(np.argmax(moved)), int(np.sum(moved > MATTERS))
     out = [
         "In closed loop the noise of the positions goes into the torques, so that noise and motion"
-        f" are correlated. With a band of the smooth motion narrower by {percent(1 - 0.6)},"
+        f" are correlated. If the band of the smooth motion is narrower by {percent(1 - 0.6)},"
         + (
             f" {many} of {len(moved)} values move by more than {MATTERS:g} std, most"
             f" {evidence.whole.names[worst]} ({moved[worst]:.1f} std): their std may be too small."
@@ -211,7 +222,7 @@ def _doubts(evidence: Evidence) -> list[str]:
     if abs(late) > FAR * off and abs(late) > LATE:
         out.append(
             f"The torques act {quantity(abs(late), off, 's')} {'later' if late > 0 else 'earlier'}"
-            " than their stamps say; the fits make up for it."
+            " than their stamps say; the fits correct this."
         )
     std, scale = evidence.whole.fit.std[:r], np.abs(evidence.whole.fit.θ[:r])
     told = int(np.sum(std < np.maximum(scale, np.abs(evidence.base.values)) / 2))
@@ -219,8 +230,8 @@ def _doubts(evidence: Evidence) -> list[str]:
     if evidence.inconsistent:
         names = listed([evidence.base.names[k] for k in evidence.inconsistent])
         out.append(
-            f"No bodies with positive masses have {names} within 3 std of the fitted value: the"
-            " model's geometry, or what it lacks, is in them."
+            f"No bodies with positive masses can have {names} within 3 std of the fitted value: the"
+            " geometry of the model is wrong, or the model lacks something."
         )
     return out
 
@@ -233,7 +244,7 @@ def base_rows(evidence: Evidence) -> list[tuple[str, str, str, str]]:
         unit = evidence.base.units[k]
         off = (value - model) / std if std > 0 else np.nan
         rows.append((name, quantity(value, std, unit, like=model),
-                     quantity(model, unit=unit, like=value), f"{off:+z.1f}"))  # fmt: skip
+                     _model(model, value, std, unit), f"{off:+z.1f}"))  # fmt: skip
     return rows
 
 
@@ -242,7 +253,7 @@ def friction_rows(evidence: Evidence) -> list[tuple[str, str, str, str]]:
     fit, rows = evidence.whole, []
     for k, model in enumerate(evidence.friction, fit.inertial):
         value, std, unit = fit.fit.θ[k], fit.fit.std[k], fit.units[k]
-        told = quantity(value, std, unit, like=model), quantity(model, unit=unit, like=value)
+        told = quantity(value, std, unit, like=model), _model(model, value, std, unit)
         rows.append((fit.names[k], *told, f"{(value - model) / std:+z.1f}"))
     return rows
 
@@ -250,7 +261,7 @@ def friction_rows(evidence: Evidence) -> list[tuple[str, str, str, str]]:
 def score_rows(scores: tuple[Score, ...]) -> list[tuple[str, str, str, str, str]]:
     """Returns rows of candidates: title, sizes, fall on unseen blocks, its t, chance."""
     return [
-        (f"{s.missing.title} ({s.missing.phrase})", size_words(s), percent(s.fall), f"{s.t:.1f}",
+        (called(s), size_words(s), percent(s.fall), f"{s.t:.1f}",
          chance_words(s.chance))
         for s in scores[:SHOWN]
     ]  # fmt: skip

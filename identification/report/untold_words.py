@@ -29,7 +29,10 @@ def bound_sentences(parameters: Iterable[Parameter], at_bound: Iterable[str]) ->
     reasons = {p.name: p.bounded_by for p in parameters}
     each = {name: reasons.get(name.partition(" [")[0], "") for name in at_bound}
     plain = [name for name, reason in each.items() if not reason]
-    said = [f"At a bound: {name}; {reason}." for name, reason in each.items() if reason]
+    said = [
+        f"At a bound: {', '.join(gathered(n for n in each if each[n] == reason))}; {reason}."
+        for reason in dict.fromkeys(filter(None, each.values()))
+    ]
     if plain:
         said.insert(0, f"At a bound: {', '.join(gathered(plain))}; widen it or fix the parameter.")
     return said
@@ -46,13 +49,13 @@ def identifiable_sentences(fit: Fit) -> list[str]:
         values = np.array(list(fit.estimate.values.values()))
         relative = fit.std / np.where(fit.estimate.space.logarithmic, np.abs(values), np.inf)
         weak = [n for n, r in zip(found.names, relative, strict=True) if r > WEAK]
-        said = f"All {len(found.names)} directions of the parameters are felt by the outputs."
+        said = f"The outputs depend on all {len(found.names)} directions of the parameters."
         if not weak:
             return [said]
         traded = _traded(weak, found)
         why = scale_of_forces([fit.estimate.predictor.log]) if traded else ""
         return [f"{said} {too_weak(weak, 'noise')}{traded}{why}"]
-    felt = f"{found.rank} of {len(found.names)} directions are felt"
+    felt = f"The outputs depend on {found.rank} of {len(found.names)} directions of the parameters"
     sentences = []
     if found.symmetries:
         words = parameter_words(fit.estimate.predictor.plant.parameters)
@@ -86,9 +89,7 @@ def untold(
         said.append(f"the data do not tell {' and '.join(words.get(n, n) for n in alone)}")
     if scaled := [n for n in names if any(n in s.powers for s in several)]:
         along = "; ".join(in_words(s.row(names), names) for s in several)
-        said.append(
-            f"{' and '.join(scaled)} trade off along ({along}) without any output feeling it"
-        )
+        said.append(f"{' and '.join(scaled)} trade off along ({along}), and no output changes")
     return "; ".join(said)
 
 
@@ -147,7 +148,10 @@ def too_weak(names: Sequence[str], what: str) -> str:
     their = "its" if len(names) == 1 else "their"
     this = "this" if what == "noise" else "these"
     which = ", ".join(gathered(names))
-    return f"Too weakly for {this} {what}: {which}, {their} std exceeds half the value."
+    return (
+        f"With {this} {what} the log tells too little about {which}: {their} std exceeds half the"
+        " value."
+    )
 
 
 def cure(names: Sequence[str]) -> str:

@@ -18,6 +18,7 @@ from identification.prediction.discovery import discover_records
 from identification.report import discovery_verdict  # noqa: F401  how the result is shown
 from identification.robot.blame import told_of_factors
 from identification.robot.checks import refuse_horizon, refuse_unlike
+from identification.robot.file import refuse_nothing_free
 from identification.robot.robot import Robot
 from identification.robot.second_opinion import ask_torques, with_torques
 from identification.robot.suggestions import suggest
@@ -95,6 +96,7 @@ def discover(
     if isinstance(model, Robot):
         if log is not None or effects is not None:
             raise InputError("a robot has its own log and candidates; leave log and effects out")
+        refuse_nothing_free(model.file)
         if model.file.horizon is None and not model.others:
             refuse_unlike(model.file, model.log)
             effects = without_states(model.candidates)

@@ -123,12 +123,7 @@ def read_robot_file(path: str | Path) -> RobotFile:
     content = read_toml(path, "robot file, such as robot.toml")
     check_table(content, KEYS, str(path))
     for key in ("model", "free"):
-        if key == "free" and content.get(key) == []:
-            raise InputError(
-                f"`free` in {path} is empty, so that there is nothing to fit; write what is to be"
-                ' found into it, such as free = ["joint/slide.damping"]'
-            )
-        if not content.get(key):
+        if not content.get(key) and not (key == "free" and content.get(key) == []):
             raise InputError(f"{path} does not say {key!r}; give {KEYS[key][1]}")
     horizon = content.get("horizon")
     if horizon is not None and abs(horizon) > LONGEST:
@@ -189,6 +184,22 @@ def _fitted(content: Mapping[str, Any], path: Path) -> dict[str, str]:
     logs = content.get("fitted", {})
     check_table(logs, dict.fromkeys(logs, (str, "text in quotes")), f"fitted in {path}")
     return dict(logs)
+
+
+def refuse_nothing_free(file: RobotFile) -> None:
+    """Refuses a robot whose file frees nothing, where something is to be fitted.
+
+    Torques are compared without: what they fit always is friction (`fit_torques`).
+
+    Raises:
+        InputError: it frees nothing.
+    """
+    if not file.free:
+        raise InputError(
+            f"`free` in {file.path} is empty, so that there is nothing to fit; write what is to be"
+            ' found into it, such as free = ["joint/slide.damping"]; identification torques needs'
+            " none"
+        )
 
 
 def with_spread(file: RobotFile, word: str) -> RobotFile:

@@ -15,6 +15,7 @@ from identification.logs.log import Log
 from identification.model.predictor import Predictor
 from identification.prediction.records_fit import RecordsFit
 from identification.quantities import plain_unit, quantity
+from identification.report.effect_words import value_words
 from identification.report.figures import compare_figure, windows_figure
 from identification.report.fit_headline import fit_headline
 from identification.report.page import Section, Table, save_figures, write_report
@@ -77,12 +78,14 @@ class RobotFitFiles:
 def _values_section(found: RobotFit) -> Section:
     """Returns the section on the fitted values, beside those with which the fit began."""
     units = {p.name: plain_unit(p.unit) for p in found.robot.plant.parameters}
-    rows = []
+    rows, words_of = [], value_words(found.values, found.robot.plant)
     for name, value in found.values.items():
         unit, first = units[name.partition(" [")[0]], found.start[name]
         bound = ", on its bound" if found.at_bound[name] else ""
         words = quantity(value, found.std[name], unit, like=first)
-        rows.append((name, quantity(first, unit=unit, like=value), f"{words}{bound}"))
+        begun = quantity(first, unit=unit, like=value)
+        called = words_of.get(name, name) if " [" in name else name  # else as in robot.toml
+        rows.append((called, begun, f"{words}{bound}"))
     text = "A value has the digits of its std. A value on its bound has no std."
     return Section("The parameters", text, table=Table(("parameter", "begun", "fitted"), (*rows,)))
 

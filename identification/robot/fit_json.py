@@ -60,7 +60,7 @@ def no_better(result: RobotFit, confirmed: Sequence[Confirmation]) -> list[str]:
     if not rise > LEAST:
         return worse_unit(confirmed)
     return [
-        "The fitted values predict what was not fitted worse than the values with which the fit"
+        "The fitted values predict unseen data worse than the values with which the fit"
         f" began (mean square {change(rise)}). This may be chance, but it does not confirm"
         " the fitted values: fit a longer log, or more logs, before you use them.",
         *worse_unit(confirmed),
@@ -75,9 +75,9 @@ def worse_unit(confirmed: Sequence[Confirmation]) -> list[str]:
     if not worse or not others:
         return []
     return [
-        f"The fitted values predict {_told(worse)} of what was not fitted worse than the values"
-        f" with which the fit began, and not {_told(others)}. This may be chance, or the fit makes"
-        " up in one for an error in the other: fit a longer log, or more logs, before you rely on"
+        f"The fitted values predict {_told(worse)} of the unseen data worse than the values with"
+        f" which the fit began, but not {_told(others)}. This may be chance, or the fit improves"
+        " one at the cost of the other: fit a longer log, or more logs, before you rely on"
         f" what it predicts of {listed([kind(unit) for unit in worse])}."
     ]
 

@@ -16,6 +16,7 @@ from identification.estimation.fit import assess
 from identification.prediction.records_fit import fit_records
 from identification.robot.blame import told_of_factors
 from identification.robot.checks import refuse_horizon
+from identification.robot.file import refuse_nothing_free
 from identification.robot.robot import Robot
 from identification.robot.robot_fit import RobotFit
 from identification.written import Files
@@ -41,6 +42,7 @@ def fit(robot: Robot, progress: Callable[[str], None] | None = None) -> RobotFit
     """
     refuse_kind(robot, Robot, "fit takes a robot (read_robot)")
     file, logs = robot.file, (robot.log, *robot.others)
+    refuse_nothing_free(file)
     is_whole = file.horizon is not None and bool(robot.records)
     if file.horizon is None and robot.others:
         raise InputError(

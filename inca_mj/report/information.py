@@ -42,7 +42,10 @@ def information_verdict(found: Information) -> list[str]:
     if weak := [
         n for n, s, r in zip(found.names, std, logarithmic, strict=False) if r and s > WEAK
     ]:
-        lines.append(f"Too weakly for this noise: {', '.join(weak)}; excite them more, or longer.")
+        lines.append(
+            f"With this noise the log tells too little about {', '.join(weak)}; excite them more,"
+            " or longer."
+        )
     return lines
 
 

@@ -121,12 +121,15 @@ def found(verdict="named", *, one_of=False, unexplained=False, several=False) ->
         score_of(c, s, g)
         for c, s, g in ((STRIBECK, 0.004, 900.0), (MISMATCH, 0.2, 70.0), (LATE, 3e-4, -1.0))
     )
+    gap = _gap(before)
+    if verdict == "nothing missing":  # what is left is then noise
+        gap = replace(gap, rms=1.1 * NOISE)
     run = ByHand(log(), nominal, final, log().outputs - before, log().outputs - after)
     return Discovery(
         records=run.records, options=DiscoveryOptions(), verdict=verdict, named=named,
         rejected=(REJECTED,) if is_named else (), unexplained=unexplained, share=0.98,
         unit="rad", noise_rms=NOISE, disturbance_rms=0.0, input_error=0.0, at_bound=(),
-        unlogged=Unlogged(0.01, "A", 0.1, True), before=_gap(before), after=_gap(after),
+        unlogged=Unlogged(0.01, "A", 0.1, True), before=gap, after=_gap(after),
         errors=run.errors, nominal=nominal, final=final, run=run,
         recover=partial(recover_force, final), scores=scores, remaining=scores[1:],
         scored_by="gain",

@@ -8,7 +8,8 @@ from robot_cases import TOML, simulated
 from identification.commands import beat as of_beat
 from identification.commands.beat import EVERY, Beat, beating
 from identification.commands.common import note
-from identification.progress import counted, stage, watched
+from identification.discovery.outlook import EFFECT, FIT, Outlook
+from identification.progress import counted, enter, following, stage, watched
 
 
 class Clock:
@@ -55,11 +56,30 @@ def test_the_time_left_is_told_where_the_steps_are_known():
         clock.now += EVERY
         beat.check()
     assert said == [
-        "10 s: stage 1, refits: 0 of 8",
-        "20 s: stage 1, refits: 1 of 8, about 2 min left",
-        "30 s: stage 2, steps of a fit: 2 done",
-        "40 s: stage 1, refits: 2 of 8, about 2 min left",
+        "10 s: refits: 0 of 8",
+        "20 s: refits: 1 of 8, about 2 min left",
+        "30 s: steps of a fit: 2 done",
+        "40 s: refits: 2 of 8, about 2 min left",
     ]
+
+
+def test_of_a_search_its_stage_comes_first():
+    clock, said, beat = watching()
+    outlook = Outlook(said.append, {(EFFECT, 0): (1.0, 3.0)}, clock)
+    with watched(beat.stage, beat.follow), following(outlook), stage("refits", 8):
+        enter(FIT)
+        clock.now += EVERY
+        beat.check()
+        enter(EFFECT)
+        clock.now += EVERY
+        beat.check()
+    assert said == [
+        f"stage 1 of 5, {FIT}",
+        f"10 s: stage 1 of 5, {FIT}; refits: 0 of 8",
+        f"stage 3 of 5, {EFFECT}: 10 to 30 s left",
+        f"20 s: stage 3 of 5, {EFFECT}: up to 20 s left; refits: 0 of 8",
+    ]
+    assert beat.whole is None
 
 
 def test_lines_come_at_least_every_ten_seconds():
@@ -123,6 +143,6 @@ def test_a_fit_that_takes_long_says_where_it_is(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(fitting, "fit", patiently)
     arguments = ["fit", str(tmp_path / "robot.toml"), str(tmp_path / "log.csv")]
     assert main(arguments) == 0
-    assert re.search(r"\d+ s: stage \d+, naps: 0 of 2\n", capsys.readouterr().err)
+    assert re.search(r"\d+ s: naps: 0 of 2\n", capsys.readouterr().err)
     assert main([*arguments, "--quiet"]) == 0
     assert capsys.readouterr().err == ""

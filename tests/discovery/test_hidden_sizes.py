@@ -183,7 +183,7 @@ def test_a_name_must_not_hide_what_explains_more_at_a_size_beyond_belief(other, 
         (finding,) = find_oversized_effect(scores, ["mild"], OPTIONS)
         assert finding.evidence.limits == {"f": 5.0}
         said = describe_finding(finding)
-        assert "f = 6 N where 5 N is thought to be the most" in said
+        assert "f = 6 N where 5 N is the largest plausible value" in said
     else:
         assert find_oversized_effect(scores, ["mild"], OPTIONS) == ()
 

@@ -36,7 +36,7 @@ def test_a_common_factor_of_all_forces_is_named_as_quotients():
         assert sorted(combination.exponents.values()) == [-1, 1]
         assert abs(value - combination.value(truth)) < 4 * std
     said = " ".join(fit_verdict(fit))
-    assert "3 of 4 directions are felt" in said
+    assert "depend on 3 of 4 directions" in said
     assert "trade off along" in said
     assert "can be known from this log" in said
 

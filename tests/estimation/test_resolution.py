@@ -151,7 +151,7 @@ def test_a_trade_off_that_is_no_product_of_small_powers_is_not_called_one():
     assert np.isinf(fit.std).all()
     assert not fit.combinations
     said = " ".join(fit_verdict(fit))
-    assert "1 of 2 directions are felt; 1 is lost" in said
+    assert "depend on 1 of 2 directions of the parameters; 1 is lost" in said
     assert "a and b have no std" in said
     assert "rough" not in said
 
@@ -183,7 +183,7 @@ def test_the_example_log_does_not_know_what_its_first_fit_claimed():
     assert np.isinf(std["beta"])
     assert [str(c) for c, _, _ in fit.combinations] == ["k_s R_s^2"]
     said = " ".join(fit_verdict(fit))
-    assert "R_s and k_s trade off along (k_s -0.89, R_s +0.45) without any output" in said
+    assert "R_s and k_s trade off along (k_s -0.89, R_s +0.45), and no output changes" in said
     assert "Of k_s and R_s only k_s R_s^2 can be known from this log" in said
     assert "The simulation is rough at these values" in said
 

@@ -1,5 +1,6 @@
 """A log is told with its rates, gaps and answers, and a fit runs from the file that is written."""
 
+import re
 import tomllib
 from dataclasses import replace
 
@@ -11,6 +12,7 @@ from touching_cases import simulated
 
 from identification import InputError, fit, inspect_log, read_robot, write_log
 from identification.inspection.answers import find_answers
+from identification.inspection.beginning import write_beginning
 from identification.inspection.guesses import is_time, role_of, time_unit, unit_of
 from identification.inspection.words import answer_sentence, answer_sentences
 
@@ -200,6 +202,22 @@ def test_the_command_says_what_it_guessed_and_what_comes_next(arm, capsys, monke
     assert text.startswith("Written: robot.toml\nfound:\n")
     assert text.index("guessed, for you to judge:") < text.index("horizon = 0.3 s")
     assert text.endswith(f"Next: identification fit robot.toml {arm / 'run'}\n")
+
+
+@pytest.mark.parametrize("change", ["nothing", "servos", "slow", "a third joint"])
+def test_torques_are_offered_where_forces_and_all_positions_are_logged(arm, tmp_path, change):
+    text = ARM.format(damping=0.1)
+    if change != "servos":
+        text = re.sub(r'<position (name="\w+" joint="\w+")[^>]*/>', r"<motor \1/>", text)
+    if change == "a third joint":
+        text = text.replace("<worldbody>", '<worldbody><body><joint name="base" axis="1 0 0"/>'
+                            '<geom size="0.1" mass="1"/></body>')  # fmt: skip
+    (tmp_path / "arm.xml").write_text(text)
+    found = inspect_log(arm / "run")
+    if change == "slow":
+        found = replace(found, time=10 * found.time)
+    begun = write_beginning(found, tmp_path / "arm.xml", tmp_path / "robot.toml")
+    assert begun.torques == (change == "nothing")
 
 
 def test_logs_of_which_nothing_can_be_said_are_refused(tmp_path, refusal):

@@ -127,8 +127,8 @@ def test_a_result_says_of_which_part_it_tells(without):
     scale = float(state.nominal.scale[0])
     assert found.before.rms == pytest.approx(scale * np.sqrt(told), rel=1e-4)
     if without:
-        assert "decided on the same unseen data" in said
+        assert "same unseen data on which the search has decided" in said
         assert parts[0]["block"] is None
     else:
-        assert "is untouched, and errors and gains are told of it" in said
+        assert "is untouched, and errors and gains are computed on it" in said
         assert parts[0]["select"] + parts[0]["report"] == pytest.approx(logs[2].duration, abs=0.02)

@@ -74,7 +74,7 @@ def test_it_is_said_where_it_exceeds_the_std(elbow):
         " of the model's step, 1.25 ms: it would move the forearm's mass by 4"
     )
     assert said.endswith(
-        'write timestep="0.00125" into the <option> of the model, and do this once more.'
+        'write timestep="0.00125" into the <option> of the model, and run the command again.'
     )
     mass = float(re.search(r"mass by 4[.\d]* std to ([.\d]+) kg", said)[1])
     # rounded as it is told; the value that was fitted is 4 std away
@@ -85,7 +85,7 @@ def test_it_is_said_where_it_exceeds_the_std(elbow):
         (np.nan * std, np.nan, None),
         (0.9 * std, 0.43, "would lower the error of the fitted windows to 0.43 of what it is"),
         (2.3 * std, np.nan, "by 2.3 std to 1"),
-        (2.3 * std, 0.43, ", of which the std tell nothing, and would lower the error"),
+        (2.3 * std, 0.43, ", which the std do not include, and would lower the error"),
     ):
         sentences = step_sentences(with_finer(coarse, values, error))
         assert bool(sentences) == bool(words)

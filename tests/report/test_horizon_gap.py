@@ -21,6 +21,8 @@ from identification.report.horizon_section import (
 )
 from identification.report.horizon_section import WORST as WORST_WINDOWS
 
+LOOKS_LIKE = "It looks like a force on hinge that depends on the rate of hinge: "
+
 
 def test_errors_are_those_that_the_discovery_tells():
     answer, gap = named(), find_gap(named())
@@ -85,8 +87,9 @@ def test_an_unknown_effect_is_shown_where_it_acts():
         f"Error of each window of {HORIZON:g} s"
     ]
     assert (fails.first, force.first) == (0, 1)  # the force is the answer
-    assert "It looks like a force on hinge over the rate of hinge: " in discovery_verdict(answer)[0]
-    assert "a force on hinge over the rate of hinge would take away" in discovery_text(answer)
+    assert LOOKS_LIKE in discovery_verdict(answer)[0]
+    said = discovery_text(answer)
+    assert "a force on hinge that depends on the rate of hinge would remove" in said
     fails = discovery_to_json(answer)["fails"]
     assert [f["joint"] for f in fails["forces"]] == ["hinge"]
     assert len(fails["forces"][0]["force"]) == len(fails["forces"][0]["nodes"])

@@ -4,12 +4,15 @@ from dataclasses import replace
 from math import hypot
 
 import pytest
-from fake_discovery import DRIVE_3, NOISE, REJECTED, SLOW, found
+from fake_discovery import DRIVE_3, NOISE, REJECTED, SLOW, WORSE, found
 
+from identification.discovery.attempts import Failed
+from identification.discovery.effect_results import Outside
 from identification.report.discovery_json import discovery_to_json
 from identification.report.discovery_report import discovery_text
 from identification.report.discovery_verdict import discovery_verdict, further_sentences
-from identification.report.effect_words import describe_effect, describe_sizes
+from identification.report.effect_sections import tried_section
+from identification.report.effect_words import DOUBTS, describe_effect, describe_sizes
 from identification.report.finding_words import describe_finding, sentence
 from identification.report.named_words import nearest_law
 
@@ -36,10 +39,10 @@ def test_a_named_effect_is_said_with_size_place_confidence_and_proof():
     assert said[1].count("mrad") == 3
     assert said[2] == "Nothing else is missing that this log shows."
     assert further_sentences(found())[-1] == (
-        "The fitted noise may still hide effects up to these sizes (what the log seems to show of"
-        " each, by luck or not, and 1.96 std more): "
+        "The fitted noise may still hide effects up to these sizes (the size that the log seems to"
+        " show, possibly by luck, plus 1.96 std): "
         "friction – Coulomb part differs at one drive, drive 3, delta 0.600 % (it"
-        " would be 30 % of what passes for errors of the inputs)."
+        " would be 30 % of what counts as errors of the inputs)."
     )
     assert len(said) == 3
     assert len(discovery_verdict(replace(found(), hidden=()))) == 2
@@ -77,11 +80,13 @@ def test_look_alikes_are_a_set():
 
 def test_what_is_left_is_said_last():
     said = discovery_verdict(found(unexplained=True))
-    assert said[-1].startswith("Something is left beside what is named that no known effect")
+    assert said[-1].startswith(
+        "Something is left that no known effect surely explains: with the named effect in"
+    )
     assert said[-1].endswith(sentence(describe_finding(DRIVE_3)))
     proven = replace(REJECTED, bic_gain=50.0, proof=replace(REJECTED.proof, t=8.3, chance=1e-6))
     said = discovery_verdict(replace(found(unexplained=True), nearest=proven))
-    nearest = f"Nearest comes {describe_effect(REJECTED.candidate)}: it predicts each next unseen"
+    nearest = f"The nearest candidate is {describe_effect(REJECTED.candidate)}: with it each next"
     assert nearest in said[-1]
     rise = -100 * REJECTED.proof.fall
     assert f"the mean square of the free run rises by {rise:.2g} %" in said[-1]
@@ -105,7 +110,9 @@ def test_nothing_missing_says_what_would_have_been_seen():
     (said,) = discovery_verdict(found("nothing missing"))
     assert said.startswith("Nothing is missing: ")
     assert "Stribeck peak, all drives, f_s 200 µN m" in said
-    assert "No plausible size would show in it of these: motor – current comes late." in said
+    assert (
+        "It would not show these effects at any plausible size: motor – current comes late." in said
+    )
 
 
 def test_an_unknown_effect_is_not_named():
@@ -129,9 +136,17 @@ def test_text_begins_with_the_verdict_and_holds_no_nan(verdict):
 def test_what_was_tried_and_not_believed_is_told_with_its_size_and_why():
     text = discovery_text(found())
     told = text[text.index("tried beside what is named, and not believed:") :]
-    assert "all drives: tau = 250 ± 100 µs (delay)" in told
-    assert "on unseen data t = -0.7, chance 0.75 by flips of signs" in told
-    assert "on unseen data the mean square rises by 0.2 %" in told
+    assert told.splitlines()[1] == (
+        "  motor – current comes late, all drives: tau = 250 ± 100 µs (delay); on unseen data the"
+        " mean square rises by 0.2 % (t = -0.7, chance 0.75);"
+        " it does not predict unseen data better"
+    )
+    (section,) = tried_section(found())
+    assert [*section.table.rows] == [
+        ("motor – current comes late, all drives", "tau = 250 ± 100 µs (delay)",
+         "rises by 0.2 %", "0.75", "it does not predict unseen data better"),
+    ]  # fmt: skip
+    assert tried_section(found("nothing missing")) == []
     (kept,) = discovery_to_json(found())["rejected"]
     assert kept["parameters"]["tau"] == {"value": 2.5e-4, "std": 1e-4, "unit": "s"}
     assert kept["proof"]["fall"] == -0.002
@@ -139,6 +154,36 @@ def test_what_was_tried_and_not_believed_is_told_with_its_size_and_why():
     assert "not believed" not in said
     (line,) = [x for x in said.splitlines() if x.startswith("error on unseen data:")]
     assert "times the noise" in line  # one number is neither before nor after
+
+
+@pytest.mark.parametrize(
+    ("change", "why"),
+    [
+        ({"doubt": "chance"}, DOUBTS["chance"]),
+        ({"bic_gain": -1.0}, DOUBTS["numbers"]),
+        ({"proof": replace(WORSE, fall=0.5)}, ""),
+        ({"proof": replace(WORSE, fall=1e-4)}, "it removes too little of the error to matter"),
+        ({"doubt": "differ", "proof": replace(WORSE, disagrees=("b",))}, "(worse: b)"),
+        ({"outside": Outside("speed", "joint hip", 0.7)}, "likelier is some force that follows"),
+    ],
+)
+def test_what_was_tried_has_one_line_with_the_reason(change, why):
+    tried = replace(found(), rejected=(replace(REJECTED, **change),))
+    (section,) = tried_section(tried)
+    ((*_, said),) = section.table.rows
+    assert why in said
+    assert bool(said) == bool(why)
+    (line,) = section.plain.splitlines()[1:]
+    assert line.endswith(f"; {said}" if said else "chance 0.75)")
+
+
+def test_what_failed_or_was_left_is_a_row_too():
+    late, rubbing = Failed("delay", "drive 1", True, ""), Failed("rubbing", "", False, "no", True)
+    (section,) = tried_section(replace(found(), rejected=(), failed=(late, rubbing)))
+    assert [(row[0], row[-1]) for row in section.table.rows] == [
+        ("motor – current comes late, drive 1", "tried, and its simulation diverged"),
+        ("rubbing", "left by the search: no"),
+    ]
 
 
 def test_beside_a_curve_the_listed_law_that_comes_nearest_is_told():

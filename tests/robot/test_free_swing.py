@@ -163,7 +163,9 @@ def test_values_that_noise_drowns_are_named_with_what_they_trade_off_along():
     result = SimpleNamespace(found=found, values={"m1": 2.7, "m2": 1.3, "b": 1.0},
                              std=np.array([17.0, 17.0, 0.1]))  # fmt: skip
     (said,) = weak_sentences(result)
-    assert said.startswith("Too weakly for this noise: m1, m2, their std exceeds half the value.")
+    assert said.startswith(
+        "With this noise the log tells too little about m1, m2: their std exceeds half the value."
+    )
     assert "(m1 +0.71, m2 -0.71)" in said or "(m1 -0.71, m2 +0.71)" in said
     assert weak_sentences(SimpleNamespace(**{**vars(result), "std": np.full(3, 0.1)})) == []
 

@@ -94,9 +94,9 @@ def test_a_std_that_one_or_two_windows_cannot_tell_is_called_unknown(folder, cap
     said = run(capsys, "fit", folder / "robot.toml", *logs)
     assert all(p["std"] is None for p in said["parameters"].values())
     (sentence,) = [s for s in said["verdict"] if "is not known" in s]
-    assert sentence.startswith("The values of J, d are fitted, but how far off they may be")
+    assert sentence.startswith("The values of J, d are fitted, but their std is not known")
     assert "the only window cannot be compared with another" in sentence
-    assert "Record longer or give more logs for a std" in sentence
+    assert "For a std record longer or give more logs" in sentence
 
 
 NOISE = np.random.default_rng(2)

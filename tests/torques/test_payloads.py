@@ -66,12 +66,12 @@ def test_where_nothing_is_missing_nothing_is_named(seed, tmp_path):
     robot = planar_robot(tmp_path, planar_record(seed), planar_record(seed + 1, name="other"))
     found = fit_torques(robot)
     assert found.named == ()
-    assert "no effect is proven" in found.to_dict()["verdict"][0]
+    assert "the torques prove no effect" in found.to_dict()["verdict"][0]
 
 
 def test_a_friction_that_the_model_lacks_is_told(tmp_path):
     found = fit_torques(planar_robot(tmp_path, planar_record(61, f=1.6)))
-    (said,) = [s for s in found.to_dict()["verdict"] if "not the model's" in s]
+    (said,) = [s for s in found.to_dict()["verdict"] if "differ from the model" in s]
     assert "coulomb of shoulder" in said
     assert "coulomb of elbow" in said
     assert "(model 1 N m)" in said
@@ -87,6 +87,18 @@ def test_a_load_of_one_record_is_told_without_any_prior(tmp_path):
     assert found.missing.sizes == ("m", "h_x", "h_z", "I_yy")  # the joints feel no other number
     truth = np.array([LOAD, 0.0, 0.5 * LOAD, 0.25 * LOAD])
     np.testing.assert_allclose(found.size, truth, atol=0.07 * LOAD)
+
+
+def test_torques_need_no_free_value_and_a_fit_does(tmp_path, capsys):
+    (tmp_path / "arm.xml").write_text(planar())
+    (tmp_path / "arm.toml").write_text('model = "arm.xml"\nfree = []\ntrust = ["units", "steps"]\n')
+    write_log(planar_record(11, LOAD), tmp_path / "log.csv")
+    arguments = [str(tmp_path / "arm.toml"), str(tmp_path / "log.csv"), "--quiet"]
+    assert main(["torques", *arguments]) == 0
+    assert capsys.readouterr().out.startswith("The torques need payload, body fore")
+    for command in ("fit", "discover"):
+        assert main([command, *arguments]) == 2
+        assert "is empty, so that there is nothing to fit" in capsys.readouterr().err
 
 
 def test_the_command_tells_and_keeps_what_python_does(tmp_path, capsys):
