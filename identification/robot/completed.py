@@ -1,7 +1,8 @@
 """Sensors and motors that an MJCF lacks of a log, added to it and told.
 
-An MJCF of a robot often has no sensors, and that of an arm may have no actuators. Without sensors
-of joints, each hinge and slide gets one of its position, called as the joint. A joint without a
+An MJCF of a robot often has no sensors, and that of an arm may have no actuators. Without any
+sensor, each hinge and slide gets one of its position, called as the joint; beside sensors, a joint
+that `outputs` or `[columns]` of the robot's file names. A joint without a
 drive gets a motor of gear 1 where `[columns]` of the robot's file names the column of its torque,
 as JOINT_torque, or JOINT_force where it slides. Neither stands on a guess: the file says so.
 """
@@ -20,10 +21,6 @@ from identification.robot.file import RobotFile
 
 _SLIDE = mujoco.mjtJoint.mjJNT_SLIDE
 _MOVING = (_SLIDE, mujoco.mjtJoint.mjJNT_HINGE)
-_READ = (  # sensors that may be outputs
-    mujoco.mjtSensor.mjSENS_JOINTPOS, mujoco.mjtSensor.mjSENS_JOINTVEL,
-    mujoco.mjtSensor.mjSENS_TENDONPOS,
-)  # fmt: skip
 _JOINT = (mujoco.mjtTrn.mjTRN_JOINT, mujoco.mjtTrn.mjTRN_JOINTINPARENT)
 
 
@@ -40,7 +37,8 @@ def with_missing(spec: mujoco.MjSpec, file: RobotFile) -> tuple[str, ...]:
     asked = {*file.outputs, *file.columns}
     actuators = {actuator.name for actuator in spec.actuators}
     known = {sensor.name for sensor in spec.sensors} | actuators
-    has_any = any(sensor.type in _READ for sensor in spec.sensors)
+    # a sensor of another kind may be meant for an output: that is told, and not passed over
+    has_any = bool(list(spec.sensors))
     sensors, motors = [], []
     joints = [(j.name, j.type) for j in spec.joints if j.type in _MOVING and j.name]
     for joint, kind in joints:
@@ -90,7 +88,8 @@ def refuse_unread_torques(file: RobotFile, log: Log) -> None:
 def add_position(spec: mujoco.MjSpec, joint: str, name: str) -> None:
     """Add a sensor of the position of a joint."""
     spec.add_sensor(
-        name=name, type=_READ[0], objtype=mujoco.mjtObj.mjOBJ_JOINT, objname=joint,
+        name=name, type=mujoco.mjtSensor.mjSENS_JOINTPOS, objtype=mujoco.mjtObj.mjOBJ_JOINT,
+        objname=joint,
     )  # fmt: skip
 
 

@@ -4,6 +4,7 @@ import mujoco
 import pytest
 
 from identification.model.paths import KINDS, attributes, resolve
+from identification.model.tied import NAMES
 
 CRANE = mujoco.MjModel.from_xml_string(
     """<mujoco><worldbody>
@@ -36,7 +37,8 @@ def test_every_attribute_that_is_listed_can_be_named():
         <tendon><fixed name="x"><joint joint="x" coef="1"/></fixed></tendon>
         <actuator><motor name="x" joint="x"/></actuator></mujoco>"""
     )
-    elsewhere = {"spread", "kp", "kv", "user"}  # read by other modules; user data has no columns
+    # read by other modules (`tied.py`); user data has no columns
+    elsewhere = {"spread", "user", *NAMES}
     for kind in KINDS:
         for attribute in {*attributes(model, kind)} - elsewhere:
             column = "" if attribute in _single(model, kind) else "[0]"

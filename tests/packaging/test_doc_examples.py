@@ -11,7 +11,8 @@ ROOT = Path(__file__).parents[2]
 PACKAGES = ("identification", "inca_mj", "inca_mj.kinematics", "identification.sweep")
 # Searches, drawing, and what reads the result of a search (`test_results_read_alike.py` and
 # `test_results_are_written_alike.py` run it).
-SLOW = {"discover", "fit", "identify", "trials", "film", "crosscheck", "found", "load"}
+SLOW = {"discover", "fit", "identify", "trials", "film", "crosscheck", "found", "load",
+        "design_experiment"}  # fmt: skip
 BLOCKS = [
     pytest.param(text, id=f"{path.relative_to(ROOT)}-{number}")
     for path in (ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md")))
