@@ -28,7 +28,7 @@ SAYS = {
     FindingKind.PARAMETERS_AT_LIMIT: "the parameters b_v and J end at the limit of what",
     FindingKind.LARGE_INPUT_ERROR: "not in the log, 90 mA rms (35 % of their own motion)",
     FindingKind.ROBOT_CHANGE: "from about 10.5 s on the unseen samples are predicted worse",
-    FindingKind.UNEXPECTED_ERROR: "by 9.4 times what the sensors, unlogged disturbances and",
+    FindingKind.UNEXPECTED_ERROR: "is 9.4 times what the sensors, unlogged disturbances and",
     FindingKind.STRUCTURED_INPUT_ERROR: "follows the rate of its output, most of all on current_3",
     FindingKind.DOUBTFUL_EFFECT: "tau = 250 ± 100 µs (delay), explains",
     FindingKind.OVERSIZED_EFFECT: "tau = 0.300 s where 0.100 s is the largest plausible value",
