@@ -33,10 +33,11 @@ ROBOTS = {
     "leg": Truth("knee", "coulomb_friction", 0.6, ("hip", "knee"), 3e-4, -0.3, 0.6),
     "cart": Truth("rail", "coulomb_friction", 1.2, ("x",), 2e-4, 0.0, 6.0),
     "four_bar": Truth(
-        "rocker", "stiffness", 0.8, ("crank_angle", "pin_angle", "rocker_angle"), 3e-4, 0.0, 0.25
+        "crank", "coulomb_friction", 0.04, ("crank_angle", "pin_angle", "rocker_angle"), 3e-4, 0.0,
+        0.25,
     ),
     "crane": Truth(
-        "x", "quadratic_friction", 25.0, ("rope_left", "rope_right"), 1e-4, np.nan, 0.25
+        "x", "coulomb_friction", 3.0, ("rope_left", "rope_right"), 1e-4, np.nan, 0.25
     ),
 }  # fmt: skip
 
@@ -51,11 +52,13 @@ def compiled(path, truth):
     return spec.compile()
 
 
-def force(truth, q, v):
-    """The force of a hidden spring or drag at its joint [N m or N]."""
-    if truth.effect == "stiffness":
-        return -truth.size * q
-    return -truth.size * v * abs(v) if truth.effect == "quadratic_friction" else 0.0
+def force(truth, q):
+    """The force of a hidden spring at its joint [N m]; dry friction is in the model."""
+    if truth.effect == "hardening":
+        return -truth.size * q**3
+    if truth.effect != "coulomb_friction":
+        raise ValueError(f"unknown effect {truth.effect!r}; known: coulomb_friction, hardening")
+    return 0.0
 
 
 def measured(model, data, name):
@@ -81,8 +84,7 @@ def record(path, truth, seed):
         rows.append([measured(model, data, c) for c in truth.columns])
         data.ctrl[:] = u
         for _ in range(round(SAMPLING / model.opt.timestep)):
-            q, v = data.qpos[joint.qposadr[0]], data.qvel[joint.dofadr[0]]
-            data.qfrc_applied[joint.dofadr[0]] = force(truth, q, v)
+            data.qfrc_applied[joint.dofadr[0]] = force(truth, data.qpos[joint.qposadr[0]])
             mujoco.mj_step(model, data)
     outputs = np.array(rows) + truth.noise * chance.standard_normal((len(time), len(rows[0])))
     drives = [model.actuator(k).name for k in range(model.nu)]
