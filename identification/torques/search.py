@@ -11,13 +11,13 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from functools import partial, reduce
 
-from identification.discovery.neighbour import MORE_LIKELY_THAN_NOT
+from identification.discovery.neighbour import MORE_LIKELY_THAN_NOT, MOST_LEFT
 from identification.shares import fall_words
 from identification.torques.candidates import together
 from identification.torques.equations import Equations
 from identification.torques.fits import Fitted, extended
 from identification.torques.laws import Missing
-from identification.torques.scores import Score, choose, rank
+from identification.torques.scores import CHANCE, Score, choose, rank
 
 MOST_NAMED = 4  # effects that a search adds
 
@@ -55,9 +55,9 @@ def draw_curves(
     """Returns effects with curves where laws do not explain a joint, and the fit with them.
 
     A curve takes the place of all laws of a joint that together predict unseen blocks worse, as
-    the laws nearest to a force in no catalogue do. Where the curve is not proven, and is more
-    likely than not to be no luck, they are left out all the same. Where no law is proven, curves
-    may be.
+    the laws nearest to a force in no catalogue do, or beside which a curve still explains much of
+    what the joint's torque leaves, beyond chance. Where the curve is not proven, and is more likely
+    than not to be no luck, they are left out all the same. Where no law is proven, curves may be.
     """
     curves, out = [s.missing for s in scores if s.missing.is_curve], [*found]
     for where in dict.fromkeys(s.missing.where for s in found):
@@ -70,7 +70,10 @@ def draw_curves(
         likely = [s for s in rank(equations, bare.base, there) if s.chance < MORE_LIKELY_THAN_NOT]
         own = rank(equations, bare.base, [together([s.missing for s in mine])])
         best = choose(likely) or next(iter(likely), None)
-        if best is not None and not any(o.is_like(best) for o in own):
+        whole = _extended(equations, nominal, [s.missing for s in out])
+        beside = rank(equations, whole.base, there)
+        has_pattern = any(s.chance < CHANCE and s.fall > MOST_LEFT * s.share for s in beside)
+        if best is not None and (has_pattern or not any(o.is_like(best) for o in own)):
             say(f"{best.missing.title}: predicts unseen blocks better than the laws there")
             out = [*rest, *([best] if best.is_proven else [])]
     final = _extended(equations, nominal, [s.missing for s in out])
