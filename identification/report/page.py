@@ -31,7 +31,8 @@ WIDE = 9.0  # a figure of so many inches has a row of its own
 PACKAGE = "inca-mj"
 PROGRAMS = ("inca", "inca_mj", "identification")
 NUMBER = re.compile(r"[-+]?\d+(\.\d+)?(e[-+]?\d+)?")
-PATH = re.compile(r"(?<=[^\W\d])[/.@](?=[^\W\d])(?![^<]*>|[^<]*</span)")  # in body/arm.mass
+# in body/arm.mass, and in no unit such as N/m or rad/s
+PATH = re.compile(r"(?<=\w{3})[/.@](?=\w{2})(?![^<]*>|[^<]*</span)")
 EMPTY = ("–", "unknown", None)  # in the place of a number
 UNIT = r"[nµmkM]?(?:kg|rad|Hz|min|[gNmsAVWJh])(?:\^?-?[\d²³]+)?(?:/(?:\([^)]*\)|[\w²³^]+))?"
 QUANTITY = re.compile(  # a number, its std, and a unit such as N m s/rad

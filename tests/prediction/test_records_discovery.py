@@ -71,7 +71,7 @@ def test_a_record_that_repeats_another_is_no_further_witness():
     assert answer.repeats == ("again",)
     assert discovery_to_json(answer)["repeats"] == ["again"]
     said = discovery_text(answer)
-    assert "on 1 of 1 unseen records. again repeats the motion of others and does not" in said
+    assert "on the unseen record. again repeats the motion of others and does not" in said
     (named,) = answer.named
     assert named.compared == 0
     assert "no other came near enough to be refitted in its place, and 95 % is the highest" in said
