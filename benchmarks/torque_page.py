@@ -87,7 +87,7 @@ def _effects(rows: Sequence[Row]) -> list[str]:
         "An effect at one joint of such an arm, or at its drive, of 5 to 20 % of the rms of the",
         "drive's torque (`torque_arms.py` has the equations):",
         "",
-        "    python benchmarks/torques.py --joints 6 --first 300 --seeds 5 --hides cogging ...",
+        "    python benchmarks/torques.py --joints 6 --first 300 --seeds 4 --hides cogging ...",
         "",
         "| effect | arms | right first | right among those that predict as well | nothing named |"
         " another law first | a curve first, of the same joint |",
