@@ -111,10 +111,10 @@ def study(answer: Row, passes: tuple[str, ...], is_moved: bool) -> dict[str, Any
         passes: that are left out.
         is_moved: whether a world in which none of them changed the effects is answered alike.
     """
-    robot, effect, seed, way = answer["key"].split("/")
+    robot, effect, seed = answer["key"].split("/")
     if is_moved and not {*passes} & {*answer["moves"]}:
         return {**answer, "alike": True}
-    return hidden_joints.study(robot, effect, int(seed), way, answer["duration"], passes)
+    return hidden_joints.study(robot, effect, int(seed), answer["duration"], passes)
 
 
 def told(row: Row) -> str:

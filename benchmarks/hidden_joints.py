@@ -36,7 +36,7 @@ BEGIN, END = "<!-- hidden joints: begin -->\n", "<!-- hidden joints: end -->\n"
 
 
 def study(
-    robot: str, effect: str, seed: int, way: str, duration: float, without: tuple[str, ...] = ()
+    robot: str, effect: str, seed: int, duration: float, without: tuple[str, ...] = ()
 ) -> dict[str, Any]:
     """One world from its making to its answer; an error is a row too."""
     try:
@@ -47,7 +47,7 @@ def study(
     begin, wall = time.process_time(), time.perf_counter()
     try:
         with tempfile.TemporaryDirectory() as folder:
-            row |= answer(*write_world(world, Path(folder)), way, without)
+            row |= answer(*write_world(world, Path(folder)), without)
     except Exception as error:
         row |= {"error": f"{type(error).__name__}: {error}",
                 "trace": traceback.format_exc(limit=-4)}  # fmt: skip
@@ -55,7 +55,7 @@ def study(
             "seconds": time.perf_counter() - wall}  # fmt: skip
 
 
-def answer(toml: Path, a: Path, b: Path, way: str, without: tuple[str, ...] = ()) -> dict[str, Any]:
+def answer(toml: Path, a: Path, b: Path, without: tuple[str, ...] = ()) -> dict[str, Any]:
     """What is named, and the errors on record b of what was fitted and of what was found."""
 
     from identification import DiscoveryOptions, discover, fit, read_robot
@@ -130,7 +130,6 @@ def main() -> int:
     add("--nulls", type=int, default=None, help="worlds without effect; as --count if not given")
     add("--seed", type=int, default=1)
     add("--duration", type=float, default=20.0, help="of a record [s]")
-    add("--way", choices=("records", "log"), default="records", help="of a discovery")
     add("--processes", type=int, default=1)
     add("--out", type=Path, default=RESULTS)
     add("--page", type=Path, default=PAGE)
@@ -145,7 +144,7 @@ def main() -> int:
               file=sys.stderr)  # fmt: skip
         return 2
     asked = {
-        f"{robot}/{effect}/{seed}/{given.way}": (robot, effect, seed, given.way, given.duration)
+        f"{robot}/{effect}/{seed}": (robot, effect, seed, given.duration)
         for robot, effect, seed in tasks(given)
         if effect in (NULL, THREE) or effect in effects_of(ROBOTS[robot])
     }
@@ -162,7 +161,7 @@ def main() -> int:
         rows_of(given.out) if given.only_page
         else answered(study, asked, given.out, told, given.processes, given.again)
     )  # fmt: skip
-    mine = [r for r in (of_newest(rows) if rows else []) if r["key"].endswith("/" + given.way)]
+    mine = of_newest(rows) if rows else []
     print(json.dumps(summary(mine)))
     write_part(given.page, BEGIN, END, section(mine))
     return 0

@@ -55,7 +55,10 @@ def find_remaining(state: InnovationSearch) -> tuple[Finding, ...]:
     samples = len(model.refit.point.log)
     findings = (
         *find_structure(model, options),
-        *(find_robot_change(model.validation, options) or find_unexpected_error(model.validation)),
+        *(
+            find_robot_change(model.validation, options)
+            or find_unexpected_error(model.validation, options)
+        ),
         *find_input_error(model.validation, options, "report"),
         *(() if named else find_doubtful_effect(state.rejected, samples, options)),
         *_find_oversized(state, named),

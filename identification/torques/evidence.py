@@ -30,10 +30,11 @@ from identification.torques.fits import (
     model_fit,
     read_friction,
     with_gains_held,
+    with_std_of_gains,
 )
 from identification.torques.rows import make_rows
 from identification.torques.scores import Base, Score, rank
-from identification.torques.search import add_laws, draw_curves, others_of
+from identification.torques.search import add_proven, draw_curves, others_of
 
 OTHER_BAND = 0.6  # factor of the bands of a second fit, which tells what they matter
 
@@ -112,9 +113,10 @@ def find_evidence(
     first = f", {scores[0].missing.title} first" if scores else ""
     say(f"{len(candidates)} candidates scored{first}")
     laws = [s for s in scores if not s.missing.is_curve]
-    found, _ = add_laws(equations, nominal, [], laws, say)
+    found, _ = add_proven(equations, nominal, [], laws, say)
     found, final = draw_curves(equations, nominal, found, scores, say)
     rest = rank(equations, final.base, others_of(scores, found)) if found else scores
+    final = with_std_of_gains(final, nominal, others)
     loads = [c for c in candidates if c.name == "load"]
     fitted = len(logs) - confirm
     single = [in_record(c, equations, k) for c in loads for k in range(fitted)]

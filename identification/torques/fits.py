@@ -243,6 +243,14 @@ def with_gains_held(fitted: Fitted, others: Others) -> Fitted:
     return replace(fitted, base=replace(base, P=P, θ_0=θ_0, fit=fit))
 
 
+def with_std_of_gains(final: Fitted, nominal: Fitted, others: Others) -> Fitted:
+    """Returns a fit in which held gains have the std with which the model fit told them."""
+    fit, C = final.fit, final.fit.covariance.copy()
+    at = np.flatnonzero(others.gains) + final.inertial - len(others.gains)
+    C[at, at] = np.diag(nominal.fit.covariance)[at]
+    return replace(final, base=replace(final.base, fit=replace(fit, covariance=C)))
+
+
 def extended(equations: Equations, fitted: Fitted, missing: Missing) -> Fitted:
     """Returns a fit with one effect more, of which nothing was known."""
     S, old, m = missing.columns().values, fitted.base, len(missing.sizes)

@@ -22,7 +22,7 @@ from identification.torques.scores import CHANCE, Score, choose, rank
 MOST_NAMED = 4  # effects that a search adds
 
 
-def add_laws(
+def add_proven(
     equations: Equations, nominal: Fitted, found: Sequence[Score], scores: Sequence[Score],
     say: Callable[[str], None],
 ) -> tuple[list[Score], Fitted]:  # fmt: skip
@@ -79,7 +79,7 @@ def draw_curves(
     final = _extended(equations, nominal, [s.missing for s in out])
     places = {s.missing.where for s in out}
     beside = rank(equations, final.base, [c for c in curves if c.where not in places])
-    return add_laws(equations, nominal, out, beside, say)
+    return add_proven(equations, nominal, out, beside, say)
 
 
 def others_of(scores: Sequence[Score], found: Sequence[Score]) -> list[Missing]:

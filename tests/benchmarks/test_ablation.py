@@ -47,11 +47,11 @@ def test_only_worlds_that_one_search_alone_answers_right_count():
 def test_a_world_in_which_no_move_that_is_left_out_did_anything_is_not_searched_again(monkeypatch):
     asked = []
     monkeypatch.setattr(ablation.hidden_joints, "study", lambda *task: asked.append(task) or {})
-    answer = {**row("delay", ["delay"]), "key": "cart/delay/3/records", "duration": 9.0}
+    answer = {**row("delay", ["delay"]), "key": "cart/delay/3", "duration": 9.0}
     for passes, is_moved in ((("add_set",), True), (("add_effect",), True), (("add_set",), False)):
         assert ablation.study(answer, passes, is_moved).get("alike", False) == (not asked)
     assert [task[-1] for task in asked] == [("add_effect",), ("add_set",)]
-    assert asked[0][:5] == ("cart", "delay", 3, "records", 9.0)
+    assert asked[0][:4] == ("cart", "delay", 3, 9.0)
 
 
 def test_the_plain_search_leaves_out_every_pass():
@@ -60,7 +60,7 @@ def test_the_plain_search_leaves_out_every_pass():
 
 def test_only_answers_of_one_search_are_compared(tmp_path):
     def of(commit, effect, names):
-        return {**row(effect, names), "key": f"cart/{effect}/1/records", "commit": commit}
+        return {**row(effect, names), "key": f"cart/{effect}/1", "commit": commit}
 
     answers = [of("new", "delay", ["delay"]), of("new", "lag", ["lag"])]
     rows = [of("old", "lag", ["lag"]), of("new", "delay", []), of("new", "offset", ["offset"])]

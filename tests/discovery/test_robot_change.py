@@ -71,7 +71,7 @@ def test_a_change_shortly_before_the_end_is_seen():
 
 
 def test_every_block_in_which_a_change_may_begin_is_paid_for():
-    """Without the price 6.6 % are called changed; with Welch's variance of the last few, 10 %."""
+    """Without the price 6.6 % are called changed."""
     assert rate(1000, replace(OPTIONS, structure_level=0.01)) <= 0.025
 
 

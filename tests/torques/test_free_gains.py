@@ -43,6 +43,9 @@ def test_the_masses_of_the_model_tell_the_gain_and_no_fit_without_them_has_it(fo
     assert model.fit.θ[at] == pytest.approx(5.0, rel=0.03)  # the gear with which the log was made
     assert GAIN not in whole.names
     assert found.named == ()
+    final = found.found.final  # it holds the gain, which keeps its std
+    assert final.fit.std[at] == pytest.approx(model.fit.std[at])
+    assert final.fit.std[at] > 0.001
 
 
 ONE = """
