@@ -24,9 +24,10 @@ from identification.innovations.proof import Validation
 from identification.kalman.point import evaluate_sensitivities
 from identification.pool import one_blas_thread
 
-# Of the rms of an error to what is expected of it, from which it matters. The noise model of a
-# nonlinear robot is that of its linearisation: INCA's errors are 0.9 to 1.6 times the expected ones
-# where nothing is missing, in far more errors than would make that luck.
+# Of the rms of an error to what is expected of it, from which it matters. Chances alone would not
+# do: they rest on the linearised noise model. In 180 logs of a slider in which nothing is missing
+# the ratio had an rms of 1.06 and was 3.1 at most, and 3 chances were below 1 %; in null logs of
+# INCA it was 0.9 to 1.6.
 MIN_RATIO = 3.0
 DRAWS = 200  # which tell ν to a tenth
 
