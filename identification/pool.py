@@ -3,29 +3,41 @@
 A part of some work gives the lock of the interpreter free where it runs machine code: a compiled
 recursion, a product of matrices, a simulation. Work that begins inside another part runs in its
 thread, so that a part never waits for threads that wait for it. Where the work is given up, by
-Ctrl-C or by an error of one part, the other parts end at their next simulation.
+Ctrl-C or by an error of one part, the other parts end at their next simulation. Work whose time is
+limited ends at the first simulation behind its limit (`until`).
 """
 
 from __future__ import annotations
 
 import os
 import threading
+import time
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from functools import cache, lru_cache
 from itertools import pairwise
+from math import inf
 from typing import TypeVar
 
 from threadpoolctl import ThreadpoolController
 
 Part = TypeVar("Part")
 Result = TypeVar("Result")
-_here = threading.local()  # given_up: where this thread runs a part, whether nobody waits for it
+# given_up: where this thread runs a part, whether nobody waits for it
+# end: when the work of this thread has to end, in seconds of `time.monotonic`
+_here = threading.local()
 
 
 class GivenUp(BaseException):
     """Nobody waits for what this thread computes."""
+
+
+class OutOfTime(BaseException):
+    """The time is over that was allowed for what this thread computes.
+
+    It is no `Exception`, so that nothing takes it for an evaluation that failed.
+    """
 
 
 def threads() -> int:
@@ -41,10 +53,34 @@ def threads() -> int:
     return min(most, int(text)) if text.isdigit() and int(text) else most
 
 
+@contextmanager
+def until(end: float) -> Iterator[None]:
+    """Ends the work in the block at its first simulation behind a time.
+
+    Args:
+        end: that time, in seconds of `time.monotonic`; infinity for no limit.
+
+    Raises:
+        OutOfTime: the time is over.
+    """
+    before, _here.end = getattr(_here, "end", inf), end
+    try:
+        yield
+    finally:
+        _here.end = before
+
+
 def end_if_given_up() -> None:
-    """Ends the part that this thread runs, where nobody waits for it any more."""
+    """Ends the work of this thread where nobody waits for it any more, or its time is over.
+
+    Raises:
+        GivenUp: nobody waits for it.
+        OutOfTime: its time is over.
+    """
     if hasattr(_here, "given_up") and _here.given_up.is_set():
         raise GivenUp
+    if time.monotonic() > getattr(_here, "end", inf):
+        raise OutOfTime
 
 
 def run_parts(function: Callable[[Part], Result], parts: Iterable[Part]) -> list[Result]:
@@ -59,6 +95,7 @@ def run_parts(function: Callable[[Part], Result], parts: Iterable[Part]) -> list
 def each_part(function: Callable[[Part], Result], parts: Iterable[Part]) -> Iterator[Result]:
     """Yields what `run_parts` returns, each as soon as it and those before it are done."""
     each, count, given_up = list(parts), threads(), threading.Event()
+    end = getattr(_here, "end", inf)
     if len(each) < 2 or count < 2:
         yield from map(function, each)
         return
@@ -66,7 +103,8 @@ def each_part(function: Callable[[Part], Result], parts: Iterable[Part]) -> Iter
     def run(part: Part) -> Result:
         _here.given_up = given_up
         try:
-            return function(part)
+            with until(end):
+                return function(part)
         finally:
             del _here.given_up
 

@@ -112,12 +112,14 @@ class Discover(OnRobot):
 
     options: Annotated[Path | None, tyro.conf.arg(metavar="PATH")] = None
     """TOML file of options: min_proof_t = 3.0, without = ["add_pair"], ... (docs/discovery.md)."""
+    minutes: float | None = None
+    """Time after which no further effect is sought; what was found until then is the answer."""
 
     def run(self) -> int:
         """Discover, confirm, say, keep."""
-        from identification.discovery.options import read_options
+        from identification.discovery.options import options_of
 
-        options = None if self.options is None else read_options(self.options)
+        options = options_of(self.options, self.minutes)
         robot = self.read()
         from identification.report.discovery_report import discovery_text
         from identification.robot.discovery import discover

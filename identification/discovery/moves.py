@@ -14,7 +14,7 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
-from math import isfinite
+from math import inf, isfinite
 from typing import Any, Generic, Protocol, TypeVar
 
 from identification.discovery.attempts import Failed, attempt, collected
@@ -23,7 +23,7 @@ from identification.discovery.options import DiscoveryOptions
 from identification.discovery.outlook import CHECKS, EFFECT, FIT, LEFT, Outlook, Rests
 from identification.discovery.result import Discovery
 from identification.effects.effect import Candidate, Effect
-from identification.pool import one_blas_thread
+from identification.pool import OutOfTime, one_blas_thread, until
 from identification.progress import Progress, following, stage
 from identification.quantities import held
 
@@ -66,6 +66,8 @@ class SearchState:
     seconds: Mapping[str, float]  # wall time by kind of work [s]
     failed: tuple[Failed, ...] = ()  # what was tried and could not be evaluated
     made: tuple[str, ...] = ()  # names of the moves that changed the effects, in their order
+    end: float = inf  # when moves that may take long have to end, in seconds of `time.monotonic`
+    cut_short: tuple[str, ...] = ()  # names of the moves that were ended at that time
 
     @property
     def is_finished(self) -> bool:
@@ -91,6 +93,7 @@ class Move(Generic[State]):
     # returns the state after it; the state itself where it finds nothing better
     make: Callable[[State, Progress], State]
     grows: bool = False  # whether it adds effects
+    takes_long: bool = False  # whether the time limit of a search ends it, as it ends growing ones
 
     def __str__(self) -> str:
         return self.name.replace("_", " ")
@@ -130,7 +133,8 @@ class Evidence(Generic[State]):
     def step(self, state: State, progress: Progress) -> State:
         """Returns the state after one more move; a finished state stays as it is.
 
-        A move that fails is told and skipped: what was found before it stands.
+        A move that fails, or that the time limit of the search ends, is told and skipped: what was
+        found before it stands.
 
         Args:
             state: the state before.
@@ -139,8 +143,14 @@ class Evidence(Generic[State]):
         if state.is_finished:
             return state
         move, *rest = state.moves
+        end = state.end if move.grows or move.takes_long else inf
         with collected(progress, state.failed) as failed:
-            new = attempt(f"the move {move}", partial(move.make, state, progress)) or state
+            try:
+                with until(end):
+                    new = attempt(f"the move {move}", partial(move.make, state, progress)) or state
+            except OutOfTime:
+                progress(f"the move {move}: ended, because the time limit of the search is over")
+                new = replace(state, cut_short=(*state.cut_short, move.name))
         new = replace(new, failed=tuple(failed))
         if [*map(id, new.accepted)] != [*map(id, state.accepted)]:
             new = replace(new, made=(*new.made, move.name))
@@ -161,9 +171,10 @@ class Evidence(Generic[State]):
         """
         say = progress or _say_nothing
         outlook = Outlook(say, self.rests)
+        end = time.monotonic() + 60 * task.options.max_minutes
         with following(outlook):
             outlook.enter(FIT)
-            state, asked = self.begin(task, say), -1
+            state, asked = replace(self.begin(task, say), end=end), -1
             while not state.is_finished:
                 grown, effects = asked != len(state.accepted), len(state.accepted)
                 if state.moves[0].grows and grown:

@@ -7,7 +7,7 @@ other constant stands in the module that reads it, with its reason.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 
 from identification.discovery.passes import PASSES, refuse_unknown
@@ -57,6 +57,13 @@ class DiscoveryOptions(KalmanOptions):
         "Over a horizon: largest number of effects that are named; each further one costs minutes"
         " of an arm, all places of which are refitted.",
         "judgement", least=1,
+    )  # fmt: skip
+    max_minutes: float = option(
+        1440.0, "min",
+        "No further effect is sought after this time; the fit without effects, scores and last"
+        " checks are always finished, and what was found until then is the answer. The default is a"
+        " day, so that the answer does not depend on how fast the computer is.",
+        "judgement",
     )  # fmt: skip
     nominal_factor: float = option(
         3.0, "factor",
@@ -117,12 +124,6 @@ class DiscoveryOptions(KalmanOptions):
         " unless its negative BIC was lower by more than this share; so is another kind of it where"
         " structure is left, unless it loses more to first order.",
         "judgement", most=1.0,
-    )  # fmt: skip
-    bare_bic: float = option(
-        2.0, "of BIC",
-        "Two shapes of an effect whose BIC differ by less are not told apart, and the usual one is"
-        " taken.",
-        "Kass and Raftery 1995: not worth more than a bare mention",
     )  # fmt: skip
 
     # The proof on unseen samples.
@@ -197,6 +198,24 @@ class DiscoveryOptions(KalmanOptions):
         super().__post_init__()
         refuse_unknown(self.without)
         object.__setattr__(self, "without", tuple(dict.fromkeys(self.without)))
+
+
+def options_of(path: Path | None, minutes: float | None) -> DiscoveryOptions:
+    """Returns the options of a command.
+
+    Args:
+        path: of a TOML file of options; defaults when None.
+        minutes: the time limit [min], which counts before that of the file; None for none.
+
+    Raises:
+        InputError: as `read_options`, or the time is no positive number.
+    """
+    options = DiscoveryOptions() if path is None else read_options(path)
+    if minutes is None:
+        return options
+    if not minutes > 0:
+        raise InputError(f"--minutes {minutes:g} leaves no time; give a positive number of minutes")
+    return replace(options, max_minutes=minutes)
 
 
 def read_options(path: str | Path) -> DiscoveryOptions:

@@ -111,6 +111,7 @@ class Discovery(Shown, Written):
         failed: what was tried and could not be evaluated.
         moves: names of the moves that changed the effects, in their order
             (`identification.discovery.passes`).
+        cut_short: names of the moves that `max_minutes` ended or did not let begin.
         run: the free runs of both fits; None over a horizon.
         recover: returns the force of a named effect, beside those of its rivals, as the data ask
             for it; None where it has none. It raises DivergenceError.
@@ -157,6 +158,7 @@ class Discovery(Shown, Written):
     seconds: Mapping[str, float]
     failed: tuple[Failed, ...] = ()
     moves: tuple[str, ...] = ()
+    cut_short: tuple[str, ...] = ()
     run: FreeRun | None = None
     recover: Recover
     files_of: Callable[[Discovery], Files] | None = None

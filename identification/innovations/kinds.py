@@ -33,7 +33,7 @@ from identification.innovations.replacement import replace_effect
 from identification.innovations.scoring.scores import Score
 from identification.innovations.scoring.sensitivities import Sensitivity, compute_beside
 from identification.innovations.scoring.significance import gain_of_whole, is_plausible
-from identification.innovations.shapes import is_structured
+from identification.innovations.shapes import BARE_BIC, is_structured
 from identification.innovations.task import DiscoveryTask
 from identification.kalman.point import Point
 
@@ -97,10 +97,9 @@ def improve_rivals(
             if new is not None and new.negative_bic > rival.negative_bic:
                 rival = new
         improved.append(rival)
-    margin = task.options.bare_bic
 
     def order(model: FittedModel) -> float:
-        return model.negative_bic + (margin if model is best else 0.0)
+        return model.negative_bic + (BARE_BIC if model is best else 0.0)
 
     return sorted([best, *improved], key=order, reverse=True)
 

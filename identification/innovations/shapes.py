@@ -23,6 +23,10 @@ from identification.innovations.scoring.scores import Score
 from identification.innovations.scoring.significance import gain_of_whole
 from identification.innovations.task import DiscoveryTask
 
+# Of two shapes whose BIC differ by less, the usual one is taken: the difference is not worth more
+# than a bare mention (Kass and Raftery 1995).
+BARE_BIC = 2.0
+
 
 def improve_shape(
     task: DiscoveryTask, model: FittedModel, best: FittedModel, scores: Sequence[Score]
@@ -85,9 +89,9 @@ def _prefer_usual(
         return best
     for s in _select_same(mine, scores):
         if all(s.candidate.shape[name] == value for name, value in usual.items()):
-            margin = task.options.bare_bic
-            other = _fit_shape(task, model, s, best.refit.log_posterior - margin / 2)
-            if other and best.negative_bic - other.negative_bic < margin:
+            least = best.refit.log_posterior - BARE_BIC / 2
+            other = _fit_shape(task, model, s, least)
+            if other and best.negative_bic - other.negative_bic < BARE_BIC:
                 return other
             return best
     return best

@@ -186,7 +186,8 @@ def conclude(state: InnovationSearch) -> Discovery:
         next_best=_next(scores) if named and not rejected else None,
         detectable=list_detectable(scores, _deciding_share(state.model), options),
         hidden=list_hidden(scores, model.refit.level, options), findings=findings,
-        seconds=state.seconds, failed=state.failed, moves=state.made, run=run,
+        seconds=state.seconds, failed=state.failed, moves=state.made,
+        cut_short=state.cut_short, run=run,
         recover=partial(recover_force, model.refit),
     )  # fmt: skip
     return replace(found, share=closed_share(found))

@@ -39,7 +39,7 @@ MOVES = (
     Move("add_effect", add_effect, grows=True),
     Move("add_yielding_friction", add_yielding_friction, grows=True),
     Move("add_set", add_set, grows=True),
-    Move("set_for_effects", set_for_effects),
+    Move("set_for_effects", set_for_effects, takes_long=True),
     *(
         Move(change.__name__, finishing(change))
         for change in (

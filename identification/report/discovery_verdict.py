@@ -6,6 +6,7 @@ from math import hypot, inf, isfinite
 
 from identification.discovery.findings.finding import FindingKind
 from identification.discovery.result import Discovery
+from identification.progress import duration
 from identification.quantities import held, quantity
 from identification.report.effect_words import (
     describe_chance,
@@ -13,7 +14,7 @@ from identification.report.effect_words import (
     difference_sentences,
     phrase,
 )
-from identification.report.error_words import change_words, describe_scale, error_words
+from identification.report.error_words import change_words, describe_scale, error_words, listed
 from identification.report.finding_words import describe_finding, sentence
 from identification.report.horizon_words import needed_sentences
 from identification.report.missing_place import find_place
@@ -36,7 +37,7 @@ def discovery_verdict(found: Discovery) -> list[str]:
     """Returns sentences: the verdict first, then what supports it."""
     bounds = bound_sentences(found.final.plant.parameters, found.at_bound)
     told = [*_noisier(found), *difference_sentences(found), *bounds]
-    return [*_verdict(found), *opinion_sentences(found), *told]
+    return [*_verdict(found), *_cut_short(found), *opinion_sentences(found), *told]
 
 
 def further_sentences(found: Discovery) -> list[str]:
@@ -72,6 +73,19 @@ def _verdict(found: Discovery) -> list[str]:
     elif found.hidden:
         said.append("Nothing else is missing that this log shows.")
     return said
+
+
+def _cut_short(found: Discovery) -> list[str]:
+    """Returns the sentence that says what the time limit ended, and how to go on."""
+    if not found.cut_short:
+        return []
+    limit = duration(60 * found.options.max_minutes)
+    names = [name.replace("_", " ") for name in found.cut_short]
+    return [
+        f"The time limit of {limit} ended the search within these moves: {listed(names)}."
+        " What is named is proven as always, but more may be missing; give more time by --minutes"
+        " or max_minutes."
+    ]
 
 
 def _noisier(found: Discovery) -> list[str]:

@@ -66,6 +66,8 @@ class Discover:
     """The robot stood at rest by itself, with what the twin lacks, when the log began."""
     options: Annotated[Path | None, tyro.conf.arg(metavar="PATH")] = None
     """TOML file of options: min_proof_t = 3.0, without = ["add_pair"], ... (docs/discovery.md)."""
+    minutes: float | None = None
+    """Time after which no further effect is sought; what was found until then is the answer."""
     trust: Trust = ()
     """Checks of the log that you overrule: sensors, units, wiring."""
     robot: Annotated[Values, tyro.conf.OmitArgPrefixes] = values_field
@@ -78,7 +80,7 @@ class Discover:
             blind = cannot_draw()  # before MuJoCo is imported
         else:
             do_not_draw()
-        from identification.discovery.options import read_options
+        from identification.discovery.options import options_of
 
         if not self.log:
             raise InputError("no log is given; write inca discover LOG")
@@ -86,7 +88,7 @@ class Discover:
         logs, confirm = read_logs(self.log, trust), read_logs(flat(self.confirm), trust)
         parameters, place = self.robot.parameters(), self.robot.place()
         spread = inca.spread_of(self.spread)
-        options = None if self.options is None else read_options(self.options)
+        options = options_of(self.options, self.minutes)
         for path, log in zip(self.log, logs, strict=True):
             self.output.tell(f"log {path}: {log.duration:.4g} s, {len(log)} samples")
         found = inca.discover(

@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import replace
+from math import inf
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -9,13 +10,14 @@ from identification.discovery.moves import Evidence, Move, SearchState
 from identification.discovery.passes import PASSES
 from identification.errors import InputError
 from identification.innovations import state as innovations
+from identification.pool import end_if_given_up
 from identification.prediction import state as windows
 
 ROOT = Path(__file__).parents[2]
 
 
-def begun(most=8, without=()):
-    options = SimpleNamespace(max_effects=most, without=without)
+def begun(most=8, without=(), minutes=inf):
+    options = SimpleNamespace(max_effects=most, without=without, max_minutes=minutes)
     return SearchState(
         task=SimpleNamespace(options=options), moves=(), nominal=None, nominal_scores=(),
         model=None, accepted=(), scores=(), rejected=(), seconds={},
@@ -65,6 +67,28 @@ def test_where_there_is_room_for_no_more_nothing_is_added():
     assert end.accepted == ("a", "b", "c")[:most]
     assert asked[-1] == "drop_effects"
     assert asked.count("drop_effects") == 1
+
+
+def test_behind_the_time_limit_no_effect_is_added_and_the_checks_are_made():
+    """Each move ends at its first simulation; what an earlier one has found stays."""
+
+    def simulates(state, progress):
+        end_if_given_up()
+        return replace(state, rejected=("simulated",))
+
+    def checks(state, progress):
+        end_if_given_up()
+        return replace(state, scores=("checked",))
+
+    every = (
+        Move("add_effect", simulates, grows=True), Move("add_set", simulates, takes_long=True),
+        Move("drop_effects", checks),
+    )  # fmt: skip
+    end = searched(begun(minutes=0), every)
+    assert end.cut_short == ("add_effect", "add_set")
+    assert end.rejected == ()
+    assert end.scores == ("checked",)
+    assert searched(begun(), every).cut_short == ()
 
 
 def test_a_move_that_is_left_out_is_not_asked():

@@ -5,13 +5,14 @@ from functools import cache
 
 import numpy as np
 import pytest
-from discovery_cases import EFFECTS, FREE, KNOWN, OPTIONS, RECORDS, nominal_model, record, slider
+from discovery_cases import EFFECTS, FREE, KNOWN, RECORDS, nominal_model, record, slider
 from discovery_cases import task as task_of
 
 from identification.discovery.nominal_model import NominalModel
 from identification.effects.effect import Candidate
 from identification.innovations.discovery import discover
 from identification.innovations.fitted_model import fit_model
+from identification.innovations.shapes import BARE_BIC
 from identification.logs.joined import join_logs
 from identification.model.parameter import ParameterSet, own_name, with_own
 
@@ -91,4 +92,4 @@ def parent():
 def test_a_child_is_never_less_likely_than_its_parent(candidate):
     task, model = parent()
     child = fit_model(task, (Candidate(candidate, "joint", {}),), {}, model)
-    assert child.refit.log_posterior > model.refit.log_posterior - OPTIONS.bare_bic / 2
+    assert child.refit.log_posterior > model.refit.log_posterior - BARE_BIC / 2

@@ -15,7 +15,7 @@ from identification.effects.effect import Candidate, Effect
 from identification.effects.sizes import Shape, Size
 from identification.innovations import shapes
 from identification.innovations.scoring.sensitivities import compute_sensitivities
-from identification.innovations.shapes import improve_shape
+from identification.innovations.shapes import BARE_BIC, improve_shape
 from identification.kalman.point import evaluate_point
 from identification.model.coordinates import coordinates
 from inca_mj.effects.catalogue import CATALOGUE
@@ -27,7 +27,6 @@ from inca_mj.twin.logs import ANGLES, CURRENTS
 from inca_mj.workflows.discovery import discover
 from inca_mj.workflows.spread import spread_of
 
-BARE = OPTIONS.bare_bic
 KINDS = Effect(
     "limit",
     "clip",
@@ -56,7 +55,7 @@ def choose(monkeypatch, best, other, white=True):
     def fit_shape(asked_of, model, s, least):
         asked.append(s.candidate.shape["soft"])
         behind = [f.refit.log_posterior - least for f in (best, other) if f is not None]
-        assert any(0 <= b <= BARE / 2 for b in behind)
+        assert any(0 <= b <= BARE_BIC / 2 for b in behind)
         return other
 
     monkeypatch.setattr(shapes, "is_structured", lambda model, options: not white)
@@ -67,7 +66,7 @@ def choose(monkeypatch, best, other, white=True):
     return improve_shape(SimpleNamespace(options=OPTIONS), more, best, ranked), asked
 
 
-@pytest.mark.parametrize(("ahead", "usual"), [(BARE - 0.1, True), (BARE + 0.1, False)])
+@pytest.mark.parametrize(("ahead", "usual"), [(BARE_BIC - 0.1, True), (BARE_BIC + 0.1, False)])
 def test_another_kind_must_be_better_by_more_than_a_bare_mention(monkeypatch, ahead, usual):
     best, other = of(1.0, 100.0 + ahead), of(0.0, 100.0)
     chosen, asked = choose(monkeypatch, best, other)

@@ -7,7 +7,15 @@ import time
 import pytest
 
 from identification import pool
-from identification.pool import each_part, end_if_given_up, run_parts, split, threads
+from identification.pool import (
+    OutOfTime,
+    each_part,
+    end_if_given_up,
+    run_parts,
+    split,
+    threads,
+    until,
+)
 
 
 def test_results_come_in_the_order_of_the_parts(monkeypatch):
@@ -63,6 +71,17 @@ def test_parts_end_where_the_work_is_given_up(monkeypatch):
     assert next(parts) == 0
     parts.close()
     assert ended.wait(60)
+
+
+def test_work_ends_behind_its_time_in_every_thread_and_only_in_the_block():
+    with pytest.raises(OutOfTime), until(time.monotonic() - 1):
+        end_if_given_up()
+    with pytest.raises(OutOfTime), until(time.monotonic() - 1):
+        run_parts(lambda _: end_if_given_up(), range(4))
+    with until(time.monotonic() + 60):
+        end_if_given_up()
+    end_if_given_up()
+    run_parts(lambda _: end_if_given_up(), range(4))
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="this system does not fork")

@@ -11,6 +11,7 @@ from records_cases import nominal_model, pendulum, record, records
 
 from identification.__main__ import main
 from identification.discovery.findings.records_evidence import ShiftedRecord
+from identification.discovery.options import DiscoveryOptions
 from identification.effects.joint_plant import candidates
 from identification.errors import InputError
 from identification.prediction.discovery import discover_records
@@ -201,3 +202,16 @@ def test_the_command_takes_several_logs_and_several_confirm_flags(folder, capsys
     assert record["effects"][0]["name"] == "transmitted_load_friction"
     assert all(r["after"] < r["before"] for r in record["records"])
     assert {p.name for p in out.iterdir()} >= {"report.html", "result.json", "robot.toml"}
+
+
+def test_a_search_behind_its_time_limit_answers_and_says_what_it_has_not_tried():
+    logs = records(4, {MU: 0.15}, samples=SAMPLES)
+    effects = [e for e in candidates(pendulum(), ("J", "d")) if e.name in FEW]
+    options = DiscoveryOptions(max_minutes=0.0)
+    answer = discover_records(nominal_model(), logs[:2], logs[2:], effects, options=options)
+    assert answer.verdict == "unknown effect"
+    assert answer.scores
+    assert answer.cut_short == ("add_effect", "add_set")
+    assert discovery_to_json(answer)["cut_short"] == [*answer.cut_short]
+    assert "within these moves: add effect and add set. " in discovery_text(answer)
+    assert found().cut_short == ()
