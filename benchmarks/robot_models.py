@@ -1,41 +1,31 @@
-"""Small robots in the manner of MuJoCo Menagerie: loaded, fitted, and one hidden effect named.
+"""Small robots in the manner of MuJoCo Menagerie: how often what their model lacks is named.
 
-    python benchmarks/robot_models.py [--robots leg crane] [--page]
+    python benchmarks/robot_models.py [--robots leg crane] [--effects stop] [--count 2] [--seed 1]
+                                      [--processes 2]
+    python benchmarks/robot_models.py --only-page             the page anew, from the rows
 
-Four of them are `examples/linkages`, the others lie in `benchmarks/robots/kinds`. Each is simulated
-with an effect that its model lacks; the first of two records is fitted and searched, the second
-confirms. Rows go to `benchmarks/results/robot_models.jsonl`, and `--page` writes
-`docs/robot/models.md` of them. Seconds are those of the processor.
+Each world (`robot_worlds`) is simulated with one effect that its model lacks. The first of two
+records is searched with all candidates, the second confirms. A finished world is a line of ROWS,
+and is not made again by the same search. The page docs/robot/models.md is of one search. Seconds
+are those of the processor.
 """
 
 from __future__ import annotations
 
 import argparse
-import json
-import sys
 import time
+from collections.abc import Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-import numpy as np
-from rows import ROOT, of_newest, rows_of, search_commit
+from robot_worlds import DRIVEN, NAMES, UNLISTED, make, write
+from rows import ROOT, Row, answered, of_newest, rows_of
 
-from identification import InputError, discover, fit, read_robot
-
-sys.path.insert(0, str(ROOT / "examples" / "linkages"))
-import record as linkages
+from identification.sweep.statistics import median, rate, said
 
 ROWS = ROOT / "benchmarks" / "results" / "robot_models.jsonl"
 PAGE = ROOT / "docs" / "robot" / "models.md"
-KINDS = ROOT / "benchmarks" / "robots" / "kinds"
-MORE = {
-    "arm": linkages.Truth(
-        "lift", "coulomb_friction", 0.8, ("pan", "lift", "flex"), 3e-4, 0.0, 0.6
-    ),
-    "finger": linkages.Truth("tip", "hardening", 0.15, ("knuckle", "tip"), 3e-4, 0.0, 12.0),
-    "gripper": linkages.Truth("right", "coulomb_friction", 0.6, ("left", "right"), 2e-5, 0.0, 0.02),
-}  # fmt: skip
 WORDS = {
     "arm": "an arm with position servos",
     "finger": "a finger whose joints a tendon drives together",
@@ -45,83 +35,138 @@ WORDS = {
     "crane": "a load on two tendons whose lengths are measured",
     "cart": "a cart with an end stop",
 }
+MASS_IS_FREE = ("cart", "crane")  # of the body that would be heavier: nothing would be missing
 HEAD = """# Kinds of robots that were tried
 
 `benchmarks/robot_models.py` makes this page. Each robot is a small model in the manner of MuJoCo
-Menagerie, simulated with one effect that its model lacks; a log of 8 s at 100 Hz is fitted and
-searched, another one confirms. The search tries the few candidates that the robot's file lists, at
-every measured joint. One world each: this shows that such models are read, fitted and searched, and
-gives no rates.
-
-| robot | lacks | named | right | fit [s] | search [s] |
-|---|---|---|---|---|---|
+Menagerie (`examples/linkages`, `benchmarks/robots/kinds`), simulated with one effect that its model
+lacks, at a joint that is driven. A log of 8 s at 100 Hz is fitted and searched, another one
+confirms. The search tries all candidates. An answer is right if the first name is that of the
+effect at its joint; for the four-bar and the gripper, whose joints are coupled, also at another
+joint or at all of them, because the motion cannot tell these apart.
 """
 
 
-def study(name: str) -> dict[str, Any]:
-    """Returns what a fit and a search say of a robot."""
-    own = name in linkages.ROBOTS
-    folder = (Path(linkages.__file__).parent if own else KINDS) / name
-    truth = linkages.ROBOTS[name] if own else MORE[name]
-    row: dict[str, Any] = {"robot": name, "lacks": truth.effect, "where": truth.joint}
-    with TemporaryDirectory() as place:
-        logs = []
-        for log, seed in (("first", 1), ("second", 2)):
-            table, header = linkages.record(folder / "model.xml", truth, seed)
-            logs.append(Path(place) / f"{log}.csv")
-            np.savetxt(logs[-1], table, "%.7g", ",", header=header, comments="")
-        try:
-            robot = read_robot(folder / "robot.toml", logs[0], confirm=[logs[1]])
-            begun = time.process_time()
-            row["values"] = dict(fit(robot).values)
-            row["fit_s"] = time.process_time() - begun
-            begun = time.process_time()
-            found = discover(robot)
-        except InputError as error:
-            return {**row, "refused": str(error).replace(place, "")}
-    row["search_s"] = time.process_time() - begun
-    row["verdict"] = str(found)
-    row["named"] = [
-        {"name": n.name, "where": n.where, "confidence": n.confidence} for n in found.named
-    ]
-    return row
+def study(robot: str, effect: str, seed: int) -> dict[str, Any]:
+    """Returns what a search says of a world; an error is a row too."""
+    from identification import discover, read_robot
+
+    world, motions = make(robot, effect, seed)
+    row: dict[str, Any] = {
+        "robot": robot, "effect": effect, "joint": world.joint, "size": world.size, "seed": seed,
+    }  # fmt: skip
+    begun = time.process_time()
+    try:
+        with TemporaryDirectory() as folder:
+            toml, logs = write(world, motions, Path(folder))
+            found = discover(read_robot(toml, logs[0], confirm=[logs[1]]))
+    except Exception as error:
+        return {**row, "error": f"{type(error).__name__}: {error}"}
+    return {
+        **row, "verdict": found.verdict, "times_noise": found.times_noise(found.after),
+        "named": [
+            {"name": n.name, "where": n.where, "confidence": n.confidence,
+             "rivals": [[r.name, r.where, r.confidence] for r in n.rivals],
+             "sizes": {name: p[0] for name, p in n.parameters.items()}}
+            for n in found.named
+        ],
+        "rejected": [[r.candidate.effect.name, r.candidate.where, r.doubt] for r in found.rejected],
+        "seconds": time.process_time() - begun,
+    }  # fmt: skip
 
 
-def is_right(row: dict[str, Any]) -> bool:
-    """Returns whether the hidden effect is named first, at its joint."""
-    named = row.get("named") or [{}]
-    name = str(named[0].get("name", "")).removeprefix("slide_")
-    return len(named) == 1 and name == row["lacks"] and row["where"] in str(named[0].get("where"))
+def is_right(row: Row) -> bool:
+    """Returns whether the answer is as it should be: one name, its own; or none."""
+    named = row.get("named") or []
+    if row["effect"] in UNLISTED:
+        return row.get("verdict") in ("unlisted effect", "unknown effect")
+    if row["effect"] == "nothing":
+        return row.get("verdict") == "nothing missing"
+    return len(named) == 1 and _is_meant(row, named[0]["name"], named[0]["where"])
 
 
-def page() -> str:
-    """Returns the page of the newest rows."""
-    rows = of_newest(rows_of(ROWS))
-    lines = []
-    for row in rows:
-        said = "; ".join(f"`{n['name']}` at {n['where']}" for n in row.get("named", ()))
-        said = said or ("refused" if "refused" in row else "nothing")
-        times = (f"{row[k]:.0f}" if k in row else "" for k in ("fit_s", "search_s"))
-        lines.append(
-            f"| {WORDS[row['robot']]} | `{row['lacks']}` at {row['where']} | {said} |"
-            f" {'yes' if is_right(row) else 'no'} | {' | '.join(times)} |"
-        )
-    return HEAD + "\n".join(lines) + f"\n\nAll rows are of commit {rows[-1]['commit']}.\n"
+def _is_meant(row: Row, name: str, where: str) -> bool:
+    """Returns whether a name at a place is what is hidden."""
+    is_name = name.removeprefix("slide_") in NAMES[row["effect"]]
+    is_place = (
+        row["robot"] in ("four_bar", "gripper")
+        or not where.startswith(("joint", "all joints"))  # inputs and bodies have other names
+        or row["joint"] in where
+    )
+    return is_name and is_place
+
+
+def is_wrong(row: Row) -> bool:
+    """Returns whether a law is named that is not there, and no set of names has the right one."""
+    if row.get("verdict") != "named":
+        return False
+    for n in row["named"]:
+        every = [[n["name"], n["where"]], *([r[0], r[1]] for r in n["rivals"])]
+        if not any(_is_meant(row, name, where) for name, where in every):
+            return True
+    return False
+
+
+def page(rows: Sequence[Row]) -> str:
+    """Returns the page of the rows of one search."""
+    listed = [r for r in rows if NAMES[r["effect"]]]
+    unlisted = [r for r in rows if r["effect"] in UNLISTED]
+    empty = [r for r in rows if r["effect"] == "nothing"]
+    lines = [
+        HEAD, "| of all robots | rate |", "|---|---|",
+        f"| an effect of the catalogue is named first | {said(rate(listed, is_right))} |",
+        f"| it is named, or is in the set of names that is told |"
+        f" {said(rate(listed, lambda r: r.get('verdict') == 'named' and not is_wrong(r)))} |",
+        f"| a law is named that is not there | {said(rate(rows, is_wrong))} |",
+        f"| a force of no catalogue is drawn, or unknown | {said(rate(unlisted, is_right))} |",
+        f"| nothing is named where nothing is missing | {said(rate(empty, is_right))} |",
+        f"| a search ends in an error | {said(rate(rows, lambda r: 'error' in r))} |",
+        "", "| robot | right | search, median [s] | what was not right |", "|---|---|---|---|",
+    ]  # fmt: skip
+    for robot, words in WORDS.items():
+        mine = [r for r in rows if r["robot"] == robot]
+        if not mine:
+            continue
+        wrong = "; ".join(_told(r) for r in mine if not is_right(r))
+        middle = median([r["seconds"] for r in mine if "seconds" in r]) or 0.0
+        hits = sum(map(is_right, mine))
+        lines.append(f"| {words} | {hits} of {len(mine)} | {middle:.0f} | {wrong} |")
+    return "\n".join(lines) + f"\n\nAll rows are of commit {rows[-1]['commit']}.\n"
+
+
+def _told(row: Row) -> str:
+    """Returns what was said of a world, in a few words."""
+    if "error" in row:
+        return f"`{row['effect']}`: an error"
+    names = " + ".join(f"`{n['name']}` at {n['where']}" for n in row["named"])
+    where = f" at {row['joint']}" if row["joint"] else ""
+    return f"`{row['effect']}`{where}: {names or row['verdict']}"
 
 
 def main() -> None:
-    """Make the rows, and the page where asked."""
+    """Make the rows that this search has not made yet, and the page."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--robots", nargs="*", choices=[*WORDS], default=[*WORDS])
-    parser.add_argument("--page", action="store_true", help="write docs/robot/models.md")
-    asked = parser.parse_args()
-    for name in asked.robots:
-        row = {"key": name, "commit": search_commit(), **study(name)}
-        with ROWS.open("a", encoding="utf-8") as file:
-            file.write(json.dumps(row) + "\n")
-        print(name, row.get("named", row.get("refused")), flush=True)
-    if asked.page:
-        PAGE.write_text(page(), encoding="utf-8")
+    add = parser.add_argument
+    add("--robots", nargs="*", choices=[*WORDS], default=[*DRIVEN])
+    add("--effects", nargs="*", choices=[*NAMES], default=[*NAMES])
+    add("--seed", type=int, default=1)
+    add("--count", type=int, default=1, help="worlds of each robot and effect")
+    add("--processes", type=int, default=1)
+    add("--out", type=Path, default=ROWS)
+    add("--page", type=Path, default=PAGE)
+    add("--only-page", action="store_true")
+    given = parser.parse_args()
+    tasks = {
+        f"{robot}/{effect}/{seed}": (robot, effect, seed)
+        for seed in range(given.seed, given.seed + given.count)
+        for effect in given.effects
+        for robot in given.robots
+        if not (effect == "heavier" and robot in MASS_IS_FREE)
+    }
+    rows = rows_of(given.out) if given.only_page else answered(
+        study, tasks, given.out, lambda r: f"{r['key']}: {_told(r)}", given.processes
+    )  # fmt: skip
+    given.page.write_text(page(of_newest(rows)), encoding="utf-8")
 
 
 if __name__ == "__main__":
