@@ -113,7 +113,7 @@ class Discover(OnRobot):
     options: Annotated[Path | None, tyro.conf.arg(metavar="PATH")] = None
     """TOML file of options: min_proof_t = 3.0, without = ["add_pair"], ... (docs/discovery.md)."""
     minutes: float | None = None
-    """Time after which no further effect is sought; what was found until then is the answer."""
+    """Time after which no further effect is sought (10 if not given); then it answers."""
 
     def run(self) -> int:
         """Discover, confirm, say, keep."""

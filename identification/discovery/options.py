@@ -59,10 +59,10 @@ class DiscoveryOptions(KalmanOptions):
         "judgement", least=1,
     )  # fmt: skip
     max_minutes: float = option(
-        1440.0, "min",
+        10.0, "min",
         "No further effect is sought after this time; the fit without effects, scores and last"
-        " checks are always finished, and what was found until then is the answer. The default is a"
-        " day, so that the answer does not depend on how fast the computer is.",
+        " checks are always finished, and what was found until then is the answer, which says what"
+        " was not tried. Most searches end far before.",
         "judgement",
     )  # fmt: skip
     nominal_factor: float = option(

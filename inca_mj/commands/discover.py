@@ -67,7 +67,7 @@ class Discover:
     options: Annotated[Path | None, tyro.conf.arg(metavar="PATH")] = None
     """TOML file of options: min_proof_t = 3.0, without = ["add_pair"], ... (docs/discovery.md)."""
     minutes: float | None = None
-    """Time after which no further effect is sought; what was found until then is the answer."""
+    """Time after which no further effect is sought (10 if not given); then it answers."""
     trust: Trust = ()
     """Checks of the log that you overrule: sensors, units, wiring."""
     robot: Annotated[Values, tyro.conf.OmitArgPrefixes] = values_field
