@@ -66,6 +66,26 @@ def mean_above_zero(x: np.ndarray) -> tuple[float, float]:
     return t, student_above(t, len(x) - 1)
 
 
+def ranks_above_zero(x: np.ndarray) -> float:
+    """Tests whether numbers that scatter evenly about their middle lie above zero (Wilcoxon 1945).
+
+    Where they lie below it or about it, each sign is as likely for any rank of |x|. Large numbers
+    count by their rank only, so that a few of them do not hide that nearly all are positive.
+
+    Args:
+        x: shape (n,).
+
+    Returns:
+        The chance of as large a sum of the ranks of the positive ones.
+    """
+    x = x[x != 0]
+    ranks = np.argsort(np.argsort(np.abs(x), kind="stable"), kind="stable") + 1
+    of_sum = np.ones(1)  # chance of each sum of ranks that have been seen, 0, 1, ...
+    for rank in range(1, len(x) + 1):
+        of_sum = 0.5 * (np.pad(of_sum, (0, rank)) + np.pad(of_sum, (rank, 0)))
+    return min(1.0, float(of_sum[ranks[x > 0].sum() :].sum()))
+
+
 def mean_above_other(x: np.ndarray, other: np.ndarray) -> float:
     """Tests whether the mean of normal numbers is above that of others (Welch 1947).
 

@@ -77,6 +77,15 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
     "states_of_others": (
         HORIZON, "lets windows begin where another model begins them with less error",
     ),
+    "exact_set_points": (
+        HORIZON, "takes set points of servos as exact where errors of inputs excuse what is left",
+    ),
+    "signed_ranks": (
+        HORIZON, "proves by the ranks of the gains of blocks too, and not by their mean alone",
+    ),
+    "decide_on_all": (
+        HORIZON, "decides on all unseen windows where those that decide prove nothing",
+    ),
     "values_of_start": (
         HORIZON, "begins at the given values where fitted ones predict unseen records worse",
     ),

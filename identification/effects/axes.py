@@ -3,8 +3,8 @@
     F = max |force of its drives|       V = max |q̇|       L = max q - min q      over a log
 
 A size that would make a force of F at a speed V, or over a way L, is as large as physics admits;
-the catalogue counts in shares of it. Where a joint has no drive, F = M V²/L is what its inertia
-needs.
+the catalogue counts in shares of it. A drive that pulls at a tendon acts on the joints over which
+this runs. Where a joint has no drive, F = M V²/L is what its inertia needs.
 """
 
 from __future__ import annotations
@@ -30,6 +30,7 @@ Kind = Literal["hinge", "slide"]
 OVERRULE = ', or write trust = ["sensors"] into the robot\'s file'
 MAGNITUDES = ("force", "speed", "travel")
 POSES = 5  # random ones, to see on which joints gravity acts
+PULLED = 500  # samples of a log at which drives that pull at tendons are asked
 NOISE, SHARE = 5.0, 0.1  # a difference of noise, in its std, may be so much of the largest
 
 _KINDS: dict[int, Kind] = {
@@ -153,6 +154,8 @@ def _axis(model: mujoco.MjModel, log: Log, j: int, columns: dict[str, np.ndarray
     v = columns["qvel"] if "qvel" in columns else np.gradient(way, h)
     force = sum(float(np.abs(_forces(model, i, log.inputs, way, v)).max()) for i in drives)
     dof = int(model.jnt_dofadr[j])
+    if not drives:
+        force = _pulled(model, log, dof)
     if not force and travel > 0:
         force = float(model.dof_M0[dof]) * speed**2 / travel
     name = model.joint(j).name
@@ -210,6 +213,25 @@ def _forces(
     b_0, b_1, b_2 = model.actuator_biasprm[i, :3] if is_biased else np.zeros(3)
     u = inputs[:, _control(model, i)]
     return np.asarray(gear * (gain * u + b_0 + b_1 * gear * q + b_2 * gear * v))
+
+
+@quiet()
+def _pulled(model: mujoco.MjModel, log: Log, dof: int) -> float:
+    """Returns the largest force of drives at tendons along a log on a degree of freedom."""
+    if not np.any(model.actuator_trntype == int(mujoco.mjtTrn.mjTRN_TENDON)):
+        return 0.0
+    data, columns, largest = mujoco.MjData(model), output_columns(model, log.output_names), 0.0
+    controls = [
+        _control(model, i) for i in range(len(model.actuator_trntype))
+        if not model.actuator(i).name.startswith(UNLOGGED)
+    ]  # fmt: skip
+    for k in np.unique(np.linspace(0, len(log) - 1, PULLED).round().astype(int)):
+        for (field, i), y in zip(columns, log.outputs[k], strict=True):
+            getattr(data, field)[i] = y
+        data.ctrl[controls] = log.inputs[k]
+        mujoco.mj_forward(model, data)
+        largest = max(largest, abs(float(data.qfrc_actuator[dof])))
+    return largest
 
 
 def _plain(model: mujoco.MjModel, i: int) -> bool:

@@ -132,6 +132,12 @@ def servo_kind(model: mujoco.MjModel, row: int) -> str | None:
     return "velocity" if gain and not bias[1] and bias[2] == -gain else None
 
 
+def is_set_point(model: mujoco.MjModel, control: int) -> bool:
+    """Returns whether an input is what servos are told to reach, and no force."""
+    rows = [i for i in range(len(model.actuator_trntype)) if model.actuator_ctrladr[i] == control]
+    return bool(rows) and all(servo_kind(model, i) is not None for i in rows)
+
+
 def refuse_half(model: mujoco.MjModel, paths: Sequence[tuple[str, str]]) -> None:
     """Refuse parameters that move one of two numbers of a servo which are one gain."""
     moved: dict[tuple[str, int], str] = {}

@@ -6,6 +6,7 @@ S = -∂r/∂u, u the inputs in units of their rms, each error constant over a w
 and sensitivity without what the state of a window makes up for; n: readings less the states that
 they tell, σ: the sensors' noise. No log has exact inputs: a drive's current or a commanded torque
 is good to some per cent. What so small an error of the inputs makes is no reason to seek an effect.
+The set point of a servo is a number that a computer has sent: it does not err, and u is without it.
 The residual is that of fitted or of unseen windows, whichever is larger for its number: a force
 that came or changed after the fitted record leaves nothing there.
 
@@ -38,9 +39,11 @@ from identification.discovery.findings.records_evidence import (
     WorseFit,
 )
 from identification.discovery.options import DiscoveryOptions
+from identification.discovery.passes import uses
 from identification.effects.named import phrase_there
 from identification.estimation.metrics import relative
 from identification.model.predictor import Plant
+from identification.model.tied import is_set_point
 from identification.prediction.clocks import told_shifts
 from identification.prediction.model import WindowModel
 from identification.prediction.record_errors import errors_by_unit
@@ -108,7 +111,8 @@ def is_much_left(model: WindowModel, options: DiscoveryOptions) -> bool:
     square = float(np.mean(np.concatenate(unseen.at_horizon)))
     if not square > unseen.floor * MAX_OUTPUT_RATIO**2:
         return False
-    needed = attempt(None, partial(needed_input_error, model.fit, unseen.floor, unseen.at_horizon))
+    asked = partial(needed_input_error, model.fit, options, unseen.floor, unseen.at_horizon)
+    needed = attempt(None, asked)
     return needed is None or needed > options.max_input_error
 
 
@@ -183,19 +187,26 @@ def _unproven(r: RejectedEffect, plant: Plant) -> UnprovenEffect:
     )
 
 
-def needed_input_error(fit: WindowFit, floor: float, unseen: Sequence[np.ndarray] = ()) -> float:
+def needed_input_error(
+    fit: WindowFit, options: DiscoveryOptions, floor: float, unseen: Sequence[np.ndarray] = ()
+) -> float:
     """Returns the inputs' rms error over a window that the residual needs, as a share of their rms.
 
-    Unseen windows are taken to feel an error of the inputs as the fitted ones do.
+    It is infinite where no input moves that may err. Unseen windows are taken to feel an error of
+    the inputs as the fitted ones do.
 
     Args:
         fit: the model, on the windows of the records that were fitted.
+        options: whether set points of servos are exact.
         floor: σ², mean square of the sensors' noise in units of the errors' scale.
         unseen: mean squares of windows that were not fitted, one array a record, in these units.
     """
     inputs = np.concatenate([p.predictor.log.inputs for p in fit.problem.parts])
     size = np.sqrt(np.mean(inputs**2, axis=0))
     moving = np.flatnonzero(size > 0)
+    if uses(options, "exact_set_points"):
+        model = fit.problem.plant.model
+        moving = np.array([i for i in moving if not is_set_point(model, int(i))], int)
     if not len(moving):  # in a free swing, no error of the inputs is a share of their size
         return np.inf
     left, felt, count = 0.0, 0.0, 0.0

@@ -44,6 +44,7 @@ Doubt = (
 )  # fmt: skip
 # Of what an effect explained: one that still explains as much beside another is missing too.
 OWN_SHARE = 0.5
+TESTS = 2  # of the gains of blocks: by their mean and by their ranks; chance pays for both
 # By what was measured, or by what is believed of its size.
 CONTRADICTED: tuple[Doubt, ...] = ("lengths", "record", "bound", "exchange", "differ")
 TWINS = {"offset": "asymmetric_friction", "asymmetric_friction": "offset"}
@@ -96,7 +97,10 @@ def find_doubt(found: Prediction, refits: int, options: DiscoveryOptions) -> Dou
         "record": a record is predicted worse, though physics is the same in all of them.
         "little": it takes away too little to matter.
     """
-    if not (found.t > options.min_proof_t and found.chance * refits < options.significance):
+    chance = found.chance
+    if uses(options, "signed_ranks"):
+        chance = TESTS * min(found.chance, found.rank_chance)
+    if not (found.t > options.min_proof_t and chance * refits < options.significance):
         return "chance"
     if not found.is_everywhere:
         return "lengths"

@@ -69,9 +69,9 @@ def conclude(state: WindowSearch) -> Discovery:
     differ = [a for a in state.accepted if a.candidate.effect.is_of_records]
     nominal = _with_differences(state, differ)
     # Beside a model with effects that diverges there, the nominal one tells it.
-    needed = attempt(None, partial(_needed_input_error, model))
+    needed = attempt(None, partial(_needed_input_error, model, options))
     if needed is None:
-        needed = _needed_input_error(nominal)
+        needed = _needed_input_error(nominal, options)
     findings = find_remaining(state, rejected, shifts, needed)
     limit = options.left_confidence if findings else options.max_confidence
     stick = attempt(None, partial(measure, model, task.effects)) if state.accepted else None
@@ -304,10 +304,10 @@ def _errs(model: WindowModel, needed: float, options: DiscoveryOptions) -> bool:
     return _is_off(model, options) and needed > options.max_input_error
 
 
-def _needed_input_error(model: WindowModel) -> float:
+def _needed_input_error(model: WindowModel, options: DiscoveryOptions) -> float:
     """Returns the error of the inputs that would make what a model leaves, a share of their rms."""
     unseen = model.unseen
-    return needed_input_error(model.fit, unseen.floor, unseen.report.at_horizon)
+    return needed_input_error(model.fit, options, unseen.floor, unseen.report.at_horizon)
 
 
 def _is_off(model: WindowModel, options: DiscoveryOptions) -> bool:

@@ -170,7 +170,8 @@ def _either(found: Discovery) -> str:
     """Says what else than an effect may make the error: the inputs, where any input moves."""
     if not isfinite(found.input_error):
         return (
-            "No input moves, so that none can err: something is missing that no candidate explains."
+            "No input that moves is a force, which might err. Something is missing that no"
+            " candidate explains."
         )
     return (
         f"Either the inputs err by {ratio_of(found.input_error, 'their rms')}, or something is"

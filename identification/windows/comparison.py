@@ -1,7 +1,9 @@
 """Comparison of the predictions of two models on records that no fit has seen.
 
 Gains of blocks of neighbouring windows (`identification.windows.blocks`) are the sample of a
-t-test, for windows of each length that both models predict.
+t-test and of a test of signed ranks, for windows of each length that both models predict. What acts
+seldom gains much in few blocks and a little in many: their scatter then hides their mean from the
+t-test, and their ranks show it.
 """
 
 from __future__ import annotations
@@ -10,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from identification.chances import mean_above_zero
+from identification.chances import mean_above_zero, ranks_above_zero
 from identification.windows.blocks import block_gains
 from identification.windows.unseen import Unseen
 
@@ -20,7 +22,8 @@ class Prediction:
     """The gain of one model's predictions over another's."""
 
     t: float  # of the mean gain over blocks, at the horizon
-    chance: float  # of as much by luck
+    chance: float  # of as much by luck, by Student's t
+    rank_chance: float  # likewise, by the ranks of the gains
     gain: float
     gains: tuple[float, ...]  # mean gain over blocks, by length of the windows
     fall: float  # the one at the horizon, and `gain` likewise
@@ -79,8 +82,8 @@ def _compare(without: Unseen, with_it: Unseen) -> Prediction:
         t, chance = mean_above_zero(every)
     each = zip(without.at_horizon, with_it.at_horizon, strict=True)
     return Prediction(
-        t=t, chance=chance, gain=means[at], gains=means, fall=falls[at], falls=tuple(falls),
-        typical_falls=tuple(typical),
+        t=t, chance=chance, rank_chance=ranks_above_zero(every), gain=means[at], gains=means,
+        fall=falls[at], falls=tuple(falls), typical_falls=tuple(typical),
         record_falls=tuple(1 - float(b.mean() / a.mean()) for a, b in each), blocks=tuple(blocks),
     )  # fmt: skip
 

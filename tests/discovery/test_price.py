@@ -7,9 +7,9 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from scipy.stats import binom
+from scipy.stats import binom, wilcoxon
 
-from identification.chances import mean_above_zero
+from identification.chances import mean_above_zero, ranks_above_zero
 from identification.discovery.effect_results import Proof
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate, Effect
@@ -83,11 +83,11 @@ def test_of_several_refits_along_a_free_run_one_is_proven_as_seldom_as_of_one(re
     assert is_rate(found, 0.031)  # Student's t above 2 with 19 degrees of freedom
 
 
-def prediction(blocks, record_falls, t=5.0, chance=1e-6):
+def prediction(blocks, record_falls, t=5.0, chance=1e-6, rank_chance=1.0):
     """A gain over every length, of records with these blocks and falls."""
     return Prediction(
-        t=t, chance=chance, gain=0.1, gains=(0.1,), fall=0.1, falls=(0.1,), typical_falls=(0.1,),
-        record_falls=record_falls, blocks=blocks,
+        t=t, chance=chance, rank_chance=rank_chance, gain=0.1, gains=(0.1,), fall=0.1,
+        falls=(0.1,), typical_falls=(0.1,), record_falls=record_falls, blocks=blocks,
     )  # fmt: skip
 
 
@@ -116,12 +116,33 @@ def test_a_record_in_which_a_law_does_nothing_contradicts_it():
 @pytest.mark.parametrize("refits", [1, 3, 8])
 def test_of_several_refits_over_a_horizon_one_is_proven_as_seldom_as_of_one(refits):
     rng = np.random.default_rng(refits)
-    found = 0
+    by_mean, by_both = DiscoveryOptions(without=("signed_ranks",)), OPTIONS
+    found = {options: 0 for options in (by_mean, by_both)}
     for _ in range(DRAWS):
-        each = []
-        for b in gains(rng, refits):
-            t, chance = mean_above_zero(b)
-            seen = prediction((b,), (0.1,), t, chance)
-            each.append(find_doubt(seen, refits, OPTIONS) is None)
-        found += any(each)
-    assert is_rate(found, OPTIONS.significance)
+        every = [
+            prediction((b,), (0.1,), *mean_above_zero(b), ranks_above_zero(b))
+            for b in gains(rng, refits)
+        ]
+        for options in found:
+            found[options] += any(find_doubt(seen, refits, options) is None for seen in every)
+    assert is_rate(found[by_mean], OPTIONS.significance)
+    assert found[by_both] <= 1.2 * OPTIONS.significance * DRAWS
+
+
+def test_gains_of_many_blocks_prove_where_a_few_large_ones_hide_their_mean():
+    """A force that acts far out: a little in all blocks, much in two of them."""
+    gains = np.r_[np.linspace(0.05, 0.2, 11), 2.0, 4.0]
+    t, chance = mean_above_zero(gains)
+    assert chance > 0.01
+    seen = prediction(
+        (gains,), (0.5,), t=max(t, 2.1), chance=chance, rank_chance=ranks_above_zero(gains)
+    )
+    assert find_doubt(seen, 6, OPTIONS) is None
+    assert find_doubt(seen, 6, DiscoveryOptions(without=("signed_ranks",))) == "chance"
+
+
+@pytest.mark.parametrize("count", [1, 5, 13, 40])
+def test_the_chance_of_signed_ranks_is_that_of_scipy(count):
+    x = np.random.default_rng(count).normal(0.3, 1.0, count)
+    known = wilcoxon(x, alternative="greater", method="exact").pvalue
+    assert ranks_above_zero(x) == pytest.approx(known, rel=1e-9)

@@ -71,6 +71,19 @@ def test_the_largest_force_of_a_servo_is_what_it_gave_and_not_what_its_command_a
     assert axis.force < 0.4 * 2 * 40 * np.abs(log.inputs).max()
 
 
+def test_a_drive_at_a_tendon_acts_on_the_joint_over_which_it_runs():
+    t = np.arange(400) * STEP
+    q = 0.3 * np.sin(3 * t)
+    start, end = SLIDER.index("<actuator>"), SLIDER.index("</actuator>")
+    joint = mujoco.MjModel.from_xml_string(SLIDER).joint(0).name
+    tendon = f'<tendon><fixed name="rope"><joint joint="{joint}" coef="0.5"/></fixed></tendon>'
+    pull = '<actuator><motor name="u" tendon="rope" gear="4"/>'
+    model = mujoco.MjModel.from_xml_string(SLIDER[:start] + tendon + pull + SLIDER[end:])
+    log = slider_log((2 * q + 0.01)[:, None], q[:, None])
+    (axis,) = axes(model, log)
+    assert axis.force == pytest.approx(0.5 * 4 * np.abs(log.inputs).max(), rel=1e-3)
+
+
 def test_what_cannot_be_is_refused():
     with pytest.raises(InputError, match="in which it moves"):
         joint_plant(SLIDER, (), slider_log(steps(50), np.zeros((50, 1))))

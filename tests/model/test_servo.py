@@ -9,7 +9,7 @@ from identification import InputError, Parameter, ParameterSet
 from identification.estimation.estimation import estimate
 from identification.model.paths import resolve
 from identification.model.plant import ModelPlant
-from identification.model.tied import parts, value_of
+from identification.model.tied import is_set_point, parts, value_of
 
 ARM = """<mujoco><option timestep="0.002" integrator="implicitfast"/>
   <worldbody><body name="arm"><joint name="q" axis="0 1 0" damping="0.2"/>
@@ -114,3 +114,12 @@ def test_the_gain_of_what_is_no_servo_is_refused(refusal, servo, name, said):
         ARM.format(servo=POSITION + VELOCITY.replace("servo", "rate"))
     )
     assert "'*' are not all of one kind of" in refusal(value_of, mixed, "actuator/*.kv")
+
+
+def test_an_input_is_a_set_point_where_all_that_it_commands_are_servos():
+    model = mujoco.MjModel.from_xml_string("""
+    <mujoco><worldbody><body><joint name="j"/><geom size="0.1"/></body></worldbody><actuator>
+      <motor joint="j"/><position joint="j" kp="20" kv="1"/><velocity joint="j" kv="2"/>
+      <general joint="j" gainprm="3" biastype="affine" biasprm="0 -1 0"/>
+    </actuator></mujoco>""")
+    assert [is_set_point(model, k) for k in range(4)] == [False, True, True, False]

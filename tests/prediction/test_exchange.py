@@ -1,7 +1,7 @@
 """Records exchange their roles: what holds for all stays, what one lacks is contradicted."""
 
 from dataclasses import replace
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 import pytest
@@ -12,6 +12,7 @@ from identification.discovery.findings.finding import FindingKind
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.joint_plant import candidates
 from identification.model.predictor import Predictor
+from identification.prediction import remaining
 from identification.prediction.discovery import discover_records
 from identification.prediction.exchange import exchanged, is_contradicted, without_contradicted
 from identification.prediction.extension import with_effect
@@ -162,19 +163,28 @@ def disturbed(seed, share):
 def test_an_error_of_the_inputs_is_found_as_large_as_it_is(share):
     logs = [disturbed(k, share) for k in range(1, 4)]
     found = fit_nominal(nominal_model(), as_records(logs[:2], logs[2:]))
-    error = needed_input_error(found.fit, found.unseen.floor)
+    error = needed_input_error(found.fit, DiscoveryOptions(), found.unseen.floor)
     if share:
         assert error == pytest.approx(share, rel=0.3)
     else:
         assert error < 0.005
 
 
+def test_no_error_of_set_points_excuses_what_is_left(monkeypatch):
+    logs = [disturbed(k, 0.1) for k in range(1, 4)]
+    found = fit_nominal(nominal_model(), as_records(logs[:2], logs[2:]))
+    monkeypatch.setattr(remaining, "is_set_point", lambda model, control: control == 0)
+    asked = partial(needed_input_error, found.fit, floor=found.unseen.floor)
+    assert asked(DiscoveryOptions()) == np.inf
+    assert asked(DiscoveryOptions(without=("exact_set_points",))) == pytest.approx(0.1, rel=0.3)
+
+
 def test_an_error_of_the_inputs_is_found_where_only_unseen_records_have_it():
     logs = [disturbed(1, 0.0), disturbed(2, 0.0), disturbed(3, 0.1)]
     found = fit_nominal(nominal_model(), as_records(logs[:2], logs[2:]))
     unseen = found.unseen
-    assert needed_input_error(found.fit, unseen.floor) < 0.005
-    error = needed_input_error(found.fit, unseen.floor, unseen.at_horizon)
+    assert needed_input_error(found.fit, DiscoveryOptions(), unseen.floor) < 0.005
+    error = needed_input_error(found.fit, DiscoveryOptions(), unseen.floor, unseen.at_horizon)
     assert error == pytest.approx(0.1, rel=0.3)
 
 
