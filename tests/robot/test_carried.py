@@ -54,15 +54,6 @@ def test_a_second_fit_is_nearer_to_the_first_than_without_it(kept):
     assert second.values == pytest.approx(fitted.values, rel=1e-3)
 
 
-def test_the_std_of_a_held_value_is_not_told_as_known(kept):
-    out, _ = kept
-    text = (out / "robot.toml").read_text()
-    text = text.replace('free = ["mass", "damping"]', 'free = ["damping"]\nheld = ["mass"]')
-    (out / "held.toml").write_text(text)
-    remarks = read_robot(out / "held.toml", ELBOW / "second.csv").remarks
-    assert any("count as known with their std (damping)" in remark for remark in remarks)
-
-
 def test_a_third_fit_of_the_second_log_knows_what_the_second_fit_knew(kept, tmp_path):
     out, _ = kept
     before = read_robot(out / "robot.toml", ELBOW / "second.csv")

@@ -10,7 +10,7 @@ from plain_logs import plain_log
 from robot_cases import TOML
 from touching_cases import simulated
 
-from identification import InputError, fit, read_robot, write_log
+from identification import fit, read_robot, write_log
 from identification.robot.model_file import unit_of
 
 MESH = '<{0}><geometry><mesh filename="package://none/{1}.stl"/></geometry></{0}>'
@@ -154,17 +154,3 @@ ROBOT = """<mujoco><worldbody><site name="wall" pos="0 0 2"/><body name="cart">
 def test_a_gain_has_the_unit_of_its_place(path, unit):
     model = mujoco.MjModel.from_xml_string(ROBOT)
     assert unit_of(model, f"actuator/{path}") == unit
-
-
-def test_a_free_gain_is_printed_with_its_unit_and_read_in_no_other(tmp_path):
-    xml, toml = LINK.format(9.0, 0.5, 6.0), tmp_path / "link.toml"
-    write_log(simulated(xml, samples=60, noise=1e-4), tmp_path / "log.csv")
-    (tmp_path / "link.xml").write_text(xml)
-    start = 'trust = ["steps"]\nmodel = "link.xml"\nfree = ["{}"]\n'
-    toml.write_text(start.format("actuator/s1.kp"))
-    robot = read_robot(toml, tmp_path / "log.csv")
-    assert robot.plant.parameters["actuator/s1.kp"].unit == "N m/rad"
-    table = '[parameters.k]\npath = "actuator/s1.kp"\nunit = "N/m"\n'
-    toml.write_text(start.format("k") + table)
-    with pytest.raises(InputError, match="N m/rad"):
-        read_robot(toml, tmp_path / "log.csv")

@@ -10,7 +10,7 @@ from joint_cases import SLIDER
 from pendulum_robot import TOML, make_folder, measured, plant
 from records_cases import NOISE, record
 from robot_cases import TOML as TOML_PUBLISHER
-from robot_cases import refused, simulated
+from robot_cases import simulated
 
 from identification import InputError, Predictor, fit, read_robot, write_log
 from identification.logs.decimation import decimate
@@ -120,23 +120,6 @@ def path_publisher(tmp_path):
     (tmp_path / "robot.toml").write_text(TOML_PUBLISHER)
     write_log(simulated({}, start=1.4), tmp_path / "log.csv")
     return tmp_path / "log.csv"
-
-
-def test_zeros_between_rows_are_refused(path_publisher, capsys):
-    robot = path_publisher.with_name("robot.toml")
-    header, *rows = path_publisher.read_text().splitlines()
-    mixed = [header]
-    for k, row in enumerate(rows):
-        mixed.append(row)
-        if k % 9 == 6:
-            mixed.append(f"{row.split(',')[0]},0.0,0.0")
-    path_publisher.write_text("\n".join(mixed))
-    told = refused(capsys, "fit", robot, path_publisher)
-    assert told.startswith(f"identification: line 9 of {path_publisher}")
-    assert "there are two rows with one stamp, 0.06 s, and they contradict each other" in told
-    assert f'or write trust = ["rows"] into {robot}' in told
-    # No check but this one speaks against such a log.
-    assert len(read_robot(robot, path_publisher, trust=["rows"]).log) >= len(rows) - 1
 
 
 def twice(path_publisher, other):

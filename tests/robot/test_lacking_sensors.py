@@ -52,12 +52,6 @@ def test_sensors_are_added_and_told(tmp_path, log):
     )
 
 
-def test_a_joint_called_as_its_actuator_has_a_sensor_of_another_name(tmp_path, log):
-    paths = write(tmp_path, log, MOTORS.format("shoulder", "elbow"), effort="{}",
-                  position="{}_position")  # fmt: skip
-    assert read_robot(*paths).log.output_names == ("shoulder_position", "elbow_position")
-
-
 def test_one_joint_that_has_no_sensor_gets_it_where_the_file_asks(tmp_path, log):
     rest = MOTORS.format(*TORQUES) + SENSORS.replace('<jointpos name="elbow" joint="elbow"/>', "")
     paths = write(tmp_path, log, rest)
@@ -94,24 +88,3 @@ def test_new_gives_motors_to_a_log_of_torques(tmp_path, log, capsys, monkeypatch
     assert content["columns"]["elbow_torque"] == effort.format("elbow")
     found = fit(read_robot("new.toml", "log.csv"))
     assert found.values["joint/shoulder.damping"] == pytest.approx(0.4, rel=0.02)
-
-
-def test_new_tells_a_column_that_is_the_input_of_no_actuator(tmp_path, log, capsys, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    rest = MOTORS.format(*TORQUES).replace('<motor name="elbow_torque" joint="elbow"/>', "")
-    write(tmp_path, log, rest, effort="joint_states.effort.{}")
-    said = run(capsys, "new", "arm.xml", "log.csv", "--robot", "new.toml")["guessed"]
-    (sentence,) = [s for s in said if "no actuator of the model takes it" in s]
-    assert sentence.startswith("joint_states.effort.elbow: ")
-    assert sentence.endswith("its actuators: shoulder_torque")
-
-
-def test_new_tells_what_a_free_base_needs(tmp_path, log, capsys, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    write(tmp_path, log, MOTORS.format(*TORQUES))
-    text = (tmp_path / "arm.xml").read_text()
-    cart = '<worldbody><body name="cart"><freejoint/><geom size="0.1"/>'
-    text = text.replace("<worldbody>", cart).replace("</worldbody>", "</body></worldbody>")
-    (tmp_path / "arm.xml").write_text(text)
-    (said,) = run(capsys, "new", "arm.xml", "log.csv", "--robot", "new.toml")["needs"]
-    assert said.startswith("body cart has a free joint; write cart = [seven columns: x, y, z and")

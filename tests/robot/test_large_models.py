@@ -7,16 +7,14 @@ import sys
 import numpy as np
 import pytest
 from joint_cases import SLIDER
-from robot_cases import TOML, write_slider
+from robot_cases import write_slider
 
 from identification import InputError, read_robot
 from identification import child as child_process
-from identification.effects.axes import Axis
 from identification.effects.rows import read_model
 from identification.files import is_file
 from identification.model import hostile
 from identification.model.hostile import refuse_hostile
-from identification.sweep.method import reference_of
 
 SMALL = '<geom size="0.01" contype="0" conaffinity="0" mass="0"/>'
 LARGE = {
@@ -174,10 +172,6 @@ def test_a_hostile_model_is_refused(tmp_path, capfd, old, new, said):
     assert capfd.readouterr().err == ""  # and warnings of its own
 
 
-def test_a_magnitude_that_no_robot_has_is_refused(refusal):
-    assert "give one between 1e-50 and 1e+50" in refusal(Axis, "x", "slide", 1e51, 1.0, 1.0)
-
-
 def test_a_model_with_replicas_and_names_of_any_kind_is_read():
     text = SLIDER.replace(
         "</worldbody>",
@@ -187,26 +181,3 @@ def test_a_model_with_replicas_and_names_of_any_kind_is_read():
     model = read_model(text).compile()
     assert model.nbody == 1 + 1 + 3 + 1
     assert np.isfinite(model.body_mass).all()
-
-
-def test_a_moving_body_without_mass_is_refused(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)  # where MuJoCo would write a file of warnings
-    said = TOML.replace("[parameters.mass]", "[parameters.mass]\nvalue = 0.0")
-    assert said != TOML
-    with pytest.raises(InputError, match="moves, and its mass is 0 kg; give it a value"):
-        read_robot(*write_slider(tmp_path, 60, said))
-    assert not (tmp_path / "MUJOCO_LOG.TXT").exists()
-
-
-@pytest.mark.parametrize("value", ["1e-320", "1e300"])
-def test_a_magnitude_whose_square_is_no_number_is_refused(tmp_path, value):
-    said = TOML.replace("[parameters.mass]", f"[parameters.mass]\nknown = {value}")
-    with pytest.raises(InputError, match=r"known in .* is .*, which no robot has"):
-        read_robot(*write_slider(tmp_path, 60, said))
-
-
-@pytest.mark.parametrize("word", ["a\0b.py:X", "loop.py:X"])
-def test_a_method_in_a_file_of_no_name_is_refused(tmp_path, word):
-    (tmp_path / "loop.py").symlink_to(tmp_path / "loop.py")
-    with pytest.raises(InputError, match="there is no file"):
-        reference_of(word, {}, tmp_path)

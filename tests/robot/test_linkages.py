@@ -6,9 +6,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from identification.robot.file import read_robot_file
-from identification.robot.robot import read_robot_log
-
 FOLDER = Path(__file__).parents[2] / "examples" / "linkages"
 spec = importlib.util.spec_from_file_location("linkages_record", FOLDER / "record.py")
 script = importlib.util.module_from_spec(spec)
@@ -22,15 +19,3 @@ def test_the_logs_are_those_of_the_script(name):
     assert path.read_text().partition("\n")[0] == header
     assert np.loadtxt(path, delimiter=",", skiprows=1) == pytest.approx(table, abs=2e-6)
     assert sum(each.stat().st_size for each in path.parent.iterdir()) < 300_000
-
-
-@pytest.mark.parametrize(
-    ("name", "outputs"),
-    [
-        ("leg", ("hip", "knee")), ("cart", ("x",)), ("crane", ("x", "z")),
-        ("four_bar", ("crank_angle", "pin_angle", "rocker_angle")),
-    ],
-)  # fmt: skip
-def test_each_robot_reads_its_log(name, outputs):
-    file = read_robot_file(FOLDER / name / "robot.toml")
-    assert read_robot_log(file, FOLDER / name / "first.csv").output_names == outputs

@@ -160,11 +160,6 @@ def test_what_is_no_pose_is_refused(tmp_path, refusal, columns, said):
     assert said in refusal(read_robot, file(tmp_path, columns), record(tmp_path))
 
 
-def test_a_base_that_nothing_measures_is_told_how_to_be_measured(tmp_path, refusal):
-    said = refusal(read_robot, file(tmp_path, "", ""), record(tmp_path))
-    assert "write base = [seven columns: x, y, z, and the quaternion w, x, y, z] under" in said
-
-
 def test_a_pitch_near_a_right_angle_is_refused(refusal):
     names = ("px", "py", "pz", "w", "x", "y", "z")
     row = np.array([[0, 0, 0, np.cos(0.7), 0, np.sin(0.7), 0]])

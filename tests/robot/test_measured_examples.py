@@ -32,16 +32,6 @@ needs_records = pytest.mark.skipif(
 
 
 @needs_records
-def test_its_files_hold_the_published_values_and_the_step_is_fine_enough():
-    log = emps.read_emps(DATA / "DATA_EMPS.mat")
-    robot = read_robot(emps.ROBOT, log.part("estimation"))
-    own = robot.plant.parameters
-    for name in robot.file.free:
-        assert own[name].value == emps.PUBLISHED[name]
-    assert log.sampling_time == pytest.approx(emps.EVERY * 1e-3)
-
-
-@needs_records
 def test_friction_that_differs_by_direction_predicts_pulses_that_were_not_fitted():
     log, pulses = (emps.read_emps(DATA / f"DATA_EMPS{s}.mat") for s in ("", "_PULSES"))
     robot = read_robot(emps.ROBOT, log.between(0.0, 5.0))

@@ -119,13 +119,6 @@ def test_lengths_that_do_not_tell_the_joints_are_refused(
     assert said in refusal(read_robot, *paths)
 
 
-def test_tendons_alone_are_named_as_outputs(tmp_path, refusal):
-    u, y, _ = recorded(crane())
-    toml = ROBOT.format(more="").replace('outputs = ["length_a", "length_b"]\n', "")
-    said = refusal(read_robot, *write(tmp_path, crane(), NAMES, np.hstack([u, y]), toml))
-    assert 'write outputs = ["length_a", "length_b"] into' in said
-
-
 CONNECTED = """<mujoco><option timestep="0.002" integrator="RK4"/><worldbody>
 <body name="crank"><joint name="crank" axis="0 1 0" damping="0.05"/>
 <inertial pos="0 0 0.05" mass="0.3" diaginertia="4e-4 4e-4 5e-5"/>

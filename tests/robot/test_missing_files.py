@@ -5,9 +5,8 @@ import numpy as np
 import pytest
 from touching_cases import make_robot, simulated
 
-from identification import fit, read_robot
+from identification import read_robot
 from identification.effects.rows import read_model, read_told_model
-from identification.model import hostile
 from identification.robot.model_file import robot_spec
 
 ARM = """<mujoco><compiler meshdir="meshes" texturedir="pictures"/>{option}
@@ -58,16 +57,6 @@ def test_what_only_shows_is_left_out_and_told(tmp_path):
         assert file in said
     assert said.endswith("they were left out, with 4 geoms of that shape.")
     assert bits(read_model(path.read_text()).compile()) == bits(bare)
-
-
-def test_a_robot_without_its_meshes_is_fitted_and_says_so_once(tmp_path):
-    xml = arm(**{**SHOWN, "asset": LOOK.splitlines()[0].split("<mesh file")[0], "base": ""})
-    xml = xml.replace(' material="wood"', "")
-    path = make_robot(tmp_path, xml, simulated(arm(), samples=300), "q1")
-    robot = read_robot(path, tmp_path / "log.csv")
-    (said,) = [remark for remark in robot.remarks if "missing" in remark]
-    assert "the file meshes/d/link.stl, which is missing and tells only its look; it was" in said
-    assert fit(robot).values["joint/q1.damping"] == pytest.approx(0.3, rel=0.05)
 
 
 MESH = {"asset": '<mesh name="link" file="link.stl"/>'}
@@ -177,13 +166,6 @@ def test_a_missing_include_or_a_broken_mesh_is_refused_as_before(tmp_path, refus
     (tmp_path / "meshes").mkdir()
     (tmp_path / "meshes" / "link.stl").write_text("version https://git-lfs.github.com/spec/v1\n")
     path.write_text(arm(**MESH, base=HULL.format(UNTOUCHED)))
-    assert "cannot be read" in refusal(read_told_model, path)
-
-
-def test_of_a_very_large_model_nothing_is_left_out(tmp_path, refusal, monkeypatch):
-    monkeypatch.setattr(hostile, "BYTES", 1)
-    path = tmp_path / "arm.xml"
-    path.write_text(arm(**SHOWN))
     assert "cannot be read" in refusal(read_told_model, path)
 
 

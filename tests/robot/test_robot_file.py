@@ -2,15 +2,13 @@
 
 import json
 
-import numpy as np
 import pytest
-from robot_cases import NAMES, TOML, refused, run, simulated
+from robot_cases import NAMES, TOML, refused, run
 
-from identification import InputError, confirm, discover, fit, read_log, read_robot, write_log
+from identification import InputError, discover, read_log, read_robot
 from identification.__main__ import main
 from identification.commands.common import Output
 from identification.robot.file import read_robot_file
-from identification.robot.fit_json import robot_fit_to_json
 from identification.robot.robot import read_robot_log, robot_of
 from identification.robot.write import write_robot
 
@@ -118,40 +116,6 @@ def test_a_fit_that_is_stopped_keeps_its_best_values_and_says_so(folder, tmp_pat
 
 
 NAMES_VERBS = ("force",), ("x",)
-
-
-def without_time(record):
-    return {name: value for name, value in record.items() if name != "seconds"}
-
-
-def test_fit_and_confirm_say_what_the_command_says(folder, capsys):
-    path = folder / "verbs.toml"
-    path.write_text("horizon = 0.5\n" + TOML)
-    logs = folder / "short.csv", folder / "short too.csv"
-    for log, seed in zip(logs, (1, 5), strict=True):
-        write_log(simulated({"damping": 3.6, "mass": 1.8}, 400, seed), log)
-    said = run(capsys, "fit", path, logs[0], "--confirm", logs[1])
-    robot = read_robot(path, logs[0], confirm=[logs[1]])
-    found = fit(robot)
-    record = json.loads(json.dumps(robot_fit_to_json(found, confirm(robot, found))))
-    assert without_time(record) == without_time(said)
-    assert found.values == {n: p["value"] for n, p in said["parameters"].items()}
-    std = {n: p["std"] for n, p in said["parameters"].items()}
-    assert {n: s if np.isfinite(s) else None for n, s in found.std.items()} == std
-
-
-@pytest.mark.long
-def test_without_records_the_part_that_was_not_fitted_confirms(folder, tmp_path):
-    path = folder / "unseen.toml"
-    path.write_text("horizon = 0.5\n" + TOML)
-    log = simulated({"damping": 3.6, "mass": 1.8}, 600)
-    write_log(log, tmp_path / "plain.csv")
-    robot = read_robot(path, tmp_path / "plain.csv")
-    found = fit(robot)
-    (there,) = confirm(robot, found)
-    assert there.log == "plain [validation]"
-    assert 4e-4 < there.after < 8e-4  # the noise is 5e-4, and a free run drifts a little
-    assert there.before > 2 * there.after
 
 
 def test_a_log_that_is_read_already_is_the_same_robot(folder):

@@ -7,9 +7,6 @@ from joint_cases import SLIDER
 from robot_cases import TOML, refused, simulated
 
 from identification import write_log
-from identification.effects.axes import Axis
-from identification.effects.catalogue import TURNS, joint_effects
-from identification.effects.named import unknown_number
 from identification.robot.file import read_robot_file
 from identification.robot.robot import read_robot_log
 
@@ -38,16 +35,6 @@ def test_mistakes_are_named(folder, capsys, change, said):
     assert said in refused(capsys, "fit", path, folder / "plain.csv")
 
 
-@pytest.mark.parametrize("outputs", ["", "outputs = ['position']\n"])
-def test_a_thing_without_a_name_is_told(folder, capsys, outputs):
-    change = ('general name="force"', "general")
-    (folder / "unnamed.xml").write_text(SLIDER.replace(*change, 1))
-    path = folder / "unnamed.toml"
-    path.write_text(outputs + TOML.replace("slider.xml", "unnamed.xml"))
-    said = refused(capsys, "fit", path, folder / "plain.csv")
-    assert f"actuator 0 of {folder / 'unnamed.xml'}, counted from 0, has no name; give it" in said
-
-
 @pytest.mark.parametrize("log", [".", ""])
 def test_a_folder_is_no_log(folder, capsys, log):
     path = folder / "robot.toml"
@@ -56,21 +43,6 @@ def test_a_folder_is_no_log(folder, capsys, log):
     assert "is a folder; give the path of a log file" in refused(
         capsys, "discover", path, folder / "plain.csv", "--confirm", log
     )
-
-
-@pytest.mark.parametrize(
-    ("name", "meant"),
-    [
-    ("coulomb_friction.f_c@x", "slide_coulomb_friction.f_c@x"),
-    ("f_c@x", "slide_coulomb_friction.f_c@x"), ("stiction", "stribeck_friction.f_s@swing"),
-],
-)  # fmt: skip
-def test_what_is_suggested_can_be_written(name, meant):
-    crane = (Axis("swing", "hinge", 1.0, 1.0, 1.0), Axis("x", "slide", 1.0, 1.0, 1.0))
-    said = str(unknown_number(name, joint_effects(crane, TURNS)))
-    assert f"did you mean {meant!r}?" in said
-    listed = said.partition("known: ")[2].partition(" and ")[0].partition(". ")[0].split(", ")
-    assert listed == sorted(listed)
 
 
 def test_how_much_a_log_may_be_thinned_is_told(folder, capsys):

@@ -119,16 +119,6 @@ def test_exchanged_columns_are_named(two_joints):
     assert "exchange a and b under [columns]" in said
 
 
-def test_two_units_at_once_and_one_of_two_are_named(hanging, two_joints):
-    own, log = hanging
-    refuse_miswired(own, log)
-    said = refused(own, replace(log, outputs=log.outputs * [1e3, 180 / np.pi]))
-    assert 'pos = "mm" and ang = "deg" (a line each)' in said
-    own, log = two_joints
-    said = refused(own, replace(log, outputs=log.outputs * [1.0, 180 / np.pi]))
-    assert 'write b = "deg" under' in said
-
-
 def test_inputs_that_are_turned_or_exchanged_are_told(hanging, two_joints):
     own, log = hanging
     said = refused(own, replace(log, inputs=-log.inputs))

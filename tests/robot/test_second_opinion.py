@@ -59,19 +59,6 @@ def test_another_effect_is_told_where_torques_prove_none_of_the_names():
     assert asked([], [other], [other]) == [("cogging", True, False)]
 
 
-def test_sentences_say_which_of_the_two_proves_a_name():
-    law, other = score("stiffness", is_proven=False), score("cogging")
-    fit = SimpleNamespace(inertial=0, names=(), fit=None)
-    evidence = SimpleNamespace(scores=(other, law), named=(other,), friction=(), final=fit)
-    _, found = elbow()
-    (named,) = found.named
-    key = replace(named.candidate, effect=replace(named.candidate.effect, name="stiffness"))
-    found = replace(found, named=(replace(named, candidate=replace(key, where="joint a")),))
-    first, second = opinion_sentences(replace(found, torques=opinions(found, evidence)))
-    assert "do not prove friction – Coulomb, joint a" in first
-    assert "name another effect first: cogging, joint a, k = 0.200 ± 0.010 N m" in second
-
-
 def test_torques_that_tell_nothing_are_no_opinion_and_where_nothing_is_missing_none_is_given(
     monkeypatch,
 ):

@@ -5,14 +5,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from joint_cases import SLIDER, slider, slider_log, steps
 from joint_cases import run as run_repetition
+from joint_cases import slider, slider_log, steps
 from pendulum_robot import TOML, assert_true, make_folder, measured, written
-from robot_cases import TOML as TOML_REPETITION
 from robot_cases import refused, run
-from robot_cases import run as command
 
-from identification import fit, read_robot, write_log
+from identification import fit, read_robot
 from identification.__main__ import main
 from identification.logs.joined import REPLAYED, replayed_share
 from identification.robot.file import read_robot_file
@@ -134,16 +132,3 @@ def test_a_replay_does_not_depend_on_units_and_constant_columns():
     assert replayed_share(other[:1], other[1]) == pytest.approx(replayed_share(parts[:1], parts[1]))
     still = replace(parts[1], inputs=0 * parts[1].inputs, outputs=0 * parts[1].outputs)
     assert replayed_share(parts[:1], still) == 0.0
-
-
-def test_the_command_tells_it_in_words_and_in_json(tmp_path, capsys):
-    (tmp_path / "slider.xml").write_text(SLIDER)
-    (tmp_path / "robot.toml").write_text(TOML_REPETITION)
-    log = moved(np.tile(steps(250), (5, 1)))
-    write_log(replace(log, output_names=("x",), units={}), tmp_path / "log.csv")
-    said = command(capsys, "fit", tmp_path / "robot.toml", tmp_path / "log.csv")
-    (finding,) = said["findings"]
-    assert finding["kind"] == "repeated motion"
-    assert finding["share"] > REPLAYED
-    assert any("repeats what was fitted: a replay" in sentence for sentence in said["verdict"])
-    assert json.dumps(finding)

@@ -8,7 +8,7 @@ from joint_cases import SLIDER, slider, slider_log, steps
 from joint_cases import run as simulate
 from pendulum_robot import MJCF, measured
 from pendulum_robot import TOML as TOML_CLIPPED
-from robot_cases import TOML, run
+from robot_cases import TOML
 
 from identification import confirm, fit, read_robot, write_log
 from identification.effects.rows import read_model
@@ -75,14 +75,6 @@ def test_a_free_start_and_one_within_noise_are_not_remarked(folder):
     assert read_robot(folder / "robot.toml", folder / "other.csv").remarks == ()
     (folder / "held.toml").write_text(HELD)
     assert read_robot(folder / "held.toml", folder / "plain.csv").remarks == ()
-
-
-def test_trust_is_repeated_on_the_command_line(folder, capsys):
-    (folder / "held.toml").write_text(HELD)
-    both = ["--trust", "start", "--trust", "wiring", "units"]
-    said = run(capsys, "fit", folder / "held.toml", folder / "other.csv", *both)
-    assert said["remarks"] == []
-    assert len(read_robot(folder / "held.toml", folder / "other.csv").remarks) == 1
 
 
 def robot_in(folder, log, span):

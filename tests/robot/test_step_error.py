@@ -9,12 +9,10 @@ import numpy as np
 import pytest
 from joint_cases import SLIDER, STEP, run, slider, slider_log, steps
 
-from identification import InputError, fit, read_robot, write_log
-from identification.__main__ import main
+from identification import InputError, fit, read_robot
 from identification.errors import DivergenceError
 from identification.robot import fitting
 from identification.robot.file import RobotFile
-from identification.robot.fit_json import robot_fit_to_json
 from identification.robot.robot import robot_of
 from identification.robot.step_error import refuse_coarse_steps, step_error
 
@@ -83,18 +81,6 @@ def test_a_log_without_noise_or_of_a_coarse_encoder_refuses_no_good_step(tmp_pat
     assert step_error(robot(tmp_path, encoder, 'timestep="0.002"')).noise > 0.01 / 12**0.5 - 1e-9
 
 
-def test_the_commands_refuse_in_one_sentence(tmp_path, log, capsys):
-    (tmp_path / "slider.xml").write_text(SLIDER.replace(OPTION, 'timestep="0.01" gravity="0 0 0"'))
-    (tmp_path / "r.toml").write_text('model = "slider.xml"\nfree = ["body/cart.mass"]')
-    write_log(replace(log, units={}), tmp_path / "log.csv")
-    assert main(["fit", str(tmp_path / "r.toml"), str(tmp_path / "log.csv")]) == 2
-    said = capsys.readouterr().err
-    assert said.count("\n") == 1
-    assert f"{tmp_path / 'slider.xml'} errs by" in said
-    assert '; write integrator="RK4" into its <option>, or write trust = ["steps"] into ' in said
-    assert "m in position with integrator Euler" in said
-
-
 ELBOW = Path(__file__).parents[2] / "examples" / "elbow"
 FREE_RUN = "".join(
     line for line in (ELBOW / "elbow.toml").read_text().splitlines(keepends=True)
@@ -122,13 +108,6 @@ def refused(*where, **written):
     return str(caught.value)
 
 
-@pytest.mark.parametrize("toml", [FREE_RUN, HORIZON], ids=["free run", "horizon"])
-def test_a_factor_beyond_what_robots_have_is_named(folder, toml):
-    said = refused(folder, toml, own="[factors]\ncurrent = 1e20\n")
-    assert f"the factor 1e+20 of current under 'factors' in {folder / 'first.toml'}" in said
-    assert "step" not in said
-
-
 def test_a_factor_that_no_step_can_follow_is_named(folder):
     said = refused(folder, own="[factors]\ncurrent = 1e6\n")
     assert "its TOML gives the factor 1e+06 of current under [factors]" in said
@@ -148,23 +127,6 @@ def test_a_start_elsewhere_is_remarked_where_nothing_fails(folder):
     assert "gives qpos[0] = 0.5 where angle begins at" in said
     assert "delete qpos[0] under [start] to begin where the log does" in said
     assert not any("[start]" in r for r in robot_in(folder).remarks)
-
-
-def test_the_verdict_of_a_fit_says_that_the_start_is_elsewhere(folder):
-    """What a fit found depends on it, and the remark may be far above."""
-    robot = robot_in(folder, start='[start]\n"qpos[0]" = 0.2\n')
-    (said,) = [s for s in robot_fit_to_json(fit(robot))["verdict"] if "[start]" in s]
-    assert said.startswith("The values make up for qpos[0] under [start] of")
-    (remark,) = [r for r in robot.remarks if "[start]" in r]
-    assert "so that the values of a fit make up for this; delete qpos[0]" in remark
-
-
-def test_a_start_that_a_horizon_does_not_use_is_remarked(folder):
-    robot = robot_in(folder, HORIZON, '[start]\n"qpos[0]" = 0.0\n"qvel[0]" = 0.1\n')
-    (said,) = robot.remarks
-    assert "qpos[0] and qvel[0] under [start] of" in said
-    assert "are not used, because the file gives a horizon: each window of 0.3 s begins" in said
-    assert not robot_in(folder, HORIZON).remarks
 
 
 def test_a_wrong_factor_of_an_output_is_named_over_a_horizon(folder):
@@ -209,16 +171,3 @@ def said(monkeypatch):
         return str(caught.value)
 
     return of
-
-
-def test_a_factor_is_named_as_what_may_be_wrong(said):
-    sentence = said({"current": 1000.0})
-    assert sentence.startswith("it diverged; use a smaller step. First see whether it is right: ")
-    assert "the factor 1000 of current under [factors] for log 'first', which makes" in sentence
-
-
-def test_without_one_the_place_of_the_step_is_told(said):
-    sentence = said({})
-    assert "factor" not in sentence
-    assert f"The step is timestep in <option> of {ELBOW / 'elbow.xml'}" in sentence
-    assert f"the nominal values are those of {ELBOW / 'elbow.toml'}" in sentence

@@ -3,7 +3,6 @@
 import json
 
 import pytest
-from robot_cases import refused
 from touching_cases import (
     BUFFER,
     GRIPPER,
@@ -50,15 +49,6 @@ def test_a_base_that_was_fixed_collides_with_its_link_and_is_refused(tmp_path, x
     )
     assert '<exclude body1="pedestal" body2="arm"/> into <contact> of robot.xml' in said
     assert f'write trust = ["contacts"] into {path}' in said
-
-
-@pytest.mark.parametrize("verb", ["fit", "linearize"])
-def test_no_verb_begins_with_such_a_model(tmp_path, capsys, log, verb):
-    path = make_robot(tmp_path, pedestal(), log, "q")
-    out = tmp_path / "out"
-    said = refused(capsys, verb, path, tmp_path / "log.csv", "--out", out)
-    assert "geoms of arm and pedestal touch" in said
-    assert not out.exists()
 
 
 @pytest.mark.parametrize(
@@ -115,14 +105,6 @@ def test_a_ground_that_the_log_does_not_have_is_a_remark(tmp_path, capsys):
     assert 'write <exclude body1="world" body2="carriage"/> into <contact> of robot.xml' in said
     assert said in record["remarks"]
     assert said in shown.err
-
-
-def test_a_pair_that_the_file_gives_is_cured_where_it_stands(tmp_path):
-    pair = '<contact><pair geom1="buffer" geom2="box"/></contact><actuator>'
-    xml = BUFFER.format(**PLAIN).replace("<actuator>", pair)
-    path = make_robot(tmp_path, xml, simulated(xml), "x")
-    said = read_robot(path, tmp_path / "log.csv").touches
-    assert 'delete <pair geom1="buffer" geom2="box"/> of robot.xml' in said
 
 
 def test_what_lies_beside_the_robot_is_not_told(tmp_path):

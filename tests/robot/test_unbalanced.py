@@ -56,11 +56,3 @@ def test_a_mistake_is_refused_with_its_cure(tmp_path, mistake, cure, word):
 )
 def test_a_right_log_is_never_refused(tmp_path, world):
     refuse_unbalanced(*robot(tmp_path, ARM, a_log(world), "horizon = 0.2"))
-
-
-def test_the_unit_of_an_input_is_a_current_where_the_gear_is_not_one(tmp_path):
-    xml = ARM.replace('joint="q1"/><motor', 'joint="q1" gear="0.5"/><motor')
-    log = tracked(mujoco.MjModel.from_xml_string(xml), MOTION[ARM])
-    wrong = replace(log, inputs=log.inputs * [1000.0, 1.0])
-    with pytest.raises(InputError, match=r'write u1 = "mA" under \[units\]'):
-        refuse_unbalanced(*robot(tmp_path, xml, wrong, "horizon = 0.2"))

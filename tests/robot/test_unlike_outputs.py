@@ -1,57 +1,26 @@
 """An angle and a way have no common rms: a free run tells the error of each unit."""
 
 import re
-from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from fake_discovery import found as found_by_hand
 from robot_cases import run
 from unlike_cases import MODEL, NOISE, TOML, TRUE, write_robot_and_logs
 
 from identification import InputError, discover, fit, read_robot
 from identification.estimation.metrics import relative
 from identification.prediction.record_errors import error_of_all, errors_by_unit
-from identification.report.discovery_json import discovery_to_json
-from identification.report.discovery_report import discovery_text
-from identification.report.discovery_sections import gap_section, where_section
 from identification.report.fit_verdict import fit_verdict
-from identification.report.media import svg
 from identification.robot.fit_json import worse_unit
 from identification.robot.record_error import AS_WRITTEN, FITTED, Confirmation
 
 PAIR = r"[\d.]+ [mµ]*rad{0} \(angles\) and [\d.]+ [mµ]*m{0} \(slides\)"
-FALL = r"(?:-\d+ %|less by (?:99\.\d|more than 99\.9) %)"
 
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     return write_robot_and_logs(tmp_path_factory.mktemp("unlike"))
-
-
-def test_sentences_tell_each_unit_by_itself(folder, capsys):
-    logs = folder / "robot.toml", folder / "first.csv", "--confirm", folder / "second.csv"
-    said = run(capsys, "fit", *logs)
-    text = " ".join(said["verdict"])
-    errors, sizes = PAIR.format(" rms"), PAIR.format("")
-    for words in (
-        rf"The residual is {errors}, [\d.]+ and [\d.]+ times the noise floor of {sizes}\.",
-        rf"On unseen data the residual is {errors}, [\d.]+ and [\d.]+ times what the fit",
-        rf"On second: {errors} with the values of the robot's file, {errors} with those that were"
-        rf" fitted; mean square {FALL} \(angles\) and {FALL} \(slides\)\.",
-    ):
-        assert re.search(words, text), words
-    for key in ("rms_by_unit", "validation_rms_by_unit", "noise_floor_by_unit"):
-        told = said[key]
-        assert told == {"rad": pytest.approx(1e-3, rel=0.1), "m": pytest.approx(2e-5, rel=0.1)}, key
-    # What had a meaning keeps it: over all outputs, in SI units.
-    assert said["rms"] == pytest.approx(
-        np.sqrt(sum(e**2 for e in said["rms_by_unit"].values()) / 2)
-    )
-    (there,) = said["confirm"]
-    assert there["unit"] == ""
-    assert set(there["before_by_unit"]) == set(there["after_by_unit"]) == {"rad", "m"}
 
 
 def test_each_unit_has_the_weight_of_its_noise(folder):
@@ -74,32 +43,6 @@ def test_an_error_of_one_unit_is_not_hidden_by_the_other(folder):
     assert "That is more than noise" in " ".join(fit_verdict(found))
 
 
-def test_a_discovery_tells_each_unit_and_what_would_be_better():
-    units = {f"angle_{k}": "rad" if k < 5 else "m" for k in range(1, 9)}
-    fake = found_by_hand()
-    whole = fake.run.log
-    run = replace(fake.run, log=replace(whole, units={**whole.units, **units}))
-    by = {"before": {"rad": 2e-3, "m": 5e-5}, "after": {"rad": 1e-3, "m": 2e-5}}
-    answer = replace(
-        fake, records=run.records, run=run, unit="", noise_by_unit={"rad": 9e-4, "m": 2e-5},
-        disturbance_by_unit={"rad": 0.0, "m": 0.0},
-        **{k: replace(getattr(fake, k), rms_by_unit=v) for k, v in by.items()},
-    )  # fmt: skip
-    text = discovery_text(answer)
-    assert (
-        "the error falls from 2 mrad rms (angles) and 50 µm rms (slides) to 1 mrad rms (angles) and"
-        " 20 µm rms (slides) with it in the model; the noise is 0.90 mrad (angles) and 20 µm"
-        " (slides)." in text
-    )
-    assert "The outputs have several units (rad, m), and a free run counts" in text
-    assert "several units" not in discovery_text(fake)
-    for section in (gap_section(answer), *where_section(answer)):
-        assert all("svg" in svg(figure) for _, figure in section.drawn)
-    gap = discovery_to_json(answer)["gap"]
-    assert gap["after"]["rms_by_unit"] == by["after"]
-    assert gap["noise_rms_by_unit"] == {"rad": 9e-4, "m": 2e-5}
-
-
 def test_a_search_along_a_free_run_is_refused(folder):
     robot = read_robot(folder / "robot.toml", folder / "first.csv")
     with pytest.raises(InputError, match=r"several units \(m, rad\).*horizon = 0.2"):
@@ -117,13 +60,6 @@ def test_relative_errors_are_the_same_in_every_unit():
 
 def confirmation(before, after):
     return Confirmation("log", 1.0, 0.9, "", (AS_WRITTEN, FITTED), before, after)
-
-
-def test_the_worse_outputs_are_named_beside_the_others():
-    (said,) = worse_unit([confirmation({"m": 1.9, "rad": 0.4}, {"m": 0.5, "rad": 0.7})])
-    assert "the angles (mean square 3.1 times as large) of the unseen data worse than" in said
-    assert "fit began, but not the slides (mean square -93 %). This may be chance" in said
-    assert "before you rely on what it predicts of angles." in said
 
 
 def test_no_outputs_are_called_worse_that_are_not_given_up_for_others_in_all_records():
@@ -163,18 +99,6 @@ def test_a_fit_over_a_horizon_tells_each_unit_by_itself(over_windows, capsys):
     (there,) = said["confirm"]
     (second,) = (r for r in said["records"] if r["role"] == "confirm")
     assert there["after_by_unit"] == second["after_by_unit"] == said["validation_rms_by_unit"]
-
-
-def test_a_discovery_over_a_horizon_tells_each_unit_by_itself(over_windows, capsys, tmp_path):
-    said = run(capsys, "discover", *over_windows, "--out", tmp_path / "out")
-    page = (tmp_path / "out" / "report.html").read_text()
-    text = re.sub(r"</?span[^>]*>", "", page)
-    assert re.search(rf"{SIZES}</td>", text)
-    ways = f"from {ERRORS} to {ERRORS}|is {ERRORS} off|(noise,|It is) {ERRORS} over"
-    assert re.search(ways, text)
-    gap = said["gap"]
-    assert set(gap["noise_rms_by_unit"]) == set(gap["after"]["rms_by_unit"]) == {"rad", "m"}
-    assert set(said["records"][0]["before_by_unit"]) == {"rad", "m"}
 
 
 def unlike(units):

@@ -2,7 +2,6 @@
 
 import mujoco
 import pytest
-from robot_cases import refused
 from touching_cases import make_robot, simulated
 
 from identification import InputError, read_robot
@@ -40,16 +39,6 @@ def log():
 
 def read(folder, xml, log, more="horizon = 0.3\n", **options):
     return read_robot(make_robot(folder, xml, log, "hip", more), folder / "log.csv", **options)
-
-
-@pytest.mark.parametrize("verb", ["fit", "linearize"])
-def test_no_verb_begins_with_a_base_that_falls(tmp_path, capsys, log, verb):
-    path = make_robot(tmp_path, leg(FREE), log, "hip")
-    said = refused(capsys, verb, path, tmp_path / "log.csv", "--out", tmp_path / "out")
-    assert f"{tmp_path / 'robot.xml'} has a free joint of body trunk, whose pose no sensor" in said
-    assert "each window of 0.3 s begins with it where the model has it, at rest, and it fal" in said
-    assert "weld trunk if it is fixed: delete the free joint in line 5 of robot.xml; write" in said
-    assert not (tmp_path / "out").exists()
 
 
 @pytest.mark.parametrize(

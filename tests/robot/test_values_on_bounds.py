@@ -13,11 +13,10 @@ import pytest
 from page_text import text_of
 from records_cases import MJCF, pendulum, record
 
-from identification import discover, fit, read_robot, write_log
+from identification import fit, read_robot, write_log
 from identification.effects.moving_bodies import Felt
 from identification.model.coordinates import coordinates
 from identification.model.parameter import Parameter, ParameterSet
-from identification.report.discovery_report import discovery_text
 from identification.robot.fit_json import robot_fit_to_json
 from identification.robot.write import write_robot
 
@@ -107,13 +106,3 @@ def test_a_fit_that_ends_on_a_bound_is_told_why_and_can_be_read_again(tmp_path, 
     assert read_robot(again, tmp_path / "1.csv").plant.parameters[INERTIA].value == pytest.approx(
         2 * DRAWN, rel=1e-3
     )
-
-
-def test_a_search_tells_bounds_as_a_fit_does(tmp_path):
-    found = discover(over_windows(tmp_path, ON_BASE))
-    said = discovery_text(found)
-    assert CAUSE in said
-    (row,) = (line for line in said.splitlines() if line.strip().startswith(INERTIA))
-    assert row.endswith("on its bound")
-    assert "±" not in row
-    assert found.final.at_bound == (INERTIA,)

@@ -3,7 +3,7 @@
 import warnings
 
 import pytest
-from joint_cases import DAMPING, SLIDER, slider, slider_log, steps
+from joint_cases import DAMPING, SLIDER, slider_log, steps
 from joint_cases import MASS as MASS_TYPES
 from numba import njit
 from robot_cases import TOML, simulated
@@ -11,16 +11,12 @@ from robot_cases import TOML, simulated
 from identification import (
     Effect,
     InputError,
-    NominalModel,
     Size,
-    discover,
-    fit,
     joint_plant,
     places,
     read_robot,
     write_log,
 )
-from identification.errors import DivergenceError, told_of
 
 FREE, PATH, MASS = '"joint/slide.damping"', '"body/cart.mass"', 'unit = "kg"'
 
@@ -95,73 +91,7 @@ def test_a_key_of_the_logs_own_file_is_told_by_that_file(told, tmp_path):
     assert "under 'factors' in DIR/plain.toml" in said
 
 
-@pytest.mark.parametrize("kind", [InputError, DivergenceError])
-def test_a_place_keeps_the_kind_of_the_error(kind):
-    with pytest.raises(kind, match=r"free in robot\.toml: no such"), told_of("free in robot.toml"):
-        raise kind("no such joint")
-
-
-ARM = """<mujoco><option timestep="0.005" integrator="RK4"/>
-  <worldbody><body name="a"><joint name="q1" axis="0 1 0" damping="0.3"/>
-    <inertial pos="0 0 -0.2" mass="1" diaginertia="0.01 0.01 0.01"/>
-    <body name="b" pos="0 0 -0.4"><joint name="q2" axis="0 1 0" damping="0.1"/>
-      <inertial pos="0 0 -0.1" mass="1" diaginertia="0.01 0.01 0.01"/>
-      <site name="tip"/></body></body></worldbody>
-  {actuator}<sensor>{sensors}</sensor></mujoco>"""
-MOTOR = '<actuator><motor name="u" joint="q1"/></actuator>'
-TOML_NAMED = 'model = "arm.xml"\nfree = ["joint/q1.damping"]\n'
-
-
-@pytest.fixture
-def read(tmp_path, refusal):
-    def told(sensors, actuator=MOTOR, more="", header="time,u,q1"):
-        (tmp_path / "arm.xml").write_text(ARM.format(sensors=sensors, actuator=actuator))
-        (tmp_path / "arm.toml").write_text(more + TOML_NAMED)
-        rows = "".join(f"{0.01 * k},0,{0.1 * k}\n" for k in range(20))
-        (tmp_path / "log.csv").write_text(f"{header}\n{rows}")
-        said = refusal(read_robot, tmp_path / "arm.toml", tmp_path / "log.csv")
-        return said.replace(str(tmp_path), "DIR")
-
-    return told
-
-
-def test_a_sensor_of_another_kind_is_told_by_its_kind(read):
-    sensors = (
-        '<accelerometer name="imu" site="tip"/><framepos name="p" objtype="site" objname="tip"/>'
-    )
-    assert (
-        "sensor 'imu' of DIR/arm.xml is an accelerometer, 'p' is a framepos; outputs are joint"
-        in read(sensors)
-    )
-
-
-TWO = '<jointpos name="q1" joint="q1"/><jointpos name="q2" joint="q2"/>'
-
-
-def test_a_log_of_some_of_the_joints_is_told_which_key_names_them(read):
-    said = read(TWO)
-    assert "lacks column q2" in said
-    assert said.endswith('; or, where these are not measured, write outputs = ["q1"] into DIR/arm'
-                         ".toml")  # fmt: skip
-    assert "outputs =" not in read(TWO, header="time,w,q1")  # an input is missing too
-    assert "outputs =" not in read(TWO, more='outputs = ["q1", "q2"]\n')
-    assert "outputs =" not in read(TWO, header="time,u,q")  # none of them is there
-
-
 LOG = slider_log(steps(400))
-NOMINAL = NominalModel(slider(), ("mass",), [0.3])
-
-
-@pytest.mark.parametrize(
-    ("call", "said"),
-    [
-        (lambda: read_robot(3, "log.csv"), "takes the path of a robot's TOML, not 3 of type int"),
-        (lambda: fit("robot.toml"), "fit takes a robot (read_robot), not 'robot.toml' of type str"),
-        (lambda: discover(NOMINAL, "log.csv", []), "discover takes a Log (read_log)"),
-    ],
-)
-def test_wrong_types_are_told(refusal, call, said):
-    assert said in refusal(call)
 
 
 def none_at_rest(s, p):
