@@ -6,10 +6,8 @@ import time
 from robot_cases import TOML, simulated
 
 from identification.commands import beat as of_beat
-from identification.commands.beat import EVERY, Beat, beating
-from identification.commands.common import note
-from identification.discovery.outlook import EFFECT, FIT, Outlook
-from identification.progress import counted, enter, following, stage, watched
+from identification.commands.beat import EVERY, Beat
+from identification.progress import counted, stage, watched
 
 
 class Clock:
@@ -63,25 +61,6 @@ def test_the_time_left_is_told_where_the_steps_are_known():
     ]
 
 
-def test_of_a_search_its_stage_comes_first():
-    clock, said, beat = watching()
-    outlook = Outlook(said.append, {(EFFECT, 0): (1.0, 3.0)}, clock)
-    with watched(beat.stage, beat.follow), following(outlook), stage("refits", 8):
-        enter(FIT)
-        clock.now += EVERY
-        beat.check()
-        enter(EFFECT)
-        clock.now += EVERY
-        beat.check()
-    assert said == [
-        f"stage 1 of 5, {FIT}",
-        f"10 s: stage 1 of 5, {FIT}; refits: 0 of 8",
-        f"stage 3 of 5, {EFFECT}: 10 to 30 s left",
-        f"20 s: stage 3 of 5, {EFFECT}: up to 20 s left; refits: 0 of 8",
-    ]
-    assert beat.whole is None
-
-
 def test_lines_come_at_least_every_ten_seconds():
     clock, said, beat = watching()
     with watched(beat.stage):
@@ -90,33 +69,6 @@ def test_lines_come_at_least_every_ten_seconds():
             beat.check()
     times = [int(line.partition(" s:")[0]) for line in said[:11]]
     assert max(b - a for a, b in zip([0, *times], times, strict=False)) <= EVERY
-
-
-def test_a_bar_counts_the_same_steps():
-    seen, (_, _, beat) = [], watching()
-
-    def bar(what, steps):
-        from contextlib import contextmanager
-
-        @contextmanager
-        def drawn():
-            yield lambda: seen.append((what, steps))
-
-        return drawn()
-
-    with beat.stage("frames", 3, show=bar) as advance:
-        advance()
-        assert beat.stages[0].done == 1
-    assert seen == [("frames", 3)]
-    assert beat.stages == []
-
-
-def test_a_line_of_the_program_counts(capsys):
-    _, _, beat = watching()
-    with beating(beat):
-        note("a line")
-    assert beat.lines == 1
-    assert of_beat.BEATS == []
 
 
 def test_a_fit_that_takes_long_says_where_it_is(tmp_path, capsys, monkeypatch):

@@ -91,16 +91,6 @@ def test_simulate_takes_the_currents_of_a_log(kept, tmp_path):
     np.testing.assert_array_equal(written.inputs, log.inputs)
 
 
-def test_compare_keeps_a_report_that_needs_no_network(tmp_path):
-    write_log(read_inca_log(LOG).between(0.0, 2.0), tmp_path.with_suffix(".csv"))
-    assert run("compare", tmp_path.with_suffix(".csv"), "--out", tmp_path) == 0
-    page = (tmp_path / "report.html").read_text()
-    assert "mean fit" in page
-    assert 'src="http' not in page
-    assert 'href="http' not in page
-    assert (tmp_path / "measured-and-simulated-motor-angles.png").stat().st_size > 10_000
-
-
 def test_crosscheck_disagrees_aloud(monkeypatch, capsys):
     """A reference of another robot must fail the check, with exit code 1."""
     from inca_mj.verification import check

@@ -119,14 +119,6 @@ def test_an_interrupt_keeps_the_best_values_and_is_told_by_the_exit_code(
     assert {known["std"] for known in result["parameters"].values()} == {None}
 
 
-def test_options_that_say_nothing_are_refused_and_what_they_leave_out_is_said(log, capsys):
-    assert "--free names no parameter" in refused(capsys, log, "--free")
-    assert "profile one of R, R_s" in refused(capsys, log, "--profile", "k_p")
-    assert "profile one of b_v, b_c" in refused(capsys, log, *FREE, "--profile", "J")
-    verdict = say(capsys, log, *FREE)["verdict"]
-    assert any("start pose is held" in sentence for sentence in verdict)
-
-
 def test_innovations_tell_the_noise_of_sensors_and_currents(log, capsys):
     result = say(capsys, log, *FREE, "--innovations")
     assert set(result["parameters"]) == set(TRUTH)

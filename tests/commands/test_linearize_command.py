@@ -107,11 +107,3 @@ def test_bad_input_of_inca_is_one_sentence(capsys, tmp_path, arguments, words):
     assert words in error
     assert error.count("\n") == 1
     assert not out.exists()
-
-
-def test_bad_input_of_any_robot_is_one_sentence(capsys, folder):
-    arguments = ("--time", "1")
-    assert identification(["linearize", str(folder / "robot.toml"), *arguments]) == 2
-    error = capsys.readouterr().err
-    assert "none is given" in error
-    assert error.count("\n") == 1

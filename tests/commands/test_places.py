@@ -42,11 +42,6 @@ def test_a_folder_with_files_of_the_user_is_refused_before_anything_is_done(
     assert {p.name: p.read_text() for p in mine.iterdir()} == {"log.csv": LOG}
 
 
-def test_no_folder_at_all_is_refused(capsys):
-    assert inca(["simulate", "--out="]) == 2
-    assert "name a folder, such as --out out/run" in capsys.readouterr().err
-
-
 def test_what_was_made_is_made_again_and_what_the_user_changed_is_kept(tmp_path):
     out = tmp_path / "out"
     made(out, a="first", b="first")
@@ -124,18 +119,3 @@ def test_a_folder_that_a_stopped_command_made_does_not_stay(tmp_path):
             stopped(out)
         assert out.exists() == stays
         assert not stays or not list(out.iterdir())
-
-
-def test_a_link_that_leads_nowhere_is_no_folder_for_results(tmp_path, capsys):
-    (tmp_path / "loop").symlink_to(tmp_path / "loop")
-    assert inca(["simulate", "--duration", "1", "--out", f"{tmp_path / 'loop'}/new"]) == 2
-    said = capsys.readouterr().err
-    assert said.count("\n") == 1
-    assert "loop is a link that leads nowhere; choose another" in said
-
-
-def test_a_draft_of_no_process_is_kept(tmp_path):
-    (tmp_path / ".draft-²-x").mkdir()
-    made(tmp_path, a="1")
-    assert (tmp_path / ".draft-²-x").is_dir()
-    assert list_foreign(tmp_path) == []

@@ -3,14 +3,13 @@
 import errno
 import json
 import os
-from pathlib import Path
 
 import pytest
 from folder_cases import content, made
 
 from identification import write_log
 from identification.errors import InputError
-from identification.folders import draft_of, refuse_foreign, try_folder
+from identification.folders import draft_of, refuse_foreign
 from inca_mj.cli import main
 from inca_mj.twin.logs import read_inca_log
 
@@ -130,17 +129,6 @@ def test_a_folder_that_cannot_be_is_named_before_any_work(
     assert reason in said
     assert "another" in said
     assert sorted(tmp_path.rglob("*")) == before
-
-
-def test_a_folder_that_cannot_be_read_or_written_is_named(tmp_path, monkeypatch):
-    def denied(path, *_, **__):
-        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(path))
-
-    out = tmp_path / "out"
-    out.mkdir()
-    monkeypatch.setattr(Path, "iterdir", denied)
-    with pytest.raises(InputError, match=f"folder {out}: Permission denied; choose another"):
-        try_folder(out)
 
 
 def test_a_folder_that_a_command_reads_is_not_that_of_its_results(tmp_path, capsys):

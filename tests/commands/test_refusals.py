@@ -1,7 +1,5 @@
 """A wrong command line is told in one sentence, with what would be right."""
 
-from importlib.metadata import version
-
 import pytest
 
 from identification.__main__ import main as identification
@@ -54,19 +52,6 @@ def test_a_wrong_line_is_told_in_one_sentence(capsys, program, line, said):
     assert said in error
 
 
-@pytest.mark.parametrize(("program", "name"), [(inca, "inca"), (identification, "identification")])
-def test_the_version_is_one_line(capsys, program, name):
-    assert program(["--version"]) == 0
-    said = capsys.readouterr().out
-    assert said.startswith(f"{name} {version('inca-mj')}, MuJoCo {version('mujoco')}, Python 3.")
-    assert said.count("\n") == 1
-
-
-def test_all_good_names_are_listed_and_the_likely_one_is_first():
-    said = str(unknown_name("unit", "amp", ["volt", "ampere", "metre"]))
-    assert said == "unknown unit 'amp'; did you mean 'ampere'? known: ampere, metre, volt"
-
-
 def test_of_very_many_names_the_nearest_are_listed():
     names = [f"joint_{k}.damping" for k in range(LISTED)]
     assert str(unknown_name("parameter", "nothing", names)).count("joint_") == LISTED
@@ -88,14 +73,3 @@ def test_of_very_many_names_the_nearest_are_listed():
 ])  # fmt: skip
 def test_what_is_repeated_adds_up(commands, written, read):
     assert gathered(commands, written.split()) == read.split()
-
-
-def test_a_model_in_place_of_a_robot_file_is_told_what_writes_one(capsys, tmp_path):
-    (tmp_path / "arm.xml").write_text("<mujoco/>")
-    assert identification(["fit", str(tmp_path / "arm.xml"), "log.csv"]) == 2
-    assert "arm.xml LOG, which writes one" in capsys.readouterr().err
-
-
-def test_confirm_without_a_log_is_no_wish(capsys):
-    assert identification(["fit", "robot.toml", "a.csv", "--confirm"]) == 2
-    assert "--confirm names no log" in capsys.readouterr().err

@@ -1,6 +1,5 @@
 """Results are there whole, the old ones or the new ones, whatever ends the program."""
 
-import contextlib
 import json
 import os
 import signal
@@ -16,7 +15,6 @@ import pytest
 from folder_cases import content, list_foreign, made
 
 from identification.commands.common import Output, conclude, say_json
-from identification.errors import InputError
 from identification.folders import refuse_foreign, try_folder
 from inca_mj.commands import filmed
 from inca_mj.commands.discover import Discover
@@ -124,39 +122,6 @@ def test_an_interrupt_while_figures_are_drawn_costs_the_figures_only(tmp_path, c
     refuse_foreign(out)
 
 
-def test_figures_that_have_no_room_cost_the_figures_only(tmp_path, capsys):
-    out = tmp_path / "out"
-
-    def draw(folder):
-        raise InputError(f"cannot write {folder / 'a.png'}: No space left on device")
-
-    conclude(Command(Output(out=out)), {"value": 1}, "the verdict", draw=draw)
-    assert "no figures and report: cannot write" in capsys.readouterr().err
-    assert {*content(out)} == {"result.json"}
-
-
-@pytest.mark.parametrize("fails", ["the folder", "the figures", "nothing"])
-def test_where_results_are_is_said_once_they_are_there(tmp_path, capsys, fails):
-    out = tmp_path / "out"
-
-    def keep(folder):
-        if fails == "the folder":
-            raise InputError("no room for it")
-
-    def draw(folder):
-        if fails == "the figures":
-            raise InputError("no such colour")
-
-    command, record = Command(Output(out=out)), {"value": 1}
-    is_drawn = None
-    with contextlib.suppress(InputError):
-        is_drawn = conclude(command, record, "the verdict", keep, draw, "the results are there")
-    said = capsys.readouterr().out
-    assert said.startswith("the verdict\n")
-    assert ("the results are there" in said) == out.exists() == (fails != "the folder")
-    assert is_drawn == {"the folder": None, "the figures": False, "nothing": True}[fails]
-
-
 def save_one(sections, folder):
     """In place of the figures, which take seconds to draw."""
     (folder / "figure.png").write_bytes(b"")
@@ -191,28 +156,6 @@ def test_an_interrupt_in_the_film_costs_the_film_only(tmp_path, capsys, monkeypa
     assert "<video" not in (out / "report.html").read_text()
     assert list_foreign(out) == []
     assert json.loads(said.out)["model"] == str(out / "model.xml")
-
-
-def test_what_cannot_be_drawn_costs_itself_only(tmp_path, capsys, monkeypatch):
-    """The film is drawn beside the figures: neither waits for the other without end."""
-    out = tmp_path / "out"
-
-    def film(found, folder, progress):
-        raise InputError("ffmpeg is missing")
-
-    monkeypatch.setattr(filmed, "film_discovery", film)
-    monkeypatch.setattr("inca_mj.commands.discover.cannot_draw", lambda: "")
-    monkeypatch.setattr("identification.report.discovery_report.save_figures", save_one)
-    found = fake_discovery.found()
-    monkeypatch.setattr("inca_mj.workflows.discovery.discover", lambda *_, **__: found)
-    assert Discover((Path("examples/log.csv"),), output=Output(out=out)).run() == 0
-    said = capsys.readouterr().err
-    assert "no figures and report" not in said
-    assert "no film: ffmpeg is missing" in said
-    names = {*content(out)}
-    assert {"result.json", "model.xml", "effects.json", "report.html"} <= names
-    assert "film.mp4" not in names
-    assert list_foreign(out) == []
 
 
 WAIT = """

@@ -5,7 +5,6 @@ import subprocess
 import sys
 from pathlib import Path
 
-from inca_mj.cli import main
 from inca_mj.files import example_path
 
 WATCHED = """
@@ -37,27 +36,6 @@ def test_commands_that_draw_nothing_import_neither_figures_nor_the_search(tmp_pa
     modules = json.loads(done.stderr)
     assert "mujoco" in modules
     assert not {*SLOW, SEARCH} & {*modules}
-
-
-def test_a_run_is_kept_always(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    assert main(["simulate", "--duration", "0.05"]) == 0
-    said = capsys.readouterr().out
-    usual = {"log.csv", "log.toml", "model.xml", "result.json", "run.npz"}
-    kept = {p.name for p in (tmp_path / "out" / "simulate").glob("[!.]*")}
-    assert kept == usual
-    assert "--out DIR adds figures and a report" in said
-
-
-def test_the_usual_folder_of_a_run_is_refused_where_it_holds_other_files(
-    tmp_path, monkeypatch, capsys
-):
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "out" / "simulate").mkdir(parents=True)
-    (tmp_path / "out" / "simulate" / "notes.txt").write_text("mine")
-    assert main(["simulate", "--duration", "0.05"]) == 2
-    assert "notes.txt" in capsys.readouterr().err
-    assert [p.name for p in (tmp_path / "out" / "simulate").iterdir()] == ["notes.txt"]
 
 
 ROOT = Path(__file__).parents[2]

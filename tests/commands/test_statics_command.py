@@ -7,11 +7,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from statics_cases import RADIAL
 
 from inca_mj.cli import main
 from inca_mj.kinematics.cables import inverse
-from inca_mj.robot.geometry import write_geometry
 from inca_mj.robot.parameters import GRAVITY, parameter_set
 from inca_mj.statics.robot import pull
 from inca_mj.statics.workspace import DriveLimits
@@ -107,10 +105,3 @@ def test_what_cannot_be_is_refused_in_one_sentence(capsys, tmp_path, arguments, 
     assert said.err.count("\n") == 1
     assert re.search(sentence, said.err)
     assert not out.exists()
-
-
-def test_layouts_without_closure_are_refused(capsys, tmp_path):
-    path = write_geometry(RADIAL, tmp_path / "layout.toml")
-    assert run("statics", "--geometry", path) == 2
-    said = capsys.readouterr().err
-    assert "rank 5" in said or "cannot exert" in said or "would have to push" in said

@@ -43,15 +43,6 @@ def test_the_exit_code_is_that_of_the_work(folder, line, code):
     assert b"Traceback" not in said
 
 
-def test_a_full_standard_output_is_named(folder):
-    code, _, said = shell(folder, "P --help >/dev/full")
-    assert code == 2
-    assert said.decode() == (
-        "identification: cannot write to standard output: No space left on device; make room or"
-        " choose another place\n"
-    )
-
-
 def test_what_is_written_goes_into_no_closed_stream(folder):
     """Else the first file that is opened gets the number of a stream, and what is said to it."""
     code, _, said = shell(folder, f"{GOOD} --quiet --out out >&- 2>&- <&-")
@@ -69,17 +60,3 @@ def test_letters_that_an_encoding_lacks_end_nothing(folder):
     assert b"n\\xff" in out.replace(b"\\\\", b"\\")
     text = (folder / "strict" / "result.json").read_text(encoding="utf-8")
     assert "\\ud" not in text.replace("\\\\", "")  # half a letter, which other readers refuse
-
-
-def test_no_warning_of_a_library_reaches_a_user(folder):
-    (folder / "warns.py").write_text(
-        "import warnings\nfrom identification.__main__ import program\n"
-        "import identification.commands.cli as cli\n"
-        "cli.run_program = lambda *_: warnings.warn('Glyph 128512 missing') or 0\n"
-        "raise SystemExit(program())\n"
-    )
-    for words, is_told in (([], False), (["-W", "default"], True)):
-        done = subprocess.run([sys.executable, *words, "warns.py"], cwd=folder,
-                              capture_output=True, check=False)  # fmt: skip
-        assert done.returncode == 0
-        assert (b"Glyph" in done.stderr) == is_told

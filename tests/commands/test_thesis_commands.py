@@ -9,7 +9,7 @@ import pytest
 
 from inca_mj.cli import main
 from inca_mj.effects.platform import PULL
-from inca_mj.report.citation import THESIS, software, to_text, works
+from inca_mj.report.citation import software, works
 from inca_mj.robot.inputs import make_input
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.twin.run import load_run, simulate
@@ -31,42 +31,6 @@ def test_the_citation_file_is_what_the_program_cites():
             assert value in kept
     project = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
     assert f'version = "{software().version}"' in project
-
-
-def test_every_citation_names_the_program_and_the_thesis():
-    said = to_text()
-    assert software().title in said
-    assert THESIS.title in said
-    assert THESIS.note in said  # that the author is not known
-
-
-def test_cite_prints_text_bibtex_or_json(capsys):
-    assert run("cite") == 0
-    assert capsys.readouterr().out == to_text() + "\n"
-    assert run("cite", "--bibtex") == 0
-    said = capsys.readouterr().out
-    assert re.findall(r"^@(\w+)\{(\w+),", said, flags=re.M) == [
-        ("software", "inca_mj"), ("mastersthesis", "inca_thesis")
-    ]  # fmt: skip
-    assert said.count("{") == said.count("}")
-    assert run("cite", "--json") == 0
-    record = json.loads(capsys.readouterr().out)
-    assert [work["key"] for work in record["works"]] == ["inca_mj", "inca_thesis"]
-
-
-@pytest.mark.long
-def test_a_figure_takes_the_set_that_it_needs(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    assert run("simulate", "--figure", "3.3", "--out", tmp_path / "a") == 0
-    data = load_run(tmp_path / "a" / "run.npz")
-    np.testing.assert_array_equal(data.currents, make_input("prbs", 5.0))
-    assert (tmp_path / "a" / "motor-currents.png").stat().st_size > 10_000
-    record = json.loads((tmp_path / "a" / "result.json").read_text())["configuration"]
-    assert (record["input"], record["duration"], record["robot"]["set"]) == ("prbs", 5.0, "trial")
-    assert run("simulate", "--figure", "2.16") == 0  # is kept, and not drawn
-    step = load_run(tmp_path / "out" / "simulate" / "run.npz")
-    assert step.twin.parameters.values() == parameter_set("simulation").values()
-    assert (step.currents == [2.0] + 7 * [0.0]).all()
 
 
 def test_a_force_is_in_the_run_and_in_its_file(tmp_path, monkeypatch):

@@ -51,18 +51,3 @@ def test_an_effect_by_its_name_alone_is_its_first_size(monkeypatch, capsys):
     assert alone.effects == whole.effects
     assert alone.parameters.values() == whole.parameters.values()
     assert alone.parameters.values()["load_dependent_friction.mu"] == 0.05
-
-
-@pytest.mark.parametrize(
-    ("words", "sentence"),
-    [
-        (("--effect", "load_dependant_friction=1"), "did you mean 'load_dependent_friction'"),
-        (("--effect", "delay=0.1", "delay.tau=0.2"), "twice"),
-        (("--bandwidth", "400"), "beyond 100 rad/s"),
-    ],
-)
-def test_bad_input_is_refused_in_one_sentence(words, sentence, capsys, tmp_path):
-    out = tmp_path / "out"
-    assert main(["track", *words, "--out", str(out)]) == 2
-    assert sentence in capsys.readouterr().err
-    assert not out.exists()

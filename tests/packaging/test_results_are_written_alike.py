@@ -3,7 +3,7 @@
 import json
 import re
 from dataclasses import replace
-from functools import cache, partial
+from functools import cache
 from pathlib import Path
 
 import fake_discovery
@@ -18,14 +18,11 @@ from identification import (
     SavedDiscovery,
     SavedFit,
     discover,
-    discovery_text,
     fit,
     load,
 )
 from identification.commands.cli import main
-from identification.prediction.discovery import discover_records
 from identification.robot import discovery, fitting
-from identification.robot.discovery_files import RobotDiscoveryFiles
 from identification.shown import verdict_of
 
 ROOT = Path(__file__).parents[2]
@@ -86,22 +83,6 @@ def test_a_report_is_one_file_that_begins_with_the_verdict(result, tmp_path):
     first = verdict[0] if isinstance(verdict, list) else verdict_of(result)[0]
     assert first in page
     assert "<video" not in page
-
-
-def test_a_report_of_a_robot_says_what_its_records_are_worth(tmp_path):
-    robot, found = elbow()
-    assert found.to_dict()["remarks"] == list(robot.remarks)
-    same = replace(found, files_of=partial(RobotDiscoveryFiles, robot=repeating(robot)))
-    (sentence,) = same.files.sentences
-    assert "first repeats what was fitted" in sentence
-    assert sentence in text_of(same.report(tmp_path / "one.html").read_text())
-    assert same.to_dict()["located"][-1] == sentence
-    assert same.to_dict()["findings"][-1]["kind"] == "repeated motion"
-
-
-def repeating(robot):
-    """The robot, confirmed on the record to which it was fitted."""
-    return replace(robot, records=(robot.log,))
 
 
 def test_what_was_saved_is_read_again_from_the_folder_or_its_file(result, tmp_path):
@@ -173,10 +154,3 @@ def test_what_is_no_result_is_refused(tmp_path, refusal):
         '{"verdict": "named", "effects": [{"name": 1}], "rejected": [], "unexplained": false}'
     )
     assert "is damaged or was changed (KeyError: 'where')" in refusal(load, path)
-
-
-def test_a_result_of_no_public_function_says_which_has_files(refusal):
-    robot = elbow()[0]
-    found = discover_records(robot.nominal_model, [robot.log], [], robot.candidates[:1])
-    assert "take one that identification.discover" in refusal(found.to_dict)
-    assert discovery_text(found)

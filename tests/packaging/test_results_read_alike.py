@@ -16,7 +16,7 @@ from page_text import text_of
 
 import identification
 import inca_mj
-from identification import discovery_text, fit
+from identification import discovery_text
 from identification.shown import Shown, verdict_of
 
 ROOT = Path(__file__).parents[2]
@@ -130,11 +130,3 @@ def test_words_of_a_verdict_are_escaped_in_the_box():
 
     assert "a &lt; b &amp; &lt;script&gt;" in Odd()._repr_html_()
     assert repr(Odd()) == "a < b & <script> in 0.2 s."
-
-
-def test_a_robot_and_its_fit_show_themselves_in_a_line():
-    robot = elbow()[0]
-    assert repr(robot).startswith("Robot of elbow.toml")
-    fitted = fit(robot)
-    assert re.fullmatch(r"mass = 1\.\d+ ± \S+ kg, damping = .* N m s/rad.*", repr(fitted))
-    assert all(len(repr(shown)) < 300 for shown in (robot, fitted))

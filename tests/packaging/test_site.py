@@ -119,9 +119,3 @@ def test_notebooks_are_kept_without_results_and_use_public_names(path):
     assert all(not cell["outputs"] and cell["execution_count"] is None for cell in code)
     lines = chain(*(cell["source"] + ["\n"] for cell in code))
     refuse_private("".join(line for line in lines if not line.startswith("%")))
-
-
-def test_nothing_of_the_site_is_fetched_from_elsewhere():
-    assert SITE["theme"]["font"] is False
-    assert "offline" in SITE["plugins"]
-    assert not any(re.match("(https?:)?//", path) for path in SITE["extra_css"])

@@ -12,7 +12,7 @@ from statics_cases import ROBOT
 
 from identification.errors import InputError
 from identification.progress import duration
-from inca_mj.commands.film import FIRST, SOON, FilmProgress
+from inca_mj.commands.film import FIRST, FilmProgress
 from inca_mj.commands.filmed import FILMED, film_discovery, filmed_seconds
 from inca_mj.rendering.film import stills
 from inca_mj.rendering.scene import make_scene
@@ -60,21 +60,6 @@ def test_both_models_are_filmed_and_the_section_says_when(tmp_path, monkeypatch)
     assert np.abs(left - right).max() > 60  # two models, two pictures
 
 
-def test_the_section_says_whether_a_fit_has_seen_what_is_filmed(tmp_path, monkeypatch):
-    """As the first record is fitted whole where others confirm."""
-    seconds = (0.3, 0.8)
-    said = "fitted"
-    filmed = []
-    monkeypatch.setattr("inca_mj.commands.filmed.film", lambda *given, **_: filmed.append(given[0]))
-    monkeypatch.setattr("inca_mj.commands.filmed.filmed_seconds", lambda log: seconds)
-    section = film_discovery(fake_discovery.found(), tmp_path)
-    (scene,) = filmed
-    assert scene.run.time[0] == pytest.approx(seconds[0])
-    assert scene.run.time[-1] <= seconds[1]
-    assert section.title.startswith(f"The film: {said} seconds")
-    assert ("no fit has seen" in section.text) == (said == "unseen")
-
-
 def told(frames, seconds, begin=60.0, lines=True):
     """The lines of a film whose first frame takes `begin` and every other `seconds`."""
     said, now = [], [0.0]
@@ -90,13 +75,6 @@ def test_it_says_the_length_first_and_then_the_time_by_the_first_frames():
     assert first == "film: 600 frames, 20 s of film"
     left = 0.5 * (600 - FIRST - 1)  # [s]; what the renderer took to begin is not counted
     assert second == f"film: 600 frames, about {duration(left)} to draw"
-
-
-def test_slow_frames_are_not_waited_for():
-    seconds = 3.0
-    _, second, *_ = told(100, seconds)
-    done = 1 + next(k for k in range(1, FIRST + 1) if k * seconds >= SOON or k == FIRST)
-    assert second == f"film: 100 frames, about {duration(seconds * (100 - done))} to draw"
 
 
 END = """

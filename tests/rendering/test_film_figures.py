@@ -7,29 +7,12 @@ import pytest
 from PIL import Image
 
 from identification.errors import InputError
-from identification.report import media
 from identification.report.figures import compare_figure
 from identification.report.media import svg
 from identification.report.page import Section, Table, write_report
 from identification.report.style import save_png
 from inca_mj.rendering.legend import SLACK, tension_scale
 from inca_mj.report.figures import crosscheck_figure, simulation_figures
-
-
-def test_the_currents_and_the_four_figures_of_the_thesis(short_run):
-    figures = simulation_figures(short_run)
-    lines = {name: len(figure.axes[0].lines) for name, figure in figures.items()}
-    assert lines == {
-        "motor_currents": 8,
-        "motor_angles": 8,
-        "cable_tensions": 8,
-        "platform_position": 3,
-        "platform_angles": 3,
-    }
-    for figure in figures.values():
-        [axes] = figure.axes
-        assert axes.get_xlabel() == "time [s]"
-        assert axes.get_ylabel().endswith("]")
 
 
 def test_compare_shows_every_output_with_its_fit_and_residual():
@@ -123,21 +106,6 @@ def test_a_report_is_well_formed_and_its_names_are_unique(page):
     used = set(re.findall(r'(?:url\(|href=")#([^)"]+)', page))
     assert used <= set(names)
     HTMLParser().feed(page)
-
-
-def test_the_verdict_comes_first_and_text_is_escaped(page):
-    assert "A &lt;report&gt;" in page
-    assert page.index("All &amp; well.") < page.index("First.")
-    assert page.count("<svg") == 10
-    assert "data:video/mp4;base64," in page
-    assert '<td class="number">0.0051235</td>' in page
-    assert page.index("seed 1") > page.index("Motion again")
-
-
-def test_a_figure_of_many_points_becomes_pixels(tmp_path, pictures, monkeypatch):
-    monkeypatch.setattr(media, "_LARGEST_SVG", 100)
-    path = write_report(tmp_path / "r.html", "t", [], [Section("s", figures=pictures[:1])])
-    assert '<img src="data:image/png;base64,' in path.read_text()
 
 
 def test_what_cannot_be_shown_is_refused(tmp_path):

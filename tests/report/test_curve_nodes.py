@@ -9,7 +9,6 @@ from joint_cases import arm, reached, seen, share, slider
 
 from identification.effects.effect import Candidate
 from identification.quantities import quantity
-from identification.report.effect_words import describe_there
 from identification.report.named_words import curve_nodes, curve_top, node_lines
 
 C = (1.0, -2.0, 3.0, -4.0, 5.0, -6.0, 7.0, -8.0)
@@ -56,16 +55,3 @@ def test_a_curve_has_its_sizes_at_its_nodes(plant, effect, where):
     assert nodes.reads in first
     order = np.argsort(nodes.at, kind="stable")
     assert [float(line.partition(": ")[2].split()[0]) for line in told] == [C[k] for k in order]
-
-
-@pytest.mark.parametrize(
-    ("name", "where", "said"),
-    [
-        ("curve_before", "joint elbow", "of the position of shoulder, the joint before it, joint"),
-        ("curve_position", "joint elbow", "curve of position, joint elbow"),
-    ],
-)
-def test_a_neighbour_is_called_by_its_name(name, where, said):
-    plant = arm()
-    (effect,) = (e for e in plant.effects if e.name == name)
-    assert said in describe_there(Candidate(effect, where, {}), plant)

@@ -5,12 +5,10 @@ import re
 import shutil
 import subprocess
 
-import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from identification.report.discovery_figures import gains_figure
-from identification.report.page import LONG, Section, Table, write_report
+from identification.report.page import Section, Table, write_report
 
 NAMES = ("chromium", "chromium-browser", "google-chrome")
 BROWSER = next(filter(None, map(shutil.which, NAMES)), None)
@@ -114,65 +112,3 @@ def test_what_is_wider_than_the_screen_says_so_and_nothing_else_does(tmp_path):
     narrow, figure_box, wide = boxes(page, 420)
     assert narrow == "sideways"
     assert figure_box == wide == "sideways on"
-
-
-TELEPHONE = 420  # pixels; a window without a screen is no narrower than 500, its page can be
-MEASURE = """
-<script>
-window.addEventListener("load", function () {
-  document.querySelector("main").style.width = "WIDTHpx";
-  function size(element) {
-    return parseFloat(getComputedStyle(element).fontSize) *
-      (element.getScreenCTM ? element.getScreenCTM().a : 1);
-  }
-  var box = document.querySelector("main").getBoundingClientRect();
-  document.body.setAttribute("data-said", JSON.stringify({
-    moves: Array.from(document.querySelectorAll(".sideways"), function (e) {
-      return e.scrollWidth > e.clientWidth + 1;
-    }),
-    letters: Array.from(document.querySelectorAll("svg text"), size),
-    values: Array.from(document.querySelectorAll("td:nth-child(2)"), function (e) {
-      return e.querySelector(".whole").getBoundingClientRect().right - box.left;
-    }),
-    name: document.querySelector("td").clientWidth
-  }));
-});
-</script></body>"""
-
-
-def measured(page):
-    page.write_text(probed(page.read_text(), MEASURE.replace("WIDTH", str(TELEPHONE))))
-    found = re.search(r'data-said="([^"]*)"', browse(page, "--dump-dom", width=TELEPHONE))
-    return json.loads(found[1].replace("&quot;", '"'))
-
-
-def test_on_a_telephone_bars_are_read_and_values_seen_without_moving_anything(tmp_path):
-    labels = ["friction – Stribeck peak that grows with the transmitted load, joint shoulder_pan"]
-    bars = gains_figure(
-        [*labels, "force – offset, joint rail"], np.array([0.9, 0.4]), [True, False]
-    )
-    rows = (("transmitted_load_friction.mu, joint shoulder_pan_joint_of_the_robot",
-             "15.1 ± 1.0 mN m s/rad", "15.01 ± 0.09 mN m s/rad"),)  # fmt: skip
-    table = Table(("parameter", "fitted without effects", "fitted with what is named"), rows)
-    parts = [Section("s", figures=(("Bars", bars),), table=table.last_first)]
-    found = measured(write_report(tmp_path / "r.html", "t", [], parts))
-    in_table, in_figure = found["moves"]
-    assert in_table  # the last column, which is not asked for first
-    assert not in_figure
-    assert min(found["letters"]) > 8
-    assert max(found["values"]) < TELEPHONE
-    assert found["name"] >= 8 * 16
-
-
-def test_a_folded_table_is_one_line_on_paper_and_an_unfolded_one_is_printed(tmp_path):
-    rows = tuple((f"row {k}", float(k)) for k in range(20 * LONG))
-    page = write_report(tmp_path / "r.html", "t", [], [Section("s", table=Table(("a", "b"), rows))])
-    assert pages(page) == 1
-    page.write_text(page.read_text().replace("<details>", '<details open="">'))
-    assert pages(page) > 3
-
-
-def pages(page):
-    out = page.with_suffix(".pdf")
-    browse(page, f"--print-to-pdf={out}")
-    return len(re.findall(rb"/Type\s*/Page\b", out.read_bytes()))

@@ -1,7 +1,5 @@
 """Where a model fails over a horizon: the errors that are told, and the force that is missing."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from fake_discovery import found as free_run
@@ -9,19 +7,11 @@ from gap_cases import LEVEL, named, unknown
 from records_cases import HORIZON
 
 from identification.report.discovery_json import discovery_to_json
-from identification.report.discovery_report import discovery_text
-from identification.report.discovery_verdict import discovery_verdict
 from identification.report.horizon_gap import APART, WORST, find_gap
 from identification.report.horizon_section import (
-    NEEDED,
     NO_FORCE,
-    TITLE,
-    error_figures,
     horizon_sections,
 )
-from identification.report.horizon_section import WORST as WORST_WINDOWS
-
-LOOKS_LIKE = "It looks like a force on hinge that depends on the rate of hinge: "
 
 
 def test_errors_are_those_that_the_discovery_tells():
@@ -76,26 +66,6 @@ def test_once_the_friction_is_named_no_force_is_needed():
     (section,) = horizon_sections(named())
     assert NO_FORCE not in section.plain  # nothing is far above the noise
     assert "where the model with what is named fails" in section.plain
-
-
-def test_an_unknown_effect_is_shown_where_it_acts():
-    answer = unknown()
-    fails, force = horizon_sections(answer)
-    assert (fails.title, force.title) == (TITLE, NEEDED)
-    assert [caption for caption, _ in (*fails.drawn, *force.drawn)] == [WORST_WINDOWS, NEEDED]
-    assert [caption for caption, _ in error_figures(answer)] == [
-        f"Error of each window of {HORIZON:g} s"
-    ]
-    assert (fails.first, force.first) == (0, 1)  # the force is the answer
-    assert LOOKS_LIKE in discovery_verdict(answer)[0]
-    said = discovery_text(answer)
-    assert "a force on hinge that depends on the rate of hinge would remove" in said
-    fails = discovery_to_json(answer)["fails"]
-    assert [f["joint"] for f in fails["forces"]] == ["hinge"]
-    assert len(fails["forces"][0]["force"]) == len(fails["forces"][0]["nodes"])
-    none = replace(answer, remaining=())
-    assert NO_FORCE in discovery_text(none)
-    assert "It looks like a force" not in discovery_text(none)
 
 
 def test_a_free_run_tells_it_otherwise():

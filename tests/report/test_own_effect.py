@@ -10,7 +10,6 @@ from fake_discovery import found, log, truth
 
 from identification.errors import InputError
 from inca_mj import build_twin, make_input, simulate
-from inca_mj.effects.catalogue import CATALOGUE
 from inca_mj.effects.motor import STRIBECK_FRICTION
 from inca_mj.twin.saved import load_twin, save_twin
 from inca_mj.workflows.discovery_model import named_twin, rerun
@@ -88,11 +87,6 @@ def test_the_named_twin_is_the_final_fit():
     )
 
 
-def test_a_law_that_is_not_at_hand_is_named(saved):
-    with pytest.raises(InputError, match=r"stribeck_friction; pass them"):
-        load_twin(saved, effects=CATALOGUE[1:])
-
-
 def test_files_that_do_not_belong_together_are_refused(saved):
     path = saved / "effects.json"
     record = json.loads(path.read_text())
@@ -113,13 +107,4 @@ def test_damaged_files(saved, change, names):
     path = saved / "effects.json"
     path.write_text(change(path.read_text()))
     with pytest.raises(InputError, match=names):
-        load_twin(saved)
-
-
-def test_missing_files(tmp_path, saved):
-    (saved / "model.xml").unlink()
-    with pytest.raises(InputError, match=r"no .*model\.xml"):
-        load_twin(saved)
-    (saved / "effects.json").unlink()
-    with pytest.raises(InputError, match="inca discover --out"):
         load_twin(saved)

@@ -14,13 +14,9 @@ from matplotlib.figure import Figure
 
 from identification.report import media
 from identification.report.discovery_report import write_discovery_report
-from identification.report.media import DARK, drawing, svg
+from identification.report.media import drawing, svg
 from identification.report.page import (
-    LONG,
     Section,
-    Table,
-    _command,
-    origin,
     whole_quantities,
     write_report,
 )
@@ -69,34 +65,11 @@ def test_every_entry_of_the_contents_has_its_part(root):
         assert names[name].find("h2").text == a.text
 
 
-def test_the_foot_says_what_made_it(root):
-    said = next(root.iter("footer")).text
-    assert re.search(r"inca-mj \S+ with MuJoCo \d", said)
-    assert "Data: second" in said
-    assert re.search(r"Date: \d{4}-\d\d-\d\d", said)
-    assert _command(["/usr/bin/inca", "discover", "my log.csv"]) == "inca discover 'my log.csv'"
-    assert _command(["x/identification/__main__.py", "fit"]) == "identification fit"
-    assert _command(["x/inca_mj/__main__.py", "fit"]) == "python -m inca_mj fit"
-    assert _command(["/usr/bin/pytest", "tests"]) == ""
-    assert "Data" not in origin()
-
-
 def test_a_value_is_never_coarser_than_its_std(page):
     pairs = re.findall(r"(-?\d+(?:\.(\d+))?) ± (\d+(?:\.(\d+))?)", page)
     assert len(pairs) > 8
     for value, of_value, std, of_std in pairs:
         assert len(of_value) == len(of_std), f"{value} ± {std}"
-
-
-def test_long_tables_are_folded_and_paper_says_where_they_are(tmp_path):
-    rows = tuple((f"p{k}", k) for k in range(LONG + 1))
-    sections = [Section(t, table=Table(("name", "value"), r)) for t, r in (
-        ("long", rows), ("short", rows[:-1]))]  # fmt: skip
-    text = write_report(tmp_path / "r.html", "t", [], sections).read_text(encoding="utf-8")
-    assert text.count("<details>") == 1
-    assert text.index("<details>") < text.index('id="part-2"')
-    assert text.count("Not printed: the table is in the file r.html") == 1
-    assert "beforeprint" not in text
 
 
 def test_a_drawing_tells_where_its_axes_and_lines_are():
@@ -127,14 +100,6 @@ def test_a_drawing_tells_where_its_axes_and_lines_are():
     np.testing.assert_allclose(x, [0, 1, 2], atol=2e-3)
     np.testing.assert_allclose(y, [0, 1, 2], atol=5e-3)
     assert of["series"][0]["label"] == "grows"
-
-
-def test_figures_have_dark_colours_of_their_own(page):
-    for colour, other in DARK.items():
-        assert f"--c-{colour}: {other};" in page
-    drawn = "".join(re.findall(r"<svg.*?</svg>", page, re.DOTALL))
-    left = {c.lower() for c in re.findall(r"(?<!, )#([0-9a-fA-F]{6})\b", drawn)}
-    assert left <= {"b0b0b0", "000000", "cccccc"}
 
 
 def test_titles_are_escaped(tmp_path):

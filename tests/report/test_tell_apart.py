@@ -5,8 +5,7 @@ from dataclasses import replace
 import pytest
 from fake_discovery import LATE, MISMATCH, STRIBECK, found
 
-from identification.report.discovery_verdict import discovery_verdict
-from inca_mj.workflows.discovery_model import _distance, sentence, tell_apart, told
+from inca_mj.workflows.discovery_model import _distance
 
 
 @pytest.fixture(scope="module")
@@ -33,19 +32,3 @@ def test_a_longer_record_tells_more(at):
     assert _distance(at, half, STRIBECK, MISMATCH, 1e-3) < _distance(
         at, log, STRIBECK, MISMATCH, 1e-3
     )
-
-
-def test_the_advice_names_the_best_input_and_stands_in_the_verdict(monkeypatch):
-    outcome, contrasts = found(one_of=True), []
-
-    def spy(*arguments):
-        contrasts.append(tell_apart(*arguments))
-        return contrasts[-1]
-
-    monkeypatch.setattr("inca_mj.workflows.discovery_model.tell_apart", spy)
-    advised = told(outcome)
-    (contrast,) = contrasts
-    assert contrast is not None
-    assert advised.named[0].advice == sentence(contrast)
-    assert advised.named[0].advice in discovery_verdict(advised)[0]
-    assert told(found()).named[0].advice == ""
