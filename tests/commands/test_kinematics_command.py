@@ -1,7 +1,6 @@
 """inca kinematics as a user meets it."""
 
 import json
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -9,8 +8,6 @@ import pytest
 from inca_mj import INCA, log_poses, read_inca_log
 from inca_mj.cli import main
 from inca_mj.kinematics import inverse
-
-LOG = Path(__file__).parents[2] / "examples" / "log.csv"
 
 
 def run(*arguments):
@@ -53,19 +50,3 @@ def test_a_log_gives_its_poses_with_their_std(short, tmp_path, capsys):
     np.testing.assert_allclose(rows["std_yaw"], found.std[:, 5], rtol=1e-8)
     np.testing.assert_allclose(rows["tension_8"], found.tension[:, 7], rtol=1e-8)
     assert (out / "report.html").exists()
-
-
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        (("0", "0", "1.43"), "neither a pose nor a log"),
-        ((LOG, "--std", "lamda=1"), "did you mean 'lambda'"),
-    ],
-)
-def test_what_cannot_be_is_refused_in_a_sentence(arguments, words, capsys, tmp_path):
-    out = tmp_path / "none"
-    assert run("kinematics", *arguments, "--out", out) == 2
-    said = capsys.readouterr()
-    assert words in said.err
-    assert said.out == ""
-    assert not out.exists()

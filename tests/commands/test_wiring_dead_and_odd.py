@@ -50,13 +50,6 @@ def test_both_are_told(plant, dead, angle, factor, told):
     assert "; beside it, angle_" in str(refused.value)
 
 
-def test_both_must_be_overruled(plant):
-    log = wrong(4, 5, -1.0)
-    with pytest.raises(InputError, match="write --trust sensors wiring, with which"):
-        refuse_miswired(log, plant, ("sensors",))
-    refuse_miswired(log, plant, ("sensors", "wiring"))
-
-
 def test_what_is_told_of_the_angle_mends_it(plant, tmp_path):
     with pytest.raises(InputError) as refused:
         refuse_miswired(wrong(7, 3, -1.0), plant)

@@ -8,7 +8,6 @@ import pytest
 from robot_cases import write_slider
 from sweep_cases import METHOD
 
-from identification.commands.common import import_without_graphics
 from inca_mj.cli import main
 
 
@@ -31,15 +30,6 @@ def test_a_command_that_draws_nothing_runs(folder):
     )  # fmt: skip
     assert "MUJOCO_GL" not in done.stderr
     assert done.returncode == 0, done.stderr
-
-
-@pytest.mark.parametrize(("given", "own_methods", "left"), [
-    ("bogus", False, "disable"), ("egl", False, "disable"),
-])  # fmt: skip
-def test_a_method_of_the_user_may_draw(monkeypatch, given, own_methods, left):
-    monkeypatch.setenv("MUJOCO_GL", given)
-    import_without_graphics(own_methods=own_methods)
-    assert os.environ["MUJOCO_GL"] == left
 
 
 def test_an_unknown_backend_of_matplotlib_is_none_of_the_programs(monkeypatch):

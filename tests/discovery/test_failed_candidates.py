@@ -5,21 +5,17 @@ a simulation diverges, values are refused, a matrix cannot be inverted, or NaN c
 nominal model may end a search.
 """
 
-import ast
 from functools import partial
-from pathlib import Path
 
 import pytest
 from discovery_cases import EFFECTS, disturbed, searched, stepped, task
 from failing_cases import ERRORS, HOWS, Failing
 
-from identification.discovery import attempts
 from identification.discovery.attempts import (
     Failed,
     attempt,
     attempt_each,
     collected,
-    tell_dropped,
     tell_lost,
 )
 from identification.effects.effect import Candidate
@@ -33,13 +29,6 @@ from identification.report.effect_sections import FAILED
 
 TRUTH = {"offset.f": -0.8, "rubbing.c": 1.0}
 KEY = ("rubbing", "joint")
-ENGINES = [
-    path
-    for folder in ("discovery", "innovations", "prediction")
-    for path in Path(attempts.__file__).parents[1].joinpath(folder).rglob("*.py")
-]
-# Steps of a search for values within one model, and files: no candidate is judged there.
-INNER = {"attempts.py", "options.py", "forecast.py"}
 
 
 def failing(monkeypatch, how, size="rubbing.c"):
@@ -129,38 +118,12 @@ def test_a_failure_is_told_once_and_without_what_nobody_can_follow():
     assert attempt(candidate, fails) is None  # nobody listens
 
 
-def test_what_is_begun_and_left_is_told_with_why():
-    said = []
-    with collected(said.append) as failed:
-        tell_dropped(
-            Candidate(EFFECTS[0], "joint", {}), "others explain far more of some of the windows"
-        )
-    assert failed[0].dropped
-    assert not failed[0].diverged
-    assert said == [
-        "spring, joint: begun and left, because others explain far more of some of the windows"
-    ]
-
-
 def test_an_error_of_the_program_is_no_failed_candidate():
     def wrong():
         raise TypeError("a fault of the program")
 
     with pytest.raises(TypeError):
         attempt(None, wrong)
-
-
-@pytest.mark.parametrize("path", ENGINES, ids=lambda p: f"{p.parent.name}/{p.name}")
-def test_no_other_function_of_the_engines_catches_what_a_candidate_raises(path):
-    caught = {
-        name.id
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
-        if isinstance(node, ast.ExceptHandler) and node.type is not None
-        for name in ast.walk(node.type)
-        if isinstance(name, ast.Name)
-    }
-    if path.name not in INNER:
-        assert not caught & {"InputError", "DivergenceError", "FAILURES", "Exception"}
 
 
 def test_evaluations_side_by_side_return_and_tell_what_they_do_one_by_one():

@@ -101,18 +101,6 @@ def test_a_log_that_is_cut_as_it_says_is_not_refused_again(monkeypatch):
     refuse_large(Forecast(428, needs.fixed + 428 * each, 1.0, needs.fixed), 1.0, 200)
 
 
-@pytest.mark.parametrize(("least", "said"), [(200, "cut the log to 250 samples"),
-                                             (300, "close other programs")])  # fmt: skip
-def test_what_needs_more_than_is_free_is_refused(monkeypatch, least, said):
-    monkeypatch.setattr(module, "free_memory", lambda: 2.0**30)
-    needs = Forecast(1000, 2 * 2.0**30, 90.0)
-    with pytest.raises(InputError, match=said) as refused:
-        refuse_large(needs, 0.5, least)
-    told = "1000 samples need about 2 GB of memory and 1.5 min of processor time, and 1 GB are free"
-    assert told in str(refused.value)
-    refuse_large(needs, 2.0, least)
-
-
 def test_a_search_is_refused_before_it_begins(monkeypatch):
     monkeypatch.setattr(module, "free_memory", lambda: 1e3)
     said = []

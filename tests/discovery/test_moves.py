@@ -1,6 +1,5 @@
 """A search asks its moves in their order; each that adds an effect lets all be asked again."""
 
-import re
 from dataclasses import replace
 from math import inf
 from pathlib import Path
@@ -117,21 +116,7 @@ def test_every_move_of_both_searches_has_a_reason_and_can_be_left_out():
             assert len(Evidence(None, every, None).asked(state)) == len(every) - 1
 
 
-def test_every_pass_is_asked_for_by_some_code():
-    folder = ROOT / "identification"
-    text = "".join(p.read_text(encoding="utf-8") for p in folder.rglob("*.py"))
-    moves = {move.name for every in (innovations.MOVES, windows.MOVES) for move in every}
-    assert (moves - {"add_effect"}) | {*re.findall(r'uses\([\w.]+, "(\w+)"\)', text)} == {*PASSES}
-
-
 def test_the_page_lists_every_pass_with_what_it_does():
     page = (ROOT / "docs" / "discovery.md").read_text(encoding="utf-8")
     rows = [f"| `{name}` | {of} | {does} |" for name, (of, does) in PASSES.items()]
     assert "\n".join(rows) in page, "\n".join(rows)
-
-
-def test_the_page_says_which_search_makes_each_move():
-    for name, (of, _) in PASSES.items():
-        has = [any(m.name == name for m in every) for every in (innovations.MOVES, windows.MOVES)]
-        if any(has):
-            assert of == {(True, False): "free run", (False, True): "horizon"}.get((*has,), "both")

@@ -1,6 +1,5 @@
 """Options of a discovery: their page, their file, and that each of them is used."""
 
-import ast
 import re
 from dataclasses import fields
 from math import inf, nan
@@ -28,21 +27,6 @@ def test_the_page_has_every_option_with_its_value_unit_reason_and_source():
     table = [row for row in rows if len(row) == 5]
     expected = [row_of(field) for field in FIELDS]
     assert table == expected, "\n".join("| " + " | ".join(row) + " |" for row in expected)
-
-
-def test_there_are_few_enough_options_to_choose_among():
-    assert len(fields(DiscoveryOptions)) <= 30
-
-
-def test_every_option_is_read_by_some_code():
-    rooms = ("discovery", "innovations", "kalman", "prediction")
-    folders = [f"identification/{room}" for room in rooms]
-    trees = [ast.parse(p.read_text(encoding="utf-8"))
-             for folder in folders for p in (ROOT / folder).rglob("*.py")]  # fmt: skip
-    read = {n.attr for tree in trees for n in ast.walk(tree)
-            if isinstance(n, ast.Attribute)
-            and ast.unparse(n.value) in ("options", "task.options")}  # fmt: skip
-    assert {field.name for field in FIELDS} <= read
 
 
 def write(tmp_path, text):

@@ -10,7 +10,6 @@ from identification.discovery.outlook import (
     SCORES,
     STAGES,
     Outlook,
-    between,
 )
 from identification.prediction.discovery import WINDOWS
 
@@ -57,15 +56,6 @@ def test_what_passes_is_taken_off_and_what_takes_longer_is_said():
     assert said[-1] == f"stage 5 of 5, {LEFT}"
 
 
-@pytest.mark.parametrize(
-    ("low", "high", "said"),
-    [(0.2, 8, "up to 8 s"), (12.4, 31, "12 to 30 s"), (41, 170, "40 s to 3 min"),
-     (130, 290, "2 to 5 min"), (9.6, 10.4, "about 10 s")],
-)  # fmt: skip
-def test_a_range_is_said_as_a_person_says_it(low, high, said):
-    assert between(low, high) == said
-
-
 def test_forecasts_are_ranges_of_stages_and_become_narrower_with_each():
     rests = WINDOWS.rests
     assert {stage for stage, _ in rests} == {*STAGES} - {FIT}
@@ -73,9 +63,3 @@ def test_forecasts_are_ranges_of_stages_and_become_narrower_with_each():
         assert 0 <= low < high
     ends = [rests[stage, 0][1] for stage in (SCORES, EFFECT, CHECKS, LEFT)]
     assert ends == sorted(ends, reverse=True)
-
-
-def test_a_search_whose_kind_was_never_timed_gives_its_stage_alone():
-    said = []
-    Outlook(said.append, {}).enter(SCORES)
-    assert said == [f"stage 2 of 5, {SCORES}"]

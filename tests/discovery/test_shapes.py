@@ -74,13 +74,6 @@ def test_another_kind_must_be_better_by_more_than_a_bare_mention(monkeypatch, ah
     assert asked == [0.0]
 
 
-def test_the_usual_kind_is_not_refitted_where_it_is_the_best_or_nothing_else_can_be(monkeypatch):
-    best = of(0.0, 100.0)
-    assert choose(monkeypatch, best, of(1.0, 99.0)) == (best, [])
-    best = of(1.0, 100.0)
-    assert choose(monkeypatch, best, None) == (best, [0.0])
-
-
 def test_where_structure_is_left_the_next_kind_is_tried_and_the_likelier_kept(monkeypatch):
     best, other = of(0.0, 100.0), of(1.0, 130.0)
     chosen, asked = choose(monkeypatch, best, other, white=False)
@@ -120,12 +113,6 @@ def test_what_an_effect_adds_is_its_course_times_what_it_adds_in_the_end(effect)
         course = float(effect.onset.course(np.array(t), 2.0))
         expected = course * law(s, (0.1, -1e6))
         np.testing.assert_allclose(law(s, (0.1, 2.0)), expected, rtol=1e-6, atol=1e-12)
-
-
-def test_every_jump_of_the_robots_numbers_says_when_it_begins():
-    jumps = {e.name for e in CATALOGUE if e.name.endswith("_jump") and "reading" not in e.hooks}
-    assert {e.name for e in BEGINNING} == jumps
-    assert len(jumps) > 5
 
 
 def test_columns_of_many_times_are_those_of_each_time_alone():

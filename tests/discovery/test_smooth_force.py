@@ -5,7 +5,6 @@ import pytest
 
 from identification.discovery.smooth_force import (
     FOLDS,
-    RIDGES,
     explained_share,
     find_smooth_force,
 )
@@ -100,9 +99,3 @@ def test_a_law_that_is_right_leaves_nothing_to_a_force_and_a_neighbour_does():
         shares.append(explained_share(float(e @ e), float(left @ left), gain))
     assert shares[0] > 0.99
     assert shares[1] < 0.9
-
-
-def test_a_share_of_nothing_is_none():
-    assert explained_share(1.0, 1.0, 0.0) is None
-    assert explained_share(1.0, 2.0, 0.5) == 0
-    assert RIDGES[0] == np.inf

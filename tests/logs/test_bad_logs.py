@@ -13,7 +13,6 @@ from hypothesis import strategies as st
 from scipy.io import savemat
 
 from identification import InputError, write_log
-from identification.files import MAX_BYTES
 
 
 @pytest.mark.parametrize(
@@ -138,26 +137,6 @@ def test_bad_paths(tmp_path, refusal):
             assert word in text
 
 
-def test_a_file_that_may_not_be_read(csv, refusal, monkeypatch):
-    def forbidden(*_):
-        raise PermissionError(13, "Permission denied")
-
-    path = csv(lines())
-    monkeypatch.setattr("identification.files.os.open", forbidden)
-    assert "Permission denied" in refusal(read, path)
-
-
-@pytest.mark.parametrize("name", ["log.csv", "log.mat"])
-def test_a_huge_file_is_refused_before_it_is_read(tmp_path, refusal, monkeypatch, name):
-    path = tmp_path / name
-    with path.open("wb") as file:
-        file.truncate(4 * MAX_BYTES)
-    monkeypatch.setattr("identification.files.os.open", None)
-    text = refusal(read, path)
-    for word in ("2048 MB", "512 MB", "cut it"):
-        assert word in text
-
-
 ALPHABET = st.sampled_from([*',;\n\r\t "#.-+0123456789einfa_\0\x85\ufeff', "time", "nan"])
 
 
@@ -202,18 +181,6 @@ def test_no_bytes_of_a_matlab_file_raise_anything_but_input_error(content):
     assert len(sentence_of(content, "mat").splitlines()) <= 1
 
 
-def test_milliamperes_taken_for_amperes(csv, refusal):
-    text = refusal(read, csv(lines((7, "0.05,1,1000,3,5\n"))), units=UNITS, limits={"current": 20})
-    for word in (
-        "line 7",
-        "current_2 is 1000 A",
-        "20 A",
-        'current_2 = "mA" under [units]',
-        "log.toml",
-    ):
-        assert word in text
-
-
 def test_degrees_taken_for_radians_move_too_fast(tmp_path, refusal):
     log = wave(n=300)
     path = tmp_path / "log.csv"
@@ -236,12 +203,6 @@ def test_a_wrapped_angle_is_to_be_unwrapped(tmp_path, refusal):
     text = refusal(read, path, units=UNITS, rates={"angle": 50})
     for word in ("angle_1 changes by", "a jump of a whole turn", "unwrap it"):
         assert word in text
-
-
-def test_a_size_that_no_unit_explains_is_a_bad_row(csv, refusal):
-    text = refusal(read, csv(lines((7, "0.05,1,1e9,3,5\n"))), units=UNITS, limits={"current": 20})
-    assert "line 7" in text
-    assert "repair" in text
 
 
 @pytest.mark.parametrize("lenient", [False, True])

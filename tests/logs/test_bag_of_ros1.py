@@ -8,7 +8,7 @@ from example_logs import wave
 from rosbags.rosbag1 import Writer
 from rosbags.typesys import Stores, get_typestore
 
-from identification import InputError, inspect_log, read_log, write_log
+from identification import read_log, write_log
 
 STORE = get_typestore(Stores.ROS1_NOETIC)
 TIME, HEADER, STATE = (
@@ -74,18 +74,3 @@ def test_names_say_which_number_is_whose_and_stamps_when(tmp_path, first):
     assert back.outputs.tobytes() == first.outputs.tobytes()
     assert back.inputs.tobytes() == first.inputs.tobytes()
     assert back.sampling_time == pytest.approx(0.01, abs=1e-12)
-
-
-def test_inspect_tells_its_columns(tmp_path, first):
-    found = inspect_log(write_bag(tmp_path / "run.bag", states(first)))
-    assert {(c.name, c.role) for c in found.columns} >= {
-        (OUTPUTS[1], "output"), (INPUTS[1], "input")
-    }  # fmt: skip
-
-
-def test_a_bag_that_was_cut_off_is_refused_in_one_sentence(tmp_path, first):
-    path = write_bag(tmp_path / "run.bag", states(first))
-    path.write_bytes(path.read_bytes()[:2000])
-    with pytest.raises(InputError, match="cannot be read as a recording of ROS") as caught:
-        read(path)
-    assert len(str(caught.value).splitlines()) == 1

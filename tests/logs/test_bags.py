@@ -1,6 +1,5 @@
 """Recordings of ROS give the numbers of the same log as CSV, whatever the order of messages."""
 
-import sys
 from dataclasses import replace
 
 import numpy as np
@@ -8,7 +7,7 @@ import pytest
 from bag_cases import BEGIN, numbers, state, write_bag
 from example_logs import wave
 
-from identification import Log, read_log, write_log
+from identification import read_log, write_log
 
 JOINTS = ("shoulder", "elbow")
 OUTPUTS = tuple(f"joint_states.position.{joint}" for joint in JOINTS)
@@ -108,50 +107,9 @@ def test_a_command_at_half_the_rate_is_held(tmp_path):
     assert "joint_states (200 messages), commands (100 messages) of run" in back.remarks[1]
 
 
-def test_a_topic_that_is_missing_is_named_with_those_that_are_there(tmp_path, refusal):
-    first = log(names=COMMANDS)
-    file = write_bag(tmp_path / "run", {"/joint_states": states(first), "/scan": [
-        (BEGIN, numbers(np.zeros(1000)))]})  # fmt: skip
-    said = refusal(read, file, COMMANDS)
-    assert "has no topic commands with numbers" in said
-    assert "it has joint_states" in said
-    assert "scan" not in said  # no signal has so many numbers
-    absent = tuple(name.replace("elbow", "wrist") for name in INPUTS)
-    said = refusal(read, file, absent)
-    assert "lacks column joint_states.effort.wrist" in said
-    assert "joint_states.effort.elbow" in said
-
-
-def test_columns_may_be_renamed_like_those_of_a_csv(tmp_path):
-    first = log(names=("u1", "u2"))
-    file = write_bag(tmp_path / "run", {"/joint_states": states(first)})
-    names = dict(zip(INPUTS, ("u1", "u2"), strict=True))
-    back = read(file, ("u1", "u2"), said={"columns": names})
-    assert back.inputs.tobytes() == first.inputs.tobytes()
-    wrong = tmp_path / "none"
-    said = {"columns": {"commands.data_1": "u1", "commands.data_2": "u2"}}
-    assert not wrong.exists()
-    with pytest.raises(ValueError, match="no topic commands"):
-        read(file, ("u1", "u2"), said=said)
-
-
 def test_a_damaged_recording_is_refused_in_one_sentence(tmp_path, refusal):
     file = write_bag(tmp_path / "run", {"/joint_states": states(log())})
     whole = file.read_bytes()
     for part in (b"", whole[:50], b"\0" * 500, whole[200:]):
         file.write_bytes(part)
         assert "cannot be read as a recording of ROS" in refusal(read, file)
-
-
-def test_what_has_to_be_installed_is_told(tmp_path, refusal, monkeypatch):
-    file = write_bag(tmp_path / "run", {"/joint_states": states(log())})
-    monkeypatch.setitem(sys.modules, "rosbags.highlevel", None)
-    assert "run pip install 'inca-mj[ros]'" in refusal(read, file)
-
-
-def test_all_columns_are_read_where_all_are_asked_for(tmp_path):
-    first = log()
-    file = write_bag(tmp_path / "run", {"/joint_states": states(first)})
-    strict = read_log(file, INPUTS, OUTPUTS)
-    assert isinstance(strict, Log)
-    assert strict.outputs.tobytes() == first.outputs.tobytes()

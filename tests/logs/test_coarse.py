@@ -11,7 +11,6 @@ from plain_logs import plain_log
 from identification import InputError, read_log
 from identification.logs.coarse import evened_stamps
 from identification.logs.fitting_steps import EXACT, judged
-from identification.logs.log import halves
 from identification.logs.sampling import sampling_time
 from identification.logs.sidecar import Sidecar
 from identification.logs.table import Table
@@ -103,30 +102,6 @@ def test_a_declared_sampling_time_wins_where_it_is_the_right_one(tmp_path_factor
     np.testing.assert_array_equal(found.data[:, 1:], np.column_stack([np.sign(y), y]))
     assert sampling_time(found["time"]) == pytest.approx(step, rel=1e-9)
     assert said
-
-
-@pytest.mark.parametrize(("rate", "start", "form"), [
-    (100, 20000.005, "%.7g"), (1000, 40.0, "%.2f"),
-])  # fmt: skip
-def test_stamps_that_are_shared_by_rows(csv, rate, start, form):
-    n, step = 5000, 1 / rate
-    stamps = [form % (start + k * step) for k in range(n)]
-    y = motion(n, step)
-    log = read(put(csv, stamps, np.sign(y), y))
-    np.testing.assert_array_equal(log.outputs[:, 0], y)
-    assert log.sampling_time == pytest.approx(step, rel=1e-9)
-    (said,) = log.remarks
-    assert "are multiples of 0.01 s; all its rows were kept" in said
-    assert f"({rate} Hz)" in said
-
-
-def test_what_is_declared_and_cannot_be_is_refused_and_told(csv, refusal):
-    y = motion(600, 0.01)
-    stamps = [f"{20000.005 + 0.01 * k:.7g}" for k in range(600)]
-    path = put(csv, stamps, np.sign(y), y, "sampling_time = 0.005")
-    said = refusal(read, path)
-    assert "are multiples of 0.01 s, too coarse for rows that come every 0.01 s" in said
-    assert "sampling_time = 0.005 does not fit all rows; correct sampling_time in" in said
 
 
 def test_a_log_that_is_too_short_to_tell_its_step_is_told_what_to_write(csv, refusal):
@@ -252,16 +227,6 @@ def test_any_cut_of_an_accepted_log_is_accepted(time, data):
         floats = 4 * np.spacing(np.abs(log.time).max())
         assert part.sampling_time == pytest.approx(h, rel=1e-3, abs=floats)
         log = part
-
-
-@pytest.mark.parametrize(("rate", "digits", "jitter"), [(200, 7, 3e-6), (250, 6, 2e-5)])
-def test_halves_of_a_log_whose_stamps_lose_a_digit_on_the_way(rate, digits, jitter):
-    rng = np.random.default_rng(3)
-    t = np.arange(22 * rate) / rate
-    time = [float(f"{x:.{digits}g}") for x in t + rng.uniform(-jitter, jitter, len(t))]
-    log = log_of(np.array(time))
-    for part in halves(log):
-        assert log.part(part).sampling_time == pytest.approx(1 / rate, rel=1e-4)
 
 
 @given(n=st.integers(3, 2000), step=st.floats(1e-6, 1e3), start=st.floats(-1e6, 1e6))

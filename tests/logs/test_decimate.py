@@ -127,9 +127,3 @@ def test_a_parameter_is_in_si(refusal, unit):
     said = refusal(Parameter, name="m", value=1.0, unit=unit, where="body/cart.mass")
     assert f"parameter 'm' has the unit '{unit}'" in said
     assert f"multiply its numbers by {dimension(unit).factor:.9g}" in said
-
-
-def test_another_dimension_is_told_with_the_right_unit(refusal):
-    assert "its numbers are in 'kg'" in refusal(refuse_other_unit, "N", "kg", "mass")
-    assert "its numbers are in 'kg'" in refusal(refuse_other_unit, "apples", "kg", "mass")
-    assert "in no unit" in refusal(refuse_other_unit, "m", "", "share")

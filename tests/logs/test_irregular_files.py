@@ -1,6 +1,5 @@
 """A pipe, a device or gigabytes in the place of any file are refused and not waited for."""
 
-import json
 import os
 
 import numpy as np
@@ -12,9 +11,6 @@ from identification.files import read_archive, read_bytes, read_json, read_text,
 from identification.folders import MADE, whole_folder
 from identification.linear.export import load_system
 from identification.report.media import image_source, video_source
-from identification.sweep.config import axis
-from identification.sweep.store import read_tasks
-from inca_mj.studies.searches import truth_of
 from inca_mj.twin.run import load_run
 from inca_mj.twin.saved import load_twin, save_twin
 from inca_mj.twin.twin import build_twin
@@ -56,23 +52,6 @@ def test_a_reader_refuses_it(tmp_path, reader, make):
     make(tmp_path / "file")
     with pytest.raises(InputError, match=r"is not a regular file|MB, more than the"):
         READERS[reader](tmp_path / "file")
-
-
-def test_a_record_of_a_sweep_that_is_none_is_told(tmp_path):
-    pipe(tmp_path / "part-0-0123456789abcdef.parquet")
-    with pytest.raises(InputError, match="is not a regular file"):
-        read_tasks(tmp_path / "part-0-0123456789abcdef.parquet")
-
-
-def test_labels_that_are_none_are_told(tmp_path):
-    pipe(tmp_path / "labels.json")
-    (tmp_path / "a.csv").touch()
-    for call in (
-        lambda: axis({"files": "*.csv", "label": {"kind": "null"}}, tmp_path, "grid.log"),
-        lambda: truth_of(tmp_path / "a.csv"),
-    ):
-        with pytest.raises(InputError, match=r"labels\.json (is not a regular|has 3072 MB)"):
-            call()
 
 
 @pytest.mark.parametrize("name", ["effects.json", "model.xml"])
@@ -117,10 +96,3 @@ def test_a_name_that_no_file_can_have_is_told(tmp_path, name):
     (tmp_path / "loop").symlink_to(tmp_path / "loop")
     with pytest.raises(InputError, match=r"cannot read|no such f(ile|older)"):
         read_bytes(tmp_path / name)
-
-
-@pytest.mark.parametrize("text", ["[" * 200_000 + "]" * 200_000, '{"files": 3}'])
-def test_a_list_of_results_that_is_damaged_lists_nothing(tmp_path, text):
-    (tmp_path / MADE).write_text(text, errors="surrogatepass")
-    (tmp_path / "result.json").write_text(json.dumps({}))
-    assert list_foreign(tmp_path) == ["result.json"]

@@ -61,13 +61,6 @@ def test_halves_join_to_the_whole(n):
     assert abs(len(first) - len(second)) <= 1
 
 
-def test_a_part_is_a_log_with_a_name():
-    log = replace(wave(n=100), splits={"calm": (0.2, 0.6)}, name="run")
-    part = log.part("calm")
-    assert (part.name, len(part), dict(part.splits)) == ("run [calm]", 40, {})
-    assert part.units == log.units
-
-
 def _with(**changes):
     return lambda: replace(wave(), **changes)
 

@@ -47,15 +47,6 @@ def test_zeros_of_a_second_publisher(refusal, after, shift):
         assert ("each 8th row" in said) == (after == range(4, 890, 7))
 
 
-def test_the_row_that_is_told_is_one_of_the_second_publisher(refusal):
-    t, u, q = motion(centre=2.0)
-    said = refusal(judge, *with_rows((t, u, q), [300], 0.3 * H, (0.0, 0.0)))
-    assert said.startswith("row 301 is zero")
-    said = refusal(judge, *with_rows((t, u, q), [300], 0.0, (0.7, -0.4)))
-    assert said.startswith("row 301: there are two rows with one stamp, 1.2 s")
-    assert f"q is {q[300]:.4g} and -0.4 m" in said
-
-
 def test_zeros_in_place_of_samples(refusal):
     k = 5
     t, u, q = motion()
@@ -180,12 +171,6 @@ def test_rows_of_another_clock_are_refused(refusal, kind, rate, late, fresh):
     assert f"that come on a clock of their own, every {1 / rate:.3g} s, as of a second" in said
     assert "u is 0 in it" in said
     assert "keep the rows of one publisher, or trust it" in said
-
-
-def test_another_course_of_a_second_publisher_is_refused(refusal):
-    t, u, q = second(20, 0.3, False, "prbs", value=np.nan)
-    u = np.where(np.isnan(u), 57.3 * np.roll(u, 1), u)
-    assert "the outputs repeat the row before to the last digit" in refusal(judge_clock, t, u, q)
 
 
 @given(

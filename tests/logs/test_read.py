@@ -201,27 +201,11 @@ def test_values_of_a_robot_are_read_back_by_those_who_have_use_for_them(tmp_path
     assert "values in" in refusal(read, tmp_path / "log.csv", lenient=True)
 
 
-def test_a_log_that_says_no_more_than_its_columns_is_one_file(tmp_path):
-    write_log(replace(wave(), units={}), tmp_path / "log.csv")
-    assert [f.name for f in tmp_path.iterdir()] == ["log.csv"]
-
-
 def test_an_older_sidecar_does_not_speak_of_the_new_log(tmp_path):
     (tmp_path / "log.toml").write_text('units.current = "mA"\n')
     log = replace(wave(), units={})
     write_log(log, tmp_path / "log.csv")
     assert np.array_equal(read(tmp_path / "log.csv").inputs, log.inputs)
-
-
-def test_units_are_written_by_group(tmp_path):
-    write_log(wave(), tmp_path / "log.csv")
-    units = tomllib.loads((tmp_path / "log.toml").read_text())["units"]
-    assert units == {"current": "A", "angle": "rad", "x": "m"}
-
-
-def test_only_csv_is_written(tmp_path, refusal):
-    assert "log.mat" in refusal(write_log, wave(), tmp_path / "log.mat")
-    assert "digits = 0" in refusal(write_log, wave(), tmp_path / "log.csv", digits=0)
 
 
 def test_a_failed_write_leaves_nothing_and_harms_nothing(tmp_path, monkeypatch, refusal):

@@ -67,15 +67,6 @@ def test_a_gap_is_bridged_only_where_the_log_says_that_this_is_harmless(refusal)
     assert "as two logs" in text
 
 
-def test_every_gap_is_told_once_though_two_channels_have_it():
-    t = 0.01 * np.arange(2000)
-    keep = ~np.isin(np.arange(2000), [300, 301, 302, 1500, 1501])
-    both = {"y": np.sin(40 * t), "z": np.cos(40 * t)}
-    found = even(t[keep], {n: x[keep] for n, x in both.items()})
-    assert found.gaps == (pytest.approx((2.99, 3.03)), pytest.approx((14.99, 15.02)))
-    assert "2 gaps are too wide to be bridged (the widest no" in found.sentence
-
-
 def test_time_that_goes_back_and_channels_that_do_not_overlap_are_refused(refusal):
     t = 0.01 * np.arange(100)
     assert "goes back after 0.99 s" in refusal(even, np.tile(t, 2), {"y": np.tile(t, 2)})
@@ -153,17 +144,6 @@ def test_an_even_log_is_left_as_it_is():
     np.testing.assert_allclose(out["x"], x, atol=1e-12)
 
 
-def test_what_cannot_be_bridged_is_named(refusal):
-    time = np.r_[0:1:0.1, 3:4:0.1]
-    x = np.ones(20)
-    assert "no sample for 2.1 s from 0.9 s" in refusal(on_a_grid, time, {"x": x}, 0.1, 0.5)
-    empty = np.full(20, np.nan)
-    assert "'y' has 0 samples" in refusal(on_a_grid, time, {"x": x, "y": empty}, 0.1, 5.0)
-    late = np.where(time > 3.75, 1.0, np.nan)
-    assert "leave one out" in refusal(on_a_grid, time, {"x": x, "z": late}, 0.1, 5.0)
-    assert "positive step" in refusal(on_a_grid, time, {"x": x}, 0.0, 5.0)
-
-
 H = 0.004
 N = 1200
 
@@ -230,14 +210,3 @@ def test_right_logs_have_no_such_gaps(seed, kind, stamps, jitter):
         t = np.sort(rng.uniform(0, N * H, N))
     keep = np.arange(N) != (seed + 1 if stamps == "one lost" else N)
     assert not lost(t[keep], u[keep])
-
-
-def test_the_grid_has_the_gaps_and_its_sentence_tells_them():
-    rng = np.random.default_rng(5)
-    t, keep = H * np.arange(N), np.arange(N) % 20 != 19
-    channels = {"u": course("noise", rng)[keep], "q": np.sin(t)[keep]}
-    found = even_out("log", t[keep], channels, ["u"], "zoh")
-    assert len(found.gaps) == N // 20 - 1
-    assert "59 gaps are too wide to be bridged" in found.sentence
-    assert "59 of 1199 rows are missing where u may have changed" in found.sentence
-    assert not even_out("log", t[keep], {"q": channels["q"]}, ["u"], "zoh").gaps

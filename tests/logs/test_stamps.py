@@ -1,7 +1,5 @@
 """Stamps as recorders write them: nanoseconds since 1970, or seconds and nanoseconds apart."""
 
-import json
-
 import numpy as np
 import pytest
 from hypothesis import given
@@ -104,35 +102,6 @@ def test_bad_stamps(csv, refusal, cells, sidecar, words):
     said = refusal(read, path)
     for word in words:
         assert word in said
-
-
-@pytest.mark.parametrize(("column", "line"), [("%time", '"%time" = "time"'), ("t", 't = "time"')])
-def test_a_log_without_a_column_time_is_told_the_line_and_the_file(csv, refusal, column, line):
-    path = put(csv, f"{column},y,u", lambda k: f"{k},{k},1")
-    said = refusal(read, path)
-    assert f"write {line} under [columns] in {path.with_suffix('.toml')}" in said
-    path.with_suffix(".toml").write_text(f"[columns]\n{line}")
-    assert len(read(path)) == N
-
-
-@pytest.mark.parametrize(("unit", "per_second"), [("ms", 1e3), ("ns", 1e9)])
-def test_the_unit_of_time_that_is_told_is_the_one_that_repairs_it(tmp_path, unit, per_second):
-    (tmp_path / "slider.xml").write_text(SLIDER)
-    robot = tmp_path / "robot.toml"
-    robot.write_text(TOML)
-    log = simulated({}, 200)
-    u, y = log.inputs[:, 0].tolist(), log.outputs[:, 0].tolist()
-    rows = [
-        f"{EPOCH // 10**3 + round(k * log.sampling_time * per_second)},{a},{b}"
-        for k, (a, b) in enumerate(zip(u, y, strict=True))
-    ]
-    name = log.input_names[0]
-    path = tmp_path / "slow.csv"
-    path.write_text("\n".join([f"time,{name},x", *rows]))
-    with pytest.raises(InputError, match=f"is its time in {unit}.*slow.toml"):
-        read_robot(robot, path)
-    path.with_suffix(".toml").write_text(f"units.time = {json.dumps(unit)}")
-    assert read_robot(robot, path).log.sampling_time == pytest.approx(0.01, rel=1e-4)
 
 
 @pytest.mark.parametrize(("right", "wrong"), [("us", "ms"), ("ms", "s")])  # fmt: skip

@@ -1,15 +1,10 @@
 """An output that shows nothing but its sensor's noise is told; one that moves never is."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from joint_cases import run, slider, slider_log, steps
-from robot_cases import simulated, write_slider
 
-from identification import read_robot, write_log
-from identification.logs.plausible import PAST, is_noise, still_sentence
-from identification.robot.reading import doubtful
+from identification.logs.plausible import PAST, is_noise
 
 NOISE = 2e-4  # [m]
 
@@ -44,17 +39,3 @@ def test_what_is_constant_or_too_short_is_no_noise():
     assert not is_noise(np.full(100, 0.3), steps(100))
     for samples in (3, PAST, 20):
         assert not is_noise(noise(samples, 1), np.ones((samples, 1)))
-
-
-def test_a_joint_that_stood_still_is_told_beside_the_result(tmp_path):
-    path, log = write_slider(tmp_path, samples=400)
-    assert not doubtful(read_robot(path, log))
-    right = simulated({"damping": 3.0}, 400)
-    still = replace(right, outputs=0.12 + noise(400, 7)[:, None])
-    write_log(still, tmp_path / "still.csv")
-    robot = read_robot(path, tmp_path / "still.csv", trust=["wiring", "units", "start"])
-    (said,) = (text for text in doubtful(robot) if "stood still" in text)
-    assert "log 'still' position is 0.12" in said
-    assert "all of it noise" in said
-    assert said in robot.remarks
-    assert said == still_sentence(robot.log)

@@ -1,7 +1,6 @@
 """Archives of numpy, Parquet and LeRobot data sets give the numbers of the same log as CSV."""
 
 import json
-import sys
 from dataclasses import replace
 
 import numpy as np
@@ -11,7 +10,6 @@ from example_logs import INPUTS, OUTPUTS, wave
 from pyarrow import parquet
 
 from identification import read_log
-from identification.logs.formats import log_table
 
 BEGIN = 1_748_873_654_316_744_521  # [ns], a stamp that no float holds
 
@@ -138,15 +136,6 @@ def test_an_episode_is_asked_for_where_there_are_several(tmp_path, refusal):
     assert len(read_log(one, ACTIONS, STATES, lenient=True)) == len(log())
 
 
-def test_missing_columns_are_told_with_those_that_are_there(tmp_path, refusal):
-    home = write_data_set(tmp_path / "set", [log()], 30, True)
-    said = refusal(read_log, home, ("action.wrist",), STATES, lenient=True)
-    assert "lacks column action.wrist" in said
-    assert "action.elbow" in said
-    np.savez(tmp_path / "run.npz", time=log().time, **log().columns)
-    assert "current_3" in refusal(read_log, tmp_path / "run.npz", ("current_3",), OUTPUTS)
-
-
 @pytest.mark.parametrize("kind", ["npz", "parquet"])
 def test_damaged_and_empty_files_are_refused_in_one_sentence(tmp_path, refusal, kind):
     path = tmp_path / f"run.{kind}"
@@ -158,16 +147,3 @@ def test_damaged_and_empty_files_are_refused_in_one_sentence(tmp_path, refusal, 
     else:
         parquet.write_table(pa.table({"words": ["a", "b"]}), path)
         assert "has no numbers" in refusal(read, path)
-
-
-def test_what_has_to_be_installed_is_told(tmp_path, refusal, monkeypatch):
-    path = tmp_path / "run.parquet"
-    parquet.write_table(pa.table({"time": log().time, **log().columns}), path)
-    monkeypatch.setitem(sys.modules, "pyarrow.parquet", None)
-    assert "run pip install 'inca-mj[parquet]'" in refusal(read, path)
-
-
-def test_all_columns_of_a_file_are_found(tmp_path):
-    path = tmp_path / "run.npz"
-    np.savez(path, time=log().time, q=log().outputs)
-    assert log_table(path, None).names == ("time", "q_1", "q_2")
