@@ -17,52 +17,6 @@ from inca_mj.robot.inputs import make_input
 from inca_mj.twin.logs import ANGLES, CURRENTS
 from inca_mj.twin.twin import build_twin
 
-NAMES = [
-    "stribeck_friction",
-    "asymmetric_friction",
-    "load_dependent_friction",
-    "quadratic_friction",
-    "friction_mismatch",
-    "cogging",
-    "current_lag",
-    "delay",
-    "current_saturation",
-    "torque_constant_drift",
-    "torque_constant_mismatch",
-    "drum_eccentricity",
-    "drum_layering",
-    "drum_radius_mismatch",
-    "backlash",
-    "spring_hardening",
-    "spring_hysteresis",
-    "cable_hardening",
-    "cable_creep",
-    "pulley_radius",
-    "cable_weight",
-    "anchor_offset",
-    "com_offset",
-    "external_force",
-    "air_drag",
-]
-
-
-CHANGING = ("cable_elasticity", "cable_damping", "drum_spring", "viscous_friction", "friction")
-RULE = [
-    *(f"{name}_mismatch" for name in CHANGING),
-    *(f"{name}_drift" for name in CHANGING),
-    *(f"{name}_jump" for name in (*CHANGING, "drum_radius", "torque_constant")),
-    "current_crosstalk",
-    "current_offset",
-    "encoder_jump",
-    "encoder_scale",
-    "encoder_eccentricity",
-    "encoder_lag",
-]
-
-
-def test_names_are_the_canonical_ones_each_once():
-    assert sorted(effect.name for effect in CATALOGUE) == sorted({*NAMES, *RULE})
-
 
 def test_all_sizes_zero_is_the_bare_robot_to_the_bit():
     assert np.array_equal(simulate(full(), seconds=2), simulate(bare(), seconds=2))

@@ -19,20 +19,11 @@ from joint_cases import (
 
 from identification import InputError, Parameter
 from identification.effects.axes import Axis, axes
-from identification.effects.catalogue import TURNS, joint_effects
-from identification.effects.joint_group import SLIDE
+from identification.effects.catalogue import joint_effects
 from identification.effects.joint_plant import joint_plant
 from identification.native.joint_callback import STEPS
 from identification.windows.window_error import window_error
 from identification.windows.window_estimate import estimate_windows
-
-
-def test_a_single_joint_has_one_place_and_two_have_a_common_one():
-    (effect,) = [e for e in slider().effects if e.name == "stiffness"]
-    assert effect.places == {"joint slide": "@slide"}
-    (effect,) = [e for e in arm().effects if e.name == "stiffness"]
-    assert list(effect.places.values()) == ["", "@shoulder", "@elbow"]
-    assert all(p.value == 0 for p in arm().parameters if "." in p.name and p.lower <= 0)
 
 
 def test_common_and_single_sizes_add_up():
@@ -169,22 +160,3 @@ def test_a_wave_is_tried_only_where_two_periods_of_it_are_seen():
     assert waves(0.1) == ()  # less than two periods of the highest harmonic
     assert min(waves(2 * np.pi)) == 2.0
     assert min(waves(4 * np.pi)) == 1.0
-
-
-HINGE, RAIL = Axis("pivot", "hinge", 1.0, 1.0, 1.0), Axis("rail", "slide", 1.0, 1.0, 1.0)
-BOTH = joint_effects((HINGE, RAIL), TURNS)
-
-
-def test_words_tell_the_kind_where_there_are_both():
-    for effect in BOTH:
-        kind = "(slides)" if SLIDE in effect.name else "(hinges)"
-        assert effect.phrase.endswith(kind), effect.name
-        assert {*effect.places.values()} == {"@rail" if SLIDE in effect.name else "@pivot"}
-    assert len({e.phrase for e in BOTH}) == len(BOTH)
-
-
-@pytest.mark.parametrize("axis", [HINGE, RAIL])
-def test_nothing_is_added_where_there_is_one_kind(axis):
-    for effect in joint_effects((axis,), TURNS):
-        assert SLIDE not in effect.name
-        assert "(" not in effect.phrase

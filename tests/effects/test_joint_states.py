@@ -21,15 +21,8 @@ from state_cases import (
 )
 
 from identification import InputError
-from identification.effects.state_effects import (
-    gear_backlash,
-    joint_elasticity,
-    motor_damping,
-    presliding,
-)
 from identification.model.predictor import Predictor
 from identification.model.rollout import State, rollout
-from identification.native.gear import Gear
 
 LOG = record(3, samples=100)
 EACH = [(elastic(0.03), 0.0), (gap(0.01), 0.0), ({PRESLIDING: 0.1}, F_C)]
@@ -45,14 +38,6 @@ def states_of(plant, values, start, samples, u=0.0, sampling=STEP):
         record=("qpos", "qvel", "act"),
     )  # fmt: skip
     return np.hstack([made["qpos"][0], made["qvel"][0], made["act"][0]])
-
-
-def test_the_laws_are_the_numbers_of_a_gear():
-    s = Gear(inertia=2.0)
-    assert joint_elasticity(s, (0.1, 0.25, 0.05, 0.0)) == (0.1, 0.0, 0.5, 0.05, 1.0, 0.0)
-    assert gear_backlash(s, (0.02, 0.25, 1.0)) == (0.0, 0.02, 0.5, 0.0, 0.0, 0.0)
-    assert motor_damping(s, (0.3,)) == (0.0, 0.0, 0.0, 0.0, 0.0, 0.3)
-    assert presliding(s, (0.3,)) == 0.3
 
 
 @pytest.mark.parametrize("hidden", [0.0, F_C])

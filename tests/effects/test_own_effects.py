@@ -125,14 +125,9 @@ def test_a_function_that_is_not_what_its_hook_takes_is_refused_in_one_sentence(h
     assert "'own'" in str(error.value)
 
 
-@pytest.mark.parametrize(("hook", "function"), [("torque", three), ("path", three),
-                                                ("wrench", nothing), ("rate", pair)])  # fmt: skip
-def test_so_it_is_for_the_hooks_of_the_cables(hook, function):
-    hooks = {hook: njit(function)}
-    if hook == "rate":
-        hooks["torque"] = njit(lambda s, p: s.x)
-    with pytest.raises(InputError, match=f"effect 'own': .*hook '{hook}'"):
-        build_twin(effects=(named("own", ["k"], (), DRIVES_EACH, **hooks),))
+def test_so_it_is_for_the_hooks_of_the_cables():
+    with pytest.raises(InputError, match=r"effect 'own': .*hook 'torque'"):
+        build_twin(effects=(named("own", ["k"], (), DRIVES_EACH, torque=njit(three)),))
 
 
 def test_what_is_no_njit_function_of_two_is_refused_when_the_record_is_made():

@@ -87,15 +87,6 @@ def test_a_lag_of_whole_samples_is_exact():
         np.testing.assert_allclose(late[n:, 0], q[:-n, 0], atol=1e-12)
 
 
-def test_no_sensor_knows_the_future_and_not_all_of_them_are_late():
-    lag = effects()["encoder_lag"]
-    assert [size.sign for size in lag.sizes] == [1]
-    assert "" not in lag.places.values()
-    assert lag.is_among
-    lower = {p.lower for p in arm().parameters if p.name.startswith("encoder_lag.tau")}
-    assert lower == {0.0}
-
-
 def test_each_value_set_of_a_batch_has_its_readings_and_a_rate_is_scaled_only():
     u = steps(100)
     log = plain_log(u, np.stack([np.sin(u[:, 0]), u[:, 0]], axis=1), "force", "position rate")

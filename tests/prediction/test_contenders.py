@@ -12,14 +12,12 @@ from records_cases import FREE, pendulum, record
 
 from identification.discovery.attempts import collected
 from identification.discovery.candidates import list_common
-from identification.discovery.effect_results import Neighbour
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate, Effect
 from identification.effects.joint_plant import candidates
 from identification.effects.sizes import Shape, Size
 from identification.model.parameter import Parameter, ParameterSet
 from identification.model.predictor import Predictor
-from identification.prediction import odds, verdict
 from identification.prediction.contenders import (
     count_numbers,
     list_contenders,
@@ -92,10 +90,6 @@ def test_what_some_windows_cannot_tell_from_the_few_best_is_refitted_too():
     assert [b.cost for b in kept] == [*apart, near]
     assert [f.where for f in left] == [f"{far:.9g}"]
     assert _near_best([], OPTIONS) == []
-
-
-def test_chance_keeps_a_score_out():
-    assert list_contenders([score(effect("e"), 0.5, p_value=0.5)], OPTIONS, 100) == []
 
 
 @pytest.mark.parametrize("count", [3, 100])
@@ -270,30 +264,3 @@ def test_a_twin_is_told_only_below_the_level(name, share):
     values = {f"{LEVEL}@hinge": LEVEL_THERE, candidate.sizes[0]: share * LEVEL_THERE}
     model = SimpleNamespace(plant=pendulum(), values=values, fit=SimpleNamespace(shared={}))
     assert find_twin(model, candidate) == (TWINS[name] if share < 1 else "")
-
-
-@pytest.mark.parametrize(("doubt", "gain"), [("mass", 1.0), ("chance", 1.0), ("mass", 0.1)])
-def test_what_physics_forbids_takes_its_share_of_the_odds_and_is_no_other_name(
-    monkeypatch, doubt, gain
-):
-    """Where it is likelier than a possible law, that is below even odds and no name."""
-    law = replace(contender(effect("law"), 0.5), prediction=SimpleNamespace(fall=0.5))
-    rival = replace(contender(effect("rival"), gain), doubt=doubt)
-    monkeypatch.setattr(odds, "find_twin", lambda model, mine: "")
-    monkeypatch.setattr(verdict, "_fitted", lambda model, c: (c, {}))
-    monkeypatch.setattr(verdict, "_proof", lambda state, seen: None)
-    monkeypatch.setattr(verdict, "_rival", lambda o, share: o.candidate.effect.name)
-    state = SimpleNamespace(
-        task=SimpleNamespace(options=OPTIONS, effects=()),
-        model=SimpleNamespace(candidates=()),
-        scores=(),
-    )
-    named = verdict._named(state, replace(law, alternatives=(rival,)), 0.95, None)
-    assert (named.confidence < 0.01) == (gain > 0.5)
-    is_possible = doubt == "chance"
-    assert named.rivals == (("rival",) if is_possible else ())
-    assert named.one_of == is_possible
-    expected = "named" if is_possible or gain < 0.5 else "unknown effect"
-    assert verdict.decide([named], (), False, OPTIONS) == expected
-    beside = replace(named, neighbour=Neighbour("curve_speed", "joint a", 0.3, 1e-4, 0.1))
-    assert verdict.decide([beside], (), False, OPTIONS) == "unknown effect"

@@ -5,13 +5,10 @@ from functools import cache
 
 import numpy as np
 import pytest
-from records_cases import AXIS, FREE, HORIZON, nominal_model, pendulum, record, records
+from records_cases import FREE, HORIZON, nominal_model, pendulum, record, records
 
 from identification.discovery.candidates import list_common
 from identification.discovery.effect_results import Rival
-from identification.discovery.options import DiscoveryOptions
-from identification.effects.axes import Axis
-from identification.effects.catalogue import joint_effects
 from identification.effects.joint_plant import candidates
 from identification.prediction.discovery import discover_records
 from identification.prediction.extension import with_effect
@@ -22,7 +19,6 @@ from identification.prediction.scores import window_scores
 from identification.windows.records import as_records
 
 CURVES = ("curve_speed", "curve_load", "curve_position")
-NEIGHBOURS = ("curve_before", "curve_behind", "curve_speed_before", "curve_speed_behind")
 
 
 def found(values, names, samples=260):
@@ -50,18 +46,6 @@ def test_a_law_that_is_not_listed_is_drawn_as_a_curve_of_what_it_depends_on():
 def test_records_without_an_effect_get_no_curve():
     answer = found(None, CURVES[:2])
     assert answer.verdict == "nothing missing"
-
-
-def test_curves_bend_either_way_and_act_on_single_joints():
-    timed = Axis("b", "hinge", 1.0, 1.0, 1.0, plain=False, duration=5.0)
-    curves = [e for e in joint_effects((AXIS, timed)) if e.is_curve]
-    assert {e.name for e in curves} == {*CURVES, *NEIGHBOURS, "curve_time"}
-    assert all(s.sign == 0 for e in curves for s in e.sizes)
-    assert all("" not in e.places.values() for e in curves)
-    assert all(len(e.sizes) == 8 for e in curves)
-    (load,) = (e for e in curves if e.name == "curve_load")
-    assert load.places == {"joint hinge": "@hinge"}
-    assert DiscoveryOptions().size_factor >= 1
 
 
 TRUE = {

@@ -1,6 +1,5 @@
 """An effect that was named at several places keeps those where it does something."""
 
-import json
 from dataclasses import replace
 from functools import cache
 from types import SimpleNamespace
@@ -27,7 +26,6 @@ from identification.prediction.screening import at_several, felt_places, places_
 from identification.prediction.task import RecordsTask
 from identification.prediction.trial import Contender
 from identification.prediction.verdict import conclude
-from identification.report.discovery_json import discovery_to_json
 from identification.report.effect_words import describe_there
 from identification.report.named_words import curve_nodes
 from identification.windows.comparison import compare
@@ -206,14 +204,3 @@ def test_nodes_at_several_joints_are_those_at_each_of_them(name):
         np.testing.assert_array_equal(n.at, alone.at)
         assert (n.reads, n.unit, n.depends_on) == (alone.reads, alone.unit, alone.depends_on)
     assert BOTH in describe_there(over_both(name), plant())
-
-
-def test_the_json_has_the_nodes_by_joint():
-    told = json.loads(json.dumps(discovery_to_json(found())))
-    for curve in (*told["effects"], *told["rejected"]):
-        assert (curve["name"], curve["where"], curve["depends_on"]) == ("unlisted", BOTH, "speed")
-        assert list(curve["joints"]) == [f"joint {joint}" for joint in JOINTS]
-        assert [len(n["nodes"]) for n in curve["joints"].values()] == [8, 8]
-        assert curve["joints"]["joint elbow"]["reads"] == "rate of elbow"
-    assert told["effects"]
-    assert told["rejected"]

@@ -11,10 +11,9 @@ from state_cases import COULOMB
 
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
-from identification.effects.joint_plant import JointPlant, joint_plant
+from identification.effects.joint_plant import joint_plant
 from identification.model.predictor import Predictor
 from identification.model.protocol import FINER
-from identification.prediction import extension
 from identification.prediction.discovery import discover_records
 from identification.prediction.finer_steps import (
     MOVED,
@@ -60,35 +59,6 @@ def test_steps_of_a_share_are_those_of_a_model_with_that_step():
         one, other = (Predictor(p, log, ()).predict(np.zeros((1, 0)))
                       for p in (share, plant.with_step(factor)))  # fmt: skip
         np.testing.assert_array_equal(one, other)
-
-
-@pytest.mark.parametrize(("steps", "is_stateful", "expected"), [
-    (2, False, 1), (1, False, 1 / FINER), (2, True, 1 / FINER), (1 / FINER, False, None),
-])  # fmt: skip
-def test_finer_steps_are_the_models_own_and_then_a_quarter_of_them(
-    monkeypatch, steps, is_stateful, expected
-):
-    """Where joints have states, a simulation never takes longer steps than the model's own."""
-    plant = replace(pendulum(), steps=steps)
-    if is_stateful:
-        monkeypatch.setattr(JointPlant, "_taken", lambda self, steps: min(1, steps))
-    part = SimpleNamespace(predictor=SimpleNamespace(plant=plant))
-    found = SimpleNamespace(
-        plant=plant, fit=SimpleNamespace(problem=SimpleNamespace(parts=(part,)))
-    )
-    monkeypatch.setattr(
-        extension,
-        "replace",
-        lambda of, **new: (
-            SimpleNamespace(**{**vars(of), **new})
-            if isinstance(of, SimpleNamespace)
-            else replace(of, **new)
-        ),
-    )
-    monkeypatch.setattr(extension, "_refitted", lambda model, task, horizon, confirm: task)
-    task = extension.with_finer_steps(found, 0.2, ())
-    taken = None if task is None else task.parts[0].predictor.plant.steps
-    assert taken == expected
 
 
 def model(cost=1.0, error=np.nan, shift=0.0):

@@ -1,6 +1,5 @@
 """What the step of a simulation does to an estimate is what a search with a finer step finds."""
 
-import re
 import runpy
 from dataclasses import replace
 from pathlib import Path
@@ -10,8 +9,7 @@ import pytest
 
 from identification import Log, fit
 from identification.model.protocol import FINER
-from identification.prediction.std import StepShift, step_shift
-from identification.report.fitted_values import step_sentences
+from identification.prediction.std import step_shift
 from identification.robot.file import read_robot_file
 from identification.robot.robot import robot_of
 
@@ -64,38 +62,6 @@ def test_the_error_that_finer_steps_leave_is_that_of_a_search_with_them(elbow):
     real = np.sqrt(np.mean(fine.fit.errors[0] ** 2) / np.mean(coarse.fit.errors[0] ** 2))
     assert real < 0.99
     assert coarse.finer.error == pytest.approx(real, abs=0.02)
-
-
-def test_it_is_said_where_it_exceeds_the_std(elbow):
-    coarse, fine = (found.model for found in elbow)
-    (said,) = step_sentences(coarse, {"mass": "the forearm's mass"})
-    assert said.startswith(
-        "Simulations took steps of 5 ms, as the model says. The last fit was checked with a quarter"
-        " of the model's step, 1.25 ms: it would move the forearm's mass by 4"
-    )
-    assert said.endswith(
-        'write timestep="0.00125" into the <option> of the model, and run the command again.'
-    )
-    mass = float(re.search(r"mass by 4[.\d]* std to ([.\d]+) kg", said)[1])
-    # rounded as it is told; the value that was fitted is 4 std away
-    assert abs(mass - fine.fit.values["mass"]) < 2.0 * coarse.told_std["mass"]
-    std = np.array([*coarse.told_std.values()])
-    for values, error, words in (
-        (0.9 * std, 0.95, None),
-        (np.nan * std, np.nan, None),
-        (0.9 * std, 0.43, "would lower the error of the fitted windows to 0.43 of what it is"),
-        (2.3 * std, np.nan, "by 2.3 std to 1"),
-        (2.3 * std, 0.43, ", which the std do not include, and would lower the error"),
-    ):
-        sentences = step_sentences(with_finer(coarse, values, error))
-        assert bool(sentences) == bool(words)
-        assert all(words in said for said in sentences)
-
-
-def with_finer(model, values, error):
-    other = replace(model)
-    other.__dict__["finer"] = StepShift(values, error)
-    return other
 
 
 def test_a_finer_step_moves_nothing_where_all_is_smooth(elbow):

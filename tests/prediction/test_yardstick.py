@@ -66,12 +66,3 @@ def test_the_law_that_is_missing_leaves_nothing_to_a_smooth_force_and_a_neighbou
     assert left["coulomb_friction"] < 0.01
     assert share["sublinear_friction"] < 0.998
     assert left["sublinear_friction"] > 0.03
-
-
-def test_what_is_no_law_of_a_joint_has_no_share():
-    stick = measure(rubbed(), EFFECTS)
-    assert stick.share_of(listed("delay")[0], 0.5) is None
-
-
-def test_without_curves_there_is_no_yardstick():
-    assert measure(rubbed(), [e for e in EFFECTS if not e.is_curve]) is None
