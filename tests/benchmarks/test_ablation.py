@@ -6,8 +6,6 @@ import ablation
 import pytest
 from scipy.stats import binom
 
-from identification.discovery.passes import PASSES
-
 
 def row(effect, names, curve=""):
     named = [{"name": n, "one_of": False, "rivals": []} for n in names]
@@ -52,10 +50,6 @@ def test_a_world_in_which_no_move_that_is_left_out_did_anything_is_not_searched_
         assert ablation.study(answer, passes, is_moved).get("alike", False) == (not asked)
     assert [task[-1] for task in asked] == [("add_effect",), ("add_set",)]
     assert asked[0][:4] == ("cart", "delay", 3, 9.0)
-
-
-def test_the_plain_search_leaves_out_every_pass():
-    assert ablation.passes_of(["plain"]) == (*PASSES,)
 
 
 def test_only_answers_of_one_search_are_compared(tmp_path):

@@ -1,10 +1,8 @@
 """The benchmark of GPUs, as far as it goes without one."""
 
-import json
-
 import gpu_speed
 import numpy as np
-from gpu import kernel, page, processor
+from gpu import kernel, processor
 from gpu.worlds import FREE, drawn, moved
 
 STEPS = 40
@@ -43,9 +41,3 @@ def test_motors_without_the_law_turn_as_their_currents_say():
     rate = values["b_v"] / values["J"]
     end = values["K_t"] * worlds.currents[0] / values["b_v"]
     np.testing.assert_allclose(angles, end * (t - (1 - np.exp(-rate * t)) / rate), rtol=1e-9)
-
-
-def test_a_run_that_lacks_a_simulator_does_not_make_the_page():
-    rows = [json.loads(line) for line in page.ROWS.read_text(encoding="utf-8").splitlines()]
-    other = [{**row, "device": "another"} for row in rows if row["simulator"] != "warp"]
-    assert page.page([*rows, *other]) == page.page(rows)

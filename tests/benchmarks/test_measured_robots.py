@@ -1,6 +1,5 @@
 """The bench of measured robots: its records, its files and its page."""
 
-import json
 from dataclasses import replace
 
 import numpy as np
@@ -8,7 +7,6 @@ import pytest
 from measured_cases import DATA, oscillator, oscillator_log, with_data
 from robots import ROBOTS, reader
 from robots.measured_robot import gridded
-from robots.page import page
 from robots.unseen import MOST, spread
 from robots.written import command, write_files
 
@@ -131,15 +129,3 @@ def test_a_long_record_is_predicted_in_parts_that_do_not_overlap():
     ends = [p.time[-1] for p in parts]
     assert all(b.time[0] > a for a, b in zip(ends, parts[1:], strict=False))
     assert parts[-1].time[-1] > 0.97 * log.time[-1]
-
-
-def test_the_page_tells_of_every_record_and_of_a_refusal(tmp_path):
-    record = {
-        "robot": "emps", "title": "an axis", "source": "nobody", "date": "2026-01-01",
-        "version": "1", "commit": "abc", "horizon": 0.2, "fit": ["a"], "confirm": ["b"],
-        "expected": [], "unit": "m", "refused": "steps are too coarse", "seconds": 1.0,
-    }  # fmt: skip
-    (tmp_path / "emps.json").write_text(json.dumps(record))
-    text = page(tmp_path)
-    assert "| emps | 1, 1 | refused |" in text
-    assert "steps are too coarse" in text

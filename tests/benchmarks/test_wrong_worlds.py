@@ -8,7 +8,6 @@ import wrong_worlds
 from departures import DEPARTURES, LOUDER, Departure
 from inca_departures import _controlled
 from joint_worlds.world import make_world
-from rows import of_newest
 
 from inca_mj.reference import layout as base
 from inca_mj.robot.geometry import INCA
@@ -126,12 +125,3 @@ def test_every_world_has_a_seed_of_its_own_and_nulls_alternate():
                 assert not any(mine)
     few = wrong_worlds.tasks(["jumps"], 24)
     assert few == [t for t in every if t[0] == "jumps"]
-
-
-def test_the_page_is_of_the_commit_that_answered_last():
-    rows = [{**row(["drag"]), "commit": code, "key": "one"} for code in ("a", "a", "b")]
-    assert len(of_newest(rows)) == 1
-    assert len(of_newest(rows[:2])) == 1  # made again
-    said = wrong_worlds.section(of_newest(rows))
-    assert "Of 1 worlds (commit b;" in said
-    assert DEPARTURES["powers"].about in said

@@ -5,7 +5,6 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from identification.errors import InputError
 from inca_mj.control.controller import Controller, Gains, run_loop
 from inca_mj.control.observer import Observer
 from inca_mj.control.paths import Circle, Line, Point
@@ -142,20 +141,3 @@ def test_velocity_and_acceleration_are_the_derivatives_of_the_path(path):
         a = (after.velocity - before.velocity) / (2 * h)
         np.testing.assert_allclose(now.velocity, v, atol=1e-7)
         np.testing.assert_allclose(now.acceleration, a, atol=1e-6)
-
-
-def test_refusals():
-    with pytest.raises(InputError, match=r"plane 'zx'.*known: xy, xz, yz"):
-        Circle(plane="zx")
-    with pytest.raises(InputError, match="radius of 0 m"):
-        Circle(radius=0.0)
-    with pytest.raises(InputError, match="duration of -1 s"):
-        Line(CENTRE, CENTRE, -1.0)
-    with pytest.raises(InputError, match="bandwidth of -1"):
-        Gains(bandwidth=-1.0)
-    with pytest.raises(InputError, match=r"path begins at .*, but the robot at"):
-        track(path=Circle(centre=(0.2, 0.0, 1.43)))
-    with pytest.raises(InputError, match="longer duration"):
-        track(duration=3.0)
-    with pytest.raises(InputError, match=r"no pose of the platform.*positive winds in"):
-        Observer(build_twin()).seen(np.full(8, 200.0), np.zeros(6))

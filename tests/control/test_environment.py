@@ -149,12 +149,6 @@ def test_currents_are_cut_to_the_range_of_the_amplifiers():
     np.testing.assert_array_equal(*two)
 
 
-def test_an_episode_ends_at_its_time_limit():
-    env = load_environment("reach", random=0, time_limit=0.05)
-    steps = drive(env, np.zeros((5, 8)))
-    assert [s.last() for s in steps] == [False] * 4 + [True]
-
-
 def test_a_current_that_is_no_number_is_refused_and_does_no_harm(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     env = load_environment("hold", random=0)

@@ -49,16 +49,6 @@ def test_recipes_stay_inside_the_currents():
             assert 0.3 - 1e-12 <= u.min() <= u.max() <= 1.7 + 1e-12
 
 
-@pytest.mark.parametrize(
-    ("limits", "word"),
-    [(lambda: Limits(2.0, 1.0), "largest current"), (lambda: Limits(reach=0.0), "workspace")],
-)
-def test_a_bad_limit_is_one_sentence(limits, word):
-    with pytest.raises(InputError, match=word) as caught:
-        limits()
-    assert len(str(caught.value).splitlines()) == 1
-
-
 def test_bad_designs_are_refused(robot):
     for keywords, word in (
         ({"duration": 0.01}, "cannot be designed"),

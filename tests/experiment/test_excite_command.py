@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from pendulum_robot import TOML, make_folder, measured, written
-from robot_cases import refused, run
+from robot_cases import run
 
 from identification import design_experiment, read_log, read_robot
 from identification.robot.rivals import read_rivals
@@ -96,23 +96,3 @@ def test_python_designs_the_same(robot, result):
     assert [h.share for h in found.found.hypotheses] == [0.55, 0.4]
     assert found.log.duration == pytest.approx(2.0)
     assert {*found.after} == {*found.before} >= {"J", "d", NAMED}
-
-
-def test_what_cannot_be_designed_is_one_sentence(robot, result, tmp_path, capsys):
-    toml, log = robot
-    assert "--log" in refused(capsys, "excite", toml)
-    assert "robot.toml" in refused(capsys, "excite", toml, _only_json(result, tmp_path))
-    assert "budget" in refused(capsys, "excite", toml, "--log", log, "--budget", 1, "--quiet")
-    assert "widened" in refused(capsys, "excite", toml, "--log", log, "--widen", -1, "--quiet")
-    old = json.loads((result / "result.json").read_text())
-    del old["effects"][0]["rivals"][0]["values"]
-    folder = shutil.copytree(result, tmp_path / "old")
-    (folder / "result.json").write_text(json.dumps(old))
-    assert "older version" in refused(capsys, "excite", toml, folder, "--quiet")
-
-
-def _only_json(result, tmp_path):
-    folder = tmp_path / "only"
-    folder.mkdir()
-    shutil.copy(result / "result.json", folder)
-    return folder

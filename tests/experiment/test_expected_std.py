@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from records_cases import FREE, HORIZON, KNOWN, NOISE, pendulum, record
 
-from identification import InputError
 from identification.discovery.nominal_model import NominalModel
 from identification.experiment.design import design
 from identification.experiment.hypotheses import fitted, separations, shares_after
@@ -127,13 +126,3 @@ def test_expected_shares_of_two_are_those_of_their_odds():
     λ = np.array([[np.inf, 6.0], [2.0, np.inf]])
     after = shares_after((0.7, 0.3), λ)
     assert after == pytest.approx([1 / (1 + 3 / 7 * np.exp(-3.0)), 1 / (1 + 7 / 3 * np.exp(-1.0))])
-
-
-@pytest.mark.parametrize(
-    ("seconds", "form", "word"), [(0.1, "auto", "cannot be designed"), (3.0, "sines", "no form")]
-)
-def test_what_is_no_experiment_is_refused(seconds, form, word):
-    h, log = known()
-    with pytest.raises(InputError, match=word):
-        stage_of(h.plant, log, partial(limits_of, h.plant.model, h.plant.axes, [log]), seconds,
-                 form)  # fmt: skip

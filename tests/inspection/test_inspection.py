@@ -10,7 +10,7 @@ from bag_cases import BEGIN, numbers, state, write_bag
 from robot_cases import refused, run
 from touching_cases import simulated
 
-from identification import InputError, fit, inspect_log, read_robot, write_log
+from identification import InputError, fit, inspect_log, read_robot
 from identification.inspection.answers import find_answers
 from identification.inspection.beginning import write_beginning
 from identification.inspection.guesses import is_time, role_of, time_unit, unit_of
@@ -169,39 +169,6 @@ def test_no_file_is_replaced(arm, capsys, monkeypatch, tmp_path):
     assert (tmp_path / "robot.toml").read_text() == "mine"
     run(capsys, "new", arm / "arm.xml", arm / "run", "--robot", "other.toml")
     assert tomllib.loads((tmp_path / "other.toml").read_text())["outputs"]
-
-
-def test_what_a_fit_will_ask_for_is_told(arm, capsys, monkeypatch, tmp_path):
-    monkeypatch.chdir(tmp_path)
-    log = simulated(ARM.format(damping=0.1), samples=200)
-    log = replace(log, inputs=log.inputs[:, :1], input_names=("shoulder_servo",))
-    write_log(log, tmp_path / "run.csv")
-    xml = ARM.format(damping=0.1)
-    (tmp_path / "arm.xml").write_text(xml[: xml.index("<sensor>")] + "</mujoco>")
-    (said,) = run(capsys, "new", "arm.xml", "run.csv")["needs"]
-    assert "no column was found for actuator elbow_servo" in said
-
-
-def test_text_on_a_terminal(arm, capsys):
-    from identification.__main__ import main
-
-    assert main(["inspect", str(arm / "run")]) == 0
-    text = capsys.readouterr().out
-    assert "500 rows over 4.99 s, one every 0.01 s" in text
-    assert "joint_states.position.elbow answers desired.position.elbow" in text
-    assert "as it would answer the command of a position" in text
-    assert text.endswith(f"identification new MODEL.xml {arm / 'run'}\n")
-
-
-def test_the_command_says_what_it_guessed_and_what_comes_next(arm, capsys, monkeypatch, tmp_path):
-    from identification.__main__ import main
-
-    monkeypatch.chdir(tmp_path)
-    assert main(["new", str(arm / "arm.xml"), str(arm / "run")]) == 0
-    text = capsys.readouterr().out
-    assert text.startswith("Written: robot.toml\nfound:\n")
-    assert text.index("guessed, for you to judge:") < text.index("horizon = 0.3 s")
-    assert text.endswith(f"Next: identification fit robot.toml {arm / 'run'}\n")
 
 
 @pytest.mark.parametrize("change", ["nothing", "servos", "slow", "a third joint"])

@@ -6,7 +6,6 @@ import pytest
 from hypothesis import given, settings
 from kinematics_cases import FLAT, INSIDE, TWIST
 
-from identification.errors import InputError
 from inca_mj.kinematics import (
     Pulleys,
     accelerations,
@@ -154,8 +153,3 @@ def test_the_condition_does_not_depend_on_the_unit_of_length():
     )
     scaled = pose * [0.1, 0.1, 0.1, 1, 1, 1]
     assert condition(inverse(scaled, tenth)) == pytest.approx(condition(inverse(pose, INCA)))
-
-
-def test_a_pose_that_is_none_is_refused():
-    with pytest.raises(InputError, match="six finite numbers"):
-        inverse([0, 0, 1.43], INCA)

@@ -7,8 +7,6 @@ import numpy as np
 import pytest
 from reference_cases import differing
 
-import inca_mj.verification.check as check
-from identification.errors import InputError
 from inca_mj.reference import rest
 from inca_mj.robot.geometry import INCA
 from inca_mj.robot.parameters import SETS, parameter_set
@@ -114,19 +112,6 @@ def test_the_order_tells_two_terms_apart():
     assert leading_slope(h[:2], both[:2]) is None
     assert leading_slope(h, h**2) is None
     assert slope(h, [None, None, 1.0, None]) is None
-
-
-@pytest.mark.parametrize(
-    ("asked", "message"),
-    [
-        ({"cases": ("prsb",)}, "unknown case 'prsb'; did you mean 'prbs'"),
-        ({"duration": 0.001}, "is not between two samples"),
-    ],
-)
-def test_what_cannot_be_checked_is_refused_at_once(asked, message, monkeypatch):
-    monkeypatch.setattr(check, "compare_derivatives", lambda *_: pytest.fail("began"))
-    with pytest.raises(InputError, match=message):
-        crosscheck(parameter_set(), INCA, **asked)
 
 
 @pytest.mark.parametrize("what", ["angle", "position", "tension"])

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from reference_cases import taut
 
-from identification.errors import DivergenceError, InputError
+from identification.errors import DivergenceError
 from inca_mj.reference import kinematics, rest, simulate_reference
 from inca_mj.reference import layout as at
 from inca_mj.robot.geometry import INCA
@@ -111,20 +111,3 @@ def test_a_pitch_of_90_degrees_is_refused():
     x[at.RATES] = 0, 4, 0
     with pytest.raises(DivergenceError, match=r"pitch reached .*° at t = 0\.[34].* singular"):
         simulate_reference(parameter_set(), INCA, t, flat_out(t, 0.0), start=x, method="adaptive")
-
-
-T = samples(0.1)
-
-
-@pytest.mark.parametrize(
-    ("changes", "message"),
-    [
-        ({"time": T[::-1]}, "time must be a row of increasing"),
-        ({"start": np.zeros(35)}, "start must be 36 finite numbers"),
-        ({"method": "rk4", "step": 0.003}, "does not divide .* 0.0025 s does"),
-    ],
-)
-def test_bad_input_is_refused_with_a_cure(changes, message):
-    asked = {"time": T, "currents": flat_out(T)} | changes
-    with pytest.raises(InputError, match=message):
-        simulate_reference(parameter_set(), INCA, **asked)

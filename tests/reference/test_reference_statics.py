@@ -56,8 +56,3 @@ def test_the_no_load_length_gives_the_pretension():
 def test_a_cable_that_would_push_is_named():
     with pytest.raises(InputError, match=r"drive [1-4] would need a tension of -.*lower m"):
         rest(parameter_set("trial", {"m": 20.0}), INCA)
-
-
-def test_a_bad_force_is_refused():
-    with pytest.raises(InputError, match="force must be 3 finite numbers"):
-        pack(parameter_set(), INCA, force=(1.0, 2.0))

@@ -1,12 +1,10 @@
 """The rest with constant currents: the twin comes to it, and energy is least there."""
 
 import numpy as np
-import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import minimize
 from statics_cases import ROBOT
 
-from identification.errors import InputError
 from inca_mj import build_twin, parameter_set, simulate
 from inca_mj.kinematics.cables import inverse
 from inca_mj.robot.geometry import INCA
@@ -99,15 +97,3 @@ def test_friction_holds_it_in_a_band():
     # one drum that holds b_c/R more shifts the rest by no more than the band
     shifted = equilibrium(ROBOT, np.r_[ROBOT.b_c[0] / ROBOT.K_t[0], np.zeros(7)])
     assert (np.abs(shifted.pose - ROBOT.start) <= 1.05 * rest.friction_band + 1e-12).all()
-
-
-@pytest.mark.parametrize(
-    ("arguments", "sentence"),
-    [
-        ({"load": np.zeros(3)}, "a load of shape"),
-        ({"current": -5.0}, "is slack where the platform would rest|no rest near the start"),
-    ],
-)
-def test_refusals(arguments, sentence):
-    with pytest.raises(InputError, match=sentence):
-        equilibrium(ROBOT, **arguments)

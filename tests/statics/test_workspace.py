@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from statics_cases import ROBOT, possible, random_poses
 
-from identification.errors import InputError
 from inca_mj.kinematics.cables import inverse
 from inca_mj.rendering.workspace_picture import surface
 from inca_mj.robot.geometry import INCA
@@ -78,18 +77,6 @@ def test_poses_of_a_workspace_are_those_inside():
     found = workspace("static", ROBOT, (0.1, 0, 0.05), cells=8)
     assert len(found.poses) == found.inside.sum() > 0
     assert (margin("static", ROBOT, found.poses, LIMITS) > 0).all()
-
-
-@pytest.mark.parametrize(
-    ("arguments", "sentence"),
-    [
-        ({"kind": "reachable"}, "unknown workspace 'reachable'"),
-        ({"cells": 2}, "2 cells along an edge"),
-    ],
-)
-def test_refusals(arguments, sentence):
-    with pytest.raises(InputError, match=sentence):
-        workspace(**{"kind": "static", "robot": ROBOT, **arguments})
 
 
 def _ball(points):

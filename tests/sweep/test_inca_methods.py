@@ -14,7 +14,6 @@ from sweep_cases import run
 from identification import fit as fit_robot
 from identification import read_robot, write_log
 from identification.__main__ import main
-from identification.errors import InputError
 from identification.sweep.answers import ANSWER, PROOF, answer, nested, proof
 from identification.sweep.log_methods import METHODS as ROBOT_METHODS
 from identification.sweep.log_methods import named_findings
@@ -23,11 +22,9 @@ from identification.sweep.work import checked
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.studies import METHODS
 from inca_mj.studies.hidden_worlds import WorldSettings, make_world
-from inca_mj.studies.null_score import null_findings
 from inca_mj.studies.parameters import excitation_findings
-from inca_mj.studies.scores import score_findings
 from inca_mj.studies.searches import truth_of
-from inca_mj.studies.worlds import HIDDEN_EFFECTS, HiddenSetting, draw_effect, records, world
+from inca_mj.studies.worlds import HiddenSetting, draw_effect, records, world
 
 SEED = Seed(5, (0, 0, 3))
 
@@ -55,33 +52,6 @@ def test_an_effect_that_is_asked_for_is_hidden_with_its_ratio():
     assert truth["hidden"] == ["quadratic_friction"]
     assert truth["hidden_size_of"] == ["quadratic_friction.c@all drives"]
     assert truth["hidden_sizes"] == [made[0].truth.effects[0].c]
-
-
-@pytest.mark.parametrize(
-    ("settings", "words"),
-    [
-        ({"kind": "nul"}, "unknown kind of world 'nul'; did you mean 'null'"),
-        (
-            {"effect": "cogging", "kind": "sensor"},
-            'write kind = "listed", or leave effect out, or one of kind sensor: encoder_ecc',
-        ),
-        ({"effects": 4}, "a world hides 1, 2 or 3"),
-        ({"rate": 0.0}, "give samples a second above zero"),
-        ({"input": "sine"}, "unknown input 'sine'"),
-    ],
-)
-def test_settings_of_worlds_are_checked(settings, words):
-    with pytest.raises(InputError, match=words):
-        WorldSettings(**settings)
-
-
-@pytest.mark.parametrize("kind", ["listed", "mixed", "unknown", "rule", "sensor"])
-def test_an_effect_of_its_own_kind_may_be_asked_for(kind):
-    from inca_mj.studies.hidden_worlds import HIDES, _drawn
-
-    for effect in HIDES.get(kind, HIDDEN_EFFECTS):
-        number = 1  # of six mixed worlds, this one hides what is listed
-        assert _drawn(WorldSettings(kind=kind, effect=effect), number)[1] == [effect]
 
 
 def test_labels_are_read(tmp_path, refusal):
@@ -114,26 +84,6 @@ def test_an_excitation_is_the_information_of_its_robot():
     assert record["names"] == [*UNKNOWN]
     told = excitation_findings([{**record, "set.input": name}] * 2).record["inputs"][name]
     assert told["worst_std"] == pytest.approx(found.e_value**-0.5)
-
-
-def test_false_names_are_counted_by_noise():
-    rows = [
-        {"set.coloured": coloured, "false_name": k == 0 and coloured, "names": ["a, b"] * (k == 0),
-         "below_5_percent": 0.05 if coloured else 0.1}
-        for coloured in (False, True) for k in range(4)
-    ]  # fmt: skip
-    found = null_findings(rows).record
-    assert found["white"]["a_false_name"]["hits"] == 0
-    assert found["coloured"]["a_false_name"]["value"] == 0.25
-    assert found["coloured"]["below_5_percent"] == pytest.approx(0.05)
-
-
-def test_scores_are_counted_by_effect():
-    rows = [{"hidden": ["delay"], "found": k < 2, "shown": True} for k in range(3)]
-    rows.append({"hidden": [], "found": None, "shown": False})
-    found = score_findings(rows).record["by_effect"]
-    assert found["delay"]["found"]["hits"] == 2
-    assert found["nothing"]["found"]["of"] == 0
 
 
 SWEEP = """
@@ -180,24 +130,6 @@ def test_the_same_folder_elsewhere_gives_the_same_records(folder, tmp_path_facto
     here, there = (run(place / "fits.toml", place / "out", known=ROBOT_METHODS)
                    for place in (folder, moved))  # fmt: skip
     assert here[:1] == there[:1]
-
-
-@pytest.mark.parametrize(
-    ("old", "new", "words"),
-    [
-        ('{ files = "logs/*.csv" }', '["logs/1.csv", "logs/4.csv"]', "logs/4.csv, which does not"),
-        ("slider.toml", "cart.toml", "robot in study"),
-    ],
-)
-def test_a_file_that_is_not_there_is_refused_before_anything_runs(folder, capsys, old, new, words):
-    text = SWEEP.replace("fit-log", "fit-log").replace(old, new)
-    (folder / "fits.toml").write_text(text)
-    line = ["sweep", str(folder / "fits.toml"), "--out", str(folder / "out")]
-    assert main(line) == 2
-    said = capsys.readouterr().err
-    assert words in said
-    assert len(said.splitlines()) == 1
-    assert not (folder / "out").exists()
 
 
 def test_a_summary_needs_the_records_alone(folder, capsys):

@@ -182,31 +182,3 @@ def test_what_a_backend_refuses(serial, tmp_path, refusal, monkeypatch, word, jo
         return run(path, tmp_path / "out", backend_of(word, jobs, tmp_path, options))
 
     assert words in refusal(call)
-
-
-def test_a_cluster_that_takes_no_job_is_told(serial, tmp_path, refusal, monkeypatch):
-    options = {"slurm_partition": "lnog"}
-    programs, said = tmp_path / "bin", "sbatch: error: invalid partition specified"
-    programs.mkdir()
-    for name in ("sbatch", "srun"):
-        (programs / name).write_text(f"#!/bin/sh\necho '{said}' >&2\nexit 1\n")
-        (programs / name).chmod(0o755)
-    monkeypatch.setenv("PATH", f"{programs}:/usr/bin:/bin")
-
-    def call():
-        return run(serial[0], tmp_path / "out", backend_of("slurm", 1, tmp_path, options))
-
-    assert f"slurm took no job: {said}" in (words := refusal(call))
-    assert "correct the options that --job gives (slurm_partition=lnog)" in words
-    assert "--resume" in words
-
-
-def test_a_missing_package_is_told(monkeypatch, refusal):
-    monkeypatch.setitem(sys.modules, "distributed", None)
-    assert "pip install 'inca-mj[cluster]'" in refusal(lambda: Dask(None, 1))
-
-
-def test_without_pyarrow_no_sweep(monkeypatch, tmp_path, refusal):
-    path = write(tmp_path)
-    monkeypatch.setitem(sys.modules, "pyarrow", None)
-    assert "a sweep needs pyarrow" in refusal(run, path, tmp_path / "out")

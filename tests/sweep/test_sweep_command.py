@@ -97,40 +97,6 @@ def test_ctrl_c_ends_with_130_and_keeps_the_records(tmp_path):
     assert kept == run(path, tmp_path / "whole")[: len(kept)]
 
 
-def test_progress_is_told_in_lines_and_errors_are_counted(tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr("identification.sweep.run.EVERY", 0.0)
-    path, out = write(tmp_path, "[study.grid]\nbad = [false, true]\n", 1), tmp_path / "out"
-    line = ["sweep", str(path), "--backend", "serial", "--out", str(out)]
-    assert identification(line) == 0
-    said = capsys.readouterr()
-    assert re.search(r"1 of 2 tasks, \d+ s left", said.err)
-    assert "2 of 2 tasks, 1 with an error, 0 s left" in said.err
-    met = "1 of them met an error (ValueError: this task is bad (sweep_method.py, line 42))."
-    assert f"2 of 2 tasks have a record; {met}" in said.out
-    assert json.loads((out / "result.json").read_text())["errors"] == {
-        "ValueError: this task is bad (sweep_method.py, line 42)": 1
-    }
-    assert identification([*line, "--resume", "--again", "--quiet"]) == 0
-    path = write(tmp_path, "[study.settings]\nbad = true\n", 1)
-    assert identification(["sweep", str(path), "--backend", "serial", "--out", str(out) + "2"]) == 1
-    assert "every task met an error: ValueError: this task is bad" in capsys.readouterr().err
-
-
-@pytest.mark.parametrize(
-    ("more", "words"),
-    [
-        (["--backend", "dusk"], "unknown backend 'dusk'; did you mean 'dask'"),
-        (["--summary"], "there is no folder"),
-        (["--again"], "write --resume too"),
-    ],
-)
-def test_what_is_refused_leaves_no_records(tmp_path, capsys, more, words):
-    line = ["sweep", str(write(tmp_path)), "--out", str(tmp_path / "out"), *more]
-    assert inca(line) == 2
-    assert words in capsys.readouterr().err
-    assert not [*tmp_path.rglob("*.parquet")]
-
-
 @pytest.mark.parametrize("path", sorted((ROOT / "benchmarks" / "sweeps").glob("*.toml")),
                          ids=lambda path: path.stem)  # fmt: skip
 def test_the_sweeps_of_the_project_are_right(path, tmp_path, monkeypatch):

@@ -7,16 +7,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from sweep_cases import GRID, METHOD, run, write
+from sweep_cases import GRID, METHOD
 
 from identification.sweep.config import read_sweep
-from identification.sweep.figures import power_figure, threshold_figure
 from identification.sweep.method import load_method
-from identification.sweep.power import Threshold, curves
 from identification.sweep.settings import Heads, about_of, check_values, kinds_of
-from identification.sweep.statistics import wilson
-from identification.sweep.store import Store
-from identification.sweep.summary import summarise
 from inca_mj.studies import METHODS
 
 TWO = f"seed = 3\n[[study]]\nname='one'\nmethod='{METHOD}:TOSS'\ncount=4\n{{}}\n" + (
@@ -127,18 +122,6 @@ def test_bad_sweeps_are_refused_before_anything_runs(tmp_path, refusal, text, wo
     assert re.search(words.replace("[[", r"\[\["), refusal(read_sweep, path, METHODS))
 
 
-def test_all_registered_methods_can_be_imported_and_say_what_they_do():
-    from identification.sweep.method import load_method
-    from identification.sweep.settings import kinds_of
-
-    for reference in METHODS.values():
-        method = load_method(reference)
-        assert method.about
-        assert kinds_of(method.settings)
-        assert method.success in ("", *method.columns)
-        assert method.against in ("", *kinds_of(method.settings))
-
-
 PAGE = (Path(__file__).parents[2] / "docs" / "sweeps.md").read_text(encoding="utf-8")
 HEAD = "| setting | unit | default | required | what it is |\n|---|---|---|---|---|"
 EXAMPLE = {bool: True, int: 1, float: 1.0, str: "a"}
@@ -200,42 +183,3 @@ def test_a_sweep_must_say_what_the_page_calls_required_and_nothing_else(name, re
     for key in required:
         rest = {k: v for k, v in given.items() if k != key}
         assert f"does not say {key!r}" in refusal(check_values, settings, rest, "here")
-
-
-def test_a_report_speaks_in_words_with_units(tmp_path):
-    sweep = read_sweep(write(tmp_path), {})
-    run(write(tmp_path), tmp_path / "out")
-    with Store(sweep, tmp_path / "out") as store:
-        found = summarise(sweep, store.rows())
-    told = " ".join(
-        [*found.sentences]
-        + [f"{s.title} {s.text} {s.table.columns if s.table else ''}" for s in found.sections]
-    )
-    assert "set." not in told
-    assert "run." not in told
-    assert not re.search(r"\b[a-z]+_[a-z]+\b", told), told
-
-
-def rows_of(sizes, lengths):
-    return [{"found": True, "set.size": x, "set.duration": d} for x in sizes for d in lengths]
-
-
-def test_a_logarithmic_axis_says_so_and_another_does_not():
-    far = True
-    heads = Heads({"duration": "length [s]", "size": "of it [N]"})
-    found = curves(rows_of((0.3, 1.0, 30.0), (5.0, 10.0)), "found", "size", ["duration"], heads)
-    assert [curve.label for curve in found] == ["duration 5 s", "duration 10 s"]
-    figure = power_figure(found, heads.head("size"), "found")
-    assert all((ax.get_xscale() == "log") is far for ax in figure.axes)
-    assert figure.get_supxlabel() == "size [N]" + ", logarithmic axis" * far
-    assert all(curve.rates == (wilson(1, 1),) * 3 for curve in found)
-
-
-def test_so_do_both_axes_of_thresholds():
-    smallest = 2.0
-    lines = {"": [Threshold(at, smallest, None, None, smallest) for at in (1.0, 20.0)]}
-    (ax,) = threshold_figure(lines, "duration [s]", "size [N]").axes
-    assert ax.get_xlabel() == "duration [s], logarithmic axis"
-    assert ax.get_xscale() == "log"
-    assert (ax.get_yscale() == "log") is (smallest > 0)
-    assert ax.get_ylabel().endswith("logarithmic axis") is (smallest > 0)

@@ -118,11 +118,6 @@ def test_errors_are_rows_and_run_again_on_demand(tmp_path):
         assert store.done == {0, 1, 2, 3}
 
 
-def test_a_record_of_other_entries_than_declared_is_an_error(tmp_path):
-    (row,) = (json.loads(t) for t in run(write(tmp_path, "", 1, "WRONG"), tmp_path / "out"))
-    assert row["error"].startswith("TypeError: the record has the entries []")
-
-
 def test_another_sweep_in_the_folder_is_refused(tmp_path, refusal):
     out = tmp_path / "out"
     path = write(tmp_path)
@@ -198,19 +193,6 @@ def test_a_task_that_raises_or_exits_costs_no_other(tmp_path, capsys, run):
     place = f"(own.py, line {line_of(tmp_path, run)})"
     assert errors == [None, f"{BROKEN[run]} {place}", None]
     assert "Traceback" not in capsys.readouterr().err
-
-
-@pytest.mark.parametrize(("part", "what"), [
-    ("top", "cannot be imported"), ("settings", "refuses its settings"),
-    ("summary", "has no summary of its records"),
-])  # fmt: skip
-def test_code_around_the_tasks_is_told_with_its_line(tmp_path, capsys, part, what):
-    code = "raise SystemExit(7)"
-    assert sweep(tmp_path, **{part: code}) == 2
-    said = capsys.readouterr().err
-    assert said.count("\n") == 1
-    assert what in said
-    assert f"(own.py, line {line_of(tmp_path, code)})" in said
 
 
 def test_a_ctrl_c_in_a_method_ends_the_sweep(tmp_path):

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from torque_cases import TOML, planar, planar_record, planar_robot
 
-from identification import InputError, fit_torques
+from identification import fit_torques
 from identification.__main__ import main
 from identification.logs.csv_files import write_log
 from identification.report.torque_words import centre_words
@@ -177,19 +177,3 @@ def test_the_column_of_a_free_spring_is_the_position(tmp_path):
     q = equations.stacked("q")
     np.testing.assert_allclose(others.columns[:, 1, 0], q[:, 1], atol=1e-6)
     np.testing.assert_allclose(others.columns[:, 0, 0], 0.0, atol=1e-6)
-
-
-def test_a_record_counts_once(tmp_path):
-    record = planar_record(11, LOAD, name="r")
-    with pytest.raises(InputError, match="log 'r' is given twice"):
-        fit_torques(planar_robot(tmp_path, record, confirm=[record]))
-
-
-def test_the_command_refuses_currents_in_another_unit(tmp_path, capsys):
-    record = planar_record(31, LOAD)
-    wrong = replace(record, inputs=1000 * record.inputs)
-    (tmp_path / "arm.xml").write_text(planar())
-    (tmp_path / "robot.toml").write_text('model = "arm.xml"\nfree = ["body/fore.mass"]\n')
-    write_log(wrong, tmp_path / "r.csv")
-    assert main(["torques", str(tmp_path / "robot.toml"), str(tmp_path / "r.csv")]) == 2
-    assert 't1 = "mA"' in capsys.readouterr().err

@@ -116,9 +116,3 @@ def test_a_value_of_one_record_is_known_there():
         τ += model.dof_armature * rows.a + model.dof_damping * rows.v
         left = rows.y - τ - model.dof_frictionloss * rows.sign
         assert np.sqrt(np.mean(left[rows.used] ** 2)) < 0.02 * rows.y.std()
-
-
-def test_a_record_shorter_than_its_edges_is_refused(refusal):
-    model = mujoco.MjModel.from_xml_string(planar())
-    log = planar_record(1, lasts=0.1)
-    assert "give a longer log" in refusal(make_rows, model, (log,))

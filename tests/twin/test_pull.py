@@ -4,7 +4,6 @@ import mujoco
 import numpy as np
 import pytest
 
-from identification.errors import InputError
 from inca_mj.effects.platform import PULL
 from inca_mj.reference.integrate import simulate_reference
 from inca_mj.robot.geometry import INCA
@@ -75,12 +74,3 @@ def test_no_force_changes_nothing(pulled):
     np.testing.assert_array_equal(
         simulate(none, currents).qpos, simulate(build_twin(), currents).qpos
     )
-
-
-@pytest.mark.parametrize(
-    ("force", "at", "said"),
-    [((1, 2), (0, 0, 0), "three numbers"), ((1e6, 0, 0), (0, 0, 0), "outside its range")],
-)
-def test_what_is_no_force_is_refused(force, at, said):
-    with pytest.raises(InputError, match=said):
-        with_force(build_twin(), force, at)

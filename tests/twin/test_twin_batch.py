@@ -20,7 +20,6 @@ from inca_mj.robot.parameters import SETS, parameter_set
 from inca_mj.robot.spread import EACH_DRIVE, deviations, displaced, displacements, with_spread
 from inca_mj.twin.logs import run_to_log
 from inca_mj.twin.run import simulate
-from inca_mj.twin.saved import load_twin, save_twin
 from inca_mj.twin.twin import build_twin
 
 
@@ -197,11 +196,3 @@ def test_a_displacement_that_is_added_to_all_points_moves_the_robot_as_a_whole()
     a = simulate(spread().with_values(shift | here), currents).motor_angle
     b = simulate(spread(), currents).motor_angle
     np.testing.assert_allclose(a, b, atol=1e-10)
-
-
-def test_a_saved_robot_is_the_same_to_the_bit(tmp_path):
-    robot = spread().with_values(drawn(6))
-    save_twin(robot, tmp_path)
-    again = load_twin(tmp_path)
-    assert again.parameters.values() == robot.parameters.values()
-    assert differing(again.model, robot.model) <= UNREAD

@@ -7,11 +7,9 @@ import pytest
 from hypothesis import given, settings
 from twin_cases import every_step, forward, laws, moving, random_state, seeds, sets
 
-from identification.errors import InputError
 from identification.model.paths import read, resolve
 from identification.model.rollout import State
-from inca_mj.robot import law
-from inca_mj.robot.parameters import SETS, parameter_set
+from inca_mj.robot.parameters import parameter_set
 from inca_mj.twin.twin import build_twin
 
 
@@ -85,41 +83,6 @@ def test_the_control_range_clamps_the_current():
     np.testing.assert_array_equal(driven[0, 6:], 0.08 * np.clip(ctrl[0], -1.5, 1.5))
 
 
-# Thesis Tables 2.1 and 3.2, typed from the page.
-TABLES = {
-    "simulation": {
-        "R": 0.0175, "R_s": 0.006, "k_s": 16, "lambda": 32224, "b": 10, "J": 3.0563e-5,
-        "b_v": 3e-4, "b_c": 0.005, "beta": 0.8, "K_t": 0.0603, "m": 0.1725,
-    },
-    "trial": {
-        "R": 0.0175, "R_s": 0.006, "k_s": 16, "lambda": 25000, "b": 8, "J": 8e-5,
-        "b_v": 2e-4, "b_c": 0.005, "beta": 0.8, "K_t": 0.08, "m": 0.1725,
-    },
-}  # fmt: skip
-
-
-@pytest.mark.parametrize("name", SETS)
-def test_the_compiled_model_holds_the_tables(name):
-    model, table = build_twin(parameter_set(name)).model, TABLES[name]
-    for k in range(1, 9):
-        drive = model.actuator(f"current_{k}")
-        row, cable = drive.user, model.tendon_user[model.tendon(f"cable_{k}").id]
-        held = {
-            "R": row[law.R], "R_s": row[law.R_S], "k_s": row[law.K_S], "b_c": row[law.B_C],
-            "beta": row[law.BETA], "K_t": drive.gear[0],
-            "lambda": cable[law.LAMBDA],
-            "b": cable[law.B],
-            "J": model.joint(f"motor_{k}").armature[0],
-            "b_v": model.joint(f"motor_{k}").damping[0],
-            "m": model.body("platform").mass[0],
-        }  # fmt: skip
-        assert held == table
-        assert int(row[law.CABLE]) == model.tendon(f"cable_{k}").id
-    np.testing.assert_array_equal(model.body("platform").inertia, [0.8e-4, 1.5e-4, 1.8e-4])
-    np.testing.assert_array_equal(model.opt.gravity, [0, 0, -9.81])
-    np.testing.assert_array_equal(model.key("start").qpos[:7], [0, 0, 1.43, 1, 0, 0, 0])
-
-
 ALL = [p for p in parameter_set()]
 
 
@@ -141,18 +104,3 @@ def test_every_path_resolves_to_its_value(parameter):
     slot = resolve(model, parameter.where)
     assert read(model, slot) == parameter.value
     assert len(slot.rows) == (1 if "platform" in parameter.where else 8)
-
-
-@pytest.mark.parametrize(
-    ("path", "message"),
-    [
-        ("motor_1.damping", "is no model path; write kind/name.attribute"),
-        ("motor/motor_1.damping", "unknown kind of object 'motor'.* known: actuator, body"),
-        ("joint/moter_1.damping", "unknown joint 'moter_1'; did you mean 'motor_1'"),
-        ("joint/motor_1.viscosity", "unknown attribute of a joint 'viscosity'"),
-        ("body/platform.inertia[3]", "has columns 0 to 2"),
-    ],
-)
-def test_a_path_that_leads_nowhere_is_refused(path, message):
-    with pytest.raises(InputError, match=message):
-        resolve(build_twin().model, path)

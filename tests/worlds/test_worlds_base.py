@@ -8,7 +8,6 @@ import pytest
 from worlds_cases import ALL, TRIAL, plant, prbs, rate
 from worlds_cases import simulate as simulate_world
 
-from identification.errors import InputError
 from identification.model.predictor import Predictor
 from inca_mj.effects.catalogue import CATALOGUE
 from inca_mj.reference import derivative, pack, simulate_reference
@@ -25,12 +24,9 @@ from inca_mj.studies.worlds import (
 )
 from inca_mj.studies.worlds.cable_effects import (
     HiddenAnchorOffset,
-    HiddenCableHardening,
     HiddenComOffset,
     HiddenExternalForce,
-    HiddenPulleyRadius,
 )
-from inca_mj.studies.worlds.drive_effects import HiddenStribeckFriction
 from inca_mj.twin.twin import build_twin
 
 CLOSE = 1e-7  # the oracle is adaptive, at 1e-11 [rad]
@@ -96,25 +92,6 @@ def test_a_drawn_effect_is_one_that_a_robot_can_have(name):
     assert one == same != another
     assert one.name == name
     simulate_world(plant(one), prbs(0.3))
-
-
-def test_bad_effects_are_refused():
-    with pytest.raises(InputError, match="did you mean 'backlash'"):
-        effect("backlas")
-    with pytest.raises(InputError, match="no drive 9"):
-        HiddenAnchorOffset(drive=9)
-    with pytest.raises(InputError, match="name its drive"):
-        HiddenAnchorOffset(drive=None)
-    with pytest.raises(InputError, match="v_s = 0 must be positive"):
-        HiddenStribeckFriction(v_s=0.0)
-    with pytest.raises(InputError, match="not a finite number"):
-        HiddenStribeckFriction(f_s=float("nan"))
-    with pytest.raises(InputError, match="no strain that carries"):
-        plant(HiddenCableHardening(kappa=-1e5))
-    with pytest.raises(InputError, match="inside its pulley"):
-        plant(HiddenPulleyRadius(r_p=3.0))
-    with pytest.raises(InputError, match="hold the platform"):
-        plant(HiddenComOffset(x=2.0))
 
 
 SEED = 11

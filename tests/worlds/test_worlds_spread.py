@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from identification.errors import InputError
 from identification.logs.joined import join_logs
 from identification.model.predictor import Predictor
 from inca_mj.effects.catalogue import CATALOGUE
@@ -19,7 +18,6 @@ from inca_mj.studies.worlds import (
     EXACT,
     VARIED,
     HiddenSetting,
-    Tolerances,
     make_currents,
     make_plant,
     records,
@@ -190,17 +188,6 @@ def test_an_effect_acts_on_drives_that_differ_as_the_twin_says(twin):
     answer = np.linalg.norm(truth.angles - without)
     assert answer > 0
     assert np.linalg.norm(model - truth.angles) < 0.02 * answer
-
-
-@pytest.mark.parametrize("bad", [{"R": -0.01}, {"lambda_": 1.0}])
-def test_bad_tolerances_are_refused(bad):
-    with pytest.raises(InputError, match=f"tolerances: {next(iter(bad))} = "):
-        Tolerances(**bad)
-
-
-def test_bad_records_are_refused():
-    with pytest.raises(InputError, match="one record or more"):
-        records(1, setting=SHORT, **{"n": 0})
 
 
 def test_what_other_parameters_do_as_well_is_no_effect():

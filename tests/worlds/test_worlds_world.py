@@ -125,16 +125,3 @@ def test_an_effect_is_not_larger_than_a_robot_may_have_it():
     assert np.isinf(HiddenCurrentSaturation().most)
     with pytest.raises(InputError, match=r"rho = 0\.005\).* cannot be absorbed"):
         world(6, [line], ratio=1e4, setting=SHORT)
-
-
-def test_bad_worlds_are_refused():
-    with pytest.raises(InputError, match="unknown input"):
-        HiddenSetting(input="steps")
-    with pytest.raises(InputError, match="noise = -1 is not allowed; give 0 or more"):
-        HiddenSetting(noise=-1.0)
-    with pytest.raises(InputError, match="named twice"):
-        world(0, [HiddenBacklash(), HiddenBacklash(h=0.1)], setting=SHORT)
-    with pytest.raises(InputError, match="1 positive ratios"):
-        world(0, [HiddenBacklash()], ratio=[1.0, 2.0], setting=SHORT)
-    with pytest.raises(InputError, match="negative"):
-        world(-1, setting=SHORT)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from joint_worlds import slots as at
 from joint_worlds.files import write_world
-from joint_worlds.hidden import EVERY, Habits, effects_of
+from joint_worlds.hidden import EVERY, Habits
 from joint_worlds.motion import ROBOTS, windows
 from joint_worlds.seen import logged
 from joint_worlds.world import LEAST, UnseenError, held_base, make_world, with_effect
@@ -77,12 +77,3 @@ def test_what_parameters_imitate_is_no_world():
     """A linear robot with a wrong scale is a linear robot with other parameters."""
     with pytest.raises(UnseenError, match="encoder_scale of cart shows"):
         make_world("cart", "encoder_scale", 1, duration=2.0)
-
-
-@pytest.mark.parametrize("robot", ROBOTS.values(), ids=ROBOTS)
-def test_every_robot_hides_what_acts_on_its_joints(robot):
-    hidden = effects_of(robot)
-    assert ("load_dependent_friction" in hidden) == (not all(robot.heavy))
-    assert ("encoder_lag" in hidden) == (robot.n > 1)
-    assert ("encoder_eccentricity" in hidden) == (robot.kind == "hinge")
-    assert robot.plain()[1][:, at.LIMIT].min() == np.inf

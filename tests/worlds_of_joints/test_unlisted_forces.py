@@ -12,7 +12,6 @@ from joint_worlds.slots import plain_joints
 
 from identification.effects.axes import Axis
 from identification.effects.catalogue import joint_effects
-from identification.sweep.statistics import rate
 
 AXES = tuple(Axis(name, "hinge", 1.0, 1.0, 1.0, duration=2.0) for name in "ab")
 LAWS = [
@@ -84,12 +83,4 @@ def test_answers_are_counted_by_what_they_claim():
     }
     assert "| a law is named, which is wrong, goal 4 % at most | 2 of 7 [8, 64 %] |" in section(
         rows
-    )
-
-
-def test_laws_that_were_refused_as_neighbours_names_are_counted():
-    told = {**row("unknown effect"), "rejected": [["quadratic_friction", "rail", "neighbour"]]}
-    other = {**row("unknown effect"), "rejected": [["cogging", "rail", "chance"]]}
-    assert summary([told, other, row("unknown effect")])["unlisted"]["all"]["law_refused"] == rate(
-        [told, other, None], lambda r: r is told
     )
