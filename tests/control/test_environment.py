@@ -8,7 +8,6 @@ pytest.importorskip("dm_control", reason="dm_control runs on neither MuJoCo 4 no
 
 from dm_control.rl.control import PhysicsError
 
-from identification.errors import InputError
 from inca_mj.control.controller import CONTROL_TIMESTEP, Controller, Gains
 from inca_mj.control.environment import load_environment as load
 from inca_mj.control.inverse import HIGHEST_CURRENT, LOWEST_CURRENT
@@ -206,17 +205,6 @@ def test_a_robot_with_an_effect_moves_as_its_twin_does():
     seen = np.array([step.observation["motor_angle"] for step in drive(env, currents)])
     run = simulate(robot, np.vstack([currents, currents[-1:]]), CONTROL_TIMESTEP)
     np.testing.assert_allclose(seen, run.motor_angle[1:], atol=1e-9)
-
-
-def test_refusals():
-    (delay,) = (e for e in CATALOGUE if e.name == "delay")
-    robot = build_twin(effects=(delay,))
-    load("hold", robot=robot)  # absent: its size is zero
-    with pytest.raises(InputError, match=r"delay acts outside the robot's law.*inca_mj\.track"):
-        load("hold", robot=robot.with_values({"delay.tau": 0.01}))
-    for noise in (-1.0, np.nan):
-        with pytest.raises(InputError, match="encoder noise"):
-            load("hold", encoder_noise=noise)
 
 
 def test_the_example_brings_the_handle_to_its_target():

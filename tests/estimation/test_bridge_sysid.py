@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from identification import InputError, bridge_sysid
-from identification.bridge_sysid import from_sysid, sysid_residual, to_sysid, to_sysid_parameters
+from identification import InputError
+from identification.bridge_sysid import from_sysid, sysid_residual, to_sysid_parameters
 from identification.model.predictor import Predictor
 from inca_mj.robot.inputs import make_input
 from inca_mj.twin.logs import run_to_log
@@ -39,16 +39,6 @@ def robot():
 @pytest.fixture(scope="module")
 def log(robot):
     return run_to_log(simulate(robot, make_input("prbs", 0.6)))
-
-
-def test_what_is_missing_is_said_in_one_sentence(robot, log, refusal, monkeypatch):
-    def absent(name):
-        raise ModuleNotFoundError("No module named 'colorama'")
-
-    monkeypatch.setattr(bridge_sysid, "import_module", absent)
-    said = refusal(to_sysid, robot, log)
-    assert "colorama" in said
-    assert "mujoco[sysid]" in said
 
 
 @needs_sysid

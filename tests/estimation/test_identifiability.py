@@ -1,6 +1,5 @@
 """What a log cannot say is said in words; what it can is not called unknown."""
 
-from dataclasses import replace
 from fractions import Fraction
 
 import mujoco
@@ -76,41 +75,9 @@ def test_a_value_at_its_bound_is_reported():
         assert "At a bound: stiffness" in " ".join(fit_verdict(fit))
 
 
-@pytest.mark.parametrize(
-    ("unseen", "expected", "said"),
-    [
-        (1.1, 1.0, "what was fitted holds there too"),
-        (3.0, 1.0, "it does not hold"),
-        (40.0, 1e4, "40 times that of the fitted part"),  # chaos confirms nothing
-    ],
-)
-def test_what_unseen_data_say_depends_on_what_they_could(unseen, expected, said):
-    fit = assess(estimate(slider(x0=0.0, **{**OFF, "gear": 5.0}), LOG, ALL[:3]))
-    rms = fit.rms_by_unit
-    judged = replace(
-        fit,
-        validation_rms_by_unit={u: unseen * e for u, e in rms.items()},
-        validation_expected_by_unit={u: expected * e for u, e in rms.items()},
-    )
-    assert said in fit_verdict(judged)[-1]
-
-
 def test_a_start_on_or_beyond_a_bound_is_refused():
     with pytest.raises(InputError, match=r"damping .* must lie inside \(0, inf\)"):
         estimate(slider(), LOG, ("damping",), {"damping": 0.0})
-
-
-def test_a_wrong_name_is_answered_with_the_likely_one():
-    with pytest.raises(InputError, match="did you mean 'damping'"):
-        estimate(slider(), LOG, ("dampnig",))
-    with pytest.raises(InputError, match="did you mean 'stiffness'"):
-        estimate(slider(), LOG, ("damping",), {"stifness": 3.0})
-    with pytest.raises(InputError, match="did you mean 'mass'"):
-        estimate(slider(), LOG, ("mass",), options=Options(priors={"mas": 1.0}))
-    with pytest.raises(InputError, match="twice"):
-        estimate(slider(), LOG, ("mass", "mass"))
-    with pytest.raises(InputError, match="no parameter is free"):
-        estimate(slider(), LOG, ())
 
 
 def test_a_start_that_diverges_is_said_in_a_sentence():
@@ -177,10 +144,3 @@ def test_no_symmetry_changes_a_product_and_together_they_span_the_space():
         np.testing.assert_allclose(V @ W.T, 0, atol=1e-12)
         moved = (V != 0).any(axis=0).sum()
         assert np.linalg.matrix_rank(W) == len(products) == moved - np.linalg.matrix_rank(V)
-
-
-def test_the_value_of_a_product_is_that_of_its_factors():
-    (product,) = known_products([symmetry(R_s=1, k_s=-2)], ("R_s", "k_s"))
-    assert product.value({"R_s": 0.006, "k_s": 16.0}) == pytest.approx(16.0 * 0.006**2)
-    scaled = {"R_s": 0.006 * 1.3, "k_s": 16.0 / 1.3**2}
-    assert product.value(scaled) == pytest.approx(16.0 * 0.006**2)

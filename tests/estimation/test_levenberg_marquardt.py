@@ -84,17 +84,6 @@ def test_many_descend_together_as_each_alone():
             assert t.taken[i] == alone.taken[0]
 
 
-def test_the_damping_is_that_of_the_rule():
-    for t, later in zip(trials := run([(-1.2, 1.0)], PLAIN, 30), trials[1:], strict=False):
-        assert later.μ == t.next
-        if t.taken[0]:
-            assert t.next[0] == (t.μ[0] / 10 if t.μ[0] >= 1e-3 else 0.0)
-        else:
-            assert t.next[0] == max(10 * t.μ[0], 1e-4)
-    assert len({t.μ[0] for t in trials}) > 2
-    assert min(t.μ[0] for t in run([(-1.2, 1.0)], CAREFUL, 60)) >= 1e-12
-
-
 def test_a_bent_step_is_taken_only_where_it_leads_lower_and_saves_steps():
     def needed(bends):
         trials = run([(-1.2, 1.0)], CAREFUL, 60, bends)

@@ -12,7 +12,6 @@ from identification.estimation.search import Slopes
 from identification.model.coordinates import coordinates
 from identification.model.predictor import Predictor
 from identification.model.sensitivity import forward_sensitivity, sensitivity
-from identification.pool import one_blas_thread
 from inca_mj.robot.inputs import make_input
 from inca_mj.twin.logs import run_to_log
 from inca_mj.twin.run import simulate
@@ -87,16 +86,6 @@ def test_kept_slopes_have_the_change_that_was_seen_and_keep_what_was_not():
 
 def threads():
     return {each["num_threads"] for each in threadpool_info() if each["user_api"] == "blas"}
-
-
-def test_one_thread_inside_and_as_many_as_before_after_it():
-    with threadpool_limits(2, "blas"):
-        with one_blas_thread():
-            assert threads() == {1}
-            with one_blas_thread():
-                assert threads() == {1}
-            assert threads() == {1}
-        assert threads() == {2}
 
 
 def test_a_fit_has_one_thread_and_finds_the_truth():

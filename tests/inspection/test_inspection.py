@@ -198,16 +198,3 @@ def test_logs_of_which_nothing_can_be_said_are_refused(tmp_path, refusal):
     (tmp_path / "run.mat").write_bytes(b"")
     with pytest.raises(InputError, match="no names of columns"):
         inspect_log(tmp_path / "run.mat")
-
-
-def test_the_keys_are_documented(arm, capsys, monkeypatch, tmp_path):
-    from pathlib import Path
-
-    page = (Path(__file__).parents[2] / "docs" / "json.md").read_text(encoding="utf-8")
-    inspected, begun = (page.split(f"## {w}\n")[1].split("\n## ")[0] for w in ("inspect", "new"))
-    monkeypatch.chdir(tmp_path)
-    record = run(capsys, "inspect", arm / "run")
-    keys = {*record, *record["time"], *record["columns"][0], *record["answers"][0]}
-    assert all(f"`{key}`" in inspected for key in keys)
-    record = run(capsys, "new", arm / "arm.xml", arm / "run")
-    assert all(f"`{key}`" in begun for key in record)

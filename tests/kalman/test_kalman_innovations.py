@@ -42,12 +42,6 @@ def test_a_sine_is_found_at_its_frequency_and_channel():
     assert w.frequency == pytest.approx(frequency, abs=1 / (N * H))
 
 
-def test_colour_is_found():
-    E = white(3)
-    E[1:, 2] += 0.4 * E[:-1, 2]
-    assert innovation_tests(E, H).p_correlation < 1e-4
-
-
 @pytest.mark.parametrize("a", [0.1, 0.3, 0.6])
 def test_the_predictable_share_of_a_first_order_process(a):
     rng = np.random.default_rng(5)

@@ -145,15 +145,6 @@ def test_what_is_missing_at_one_input_gains_as_much_as_with_one_error_for_all():
     assert gains[0] > 0.4 * gains[1] > 20
 
 
-def test_an_input_that_no_output_feels_keeps_its_share():
-    rng = np.random.default_rng(7)
-    plant = coupled(rng, 60)
-    deaf = LinearPlant(plant.A, plant.B * [1.0, 1.0, 0.0], plant.C)
-    e = drawn(deaf, Noise(100.0, 0.05), rng)
-    found = share_noise(deaf, Noise(100.0, 0.05), e, STEP, each_input=True)
-    assert np.all(np.isfinite(found.noise.of_inputs(3)))
-
-
 def test_shares_are_never_less_likely_than_none():
     rng = np.random.default_rng(3)
     for noise in (Noise(0.4, 0.1, shared(1, LOUD)), Noise(0.0, 0.1, shared(3, 1)), Noise(0.4, 0.1)):

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from plain_logs import plain_log
 
-from identification import InputError
 from identification.linear.modes import minimal, modes
 from identification.model.rollout import State
 from inca_mj.linear.accuracy import interpolation_errors, run_error
@@ -181,15 +180,3 @@ def test_without_coulomb_friction_the_scheduled_model_follows_where_the_fixed_on
     error = run_error(robot, g, point, amplitude=0.1, duration=2.5)
     assert error.travel > 0.03
     assert error.scheduled < error.fixed < 0.1
-
-
-@pytest.mark.parametrize(("wrong", "words"), [
-    (lambda: linearize(twin(), [0, 0, 1.43]), "six finite numbers"),
-    (lambda: linearize(twin(), [1.2, 1.2, 1.43, 0, 0, 0]), "would have to push"),
-    (lambda: linearize_along(twin(), prbs_log(0.5), [2.0]), "outside the log"),
-    (lambda: linearize_grid(twin(), {"w": np.arange(4.0)}), "unknown scheduling variable"),
-    (lambda: linearize_grid(twin(), {"x": np.linspace(0, 0.1, 30_000)}), "30000 points"),
-])  # fmt: skip
-def test_what_cannot_be_is_refused(wrong, words):
-    with pytest.raises(InputError, match=words):
-        wrong()

@@ -1,7 +1,6 @@
 """The figure of a frequency response: magnitude with its unit, and phase."""
 
 import numpy as np
-import pytest
 
 from identification.linear.system import LinearSystem
 from identification.report.linear import response_figure
@@ -36,15 +35,3 @@ def test_inputs_that_are_held_lag_by_half_a_sample():
     late = whole.get_ydata()[: len(f)] - held.get_ydata()
     np.testing.assert_allclose(late, 180 * f * h, atol=0.01)
     assert f.max() < 0.5 / h
-
-
-@pytest.mark.parametrize(
-    ("units", "unit"),
-    [
-        ({"angle_1": "rad", "current_1": "A"}, "rad/A"),
-        ({"angle_1": "rad"}, "unit of the output / unit of the input"),
-    ],
-)
-def test_the_magnitude_has_its_unit(units, unit):
-    magnitude, _ = response_figure(lag(), units=units).axes
-    assert magnitude.get_ylabel() == f"magnitude [{unit}]"

@@ -3,7 +3,6 @@
 from dataclasses import replace
 from unittest import mock
 
-import mujoco
 import numpy as np
 import pytest
 from effect_cases import full
@@ -103,19 +102,6 @@ def test_what_no_drive_reads_alone_is_evaluated_whole(robot):
     assert Points(at, ("qacc",))._actuators(Change({"act": at.act + 1e-3})) == ()
 
 
-def test_the_angle_of_a_rotor_that_more_than_its_cable_feels_is_no_share(robot):
-    model = without_sensors(robot.model)
-    joint = model.joint("motor_1")
-    if "off its axis" == "on a spring":
-        model.jnt_stiffness[joint.id] = 0.1
-    else:
-        model.body_ipos[model.jnt_bodyid[joint.id], 2] += 0.01
-    owners = owners_of(model)
-    assert ("actuator_user", 0) in owners
-    assert ("qpos", int(joint.qposadr[0])) not in owners
-    assert ("qpos", int(model.joint("motor_2").qposadr[0])) in owners
-
-
 @pytest.mark.parametrize(("field", "value"), [
     ("actuator_forcelimited", 1), ("actuator_gainprm", 1.0), ("dof_dampingpoly", 1e-3),
     ("actuator_damping", 1e-3),
@@ -124,12 +110,6 @@ def test_a_force_that_mujoco_limits_or_adds_to_is_evaluated_whole(robot, field, 
     model = without_sensors(robot.model)
     assert {name for name, _ in owners_of(model)} == ALONE
     getattr(model, field)[0] = value
-    assert owners_of(model) == {}
-
-
-def test_a_medium_and_groups_that_are_switched_off_are_evaluated_whole(robot):
-    model = without_sensors(robot.model)
-    model.opt.density = 1
     assert owners_of(model) == {}
 
 
@@ -144,9 +124,3 @@ def test_where_a_law_begins_anew_it_is_evaluated_whole(robot):
     at = replace(at, act=begun)
     for change, rates in zip(changes[1:], Points(at).each(changes[1:]), strict=True):
         np.testing.assert_array_equal(rates, one_by_one(at, change))
-
-
-def test_a_force_that_mujoco_answers_or_leaves_out_is_evaluated_whole(robot):
-    model = without_sensors(robot.model)
-    model.opt.disableflags ^= int(mujoco.mjtDisableBit.mjDSBL_CONSTRAINT)
-    assert owners_of(model) == {}

@@ -227,10 +227,3 @@ def test_any_cut_of_an_accepted_log_is_accepted(time, data):
         floats = 4 * np.spacing(np.abs(log.time).max())
         assert part.sampling_time == pytest.approx(h, rel=1e-3, abs=floats)
         log = part
-
-
-@given(n=st.integers(3, 2000), step=st.floats(1e-6, 1e3), start=st.floats(-1e6, 1e6))
-def test_stamps_that_are_a_grid_stay_as_they_are(n, step, start):
-    assume(step > 100 * np.spacing(abs(start) + n * step))
-    time = start + step * np.arange(n)
-    np.testing.assert_array_equal(log_of(time).time, time)

@@ -1,7 +1,6 @@
 """A sensor that freezes is refused with its time; a joint that rests is not."""
 
 from dataclasses import replace
-from itertools import combinations
 
 import mujoco
 import numpy as np
@@ -15,15 +14,7 @@ from stuck_cases import joint_log, stuck
 from identification import InputError
 from identification.effects.axes import axes
 from identification.logs.joined import ROW, share_samples
-from identification.logs.log import Log
 from identification.logs.plausible import BEYOND, FEWEST, SPAN, refuse_frozen
-from identification.refusals.columns import (
-    MOST_PAIRS,
-    Doubt,
-    column_pairs,
-    input_exchanges,
-    output_exchanges,
-)
 from identification.windows.records import as_records
 
 FROM = 300  # sample of 400
@@ -161,41 +152,6 @@ def test_a_rate_may_jump_and_a_user_may_overrule_it():
     log = slider_log(u, y)
     refuse_frozen(log, 0, log.inputs, log.outputs[:, :0], is_rate=True)
     axes(slider().model, log, ("sensors",))
-
-
-SAMPLES = 20
-
-
-def log_of(columns):
-    rng = np.random.default_rng(columns)
-    return Log(
-        time=0.01 * np.arange(SAMPLES),
-        inputs=rng.standard_normal((SAMPLES, columns)),
-        outputs=rng.standard_normal((SAMPLES, columns)),
-        input_names=tuple(f"u{k}" for k in range(columns)),
-        output_names=tuple(f"y{k}" for k in range(columns)),
-    )
-
-
-def exchanges(columns):
-    log = log_of(columns)
-    doubt = Doubt.of(log, {n: n for n in (*log.input_names, *log.output_names)})
-    return [[*kind(doubt)] for kind in (input_exchanges, output_exchanges)]
-
-
-@pytest.mark.parametrize("columns", [2, 7, 12])
-def test_all_pairs_of_a_usual_robot_are_tried_in_order(columns):
-    assert column_pairs(range(columns)) == [*combinations(range(columns), 2)]
-    assert [len(kind) for kind in exchanges(columns)] == 2 * [columns * (columns - 1) // 2]
-
-
-@pytest.mark.parametrize("columns", [13, 50])
-def test_of_many_columns_the_nearest_are_exchanged(columns):
-    pairs = column_pairs(range(columns))
-    assert [len(kind) for kind in exchanges(columns)] == 2 * [MOST_PAIRS]
-    assert {(k, k + 1) for k in range(columns - 1)} < {*pairs}
-    left_out = {*combinations(range(columns), 2)} - {*pairs}
-    assert max(j - i for i, j in pairs) <= min(j - i for i, j in left_out)
 
 
 def noisy(seed, samples=200, noise=1e-4):

@@ -16,7 +16,6 @@ from identification.logs.parts import (
     MEMORIES,
     MOST_BLOCKS,
     REPORT_EVERY,
-    Parts,
     autocorrelation_time,
     divide,
     inside,
@@ -212,12 +211,3 @@ def test_along_a_free_run_what_is_told_of_the_best_of_many_is_true_on_average(lo
     for numbers, scale in ((falls, 1.0), (shares, above)):
         assert abs(beyond(numbers["told"], np.array(true["told"]) / scale)) < 3
         assert beyond(numbers["decided"], np.array(true["decided"]) / scale) > 4
-
-
-def test_a_record_that_is_too_short_is_told_on_what_decided(log):
-    unseen = np.arange(len(log)) >= len(log) - SAMPLES
-    whole = Parts(unseen, unseen, 0)
-    e = np.random.default_rng(5).normal(size=SAMPLES)
-    proof = prove(validated(log, e, whole), validated(log, 0.9 * e, whole), OPTIONS)
-    assert proof.told == replace(proof, untouched=None)
-    assert not whole.is_kept

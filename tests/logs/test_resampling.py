@@ -186,13 +186,6 @@ def test_of_steps_only_the_rows_are_gaps_in_which_a_step_may_hide(n):
     assert {int(k) for k in gone if u[k] != u[k - 1]} <= changed
 
 
-@pytest.mark.parametrize("kind", ["slow", "zero"])
-def test_an_input_that_is_the_same_on_both_sides_is_known(kind):
-    u, t = course(kind, np.random.default_rng(1)), H * np.arange(N)
-    keep = np.arange(N) % 7 != 3
-    assert not lost(t[keep], u[keep])
-
-
 @given(
     seed=st.integers(0, 999),
     kind=st.sampled_from(["noise", "bang-bang", "chirp", "steps", "zero"]),

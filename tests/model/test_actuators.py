@@ -23,8 +23,8 @@ DRIVES = {  # an actuator of MJCF, what it is driven with, and its numbers
     '<intvelocity name="a" joint="q" kp="{kp}" kv="{kv}" actrange="-9 9"/>': (
         1.0, {"kp": (12.0, 9.0), "kv": (0.7, 0.4)},
     ),
-    '<position name="a" joint="q" kp="{kp}" kv="0.6" timeconst="{timeconst}"/>': (
-        0.6, {"kp": (12.0, 9.0), "timeconst": (0.05, 0.08)},
+    '<position name="a" joint="q" kp="{kp}" kv="{kv}" timeconst="{timeconst}"/>': (
+        0.6, {"kp": (12.0, 9.0), "kv": (0.6, 0.5), "timeconst": (0.05, 0.08)},
     ),
     '<position name="a" joint="q" kp="{kp}" kv="0.6" forcerange="-{forcerange} {forcerange}"/>': (
         0.6, {"kp": (12.0, 9.0), "forcerange": (2.0, 1.6)},

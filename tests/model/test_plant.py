@@ -106,18 +106,3 @@ def test_a_number_of_a_dcmotor_that_nothing_reads_is_refused(refusal, path, term
     listed = "dynprm[0] (time constant" if term is LUGRE else "biasprm[3] (τ_c)"
     assert listed in refusal(motor, path, other).rpartition("free another")[2]
     assert listed not in said.rpartition("free another")[2]
-
-
-def test_the_numbers_of_the_motor_itself_are_never_refused():
-    for path in ("gainprm[0]", "gainprm[1]", "biasprm[0]"):
-        assert motor(path).parameters["p"].value == 0.02
-
-
-def test_what_the_engine_refuses_is_a_sentence(refusal):
-    from identification.model.paths import Slot
-    from identification.model.rollout import rollout
-
-    plant = motor("gainprm[0]")
-    numbers = ((Slot("actuator_dynprm", (0,), 5), np.array([3.0])),)
-    said = refusal(rollout, plant.model, plant.start, np.zeros((3, 1)), 0.01, numbers=numbers)
-    assert "MuJoCo refuses to simulate" in said

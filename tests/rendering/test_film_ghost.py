@@ -11,14 +11,13 @@ from hypothesis import strategies as st
 from PIL import Image, ImageChops, ImageDraw, ImageFilter
 from scipy.spatial.transform import Rotation
 
-from identification.errors import GraphicsError, InputError
+from identification.errors import InputError
 from identification.report.style import MEASURED
 from inca_mj.kinematics import stiff
 from inca_mj.kinematics.cables import cables_at
 from inca_mj.kinematics.forward import find
 from inca_mj.kinematics.rotations import euler_of, rotation
 from inca_mj.kinematics.stiff import poses_with_stiff_cables
-from inca_mj.rendering import graphics
 from inca_mj.rendering.film import _in_turn, stills
 from inca_mj.rendering.ghost import ROOM, Difference, common_factor, ghost_positions
 from inca_mj.rendering.legend import ROBOT
@@ -48,14 +47,6 @@ def test_a_measured_pose_is_used_as_it_is(short_run):
     np.testing.assert_allclose(turns, 1, atol=1e-12)
     np.testing.assert_allclose(positions[:, :3], short_run.position, atol=0)
     np.testing.assert_allclose(positions[:, 7:], short_run.motor_angle, atol=0)
-
-
-@pytest.mark.parametrize(
-    ("angles", "poses"), [(np.zeros((5, 7)), None), (np.zeros((5, 8)), np.zeros((5, 3)))]
-)
-def test_measurements_of_another_shape_are_refused(short_run, angles, poses):
-    with pytest.raises(InputError, match="measured"):
-        ghost_positions(short_run.twin, angles, poses)
 
 
 def test_angles_that_no_pose_comes_near_are_refused_at_their_first_sample(short_run):
@@ -96,14 +87,6 @@ def test_a_saved_run_is_the_run_that_was_saved(short_run, tmp_path):
     scene = make_scene(save_run(short_run, tmp_path / "run.npz"), 0.25)
     np.testing.assert_array_equal(scene.run.qpos, short_run.qpos[:26])
     assert scene.angles is None
-
-
-def test_the_ghost_ends_where_the_run_does(short_run):
-    pose = np.hstack([short_run.position, short_run.angles])
-    scene = Scene(short_run, short_run.motor_angle, pose).until(0.4)
-    assert len(scene.run.time) == len(scene.angles) == len(scene.pose) == 41
-    with pytest.raises(InputError, match="less than two samples"):
-        scene.until(0.0)
 
 
 START = np.array([0.02, -0.01, 1.3, 0.05, -0.02, 0.3])
@@ -173,20 +156,6 @@ def test_frames_drawn_ahead_are_those_drawn_alone(short_run):
     np.testing.assert_array_equal(ahead, alone)
     assert np.abs(ahead[0].astype(int) - ahead[1]).max() > 0
     assert not [t for t in threading.enumerate() if t.name.startswith("drawing")]
-
-
-@pytest.mark.parametrize("backend", ["egl", "glfw"])
-def test_an_error_of_the_drawing_thread_is_met_where_the_picture_is_asked_for(monkeypatch, backend):
-    """A window may be used in the main thread only, so that there nothing has another thread."""
-    monkeypatch.setattr(graphics, "choose_backend", lambda: backend)
-
-    def fail():
-        raise GraphicsError(threading.current_thread().name)
-
-    with graphics.drawing_thread() as thread:
-        assert thread.submit(divmod, 7, 2).result() == (3, 1)
-        with pytest.raises(GraphicsError, match="drawing" if backend == "egl" else "MainThread"):
-            thread.submit(fail).result()
 
 
 TURN = np.array([0.004, -0.01, 0.02])

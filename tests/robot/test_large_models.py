@@ -58,11 +58,6 @@ def test_only_what_may_be_large_is_compiled_by_another_process(compiled_by_anoth
     assert [where for _, where in compiled_by_another] == ["the model"]
 
 
-@pytest.mark.parametrize("part", LARGE)
-def test_what_ends_within_the_bound_is_read(part):
-    assert read_model(with_part(LARGE[part])).compile().nu == 1
-
-
 def test_what_a_model_includes_and_names_counts_too(tmp_path, compiled_by_another):
     inside = LARGE["replicas"] + "</worldbody>"
     (tmp_path / "part.xml").write_text(f"<mujocoinclude>{inside}</mujocoinclude>")

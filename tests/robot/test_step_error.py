@@ -114,21 +114,6 @@ def test_a_factor_that_no_step_can_follow_is_named(folder):
     assert f'if it is right, write trust = ["steps"] into {folder / "robot.toml"}' in said
 
 
-@pytest.mark.parametrize("entry", ['"qpos[0]" = 1e20', '"qvel[0]" = 1e8'])
-def test_a_start_from_which_nothing_can_be_simulated_is_named(folder, entry):
-    said = refused(folder, start=f"[start]\n{entry}\n")
-    assert f"[start] of {folder / 'robot.toml'} gives {entry[1:5]}[0] = " in said
-    assert "from where the log begins it can: correct the start, or leave it out" in said
-
-
-def test_a_start_elsewhere_is_remarked_where_nothing_fails(folder):
-    remarks = robot_in(folder, start='[start]\n"qpos[0]" = 0.5\n').remarks
-    (said,) = [r for r in remarks if "[start]" in r]
-    assert "gives qpos[0] = 0.5 where angle begins at" in said
-    assert "delete qpos[0] under [start] to begin where the log does" in said
-    assert not any("[start]" in r for r in robot_in(folder).remarks)
-
-
 def test_a_wrong_factor_of_an_output_is_named_over_a_horizon(folder):
     said = refused(folder, HORIZON, own="[factors]\nangle = 1000\n")
     assert "without the factor 1000 of angle that the log's TOML gives" in said

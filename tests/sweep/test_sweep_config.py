@@ -1,17 +1,12 @@
 """Tasks and seeds come from the TOML alone; what it gets wrong is refused in a sentence."""
 
 import json
-import re
-from dataclasses import MISSING, fields
-from pathlib import Path
 
 import numpy as np
 import pytest
 from sweep_cases import GRID, METHOD
 
 from identification.sweep.config import read_sweep
-from identification.sweep.method import load_method
-from identification.sweep.settings import Heads, about_of, check_values, kinds_of
 from inca_mj.studies import METHODS
 
 TWO = f"seed = 3\n[[study]]\nname='one'\nmethod='{METHOD}:TOSS'\ncount=4\n{{}}\n" + (
@@ -120,66 +115,3 @@ def test_bad_sweeps_are_refused_before_anything_runs(tmp_path, refusal, text, wo
     path = tmp_path / "sweep.toml"
     path.write_text(text)
     assert re.search(words.replace("[[", r"\[\["), refusal(read_sweep, path, METHODS))
-
-
-PAGE = (Path(__file__).parents[2] / "docs" / "sweeps.md").read_text(encoding="utf-8")
-HEAD = "| setting | unit | default | required | what it is |\n|---|---|---|---|---|"
-EXAMPLE = {bool: True, int: 1, float: 1.0, str: "a"}
-
-
-def written(value):
-    """A default as the TOML writes it; one that is not given cannot be written there."""
-    if value is MISSING:
-        return "–"
-    if value is None:
-        return "not given"
-    if isinstance(value, bool):
-        return f"`{str(value).lower()}`"
-    return f'`"{value}"`' if isinstance(value, str) else f"`{value:g}`"
-
-
-def table_of(settings):
-    """The table of a settings dataclass."""
-    about = about_of(settings)
-    rows = []
-    for field in fields(settings):
-        required = "yes" if field.default is MISSING else "no"
-        unit = Heads(about).unit(field.name) or "–"
-        words = re.sub(r" \[[^\]]+\]$", "", about[field.name])
-        rows.append(
-            f"| `{field.name}` | {unit} | {written(field.default)} | {required} | {words} |"
-        )
-    return "\n".join([HEAD, *rows])
-
-
-def sections():
-    """The tables of the page by the methods that their headings name."""
-    part = PAGE.split("## Settings of the methods\n")[1].split("\n## ")[0]
-    found = {}
-    for section in part.split("\n### ")[1:]:
-        title, _, rest = section.partition("\n")
-        table = "\n".join(line for line in rest.splitlines() if line.startswith("|"))
-        found.update(dict.fromkeys(re.findall(r"`([\w-]+)`", title), table))
-    return found
-
-
-def test_the_page_has_the_settings_of_every_method():
-    told = sections()
-    assert set(told) == set(METHODS)
-    for name, reference in METHODS.items():
-        expected = table_of(load_method(reference).settings)
-        assert told[name] == expected, f"{name}:\n{expected}"
-
-
-@pytest.mark.parametrize("name", METHODS)
-def test_a_sweep_must_say_what_the_page_calls_required_and_nothing_else(name, refusal):
-    settings = load_method(METHODS[name]).settings
-    kinds = kinds_of(settings)
-    rows = [[c.strip(" `") for c in line.split("|")[1:4:1]] + [line.split("|")[4].strip()]
-            for line in sections()[name].splitlines()[2:]]  # fmt: skip
-    required = [row[0] for row in rows if row[3] == "yes"]
-    given = {key: EXAMPLE.get(kinds[key], "file.csv") for key in required}
-    assert set(check_values(settings, given, "here")) == {row[0] for row in rows}
-    for key in required:
-        rest = {k: v for k, v in given.items() if k != key}
-        assert f"does not say {key!r}" in refusal(check_values, settings, rest, "here")
