@@ -1,12 +1,10 @@
 """The bench of measured robots: nulls, comparisons of models, and what is measured again."""
 
-from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from measured_cases import oscillator, oscillator_log
-from robots.measured_robot import Apart
 from robots.measurement import measure_again
 from robots.nulls import best_model, null_log, null_of
 from robots.unseen import compare, errors_of
@@ -51,25 +49,6 @@ def test_the_best_model_has_what_was_named_and_its_nulls_are_read(plant, tmp_pat
     assert read.plant.parameters.values()["hardening.k_3@slide"] == 2.0
     assert "hardening.k_3@slide" in read.nominal_model.names
     assert not np.array_equal(null.fit[0].outputs, null_of(best, own, values, 3).fit[0].outputs)
-
-
-@pytest.mark.long
-def test_what_needs_no_discovery_is_measured_again_from_the_kept_values(plant):
-    robot, _ = plant
-    nominal = {n: {"value": v} for n, v in TRUE.items()}
-    final = {**nominal, "hardening.k_3@slide": {"value": 2.0}}
-    named = {"name": "hardening", "where": "joint slide", "parameters": {"k_3": {"value": 2.0}}}
-    kept = {"discovery": {"effects": [named], "nominal": nominal, "final": final}, "seconds": 1.0}
-    more = Apart(what="the same once more", logs=robot.confirm, refit=("m",))
-    record = measure_again(replace(robot, apart=(more,)), kept)
-    assert record["seconds"] == 1.0
-    assert set(record["unseen"]["rms"]) == {"nominal, fitted", "as begun", "with what is named"}
-    assert record["unseen"]["change"]["with what is named"] < -0.5  # half of a spring of 4
-    assert record["apart"][0]["unseen"]["rms"]["nominal, fitted"] == pytest.approx(
-        record["unseen"]["rms"]["nominal, fitted"]
-    )
-    (found,) = record["apart"][0]["refitted"].values()
-    assert found["values"]["m"]["before"] == TRUE["m"]
 
 
 def test_a_record_is_predicted_with_what_it_has_for_itself(plant):

@@ -1,12 +1,18 @@
 """Poses inside the frame, and a robot that comes to rest quickly."""
 
 import numpy as np
+from hypothesis import strategies as st
 
 from inca_mj.robot.geometry import Geometry
 from inca_mj.robot.inputs import make_input
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.twin.run import Run, simulate
 from inca_mj.twin.twin import build_twin
+
+INSIDE = st.tuples(
+    *(st.floats(-0.8, 0.8) for _ in range(2)), st.floats(0.6, 2.4), *(st.floats(-0.6, 0.6),) * 3
+).map(np.array)
+TWIST = st.tuples(*(st.floats(-2, 2),) * 6).map(np.array)
 
 FLAT = Geometry(  # everything in one plane: half of the motions change no length
     exits=tuple((x, y, 1.0) for x, y in ((1, 1), (-1, 1), (-1, -1), (1, -1)) * 2),

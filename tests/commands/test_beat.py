@@ -1,11 +1,5 @@
 """A line is said at least every ten seconds, with the stage and the time that is left."""
 
-import re
-import time
-
-from robot_cases import TOML, simulated
-
-from identification.commands import beat as of_beat
 from identification.commands.beat import EVERY, Beat
 from identification.progress import counted, stage, watched
 
@@ -69,32 +63,3 @@ def test_lines_come_at_least_every_ten_seconds():
             beat.check()
     times = [int(line.partition(" s:")[0]) for line in said[:11]]
     assert max(b - a for a, b in zip([0, *times], times, strict=False)) <= EVERY
-
-
-def test_a_fit_that_takes_long_says_where_it_is(tmp_path, capsys, monkeypatch):
-    """The whole program, with a beat that is always due."""
-    from joint_cases import SLIDER
-
-    from identification import write_log
-    from identification.__main__ import main
-
-    monkeypatch.setattr(of_beat, "EVERY", 0.0)
-    (tmp_path / "slider.xml").write_text(SLIDER)
-    (tmp_path / "robot.toml").write_text(TOML)
-    write_log(simulated({"damping": 3.0, "mass": 2.0}, 200), tmp_path / "log.csv")
-    from identification.robot import fitting
-
-    slow = fitting.fit
-
-    def patiently(robot, progress):
-        with stage("naps", 2) as advance:
-            time.sleep(1.2)
-            advance()
-        return slow(robot, progress)
-
-    monkeypatch.setattr(fitting, "fit", patiently)
-    arguments = ["fit", str(tmp_path / "robot.toml"), str(tmp_path / "log.csv")]
-    assert main(arguments) == 0
-    assert re.search(r"\d+ s: naps: 0 of 2\n", capsys.readouterr().err)
-    assert main([*arguments, "--quiet"]) == 0
-    assert capsys.readouterr().err == ""

@@ -5,7 +5,6 @@ import json
 import numpy as np
 import pytest
 
-from identification import InputError
 from inca_mj.cli import main
 from inca_mj.twin.run import load_run
 
@@ -34,20 +33,3 @@ def test_it_keeps_a_run_that_can_be_loaded_and_says_how_far_off_it_was(tmp_path,
     assert run.currents.min() == said["current_min"] >= 0
     assert {p.name for p in out.iterdir()} >= {"log.csv", "model.xml", "report.html"}
     assert list(out.glob("*.png"))
-
-
-def test_an_effect_by_its_name_alone_is_its_first_size(monkeypatch, capsys):
-    robots = []
-
-    def begun(robot, model, *arguments, **options):
-        robots.append(robot)
-        raise InputError("that was all")
-
-    monkeypatch.setattr("inca_mj.workflows.tracking.track", begun)
-    for word in ("load_dependent_friction=0.05", "load_dependent_friction.mu=0.05"):
-        assert main(["track", *SHORT, "--effect", word, "--json"]) == 2
-        assert "that was all" in capsys.readouterr().err
-    alone, whole = robots
-    assert alone.effects == whole.effects
-    assert alone.parameters.values() == whole.parameters.values()
-    assert alone.parameters.values()["load_dependent_friction.mu"] == 0.05

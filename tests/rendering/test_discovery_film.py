@@ -109,12 +109,11 @@ with encoder(Path(sys.argv[1]), (320, 180), 30) as send:
 """
 
 
-@pytest.mark.parametrize(("room", "is_enough"), [(50_000, False), (50_000_000, True)])
-def test_a_disk_that_is_full_behind_the_last_frame_is_told(tmp_path, room, is_enough):
-    line = [sys.executable, "-c", FULL, str(tmp_path / "film.mp4"), str(room)]
+def test_a_disk_that_is_full_behind_the_last_frame_is_told(tmp_path):
+    line = [sys.executable, "-c", FULL, str(tmp_path / "film.mp4"), "50_000"]
     done = subprocess.run(line, capture_output=True, text=True, check=False)
-    assert (done.returncode == 0) is is_enough
-    assert ("ffmpeg cannot write the film" in done.stderr) is not is_enough
+    assert done.returncode != 0
+    assert "ffmpeg cannot write the film" in done.stderr
 
 
 TRIAL = parameter_set("trial")

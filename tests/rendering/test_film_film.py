@@ -108,7 +108,7 @@ def test_the_readout_is_the_distance_of_the_two_robots(short_run):
 def test_drawing_leaves_the_twin_as_it_was(tmp_path, short_run):
     model = short_run.twin.model
     before = model.tendon_rgba.copy(), model.tendon_width.copy(), model.vis.global_.offwidth
-    stills(short_run, tmp_path, [0.1], size=SMALL)
+    stills(short_run, tmp_path, [0.1], size=SMALL, plots=False)
     np.testing.assert_array_equal(model.tendon_rgba, before[0])
     np.testing.assert_array_equal(model.tendon_width, before[1])
     assert model.vis.global_.offwidth == before[2]
@@ -119,7 +119,7 @@ def test_a_film_that_fails_leaves_nothing(tmp_path, short_run):
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        film(short_run, tmp_path / "run.mp4", size=SMALL, progress=stop)
+        film(short_run, tmp_path / "run.mp4", size=SMALL, plots=False, progress=stop)
     assert list(tmp_path.iterdir()) == []
 
 
@@ -127,7 +127,7 @@ def test_a_film_that_fails_leaves_nothing(tmp_path, short_run):
 def test_an_ffmpeg_that_does_not_work_is_one_sentence(tmp_path, short_run, monkeypatch):
     monkeypatch.setenv("IMAGEIO_FFMPEG_EXE", "/no/such/ffmpeg")
     with pytest.raises(InputError, match=r"ffmpeg cannot write the film.*IMAGEIO_FFMPEG_EXE"):
-        film(short_run, tmp_path / "run.mp4", size=SMALL)
+        film(short_run, tmp_path / "run.mp4", size=SMALL, plots=False)
     assert list(tmp_path.iterdir()) == []
 
 

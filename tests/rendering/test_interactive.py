@@ -6,9 +6,8 @@ import mujoco
 import numpy as np
 import pytest
 
-from identification.errors import InputError
 from inca_mj.cli import main
-from inca_mj.rendering.interactive import play, view_run
+from inca_mj.rendering.interactive import play
 
 
 class Window:
@@ -58,9 +57,3 @@ def test_without_a_screen_it_says_so_in_one_sentence(no_screen, capsys):
         (line,) = said.err.splitlines()
         assert "no screen for the viewer" in line
         assert "inca film draws without a screen" in line
-
-
-def test_a_speed_of_nothing_is_refused(short_run):
-    for speed in (0.0, -1.0, float("nan"), float("inf")):
-        with pytest.raises(InputError, match="not a positive number"):
-            view_run(short_run, speed=speed)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from advice import advised
 from plain_logs import plain_log
-from tracked_cases import ARM, MOTION, PENDULUM, payload, robot, tracked
+from tracked_cases import ARM, MOTION, payload, robot, tracked
 
 from identification import InputError
 from identification.logs.units import UNITS
@@ -140,7 +140,6 @@ def test_forces_of_tendons_are_those_of_the_engine():
 
 HORIZON = "horizon = 0.2"
 CASES = [
-    (PENDULUM, [-1], "mrad", HORIZON),
     (ARM, [-1, 1], "deg", ""),
     (ARM, [1, -1], "rev", HORIZON),
 ]

@@ -13,6 +13,7 @@ from touching_cases import simulated
 from identification import fit, read_robot, write_log
 from identification.robot.model_file import unit_of
 
+pytestmark = pytest.mark.usefixtures("few_effects")
 MESH = '<{0}><geometry><mesh filename="package://none/{1}.stl"/></geometry></{0}>'
 URDF = f"""<?xml version="1.0"?><robot name="two">
 <link name="base">{MESH.format("visual", "base")}</link>
