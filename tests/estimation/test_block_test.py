@@ -148,12 +148,6 @@ def test_what_candidates_have_in_common_is_found():
     assert same.freedom > 100
 
 
-def test_few_candidates_have_nothing_in_common():
-    s = Case(1, [20] * 5).scatter(np.random.default_rng(1).standard_normal(B * LENGTH))
-    assert common_scatter([s]) == Common(0.0, 1.0)
-    assert common_scatter([]) == Common(0.0, 1.0)
-
-
 def test_a_noise_with_memory_is_taken_for_no_effect():
     """It is shorter than a block; a noise model that took it for white would be far too sure."""
     cases = [Case(k, ACTIVE) for k in range(5)]

@@ -56,13 +56,6 @@ def test_without_a_display_the_backend_is_egl(headless):
     assert graphics.choose_backend() == "egl" == os.environ["MUJOCO_GL"]
 
 
-def test_a_display_or_a_set_variable_is_respected(headless):
-    headless.setenv("DISPLAY", ":0")
-    assert graphics.choose_backend() == ""
-    headless.setenv("MUJOCO_GL", "OSMesa")
-    assert graphics.choose_backend() == "osmesa"
-
-
 def test_egl_without_opengl_is_refused_before_mujoco_dies_of_it(monkeypatch):
     monkeypatch.setenv("MUJOCO_GL", "egl")
     monkeypatch.setattr(
