@@ -62,7 +62,7 @@ def measure_steps(robot: Twin) -> dict[str, dict]:
         "step_with_clock_over_without": entry(timed.step / bare.step),
         "python_callback_over_native": entry(step_ratios.python_ratio(robot), 4.0),
         "batch_on_2_threads_over_loop_on_1": entry(step_ratios.batch_ratio(robot)),
-        "reference_adaptive_over_twin": entry(step_ratios.reference_ratio(robot, "adaptive")),
+        "reference_adaptive_over_twin": entry(step_ratios.reference_ratio(robot)),
         "step_microseconds": entry(1e6 * bare.step),
         "evaluation_microseconds": entry(1e6 * bare.evaluation),
         "shared_evaluation_microseconds": entry(1e6 * bare.shared),

@@ -113,7 +113,7 @@ def batch_ratio(robot: Twin, simulations: int = 32, steps: int = 200) -> float:
     return single / threaded
 
 
-def reference_ratio(robot: Twin, method: str, seconds: float = 2.0) -> float:
+def reference_ratio(robot: Twin, seconds: float = 2.0) -> float:
     """Time of the reference over the twin's at 1 ms, for the same seconds of PRBS."""
     currents = prbs(round(100 * seconds) + 1, 0.01)
     clock = np.arange(len(currents)) * 0.01
@@ -126,7 +126,7 @@ def reference_ratio(robot: Twin, method: str, seconds: float = 2.0) -> float:
             mujoco.mj_step(robot.model, data, 10)
 
     def theirs() -> None:
-        simulate_reference(robot.parameters, INCA, clock, currents, method=method)
+        simulate_reference(robot.parameters, INCA, clock, currents)
 
     theirs()  # compiles
     mine, other = least([ours, theirs], 3)

@@ -18,9 +18,9 @@ O, ᴮb_i in the platform frame, s_i from A_i to B_i, and R_AB the platform's ro
 
 R, R_s, k_s, λ, b, J, b_v, b_c, β and K_t are those of drive i; the thesis has one of each for all.
 
-Misprints of the thesis, each noted where it is coded: 2.3, 2.5, 2.35, 2.36, 2.40, 2.41 (and 2.16
-in `kinematics`). The cable cannot push and the drum spring cannot either, hence both max(0, ·);
-the thesis says so only in words.
+Misprints of the thesis, each noted where it is coded: 2.5, 2.35, 2.36, 2.40 and 2.41. The cable
+cannot push and the drum spring cannot either, hence both max(0, ·); the thesis says so only in
+words.
 """
 
 from __future__ import annotations

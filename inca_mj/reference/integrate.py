@@ -1,10 +1,9 @@
-"""Simulate the reference: currents in, a sampled trajectory out.
+"""Simulate the reference: currents in, a sampled trajectory out, by DOP853.
 
 Currents are a zero-order hold: row k applies from t_k to t_{k+1}, so the last row applies to
-nothing. Two methods: `adaptive` (DOP853, the oracle) and `rk4` (fixed step, the same method as
-the MuJoCo twin's, to tell a difference of models from a difference of steps).
+nothing.
 
-Tolerances of the oracle. A cable turns an error of length into tension with λ/d₀ ≈ 1.4e4 N/m, so
+Tolerances. A cable turns an error of length into tension with λ/d₀ ≈ 1.4e4 N/m, so
 a relative 1e-11 of 2 m of cable is 3e-7 N in the worst case. Measured over 10 s of PRBS against
 1e-13: angles right to 1e-11 rad, tensions to 3e-10 N, four digits below the 1e-7 rad to which the
 twin is compared, in 2 to 3 s. Tighter costs much (ten times at 1e-13): with strains of 1e-4 the
@@ -17,8 +16,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from math import degrees, isfinite
-from typing import Literal
+from math import degrees
 
 import numpy as np
 from scipy.integrate import DOP853
@@ -26,11 +24,12 @@ from scipy.integrate import DOP853
 from identification.errors import DivergenceError, InputError
 from identification.model.parameter import ParameterSet
 from inca_mj.reference import layout as at
-from inca_mj.reference.equations import cables, compiled, derivative
+from inca_mj.reference.equations import cables, derivative
 from inca_mj.reference.numbers import NO_FORCE, pack, rest
 from inca_mj.robot.geometry import Geometry
 
-STEP = 1e-3  # default step of rk4 [s]
+RTOL = 1e-11  # relative tolerance
+ATOL = 1e-12  # absolute tolerance, in the unit of each state
 SINGULAR = np.radians(89.0)  # largest pitch [rad]: Euler rates are up to 57 times ω there
 
 
@@ -74,10 +73,6 @@ def simulate_reference(
     currents: np.ndarray,
     *,
     start: np.ndarray | None = None,
-    method: Literal["adaptive", "rk4"] = "adaptive",
-    step: float | None = None,
-    rtol: float = 1e-11,
-    atol: float = 1e-12,
     force: Sequence[float] = NO_FORCE,
     force_at: Sequence[float] = NO_FORCE,
 ) -> ReferenceRun:
@@ -90,15 +85,11 @@ def simulate_reference(
         currents: motor currents, positive winds in, shape (n, 8) [A].
         start: first state, shape (36,); the rest at the start pose when not given. The drum
             springs balance the pretension of the parameters' start pose in both cases.
-        method: "adaptive" (DOP853) or "rk4" (fixed step).
-        step: step of "rk4" [s], a whole fraction of every sample interval; 1 ms when not given.
-        rtol: relative tolerance of "adaptive".
-        atol: absolute tolerance of "adaptive", in the unit of each state.
         force: constant external force on the platform, in O [N].
         force_at: the point where it acts, in the platform frame [m].
 
     Raises:
-        InputError: shapes, times, method or step are not as above, or no rest exists.
+        InputError: shapes or times are not as above, or no rest exists.
         DivergenceError: the state left the finite numbers, or the pitch came to 89° or more.
     """
     q = pack(parameters, geometry, force=force, force_at=force_at)
@@ -107,20 +98,11 @@ def simulate_reference(
     x = np.empty((len(t), at.STATES))
     x[0] = x_0
     _refuse_bad_state(t[0], x_0)
-    if method == "adaptive":
-        if step is not None:
-            raise InputError("step is for method 'rk4'; give rtol and atol to 'adaptive'")
-        _adaptive(t, u, q, x, rtol, atol)
-    elif method == "rk4":
-        _fixed(t, u, q, x, STEP if step is None else step)
-    else:
-        raise InputError(f"unknown method {method!r}; known: adaptive, rk4")
+    _fill(t, u, q, x)
     return ReferenceRun(t, x, np.array([cables(row, q)[0] for row in x]))
 
 
-def _adaptive(
-    t: np.ndarray, u: np.ndarray, q: np.ndarray, x: np.ndarray, rtol: float, atol: float
-) -> None:
+def _fill(t: np.ndarray, u: np.ndarray, q: np.ndarray, x: np.ndarray) -> None:
     """Fill x[1:] by DOP853, restarted only where the currents change."""
     changes = np.flatnonzero((u[1:-1] != u[:-2]).any(axis=1)) + 1
     for first, last in pairwise(np.unique([0, *changes, len(t) - 1]).tolist()):
@@ -129,7 +111,7 @@ def _adaptive(
         with np.errstate(all="ignore"):
             solver = DOP853(
                 lambda _, y, i=i: derivative(y, i, q), t[first], x[first], t[last],
-                rtol=rtol, atol=atol,
+                rtol=RTOL, atol=ATOL,
             )  # fmt: skip
             while solver.status == "running":
                 solver.step()
@@ -142,49 +124,6 @@ def _adaptive(
                         x[k] = inside(t[k])
                         k += 1
         x[last] = solver.y
-
-
-def _fixed(t: np.ndarray, u: np.ndarray, q: np.ndarray, x: np.ndarray, step: float) -> None:
-    """Fill x[1:] by the classic Runge-Kutta method."""
-    counts = _steps_per_sample(np.diff(t), step)
-    for k, n in enumerate(counts):
-        x[k + 1] = rk4(x[k], u[k], q, (t[k + 1] - t[k]) / n, n)
-        _refuse_bad_state(t[k + 1], x[k + 1])
-
-
-@compiled
-def rk4(x: np.ndarray, i: np.ndarray, q: np.ndarray, h: float, steps: int) -> np.ndarray:
-    """Returns the state after `steps` steps of length h under constant currents.
-
-    Args:
-        x: state, shape (36,).
-        i: currents, shape (8,) [A].
-        q: packed numbers, from `pack`.
-        h: step [s].
-        steps: number of steps.
-    """
-    for _ in range(steps):
-        k1 = derivative(x, i, q)
-        k2 = derivative(x + h / 2 * k1, i, q)
-        k3 = derivative(x + h / 2 * k2, i, q)
-        k4 = derivative(x + h * k3, i, q)
-        x = x + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
-    return x
-
-
-def _steps_per_sample(intervals: np.ndarray, step: float) -> list[int]:
-    if not (isfinite(step) and step > 0):
-        raise InputError(f"step must be a positive number of seconds, got {step!r}")
-    counts = np.rint(intervals / step)
-    # Sample times from a file are rounded, often to the microsecond: the steps stretch to fit.
-    bad = (counts < 1) | (np.abs(counts * step - intervals) > 0.01 * step)
-    if bad.any():
-        interval = intervals[bad.argmax()]
-        good = interval / max(1, np.ceil(interval / step))
-        raise InputError(
-            f"step {step:g} s does not divide the sample interval {interval:g} s; {good:g} s does"
-        )
-    return [int(n) for n in counts]
 
 
 def _samples(time: np.ndarray, currents: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -213,13 +152,13 @@ def _refuse_bad_state(t: float, x: np.ndarray) -> None:
     if abs(pitch) > SINGULAR:
         raise DivergenceError(
             f"the platform's pitch reached {degrees(pitch):.1f}° at t = {t:.6g} s, where roll,"
-            " pitch and yaw are singular; lower the currents, take a smaller step if it is a fixed"
-            " one, or use the MuJoCo twin, whose quaternion is not"
+            " pitch and yaw are singular; lower the currents, or use the MuJoCo twin, whose"
+            " quaternion is not"
         )
 
 
 def _left_finite(t: float) -> DivergenceError:
     return DivergenceError(
-        f"the reference left the finite numbers at t = {t:.6g} s; use method 'adaptive' or a"
-        " smaller step, and check lambda, b, J and the currents for a wrong unit"
+        f"the reference left the finite numbers at t = {t:.6g} s; check lambda, b, J and the"
+        " currents for a wrong unit"
     )

@@ -84,23 +84,57 @@ def test_the_acceleration_of_lengths_is_the_difference_of_the_twins_rates(model,
     np.testing.assert_allclose(jacobian_rate(there, twist) @ twist, numeric, atol=1e-8 * scale)
 
 
-@settings(max_examples=30, deadline=None)
-@given(INSIDE, TWIST, TWIST)
-def test_all_rates_are_those_of_the_reference(pose, twist, change):
+@settings(max_examples=10, deadline=None)
+@given(INSIDE)
+def test_frames_turn_their_z_along_the_cables_and_angles_are_those_of_frames(pose):
     there = inverse(pose, INCA)
     same = reference.geometric(pose[:3], reference.rotation(pose[3:]), INCA)
     np.testing.assert_allclose(there.directions, same.directions, atol=1e-14)
-    np.testing.assert_allclose(there.angles, same.angles, atol=1e-13)
-    np.testing.assert_allclose(there.frames, same.frames, atol=1e-13)
-    moved = reference.velocity(same, twist[:3], twist[3:])
-    ours = rates(there, twist)
-    np.testing.assert_allclose(ours.connectors, moved.connectors, atol=1e-14)
-    np.testing.assert_allclose(ours.turns, moved.turns, atol=1e-12)
-    turned = reference.acceleration(same, moved, change[:3], twist[3:], change[3:])
-    found = accelerations(there, twist, change)
-    np.testing.assert_allclose(found.connectors, turned.connectors, atol=1e-12)
-    np.testing.assert_allclose(found.lengths, turned.lengths, atol=1e-12)
-    np.testing.assert_allclose(found.turns, turned.turns, atol=1e-12)
+    np.testing.assert_allclose(there.frames[:, :, 2], same.directions, atol=1e-13)
+    φ, θ = there.angles.T
+    expected = [rotation(0.0, *each) for each in zip(θ, φ, strict=True)]
+    np.testing.assert_allclose(there.frames, expected, atol=1e-13)
+
+
+def in_room(there, vectors):
+    """Vectors in the frames of the cables, along the axes of O."""
+    return np.einsum("nik,nk->ni", there.frames, vectors)
+
+
+@settings(max_examples=10, deadline=None)
+@given(INSIDE, TWIST)
+def test_connectors_and_directions_move_at_their_rates_and_these_at_theirs(pose, twist):
+    there = inverse(pose, INCA)
+
+    def place(p):
+        return p[:3] + inverse(p, INCA).arms
+
+    def turning(p):
+        return in_room(inverse(p, INCA), rates(inverse(p, INCA), twist).turns)
+
+    moved, changed = rates(there, twist), accelerations(there, twist, np.zeros(6))
+    near = {"atol": 1e-8 * (1 + np.abs(changed.turns).max() + np.abs(changed.connectors).max())}
+    ω = in_room(there, moved.turns)
+    np.testing.assert_allclose(moved.connectors, differences(place, pose, twist), **near)
+    s_rate = differences(lambda p: inverse(p, INCA).directions, pose, twist)
+    np.testing.assert_allclose(np.cross(ω, there.directions), s_rate, **near)
+    np.testing.assert_allclose(np.sum(ω * there.directions, axis=1), 0, atol=1e-12)
+    v_rate = differences(lambda p: rates(inverse(p, INCA), twist).connectors, pose, twist)
+    np.testing.assert_allclose(changed.connectors, v_rate, **near)
+    np.testing.assert_allclose(
+        in_room(there, changed.turns), differences(turning, pose, twist), **near
+    )
+
+
+@settings(max_examples=30, deadline=None)
+@given(INSIDE, TWIST, TWIST)
+def test_a_change_of_the_twist_adds_what_a_twist_does(pose, twist, change):
+    there = inverse(pose, INCA)
+    found, still = (accelerations(there, twist, each) for each in (change, np.zeros(6)))
+    added = rates(there, change)
+    for name in ("connectors", "lengths", "turns"):
+        more = getattr(found, name) - getattr(still, name)
+        np.testing.assert_allclose(more, getattr(added, name), atol=1e-11)
     d_rate_rate = jacobian(there) @ change + jacobian_rate(there, twist) @ twist
     np.testing.assert_allclose(found.lengths, d_rate_rate, atol=1e-12)
 
