@@ -29,7 +29,7 @@ from inca_mj.statics.robot import static_robot
 from inca_mj.statics.stiffness import stiffness
 from inca_mj.statics.tensions import distribute, nearest
 from inca_mj.statics.vibration import coupled_modes
-from inca_mj.statics.workspace import KINDS, workspace
+from inca_mj.statics.workspace import NAMES, workspace
 
 TRIAL = parameter_set("trial")
 ROBOT = static_robot(TRIAL, INCA)
@@ -66,7 +66,7 @@ def timings() -> dict[str, float]:
         "handle and swinging cables": (
             lambda: coupled_modes(ROBOT, ROBOT.start, AT, ROBOT.tension, 1e-3), 5),
         **{f"workspace {kind}, 24 cells": (lambda kind=kind: workspace(kind, ROBOT), 3)
-           for kind in KINDS},
+           for kind in NAMES},
     }  # fmt: skip
     return {name: round(least(*call), 3) for name, call in calls.items()}
 
@@ -81,7 +81,7 @@ def figures(folder: Path) -> None:
     from inca_mj.workflows.statics import analyse_statics
 
     found = analyse_statics()
-    save_png(slices_figure(ROBOT, found, KINDS), folder / "workspace_slices.png")
+    save_png(slices_figure(ROBOT, found, tuple(NAMES)), folder / "workspace_slices.png")
     save_png(cable_mass_figure(found), folder / "cable_length.png")
     save_png(frequency_figure(found), folder / "cable_frequencies.png")
     space = workspace("feasible", ROBOT, cells=32)

@@ -24,7 +24,7 @@ import numpy as np
 
 from identification.errors import DivergenceError, InputError
 from identification.model.rollout import substeps
-from inca_mj.control.inverse import HIGHEST_CURRENT, LOWEST_CURRENT, Inverse, Needed, Tensions
+from inca_mj.control.inverse import HIGHEST_CURRENT, LOWEST_CURRENT, Inverse, Tensions
 from inca_mj.control.observer import Observer, Pose
 from inca_mj.control.paths import Path
 from inca_mj.robot.geometry import DRIVES
@@ -91,7 +91,6 @@ class Controller:
         self._sum, self._step = np.zeros(6), 0
         pose, quaternion = robot.start.pose, np.array(robot.model.qpos0[3:7])
         self.pose = Pose(pose[:3], quaternion)  # as last seen
-        self.needed: Needed | None = None  # as last asked of the inverse
 
     def currents(self, angle: np.ndarray, pose: Pose | None = None) -> np.ndarray:
         """Returns the currents until the next call, within the limits of the amplifiers.
@@ -117,8 +116,8 @@ class Controller:
         self._sum, self._error, self._step = self._sum + error * self.period, error, self._step + 1
         ω, ι = self.gains.bandwidth, self.gains.integral
         more = ω**2 * error + 2 * ω * rate + ι * ω**3 * self._sum
-        self.needed = self._inverse.needed(middle, more, angle, time)
-        return np.clip(self.needed.currents, LOWEST_CURRENT, HIGHEST_CURRENT)
+        needed = self._inverse.needed(middle, more, angle, time)
+        return np.clip(needed.currents, LOWEST_CURRENT, HIGHEST_CURRENT)
 
 
 def _turn_to_upright(orientation: np.ndarray) -> np.ndarray:

@@ -39,8 +39,6 @@ STATES = (
     "x", "y", "z", "vx_body", "vy_body", "vz_body", "roll", "pitch", "yaw", "wx", "wy", "wz",
     *each_drive("angle"), *each_drive("rate"), *each_drive("no_load_length"),
 )  # fmt: skip
-UNITS = (*["m"] * 3, *["m/s"] * 3, *["rad"] * 3, *["rad/s"] * 3,
-         *["rad"] * DRIVES, *["rad/s"] * DRIVES, *["m"] * DRIVES)  # fmt: skip
 TENSIONS = each_drive("tension")
 LEAST_COSINE = 1e-3  # of pitch, below which Euler angles turn too fast
 

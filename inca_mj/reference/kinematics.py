@@ -2,6 +2,8 @@
 
     R_AB = Rz(ψ) Ry(θ) Rx(φ)                                                       (2.1)
     a + d s = p + b,  b = R_AB ᴮb                                             (2.6 - 2.8)
+
+Rates of the cables follow in the equations themselves (2.15).
 """
 
 from __future__ import annotations

@@ -11,7 +11,7 @@ P and Q are signed permutations, the identity where a log is right. The nearness
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import chain
 
 import numpy as np
@@ -23,14 +23,6 @@ from identification.refusals.columns import Doubt, output_readings, turned
 from identification.refusals.readings import Reading, misread
 from inca_mj.refusals import bounds
 from inca_mj.refusals.agreement import assigned
-
-
-@dataclass(frozen=True)
-class Places:
-    """The places of the columns of a log."""
-
-    angles: np.ndarray  # P, shape (k, k)
-    currents: np.ndarray  # Q, shape (8, 8)
 
 
 def other_angles(part: Log, predicted: np.ndarray) -> tuple[Reading, str] | None:
@@ -78,19 +70,17 @@ def _several(part: Log, predicted: np.ndarray) -> Iterator[Reading]:
         yield Reading(replace(part, outputs=outputs), wrong, text, cure)
 
 
-def rewired(part: Log, places: Places) -> Reading:
-    """Returns a log of k angles read with other places and signs, not both the identity."""
+def rewired(part: Log, P: np.ndarray, Q: np.ndarray) -> Reading:
+    """Returns a log read with other places and signs P (k, k), Q (8, 8), not both the identity."""
     renamed: dict[str, str] = {}
     back: list[str] = []
-    for names, matrix in ((part.output_names, places.angles), (part.input_names, places.currents)):
+    for names, matrix in ((part.output_names, P), (part.input_names, Q)):
         for k, m in zip(*np.nonzero(matrix), strict=True):
             if k != m:
                 renamed[names[m]] = names[k]
             if matrix[k, m] < 0:
                 back.append(names[k])  # a sign belongs to the name that a column will have
-    log = replace(
-        part, outputs=part.outputs @ places.angles.T, inputs=part.inputs @ places.currents.T
-    )
+    log = replace(part, outputs=part.outputs @ P.T, inputs=part.inputs @ Q.T)
     words = [f"were {listed(sorted(renamed))} exchanged"] if renamed else []
     words += [f"with the other sign of {listed(back)}"] if back else []
     cure = _cure(dict(sorted(renamed.items())), back, part.factors)

@@ -47,7 +47,7 @@ from inca_mj.refusals.agreement import (
     some,
     unreached_share,
 )
-from inca_mj.refusals.angles import Places, alike, apart, is_right, rewired
+from inca_mj.refusals.angles import alike, apart, is_right, rewired
 from inca_mj.robot.geometry import DRIVES
 from inca_mj.twin.twin import Twin
 
@@ -97,7 +97,7 @@ def renamed_drives(plant: Twin, part: Log, predicted: np.ndarray) -> tuple[Readi
     for k, P, angles in zip(close, places, every, strict=True):
         if not np.isfinite(angles).all():
             continue
-        reading = rewired(part, Places(P, P))
+        reading = rewired(part, P, P)
         rest = apart(reading.log, angles)
         if rest <= bounds.NEARER_RENAMED * as_read and is_right(reading.log, angles):
             found.append((rest, int(np.sum(orders[k] != np.arange(DRIVES))), k, reading))
@@ -143,7 +143,7 @@ def _nearest(
             P = signed(likeness, assigned(np.abs(likeness)))
         if np.sum(np.diag(P) != 1) > bounds.MAX_ANGLES:
             continue
-        reading = rewired(part, Places(P, Q))
+        reading = rewired(part, P, Q)
         remaining = apart(reading.log, predicted)
         if remaining < bounds.NEARER * as_read and is_right(reading.log, predicted):
             found.append((remaining, reading))

@@ -41,14 +41,6 @@ class Scene:
                 f"{len(self.angles)} measured samples for {len(self.run.time)} simulated ones"
             )
 
-    def until(self, end: float) -> Scene:
-        """Returns the samples up to `end` [s].
-
-        Raises:
-            InputError: fewer than two samples are left.
-        """
-        return self.between(float("-inf"), end)
-
     def between(self, start: float, end: float) -> Scene:
         """Returns the samples from `start` to `end` [s], both included.
 
@@ -86,4 +78,4 @@ def make_scene(source: Source, seconds: float | None = None) -> Scene:
         source = Scene(source.run, source.log.outputs, pose_of(source.log))
     elif isinstance(source, Run):
         source = Scene(source)
-    return source if seconds is None else source.until(seconds)
+    return source if seconds is None else source.between(float("-inf"), seconds)

@@ -25,13 +25,12 @@ from inca_mj.kinematics.rotations import quaternion
 from inca_mj.rendering.legend import tension_scale
 from inca_mj.rendering.view import view
 from inca_mj.robot.geometry import Geometry
-from inca_mj.statics.workspace import Workspace
+from inca_mj.statics.workspace import NAMES, Workspace
 from inca_mj.twin.mjcf import build
 
 CLIP = 0.25  # margins far from the border do not move it: quantile of those inside
 COLOUR = [0.0, 0.447, 0.698, 0.33]  # the blue of figures, translucent
 _CABLE = 0.008  # radius that cables are drawn with [m]
-NAMES = {"closure": "wrench-closure", "feasible": "wrench-feasible", "static": "static"}
 
 
 def workspace_picture(

@@ -7,7 +7,6 @@ from typing import Any
 from identification.quantities import plain, plain_fields, quantity
 from identification.report.page import Section, Table
 from inca_mj.report.statics_figures import (
-    NAMES,
     cable_mass_figure,
     frequency_figure,
     slices_figure,
@@ -15,7 +14,7 @@ from inca_mj.report.statics_figures import (
 )
 from inca_mj.statics.interference import Interference
 from inca_mj.statics.stiffness import Axes, Modes
-from inca_mj.statics.workspace import Kind, Workspace
+from inca_mj.statics.workspace import NAMES, Kind, Workspace
 from inca_mj.workflows.statics import StaticAnalysis
 
 MASS_COLUMNS = (

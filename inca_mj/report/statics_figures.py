@@ -10,15 +10,10 @@ from inca_mj.kinematics.cables import inverse
 from inca_mj.robot.elastic import Robot
 from inca_mj.statics.cable_mass import NOISE, RHO
 from inca_mj.statics.catenary import sag_length
-from inca_mj.statics.workspace import Kind, margin
+from inca_mj.statics.workspace import NAMES, Kind, margin
 from inca_mj.workflows.statics import StaticAnalysis
 
 FINE = 61  # points along an edge of a slice
-NAMES: dict[Kind, str] = {
-    "closure": "wrench-closure",
-    "feasible": "wrench-feasible",
-    "static": "static",
-}
 _PLANES = (
     (0, 1, 2, "seen from above"),
     (0, 2, 1, "seen from the front"),

@@ -53,8 +53,7 @@ class Interference:
 
     pairs: tuple[tuple[int, int], ...]  # cables that share no anchor, as numbers from 1
     between: np.ndarray  # their distances, shape (N, pairs) [m]
-    sharing: tuple[tuple[int, int], ...]  # cables that share an anchor, as numbers from 1
-    angle: np.ndarray  # between them, shape (N, sharing) [rad]
+    angle: np.ndarray  # between those that share an anchor, shape (N, other pairs) [rad]
     # clearance of each cable from grip and arms, shape (N, 8) [m]; negative where it would run
     # through them
     platform: np.ndarray
@@ -95,7 +94,6 @@ def interference(poses: np.ndarray, geometry: Geometry) -> Interference:
     return Interference(
         tuple((i + 1, j + 1) for i, j in apart),
         np.reshape(between, (len(apart), len(poses))).T,
-        tuple((i + 1, j + 1) for i, j in joined),
         np.reshape(angles, (len(joined), len(poses))).T,
         _clearance(poses, geometry, A, u),
     )

@@ -35,7 +35,11 @@ from inca_mj.statics.closure import gap_margin, split, wrench_margin
 from inca_mj.statics.robot import pull
 
 Kind = Literal["closure", "feasible", "static"]
-KINDS: tuple[Kind, ...] = ("closure", "feasible", "static")
+NAMES: dict[Kind, str] = {
+    "closure": "wrench-closure",
+    "feasible": "wrench-feasible",
+    "static": "static",
+}
 MOST = 200  # cells along an edge: beyond, memory ends before patience
 
 
@@ -81,8 +85,8 @@ def tension_limits(
 
 def margin(kind: Kind, robot: Robot, poses: np.ndarray, limits: DriveLimits) -> np.ndarray:
     """Returns how far poses (N, 6) are inside a workspace, (N,): [rad] for closure, else [N]."""
-    if kind not in KINDS:
-        raise unknown_name("workspace", kind, KINDS)
+    if kind not in NAMES:
+        raise unknown_name("workspace", kind, NAMES)
     at = inverse(poses, robot.geometry)
     plus, N, full = split(at.W)
     if kind == "closure":

@@ -36,13 +36,12 @@ class FigureSettings:
     input: str  # of `make_input`
     set: Literal["trial", "simulation"]  # parameter set
     duration: float  # [s]
-    title: str  # what it is called here
 
 
 FIGURES = {
-    "2.16": FigureSettings("step", "simulation", 10.0, "Outputs of simulation"),
-    "3.2": FigureSettings("prbs", "trial", 5.0, "Simulated input signals: currents of motors"),
-    "3.3": FigureSettings("prbs", "trial", 5.0, "Simulated output signals: angles of motors"),
+    "2.16": FigureSettings("step", "simulation", 10.0),
+    "3.2": FigureSettings("prbs", "trial", 5.0),
+    "3.3": FigureSettings("prbs", "trial", 5.0),
 }
 
 

@@ -81,14 +81,6 @@ class Run:
         """Motor rates ω, shape (N, 8) [rad/s]."""
         return self.qvel[:, 6:]
 
-    def until(self, end: float) -> Run:
-        """Returns the samples up to `end` [s].
-
-        Raises:
-            InputError: fewer than two samples are left.
-        """
-        return self.between(float("-inf"), end)
-
     def between(self, start: float, end: float) -> Run:
         """Returns the samples from `start` to `end` [s], both included.
 

@@ -29,7 +29,7 @@ def test_load_dependent_friction_is_named():
     assert named.candidate.effect.name == "load_dependent_friction"
     assert named.candidate.where == "all drives"
     value, std, _ = named.parameters["mu"]
-    assert value == pytest.approx(truth.sizes[0]["mu"], abs=max(4 * std, 0.01))
+    assert value == pytest.approx(truth.effects[0].mu, abs=max(4 * std, 0.01))
     assert answer.after.rms < 0.7 * answer.before.rms
 
 

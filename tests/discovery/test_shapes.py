@@ -89,7 +89,7 @@ def test_a_limit_that_two_levels_of_current_reach_alike_is_a_hard_one():
     answer = discover(log, effects=(CURRENT_SATURATION,), spread=spread_of("none"))
     (named,) = answer.named
     assert named.candidate.shape["soft"] == 0.0
-    assert named.parameters["i_max"][0] == pytest.approx(truth.sizes[0]["i_max"], rel=0.02)
+    assert named.parameters["i_max"][0] == pytest.approx(truth.effects[0].i_max, rel=0.02)
 
 
 @pytest.mark.parametrize(("here", "first", "last"), [(1.0, 1.25, 1.75), (2.0, 1.25, 3.75)])

@@ -71,7 +71,7 @@ def test_a_log_its_file_and_its_comparison_are_one_scene():
     from_log = make_scene(short)
     same(from_log, make_scene(compare(short)))
     same(make_scene(log, 0.3), make_scene(LOG, 0.3))
-    same(make_scene(log, 0.3), from_log.until(float(from_log.run.time[29])))
+    same(make_scene(log, 0.3), from_log.between(0.0, float(from_log.run.time[29])))
     assert make_scene(from_log) is from_log
 
 

@@ -158,7 +158,7 @@ def test_the_command_films_two_runs_under_the_names_of_their_folders(tmp_path, c
     sources = []
     for name, end in (("nominal", 0.02), ("found", 0.04)):
         (tmp_path / name).mkdir()
-        run = asked(short_run.until(end), np.zeros(3))
+        run = asked(short_run.between(0.0, end), np.zeros(3))
         sources.append(str(save_run(run, tmp_path / name / "run.npz")))
     out, look = tmp_path / "film", ("--camera", "handle")
     assert main(["film", *sources, "--still", "0", *look, "--json", "--out", str(out)]) == 0

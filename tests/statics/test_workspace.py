@@ -8,7 +8,7 @@ from inca_mj.kinematics.cables import inverse
 from inca_mj.rendering.workspace_picture import surface
 from inca_mj.robot.geometry import INCA
 from inca_mj.statics.closure import split, wrench_margin
-from inca_mj.statics.workspace import KINDS, DriveLimits, margin, tension_limits, workspace
+from inca_mj.statics.workspace import NAMES, DriveLimits, margin, tension_limits, workspace
 
 LIMITS = DriveLimits()
 
@@ -55,7 +55,7 @@ def test_wider_limits_and_smaller_loads_make_larger_workspaces():
     assert (margin("feasible", ROBOT, poses, bound)[closed] > 0).mean() > 0.99
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", NAMES)
 def test_a_symmetric_robot_has_a_symmetric_workspace(kind):
     field = workspace(kind, ROBOT, cells=10).margin
     for axis in (0, 1):  # the layout is its own mirror image in x and in y

@@ -127,7 +127,7 @@ def test_a_ratio_is_that_of_the_robot_as_built():
     log, truth = world(6, [HiddenStribeckFriction()], ratio=6.0, setting=BUILT)
     robot = with_spread(parameter_set("trial")).with_values(truth.parameters)
     names = (*VARIED, "R", "k_s", "beta")
-    absorbed = HiddenAbsorbed(robot, INCA, log.inputs, 0.01, names, AS_BUILT, truth.noise_rms)
+    absorbed = HiddenAbsorbed(robot, log.inputs, 0.01, names, AS_BUILT, truth.noise_rms)
     assert absorbed.rms(truth.effects) / truth.noise_rms == pytest.approx(6.0, rel=0.02)
 
 
@@ -152,9 +152,9 @@ def test_what_parts_absorb_is_the_least_squares_of_noise_and_tolerances():
     A, b = np.vstack([J, priors]), np.concatenate([e / σ, np.zeros(len(std))])
     left = b - A @ np.linalg.lstsq(A, b, rcond=1e-9)[0]
     expected = σ * np.sqrt(left @ left / e.size)
-    mine = HiddenAbsorbed(robot, INCA, u, 0.01, VARIED, AS_BUILT, σ)
+    mine = HiddenAbsorbed(robot, u, 0.01, VARIED, AS_BUILT, σ)
     assert mine.rms(effects) == pytest.approx(expected, rel=1e-4)
-    assert mine.rms(effects) < HiddenAbsorbed(robot, INCA, u, 0.01, VARIED).rms(effects)
+    assert mine.rms(effects) < HiddenAbsorbed(robot, u, 0.01, VARIED).rms(effects)
 
 
 @pytest.fixture(scope="module")
@@ -195,13 +195,13 @@ def test_what_other_parameters_do_as_well_is_no_effect():
     setting = replace(BUILT, duration=1.0)
     robot, u = true_robot(6, setting), make_currents(6, setting)
     names, σ = setting.absorbed, noise_rms(setting.counts, setting.noise)
-    absorbed = HiddenAbsorbed(robot, INCA, u, 0.01, names, AS_BUILT, σ)
+    absorbed = HiddenAbsorbed(robot, u, 0.01, names, AS_BUILT, σ)
     hysteresis, cogging = HiddenSpringHysteresis(eta=0.05), HiddenCogging()
     assert absorbed.is_absorbed(hysteresis)
     assert not absorbed.is_absorbed(cogging)
     assert not absorbed.is_absorbed(HiddenFrictionMismatch(drive=2, delta=0.5))  # a part
     assert not absorbed.is_absorbed(HiddenCurrentSaturation(i_max=0.99))  # it is not linear
-    exact = HiddenAbsorbed(robot, INCA, u, 0.01, names, noise=σ)
+    exact = HiddenAbsorbed(robot, u, 0.01, names, noise=σ)
     assert not exact.is_absorbed(hysteresis)  # where drives are alike the ratio is what it says
     ratio = absorbed.rms([hysteresis]) / σ
     (made,) = records(6, [hysteresis], n=1, ratio=ratio, setting=setting, others=[cogging])

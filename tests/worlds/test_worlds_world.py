@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from identification.errors import InputError
-from inca_mj.robot.geometry import INCA
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.studies.worlds import EVERY, VARIED, HiddenSetting, make_currents, world
 from inca_mj.studies.worlds.cable_effects import (
@@ -46,9 +45,8 @@ def test_the_log_holds_nothing_of_the_truth():
     text = pickle.dumps(log)
     for secret in (b"anchor", b"drive", b"seed", b"truth", b"Truth"):
         assert secret not in text
-    assert truth.names == ("anchor_offset",)
-    assert truth.where == ("drive 4",)
-    assert truth.sizes[0]["x"] == 0.01
+    (made,) = truth.effects
+    assert (made.name, made.where, made.x) == ("anchor_offset", "drive 4", 0.01)
     with pytest.raises(TypeError):
         truth.parameters["J"] = 1.0
 
@@ -98,7 +96,7 @@ def test_inputs_stay_between_their_levels():
 
 def test_what_the_base_can_say_is_absorbed():
     robot, u = parameter_set("trial"), make_currents(1, SHORT)
-    absorbed = HiddenAbsorbed(robot, INCA, u, 0.01, VARIED)
+    absorbed = HiddenAbsorbed(robot, u, 0.01, VARIED)
     all_drives = [HiddenTorqueConstantMismatch(drive=k, delta=1e-3) for k in range(1, 9)]
     assert absorbed.rms(all_drives) < 1e-2 * absorbed.rms(all_drives[:1])
     assert absorbed.rms([]) == 0
@@ -108,9 +106,8 @@ def test_what_the_base_can_say_is_absorbed():
 def test_a_ratio_is_reached(effect):
     log, truth = world(6, [effect], ratio=6.0, setting=SHORT)
     robot = parameter_set("trial").with_values(truth.parameters)
-    left = HiddenAbsorbed(robot, INCA, log.inputs, 0.01, VARIED).rms(truth.effects)
+    left = HiddenAbsorbed(robot, log.inputs, 0.01, VARIED).rms(truth.effects)
     assert left / truth.noise_rms == pytest.approx(6.0, rel=0.02)
-    assert truth.ratios == (6.0,)
 
 
 def test_an_effect_is_not_larger_than_a_robot_may_have_it():

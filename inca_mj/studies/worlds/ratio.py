@@ -29,7 +29,7 @@ import numpy as np
 
 from identification.errors import DivergenceError, InputError
 from identification.model.parameter import ParameterSet
-from inca_mj.robot.geometry import Geometry
+from inca_mj.robot.geometry import INCA
 from inca_mj.studies.worlds import layout as at
 from inca_mj.studies.worlds.effect import HiddenEffect
 from inca_mj.studies.worlds.plant import make_plant
@@ -50,7 +50,6 @@ class HiddenAbsorbed:
     def __init__(
         self,
         parameters: ParameterSet,
-        geometry: Geometry,
         currents: np.ndarray,
         sampling_time: float,
         names: Sequence[str],
@@ -61,14 +60,13 @@ class HiddenAbsorbed:
 
         Args:
             parameters: true values.
-            geometry: nominal.
             currents: the input, shape (n, 8) [A].
             sampling_time: [s].
             names: the base parameters; the start pose is always among them.
             tolerances: how much drives, points and platform may differ.
             noise: σ, rms of the measurement noise [rad]; it counts where parts may differ.
         """
-        self._robot = (parameters, geometry, currents, sampling_time)
+        self._robot = (parameters, currents, sampling_time)
         self._without = self._angles(parameters, ())
         columns = []
         for name in (*names, *(pose for pose in POSE if pose not in names)):
@@ -104,8 +102,8 @@ class HiddenAbsorbed:
         return self._angles(moved, ()) - self._without
 
     def _angles(self, parameters: ParameterSet, effects: Sequence[HiddenEffect]) -> np.ndarray:
-        _, geometry, currents, sampling_time = self._robot
-        plant = make_plant(parameters, geometry, effects)
+        _, currents, sampling_time = self._robot
+        plant = make_plant(parameters, INCA, effects)
         step = None if plant.D[:, at.PLAY].any() else COARSE
         return simulate_angles(plant, effects, currents, sampling_time, step)[1].ravel()
 

@@ -12,7 +12,7 @@ import numpy as np
 from identification.errors import InputError
 from identification.logs.log import Log
 from identification.model.parameter import ParameterSet
-from inca_mj.robot.geometry import DRIVES, INCA, Geometry
+from inca_mj.robot.geometry import DRIVES, INCA
 from inca_mj.studies.worlds.effect import HiddenEffect
 from inca_mj.studies.worlds.plant import make_plant
 from inca_mj.studies.worlds.ratio import HiddenAbsorbed, UnreachedError, sized
@@ -24,12 +24,9 @@ from inca_mj.studies.worlds.setting import HiddenSetting, elsewhere, make_curren
 class HiddenTruth:
     """The answer to a world."""
 
-    seed: int  # of the world
     effects: tuple[HiddenEffect, ...]  # what was on
-    ratios: tuple[float, ...]  # of each effect, where it was asked for by ratio
     parameters: Mapping[str, float]  # every true value by name, start pose included
     noise_rms: float  # of the measurement [rad]
-    error_rms: float  # of the unlogged error of the currents [A]
     angles: np.ndarray = field(repr=False)  # true angles at the samples, shape (n, 8) [rad]
     error: np.ndarray = field(repr=False)  # the unlogged error of the currents, shape (n, 8) [A]
 
@@ -37,21 +34,6 @@ class HiddenTruth:
         object.__setattr__(self, "parameters", MappingProxyType(dict(self.parameters)))
         for array in (self.angles, self.error):
             array.setflags(write=False)
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """Names of the effects."""
-        return tuple(effect.name for effect in self.effects)
-
-    @property
-    def where(self) -> tuple[str, ...]:
-        """The part of the robot each effect acts on."""
-        return tuple(effect.where for effect in self.effects)
-
-    @property
-    def sizes(self) -> tuple[dict[str, float], ...]:
-        """The numbers of each effect's law."""
-        return tuple(effect.values() for effect in self.effects)
 
 
 class HiddenWorld(NamedTuple):
@@ -71,7 +53,6 @@ def world(
     *,
     ratio: float | Sequence[float] | None = None,
     setting: HiddenSetting | None = None,
-    geometry: Geometry = INCA,
 ) -> HiddenWorld:
     """Returns a log of a robot with these effects, and the truth about it.
 
@@ -85,7 +66,6 @@ def world(
             times that of the measurement noise, each effect alone; the sizes given are where the
             search starts.
         setting: of the experiment.
-        geometry: nominal exit points and connectors.
 
     Raises:
         InputError: a number is bad, an effect is there twice in one place, or a ratio cannot be
@@ -94,7 +74,7 @@ def world(
     """
     setting = setting or HiddenSetting()
     (only,) = records(
-        seed, effects, n=1, ratio=ratio, setting=setting, inputs=(setting.input,), geometry=geometry
+        seed, effects, n=1, ratio=ratio, setting=setting, inputs=(setting.input,)
     )
     return only
 
@@ -108,7 +88,6 @@ def records(
     setting: HiddenSetting | None = None,
     inputs: Sequence[str] = INPUTS,
     further: float = FURTHER,
-    geometry: Geometry = INCA,
     others: Sequence[HiddenEffect] = (),
 ) -> tuple[HiddenWorld, ...]:
     """Returns logs of one robot with these effects, each with its own input, start and noise.
@@ -123,7 +102,6 @@ def records(
         setting: of the experiment; its input does not count.
         inputs: "prbs" or "multisine" of each log, taken in turn where there are fewer.
         further: a later start position may be off by this much more than the first, by axis [m].
-        geometry: nominal exit points and connectors.
         others: effects that take, in this order, the place of those whose ratio no size that a
             robot may have reaches.
 
@@ -147,16 +125,16 @@ def records(
     if ratios:
         noise = noise_rms(setting.counts, setting.noise)
         absorbed = HiddenAbsorbed(
-            robot, geometry, u, setting.sampling_time, setting.absorbed, setting.tolerances, noise
+            robot, u, setting.sampling_time, setting.absorbed, setting.tolerances, noise
         )
         goals = [r * noise for r in ratios]
         chosen = _sized(effects, others, absorbed, goals)
-    made = [_record(seed, (), robot, geometry, chosen, ratios, settings[0], u)]
+    made = [_record(seed, (), robot, chosen, settings[0], u)]
     for j in range(1, n):
         rng = np.random.default_rng([seed, 5, j])
         moved = elsewhere(robot, setting.offset + further, setting.tilt, rng)
         u = make_currents(int(rng.integers(2**31)), settings[j])
-        made.append(_record(seed, (j,), moved, geometry, chosen, ratios, settings[j], u))
+        made.append(_record(seed, (j,), moved, chosen, settings[j], u))
     return tuple(made)
 
 
@@ -185,9 +163,7 @@ def _record(
     seed: int,
     number: tuple[int, ...],
     robot: ParameterSet,
-    geometry: Geometry,
     effects: tuple[HiddenEffect, ...],
-    ratios: tuple[float, ...],
     setting: HiddenSetting,
     u: np.ndarray,
 ) -> HiddenWorld:
@@ -196,17 +172,14 @@ def _record(
         u.shape, setting.sampling_time, setting.error_rms, setting.error_time,
         np.random.default_rng([seed, 2, *number]),
     )  # fmt: skip
-    plant = make_plant(robot, geometry, effects)
+    plant = make_plant(robot, INCA, effects)
     angles, read = simulate_angles(plant, effects, u + error, setting.sampling_time)
     noise = np.random.default_rng([seed, 3, *number])
     y = encode(read, setting.counts, setting.noise, noise)
     truth = HiddenTruth(
-        seed=seed,
         effects=effects,
-        ratios=ratios,
         parameters=robot.values(),
         noise_rms=noise_rms(setting.counts, setting.noise),
-        error_rms=setting.error_rms,
         angles=angles,
         error=error,
     )
