@@ -73,9 +73,7 @@ def world(
         DivergenceError: the effects are so large that the robot breaks.
     """
     setting = setting or HiddenSetting()
-    (only,) = records(
-        seed, effects, n=1, ratio=ratio, setting=setting, inputs=(setting.input,)
-    )
+    (only,) = records(seed, effects, n=1, ratio=ratio, setting=setting, inputs=(setting.input,))
     return only
 
 
