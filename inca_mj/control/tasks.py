@@ -25,8 +25,8 @@ from inca_mj.robot import law
 from inca_mj.robot.geometry import DRIVES
 from inca_mj.robot.parameters import POSE
 from inca_mj.twin.mjcf import build
-from inca_mj.twin.statics import Start, start
-from inca_mj.twin.twin import Twin, start_state
+from inca_mj.twin.statics import Start, start, start_state
+from inca_mj.twin.twin import Twin
 
 with warnings.catch_warnings():
     # dm_control tries GLFW while it is imported, which prints warnings without a display.

@@ -12,17 +12,15 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from identification.effects import values as effect_values
 from identification.effects.effect import Effect, effect_parameters
-from identification.effects.values import Values, table_at, written_at
+from identification.effects.values import Values, changed_columns, table_at, written_at
 from identification.model.parameter import Parameter, ParameterSet
 from identification.model.paths import Slot
 from inca_mj.effects.hooks import THINGS, Layout, Platform
 from inca_mj.robot.geometry import Geometry
 
-_NOWHERE = Platform(
-    **dict.fromkeys(Platform._fields, np.nan)
-)  # the centre of mass depends on no state
+# The centre of mass depends on no state.
+_NOWHERE = Platform(**dict.fromkeys(Platform._fields, np.nan))
 
 
 def records(effects: Sequence[Effect]) -> tuple[Parameter, ...]:
@@ -52,38 +50,13 @@ def numbers(
 ) -> Iterator[tuple[Slot, float | np.ndarray]]:
     """Yields entries in the rows of drives and platform that some parameters of effects change."""
     for i, thing in enumerate(THINGS):
-        for column, new in effect_values.changed_columns(
-            layout.effects, layout.on_drives, thing, names, every
-        ):
+        changed = changed_columns(layout.effects, layout.on_drives, thing, names, every)
+        for column, new in changed:
             yield Slot("actuator_user", (i,), column), new
     body = int(model.body("platform").id)
-    for column, new in effect_values.changed_columns(
-        layout.effects, layout.on_platform, "platform", names, every
-    ):
+    changed = changed_columns(layout.effects, layout.on_platform, "platform", names, every)
+    for column, new in changed:
         yield Slot("body_user", (body,), column), new
-
-
-def inputs(
-    effects: Sequence[Effect], names: Sequence[str], own: Mapping[str, float], values: np.ndarray,
-    held: np.ndarray, timestep: float,
-) -> np.ndarray:  # fmt: skip
-    """Returns the currents after the effects that act before the model, for n value sets.
-
-    Returns:
-        `held` itself where no such effect is there, else shape (n, steps, 8) [A].
-    """
-    every = effect_values.merged(own, names, values)
-    return effect_values.changed_inputs(effects, THINGS, every, held, timestep, len(values))
-
-
-def readings(
-    effects: Sequence[Effect], names: Sequence[str], own: Mapping[str, float], values: np.ndarray,
-    sensors: Sequence[str], perfect: np.ndarray,
-) -> np.ndarray:  # fmt: skip
-    """Returns what encoders say, for n value sets, from what perfect ones would; see `Plant`."""
-    every = effect_values.merged(own, names, values)
-    things = [sensor.rpartition("_")[2] for sensor in sensors]
-    return effect_values.changed_outputs(effects, things, every, perfect, len(values))
 
 
 def centre_of_mass(effects: Sequence[Effect], every: Values, n: int) -> np.ndarray:

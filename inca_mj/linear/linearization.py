@@ -44,8 +44,8 @@ from inca_mj.robot.geometry import DRIVES, each_drive
 from inca_mj.robot.parameters import pose_values
 from inca_mj.robot.spread import at_drives
 from inca_mj.twin.logs import ANGLES, POSE
-from inca_mj.twin.statics import start_from
-from inca_mj.twin.twin import Twin, build_twin, start_state
+from inca_mj.twin.statics import start_from, start_state
+from inca_mj.twin.twin import Twin, build_twin
 
 MOTORS, FIRST_ANGLE = slice(6, 6 + DRIVES), 7  # in qvel and qacc; in qpos
 STILL = 1e-6  # [m/s², rad/s²]; pretension is exact to 1e-9 N on 1e-4 kg m²

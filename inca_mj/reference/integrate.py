@@ -51,16 +51,6 @@ class ReferenceRun:
         return self.state[:, at.POSITION]
 
     @property
-    def euler(self) -> np.ndarray:
-        """Roll, pitch and yaw of the platform, shape (n, 3) [rad]."""
-        return self.state[:, at.EULER]
-
-    @property
-    def rates(self) -> np.ndarray:
-        """Angular rate of the platform along its body axes, shape (n, 3) [rad/s]."""
-        return self.state[:, at.RATES]
-
-    @property
     def angles(self) -> np.ndarray:
         """Motor angles, positive winds in, shape (n, 8) [rad]."""
         return self.state[:, at.ANGLES]

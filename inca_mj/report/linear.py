@@ -25,12 +25,11 @@ from inca_mj.linear.linearization import LinearModel
 from inca_mj.linear.thesis_states import EULER, PLATFORM, POSITION
 from inca_mj.robot.geometry import Geometry
 from inca_mj.robot.spread import displaced
-from inca_mj.twin.logs import UNITS
+from inca_mj.twin.logs import POSE, UNITS
 
 SHOWN = 6  # modes: a rigid platform has as many
 REACH = 0.03  # largest motion of a connector in the picture [m]
 STUB = 0.1  # of each cable that is drawn [m]
-POSE_WORDS = ("x", "y", "z", "roll", "pitch", "yaw")
 
 
 def handle_share(mode: Mode) -> float:
@@ -49,7 +48,7 @@ def handle_motion(mode: Mode, arm: float) -> str:
     """Returns the motions of at least half the largest; `arm` [m] turns an angle into a way."""
     size = np.abs(np.concatenate([mode.shape[POSITION], arm * mode.shape[EULER]]))
     order = np.argsort(-size)
-    return ", ".join(POSE_WORDS[i] for i in order if size[i] >= size.max() / 2)
+    return ", ".join(POSE[i] for i in order if size[i] >= size.max() / 2)
 
 
 @styled

@@ -34,7 +34,7 @@ from inca_mj.twin.appearance import (
     dress_world,
     filled,
 )
-from inca_mj.twin.statics import activations, start
+from inca_mj.twin.statics import start, start_state
 
 Points = tuple[tuple[float, float, float], ...]  # rows of a geometry [m]
 ROTOR = 2e-15  # inertia MuJoCo demands of the drum's body beside the armature [kg m^2]
@@ -60,7 +60,8 @@ def build(
     for k in range(1, DRIVES + 1):
         _drive(spec, k, parameters, geometry, layout)
     _sensors(spec)
-    _keyframe(spec, parameters, geometry, layout)
+    at = start_state(start(parameters, geometry, layout))
+    spec.add_key(name="start", qpos=at.qpos, act=at.act)
     return spec
 
 
@@ -229,11 +230,3 @@ def add_pose_sensors(spec: mujoco.MjSpec) -> None:
     kinds = {"position": sensor.mjSENS_FRAMEPOS, "orientation": sensor.mjSENS_FRAMEQUAT}
     for name, kind in kinds.items():
         spec.add_sensor(name=name, type=kind, objtype=site, objname="platform")
-
-
-def _keyframe(
-    spec: mujoco.MjSpec, parameters: ParameterSet, geometry: Geometry, layout: Layout
-) -> None:
-    at = start(parameters, geometry, layout)
-    qpos = np.concatenate([at.pose[:3], quaternion(*at.pose[3:]), np.zeros(DRIVES)])
-    spec.add_key(name="start", qpos=qpos, act=activations(at))

@@ -17,11 +17,12 @@ import numpy as np
 
 from identification.errors import InputError
 from identification.model.parameter import ParameterSet
+from identification.model.rollout import State
 from inca_mj.effects.hooks import Layout
 from inca_mj.effects.values import about_centre
 from inca_mj.kinematics.cables import cables_at
 from inca_mj.kinematics.jacobians import length_jacobian
-from inca_mj.kinematics.rotations import rotation
+from inca_mj.kinematics.rotations import quaternion, rotation
 from inca_mj.robot.geometry import Geometry
 from inca_mj.robot.parameters import GRAVITY, POSE, PRETENSION
 from inca_mj.robot.spread import at_drives, displaced
@@ -152,3 +153,10 @@ class _Asked(Mapping[str, float]):
 def activations(begin: Start) -> np.ndarray:
     """Returns the twin's activations at a start: d₀ of each drive, then its effects' own states."""
     return np.column_stack([begin.no_load_length, begin.own]).ravel()
+
+
+def start_state(begin: Start) -> State:
+    """Returns a start as a MuJoCo state: qpos (15,), qvel (14,), act (8 (1 + own states),)."""
+    drives = len(begin.tension)
+    qpos = np.concatenate([begin.pose[:3], quaternion(*begin.pose[3:]), np.zeros(drives)])
+    return State(qpos, np.zeros(6 + drives), activations(begin))

@@ -12,25 +12,22 @@ import mujoco
 import numpy as np
 
 from identification.effects.effect import Effect
-from identification.effects.values import merged
+from identification.effects.values import changed_inputs, changed_outputs, merged
 from identification.engine import derive
 from identification.model.export import write_xml
 from identification.model.parameter import ParameterSet
 from identification.model.paths import Slot, write
 from identification.model.predictor import Numbers
 from identification.model.rollout import State
-from inca_mj.effects.hooks import Layout
-from inca_mj.effects.values import inputs as effect_inputs
-from inca_mj.effects.values import readings as effect_readings
+from inca_mj.effects.hooks import THINGS, Layout
 from inca_mj.effects.values import with_effects
-from inca_mj.kinematics.rotations import quaternion
 from inca_mj.robot import law
 from inca_mj.robot.geometry import INCA, Geometry
 from inca_mj.robot.parameters import TIMESTEP, parameter_set
 from inca_mj.twin import native
 from inca_mj.twin.mjcf import build, check_inertia
 from inca_mj.twin.numbers import model_numbers
-from inca_mj.twin.statics import Start, activations, start, starts_from
+from inca_mj.twin.statics import Start, start, start_state, starts_from
 
 
 @dataclass(frozen=True)
@@ -127,14 +124,16 @@ class Twin:
             timestep: of the simulation [s].
             begun: time of the first step in the record, of which no input effect asks here [s].
         """
-        return effect_inputs(self.effects, names, self.parameters.values(), values, held, timestep)
+        every = merged(self.parameters.values(), names, values)
+        return changed_inputs(self.effects, THINGS, every, held, timestep, len(values))
 
     def outputs(
         self, names: Sequence[str], values: np.ndarray, sensors: Sequence[str], readings: np.ndarray
     ) -> np.ndarray:
         """Returns what the encoders say, after effects that act on them; see `Plant`."""
-        nominal = self.parameters.values()
-        return effect_readings(self.effects, names, nominal, values, sensors, readings)
+        every = merged(self.parameters.values(), names, values)
+        things = [sensor.rpartition("_")[2] for sensor in sensors]
+        return changed_outputs(self.effects, things, every, readings, len(values))
 
     def save(self, path: str | Path) -> Path:
         """Write the model as MJCF, exact to the last bit; returns the path."""
@@ -202,10 +201,3 @@ def write_values(
     every = merged(values, tuple(values), np.array([[*values.values()]]))
     for slot, column in model_numbers(model, parameters, geometry, layout, tuple(values), every, 1):
         write(model, slot, float(column[0]))
-
-
-def start_state(begin: Start) -> State:
-    """Returns a start as a MuJoCo state: qpos (15,), qvel (14,), act (8 (1 + own states),)."""
-    drives = len(begin.tension)
-    qpos = np.concatenate([begin.pose[:3], quaternion(*begin.pose[3:]), np.zeros(drives)])
-    return State(qpos, np.zeros(6 + drives), activations(begin))

@@ -16,10 +16,10 @@ from identification.errors import InputError
 from inca_mj.control.controller import CONTROL_TIMESTEP, Controller, Gains, run_loop
 from inca_mj.control.inverse import Tensions
 from inca_mj.control.paths import Circle, Path
+from inca_mj.robot.parameters import POSE
 from inca_mj.twin.run import Run, simulate
 from inca_mj.twin.twin import Twin, build_twin
 
-START = ("x", "y", "z", "roll", "pitch", "yaw")
 APART = 0.05  # [m] from the robot's start, at which a path is one of another place
 
 
@@ -119,7 +119,7 @@ def track(
     """
     robot = robot or build_twin()
     values = robot.parameters.values()
-    model = (model or build_twin()).with_values({name: values[name] for name in START})
+    model = (model or build_twin()).with_values({name: values[name] for name in POSE})
     path = path or Circle(centre=(values["x"], values["y"], values["z"]))
     begin = path.at(0.0).position
     if np.linalg.norm(begin - robot.start.pose[:3]) > APART:

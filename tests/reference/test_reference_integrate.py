@@ -66,9 +66,7 @@ def test_in_free_flight_momentum_is_conserved():
     fall = np.outer(t, [0.2, -0.1, 1.0]) + np.outer(t**2 / 2, [0, 0, -9.81])
     np.testing.assert_allclose(run.position - run.position[0], fall, atol=1e-10)
     inertia = np.array([0.8e-4, 1.5e-4, 1.8e-4])
-    L = np.array(
-        [kinematics.rotation(e) @ (inertia * ω) for e, ω in zip(run.euler, run.rates, strict=True)]
-    )
+    L = np.array([kinematics.rotation(x[at.EULER]) @ (inertia * x[at.RATES]) for x in run.state])
     np.testing.assert_allclose(L, np.broadcast_to(L[0], L.shape), atol=1e-10 * np.abs(L).max())
 
 

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from inca_mj.effects.platform import PULL
+from inca_mj.reference import layout as at
 from inca_mj.reference.integrate import simulate_reference
 from inca_mj.robot.geometry import INCA
 from inca_mj.robot.inputs import make_input
@@ -28,7 +29,7 @@ def test_the_twin_moves_as_the_thesis_equations_say(pulled):
         parameter_set("trial"), INCA, run.time, currents, force=G, force_at=B_G
     )
     np.testing.assert_allclose(run.motor_angle, right.angles, atol=1e-5)
-    np.testing.assert_allclose(run.angles, right.euler, atol=1e-5)
+    np.testing.assert_allclose(run.angles, right.state[:, at.EULER], atol=1e-5)
     assert np.abs(run.angles).max() > 0.05  # the arm of the force turns the platform
 
 

@@ -182,7 +182,7 @@ def test_an_effect_acts_on_drives_that_differ_as_the_twin_says(twin):
     drawn = HiddenDrumEccentricity()
     log, truth = world(4, [drawn], setting=BUILT)
     effect = next(e for e in CATALOGUE if e.name == drawn.name)
-    sizes = {effect.parameter(n, drawn.where): v for n, v in drawn.values().items()}
+    sizes = {effect.parameter(n, drawn.where): getattr(drawn, n) for n in drawn.sizes}
     without = predicted(twin, log, dict(truth.parameters))
     model = predicted(twin, log, {**truth.parameters, **sizes})
     answer = np.linalg.norm(truth.angles - without)

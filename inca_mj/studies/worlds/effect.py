@@ -89,10 +89,6 @@ class HiddenEffect:
         """The part of the robot it acts on."""
         return self.acts_on
 
-    def values(self) -> dict[str, float]:
-        """Returns all numbers of the law by name, without the place."""
-        return {f.name: getattr(self, f.name) for f in fields(self) if f.name != "drive"}
-
     @property
     def most(self) -> float:
         """The factor by which its sizes can grow so that a robot may still have it."""

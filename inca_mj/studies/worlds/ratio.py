@@ -30,13 +30,13 @@ import numpy as np
 from identification.errors import DivergenceError, InputError
 from identification.model.parameter import ParameterSet
 from inca_mj.robot.geometry import INCA
+from inca_mj.robot.parameters import POSE
 from inca_mj.studies.worlds import layout as at
 from inca_mj.studies.worlds.effect import HiddenEffect
 from inca_mj.studies.worlds.plant import make_plant
 from inca_mj.studies.worlds.sensor import simulate_angles
 from inca_mj.studies.worlds.tolerances import EXACT, Tolerances, usual_std
 
-POSE = ("x", "y", "z", "roll", "pitch", "yaw")
 COARSE = 1e-3  # step of these simulations: 4e-8 rad from the world's own, in half its time [s]
 NEAR = 0.02  # a ratio this near to the asked one, relative, is good enough
 ATTEMPTS = 12
