@@ -65,7 +65,7 @@ class Handle(control.Task):
         self.robot, self.random = robot, np.random.default_rng(random)
         self.privileged, self.encoder_noise = privileged, encoder_noise
         self.begin = robot.start
-        self.path: Path = _still(robot.start.pose[:3])
+        self.path: Path = Point(tuple(robot.start.pose[:3]))
         self._angle, self._rate, self._time = np.zeros(DRIVES), np.zeros(DRIVES), 0.0
 
     def initialize_episode(self, physics: Physics) -> None:
@@ -156,7 +156,7 @@ class Hold(Handle):
 
     def draw_path(self, begin: np.ndarray) -> Path:
         """Returns the start itself as the target."""
-        return _still(begin)
+        return Point(tuple(begin))
 
 
 class Reach(Handle):
@@ -166,7 +166,7 @@ class Reach(Handle):
         """Returns a random target in a box about the nominal start."""
         nominal = self.robot.parameters
         centre = np.array([nominal[n].value for n in "xyz"])
-        return _still(centre + self.random.uniform(-REACH, REACH))
+        return Point(tuple(centre + self.random.uniform(-REACH, REACH)))
 
 
 class Track(Handle):
@@ -180,10 +180,6 @@ class Track(Handle):
 
 
 TASKS: Mapping[str, type[Handle]] = {"hold": Hold, "reach": Reach, "track": Track}
-
-
-def _still(position: np.ndarray) -> Point:
-    return Point(tuple(position))
 
 
 class Physics(dm_mujoco.Physics):

@@ -77,6 +77,13 @@ def em_of(height: int) -> int:
     return max(8, round(height / 38))
 
 
+def font_of(size: int) -> ImageFont.FreeTypeFont:
+    """Returns the font that matplotlib brings, so that every machine writes alike; size [px]."""
+    return ImageFont.truetype(
+        Path(matplotlib.get_data_path(), "fonts", "ttf", "DejaVuSans.ttf"), size
+    )
+
+
 def paste(frame: np.ndarray, box: Box, picture: np.ndarray) -> None:
     """Put a picture (h, w, 3) into its box of a frame, in place."""
     left, top, width, height = box
@@ -180,9 +187,7 @@ class Lettering:
         pen.text((left + 2 * self._em // 3, top + self._em), lines[fits], INK, font, anchor="lm")
 
     def _font(self, ems: float) -> ImageFont.FreeTypeFont:
-        # matplotlib brings this font, so that every machine writes alike.
-        file = Path(matplotlib.get_data_path(), "fonts", "ttf", "DejaVuSans.ttf")
-        return ImageFont.truetype(file, max(6, round(ems * self._em)))
+        return font_of(max(6, round(ems * self._em)))
 
     def _card(self, pen: ImageDraw.ImageDraw, left: int, top: int, width: int, height: int) -> None:
         """Draws a pale ground that keeps letters readable where the robot passes behind them."""

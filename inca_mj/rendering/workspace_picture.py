@@ -14,7 +14,7 @@ from pathlib import Path
 
 import mujoco
 import numpy as np
-from PIL import Image, ImageDraw, ImageFont
+from PIL import Image, ImageDraw
 
 from identification.errors import InputError
 from identification.files import whole_file
@@ -23,6 +23,7 @@ from identification.quantities import quantity
 from identification.report.style import INK
 from inca_mj.kinematics.rotations import quaternion
 from inca_mj.rendering.legend import tension_scale
+from inca_mj.rendering.picture import font_of
 from inca_mj.rendering.view import view
 from inca_mj.robot.geometry import Geometry
 from inca_mj.statics.workspace import NAMES, Workspace
@@ -98,10 +99,7 @@ def workspace_picture(
 
 
 def _letter(image: Image.Image, found: Workspace, assumed: bool) -> None:
-    import matplotlib
-
     em = image.height / 34
-    file = Path(matplotlib.get_data_path(), "fonts", "ttf", "DejaVuSans.ttf")
     roll, pitch, yaw = found.orientation
     lines = [
         f"{NAMES[found.kind]} workspace: {quantity(found.volume, found.std, 'm³')}",
@@ -109,9 +107,7 @@ def _letter(image: Image.Image, found: Workspace, assumed: bool) -> None:
         *(["geometry assumed"] if assumed else []),
     ]
     pen = ImageDraw.Draw(image, "RGBA")
-    fonts = [
-        ImageFont.truetype(file, round(em * (0.75 if row else 0.9))) for row in range(len(lines))
-    ]
+    fonts = [font_of(round(em * (0.75 if row else 0.9))) for row in range(len(lines))]
     width = max(pen.textlength(text, font) for text, font in zip(lines, fonts, strict=True))
     card = (em / 2, em / 2, width + 1.5 * em, em * (1.2 + 1.45 * len(lines)))
     pen.rounded_rectangle(card, em / 3, fill=(255, 255, 255, 190))

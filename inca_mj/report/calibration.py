@@ -60,7 +60,7 @@ def calibration_verdict(found: Calibration) -> list[str]:
             " effect that the twin lacks: run inca discover on the same logs."
         )
     if "exit" in found.spread.points:
-        relative, together = point_std(found, "exit")
+        relative, together = exit_std(found)
         lines.append(
             f"Exit points are known to {1e3 * relative:.2g} mm rms relative to one another, and to"
             f" {1e3 * together:.2g} mm rms in the frame: no angle of a motor tells where the frame"
@@ -110,12 +110,12 @@ def _far(found: Calibration, group: str, name: str, times: float) -> str:
     return f"drive {number}, {_kind(found, group)} {_percent(found, name)} % ({times:.2g} times)"
 
 
-def point_std(found: Calibration, point: str) -> tuple[float, float]:
-    """Returns the rms std of points without turns and shifts of all of them, and with these [m]."""
-    names = [f"{point}_{axis}@{k}" for k in range(1, DRIVES + 1) for axis in AXES]
+def exit_std(found: Calibration) -> tuple[float, float]:
+    """Returns the rms std of exits without turns and shifts of all of them, and with these [m]."""
+    names = [f"exit_{axis}@{k}" for k in range(1, DRIVES + 1) for axis in AXES]
     at = [found.fit.point.space.names.index(name) for name in names]
     C = found.covariance[np.ix_(at, at)]
-    places = found.robot.geometry.A if point == "exit" else found.robot.geometry.B
+    places = found.robot.geometry.A
     turns = [np.cross(axis, places - places.mean(axis=0)).ravel() for axis in np.eye(3)]
     shifts = [np.tile(axis, DRIVES) for axis in np.eye(3)]
     Q = np.linalg.qr(np.array([*shifts, *turns]).T)[0]

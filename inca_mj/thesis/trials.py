@@ -100,12 +100,7 @@ class TrialResult:
                 for (name, value), std in zip(values.items(), self.fit.std, strict=True)
             },
             "combinations": [
-                {
-                    "name": str(c),
-                    "value": value,
-                    "std": float(std) if np.isfinite(std) else None,
-                    "true": c.value(true),
-                }
+                {"name": str(c), "value": value, "std": finite_or_none(std), "true": c.value(true)}
                 for c, value, std in self.fit.combinations
             ],
             "output_fit_percent": self.output_fit_percent.tolist(),

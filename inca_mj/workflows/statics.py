@@ -195,9 +195,7 @@ def _held(robot: Robot, at: Cables, load: np.ndarray, limits: DriveLimits) -> He
 def _current(robot: Robot, d: np.ndarray, T: np.ndarray, springs: np.ndarray) -> np.ndarray:
     """Returns the currents with which the drums balance tensions T, shape (8,) [A]."""
     current = robot.R * (T - springs) / robot.K_t
-    for _ in range(
-        4
-    ):  # the spring's tension depends on the current by the strain of the cable only
+    for _ in range(4):  # the spring's tension feels the current by the strain of the cable only
         wrong = T - pull(robot, d, current).tension
         current = current + robot.R * wrong / robot.K_t
     return current

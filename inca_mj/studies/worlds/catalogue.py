@@ -69,9 +69,7 @@ FAULTS = {kind.name: kind for kind in _FAULTS}  # of encoders
 ALL_EFFECTS = {**HIDDEN_EFFECTS, **UNLISTED, **CHANGES, **FAULTS}
 
 # Sizes whose sign physics leaves open; the others keep that of their default.
-_SIGNED = {
-    *("a", "b", "x", "y", "z", "delta", "alpha", "s"),
-}
+_SIGNED = {"a", "b", "x", "y", "z", "delta", "alpha", "s"}
 
 SEEN = (1.0, 4.0)  # when something jumps [s]: in the first half of a log of 10 s, which is fitted
 

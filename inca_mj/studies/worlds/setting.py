@@ -31,7 +31,7 @@ def true_robot(seed: int, setting: HiddenSetting) -> ParameterSet:
     nominal = parameter_set("trial")
     # Every parameter is drawn, so that what varies does not change what another seed gives.
     factor = dict(zip(EVERY, 1 + setting.spread * rng.uniform(-1, 1, len(EVERY)), strict=True))
-    values = {name: factor[name] * nominal[name].value for name in setting.varied}
+    values = {name: factor[name] * nominal[name].value for name in VARIED}
     values |= _start(nominal, setting.offset, setting.tilt, rng)
     return as_built(
         nominal.with_values(values), setting.tolerances, np.random.default_rng([seed, 4])
@@ -62,7 +62,7 @@ def _start(
 VARIED = ("lambda", "b", "J", "b_v", "b_c", "K_t")  # what a user would estimate
 EVERY = ("R", "R_s", "k_s", *VARIED, "beta", "m", "I_x", "I_y", "I_z")
 
-_INPUTS = {"prbs": prbs, "multisine": multisine}
+_INPUTS = ("prbs", "multisine")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,13 +74,11 @@ class HiddenSetting:
     """
 
     input: str = "prbs"  # "prbs" or "multisine"
-    low: float = 0.5  # smallest current [A]
-    high: float = 1.0  # largest current [A]
     duration: float = 20.0  # of the log [s]; its samples are those of [0, duration)
     sampling_time: float = 0.01  # [s]
-    # parameters that differ from the `trial` set, uniformly within ± `spread`
-    varied: tuple[str, ...] = VARIED
-    spread: float = 0.1  # relative
+    spread: float = (
+        0.1  # the `VARIED` differ from the `trial` set, uniformly within ± this, relative
+    )
     offset: float = 0.01  # largest error of the start position, by axis [m]
     tilt: float = 0.0  # largest error of the start angles, by axis [rad]
     counts: int = 4000  # of an encoder a turn; 0 for one without steps
@@ -101,7 +99,6 @@ class HiddenSetting:
         refuse_number("sampling_time", T_s, 0 < T_s < inf, "a time above 0 [s]")
         is_long = least <= self.duration < inf
         refuse_number("duration", self.duration, is_long, f"two samples, {least:g} s, or more")
-        refuse_number("low", self.low, self.low <= self.high < inf, f"up to high = {self.high:g} A")
 
     @property
     def absorbed(self) -> tuple[str, ...]:
@@ -111,7 +108,7 @@ class HiddenSetting:
         either: a hysteresis of the drum springs is mostly a friction and a stiffness.
         """
         free = () if self.tolerances == EXACT else ("R", "k_s", "beta")
-        return (*self.varied, *(name for name in free if name not in self.varied))
+        return (*VARIED, *free)
 
     @property
     def samples(self) -> int:
@@ -121,7 +118,5 @@ class HiddenSetting:
 
 def make_currents(seed: int, setting: HiddenSetting) -> np.ndarray:
     """Returns the commanded currents of a world, shape (n, 8) [A]."""
-    n, T_s, low, high = setting.samples, setting.sampling_time, setting.low, setting.high
-    if setting.input == "prbs":
-        return prbs(n, T_s, seed=seed, low=low, high=high)
-    return multisine(n, T_s, seed=seed, mean=(low + high) / 2, amplitude=(high - low) / 2)
+    draw = prbs if setting.input == "prbs" else multisine
+    return draw(setting.samples, setting.sampling_time, seed=seed)
