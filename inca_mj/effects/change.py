@@ -90,9 +90,10 @@ def heat_rate(s, p):
 class _Rule:
     """The way in which a change of one parameter enters the law."""
 
+    parameter: str  # its name
     law: Any  # what a relative change c adds
     hook: str  # where
-    letter: str  # the parameter
+    letter: str  # the parameter in formulas
     phrase: str  # what changes, in words
     largest: float  # the largest plausible relative deviation of one drive
     probe: float = 1.0  # share of the largest plausible drift at which its sensitivity is taken
@@ -168,24 +169,20 @@ def _delta(rule: _Rule, what: str) -> Size:
 
 
 _RULES = (
-    _Rule(cable_elasticity, "tension", "λ", "cable: elasticity", 0.3),
-    _Rule(cable_damping, "tension", "b", "cable: damping", 1.0),
-    _Rule(drum_spring, "torque", "k_s", "drum spring: stiffness", 0.3),
-    _Rule(viscous_friction, "torque", "b_v", "friction: viscous part", 1.0),
-    _Rule(friction, "torque", "b_c", "friction: Coulomb part", 0.5),
-    _Rule(drum_radius, "radius", "R", "roller: radius", 0.05),
+    _Rule("lambda", cable_elasticity, "tension", "λ", "cable: elasticity", 0.3),
+    _Rule("b", cable_damping, "tension", "b", "cable: damping", 1.0),
+    _Rule("k_s", drum_spring, "torque", "k_s", "drum spring: stiffness", 0.3),
+    _Rule("b_v", viscous_friction, "torque", "b_v", "friction: viscous part", 1.0),
+    _Rule("b_c", friction, "torque", "b_c", "friction: Coulomb part", 0.5),
+    _Rule("R", drum_radius, "radius", "R", "roller: radius", 0.05),
     # A torque moves the robot far: a small drift is probed.
-    _Rule(torque_constant, "current", "K_t", "motor: torque constant", 0.2, probe=0.02),
+    _Rule("K_t", torque_constant, "current", "K_t", "motor: torque constant", 0.2, probe=0.02),
 )
-_DEVIATING = {
-    "lambda": "cable_elasticity", "b": "cable_damping", "k_s": "drum_spring",
-    "b_v": "viscous_friction", "b_c": "friction", "R": "drum_radius", "K_t": "torque_constant",
-}  # fmt: skip
 # The effect, and its place, that a deviation of the model's parameters is when it is no scatter.
 DEVIANTS = {
     **{
-        f"{name}@{k}": (f"{word}_mismatch", f"drive {k}")
-        for name, word in _DEVIATING.items()
+        f"{rule.parameter}@{k}": (f"{rule.name}_mismatch", f"drive {k}")
+        for rule in _RULES
         for k in range(1, DRIVES + 1)
     },
     **{

@@ -30,11 +30,7 @@ def make_input(
     if kind not in INPUTS:
         raise unknown_name("input", kind, INPUTS)
     refuse_negative("seed", seed)
-    if not 2 * sampling_time <= duration <= LONGEST:
-        raise InputError(
-            f"a duration of {duration:g} s is not between two samples of {sampling_time:g} s and"
-            f" {LONGEST:g} s; give one that is"
-        )
+    refuse_duration(duration, sampling_time)
     n = round(duration / sampling_time) + 1
     if kind == "zero":
         return np.zeros((n, DRIVES))
@@ -43,6 +39,15 @@ def make_input(
     if kind == "prbs":
         return prbs(n, sampling_time, seed=seed)
     return multisine(n, sampling_time, seed=seed)
+
+
+def refuse_duration(duration: float, sampling_time: float) -> None:
+    """Refuses a duration [s] of fewer than two samples [s] or more than an hour."""
+    if not 2 * sampling_time <= duration <= LONGEST:
+        raise InputError(
+            f"a duration of {duration:g} s is not between two samples of {sampling_time:g} s and"
+            f" {LONGEST:g} s; give one that is"
+        )
 
 
 def sampling_time_of(rate: float) -> float:

@@ -11,7 +11,7 @@ from identification.errors import InputError
 from identification.model.parameter import ParameterSet
 from identification.model.rollout import substeps
 from inca_mj.robot.geometry import INCA, Geometry
-from inca_mj.robot.inputs import LONGEST
+from inca_mj.robot.inputs import refuse_duration
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.verification.derivatives import DerivativeErrors, compare_derivatives
 from inca_mj.verification.trajectories import (
@@ -77,11 +77,7 @@ def crosscheck(
     parameters = parameters or parameter_set()
     if states < 1:
         raise InputError(f"cannot compare at {states} states; give 1 or more")
-    if not 2 * SAMPLING_TIME <= duration <= LONGEST:
-        raise InputError(
-            f"a duration of {duration:g} s is not between two samples of {SAMPLING_TIME:g} s and"
-            f" {LONGEST:g} s; give one that is"
-        )
+    refuse_duration(duration, SAMPLING_TIME)
     for step in steps:
         substeps(SAMPLING_TIME, step)
     made = [make_case(name, parameters, geometry, duration) for name in cases]
