@@ -77,9 +77,9 @@ def refusal() -> Callable[..., str]:
 @pytest.fixture
 def undrawn(monkeypatch) -> None:
     """Pages have their words and no figures, which take a second each."""
-    from identification.report import discovery_report, page
+    from identification.report import discovery_report, page, page_files
 
     monkeypatch.setattr(page, "drawing", lambda *_: "")
     monkeypatch.setattr(page, "save_figures", lambda *_: [])
-    monkeypatch.setattr(discovery_report, "save_figures", lambda *_: [])
+    monkeypatch.setattr(page_files, "save_figures", lambda *_: [])
     monkeypatch.setattr(discovery_report, "law_sections", lambda *_: [])

@@ -10,19 +10,16 @@ from typing import TYPE_CHECKING, Any
 
 from identification.discovery.result import Discovery
 from identification.report.discovery_json import discovery_to_json
-from identification.report.discovery_report import (
-    discovery_sections,
-    write_discovery_report,
-    write_page,
-)
+from identification.report.discovery_report import discovery_sections, write_page
 from identification.report.page import Section
+from identification.report.page_files import PageFiles
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True)
-class DiscoveryFiles:
+class DiscoveryFiles(PageFiles):
     """The files of a discovery on a model by hand, which no file describes."""
 
     found: Discovery  # the discovery
@@ -47,14 +44,6 @@ class DiscoveryFiles:
         """What was drawn for an earlier page, which the next page has too."""
         return {}
 
-    def keep(self, folder: Path, place: Path) -> dict[str, Any]:
-        """Write no model: the plant is the caller's own, and no file describes it."""
-        return {}
-
     def write_page(self, path: Path) -> Path:
         """Write the report; returns its path."""
         return write_page(self.found, path, self.sections, self.sentences, self.drawings)
-
-    def draw(self, folder: Path) -> None:
-        """Write the report and its figures into a folder."""
-        write_discovery_report(self.found, folder, self.sentences, self.sections, self.drawings)

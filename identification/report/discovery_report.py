@@ -25,7 +25,7 @@ from identification.report.discovery_verdict import (
 from identification.report.effect_sections import added_section, rivals_section, tried_section
 from identification.report.horizon_section import horizon_sections
 from identification.report.law import law_sections
-from identification.report.page import Section, save_figures, write_report
+from identification.report.page import Section, write_report
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -70,30 +70,6 @@ def discovery_sections(found: Discovery, files: str = "") -> list[Section]:
         *shifts_section(found),
         *unseen_section(found),
     ]
-
-
-def write_discovery_report(
-    found: Discovery,
-    folder: Path,
-    sentences: Sequence[str] = (),
-    sections: Sequence[Section] | None = None,
-    drawings: dict[Figure, str] | None = None,
-) -> Path:
-    """Write report.html and its figures into a folder; returns the path of the page.
-
-    Args:
-        found: the discovery.
-        folder: exists.
-        sentences: that follow the verdict.
-        sections: those of every page on a discovery when None.
-        drawings: see `write_report`.
-
-    Raises:
-        InputError: a file cannot be written.
-    """
-    sections = discovery_sections(found) if sections is None else sections
-    save_figures(sections, folder)
-    return write_page(found, folder / "report.html", sections, sentences, drawings)
 
 
 def write_page(

@@ -18,7 +18,8 @@ from identification.report.experiment_words import (
     experiment_to_json,
     experiment_verdict,
 )
-from identification.report.page import Section, save_figures, write_report
+from identification.report.page import Section, write_report
+from identification.report.page_files import PageFiles
 from identification.robot.next_experiment import NextExperiment
 
 PLAYED = "Designed, not measured: inputs to play."
@@ -26,7 +27,7 @@ FOLLOWED = "Designed, not measured: positions to follow, and the inputs that the
 
 
 @dataclass(frozen=True)
-class ExperimentFiles:
+class ExperimentFiles(PageFiles):
     """The files of the next experiment."""
 
     of: NextExperiment  # the result
@@ -52,11 +53,6 @@ class ExperimentFiles:
         names = [log.name for log in (robot.log, *robot.others, *robot.records)]
         verdict = experiment_verdict(self.of.found, robot.plant.parameters)
         return write_report(path, "The next experiment", verdict, self.sections, data=names)
-
-    def draw(self, folder: Path) -> None:
-        """Write the report and its figures into a folder."""
-        save_figures(self.sections, folder)
-        self.write_page(folder / "report.html")
 
 
 def played_log(of: NextExperiment) -> Log:

@@ -15,10 +15,11 @@ from identification.logs.log import Log
 from identification.model.predictor import Predictor
 from identification.prediction.records_fit import RecordsFit
 from identification.quantities import plain_unit, quantity
-from identification.report.effect_words import value_words
 from identification.report.figures import compare_figure, windows_figure
 from identification.report.fit_headline import fit_headline
-from identification.report.page import Section, Table, save_figures, write_report
+from identification.report.page import Section, Table, write_report
+from identification.report.page_files import PageFiles
+from identification.report.value_words import value_words
 from identification.robot.confirmation import confirm, plant_with
 from identification.robot.fit_json import robot_fit_to_json
 from identification.robot.record_error import AS_WRITTEN, FITTED
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class RobotFitFiles:
+class RobotFitFiles(PageFiles):
     """The files of a fit of a robot."""
 
     fitted: RobotFit  # the result of the fit
@@ -68,11 +69,6 @@ class RobotFitFiles:
             data=[*logs, *(log.name for log in robot.records)],
             headline=fit_headline(found.found, units),
         )
-
-    def draw(self, folder: Path) -> None:
-        """Write the report and its figure into a folder."""
-        save_figures(self.sections, folder)
-        self.write_page(folder / "report.html")
 
 
 def _values_section(found: RobotFit) -> Section:

@@ -7,7 +7,8 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from identification.report.page import Section, save_figures, write_report
+from identification.report.page import Section, write_report
+from identification.report.page_files import PageFiles
 from identification.report.torque_headline import torque_headline
 from identification.report.torque_json import evidence_to_json
 from identification.report.torque_sections import torque_sections
@@ -16,8 +17,8 @@ from identification.robot.torque_fit import TorqueFit
 
 
 @dataclass(frozen=True)
-class TorqueFiles:
-    """The files of a comparison of torques."""
+class TorqueFiles(PageFiles):
+    """The files of a comparison of torques, whose values are a start of a fit and no model."""
 
     fitted: TorqueFit  # the result
 
@@ -34,10 +35,6 @@ class TorqueFiles:
         """The sections of the report, whose figures are drawn once."""
         return torque_sections(self.fitted.found, self.fitted.robot.plant.model)
 
-    def keep(self, folder: Path, place: Path) -> dict[str, Any]:
-        """Write no model: values of torques are a start and a check of a fit, not its end."""
-        return {}
-
     def write_page(self, path: Path) -> Path:
         """Write the report; returns its path."""
         names = [rows.name for rows in self.fitted.found.equations.rows]
@@ -46,8 +43,3 @@ class TorqueFiles:
         return write_report(
             path, title, self.record["verdict"], self.sections, data=names, headline=headline
         )
-
-    def draw(self, folder: Path) -> None:
-        """Write the report and its figures into a folder."""
-        save_figures(self.sections, folder)
-        self.write_page(folder / "report.html")

@@ -141,7 +141,7 @@ def test_an_interrupt_in_the_film_costs_the_film_only(tmp_path, capsys, monkeypa
         raise KeyboardInterrupt
 
     monkeypatch.setattr(Output, "tell", lambda _, line: told.append(line))
-    monkeypatch.setattr("identification.report.discovery_report.save_figures", save_one)
+    monkeypatch.setattr("identification.report.page_files.save_figures", save_one)
     monkeypatch.setattr(filmed, "film_discovery", interrupted)
     monkeypatch.setattr("inca_mj.commands.discover.cannot_draw", lambda: "")
     monkeypatch.setattr(

@@ -20,8 +20,9 @@ from identification.prediction.discovery import WINDOWS
 from identification.prediction.moves import add_effect
 from identification.prediction.task import RecordsTask
 from identification.prediction.verdict import conclude
+from identification.report.discovery_files import DiscoveryFiles
 from identification.report.discovery_json import discovery_to_json
-from identification.report.discovery_report import discovery_text, write_discovery_report
+from identification.report.discovery_report import discovery_text
 from identification.windows.records import as_records
 
 SIZE, NAME, WHERE = "quadratic_friction.c@hinge", "quadratic_friction", "joint hinge"
@@ -136,4 +137,6 @@ def test_a_round_that_fails_as_a_whole_ends_the_search_with_what_was_found(
     (one,) = answer.failed
     assert (one.where, one.reason) == ("", "a matrix is singular")
     assert str(one) in said
-    assert one.outcome in text_of(write_discovery_report(answer, tmp_path).read_text())
+    assert one.outcome in text_of(
+        DiscoveryFiles(answer).write_page(tmp_path / "report.html").read_text()
+    )

@@ -28,7 +28,7 @@ SVG = "{http://www.w3.org/2000/svg}"
 @pytest.fixture(scope="module")
 def page(tmp_path_factory):
     found = fake_discovery.found(several=True)
-    path = write_discovery_report(found, tmp_path_factory.mktemp("report"))
+    path = DiscoveryFiles(found).write_page(tmp_path_factory.mktemp("report") / "report.html")
     return path.read_text(encoding="utf-8")
 
 
