@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 
 from identification.discovery.fitted import Fitted
 from identification.quantities import held
-from identification.report.effect_words import words_of
 from identification.report.error_words import listed
+from identification.report.value_words import is_part, words_of
 
 if TYPE_CHECKING:  # a search is slow to import
     from identification.discovery.result import Discovery
@@ -21,13 +21,8 @@ FAR = 3.0  # std of what was known: one value in 400 of a right model is farther
 
 
 def departure_sentences(model: Fitted, words: Mapping[str, str] | None = None) -> list[str]:
-    """Returns a sentence on the values that are far from what was known; none where none is.
-
-    Args:
-        model: fitted.
-        words: for names of parameters, where there are better ones.
-    """
-    far = {n: abs(by) for n, by in model.departures.items() if abs(by) > FAR and not _is_part(n)}
+    """Returns a sentence on the values that are far from what was known; none where none is."""
+    far = {n: abs(by) for n, by in model.departures.items() if abs(by) > FAR and not is_part(n)}
     if not far:
         return []
     farthest_first = sorted(far, key=lambda n: -far[n])
@@ -46,8 +41,3 @@ def departures_found(found: Discovery) -> list[str]:
         return final
     before = departure_sentences(found.nominal, words)
     return [*final, *(f"Before anything was named: {s[0].lower()}{s[1:]}" for s in before)]
-
-
-def _is_part(name: str) -> bool:
-    """Returns whether a parameter is the deviation of one of many parts that are alike."""
-    return "@" in name and "." not in name

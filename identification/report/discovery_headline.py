@@ -14,11 +14,11 @@ from identification.report.effect_words import (
     say_choice,
     shown_parameters,
     value_with_std,
-    without_colon,
 )
 from identification.report.headline import Answer, Headline, Tile, capital, error_tile
-from identification.report.missing_place import MissingPlace, find_place
+from identification.report.missing_place import find_place
 from identification.report.named_words import curve_top, likely_rivals
+from identification.report.value_words import without_colon
 from identification.shares import percent
 
 UNSEEN = "error on unseen data"
@@ -44,7 +44,8 @@ def discovery_headline(found: Discovery) -> Headline:
         ratio = found.times_noise(found.before)
         much = Tile("times the noise", held(ratio)) if isfinite(ratio) else None
         at = find_place(found)
-        tiles = [*_missing(at), left, much]
+        missing = Tile(f"missing on {at.joint}", at.size, at.range) if at else None
+        tiles = [missing, left, much]
         where = f"{none}" if at is None else f"at joint {at.joint}. {none}"
         return Headline("", (Answer("Something is missing", where, _three(tiles)),))
     seen = {d.candidate.effect.name for d in found.detectable if d.is_plausible}
@@ -102,13 +103,6 @@ def _size(found: Discovery, named: NamedEffect) -> tuple[Tile, ...]:
     note = [about[first]] if about.get(first) else []
     note += [f"{n} = {said}" for n, said in more] + words
     return (Tile(f"size {first}", size, "; ".join(note)),)
-
-
-def _missing(at: MissingPlace | None) -> list[Tile]:
-    """Returns the tile on the force that is missing; none where none is known."""
-    if at is None:
-        return []
-    return [Tile(f"missing on {at.joint}", at.size, at.range)]
 
 
 def _three(tiles: list[Tile | None]) -> tuple[Tile, ...]:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from identification.discovery.effect_results import NamedEffect, Proof, RejectedEffect, Rival
+from identification.discovery.effect_results import NamedEffect, Proof, RejectedEffect
 from identification.discovery.findings.evidence import DoubtfulEffect, OversizedEffect
 from identification.discovery.findings.finding import Finding
 from identification.discovery.fitted import Fitted
@@ -57,15 +57,13 @@ def discovery_to_json(found: Discovery) -> dict[str, Any]:
         ],
         "differences": [
             {**plain_fields(d, "name", "where", "spread"),
-             "parameters": {n: plain({"value": v, "std": std, "unit": d.unit})
-                            for n, (v, std) in d.values.items()}}
+             "parameters": _parameters_to_json({n: (*v, d.unit) for n, v in d.values.items()})}
             for d in found.differences
         ],
         "torques": [
             {**plain_fields(o, "name", "where", "fall", "t"),
              "proven": o.is_proven, "named": o.is_named,
-             "sizes": {n: plain({"value": v, "std": std, "unit": unit})
-                       for n, (v, std, unit) in o.sizes.items()}}
+             "sizes": _parameters_to_json(o.sizes)}
             for o in found.torques
         ],
         "parts": parts_to_json(found),
@@ -138,7 +136,16 @@ def _named_to_json(named: NamedEffect, plant: Plant) -> dict[str, Any]:
         **plain_fields(named, *NAMED),
         "parameters": _parameters_to_json(named.parameters),
         "rivals": [
-            {**_called(r.candidate, plant), "confidence": r.confidence, "values": _law_of(r)}
+            {
+                **_called(r.candidate, plant),
+                "confidence": r.confidence,
+                # sizes and shapes of a rival in its own fit, by the plant's names
+                "values": {
+                    n: plain(v)
+                    for n, v in r.values.items()
+                    if n in (*r.candidate.sizes, *r.candidate.fixed)
+                },
+            }
             for r in named.rivals
         ],
         "same_as": named.same_as.name if named.same_as else None,
@@ -146,12 +153,6 @@ def _named_to_json(named: NamedEffect, plant: Plant) -> dict[str, Any]:
         **_proofs_to_json(named.proof),
         **plain_fields(named.proof.told, "agrees", "disagrees"),
     }
-
-
-def _law_of(rival: Rival) -> dict[str, Any]:
-    """Returns the sizes and shapes of a rival in its own fit, by the plant's names."""
-    own = {*rival.candidate.sizes, *rival.candidate.fixed}
-    return {n: plain(v) for n, v in rival.values.items() if n in own}
 
 
 def _rejected_to_json(rejected: RejectedEffect) -> dict[str, Any]:

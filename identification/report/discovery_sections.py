@@ -16,7 +16,6 @@ from identification.quantities import held
 from identification.report.departure_words import departures_found
 from identification.report.discovery_figures import gap_figures, where_figures
 from identification.report.effect_sections import listed_below
-from identification.report.effect_words import gathered, words_of
 from identification.report.error_words import error_words, pair_words
 from identification.report.finding_words import describe_finding, describe_shift, sentence
 from identification.report.fitted_values import (
@@ -29,6 +28,7 @@ from identification.report.horizon_section import error_figures
 from identification.report.page import Section, Table
 from identification.report.parts_words import parts_sentence
 from identification.report.shown_words import shown_lines, shown_rows, shown_sentences
+from identification.report.value_words import gathered, words_of
 from identification.shares import decimal
 from identification.windows.coarse import steps_of
 
@@ -97,7 +97,7 @@ def records_section(found: Discovery) -> list[Section]:
     if not found.is_told_by_record:
         return []
     seen = [e for e in found.errors if not isnan(e.before)]
-    pairs = pair_words([(e.before_by_unit, e.after_by_unit) for e in seen], "", DIGITS)
+    pairs = pair_words([(e.before_by_unit, e.after_by_unit) for e in seen], DIGITS)
     words = dict(zip(map(id, seen), pairs, strict=True))
     rows = [(e.name, *words.get(id(e), (FITTED, "")), e.role) for e in found.errors]
     said, over = (text.format(found.horizon) for text in RECORDS[found.judged_by])

@@ -12,7 +12,6 @@ from identification.report.effect_words import (
     describe_chance,
     describe_effect,
     difference_sentences,
-    phrase,
 )
 from identification.report.error_words import change_words, describe_scale, error_words, listed
 from identification.report.finding_words import describe_finding, sentence
@@ -21,8 +20,9 @@ from identification.report.missing_place import find_place
 from identification.report.named_words import basis_sentence, named_sentences
 from identification.report.opinion_words import opinion_sentences
 from identification.report.parts_words import is_untouched
-from identification.report.shown_words import SHOWN, hiding, smallest, split_detectable
+from identification.report.shown_words import SHOWN, hiding, smallest
 from identification.report.untold_words import bound_sentences
+from identification.report.value_words import phrase
 from identification.shares import HELD, change, decimal, fall_words, percent, ratio_of, times
 from identification.shown import verdict_of
 
@@ -140,7 +140,9 @@ def _nothing(found: Discovery) -> str:
             f" chance. This error is {left}{found.over}, {held(ratio)} times the sensors' noise of"
             f" {alone}. {_either(found)}"
         )
-    seen, unseen = split_detectable(found.detectable)
+    unseen = [d for d in found.detectable if not d.is_plausible]
+    seen = [d for d in found.detectable if d.is_plausible]
+    seen.sort(key=lambda d: d.smallest / d.largest)  # the easiest to find first
     who = f"the sensors{' and unlogged disturbances' if found.unlogged else ''}"
     if is_above_noise(found):
         said = (

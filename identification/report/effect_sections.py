@@ -18,16 +18,15 @@ from identification.report.effect_words import (
     describe_rejected,
     describe_sizes,
     describe_there,
-    phrase,
     rejected_once,
     say_choice,
     shown_parameters,
     value_with_std,
-    words_of,
 )
 from identification.report.finding_words import sentence
-from identification.report.named_words import SHOWN, diff_line, node_lines
+from identification.report.named_words import SHOWN, node_lines
 from identification.report.page import Section, Table
+from identification.report.value_words import phrase, words_of
 from identification.shares import fall_words, percent
 
 BEST, LISTED = 10, 6  # candidates with the best scores, in a figure and in a list
@@ -71,7 +70,7 @@ def added_section(found: Discovery, files: str = "") -> Section:
         for k, (name, value) in enumerate(_numbers(named)):
             rows.append((name, value, *(once if k == 0 else ("",) * 3)))
         proofs.append(sentence(f"{effect}: {gains}"))
-        lines += [diff_line(found, named), f"    law: {law}", f"    {gains}"]
+        lines += [f"+ {effect}: {describe_sizes(named)}", f"    law: {law}", f"    {gains}"]
         if named.candidate.effect.is_curve:
             lines += [f"    {line}" for line in node_lines(named, found.final.plant)]
         other = named.retuned
@@ -173,24 +172,14 @@ def describe_score(found: Discovery, score: Scored) -> str:
 
 
 def failed_rows(failed: Sequence[Failed], words: Mapping[str, str]) -> list[tuple[str, str]]:
-    """Returns each candidate that failed with its reason, and in one row how many more there are.
-
-    Args:
-        failed: what could not be evaluated.
-        words: of effects by name.
-    """
+    """Returns candidates that failed with their reasons, and in one row how many more there are."""
     rows = [(_called(one, words), one.outcome) for one in failed[:MANY]]
     more = len(failed) - len(rows)
     return [*rows, (f"{more} more", "see the JSON")] if more > 0 else rows
 
 
 def left_rows(failed: Sequence[Failed], words: Mapping[str, str]) -> list[tuple[str, str]]:
-    """Returns the candidates that a search had begun and left, a row for each reason.
-
-    Args:
-        failed: what was left.
-        words: of effects by name.
-    """
+    """Returns the candidates that a search had begun and left, a row for each reason."""
     each: dict[str, list[str]] = {}
     for one in failed:
         each.setdefault(one.reason, []).append(_called(one, words))

@@ -1,14 +1,13 @@
-"""Effects in words: what they are, where they act, how large they are, and what speaks for them."""
+"""Fitted effects in words: where they act, how large they are, and what speaks for them."""
 
 from __future__ import annotations
 
-import re
-from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping
 from math import isfinite, isinf, isnan
 from typing import TYPE_CHECKING
 
 from identification.quantities import probability, quantity
+from identification.report.value_words import in_record, phrase, without_colon
 from identification.shares import fall_words, percent
 
 if TYPE_CHECKING:  # a search is slow to import, and a page may tell of a model alone
@@ -16,121 +15,12 @@ if TYPE_CHECKING:  # a search is slow to import, and a page may tell of a model 
         NamedEffect,
         Outside,
         Proof,
-        RecordDifference,
         RejectedEffect,
     )
     from identification.discovery.options import DiscoveryOptions
     from identification.discovery.result import Discovery
-    from identification.effects.effect import Candidate, Effect
-    from identification.model.parameter import Parameter
+    from identification.effects.effect import Candidate
     from identification.model.predictor import Plant
-
-
-def describe_parameter(parameter: Parameter) -> str:
-    """Returns what a parameter is, its letter before the place; its name where that is not said."""
-    if not parameter.short:
-        return parameter.name
-    return with_letter(parameter.short, parameter.letter)
-
-
-def with_letter(words: str, letter: str) -> str:
-    """Returns words with a letter of the equations before their first comma, if they lack it."""
-    if re.search(rf"(?<!\w){re.escape(letter)}(?!\w)", words):
-        return words
-    what, comma, where = words.partition(",")
-    return f"{what} {letter}{comma}{where}"
-
-
-def parameter_words(
-    parameters: Iterable[Parameter], effects: Iterable[Effect] = ()
-) -> dict[str, str]:
-    """Returns the words of parameters by name, also of effects, whose sizes are told with place."""
-    words = {p.name: describe_parameter(p) for p in parameters}
-    count = Counter(words.values())
-    # of an effect that has the same parameter at several joints the joint is told too
-    words |= {
-        name: f"{said}, {place}"
-        for name, said in words.items()
-        if count[said] > 1 and (place := name.partition("@")[2])
-    }
-    for effect in effects:
-        what = phrase(effect)
-        words |= {f"{effect.name}.{shape.name}": f"{shape.name}, {what}" for shape in effect.shapes}
-        words |= {
-            effect.parameter(size.name, where): _size_words(effect, size.name, where)
-            for size in effect.sizes
-            for where in effect.places
-        }
-    return words
-
-
-def _size_words(effect: Effect, size: str, where: str) -> str:
-    """Returns what a size is called: in few words where the name of a record will follow."""
-    if not effect.own:
-        return f"{size}, {phrase(effect)}, {where}"
-    from identification.effects.effect import BY_RECORD  # slow to import
-
-    letter = f" {size}" if len(effect.sizes) > 1 else ""
-    return f"{effect.name.replace('_', ' ')}{letter}, {where.removesuffix(BY_RECORD)}"
-
-
-def words_of(found: Discovery) -> dict[str, str]:
-    """Returns the words of all values of a discovery by name, also of those of single records."""
-    told = [*found.nominal.told_values, *found.final.told_values]
-    effects = [named.candidate.effect for named in found.named]
-    differing = [each.candidate.effect for each in found.differences]
-    return value_words(told, found.final.plant, [*differing, *effects])
-
-
-def value_words(
-    names: Iterable[str], plant: Plant, effects: Iterable[Effect] = ()
-) -> dict[str, str]:
-    """Returns the words of fitted values by name.
-
-    The value of a single record, such as `time_shift.tau@u [a]`, is "time shift of record a, input
-    u".
-
-    Args:
-        names: of the values.
-        plant: that has them.
-        effects: whose sizes are told with what they are.
-    """
-    own = [e for e in getattr(plant, "effects", ()) if e.own]  # a model without effects has none
-    words = parameter_words(plant.parameters, [*own, *effects])
-    return words | {n: said for n in names if n not in words and (said := in_record(n, words)) != n}
-
-
-def in_record(name: str, words: Mapping[str, str]) -> str:
-    """Returns what `NAME [RECORD]` is called; the name itself where it has no record."""
-    common, bracket, record = name.partition(" [")
-    if not bracket:
-        return name
-    what, comma, where = words.get(common, common).partition(",")
-    return f"{what} of record {record.removesuffix(']')}{comma}{where}"
-
-
-PART = re.compile(r"(?P<what>.+?)(?P<sign>, [^\W\d]+ |@)(?P<number>\d+)")  # one of several alike
-
-
-def gathered(told: Iterable[str]) -> list[str]:
-    """Returns words or names of parameters, those of the same one at several parts as one.
-
-    friction smoothness β, drive 1; friction smoothness β, drive 2 -> ... β of drives 1 to 2
-    """
-    groups: dict[tuple[str, str], list[int]] = {}
-    for each in told:
-        part = PART.fullmatch(each)
-        at = groups.setdefault((part["what"], part["sign"]) if part else (each, ""), [])
-        at += [int(part["number"])] if part else []
-    return [_gathered(what, sign, sorted(at)) for (what, sign), at in groups.items()]
-
-
-def _gathered(what: str, sign: str, at: Sequence[int]) -> str:
-    if len(at) < 2:
-        return f"{what}{sign}{at[0]}" if at else what
-    is_run = [*at] == [*range(at[0], at[-1] + 1)]
-    which = f"{at[0]} to {at[-1]}" if is_run else ", ".join(map(str, at))
-    return f"{what}@{which}" if sign == "@" else f"{what} of {sign.strip(', ')}s {which}"
 
 
 FEW = 0.01  # a chance above it is told as a share, and not as a power of ten
@@ -170,16 +60,6 @@ def describe_there(candidate: Candidate, plant: Plant) -> str:
     from identification.effects.named import phrase_there  # slow to import
 
     return f"{without_colon(phrase_there(candidate, plant))}, {candidate.where}"
-
-
-def phrase(effect: Effect) -> str:
-    """Returns an effect in words without a colon, because sentences have their own before it."""
-    return without_colon(effect.phrase or effect.name.replace("_", " "))
-
-
-def without_colon(said: str) -> str:
-    """Returns words of a catalogue for a sentence that has a colon of its own."""
-    return said.replace(": ", " – ", 1)
 
 
 def value_with_std(value: float, std: float, unit: str, like: float = 0.0) -> str:
@@ -244,20 +124,19 @@ def difference_sentences(found: Discovery) -> list[str]:
     """Returns a sentence on each thing that differs between records and is no effect."""
     from identification.effects.effect import BY_RECORD  # slow to import
 
-    return [
-        f"{phrase(d.candidate.effect).capitalize()}, {d.candidate.where.replace(BY_RECORD, '')}: by"
-        f" {quantity(d.spread, unit=d.unit)} between two of them at most"
-        f" ({'; '.join(_in_each_record(d))})."
-        " In the model each record has its own value; this is no effect of the robot."
-        for d in found.differences
-    ]
-
-
-def _in_each_record(difference: RecordDifference) -> list[str]:
-    return [
-        f"{in_record(name, {})} = {quantity(value, std, difference.unit)}"
-        for name, (value, std) in difference.values.items()
-    ]
+    said = []
+    for d in found.differences:
+        what, where = phrase(d.candidate.effect), d.candidate.where.replace(BY_RECORD, "")
+        each = [
+            f"{in_record(name, {})} = {quantity(value, std, d.unit)}"
+            for name, (value, std) in d.values.items()
+        ]
+        said.append(
+            f"{what.capitalize()}, {where}: by {quantity(d.spread, unit=d.unit)} between two of"
+            f" them at most ({'; '.join(each)}). In the model each record has its own value; this"
+            " is no effect of the robot."
+        )
+    return said
 
 
 def rejected_once(found: Discovery) -> list[RejectedEffect]:
@@ -310,13 +189,6 @@ def describe_doubt(rejected: RejectedEffect, options: DiscoveryOptions) -> str:
     return why
 
 
-def _fitted(found: NamedEffect | RejectedEffect) -> str:
-    """Returns what speaks for an effect: its gain on fitted samples, or over windows."""
-    if isfinite(found.bic_gain):
-        return f"BIC gain {found.bic_gain:z.4g} on fitted samples"
-    return f"evidence {found.evidence:z.4g} of the windows that decide"
-
-
 def describe_chance(proof: Proof) -> str:
     """Returns in words how far unseen samples are from chance, and by which test."""
     return f"t = {proof.t:z.1f}, chance {chance_words(proof)} by {proof.test}"
@@ -329,9 +201,11 @@ def chance_words(proof: Proof) -> str:
 
 def describe_gains(named: NamedEffect) -> str:
     """Returns in words what a named effect gains on fitted samples, and on those told of."""
-    told = named.proof.told
+    told, fitted = named.proof.told, f"BIC gain {named.bic_gain:z.4g} on fitted samples"
+    if not isfinite(named.bic_gain):
+        fitted = f"evidence {named.evidence:z.4g} of the windows that decide"
     higher = f" log likelihood {told.gain:+z.4g}," if isfinite(told.gain) else ""
-    return f"{_fitted(named)}; {_where_told(named.proof)}{higher} {describe_chance(told)}"
+    return f"{fitted}; {_where_told(named.proof)}{higher} {describe_chance(told)}"
 
 
 def _where_told(proof: Proof) -> str:

@@ -67,14 +67,12 @@ def error_words(
 
 
 def pair_words(
-    pairs: Sequence[tuple[Mapping[str, float], Mapping[str, float]]],
-    word: str = "rms",
-    digits: int = HELD,
+    pairs: Sequence[tuple[Mapping[str, float], Mapping[str, float]]], digits: int = HELD
 ) -> list[tuple[str, str]]:
     """Returns errors of two models on several records in words, with one prefix for all."""
     if not pairs:
         return []
-    each = error_words([errors for pair in pairs for errors in pair], word, digits)
+    each = error_words([errors for pair in pairs for errors in pair], "", digits)
     return [*zip(each[::2], each[1::2], strict=True)]
 
 
@@ -82,14 +80,13 @@ def change_words(
     before: Mapping[str, float],
     after: Mapping[str, float],
     beside: Sequence[Mapping[str, float]] = (),
-    digits: int = HELD,
 ) -> tuple[str, list[str]]:
     """Returns a change of errors, "from 3.7 mrad to 1.1 mrad rms", and other errors beside it."""
     told = [before, after, *beside]
-    sizes = error_words(told, "", digits)
+    sizes = error_words(told, "")
     if len(before) == 1:
         return f"from {sizes[0]} to {sizes[1]} rms", sizes[2:]
-    was, now = error_words(told, digits=digits)[:2]
+    was, now = error_words(told)[:2]
     return f"from {was} to {now}", sizes[2:]
 
 

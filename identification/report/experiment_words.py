@@ -11,6 +11,7 @@ from identification.experiment.design import Design
 from identification.experiment.limits import Margin
 from identification.model.parameter import ParameterSet
 from identification.quantities import alike, plain, plain_unit, quantity
+from identification.report.error_words import listed
 from identification.shares import percent
 
 FILE = "next_experiment.csv"  # in the folder of results
@@ -21,16 +22,11 @@ UNITS = {"position": ("rad", "m"), "speed": ("rad/s", "m/s"), "input": ("", ""),
 
 
 def experiment_verdict(found: Design, at: ParameterSet) -> list[str]:
-    """Returns what the experiment is, what it is expected to tell, and how near limits are.
-
-    Args:
-        found: the design.
-        at: the robot's parameters, with their units.
-    """
+    """Returns what the experiment is, what it is expected to tell, and how near limits are."""
     log = found.best.played.log
     lasts = f"The next experiment lasts {log.duration:.4g} s"
     if found.stage.form == "inputs":
-        what = f"{lasts}. Play the inputs {_and(log.input_names)} of the file unchanged."
+        what = f"{lasts}. Play the inputs {listed(log.input_names)} of the file unchanged."
     else:
         what = (
             f"{lasts} and is a motion for your controller to follow: the file has the positions as"
@@ -82,16 +78,10 @@ def experiment_to_json(found: Design, at: ParameterSet) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _and(words: Sequence[str]) -> str:
-    """Returns words in a list: a, b and c."""
-    *first, last = words
-    return f"{', '.join(first)} and {last}" if first else last
-
-
 def _rivals(found: Design) -> list[str]:
     """Returns what the experiment is expected to say of the rivals."""
-    names = _and([h.name for h in found.hypotheses])
-    now = _and([percent(s) for s in found.shares])
+    names = listed([h.name for h in found.hypotheses])
+    now = listed([percent(s) for s in found.shares])
     least, λ = float(found.shares_after.min()), found.best.separations
     odds, random = 0.5 * float(λ.min()), 0.5 * float(found.random.separations.min())
     out = [
@@ -125,16 +115,16 @@ def _values(found: Design, at: ParameterSet) -> list[str]:
         gain = _mean(before[order] / after[order])
         random = _mean(found.random.std[order] / after[order])
         out.append(
-            f"Expected std after it, the worst-known first: {_and(told)}{more}. On average the std"
-            f" become {gain:.3g} times smaller; those of a random experiment within the same limits"
-            f" would be {random:.3g} times as large."
+            f"Expected std after it, the worst-known first: {listed(told)}{more}. On average the"
+            f" std become {gain:.3g} times smaller; those of a random experiment within the same"
+            f" limits would be {random:.3g} times as large."
         )
     same = [first.names[k] for k in order if k not in better]
     if same:
         it = "it" if len(same) == 1 else "them"
         out.append(
-            f"It tells little more about {_and(same)}: no motion that was tried within these limits"
-            f" shows {it} better than what is known already."
+            f"It tells little more about {listed(same)}: no motion that was tried within these"
+            f" limits shows {it} better than what is known already."
         )
     return out
 

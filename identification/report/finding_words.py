@@ -14,8 +14,8 @@ from identification.report.effect_words import (
     describe_chance,
     describe_effect,
     describe_sizes,
-    without_colon,
 )
+from identification.report.value_words import without_colon
 from identification.shares import HELD, change, decimal, fall_words, percent, ratio_of, times
 
 HOLDS = {"foh": "ran in straight lines between their samples", "zoh": "kept each sample's value"}

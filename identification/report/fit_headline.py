@@ -20,12 +20,7 @@ FEW = 2  # values that have a tile each
 
 
 def fit_headline(fit: Fit | RecordsFit, units: Mapping[str, str]) -> Headline:
-    """Returns the answer of a fit in a few words and numbers.
-
-    Args:
-        fit: of a free run, or of the windows of records.
-        units: of the values by name.
-    """
+    """Returns the answer of a fit in a few words and numbers."""
     name, place = _judged(fit)
     return Headline("", (Answer(name, place, (*_values(fit, units), _error(fit))),))
 
@@ -38,7 +33,7 @@ def _judged(fit: Fit | RecordsFit) -> tuple[str, str]:
         return "Stopped", "These are the best values that the search had seen."
     if not fit.converged:
         return "Not converged", "The search ran out of iterations."
-    floor = _floor(fit)
+    floor = fit.floor_by_unit if isinstance(fit, Fit) else fit.noise_by_unit
     ratio = relative(fit.rms_by_unit, floor) if any(floor.values()) else inf
     if not isfinite(ratio):
         return "Fitted", ""
@@ -84,7 +79,3 @@ def _error(fit: Fit | RecordsFit) -> Tile:
     begun = errors_by_unit(squares, fit.model.scale, fit.records[0].log)
     what = f"error on unseen data over {fit.horizon:g} s"
     return error_tile(begun, fit.unseen_by_unit, fit.noise_by_unit, what)
-
-
-def _floor(fit: Fit | RecordsFit) -> Mapping[str, float]:
-    return fit.floor_by_unit if isinstance(fit, Fit) else fit.noise_by_unit

@@ -19,11 +19,7 @@ if TYPE_CHECKING:  # slow to import
 
 @singledispatch
 def fit_to_json(fit: Fit | RecordsFit) -> dict[str, Any]:
-    """Returns the numbers and the verdict of a fit; what is unknown or infinite is null.
-
-    Args:
-        fit: of a free run (`estimate`), or of the windows of records (`fit`).
-    """
+    """Returns the numbers and the verdict of a fit; what is unknown or infinite is null."""
     return _of_records(fit)  # type: ignore[arg-type]
 
 

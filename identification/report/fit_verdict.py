@@ -43,11 +43,7 @@ CONVERGED = {True: "The search converged.", False: "The search ran out of iterat
 
 @singledispatch
 def fit_verdict(fit: Fit | RecordsFit) -> list[str]:
-    """Returns sentences: did the search converge, what is known, is it enough, does it hold unseen.
-
-    Args:
-        fit: of a free run (`estimate`) or of the windows of records (`fit`).
-    """
+    """Returns sentences: did the search converge, what is known, is it enough, is it confirmed."""
     return _of_records(fit)  # type: ignore[arg-type]
 
 

@@ -19,8 +19,9 @@ from identification.discovery.fitted import TOLD_SHIFT, Fitted, StepShift
 from identification.model.parameter import Parameter
 from identification.model.protocol import FINER
 from identification.quantities import alike, held, quantity
-from identification.report.effect_words import value_with_std, words_of
+from identification.report.effect_words import value_with_std
 from identification.report.page import Table
+from identification.report.value_words import is_part, words_of
 
 if TYPE_CHECKING:  # a search is slow to import
     from identification.discovery.result import Discovery
@@ -75,7 +76,7 @@ def value_lines(found: Discovery, table: Table) -> list[str]:
 
 def unknown_shares(fit: Fitted) -> dict[str, float]:
     """Returns the std of each single part's parameter over the std known before, by name."""
-    return {n: s for n, s in fit.unlearned.items() if "@" in n and "." not in n}
+    return {n: s for n, s in fit.unlearned.items() if is_part(n)}
 
 
 def shown_values(

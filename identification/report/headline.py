@@ -57,16 +57,11 @@ def error_tile(
     told = [before, *([] if after is None else [after]), noise]
     sizes = error_words(told, "")
     if len(before) > 1:  # each has its kind of outputs in words, and a line of its own
-        value = "; ".join(" → ".join(_split(pair)) for pair in _by_kind(sizes[:-1]))
+        each = [size.replace(" and ", ", ").split(", ") for size in sizes[:-1]]
+        value = "; ".join(" → ".join(_split(pair)) for pair in zip(*each, strict=True))
     else:
         value = " → ".join(_split(sizes[:-1]))
     return Tile(what, value, f"the noise is {sizes[-1]}" if any(noise.values()) else "")
-
-
-def _by_kind(sizes: Sequence[str]) -> list[list[str]]:
-    """Returns errors of several units by unit, from words that list all units of each error."""
-    each = [size.replace(" and ", ", ").split(", ") for size in sizes]
-    return [list(column) for column in zip(*each, strict=True)]
 
 
 def _split(sizes: Sequence[str]) -> list[str]:

@@ -53,9 +53,10 @@ def length_lines(lengths: Sequence[LengthError]) -> list[str]:
 
 def force_line(needed: NeededForce) -> str:
     """Returns what a force at a joint would explain, and where it would be largest."""
+    size, at = largest_force(needed)
     return (
         f"a force on {needed.nodes.joint} that depends on the {needed.nodes.reads} would remove"
-        f" {percent(needed.fall)} of the fitted error; it would be largest at {_largest(needed)}"
+        f" {percent(needed.fall)} of the fitted error; it would be largest at {at}: {size}"
     )
 
 
@@ -64,11 +65,6 @@ def largest_force(needed: NeededForce) -> tuple[str, str]:
     k, nodes = needed.largest, needed.nodes
     size = quantity(float(needed.force[k]), float(needed.std[k]), needed.unit)
     return size, quantity(float(nodes.at[k]), unit=nodes.unit)
-
-
-def _largest(needed: NeededForce) -> str:
-    size, at = largest_force(needed)
-    return f"{at}: {size}"
 
 
 def needed_sentences(found: Discovery) -> list[str]:

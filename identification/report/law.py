@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import partial
-from typing import TYPE_CHECKING
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from identification.discovery.effect_results import NamedEffect
 from identification.discovery.recovered_force import LawLine, RecoveredForce
 from identification.discovery.result import Discovery
 from identification.errors import DivergenceError
@@ -17,10 +14,6 @@ from identification.quantities import quantity
 from identification.report.effect_words import describe_effect
 from identification.report.page import Section
 from identification.report.style import GREY, INK, MEASURED, SERIES, literal, styled
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
 
 LAWS = "The physics that was found"
 HOW = (
@@ -44,10 +37,7 @@ NONE = (
 
 def law_sections(found: Discovery) -> list[Section]:
     """Returns the section on the recovered forces; none where nothing is named."""
-    each = [
-        (n.candidate, _if_simulated(partial(found.recover, n.candidate, n.rivals)))
-        for n in found.named
-    ]
+    each = [(n.candidate, _recovered(found, n)) for n in found.named]
     if not each:
         return []
     figures: list[tuple[str, Figure]] = []
@@ -68,10 +58,10 @@ def law_sections(found: Discovery) -> list[Section]:
     return [Section(LAWS, "\n\n".join(said), figures=tuple(figures), first=1)]
 
 
-def _if_simulated(recover: Callable[[], RecoveredForce | None]) -> RecoveredForce | None:
+def _recovered(found: Discovery, named: NamedEffect) -> RecoveredForce | None:
     """Returns a recovered force; None where the changed law, or a rival's, diverges."""
     try:
-        return recover()
+        return found.recover(named.candidate, named.rivals)
     except DivergenceError:
         return None
 
@@ -96,12 +86,13 @@ def law_figure(of: RecoveredForce) -> Figure:
     x_unit, unit = of.units
     top = max(np.abs(of.law.force).max(), np.abs(of.points.force).max(initial=0.0))
     factor, said = (1e3, f"m{unit}") if top < SMALL and unit else (1.0, unit)
-    near = _bends(of)
+    near, follows = _bends(of), FOLLOWS.get(of.along)
+    follows = follows or f"what the law multiplies by {of.candidate.effect.sizes[0].name}"
     figure = Figure((9.0 if near else 7.0, 3.8), layout="constrained")
     panels = figure.subplots(1, 2 if near else 1, squeeze=False)[0]
     for ax in panels:
         _draw(ax, of, factor)
-        ax.set_xlabel(literal(_follows(of) + (f" [{x_unit}]" if x_unit else "")))
+        ax.set_xlabel(literal(follows + (f" [{x_unit}]" if x_unit else "")))
     if near:
         panels[0].set_title("all of it", loc="left", color=INK)
         panels[1].set_title("where it bends", loc="left", color=INK)
@@ -149,12 +140,6 @@ def _drawn(line: LawLine, of: RecoveredForce) -> tuple[np.ndarray, np.ndarray, n
     if of.along != "rate" or not 0 < cut < len(line.x):
         return parts
     return tuple(np.insert(part, cut, np.nan) for part in parts)  # type: ignore[return-value]
-
-
-def _follows(of: RecoveredForce) -> str:
-    if of.along == "law":
-        return f"what the law multiplies by {of.candidate.effect.sizes[0].name}"
-    return FOLLOWS[of.along]
 
 
 def _force(of: RecoveredForce) -> str:

@@ -82,7 +82,11 @@ def svg(figure: Figure, prefix: str = "", title: str = "") -> str:
         write_figure(figure, stream, format="svg", metadata=nothing)
     text = stream.getvalue()
     text = re.sub(r"<metadata>.*?</metadata>\s*", "", text[text.index("<svg") :], flags=re.DOTALL)
-    text = _with_prefix(_rounded(_with_variables(text)), prefix)
+    text = re.sub(
+        rf"#({'|'.join(DARK)})\b", lambda m: f"var(--c-{m[1].lower()}, #{m[1].lower()})", text,
+        flags=re.I,
+    )  # fmt: skip
+    text = _with_prefix(_rounded(text), prefix)
     axes = [_tell(figure, ax, prefix, s, flat) for ax, s in zip(flat, series, strict=True)]
     name = f"{prefix}title"
     head = f' role="img" aria-labelledby="{name}"'
@@ -144,13 +148,6 @@ def _label(every: Sequence[Axes], shared: Any, ax: Axes, which: str) -> str:
     of = [ax, *(other for other in every if shared.joined(ax, other))]
     said = next((text for one in of if (text := getattr(one, f"get_{which}")())), which[0])
     return str(said).replace("\n", " ").replace(r"\$", "$")
-
-
-def _with_variables(text: str) -> str:
-    known = "|".join(DARK)
-    return re.sub(
-        rf"#({known})\b", lambda m: f"var(--c-{m[1].lower()}, #{m[1].lower()})", text, flags=re.I
-    )
 
 
 def _rounded(text: str) -> str:

@@ -19,10 +19,9 @@ from identification.report.effect_words import (
     describe_sizes,
     describe_there,
     largest_known,
-    phrase,
-    words_of,
 )
 from identification.report.error_words import listed
+from identification.report.value_words import phrase, words_of
 from identification.shares import fall_words, percent
 
 # The longer ones first: the end of one is another.
@@ -108,11 +107,6 @@ def named_sentences(found: Discovery, named: NamedEffect) -> str:
         f"{_named(found, named)}{nearest_law(found, named)}{_retuned(found, named)}"
         f"{_outside(named)}{_agreement(found, named)}"
     )
-
-
-def diff_line(found: Discovery, named: NamedEffect) -> str:
-    """Returns a named effect as a line of a diff of the model."""
-    return f"+ {describe_there(named.candidate, found.final.plant)}: {describe_sizes(named)}"
 
 
 def _named(found: Discovery, named: NamedEffect) -> str:

@@ -4,16 +4,13 @@ from __future__ import annotations
 
 from identification.discovery.result import Discovery
 from identification.discovery.second_opinion import TorqueOpinion
-from identification.report.effect_words import phrase, value_with_std
+from identification.report.effect_words import value_with_std
+from identification.report.value_words import phrase
 from identification.shares import fall_words
 
 
 def opinion_sentences(found: Discovery) -> list[str]:
-    """Returns a sentence on each effect of which the joints' torques say something.
-
-    Args:
-        found: the outcome of a search.
-    """
+    """Returns a sentence on each effect of which the joints' torques say something."""
     phrases = {n.candidate.key: phrase(n.candidate.effect) for n in found.named}
     return [
         _sentence(o, phrases.get((o.name, o.where), o.name.replace("_", " ")))

@@ -13,13 +13,7 @@ LARGEST, PROBE = 5.0, 0.1  # of the size that is to be believed, and of that whi
 
 
 def own_stub(found: Discovery, place: MissingPlace, robot: str) -> str:
-    """Returns a Python file with an effect at the place, and a search that tries it.
-
-    Args:
-        found: the discovery.
-        place: where a force is missing.
-        robot: path of the robot's TOML.
-    """
+    """Returns a Python file with an effect at the place, and a search that tries it."""
     x = next(field for word, field in FIELDS.items() if place.reads.startswith(word))
     middle, half = (place.low + place.high) / 2, (place.high - place.low) / 2
     width = half or 0.1 * abs(middle) or 1.0

@@ -141,14 +141,6 @@ def _describe(h: Hidden) -> str:
     return f"{describe_effect(h.candidate)}, {sizes}{taken if h.taken >= SHARE else ''}"
 
 
-def split_detectable(
-    detectable: Sequence[Detectable],
-) -> tuple[list[Detectable], list[Detectable]]:
-    """Returns effects that a plausible size would show, the easiest to find first; and others."""
-    seen = sorted((d for d in detectable if d.is_plausible), key=lambda d: d.smallest / d.largest)
-    return seen, [d for d in detectable if not d.is_plausible]
-
-
 def smallest(d: Detectable) -> str:
     """Returns the smallest size in words."""
     return f"{d.size} {quantity(d.smallest, unit=d.unit)}"

@@ -14,12 +14,7 @@ from identification.torques.scores import Score
 
 
 def torque_headline(evidence: Evidence, model: mujoco.MjModel) -> Headline:
-    """Returns what torques say in a few words and numbers.
-
-    Args:
-        evidence: of the torques.
-        model: of the robot.
-    """
+    """Returns what torques say in a few words and numbers."""
     tile = _residual(evidence, model)
     if not evidence.named:
         place = "Friction, which is always fitted, is in the table."

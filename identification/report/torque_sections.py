@@ -73,13 +73,7 @@ def _forces(evidence: Evidence, model: mujoco.MjModel) -> list[Section]:
 
 @styled
 def force_figure(evidence: Evidence, score: Score, model: mujoco.MjModel) -> Figure:
-    """Returns a figure of a force that no law explains, against what it depends on.
-
-    Args:
-        evidence: of the torques.
-        score: the curve, one of those that are named.
-        model: of the robot.
-    """
+    """Returns a figure of a force that no law explains, against what it depends on."""
     columns, fit = score.missing.columns(), evidence.final.fit
     (j,) = columns.joints or (0,)
     (name, unit), equations = [x[j] for x in joint_names(model)], evidence.equations
@@ -114,13 +108,7 @@ def force_figure(evidence: Evidence, score: Score, model: mujoco.MjModel) -> Fig
 
 @styled
 def torque_figure(evidence: Evidence, model: mujoco.MjModel, record: int) -> Figure:
-    """Returns a figure of each joint's torque, measured, predicted and left, against time.
-
-    Args:
-        evidence: of the torques.
-        model: of the robot.
-        record: which.
-    """
+    """Returns a figure of each joint's torque, measured, predicted and left, against time."""
     names, units = joint_names(model)
     rows = evidence.equations.rows[record]
     first = sum(len(r.time) for r in evidence.equations.rows[:record])

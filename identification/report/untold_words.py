@@ -11,7 +11,8 @@ from identification.estimation.identifiability import in_words
 from identification.estimation.scaling_symmetry import ScalingSymmetry
 from identification.model.parameter import Parameter
 from identification.quantities import matched
-from identification.report.effect_words import gathered, parameter_words
+from identification.report.error_words import listed
+from identification.report.value_words import gathered, parameter_words
 from identification.shares import percent
 
 if TYPE_CHECKING:
@@ -100,9 +101,8 @@ def unresolved_words(found: Identifiability) -> str:
     share = np.where(moved, found.errors / np.where(found.norms > 0, found.norms, np.inf), 0.0)
     worst = np.argsort(-share)[: min(3, len(names))]
     errors = ", ".join(f"{percent(float(share[i]), 2)} for {found.names[i]}" for i in worst)
-    listed = " and ".join(filter(None, [", ".join(names[:-1]), *names[-1:]]))
     said = (
-        f" lost in the errors of the sensitivities ({errors}), so that {listed}"
+        f" lost in the errors of the sensitivities ({errors}), so that {listed(names)}"
         f" {'have' if len(names) > 1 else 'has'} no std."
     )
     if share.max() > ROUGH:

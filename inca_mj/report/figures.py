@@ -9,7 +9,6 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from identification.report.effect_words import describe_parameter
 from identification.report.style import (
     GREY,
     INK,
@@ -19,6 +18,7 @@ from identification.report.style import (
     literal,
     styled,
 )
+from identification.report.value_words import describe_parameter
 from inca_mj.control.paths import PLANES, Circle
 from inca_mj.robot.geometry import DRIVES
 from inca_mj.robot.spread import AXES

@@ -15,6 +15,7 @@ from identification.report.fitted_values import shown_values, unknown_shares
 from identification.report.shown_words import (
     shown_effects,
 )
+from identification.report.value_words import describe_parameter, parameter_words, words_of
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.robot.spread import with_spread
 

@@ -1,0 +1,131 @@
+"""Parameters and sizes of effects in words: what a value is, and of which record or part."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:  # a search is slow to import, and a page may tell of a model alone
+    from identification.discovery.result import Discovery
+    from identification.effects.effect import Effect
+    from identification.model.parameter import Parameter
+    from identification.model.predictor import Plant
+
+PART = re.compile(r"(?P<what>.+?)(?P<sign>, [^\W\d]+ |@)(?P<number>\d+)")  # one of several alike
+
+
+def phrase(effect: Effect) -> str:
+    """Returns an effect in words without a colon, because sentences have their own before it."""
+    return without_colon(effect.phrase or effect.name.replace("_", " "))
+
+
+def without_colon(said: str) -> str:
+    """Returns words of a catalogue for a sentence that has a colon of its own."""
+    return said.replace(": ", " – ", 1)
+
+
+def describe_parameter(parameter: Parameter) -> str:
+    """Returns what a parameter is, its letter before the place; its name where that is not said."""
+    said, letter = parameter.short, parameter.letter
+    if not said:
+        return parameter.name
+    if re.search(rf"(?<!\w){re.escape(letter)}(?!\w)", said):
+        return said
+    what, comma, where = said.partition(",")
+    return f"{what} {letter}{comma}{where}"
+
+
+def parameter_words(
+    parameters: Iterable[Parameter], effects: Iterable[Effect] = ()
+) -> dict[str, str]:
+    """Returns the words of parameters by name, also of effects, whose sizes are told with place."""
+    words = {p.name: describe_parameter(p) for p in parameters}
+    count = Counter(words.values())
+    # of an effect that has the same parameter at several joints the joint is told too
+    words |= {
+        name: f"{said}, {place}"
+        for name, said in words.items()
+        if count[said] > 1 and (place := name.partition("@")[2])
+    }
+    for effect in effects:
+        what = phrase(effect)
+        words |= {f"{effect.name}.{shape.name}": f"{shape.name}, {what}" for shape in effect.shapes}
+        words |= {
+            effect.parameter(size.name, where): _size_words(effect, size.name, where)
+            for size in effect.sizes
+            for where in effect.places
+        }
+    return words
+
+
+def _size_words(effect: Effect, size: str, where: str) -> str:
+    """Returns what a size is called: in few words where the name of a record will follow."""
+    if not effect.own:
+        return f"{size}, {phrase(effect)}, {where}"
+    from identification.effects.effect import BY_RECORD  # slow to import
+
+    letter = f" {size}" if len(effect.sizes) > 1 else ""
+    return f"{effect.name.replace('_', ' ')}{letter}, {where.removesuffix(BY_RECORD)}"
+
+
+def words_of(found: Discovery) -> dict[str, str]:
+    """Returns the words of all values of a discovery by name, also of those of single records."""
+    told = [*found.nominal.told_values, *found.final.told_values]
+    effects = [named.candidate.effect for named in found.named]
+    differing = [each.candidate.effect for each in found.differences]
+    return value_words(told, found.final.plant, [*differing, *effects])
+
+
+def value_words(
+    names: Iterable[str], plant: Plant, effects: Iterable[Effect] = ()
+) -> dict[str, str]:
+    """Returns the words of fitted values by name.
+
+    The value of a single record, such as `time_shift.tau@u [a]`, is "time shift of record a, input
+    u".
+
+    Args:
+        names: of the values.
+        plant: that has them.
+        effects: whose sizes are told with what they are.
+    """
+    own = [e for e in getattr(plant, "effects", ()) if e.own]  # a model without effects has none
+    words = parameter_words(plant.parameters, [*own, *effects])
+    return words | {n: said for n in names if n not in words and (said := in_record(n, words)) != n}
+
+
+def in_record(name: str, words: Mapping[str, str]) -> str:
+    """Returns what `NAME [RECORD]` is called; the name itself where it has no record."""
+    common, bracket, record = name.partition(" [")
+    if not bracket:
+        return name
+    what, comma, where = words.get(common, common).partition(",")
+    return f"{what} of record {record.removesuffix(']')}{comma}{where}"
+
+
+def gathered(told: Iterable[str]) -> list[str]:
+    """Returns words or names of parameters, those of the same one at several parts as one.
+
+    friction smoothness β, drive 1; friction smoothness β, drive 2 -> ... β of drives 1 to 2
+    """
+    groups: dict[tuple[str, str], list[int]] = {}
+    for each in told:
+        part = PART.fullmatch(each)
+        at = groups.setdefault((part["what"], part["sign"]) if part else (each, ""), [])
+        at += [int(part["number"])] if part else []
+    return [_gathered(what, sign, sorted(at)) for (what, sign), at in groups.items()]
+
+
+def _gathered(what: str, sign: str, at: Sequence[int]) -> str:
+    if len(at) < 2:
+        return f"{what}{sign}{at[0]}" if at else what
+    is_run = [*at] == [*range(at[0], at[-1] + 1)]
+    which = f"{at[0]} to {at[-1]}" if is_run else ", ".join(map(str, at))
+    return f"{what}@{which}" if sign == "@" else f"{what} of {sign.strip(', ')}s {which}"
+
+
+def is_part(name: str) -> bool:
+    """Returns whether a parameter is the deviation of one of many parts that are alike."""
+    return "@" in name and "." not in name
