@@ -52,11 +52,6 @@ class Beginning:
 def write_beginning(found: Inspection, model: Path, path: Path) -> Beginning:
     """Write the robot's file to begin with, which nothing may stand in the place of.
 
-    Args:
-        found: what is in the log.
-        model: path of the MJCF or URDF.
-        path: of the file to write.
-
     Raises:
         InputError: the file exists, or the model cannot be read.
     """

@@ -107,7 +107,7 @@ def inspect_log(path: str | os.PathLike[str]) -> Inspection:
         path, lambda names: [n for n in names if n not in texts], header=sidecar.header,
         stamps=STAMPS,
     )  # fmt: skip
-    table, remark = with_time(renamed(table, sidecar), sidecar)
+    table = with_time(renamed(table, sidecar), sidecar)
     if len(table.data) < MIN_ROWS:
         raise InputError(f"{path} has fewer than {MIN_ROWS} rows; record the log again")
     name = _time_of(table)
@@ -134,7 +134,7 @@ def inspect_log(path: str | os.PathLike[str]) -> Inspection:
         path=path, time=time, values=full, columns=columns,
         time_column=name, time_unit=unit, is_even=bool(np.ptp(steps) <= EVEN * np.median(steps)),
         answers=_answers(time, full, columns), left_out=texts,
-        remarks=(*table.remarks, remark) if remark else table.remarks,
+        remarks=table.remarks,
     )  # fmt: skip
 
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from identification.inspection.answers import OF, Answer
-from identification.inspection.inspected import Column, Inspection
+from identification.inspection.inspected import Inspection
 from identification.quantities import plain, plain_fields
 
 HEAD = ("column", "role", "unit", "rate", "from", "to", "gaps", "widest", "empty")
@@ -81,14 +81,13 @@ def inspection_to_json(found: Inspection) -> dict[str, Any]:
         "step": found.step,
         "time": {"column": found.time_column or None, "unit": found.time_unit,
                  "even": found.is_even},
-        "columns": [_column_to_json(c) for c in found.columns],
+        "columns": [
+            {**plain_fields(c, "name", "rate", "least", "most", "gaps", "widest", "empty"),
+             "role": c.role or None, "unit": c.unit or None}
+            for c in found.columns
+        ],
         "answers": [plain_fields(a, "output", "input", "correlation", "lag", "of")
                     for a in found.answers],
         "left_out": [*found.left_out],
         "remarks": [*found.remarks],
     }  # fmt: skip
-
-
-def _column_to_json(column: Column) -> dict[str, Any]:
-    given = plain_fields(column, "name", "rate", "least", "most", "gaps", "widest", "empty")
-    return {**given, "role": column.role or None, "unit": column.unit or None}

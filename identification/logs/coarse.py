@@ -40,15 +40,15 @@ MEANT = 0.5  # share of the stamps with such rows where the user says that they 
 
 def evened_stamps(
     table: Table, outputs: Sequence[str], sidecar: Sidecar, trusted: bool = False
-) -> tuple[Table, str]:
-    """Returns a table with even stamps where digits were all that they lost, and a sentence.
+) -> Table:
+    """Returns a table with even stamps where digits were all that they lost, which it tells.
 
     Returns:
-        The table as it is and "" where its stamps are even already, or uneven for another reason.
+        The table as it is where its stamps are even already, or uneven for another reason.
     """
     stamps, declared = _stamps(table), sidecar.sampling_time
     if stamps is None:
-        return table, ""
+        return table
     if declared is not None:
         if fits(stamps.time, _width(stamps, declared), declared):
             return _with_step(table, stamps, declared)
@@ -56,7 +56,7 @@ def evened_stamps(
         return _with_step(table, stamps, step)
     if stamps.is_coarse:
         _refuse_irregular(table, stamps, outputs, sidecar, trusted)
-    return table, ""
+    return table
 
 
 def refuse_contradicted(
@@ -99,9 +99,12 @@ def _proven_step(
     table: Table, stamps: Stamps, outputs: Sequence[str], trusted: bool
 ) -> float | None:
     """Returns the sampling time [s] of a log that only an even one can be, else None."""
-    if stamps.steps is None or not stamps.is_exact(MEANT_EXACT if trusted else EXACT):
+    if stamps.steps is None:
         return None
-    return _roundest(*stamps.steps) if _is_proven(table, stamps, outputs, trusted) else None
+    low, high = stamps.steps
+    is_exact = high - low <= (MEANT_EXACT if trusted else EXACT) * high
+    is_sure = is_exact and _is_proven(table, stamps, outputs, trusted)
+    return _roundest(low, high) if is_sure else None
 
 
 def _is_proven(table: Table, stamps: Stamps, outputs: Sequence[str], trusted: bool) -> bool:
@@ -132,15 +135,14 @@ def _odd(time: FloatArray) -> np.ndarray:
     return np.asarray((steps > 0) & (np.abs(steps - usual) > 0.25 * usual))
 
 
-def _with_step(table: Table, stamps: Stamps, step: float) -> tuple[Table, str]:
+def _with_step(table: Table, stamps: Stamps, step: float) -> Table:
     data = table.data.copy()
     data[:, table.names.index("time")] = grid(stamps.time[0], step, len(data))
-    text = (
+    return replace(table, data=data).told(
         f"Stamps of log {table.path.stem!r} are multiples of {stamps.tick:.6g} s; all its"
         f" rows were kept, and given the sampling time that fits them, {step:.6g} s"
         f" ({1 / step:.4g} Hz)."
     )
-    return replace(table, data=data), text
 
 
 def _roundest(low: float, high: float) -> float:

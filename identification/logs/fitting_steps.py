@@ -59,10 +59,6 @@ class Stamps:
         """The coarsest quantum [s], as it shows between stamps that follow each other."""
         return min(float(self.quanta.max()), float(np.diff(self.time).max()))
 
-    def is_exact(self, within: float = EXACT) -> bool:
-        """Returns whether one sampling time fits, and is known well enough."""
-        return self.steps is not None and self.steps[1] - self.steps[0] <= within * self.steps[1]
-
 
 def judged(time: FloatArray) -> Stamps:
     """Returns stamps with their quanta and the sampling times that fit them.

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import partial
 from math import isnan
 from types import MappingProxyType
-from typing import Any
 
 import numpy as np
 
@@ -116,14 +116,12 @@ class Log:
     def __len__(self) -> int:
         return len(self.time)
 
-    def __reduce__(
-        self,
-    ) -> tuple[Callable[[type[Log], dict[str, Any]], Log], tuple[type[Log], dict[str, Any]]]:
+    def __reduce__(self) -> tuple[Callable[[], Log], tuple[()]]:
         # A mapping proxy cannot be pickled, but logs are sent to other processes.
         values = {name: getattr(self, name) for name in self.__dataclass_fields__}
         for name in ("extras", "units", "values", "splits", "factors"):
             values[name] = dict(values[name])
-        return _rebuild, (type(self), values)
+        return partial(type(self), **values), ()
 
     @property
     def columns(self) -> dict[str, FloatArray]:
@@ -244,7 +242,3 @@ def _frozen(values: FloatArray) -> FloatArray:
     array = np.array(values, dtype=np.float64)
     array.setflags(write=False)
     return array
-
-
-def _rebuild(kind: type[Log], values: dict[str, Any]) -> Log:
-    return kind(**values)

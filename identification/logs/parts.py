@@ -104,11 +104,7 @@ def divide(unseen: np.ndarray, unit: int, memory: float = 1.0, keep: bool = True
 
 
 def join(parts: Sequence[Parts]) -> Parts:
-    """Returns the parts of records that are joined one after the other; the longest block counts.
-
-    Args:
-        parts: of each record.
-    """
+    """Returns the parts of records that are joined in their order; the longest block counts."""
     select, report = (np.concatenate([getattr(p, n) for p in parts]) for n in ("select", "report"))
     return Parts(select, report, max(p.block for p in parts))
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -23,7 +23,7 @@ from identification.logs.publishers import (
     refuse_second_publisher,
     refuse_two_inputs,
 )
-from identification.logs.resampling import Even, even_out
+from identification.logs.resampling import even_out
 from identification.logs.sampling import FloatArray, check_time, grid
 from identification.logs.sidecar import Sidecar, read_sidecar
 from identification.logs.stamps import wanted_columns, with_time, without_repeated
@@ -115,10 +115,11 @@ def read_log(
             f"the factor of time under 'factors' in {sidecar.file_of('factors')} is negative, and"
             " time goes on; write a positive one, such as 1e-9 for ns"
         )
-    table, remark = with_time(renamed(table, sidecar), sidecar)
-    remarks = (*table.remarks, remark) if remark else table.remarks
+    table = with_time(renamed(table, sidecar), sidecar)
     if "time" not in table.names and sidecar.sampling_time:
-        table = _with_time(table, sidecar.sampling_time)
+        time = grid(0.0, sidecar.sampling_time, len(table.data))
+        data = np.column_stack([time, table.data])
+        table = replace(table, names=("time", *table.names), data=data)
     check_columns(table, ("time", *inputs, *measured), optional, sidecar, named_in)
 
     si, factors = conversions(table, sidecar, {**units, "time": "s"})
@@ -133,16 +134,13 @@ def read_log(
             refuse_interleaved(table, inputs, outputs, cure)
     if not _is_even(table, sidecar):
         if lenient:
-            table, remark = without_repeated(table)
-            remarks = (*remarks, remark) if remark else remarks
+            table = without_repeated(table)
         if not _is_even(table, sidecar):
-            table, remark = evened_stamps(table, outputs, sidecar, trust_rows)
-            remarks = (*remarks, remark) if remark else remarks
+            table = evened_stamps(table, outputs, sidecar, trust_rows)
     if lenient and not _is_even(table, sidecar):
         refuse_contradicted(table, outputs, sidecar, trust_rows)
         refuse_two_inputs(table, inputs, cure, trust_rows)
-        table, even = _evened(table, inputs, sidecar)
-        remarks, gaps = (*remarks, even.sentence), even.gaps
+        table, gaps = _evened(table, inputs, sidecar)
     check_finite(table)
     time = table["time"]
     check_time(time, table.place, sidecar.sampling_time)
@@ -162,7 +160,7 @@ def read_log(
         hold=sidecar.hold,
         splits=sidecar.splits,
         values=sidecar.values,
-        remarks=remarks,
+        remarks=table.remarks,
         gaps=gaps,
         factors={
             n: f
@@ -181,19 +179,21 @@ def _is_even(table: Table, sidecar: Sidecar) -> bool:
     return True
 
 
-def _evened(table: Table, inputs: Sequence[str], sidecar: Sidecar) -> tuple[Table, Even]:
-    """Returns a table on an even grid, and what was done to it."""
+def _evened(
+    table: Table, inputs: Sequence[str], sidecar: Sidecar
+) -> tuple[Table, tuple[tuple[float, float], ...]]:
+    """Returns a table on an even grid, which tells what was done, and where it may be wrong [s]."""
     names = [n for n in table.names if n != "time"]
     even = even_out(
         table.path.stem, table["time"], {n: table[n] for n in names}, inputs, sidecar.hold,
         sidecar.sampling_time,
     )  # fmt: skip
     data = np.column_stack([even.time, *(even.channels[n] for n in names)])
-    return Table(table.path, ("time", *names), data, _grid_place(table.path)), even
-
-
-def _grid_place(path: Path) -> Callable[[int], str]:
-    return lambda row: f"sample {row + 1} of the grid of {path}"
+    return Table(
+        table.path, ("time", *names), data,
+        lambda row: f"sample {row + 1} of the grid of {table.path}",
+        remarks=(*table.remarks, even.sentence),
+    ), even.gaps  # fmt: skip
 
 
 def _read_table(
@@ -214,11 +214,6 @@ def _read_table(
         asked=[olds.get(name, name) for name in (*inputs, *outputs)],
         of_matlab=(inputs, outputs, optional),
     )
-
-
-def _with_time(table: Table, step: float) -> Table:
-    time = grid(0.0, step, len(table.data))
-    return replace(table, names=("time", *table.names), data=np.column_stack([time, table.data]))
 
 
 def _stacked(table: Table, names: Sequence[str]) -> FloatArray:

@@ -54,14 +54,10 @@ def read_npz(
         if len(array) == n:
             width = array.shape[1] if array.ndim == 2 else 0
             for k, column in enumerate(names_of(name, width)):
-                columns[column] = partial(_column, array, k)
+                columns[column] = partial(np.asarray, array[:, k] if width else array)
     step = arrays.get(STEP)
     if step is not None and step.size == 1 and "time" not in columns:
         if not (step.dtype.kind in KINDS and np.isfinite(step).all() and step.item() > 0):
             raise InputError(f"{path}: {STEP} is no positive number; save the sampling time in s")
         columns = {"time": partial(grid, 0.0, float(step.item()), n), **columns}
     return table_of(path, columns, wanted, stamps, lambda row: f"row {row + 1} of {path}")
-
-
-def _column(array: np.ndarray, k: int) -> np.ndarray:
-    return array if array.ndim == 1 else array[:, k]

@@ -82,7 +82,7 @@ def _values(content: Mapping[str, Any], where: str) -> dict[str, Any]:
             values["header"] = _checked(value, f"{key} in {where}", _is_names, _COLUMNS)
         elif key in _TABLES:
             of_table, is_good, of_entry = _TABLES[key]
-            _checked(value, f"{key} in {where}", _is_table, of_table)
+            _checked(value, f"{key} in {where}", lambda v: isinstance(v, dict), of_table)
             values[key] = {
                 name: _checked(entry, f"{name} under {key} in {where}", is_good, of_entry)
                 for name, entry in value.items()
@@ -105,10 +105,6 @@ def _checked(value: Any, what: str, is_good: Callable[[Any], bool], kind: str) -
 
 def _is_text(value: Any) -> bool:
     return isinstance(value, str)
-
-
-def _is_table(value: Any) -> bool:
-    return isinstance(value, dict)
 
 
 def _is_names(value: Any) -> bool:

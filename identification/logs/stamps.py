@@ -67,11 +67,11 @@ def stamps_apart(names: Sequence[str], sidecar: Sidecar) -> tuple[str, str] | No
     return pairs[0] if pairs else None
 
 
-def with_time(table: Table, sidecar: Sidecar) -> tuple[Table, str]:
-    """Returns a table with a column of time [s] made of two, and a sentence that tells it."""
+def with_time(table: Table, sidecar: Sidecar) -> Table:
+    """Returns a table with a column of time [s] made of two, where it has two, which it tells."""
     pair = stamps_apart(table.names, sidecar)
     if pair is None:
-        return table, ""
+        return table
     for key in ("units", "factors"):
         if TIME in getattr(sidecar, key):
             raise InputError(
@@ -91,8 +91,9 @@ def with_time(table: Table, sidecar: Sidecar) -> tuple[Table, str]:
     keep = [k for k, name in enumerate(table.names) if name not in pair]
     names = (TIME, *(table.names[k] for k in keep))
     data = np.column_stack([time, table.data[:, keep]])
+    made = replace(table, names=names, data=data)
     text = f"Time of log {table.path.stem!r} is {quoted(pair[0])} [s] + {quoted(pair[1])} [ns]."
-    return replace(table, names=names, data=data), "" if pair == APART else text
+    return made if pair == APART else made.told(text)
 
 
 def wanted_columns(asked: set[str], sidecar: Sidecar) -> Callable[[Sequence[str]], set[str]]:
@@ -115,24 +116,24 @@ def shared(time: FloatArray) -> np.ndarray:
     return np.asarray(time[1:] == time[:-1])
 
 
-def without_repeated(table: Table) -> tuple[Table, str]:
-    """Returns a table without rows that were written twice, and a sentence that tells them.
+def without_repeated(table: Table) -> Table:
+    """Returns a table without rows that were written twice, which it tells.
 
     Returns:
-        The table as it is and "" where no row shares its stamp with the row before it, or where one
+        The table as it is where no row shares its stamp with the row before it, or where one
         that does has another cell: then rows may have been sampled in one tick of a clock.
     """
     before, after = table.data[:-1], table.data[1:]
     equal = ((before == after) | (np.isnan(before) & np.isnan(after))).all(axis=1)
     same = shared(table["time"])
     if not same.any() or not equal[same].all():
-        return table, ""
+        return table
     keep = np.flatnonzero(np.append(True, ~same))
-    text = (
+    kept = replace(table, data=table.data[keep], place=lambda row: table.place(int(keep[row])))
+    return kept.told(
         f"{int(same.sum())} rows of log {table.path.stem!r} repeat the row before them to the last"
         " digit and were left out."
     )
-    return replace(table, data=table.data[keep], place=_place(table.place, keep)), text
 
 
 def moves_on(time: FloatArray, x: FloatArray) -> bool | None:
@@ -167,10 +168,6 @@ def moves_on(time: FloatArray, x: FloatArray) -> bool | None:
     # Of a few rows that moved on, the mean may be small by chance.
     is_still = abs(within) < STILL * between and abs(within) + error < ALIKE[0] * between
     return False if is_still else None
-
-
-def _place(place: Callable[[int], str], keep: np.ndarray) -> Callable[[int], str]:
-    return lambda row: place(int(keep[row]))
 
 
 def _mean(products: FloatArray) -> tuple[float, bool, float]:

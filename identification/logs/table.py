@@ -40,6 +40,10 @@ class Table:
         """Names of the columns of the file."""
         return (*self.names, *self.unread)
 
+    def told(self, remark: str) -> Table:
+        """Returns the table with one more sentence on what was taken for granted."""
+        return replace(self, remarks=(*self.remarks, remark))
+
     def __getitem__(self, name: str) -> FloatArray:
         return self.data[:, self.names.index(name)]
 

@@ -98,10 +98,10 @@ def test_a_declared_sampling_time_wins_where_it_is_the_right_one(tmp_path_factor
     time = np.array([float(t) for t in stamps])
     assume(time[-1] > time[0])
     sidecar = Sidecar(path=Path("log.toml"), sampling_time=step)
-    found, said = evened_stamps(table(time, np.sign(y), y), ["y"], sidecar)
+    found = evened_stamps(table(time, np.sign(y), y), ["y"], sidecar)
     np.testing.assert_array_equal(found.data[:, 1:], np.column_stack([np.sign(y), y]))
     assert sampling_time(found["time"]) == pytest.approx(step, rel=1e-9)
-    assert said
+    assert found.remarks
 
 
 def test_a_log_that_is_too_short_to_tell_its_step_is_told_what_to_write(csv, refusal):
@@ -140,10 +140,10 @@ def test_jitter_that_scatters_rounded_stamps_does_no_harm(jitter, seed):
     late = np.random.default_rng(seed).uniform(-jitter, jitter, n)
     time = np.round(0.0025 + 0.01 * np.arange(n) + late, 2)
     whole = table(time, np.sign(y), y)
-    found, said = evened_stamps(whole, ["y"], Sidecar(path=Path("log.toml")))
+    found = evened_stamps(whole, ["y"], Sidecar(path=Path("log.toml")))
     np.testing.assert_array_equal(found["y"], y)
     assert sampling_time(found["time"]) == pytest.approx(0.01, rel=EXACT)
-    assert bool(said) == bool(np.any(np.diff(time) == 0))
+    assert bool(found.remarks) == bool(np.any(np.diff(time) == 0))
 
 
 @given(
@@ -157,8 +157,8 @@ def test_rows_that_are_missing_by_chance_are_gaps_and_no_digits(dropped, every):
     stamps = judged(time)
     assume(stamps.steps is None or len(dropped) <= 2)
     whole = table(time, np.sign(y), y)
-    found, said = evened_stamps(whole, ["y"], Sidecar(path=Path("log.toml")))
-    assert (found, said) == (whole, "")
+    found = evened_stamps(whole, ["y"], Sidecar(path=Path("log.toml")))
+    assert found is whole
 
 
 @given(noise=st.sampled_from([1e-4, 1e-2]), seed=st.integers(0, 99))
@@ -168,7 +168,7 @@ def test_a_sensor_that_is_read_twice_with_one_stamp_is_no_log_of_twice_the_rate(
     y = np.repeat(motion(n, 0.01, 0.0), 2) + noise * rng.standard_normal(2 * n)
     whole = table(np.repeat(0.01 * np.arange(n), 2), np.sign(y), y)
     try:
-        found, _ = evened_stamps(whole, ["y"], Sidecar(path=Path("log.toml")))
+        found = evened_stamps(whole, ["y"], Sidecar(path=Path("log.toml")))
     except InputError:  # so much noise that nothing is known
         assert noise > 1e-3
         return
