@@ -207,13 +207,9 @@ def _limit(
 ) -> Limit | None:
     if own is not None:
         return Limit(what, name, float(own[0]), float(own[1]), "model")
-    if seen is None or not seen[1] > seen[0]:
-        return (
-            None
-            if what != "input" or seen is None
-            else Limit(what, name, float(seen[0]), float(seen[1]), "logs")
-        )
-    more = widen * float(seen[1] - seen[0])
+    if seen is None or (what != "input" and not seen[1] > seen[0]):
+        return None
+    more = widen * max(0.0, float(seen[1] - seen[0]))
     return Limit(what, name, float(seen[0]) - more, float(seen[1]) + more, "logs")
 
 

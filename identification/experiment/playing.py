@@ -22,6 +22,7 @@ import numpy as np
 from identification.effects.jointed import JointPlant
 from identification.engine import quiet
 from identification.errors import DivergenceError, InputError
+from identification.experiment.drives import Drive, drives_of, torque_for
 from identification.experiment.limits import Limit, Limits, Margin, keeps, margins
 from identification.experiment.series import Series
 from identification.logs.log import Log
@@ -39,28 +40,6 @@ FASTEST = 4.0  # a tone's rate at full room, over the fastest speed
 SHORTEST = 20.0  # samples in a period
 DRIFT = 0.1  # of the room, by which a free run of the log may leave it
 NONE = np.empty((1, 0))
-
-
-@dataclass(frozen=True)
-class Drive:
-    """An actuator that pushes one joint: force = gain u + constant + along q + against q̇."""
-
-    dof: int
-    qpos: int  # its position's place
-    gear: float
-    gain: float
-    bias: tuple[float, float, float]
-
-    @property
-    def is_servo(self) -> bool:
-        """Tells whether its input is a position."""
-        return self.bias[1] != 0
-
-    def input(self, torque: float, q: float, v: float) -> float:
-        """Returns the input that makes a torque."""
-        constant, along, against = self.bias
-        bias = constant + self.gear * (along * q + against * v)
-        return (torque / self.gear - bias) / self.gain
 
 
 @dataclass(frozen=True)
@@ -110,7 +89,7 @@ class Stage:
             return np.array([qpos[d.qpos] for d in self.drives if d is not None])
         data = mujoco.MjData(self.model)
         data.qpos[:] = qpos
-        torque, u = _torque(self.model, data, np.zeros(self.model.nv)), []
+        torque, u = torque_for(self.model, data, np.zeros(self.model.nv)), []
         for drive, limit in zip(self.drives, self.limits.inputs, strict=True):
             held = 0.0 if drive is None else drive.input(torque[drive.dof], qpos[drive.qpos], 0.0)
             u.append(float(np.clip(held, limit.low, limit.high)))
@@ -233,7 +212,7 @@ class Stage:
             run["qpos"][0, k], run["qvel"][0, k] = data.qpos, data.qvel
             wanted[dofs] = a[k] + 2 * w * (v[k] - data.qvel[dofs])
             wanted[dofs] += w * w * (q[k] - data.qpos[places])
-            torque = _torque(model, data, wanted)
+            torque = torque_for(model, data, wanted)
             for i, d in enumerate(drives):
                 u[k, i] = d.input(torque[d.dof], data.qpos[d.qpos], data.qvel[d.dof])
             data.ctrl[: len(drives)] = u[k]
@@ -280,40 +259,6 @@ def stage_of(
         )
     drifts = form == "auto" and can_follow and _drifts(plant, log, found)
     return replace(stage, form="reference") if form == "reference" or drifts else stage
-
-
-def drives_of(model: mujoco.MjModel, count: int) -> tuple[Drive | None, ...]:
-    """Returns the drives of the first actuators; None where an actuator is anything else."""
-    out: list[Drive | None] = []
-    for i in range(count):
-        j, gain = int(model.actuator_trnid[i, 0]), float(model.actuator_gainprm[i, 0])
-        is_plain = (
-            model.actuator_trntype[i] == mujoco.mjtTrn.mjTRN_JOINT
-            and model.actuator_dyntype[i] == mujoco.mjtDyn.mjDYN_NONE
-            and model.actuator_gaintype[i] == mujoco.mjtGain.mjGAIN_FIXED
-            and model.actuator_biastype[i] <= int(mujoco.mjtBias.mjBIAS_AFFINE)
-            and model.jnt_type[j] >= int(mujoco.mjtJoint.mjJNT_SLIDE)
-        )
-        gear = float(model.actuator_gear[i, 0])
-        if not (is_plain and gain and gear):
-            out.append(None)
-            continue
-        affine = model.actuator_biastype[i] == mujoco.mjtBias.mjBIAS_AFFINE
-        b = model.actuator_biasprm[i, :3] if affine else np.zeros(3)
-        bias = (float(b[0]), float(b[1]), float(b[2]))
-        dof, place = int(model.jnt_dofadr[j]), int(model.jnt_qposadr[j])
-        out.append(Drive(dof, place, gear, gain, bias))
-    return tuple(out)
-
-
-def _torque(model: mujoco.MjModel, data: mujoco.MjData, wanted: np.ndarray) -> np.ndarray:
-    """Returns the torques (nv,) that accelerate a model as wanted, but for friction."""
-    mujoco.mj_fwdPosition(model, data)
-    mujoco.mj_fwdVelocity(model, data)
-    torque = np.zeros(model.nv)
-    mujoco.mj_mulM(model, data, torque, wanted)
-    helped = data.qfrc_spring + data.qfrc_damper + data.qfrc_gravcomp
-    return np.asarray(torque + data.qfrc_bias - helped)
 
 
 def _free_run(predictor: Predictor) -> dict[str, np.ndarray]:
