@@ -57,7 +57,8 @@ def compile_once(function: Callable[..., Any], signature: Any) -> Any:
 
     The function must not raise; a division by zero in it gives inf or NaN.
     """
-    if not enabled():
+    is_off = os.environ.get(VARIABLE, "").strip().lower() in OFF
+    if is_off or not hasattr(os, "getuid"):  # files have no owners here
         return compile_callback(function, signature)[0]
     try:
         key = key_of(function, signature)
@@ -75,11 +76,6 @@ def compile_once(function: Callable[..., Any], signature: Any) -> Any:
         if code is not None:
             _write(key, code)
         return callback
-
-
-def enabled() -> bool:
-    """Returns whether the cache is on: it is not switched off, and files have owners here."""
-    return os.environ.get(VARIABLE, "").strip().lower() not in OFF and hasattr(os, "getuid")
 
 
 def encode(key: str, code: MachineCode) -> bytes:

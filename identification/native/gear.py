@@ -89,7 +89,7 @@ COMPLIANCE, GAP, INERTIA, RATIO, SLIP, DRAG = 3, 4, 5, 6, 7, 8
 SETTLED, DAMPED = 0.25, 0.75
 MOST_DAMPED = 1.2  # largest D h/m; with X such a step is stable up to 1.5
 
-INTEGRATOR = structs.inner_byte("mjModel", "opt", "integrator")
+INTEGRATOR = structs.option_byte("integrator")
 FIELDS = JOINT_FIELDS | MASS_FIELDS | {"opt.integrator"}
 RK4, IS_JOINT = int(mujoco.mjtIntegrator.mjINT_RK4), int(mujoco.mjtTrn.mjTRN_JOINT)
 _with_drive = replacer(Joint, "f_u")

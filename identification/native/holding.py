@@ -24,7 +24,6 @@ the spring of a joint while all others are free, the least that it can be.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from identification.native.memory import inlined, internal
 
@@ -89,27 +88,3 @@ def hold(A, w, low, high, f, n, r, p):
                     w[k] -= A[k, i] * more
         if change <= ENOUGH * largest:
             break
-
-
-@njit
-def held(M, g, low, high, r=None, p=None):
-    """Returns friction of joints that pull at each other, shape (n,); for tests and for reading.
-
-    Args:
-        M: mass matrix, shape (n, n) [kg or kg m²].
-        g: force that would stop all joints, shape (n,) [N or N m].
-        low: largest friction where joints move backward, shape (n,).
-        high: where they move forward.
-        r: share of friction that gives which its spring p carries, shape (n,); zero when None.
-        p: force of that spring, shape (n,) [N or N m].
-    """
-    n = g.size
-    A, f = np.empty((n, n)), np.zeros(n)
-    share, spring = np.zeros(n), np.zeros(n)
-    if r is not None:
-        share[:] = r
-    if p is not None:
-        spring[:] = p
-    invert(M.copy(), A, n)
-    hold(A, A @ g, low, high, f, n, share, spring)
-    return f

@@ -74,8 +74,7 @@ D = offsets(
     "time qpos qvel ctrl qfrc_passive qfrc_bias M subtree_com xanchor xaxis act act_dot qfrc_smooth"
     " qacc_smooth qfrc_actuator",
 )
-GRAVITY = structs.inner_word("mjModel", "opt", "gravity")
-TIMESTEP = 8 * structs.inner_word("mjModel", "opt", "timestep")
+GRAVITY, TIMESTEP = structs.option_byte("gravity"), structs.option_byte("timestep")
 FIELDS = frozenset((*M._fields, *D._fields, "opt.gravity", "opt.timestep"))  # all that is touched
 with_sign = replacer(Joint, "sign")
 
@@ -146,9 +145,9 @@ def gravity_force(m, d, j):
     """Returns the force of gravity on joint j, of its body and all that hang on it [N or N m]."""
     body = integer(m, M.jnt_bodyid, j)
     mass = double(m, M.body_subtreemass, body)
-    gx = mass * load_constant(m + 8 * GRAVITY)
-    gy = mass * load_constant(m + 8 * GRAVITY + 8)
-    gz = mass * load_constant(m + 8 * GRAVITY + 16)
+    gx = mass * load_constant(m + GRAVITY)
+    gy = mass * load_constant(m + GRAVITY + 8)
+    gz = mass * load_constant(m + GRAVITY + 16)
     ax, ay, az = (
         double(d, D.xaxis, 3 * j), double(d, D.xaxis, 3 * j + 1), double(d, D.xaxis, 3 * j + 2)
     )  # fmt: skip

@@ -82,19 +82,11 @@ def word(struct: str, field: str) -> int:
     return offset // 8
 
 
-def inner_word(struct: str, field: str, inner: str) -> int:
-    """Returns the offset in words of a field in an inner struct, e.g. mjModel's opt.gravity."""
-    offset = inner_byte(struct, field, inner)
-    if offset % 8:
-        raise NotImplementedError(f"{struct}.{field}.{inner} is at byte {offset}, not on a word")
-    return offset // 8
-
-
-def inner_byte(struct: str, field: str, inner: str) -> int:
-    """Returns the offset in bytes of a field in an inner struct, e.g. mjModel's opt.integrator."""
-    declared = next(f for f in structs.STRUCTS[struct].fields if f.name == field).type
-    inside = getattr(_c_type(declared), inner).offset
-    return int(getattr(layout(struct), field).offset + inside)
+def option_byte(name: str) -> int:
+    """Returns the offset in bytes of a field of mjModel's options, e.g. opt.integrator."""
+    declared = next(f for f in structs.STRUCTS["mjModel"].fields if f.name == "opt").type
+    inside = getattr(_c_type(declared), name).offset
+    return int(layout("mjModel").opt.offset + inside)
 
 
 def check(model: mujoco.MjModel, data: mujoco.MjData) -> set[str]:
@@ -125,19 +117,13 @@ def check(model: mujoco.MjModel, data: mujoco.MjData) -> set[str]:
                     " declaration puts it; install the mujoco version of the lock file"
                 )
             agreed.add(field.name)
-    if model.opt.gravity.ctypes.data == model._address + 8 * inner_word(
-        "mjModel", "opt", "gravity"
-    ):
+    names = ("gravity", "integrator", "timestep")
+    gravity, integrator, timestep = (model._address + option_byte(name) for name in names)
+    if model.opt.gravity.ctypes.data == gravity:
         agreed.add("opt.gravity")
-    integrator = model._address + inner_byte("mjModel", "opt", "integrator")
     if ctypes.c_int.from_address(integrator).value == model.opt.integrator != 0:
         agreed.add("opt.integrator")
-    if (
-        model.opt.timestep
-        == ctypes.c_double.from_address(
-            model._address + 8 * inner_word("mjModel", "opt", "timestep")
-        ).value
-    ):
+    if ctypes.c_double.from_address(timestep).value == model.opt.timestep:
         agreed.add("opt.timestep")
     return agreed
 
