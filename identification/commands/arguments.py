@@ -85,12 +85,7 @@ def examples_of(command: type) -> tuple[str, ...]:
 
 
 def gathered(commands: Any, arguments: Sequence[str]) -> list[str]:
-    """Returns arguments in which each option of several values stands once, with all its values.
-
-    Args:
-        commands: dataclasses, or unions of them, as a parser takes them.
-        arguments: those of the command line.
-    """
+    """Returns arguments in which each option of several values stands once, with all its values."""
     several = {f"--{name}" for name in _several(commands)}
     groups: list[list[str]] = [[]]
     first: dict[str, list[str]] = {}

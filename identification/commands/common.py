@@ -22,7 +22,6 @@ from identification.results import RESULT, plain_text, write_result
 
 if TYPE_CHECKING:
     from identification.folders import Draft
-    from identification.report.headline import Headline
     from identification.report.page import Section
 
 T = TypeVar("T")
@@ -124,7 +123,12 @@ def conclude(
                 draft = stack.enter_context(draft_of(output.out))
                 write_result(draft.folder / RESULT, command, record)
                 if keep is not None:
-                    keep_if_possible("data and model", partial(keep, draft.folder))
+                    try:
+                        keep(draft.folder)
+                    except (InputError, OSError):
+                        raise
+                    except Exception as error:  # nothing else may cost what took minutes to find
+                        _note_without("data and model", error)
                 draft.save()
                 told = "\n".join(line for line in (text, saved) if line)
         finally:  # a full disk must not cost what took minutes
@@ -136,18 +140,6 @@ def conclude(
             return False
         # Behind the results, so that an interrupt or an error costs the drawings only.
         return add_drawings(draft, "figures and report", partial(draw, draft.folder))
-
-
-def keep_if_possible(what: str, write: Callable[[], object]) -> bool:
-    """Write more than result.json, or say in one sentence why not: what was found is kept."""
-    try:
-        write()
-    except (InputError, OSError):
-        raise
-    except Exception as error:  # nothing else may cost what took minutes to find
-        _note_without(what, error)
-        return False
-    return True
 
 
 def add_drawings(draft: Draft, what: str, write: Callable[[], object]) -> bool:
@@ -169,24 +161,13 @@ def _note_without(what: str, error: Exception | str, where: str = "") -> None:
 
 
 def draw_report(
-    out: Path,
-    title: str,
-    verdict: Sequence[str],
-    sections: Sequence[Section],
-    *,
-    good: bool | None = None,
-    footer: str = "",
-    data: Sequence[str] = (),
-    headline: Headline | None = None,
+    out: Path, title: str, verdict: Sequence[str], sections: Sequence[Section], **how: Any
 ) -> None:
     """Write the figures of sections and the one-file report into a folder; see `write_report`."""
     from identification.report.page import save_figures, write_report
 
     save_figures(sections, out)
-    path = out / "report.html"
-    write_report(
-        path, title, verdict, sections, good=good, footer=footer, data=data, headline=headline
-    )
+    write_report(out / "report.html", title, verdict, sections, **how)
 
 
 def import_without_graphics(*, own_methods: bool = False) -> None:

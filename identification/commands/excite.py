@@ -12,12 +12,11 @@ import tyro
 from identification.commands.common import (
     LogLists,
     Output,
-    conclude,
     flat,
     note,
     output_field,
 )
-from identification.commands.robots import kept, timed
+from identification.commands.robots import conclude_files
 from identification.errors import InputError
 
 
@@ -70,8 +69,7 @@ class Excite:
         files = found.files
         text = "\n".join(files.record["verdict"])
         saved = "" if self.output.out is None else f"Written: {self.output.out / FILE}"
-        draw = timed(self.output, files.draw, "design")
-        conclude(self, files.record, text, kept(self.output, files), draw, saved)
+        conclude_files(self, files, text, "design", saved)
         return 0
 
     def logs(self) -> Sequence[Path]:

@@ -27,9 +27,6 @@ def refuse_empty(arguments: Sequence[str]) -> None:
 def refuse_place(command: Any) -> None:
     """Refuse a folder for the results that cannot be written, or that holds files of others.
 
-    Args:
-        command: with its fields; without an `output` nothing is written.
-
     Raises:
         InputError: the folder, or what is above it, is a file or cannot be read or written; an
             input of the command is it or lies in it; or another file lies there that the program

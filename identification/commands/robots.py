@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -94,8 +93,7 @@ class Fit(OnRobot):
         found = fit(robot, self.output.tell)
         files = found.files
         # Whoever stopped it does not wait for figures.
-        draw = None if found.stopped else timed(self.output, files.draw, "fit")
-        conclude(self, files.record, _fit_text(files.record), kept(self.output, files), draw)
+        conclude_files(self, files, _fit_text(files.record), "" if found.stopped else "fit")
         if found.is_worse:
             note(f"identification: {WORSE}")
         return STOPPED if found.stopped else int(found.is_worse)
@@ -128,8 +126,7 @@ class Discover(OnRobot):
         found = discover(robot, progress=self.output.tell, options=options)
         files = RobotDiscoveryFiles(found, robot)
         text = "\n".join([discovery_text(found), *files.sentences])
-        draw = timed(self.output, files.draw, "search")
-        conclude(self, files.record, text, kept(self.output, files), draw)
+        conclude_files(self, files, text, "search")
         return 0
 
 
@@ -157,28 +154,29 @@ class Torques(OnRobot):
         found = fit_torques(robot, self.output.tell)
         files = found.files
         text = torque_text(files.record["verdict"], found.found)
-        draw = timed(self.output, files.draw, "comparison")
-        conclude(self, files.record, text, kept(self.output, files), draw)
+        conclude_files(self, files, text, "comparison")
         return 0
 
 
-def kept(output: Output, files: Files) -> Callable[[Path], object]:
-    """Returns what writes the model of a result into a folder."""
-    return lambda out: files.keep(out, output.out or out)
+def conclude_files(command: Any, files: Files, text: str, beside: str, saved: str = "") -> None:
+    """Saves a result, says it, and draws it beside a search or a fit; see `conclude`.
 
+    Nothing is drawn where `beside` is empty.
+    """
+    output: Output = command.output
 
-def timed(output: Output, draw: Callable[[Path], object], beside: str) -> Callable[[Path], None]:
-    """Returns what draws into a folder, and says how long it took beside a search or a fit."""
-
-    def drawn(out: Path) -> None:
+    def draw(out: Path) -> None:
         output.tell("drawing the report")
         began = time.monotonic()
-        draw(out)
+        files.draw(out)
         took = duration(time.monotonic() - began)
         page = (output.out or out) / "report.html"
         output.tell(f"report: {page} (drawn in {took}, beside the {beside})")
 
-    return drawn
+    def keep(out: Path) -> None:
+        files.keep(out, output.out or out)
+
+    conclude(command, files.record, text, keep, draw if beside else None, saved)
 
 
 def _fit_text(record: dict[str, Any]) -> str:

@@ -29,11 +29,7 @@ STOPPED = 130  # exit code, as a shell gives it
 
 @contextmanager
 def stoppable(name: str) -> Iterator[None]:
-    """Answer Ctrl-C in the block: it says so, and raises KeyboardInterrupt as soon as it can.
-
-    Args:
-        name: of the program.
-    """
+    """Answer Ctrl-C in the block: it says so, and raises KeyboardInterrupt as soon as it can."""
     if threading.current_thread() is not threading.main_thread() or os.name != "posix":
         yield
         return
@@ -77,11 +73,7 @@ def stoppable(name: str) -> Iterator[None]:
 
 @contextmanager
 def leaving_out(sentence: str) -> Iterator[None]:
-    """Say on Ctrl-C in the block, once, what it leaves out and where the rest is.
-
-    Args:
-        sentence: says so.
-    """
+    """Say on Ctrl-C in the block, once, what it leaves out and where the rest is."""
     _LEFT_OUT.append(sentence)
     try:
         yield
@@ -103,9 +95,6 @@ def at_end(code: int = 0) -> None:
     Python ends by the signal itself, whatever the exit code, where an interrupt came while it ran
     a text as code, as each dataclass does that is imported: it remembers this until it runs a text
     again (`unhandled_keyboard_interrupt` in CPython).
-
-    Args:
-        code: the exit code of the process.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     exec("")
