@@ -93,9 +93,6 @@ class GriddedSystem:
     def at(self, point: Mapping[str, float]) -> LinearSystem:
         """Returns the interpolated system at one point.
 
-        Args:
-            point: value of every scheduling variable by its name, in its unit.
-
         Raises:
             InputError: a variable is missing or unknown, or the point is outside the grid.
         """

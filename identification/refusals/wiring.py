@@ -117,10 +117,6 @@ def refuse_unbalanced(robot: Robot, log: Log) -> None:
     what the model lacks grows over a window. Where a drive wants a position, its gain is a guess,
     and nothing is told.
 
-    Args:
-        robot: with the values that its file gives, and what it trusts.
-        log: of the robot.
-
     Raises:
         InputError: there is such a reading.
     """

@@ -49,7 +49,8 @@ class Alike:
     @property
     def deviations(self) -> dict[str, str]:
         """The path of each deviation, by the name of the parameter."""
-        things = [_thing(path) for path in self.of]
+        # "elbow" of "joint/elbow.damping"
+        things = [p.partition("/")[2].partition("[")[0].rpartition(".")[0] or p for p in self.of]
         words = self.of if repeated(things) else things
         each = zip(words, self.of, strict=True)
         return {f"{self.name}@{word}": path for word, path in each if self.deviates}
@@ -121,8 +122,3 @@ def _alike(name: str, table: Any, path: Path) -> Alike:
         raise InputError(f"{where} does not say `std`; give the relative deviation, such as 0.1")
     std, known = float(table["std"]), float(table.get("known", KNOWN))
     return Alike(name, of, std, known, where=where)
-
-
-def _thing(path: str) -> str:
-    """Returns what a path is about: "elbow" of "joint/elbow.damping"."""
-    return path.partition("/")[2].partition("[")[0].rpartition(".")[0] or path

@@ -31,12 +31,7 @@ def digest(log: Log) -> str:
 
 
 def with_carried(file: RobotFile, logs: Sequence[Log]) -> tuple[RobotFile, tuple[str, ...]]:
-    """Returns a robot's file whose stds count for some logs, and a sentence where they do.
-
-    Args:
-        file: of the robot.
-        logs: that are to be fitted.
-    """
+    """Returns a robot's file whose stds count for some logs, and a sentence where they do."""
     # A held value is not fitted, so that its std says nothing.
     stds = [n for n, record in file.records.items() if "std" in record and n not in file.held]
     if not stds:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -12,7 +12,6 @@ from identification.experiment.design import design
 from identification.experiment.hypotheses import Hypothesis, fitted
 from identification.experiment.limits import limits_of
 from identification.experiment.playing import stage_of
-from identification.logs.log import Log
 from identification.pool import one_blas_thread
 from identification.results import RESULT, read_result
 from identification.robot.next_experiment import NextExperiment
@@ -63,7 +62,10 @@ def design_experiment(
     robot = robot if result is None else with_result(robot, result)
     logs = (robot.log, *robot.others, *robot.records)
     rivals = () if result is None else read_rivals(robot, result)
-    models = _hypotheses(robot, logs, rivals, progress)
+    models: list[Hypothesis] = []
+    for model in rivals or (Model("the model", 1.0, robot.nominal_model),):
+        scale = models[0].scale if models else None
+        models.append(fitted(model.name, model.share, model.nominal, logs, scale, progress))
     plant = models[0].plant
     plant = replace(plant, bare=replace(plant.bare, start=robot.plant.bare.start))
     limits = partial(limits_of, plant.model, plant.axes, logs)
@@ -93,19 +95,6 @@ def with_result(robot: Robot, result: str | Path) -> Robot:
         robot.records,
         trust=(*robot.file.trust, "wiring"),
     )
-
-
-def _hypotheses(
-    robot: Robot, logs: Sequence[Log], rivals: Sequence[Model],
-    progress: Callable[[str], None] | None,
-) -> tuple[Hypothesis, ...]:  # fmt: skip
-    """Returns the fitted model of the robot, or each of the rivals, fitted."""
-    every = rivals or (Model("the model", 1.0, robot.nominal_model),)
-    out: list[Hypothesis] = []
-    for model in every:
-        scale = out[0].scale if out else None
-        out.append(fitted(model.name, model.share, model.nominal, logs, scale, progress))
-    return tuple(out)
 
 
 def _files(found: NextExperiment) -> Files:

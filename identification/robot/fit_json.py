@@ -89,17 +89,13 @@ def _over_all(rms: Sequence[float]) -> float:
 
 def _rises(confirmed: Sequence[Confirmation]) -> dict[str, float]:
     """Returns the rise of the mean square by unit, over records, each of which counts alike."""
-    before, after = (
-        _squares([getattr(c, name) for c in confirmed])
-        for name in ("before_by_unit", "after_by_unit")
-    )
-    return {unit: after[unit] / b - 1 for unit, b in before.items() if b > 0}
-
-
-def _squares(each: Sequence[Mapping[str, float]]) -> dict[str, float]:
-    """Returns sums of squares over records, by unit."""
-    units = dict.fromkeys(unit for errors in each for unit in errors)
-    return {unit: sum(errors.get(unit, 0.0) ** 2 for errors in each) for unit in units}
+    rises = {}
+    for unit in dict.fromkeys(unit for c in confirmed for unit in c.before_by_unit):
+        before = sum(c.before_by_unit.get(unit, 0.0) ** 2 for c in confirmed)
+        after = sum(c.after_by_unit.get(unit, 0.0) ** 2 for c in confirmed)
+        if before > 0:
+            rises[unit] = after / before - 1
+    return rises
 
 
 def _told(rises: Mapping[str, float]) -> str:

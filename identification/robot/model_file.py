@@ -121,10 +121,12 @@ def unit_of(model: mujoco.MjModel, path: str) -> str:
     elif kind == "actuator" and attribute == "timeconst":
         return "s"
     elif kind == "actuator" and attribute in GAINS:
-        return _unit_of_gain(model, name, GAINS[attribute])
+        units = {_unit_at(model, i, GAINS[attribute]) for i in range(model.nu)
+                 if fnmatchcase(model.actuator(i).name, name)}  # fmt: skip
+        return units.pop() if len(units) == 1 else ""
     if not joints or attribute not in UNITS:
-        units = {"mass": "kg", "inertia": "kg m^2", "spread": "kg m^2"}
-        return units.get(attribute, "") if kind == "body" else ""
+        of_bodies = {"mass": "kg", "inertia": "kg m^2", "spread": "kg m^2"}
+        return of_bodies.get(attribute, "") if kind == "body" else ""
     return _by_joint(model, joints[0], attribute)
 
 
@@ -140,13 +142,6 @@ def refuse_unit(said: Mapping[str, Any], expected: str, whose: str) -> None:
     if expected:
         refuse_other_unit(unit, expected, whose)
     refuse_not_si(unit, whose)
-
-
-def _unit_of_gain(model: mujoco.MjModel, name: str, like: str) -> str:
-    """Returns the unit of a gain of servos, "" where theirs are not the same or not known."""
-    units = {_unit_at(model, i, like) for i in range(model.nu)
-             if fnmatchcase(model.actuator(i).name, name)}  # fmt: skip
-    return units.pop() if len(units) == 1 else ""
 
 
 def _unit_at(model: mujoco.MjModel, actuator: int, like: str) -> str:

@@ -75,13 +75,9 @@ def free_parameter(
         if name in alike.names:
             return _alike(file, alike, name, model)
     # What only a log's TOML names is told of by who reads that.
-    with told_of(_where(file, name)) if name in file.free else nullcontext():
+    key = f"parameters.{name}" if name in file.records else "free"
+    with told_of(f"{key} in {file.path}") if name in file.free else nullcontext():
         return _free(file, name, model, effects, log)
-
-
-def _where(file: RobotFile, name: str) -> str:
-    """Returns the key of a free parameter, and the file."""
-    return f"parameters.{name} in {file.path}" if name in file.records else f"free in {file.path}"
 
 
 def _free(

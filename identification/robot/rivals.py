@@ -52,9 +52,13 @@ def read_rivals(robot: Robot, result: str | Path) -> tuple[Model, ...]:
     out: list[Model] = []
     for named in of_set:
         effect = _effect(robot, named["name"])
-        mine = [p for p in robot.plant.parameters.values() if p in _names(effect, named["where"])]
+        own = {effect.parameter(n, named["where"]) for n in effect.names}
+        mine = [p for p in robot.plant.parameters.values() if p in own]
         if not out:
-            free = _with_shapes(robot.nominal_model, robot, effect, named["where"])
+            # its shapes are free, as they were in the search
+            model = robot.nominal_model
+            shapes = [effect.parameter(s.name, named["where"]) for s in effect.shapes if s.free]
+            free = _freed(model, [n for n in shapes if n not in model.names], {})
             out.append(Model(_words(named), float(named["confidence"]), free))
         for rival in named["rivals"]:
             if rival["name"] == "unlisted" or rival["confidence"] < LEAST_SHARE:
@@ -80,17 +84,6 @@ def _effect(robot: Robot, name: str) -> Effect:
     if name not in known:
         raise unknown_name("effect", name, known)
     return known[name]
-
-
-def _names(effect: Effect, where: str) -> list[str]:
-    """Returns the plant's parameters of an effect at a place."""
-    return [effect.parameter(n, where) for n in effect.names]
-
-
-def _with_shapes(model: NominalModel, robot: Robot, effect: Effect, where: str) -> NominalModel:
-    """Returns a model whose effect has free shapes, as it had in the search."""
-    shapes = [effect.parameter(s.name, where) for s in effect.shapes if s.free]
-    return _freed(model, [n for n in shapes if n not in model.names], {})
 
 
 def _instead(

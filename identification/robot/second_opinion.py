@@ -24,10 +24,6 @@ def ask_torques(robot: Robot, progress: Callable[[str], None] | None = None) -> 
 
     None where they tell nothing: a position is not measured, a drive has a state, bodies form a
     loop.
-
-    Args:
-        robot: with its logs.
-        progress: is told one line.
     """
     try:
         evidence = fit_torques(robot).found
@@ -59,10 +55,6 @@ def opinions(found: Discovery, evidence: Evidence) -> tuple[TorqueOpinion, ...]:
     Where they prove none of these, what they name first themselves comes last; so it does where
     nothing is named. An effect of a sensor or of a state is none that they can tell, and a search
     that names one is not contradicted by them.
-
-    Args:
-        found: the outcome of a search.
-        evidence: of the torques of the same records.
     """
     scores = {s.missing.key: s for s in (*reversed(evidence.scores), *evidence.named)}
     known = {key: _opinion(s, is_named=True) for key, s in scores.items()} | frictions(evidence)

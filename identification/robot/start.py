@@ -58,12 +58,13 @@ def measured_begin(model: mujoco.MjModel, log: Log) -> dict[Place, Begin]:
 
 def refuse_start(file: RobotFile, model: mujoco.MjModel) -> None:
     """Refuse a path under [start] that names nothing in the state."""
+    sizes = {"qpos": model.nq, "qvel": model.nv, "act": model.na}
     with told_of(f"start in {file.path}"):
         for path in file.start:
             if start_place(path, model) is None:
                 raise InputError(
                     f"{path!r} is no entry of the state; write one such as"
-                    f" {' or '.join(f'{f}[0]' for f in _sizes(model))}"
+                    f" {' or '.join(f'{f}[0]' for f, n in sizes.items() if n)}"
                 )
 
 
@@ -190,11 +191,6 @@ def _what(field: str, begin: Begin, log: Log) -> tuple[str, str]:
     if field != "qvel" or unit.endswith("/s"):
         return begin.output, unit
     return f"the rate of {begin.output}", f"{unit}/s" if unit else unit
-
-
-def _sizes(model: mujoco.MjModel) -> list[str]:
-    """Returns the parts of the state that a model has."""
-    return [f for f, n in (("qpos", model.nq), ("qvel", model.nv), ("act", model.na)) if n]
 
 
 def _first(y: np.ndarray, h: float, noise: float) -> tuple[tuple[float, float], np.ndarray]:

@@ -51,9 +51,10 @@ def refuse_coarse_steps(robot: Robot) -> None:
     if "steps" in robot.file.trust:
         return
     worst = _worst(robot)
-    if worst is not None and _is_small(robot, worst):
+    if _is_small(robot, worst):
         return
-    path, said = robot.file.path, blamed(robot, _is_simulated)
+    said = blamed(robot, lambda other: _is_small(other, _worst(other)))
+    path = robot.file.path
     if said is not None:
         raise InputError(f'{said}, or, if it is right, write trust = ["steps"] into {path}')
     if worst is None:  # the search will say why
@@ -64,7 +65,7 @@ def refuse_coarse_steps(robot: Robot) -> None:
         + f" in {worst.output} with integrator {INTEGRATORS[int(option.integrator)]} and timestep"
         f" {option.timestep:g} s, more than the noise of log {robot.log.name!r},"
         f" {worst.noise:.2g} {unit}".rstrip()
-        + f'; {_cure(robot)}, or write trust = ["steps"] into {robot.file.path}'
+        + f'; {_cure(robot)}, or write trust = ["steps"] into {path}'
     )
 
 
@@ -76,13 +77,10 @@ def _worst(robot: Robot) -> StepError | None:
         return None
 
 
-def _is_small(robot: Robot, worst: StepError) -> bool:
+def _is_small(robot: Robot, worst: StepError | None) -> bool:
+    if worst is None:
+        return False
     return worst.error <= worst.noise or worst.error <= SMALL * _error_of_prediction(robot, worst)
-
-
-def _is_simulated(robot: Robot) -> bool:
-    worst = _worst(robot)
-    return worst is not None and _is_small(robot, worst)
 
 
 def step_error(robot: Robot) -> StepError:

@@ -20,12 +20,7 @@ OF_A_LOAD = ("payload", "mass_mismatch", "com_offset")
 
 
 def suggest(evidence: Evidence, robot: Robot) -> tuple[Candidate, ...]:
-    """Returns what torques name and a search over windows can fit, the first found first.
-
-    Args:
-        evidence: of the torques.
-        robot: with its candidates.
-    """
+    """Returns what torques name and a search over windows can fit, the first found first."""
     known = {effect.name: effect for effect in robot.candidates}
     out: list[Candidate] = []
     for score in evidence.named:

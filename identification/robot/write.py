@@ -73,7 +73,9 @@ def write_robot(
         said["unit"] = at[name].unit
         value = float(values.get(name, at[name].value))
         known = {} if name in alike else _known(robot, name, value)
-        told = _std(robot, name, std or {}, own)
+        found_std = float((std or {}).get(name, nan))
+        is_common = name not in (*own, *robot.starts)  # it then holds for other logs too
+        told = {"std": found_std} if is_common and 0 < found_std < inf else {}
         tables[f"parameters.{toml_key(name)}"] = {**said, "value": value, **told, **known}
     for name in file.held:
         tables[f"parameters.{toml_key(name)}"] = dict(file.records[name])
@@ -104,29 +106,13 @@ def _known(robot: Robot, name: str, value: float) -> dict[str, object]:
             return {}
         k = robot.file.free.index(name)
         known = Free(record, robot.mean[name], float(robot.std[k])).known
-        return {"prior": robot.mean[name], **_unless(robot, name, known)}
+        said = robot.file.records.get(name, {})
+        # The file says `known` to the last digit, unless the std of a fit of other logs counted.
+        is_said = "known" in said and "std" not in said
+        return {"prior": robot.mean[name], **({} if is_said else {"known": known})}
     found = Free(replace(record, value=value), value, 1.0)
     width = KNOWN * effect_sizes(robot.plant.effects)[name][1]
     return {"known": max(KNOWN, width / value) if found.is_relative else width}
-
-
-def _std(
-    robot: Robot, name: str, std: Mapping[str, float], own: Sequence[str]
-) -> dict[str, object]:
-    """Returns the std of a fitted value, if it is known and holds for other logs too."""
-    found = float(std.get(name, nan))
-    if name in (*own, *robot.starts) or not 0 < found < inf:
-        return {}
-    return {"std": found}
-
-
-def _unless(robot: Robot, name: str, known: float) -> dict[str, object]:
-    """Returns the std, where the robot's file did not say it to the last digit.
-
-    Its `known` is not what was known where the std of a fit of other logs counted.
-    """
-    said = robot.file.records.get(name, {})
-    return {} if "known" in said and "std" not in said else {"known": known}
 
 
 def _means(names: Sequence[str], own_values: Mapping[str, Mapping[str, float]]) -> dict[str, float]:

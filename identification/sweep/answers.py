@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any
 from identification.sweep.method import Column, Record
 
 if TYPE_CHECKING:
-    from identification.discovery.effect_results import NamedEffect
     from identification.discovery.result import Discovery
 
 ANSWER = {
@@ -65,7 +64,9 @@ def answer(found: Discovery) -> dict[str, Any]:
         "verdict": found.verdict, "unexplained": bool(found.unexplained),
         "named": [n.name for n in named], "where": [n.where for n in named],
         "confidence": [float(n.confidence) for n in named],
-        "one_of": [bool(n.one_of) for n in named], "rivals": ["|".join(_set(n)) for n in named],
+        "one_of": [bool(n.one_of) for n in named], "rivals": [
+            "|".join(r.name for r in n.rivals if n.one_of and r.name != n.name) for n in named
+        ],
         "size_of": [*sizes], "sizes": [*sizes.values()],
         "findings": [finding.kind.value for finding in found.findings],
         "scores": [f"{s.candidate.effect.name}, {s.candidate.where}" for s in found.scores[:5]],
@@ -140,9 +141,3 @@ def _of(effect: str, where: str, sizes: Mapping[str, float]) -> dict[str, float]
         name[len(begin) : -len(end)]: value for name, value in sizes.items()
         if name.startswith(begin) and name.endswith(end)
     }  # fmt: skip
-
-
-def _set(named: NamedEffect) -> list[str]:
-    """Returns the other names of a set that the data cannot tell apart."""
-    names = [rival.name for rival in named.rivals] if named.one_of else []
-    return [name for name in names if name != named.name]

@@ -38,11 +38,7 @@ Z = NormalDist().inv_cdf(0.975)
 
 
 def estimate_findings(records: Sequence[Record]) -> Findings:
-    """Returns bias, std and coverage by parameter.
-
-    Args:
-        records: with the columns `ESTIMATES`.
-    """
+    """Returns bias, std and coverage by parameter."""
     by_name: dict[str, list[list[float]]] = {}
     for record in records:
         columns = (record[n] for n in ("names", "estimated", "std", "true"))

@@ -17,7 +17,6 @@ import json
 import os
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
-from types import TracebackType
 from typing import Any, Self
 from uuid import uuid4
 
@@ -78,12 +77,7 @@ class Store:
             raise
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         if self._lock is not None:
             os.close(self._lock)  # the lock ends with it
 
@@ -164,7 +158,16 @@ class Store:
         return sorted(self.records.glob("*.parquet"))
 
     def _tables(self, files: Sequence[Path]) -> Iterator[Any]:
-        return _read_tables(files, self._schema, len(self.sweep))
+        """Yields the rows of some files in the order of their tasks, a block at a time."""
+        dataset: Any = needed("pyarrow.dataset", "sweep", "a sweep")
+        if not files:
+            return
+        every = dataset.dataset([str(file) for file in files], schema=self._schema)
+        task = dataset.field("task")
+        for first in range(0, len(self.sweep), _BLOCK):
+            table = every.to_table(filter=(task >= first) & (task < first + _BLOCK)).sort_by("task")
+            if len(table):
+                yield table
 
     def _merge(self, files: Sequence[Path]) -> Path:
         name = f"rows-{uuid4().hex}"
@@ -222,19 +225,6 @@ def read_tasks(path: Path) -> set[int]:
 
 def _digest(path: Path) -> str:
     return digest(path, _LARGEST, "record of a sweep")[:16]
-
-
-def _read_tables(files: Sequence[Path], schema: Any, count: int) -> Iterator[Any]:
-    """Yields the rows of some files in the order of their tasks, a block at a time."""
-    dataset: Any = needed("pyarrow.dataset", "sweep", "a sweep")
-    if not files:
-        return
-    every = dataset.dataset([str(file) for file in files], schema=schema)
-    task = dataset.field("task")
-    for first in range(0, count, _BLOCK):
-        table = every.to_table(filter=(task >= first) & (task < first + _BLOCK)).sort_by("task")
-        if len(table):
-            yield table
 
 
 def _sync_folder(folder: Path) -> None:

@@ -24,7 +24,7 @@ from identification.sweep.power import (
 )
 from identification.sweep.rows import RUN, digest
 from identification.sweep.settings import Heads, about_of, in_words
-from identification.sweep.statistics import said, wilson
+from identification.sweep.statistics import rate, said
 from identification.sweep.task import Study, Sweep
 
 if TYPE_CHECKING:
@@ -35,12 +35,7 @@ SHOWN = 8  # kinds of errors in the report
 
 
 def summarise(sweep: Sweep, rows: Iterable[Record]) -> Findings:
-    """Returns counts, rates and times of all records.
-
-    Args:
-        sweep: whose they are.
-        rows: in the order of their tasks.
-    """
+    """Returns counts, rates and times of all records."""
     every = [*rows]
     failed = Counter(row["error"] for row in every if row["error"] is not None)
     sections: list[Section] = []
@@ -73,7 +68,9 @@ def summarise_study(study: Study, rows: Sequence[Record]) -> Findings:
     for values, mine in grouped(done, names).items():
         groups.append({
             "settings": dict(zip(names, values, strict=True)), "tasks": len(mine),
-            "rates": {n: _share([r[n] for r in mine]) for n in flags},
+            "rates": {
+                n: rate([r[n] for r in mine if r[n] is not None], bool) for n in flags
+            },
             "quantiles": {n: _quantiles([r[n] for r in mine]) for n in numbers},
         })  # fmt: skip
     sections = _tables(study, names, groups)
@@ -93,11 +90,6 @@ def summarise_study(study: Study, rows: Sequence[Record]) -> Findings:
         sections += [replace(s, title=f"{study.name}: {s.title}") for s in found.sections]
         sentences = [f"{study.name}: {sentence}" for sentence in found.sentences]
     return Findings(record, sections, sentences)
-
-
-def _share(flags: Sequence[bool | None]) -> dict[str, Any]:
-    known = [flag for flag in flags if flag is not None]
-    return wilson(sum(known), len(known))
 
 
 def _quantiles(values: Sequence[float | None]) -> dict[str, float | None]:
