@@ -96,13 +96,6 @@ def design(
 ) -> Design:
     """Search the next experiment.
 
-    Args:
-        stage: the robot, its limits, and how the experiment is played.
-        hypotheses: the model that is believed, then its rivals.
-        budget: experiments that are evaluated.
-        seed: of the search.
-        progress: is told of each improvement.
-
     Raises:
         InputError: the budget is too small, or nothing that was tried keeps the limits.
     """

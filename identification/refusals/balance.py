@@ -20,8 +20,6 @@ that the solver, whose steps take the square of its columns, is spared them.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import mujoco
 import numpy as np
 
@@ -49,23 +47,16 @@ DEPENDENT = 1e-10
 PULL = 1e-4  # of an unknown, that it adds to what is left; columns are of a size of one, or more
 
 
-@dataclass(frozen=True)
-class Freedom:
-    """The further forces that a model may lack, and how smooth its motion is taken."""
-
-    has_springs: bool = False  # whether each joint may have a spring that the model lacks
-    wider: int = 1  # times as long a ψ, for motion that is rougher than its noise says
-
-
 def unbalanced_share(
-    model: mujoco.MjModel, log: Log, freedom: Freedom | None = None
+    model: mujoco.MjModel, log: Log, springs: bool = False, wider: int = 1
 ) -> np.ndarray | None:
     """Returns η of the joint of each output, shape (ny,), without unit.
 
     Args:
         model: with the log's actuators and sensors.
         log: as it is read.
-        freedom: what it may lack more; nothing when None.
+        springs: whether each joint may have a spring that the model lacks.
+        wider: times as long a ψ, for motion that is rougher than its noise says.
 
     Returns:
         None where it cannot be had: a joint is not measured, is neither hinge nor slide, drives
@@ -77,12 +68,11 @@ def unbalanced_share(
     plain = np.isin(model.jnt_type, SCALAR).all() and not (model.neq or model.na)
     if not plain or sorted(at) != [*range(model.nq)]:
         return None
-    freedom = freedom or Freedom()
-    found = _shortest(model, log, log.outputs[:, [at[i] for i in range(model.nq)]], freedom.wider)
+    found = _shortest(model, log, log.outputs[:, [at[i] for i in range(model.nq)]], wider)
     if found is None:
         return None
     motion, force = found
-    A, low, high = _columns(model, motion, freedom)
+    A, low, high = _columns(model, motion, springs)
     size = force.std(axis=0)
     masses = A[:, :, : int(np.sum(low > 0))].sum(axis=2)  # of the model's own masses
     size = np.where(size > 0, size, np.sqrt(np.mean(masses**2, axis=0)))  # joints without a drive
@@ -132,7 +122,7 @@ def _drive_forces(model: mujoco.MjModel, motion: Smooth) -> np.ndarray:
 
 
 def _columns(
-    model: mujoco.MjModel, motion: Smooth, freedom: Freedom
+    model: mujoco.MjModel, motion: Smooth, may_have_springs: bool
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Returns what may explain the forces, (n, nv, columns), and the bounds of the sizes."""
     moving = [b for b in range(1, model.nbody) if model.body_weldid[b] and model.body_mass[b] > 0]
@@ -155,7 +145,7 @@ def _columns(
     weight = [w for body in bodies.values() for p in near for w in weights(body, p)]
     each = [np.where(np.arange(nv) == j, x, 0.0)
             for j in range(nv) for x in (motion.v, np.sign(motion.v),
-                                         *([motion.q] if freedom.has_springs else []))]  # fmt: skip
+                                         *([motion.q] if may_have_springs else []))]  # fmt: skip
     each += resisting
     level = [np.broadcast_to(np.arange(nv) == j, (n, nv)).astype(float) for j in range(nv)]
     most = max(PAYLOAD * float(model.body_mass[moving].sum()), least)

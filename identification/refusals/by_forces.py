@@ -15,7 +15,7 @@ wider too, and the smallest η counts. A payload that the model lacks bars nothi
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import chain
 
@@ -24,13 +24,12 @@ import numpy as np
 
 from identification.logs.log import Log
 from identification.quantities import held
-from identification.refusals.balance import Freedom, unbalanced_share
+from identification.refusals.balance import unbalanced_share
 from identification.refusals.columns import Doubt, factor_readings, turned_units, unit_readings
 from identification.refusals.readings import EXPLAINED, NEARER, SAME, UNEXPLAINED, Reading
 from identification.refusals.turned_inputs import with_turned_ranges
 from identification.shares import percent
 
-FREEDOM = Freedom(has_springs=True)
 WIDER = (1, 2, 4)  # times ψ; a fourfold one has 32 times less noise in its accelerations
 DIGITS = 6  # of a change; a factor of 1000 and the unit mrad are the same one
 NEEDED = 1.0  # η of a motion that the drives cannot have made
@@ -63,13 +62,13 @@ class Balance:
         k = list(reading.columns)
         if self.as_read is None:
             return bool((rest[k] < UNEXPLAINED).all())
-        other = self._of(reading)
+        other = self.of(reading)
         # Together, because a joint without a drive looks the same from both sides.
         return other is not None and bool(other[k].sum() < NEARER * self.as_read[k].sum())
 
     def decides(self, reading: Reading) -> str | None:
         """Says how much less of the forces is unexplained by a reading; None where not far less."""
-        rest = None if self.as_read is None else self._of(reading)
+        rest = None if self.as_read is None else self.of(reading)
         if self.as_read is None or rest is None or (rest > UNEXPLAINED).any():
             return None
         if rest.sum() > NEARER * self.as_read.sum():
@@ -80,7 +79,8 @@ class Balance:
             f" {reading.words}, whatever payload, gravity and friction it has; {reading.cure}"
         )
 
-    def _of(self, reading: Reading) -> np.ndarray | None:
+    def of(self, reading: Reading) -> np.ndarray | None:
+        """Returns η of another reading of the log, shape (ny,)."""
         return unbalanced_share(with_turned_ranges(self.model, self.log, reading.log), reading.log)
 
 
@@ -108,7 +108,7 @@ def rescaled(
     both = turned_units(doubt) if signs else ()
     found: list[tuple[Reading, np.ndarray]] = []
     for reading in chain(factor_readings(doubt), unit_readings(doubt, alone=alone), both):
-        rest = unbalanced_share(model, reading.log, FREEDOM)
+        rest = unbalanced_share(model, reading.log, springs=True)
         if rest is not None and rest.max() <= EXPLAINED and rest.sum() <= NEARER * as_read.sum():
             found.append((reading, rest))
     if not found:
@@ -143,12 +143,13 @@ def balanced_otherwise(
         The reading that leaves least, and in words what it explains; None where the log may be as
         it is read, or where no reading explains it.
     """
-    as_read = unbalanced_share(model, doubt.log)
+    balance = Balance(model, doubt.log)
+    as_read = balance.as_read
     if as_read is None or as_read.max() <= UNEXPLAINED:
         return None
     best, least = None, NEARER * float(as_read.sum())
     for reading in readings:
-        rest = unbalanced_share(with_turned_ranges(model, doubt.log, reading.log), reading.log)
+        rest = balance.of(reading)
         if rest is not None and rest.max() < UNEXPLAINED and rest.sum() < least:
             best, least = (reading, rest), (1 - SAME) * float(rest.sum())
     if best is None:
@@ -172,7 +173,7 @@ def _least_share(model: mujoco.MjModel, log: Log) -> np.ndarray | None:
     """Returns η of each output (ny,), of the ψ that leaves least; None where it cannot be had."""
     best: np.ndarray | None = None
     for wider in WIDER:
-        rest = unbalanced_share(model, log, replace(FREEDOM, wider=wider))
+        rest = unbalanced_share(model, log, springs=True, wider=wider)
         if rest is None:
             return best
         if best is None or rest.max() < best.max():

@@ -118,12 +118,7 @@ def unit_readings(
 
 
 def input_unit_readings(doubt: Doubt, units: Mapping[str, str]) -> Iterator[Reading]:
-    """Yields other units of the inputs that drives turn into forces, all of a kind at once.
-
-    Args:
-        doubt: the log.
-        units: SI unit of such inputs, by name.
-    """
+    """Yields other units of the inputs that drives turn into forces, all of a kind at once."""
     log = doubt.log
     for si, word in ((si, w) for si in dict.fromkeys(units.values()) for w in UNITS):
         if UNITS[word][0] != si or word == si:

@@ -51,10 +51,6 @@ MOST_COLUMNS = 32
 def refuse_miswired(robot: Robot, log: Log) -> None:
     """Refuse a log that other units, signs or places of its columns would explain far better.
 
-    Args:
-        robot: with the values that its file gives, and what it trusts.
-        log: of the robot.
-
     Raises:
         InputError: there is such a reading.
     """

@@ -81,13 +81,6 @@ def write_page(
 ) -> Path:
     """Write the report of a discovery, one HTML file of some sections; returns its path.
 
-    Args:
-        found: the discovery.
-        path: of the file, whose folder exists.
-        sections: those of every page on a discovery, and more.
-        sentences: that follow the verdict.
-        drawings: see `write_report`.
-
     Raises:
         InputError: the file cannot be written.
     """

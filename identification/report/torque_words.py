@@ -11,6 +11,7 @@ from identification.quantities import quantity
 from identification.report.error_words import listed
 from identification.shares import decimal, fall_words, percent
 from identification.torques.evidence import Evidence
+from identification.torques.fits import Fitted
 from identification.torques.scores import CHANCE, FAR, PROOF, Score
 
 SHOWN = 8  # candidates that are told
@@ -101,11 +102,6 @@ def called(score: Score) -> str:
     """Returns the name of a candidate, its place, and what it is, in words."""
     what = f" ({score.missing.phrase})" if score.missing.phrase else ""
     return f"{score.missing.title.replace('_', ' ', 2)}{what}"
-
-
-def _model(model: float, value: float, std: float, unit: str) -> str:
-    """Returns the model's value with the prefix of the fitted value beside it."""
-    return quantity(model, unit=unit, like=max(abs(value), std))
 
 
 def centre_words(score: Score) -> str:
@@ -238,23 +234,24 @@ def _doubts(evidence: Evidence) -> list[str]:
 
 def base_rows(evidence: Evidence) -> list[tuple[str, str, str, str]]:
     """Returns rows of base parameters: name, value with std, the model's, the difference in std."""
-    fit, rows = evidence.whole, []
-    for k, name in enumerate(evidence.base.names):
-        value, std, model = fit.fit.θ[k], fit.fit.std[k], evidence.base.values[k]
-        unit = evidence.base.units[k]
-        off = (value - model) / std if std > 0 else np.nan
-        rows.append((name, quantity(value, std, unit, like=model),
-                     _model(model, value, std, unit), f"{off:+z.1f}"))  # fmt: skip
-    return rows
+    return _rows(evidence.whole, 0, evidence.base.values)
 
 
 def friction_rows(evidence: Evidence) -> list[tuple[str, str, str, str]]:
     """Returns rows of frictions: name, value with std, the model's, the difference in std."""
-    fit, rows = evidence.whole, []
-    for k, model in enumerate(evidence.friction, fit.inertial):
+    return _rows(evidence.whole, evidence.whole.inertial, evidence.friction)
+
+
+def _rows(fit: Fitted, first: int, models: np.ndarray) -> list[tuple[str, str, str, str]]:
+    """Returns rows of the sizes of a fit from the first one on, beside those of the model."""
+    rows = []
+    for k, model in enumerate(models, first):
         value, std, unit = fit.fit.θ[k], fit.fit.std[k], fit.units[k]
-        told = quantity(value, std, unit, like=model), _model(model, value, std, unit)
-        rows.append((fit.names[k], *told, f"{(value - model) / std:+z.1f}"))
+        off = (value - model) / std if std > 0 else np.nan
+        # the model's value has the prefix of the fitted value beside it
+        own = quantity(model, unit=unit, like=max(abs(value), std))
+        told = quantity(value, std, unit, like=model)
+        rows.append((fit.names[k], told, own, f"{off:+z.1f}"))
     return rows
 
 

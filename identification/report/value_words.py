@@ -85,11 +85,6 @@ def value_words(
 
     The value of a single record, such as `time_shift.tau@u [a]`, is "time shift of record a, input
     u".
-
-    Args:
-        names: of the values.
-        plant: that has them.
-        effects: whose sizes are told with what they are.
     """
     own = [e for e in getattr(plant, "effects", ()) if e.own]  # a model without effects has none
     words = parameter_words(plant.parameters, [*own, *effects])

@@ -50,10 +50,6 @@ class _Base:
 def base_poses(model: mujoco.MjModel, file: RobotFile) -> tuple[Pose, ...]:
     """Returns the poses of free joints that a robot's file says to be measured.
 
-    Args:
-        model: compiled, with its free joints.
-        file: of the robot.
-
     Raises:
         InputError: columns are given in a list for what has no pose, or one of position and
             orientation is missing, or there are not as many columns as numbers.
@@ -112,10 +108,6 @@ def pose_names(model: mujoco.MjModel, sensor: str) -> tuple[str, ...]:
 
 def with_measured_base(spec: mujoco.MjSpec, file: RobotFile) -> tuple[str, ...]:
     """Put slides and hinges with sensors in the place of measured free joints; say so.
-
-    Args:
-        spec: of the model, which is changed.
-        file: of the robot.
 
     Returns:
         A sentence on each base.

@@ -35,10 +35,6 @@ class Model:
 def read_rivals(robot: Robot, result: str | Path) -> tuple[Model, ...]:
     """Returns the models among which a discovery could not decide, the named one first.
 
-    Args:
-        robot: as the discovery has written it, with what it named.
-        result: the folder that it has saved, or its result.json.
-
     Returns:
         None where every name is sure, or nothing is named.
 

@@ -41,11 +41,7 @@ SAID = {
 
 
 def discovery_findings(records: Sequence[Record]) -> Findings:
-    """Returns rates over all records, the confusion matrix, and how far to trust confidence.
-
-    Args:
-        records: with the columns `TRUTH`, `ANSWER` and `PROOF` of `identification.sweep.answers`.
-    """
+    """Returns rates over all records, the confusion matrix, and how far to trust confidence."""
     rows = [nested(record) for record in records]
     found = summary(rows)
     pairs = [(n["confidence"], n["name"] in _true(r)) for r in rows for n in r["answer"]["named"]]
