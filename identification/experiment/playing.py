@@ -29,7 +29,7 @@ from identification.logs.log import Log
 from identification.model.plant import own_start
 from identification.model.predictor import Predictor
 from identification.model.protocol import with_numbers
-from identification.model.rollout import State, rollout, substeps
+from identification.model.rollout import State, substeps
 
 Form = Literal["inputs", "reference"]
 FORMS = ("auto", "inputs", "reference")
@@ -40,6 +40,7 @@ FASTEST = 4.0  # a tone's rate at full room, over the fastest speed
 SHORTEST = 20.0  # samples in a period
 DRIFT = 0.1  # of the room, by which a free run of the log may leave it
 NONE = np.empty((1, 0))
+STATE = ("qpos", "qvel", "act")
 
 
 @dataclass(frozen=True)
@@ -178,7 +179,7 @@ class Stage:
         log = self.blank
         if self.form == "inputs":
             log = replace(log, inputs=x)
-            run = _free_run(self._predictor(log))
+            run = self._predictor(log).simulated(NONE, STATE)
             aim = None
         else:
             u, run = self._follow(x, v, a)
@@ -261,23 +262,10 @@ def stage_of(
     return replace(stage, form="reference") if form == "reference" or drifts else stage
 
 
-def _free_run(predictor: Predictor) -> dict[str, np.ndarray]:
-    """Returns the states of a free run, one simulation of N samples."""
-    start, numbers = predictor.settings(NONE)
-    log = predictor.log
-    return dict(
-        rollout(
-            predictor.plant.model, predictor.begun(NONE, start), log.inputs, log.sampling_time,
-            numbers=numbers, record=("qpos", "qvel", "act"), hold_kind=log.hold,
-            before=predictor.inputs(NONE), time=log.begun,
-        )
-    )  # fmt: skip
-
-
 def _drifts(plant: JointPlant, log: Log, limits: Limits) -> bool:
     """Returns whether a free run of a log leaves the positions' limits."""
     try:
-        qpos = _free_run(Predictor(plant, log, ()))["qpos"][0]
+        qpos = Predictor(plant, log, ()).simulated(NONE, STATE)["qpos"][0]
     except DivergenceError:
         return True
     model = plant.model

@@ -21,7 +21,7 @@ from identification.linear.derivatives import CENTRAL, differences
 from identification.linear.points import Points
 from identification.model.predictor import Predictor
 from identification.model.protocol import with_numbers
-from identification.model.rollout import State, rollout, substeps
+from identification.model.rollout import State, substeps
 
 AT_REST = 1e-9  # of the largest acceleration that the terms of the law could give alone
 STEPS = 50
@@ -113,20 +113,15 @@ def along_log(predictor: Predictor, times: Sequence[float]) -> OperatingPoints:
     """
     log, model, none = predictor.log, predictor.plant.model, np.empty((1, 0))
     rows = samples_at(log.time, times)
-    start, numbers = predictor.settings(none)
-    used = log.inputs[: rows.max() + 1]
-    states = rollout(
-        model, predictor.begun(none, start), used, log.sampling_time, numbers=numbers,
-        record=("qpos", "qvel", "act"), hold_kind=log.hold, before=predictor.inputs(none),
-        time=log.begun,
-    )  # fmt: skip
+    count = int(rows.max()) + 1
+    states = predictor.simulated(none, ("qpos", "qvel", "act"), count)
     every = substeps(log.sampling_time, model.opt.timestep)
-    reach = predictor.inputs(none)(np.repeat(used, every, axis=0))
+    reach = predictor.inputs(none)(np.repeat(log.inputs[:count], every, axis=0))
     reach = reach[0] if reach.ndim == 3 else reach
     inputs = np.zeros((len(rows), model.nu))
     inputs[:, : reach.shape[1]] = reach[every * rows]
     return OperatingPoints(
-        model=with_numbers(model, numbers, 0),
+        model=with_numbers(model, predictor.settings(none)[1], 0),
         **{field: states[field][0][rows] for field in ("qpos", "qvel", "act")},
         inputs=inputs,
         time=log.begun + log.sampling_time * rows,

@@ -108,22 +108,24 @@ class Predictor:
         Raises:
             DivergenceError: a simulation left the finite numbers.
         """
-        log = self.log
-        if isinstance(log, JoinedLog):
+        if isinstance(self.log, JoinedLog):
             return self._predict_records(np.atleast_2d(values), samples)
-        start, numbers = self.settings(values)
-        states = rollout(
-            self.plant.model,
-            self.begun(values, start),
-            log.inputs[:samples],
-            log.sampling_time,
-            numbers=numbers,
-            record=self.recorded,
-            hold_kind=log.hold,
-            before=self.inputs(values),
+        return self.outputs(values, self.simulated(values, self.recorded, samples))
+
+    def simulated(
+        self, values: np.ndarray, record: Sequence[str], samples: int | None = None
+    ) -> Mapping[str, np.ndarray]:
+        """Returns fields of the state along simulations of n value sets, (n, samples, size) each.
+
+        Raises:
+            DivergenceError: a simulation left the finite numbers.
+        """
+        log, (start, numbers) = self.log, self.settings(values)
+        return rollout(
+            self.plant.model, self.begun(values, start), log.inputs[:samples], log.sampling_time,
+            numbers=numbers, record=record, hold_kind=log.hold, before=self.inputs(values),
             time=log.begun,
-        )
-        return self.outputs(values, states)
+        )  # fmt: skip
 
     def _predict_records(self, values: np.ndarray, samples: int | None) -> np.ndarray:
         """Predicts the outputs of all records in turn, each simulated from its own start.
