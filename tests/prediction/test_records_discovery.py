@@ -10,7 +10,6 @@ from identification.discovery.options import DiscoveryOptions
 from identification.effects.joint_plant import candidates
 from identification.errors import InputError
 from identification.prediction.discovery import discover_records
-from identification.report.discovery_files import DiscoveryFiles
 from identification.report.discovery_json import discovery_to_json
 from identification.report.discovery_report import discovery_text
 

@@ -8,7 +8,6 @@ from joint_cases import arm
 from identification.effects.effect import Candidate, effect_parameters
 from identification.effects.state_effects import joint_elasticity
 from identification.report.fitted_values import value_table
-from identification.report.value_words import parameter_words, value_words
 
 
 def test_where_an_encoder_sits_is_no_fitted_value():
