@@ -47,9 +47,9 @@ joint or at all of them, because the motion cannot tell these apart.
 """
 
 
-def study(robot: str, effect: str, seed: int) -> dict[str, Any]:
+def study(robot: str, effect: str, seed: int, without: tuple[str, ...]) -> dict[str, Any]:
     """Returns what a search says of a world; an error is a row too."""
-    from identification import discover, read_robot
+    from identification import DiscoveryOptions, discover, read_robot
 
     world, motions = make(robot, effect, seed)
     row: dict[str, Any] = {
@@ -59,11 +59,13 @@ def study(robot: str, effect: str, seed: int) -> dict[str, Any]:
     try:
         with TemporaryDirectory() as folder:
             toml, logs = write(world, motions, Path(folder))
-            found = discover(read_robot(toml, logs[0], confirm=[logs[1]]))
+            options = DiscoveryOptions(without=without)
+            found = discover(read_robot(toml, logs[0], confirm=[logs[1]]), options=options)
     except Exception as error:
         return {**row, "error": f"{type(error).__name__}: {error}"}
     return {
         **row, "verdict": found.verdict, "times_noise": found.times_noise(found.after),
+        "moves": list(found.moves), "cut_short": list(found.cut_short),
         "named": [
             {"name": n.name, "where": n.where, "confidence": n.confidence,
              "rivals": [[r.name, r.where, r.confidence] for r in n.rivals],
@@ -151,13 +153,14 @@ def main() -> None:
     add("--effects", nargs="*", choices=[*NAMES], default=[*NAMES])
     add("--seed", type=int, default=1)
     add("--count", type=int, default=1, help="worlds of each robot and effect")
+    add("--without", nargs="*", default=[], help="passes that are left out; give --out too")
     add("--processes", type=int, default=1)
     add("--out", type=Path, default=ROWS)
     add("--page", type=Path, default=PAGE)
     add("--only-page", action="store_true")
     given = parser.parse_args()
     tasks = {
-        f"{robot}/{effect}/{seed}": (robot, effect, seed)
+        f"{robot}/{effect}/{seed}": (robot, effect, seed, tuple(given.without))
         for seed in range(given.seed, given.seed + given.count)
         for effect in given.effects
         for robot in given.robots
