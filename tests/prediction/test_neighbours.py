@@ -31,7 +31,7 @@ STIFF = 0.06  # of a spring that hardens [N m/rad³]
 
 @cache
 def logs():
-    made = records(4, {"hardening.k_3@hinge": STIFF}, samples=400)
+    made = records(4, {"hardening.k_3@hinge": STIFF}, samples=500)
     return as_records(made[:2], made[2:])
 
 
