@@ -44,8 +44,8 @@ Doubt = (
 )  # fmt: skip
 # Of what an effect explained: one that still explains as much beside another is missing too.
 OWN_SHARE = 0.5
-# Two tests of the gains of blocks, by their mean and by their ranks, pass by luck 1.1 to 1.3 times as
-# often as one (normal gains of 8 to 40 blocks): most that pass one pass the other.
+# Two tests of the gains of blocks, by their mean and by their ranks, pass by luck 1.1 to 1.3 times
+# as often as one (normal gains of 8 to 40 blocks): most that pass one pass the other.
 TESTS = 1.3
 # By what was measured, or by what is believed of its size.
 CONTRADICTED: tuple[Doubt, ...] = ("lengths", "record", "bound", "exchange", "differ")
