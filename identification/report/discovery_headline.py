@@ -8,7 +8,6 @@ from identification.discovery.effect_results import NamedEffect
 from identification.discovery.result import Discovery
 from identification.effects.named import phrase_there
 from identification.quantities import held
-from identification.report.discovery_verdict import is_above_noise
 from identification.report.effect_words import (
     describe_there,
     say_choice,
@@ -18,6 +17,7 @@ from identification.report.effect_words import (
 from identification.report.headline import Answer, Headline, Tile, capital, error_tile
 from identification.report.missing_place import find_place
 from identification.report.named_words import curve_top, likely_rivals
+from identification.report.nothing_words import is_above_noise
 from identification.report.value_words import without_colon
 from identification.shares import percent
 

@@ -18,18 +18,16 @@ from identification.report.finding_words import describe_finding, sentence
 from identification.report.horizon_words import needed_sentences
 from identification.report.missing_place import find_place
 from identification.report.named_words import basis_sentence, named_sentences
+from identification.report.nothing_words import NOISIER, errors_left, nothing_sentence
 from identification.report.opinion_words import opinion_sentences
 from identification.report.parts_words import is_untouched
-from identification.report.shown_words import SHOWN, hiding, smallest
+from identification.report.shown_words import hiding
 from identification.report.untold_words import bound_sentences
-from identification.report.value_words import phrase
-from identification.shares import HELD, change, decimal, fall_words, percent, ratio_of, times
+from identification.shares import HELD, change, fall_words, percent, ratio_of, times
 from identification.shown import verdict_of
 
 NOT_FITTED = "the fit has not seen, but on which the search has decided"
-NO_ERROR = 1e-3  # of the inputs' rms: less is not told from none
 ALMOST = 0.9999  # nearly all: "more than 99.9 %"
-NOISIER = 1.5  # times the rms noise of the other outputs of its unit: more is told
 
 
 @verdict_of.register
@@ -49,21 +47,9 @@ def further_sentences(found: Discovery) -> list[str]:
     ]
 
 
-def is_above_noise(found: Discovery) -> bool:
-    """Tells whether the nominal model's error on unseen data is more than noise makes."""
-    return _is_above_sensors(found) or found.before.rms > NOISIER * found.floor_rms > 0
-
-
-def _is_above_sensors(found: Discovery) -> bool:
-    """Tells whether it is more than sensors make, where nothing else is known to disturb."""
-    ratio = found.before.rms / found.noise_rms if found.noise_rms else 1.0
-    is_noise = found.unlogged is not None or found.input_error < NO_ERROR
-    return not is_noise and ratio**2 > 1 + found.options.min_gap_share
-
-
 def _verdict(found: Discovery) -> list[str]:
     if found.verdict == "nothing missing":
-        return [_nothing(found), *_findings(found)]
+        return [nothing_sentence(found), *_findings(found)]
     if found.verdict == "unknown effect":
         return [_unknown(found)]
     said = [named_sentences(found, named) for named in found.named]
@@ -123,94 +109,10 @@ def _findings(found: Discovery) -> list[str]:
     return [sentence(describe_finding(finding)) for finding in told]
 
 
-def _off(found: Discovery) -> tuple[str, str, str]:
-    """Returns what the nominal model leaves on unseen data, the noise, and that of the sensors."""
-    errors = [found.errors_of(found.before), found.floor, found.sensors]
-    sizes = error_words(errors, "")
-    return error_words(errors)[0], sizes[1], sizes[2]
-
-
-def _nothing(found: Discovery) -> str:
-    """Returns the paragraph: nothing is missing, or no effect is named as no candidate helps."""
-    left, noise, alone = _off(found)
-    if _is_above_sensors(found):
-        ratio = found.before.rms / found.noise_rms
-        return (
-            "No effect is named: no candidate lowers the error of prediction on unseen data beyond"
-            f" chance. This error is {left}{found.over}, {held(ratio)} times the sensors' noise of"
-            f" {alone}. {_either(found)}"
-        )
-    unseen = [d for d in found.detectable if not d.is_plausible]
-    seen = [d for d in found.detectable if d.is_plausible]
-    seen.sort(key=lambda d: d.smallest / d.largest)  # the easiest to find first
-    who = f"the sensors{' and unlogged disturbances' if found.unlogged else ''}"
-    if is_above_noise(found):
-        said = (
-            "No effect is named: no candidate lowers the error on unseen data beyond chance. But"
-            f" this error is {left}{found.over}, {times(found.before.rms / found.floor_rms)} the"
-            f" {noise} that {who} cause, so that noise does not explain all of it. Either something"
-            " is missing that no candidate explains, or the robot does something in the unseen data"
-            " that the fitted data never show."
-        )
-    else:
-        said = (
-            f"Nothing is missing{'' if found.detectable else ', as far as these data can tell'}:"
-            f" the error of the fitted model on unseen data is noise. It is {left}{found.over}, and"
-            f" {who} cause {noise}."
-        )
-        said += _rest(found, alone)
-    if seen:
-        listed = "; ".join(f"{describe_effect(d.candidate)}, {smallest(d)}" for d in seen[:SHOWN])
-        said += f" In 9 cases of 10 this log would have shown effects as small as: {listed}."
-    if unseen:
-        names = dict.fromkeys(phrase(d.candidate.effect) for d in unseen)
-        said += f" It would not show these effects at any plausible size: {'; '.join(names)}."
-    return said
-
-
-def _either(found: Discovery) -> str:
-    """Says what else than an effect may make the error: the inputs, where any input moves."""
-    if not isfinite(found.input_error):
-        return (
-            "No input that moves is a force, which might err. Something is missing that no"
-            " candidate explains."
-        )
-    return (
-        f"Either the inputs err by {ratio_of(found.input_error, 'their rms')}, or something is"
-        " missing that no candidate explains."
-    )
-
-
-def _rest(found: Discovery, alone: str) -> str:
-    """Returns sentences on what makes the error that sensors, which make `alone`, do not."""
-    unlogged = found.unlogged
-    if unlogged is None:
-        if found.input_error < NO_ERROR:
-            return " The noise of the sensors alone explains it."
-        if not isfinite(found.input_error):
-            return ""
-        size = ratio_of(found.input_error, "their rms")
-        return f" Inputs that err by {size} would explain the rest."
-    if not found.floor_rms > found.noise_rms:
-        return ""
-    lasts = f"lasting about {decimal(unlogged.time, HELD)} s"
-    if not unlogged.is_of_inputs:
-        return (
-            f" The sensors alone cause {alone}. Forces on the joints that are not in the log"
-            f" ({lasts}) explain the rest. If you are sure that no such forces act, something is"
-            " missing."
-        )
-    return (
-        f" The sensors alone cause {alone}. Errors of the inputs that are not in the log"
-        f" ({quantity(unlogged.rms, unit=unlogged.unit)} rms, {lasts}) explain the rest. If you"
-        " are sure that the inputs are more accurate, something is missing."
-    )
-
-
 def _unknown(found: Discovery) -> str:
     """Returns the paragraph that says that something is missing which no known effect explains."""
     tried = len({s.candidate.effect.name for s in found.scores})
-    left, noise, _ = _off(found)
+    left, noise, _ = errors_left(found)
     ratio = found.times_noise(found.before)
     times = f", {held(ratio)} times the sensors' noise of {noise}" if isfinite(ratio) else ""
     needed = ""
