@@ -20,11 +20,11 @@ from identification.report.discovery_sections import (
 from identification.report.discovery_verdict import (
     discovery_verdict,
     further_sentences,
-    is_above_noise,
 )
 from identification.report.effect_sections import added_section, rivals_section, tried_section
 from identification.report.horizon_section import horizon_sections
 from identification.report.law import law_sections
+from identification.report.nothing_words import is_above_noise
 from identification.report.page import Section, write_report
 
 if TYPE_CHECKING:
