@@ -43,7 +43,8 @@ NAMES: Mapping[str, tuple[str, ...]] = {
     "offset": ("offset",),
     "cogging": ("cogging",),
     "delay": ("delay", "time_shift"),
-    "heavier": ("mass_mismatch", "payload"),
+    # its inertia grows too, and is all that a body on a vertical axis shows
+    "heavier": ("mass_mismatch", "payload", "inertia_mismatch"),
     "bump": (),
     "stop": (),
 }
