@@ -83,9 +83,6 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
     "signed_ranks": (
         HORIZON, "proves by the ranks of the gains of blocks too, and not by their mean alone",
     ),
-    "decide_on_all": (
-        HORIZON, "decides on all unseen windows where those that decide prove nothing",
-    ),
     "values_of_start": (
         HORIZON, "begins at the given values where fitted ones predict unseen records worse",
     ),

@@ -18,7 +18,6 @@ from identification.prediction.moves.add_effect import add_effect
 from identification.prediction.moves.add_set import add_set, set_for_effects
 from identification.prediction.moves.add_yielding_friction import add_yielding_friction
 from identification.prediction.moves.curve_for_laws import curve_for_laws
-from identification.prediction.moves.decide_on_all import decide_on_all
 from identification.prediction.moves.drop_beside_curves import drop_beside_curves
 from identification.prediction.moves.drop_drawn_laws import drop_drawn_laws
 from identification.prediction.moves.drop_effects import drop_effects
@@ -38,7 +37,6 @@ from identification.windows.unseen import HORIZON, Unseen, predict
 FEWEST_BLOCKS = 3  # of unseen windows, whose scatter is known
 MOVES = (
     Move("add_effect", add_effect, grows=True),
-    Move("decide_on_all", decide_on_all, grows=True),
     Move("add_yielding_friction", add_yielding_friction, grows=True),
     Move("add_set", add_set, grows=True),
     Move("set_for_effects", set_for_effects, takes_long=True),

@@ -12,7 +12,6 @@ from identification.effects.joint_plant import candidates
 from identification.logs.parts import MEMORIES, inside
 from identification.prediction.discovery import WINDOWS
 from identification.prediction.exchange import exchanged
-from identification.prediction.moves import decide_on_all as whole
 from identification.prediction.nominal_fit import fit_alone, predicted
 from identification.prediction.task import RecordsTask
 from identification.prediction.verdict import conclude
@@ -133,33 +132,3 @@ def test_a_result_says_of_which_part_it_tells(without):
     else:
         assert "is untouched, and errors and gains are computed on it" in said
         assert parts[0]["select"] + parts[0]["report"] == pytest.approx(logs[2].duration, abs=0.02)
-
-
-def test_where_deciding_windows_prove_nothing_all_of_them_decide_at_half_the_chance(monkeypatch):
-    logs, given = records(4, FALSE), []
-    task = RecordsTask(
-        nominal_model=nominal_model(), records=as_records(logs[:2], logs[2:]),
-        effects=tuple(e for e in candidates(pendulum(), ("J", "d")) if e.name == "offset"),
-        options=DiscoveryOptions(),
-    )  # fmt: skip
-    state = WINDOWS.begin(task, print)
-    assert any(state.model.unseen.parts)
-
-    def add(begun, progress):
-        given.append(begun)
-        return replace(begun, accepted=accepted)
-
-    monkeypatch.setattr(whole, "add_effect", add)
-    accepted = ()
-    assert whole.decide_on_all(state, print).task is state.task
-    accepted = ("an effect",)
-    found = whole.decide_on_all(state, print)
-    assert found.task.options == state.task.options
-    for begun in given:
-        assert begun.task.options.significance == state.task.options.significance / 2
-        assert all(r.parts is None for r in begun.task.records)
-        assert begun.model.unseen.select is begun.model.unseen
-    again = replace(state, model=found.model)
-    assert whole.decide_on_all(again, print) is again
-    named = replace(state, accepted=accepted)
-    assert whole.decide_on_all(named, print) is named
