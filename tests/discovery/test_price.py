@@ -18,7 +18,7 @@ from identification.innovations.fitted_model import is_confirmed
 from identification.innovations.proof import flip_chance
 from identification.innovations.scoring.significance import select_significant
 from identification.prediction.contenders import list_contenders
-from identification.prediction.trial import find_doubt
+from identification.prediction.trial import TESTS, find_doubt
 from identification.windows.blocks import block_gains
 from identification.windows.comparison import Prediction
 
@@ -131,12 +131,10 @@ def test_of_several_refits_over_a_horizon_one_is_proven_as_seldom_as_of_one(refi
 
 def test_gains_of_many_blocks_prove_where_a_few_large_ones_hide_their_mean():
     """A force that acts far out: a little in all blocks, much in two of them."""
-    gains = np.r_[np.linspace(0.05, 0.2, 11), 2.0, 4.0]
+    gains = np.r_[np.linspace(0.05, 0.2, 14), 0.9, 1.1]
     t, chance = mean_above_zero(gains)
-    assert chance > 0.01
-    seen = prediction(
-        (gains,), (0.5,), t=max(t, 2.1), chance=chance, rank_chance=ranks_above_zero(gains)
-    )
+    assert t > OPTIONS.min_proof_t
+    seen = prediction((gains,), (0.5,), t, chance, ranks_above_zero(gains))
     assert find_doubt(seen, 6, OPTIONS) is None
     assert find_doubt(seen, 6, DiscoveryOptions(without=("signed_ranks",))) == "chance"
 
@@ -146,3 +144,15 @@ def test_the_chance_of_signed_ranks_is_that_of_scipy(count):
     x = np.random.default_rng(count).normal(0.3, 1.0, count)
     known = wilcoxon(x, alternative="greater", method="exact").pvalue
     assert ranks_above_zero(x) == pytest.approx(known, rel=1e-9)
+
+
+def test_the_price_of_two_tests_is_what_they_pass_by_luck_together():
+    """More often than one alone, so that a price is due, and no more often than it."""
+    blocks, draws, level = 16, 10_000, 0.05
+    rng = np.random.default_rng(0)
+    passed = sum(
+        min(mean_above_zero(x)[1], ranks_above_zero(x)) < level
+        for x in rng.standard_normal((draws, blocks))
+    )
+    assert passed > binom.ppf(0.999, draws, level)
+    assert passed <= binom.ppf(0.999, draws, TESTS * level)
