@@ -67,10 +67,14 @@ def _cut_short(found: Discovery) -> list[str]:
         return []
     limit = duration(60 * found.options.max_minutes)
     names = [name.replace("_", " ") for name in found.cut_short]
+    rest = (
+        "What is named is proven as always, but more may be missing"
+        if found.named
+        else "Effects that it has not tried may explain the error"
+    )
     return [
-        f"The time limit of {limit} ended the search within these moves: {listed(names)}."
-        " What is named is proven as always, but more may be missing; give more time by --minutes"
-        " or max_minutes."
+        f"The time limit of {limit} ended the search within these moves: {listed(names)}. {rest};"
+        " give more time by --minutes or max_minutes."
     ]
 
 
