@@ -1,30 +1,34 @@
-"""What the passes of a search are worth: hidden worlds answered with and without some of them.
+"""What passes and options of a search over a horizon are worth: worlds answered without each pass.
 
-    python benchmarks/ablation.py --without weak_scores [--robot pendulum cart] [--processes 2]
-    python benchmarks/ablation.py --without add_set set_for_effects --moved
-    python benchmarks/ablation.py --without plain       all passes at once but the forward selection
-    python benchmarks/ablation.py --only-page       the page anew, from the rows
+    python benchmarks/ablation.py [--seed 1] [--count 2] [--processes 2]
+    python benchmarks/ablation.py --passes signed_ranks loud_windows --worlds leg pendulum
+    python benchmarks/ablation.py --passes --options significance min_fall     each ± 50 %
+    python benchmarks/ablation.py --only-page          the page anew, from the rows
 
-Each world that `hidden_joints.py` has answered with the present search is answered anew by one that
-leaves out the passes. Such an answer is a line of RESULTS/NAME.jsonl, where NAME says what is left
-out, and is not made again by the same search. The rates are those of `joint_statistics`; a change
-is judged by the worlds that only one of the two answers right (McNemar 1947: under no difference
-each of them is as likely as the other). The page has a table for each NAME.
+Each world is answered by the search as it is, by one without each pass, and by one with each option
+that is named half and one and a half times as large. All searches of a world keep their steps
+(`kept_steps`), so that another one takes the time of what it does otherwise. Worlds are those of
+`robot_models.py` and of `hidden_joints.py`. A finished world is a line of ROWS, and is not made
+again by the same search.
 
-`--moved` is for moves: a world in which none of those that are left out changed the effects is
-answered alike without them, and is not searched again.
+A change is judged by the worlds that only one of the two searches answers right (McNemar 1947:
+under no difference each of them is as likely as the other).
 """
 
 from __future__ import annotations
 
 import argparse
+import os
 import sys
-from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import fields
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import hidden_joints
+import robot_models
 from joint_statistics import (
     count_found,
     has_false_name,
@@ -34,32 +38,51 @@ from joint_statistics import (
     is_right_or_alike,
     is_unlisted,
 )
+from joint_worlds.files import truth_of, write_world
+from joint_worlds.hidden import NULL, THREE, effects_of
 from joint_worlds.motion import ROBOTS
-from rows import answered, of_newest, rows_of, write_part
+from joint_worlds.world import UnseenError, make_world
+from robot_worlds import DRIVEN, NAMES, make, write
+from rows import ROOT, Row, answered, of_newest, rows_of, write_part
 from scipy.stats import binomtest
 
-from identification.discovery.passes import PASSES
-from identification.sweep.statistics import rate, said
+from identification.discovery.options import DiscoveryOptions
+from identification.discovery.passes import HORIZON, PASSES
 
-HERE = Path(__file__).parent
-RESULTS = HERE / "results" / "ablation"
+ROWS = ROOT / "benchmarks" / "results" / "ablation.jsonl"
+PAGE = ROOT / "docs" / "benchmarks.md"
 BEGIN, END = "<!-- ablation: begin -->\n", "<!-- ablation: end -->\n"
-PLAIN = "plain"  # the search with all passes left out; it adds one effect after another
-WHICH = ("with", "without")
-Row = Mapping[str, Any]
+ASKED = tuple(name for name, (of, _) in PASSES.items() if of in (HORIZON, "both"))
+SMALL = ("leg", "crane", "arm", "cart", "finger")  # kinds of robots whose search is short
+JOINTS = ("pendulum",)  # of `hidden_joints`
+DURATION = 10.0  # of a record of `hidden_joints` [s]
+SHARES = (0.5, 1.5)  # of an option's value
+NO_LIMIT = 1e4  # of the time of a search [min]
+WHOLE = ""  # the search as it is
 
 
-def passes_of(names: Sequence[str]) -> tuple[str, ...]:
-    """Returns the passes that are left out."""
-    return tuple(PASSES) if PLAIN in names else tuple(names)
+def variants(passes: Sequence[str], options: Sequence[str]) -> dict[str, DiscoveryOptions]:
+    """Returns options of searches by their names; that of the search as it is comes first."""
+    out = {WHOLE: DiscoveryOptions(max_minutes=NO_LIMIT)}
+    for name in passes:
+        out[name] = DiscoveryOptions(max_minutes=NO_LIMIT, without=(name,))
+    plain = DiscoveryOptions()
+    for name in options:
+        for share in SHARES:
+            value = type(getattr(plain, name))(share * getattr(plain, name))
+            changed: dict[str, Any] = {"max_minutes": NO_LIMIT, name: value}
+            out[f"{name} = {value:g}"] = DiscoveryOptions(**changed)
+    return out
 
 
 def is_good(row: Row) -> bool:
-    """Whether an answer is right.
+    """Returns whether an answer is right.
 
     A null stays silent, an unlisted force is not missed and gets no law's name, and several effects
     are all named.
     """
+    if "truth" not in row:
+        return robot_models.is_right(row)
     if is_of_several(row):
         return count_found(row) == len(row["truth"]["acting"]) and not has_false_name(row)
     if is_null(row):
@@ -69,118 +92,182 @@ def is_good(row: Row) -> bool:
     return is_right_or_alike(row)
 
 
-KINDS: Mapping[str, Callable[[Row], bool]] = {
-    "nothing is missing: silent": is_null,
-    "a listed effect: named first, or alike": lambda r: (
-        not (is_null(r) or is_unlisted(r) or is_of_several(r))
-    ),
-    "three effects: all named, and no other": is_of_several,
-    "a force in no catalogue: drawn, or unknown": is_unlisted,
-}
+def is_false(row: Row) -> bool:
+    """Returns whether a law is named that is not there."""
+    if "truth" not in row:
+        return robot_models.is_wrong(row)
+    if is_of_several(row):
+        return has_false_name(row)
+    if is_null(row) or is_unlisted(row):
+        return is_law_named(row)
+    return row["verdict"] == "named" and not is_right_or_alike(row)
 
 
-def summary(pairs: Sequence[Row]) -> str:
-    """Returns a table: rates with and without the passes, and the chance of the difference."""
-    done = [p for p in pairs if all("verdict" in p[which] for which in WHICH)]
-    lines = [
-        "| worlds | with | without | only with | only without | chance |",
-        "|---|---|---|---|---|---|",
-    ]
-    for kind, belongs in KINDS.items():
-        mine = [p for p in done if belongs(p["with"])]
-        each = [[is_good(p[which]) for p in mine] for which in WHICH]
-        only = [sum(a and not b for a, b in zip(*way, strict=True)) for way in (each, each[::-1])]
-        chance = binomtest(only[0], sum(only)).pvalue if sum(only) else 1.0
-        rates = [said(rate(column, bool)) for column in each]
-        lines.append(f"| {kind} | {rates[0]} | {rates[1]} | {only[0]} | {only[1]} | {chance:.2g} |")
-    spent = [sum(p[which]["processor_seconds"] for p in done) for which in WHICH]
-    made = Counter(move for p in done for move in {*p["with"]["moves"]})
-    told = ", ".join(f"{name} in {count}" for name, count in made.most_common())
-    return "\n".join([
-        *lines, "",
-        f"Of {len(done)} worlds, with {spent[0]:.0f} s and without {spent[1]:.0f} s of processor"
-        f" time. Moves of the whole search that changed the effects: {told or 'none'}.",
-    ])  # fmt: skip
-
-
-def study(answer: Row, passes: tuple[str, ...], is_moved: bool) -> dict[str, Any]:
-    """Returns a world's answer by a search without the passes.
+def study(robot: str, effect: str, seed: int, asked: Sequence[str]) -> dict[str, Any]:
+    """Returns what the searches of a world say; an error is a row too.
 
     Args:
-        answer: row of the whole search.
-        passes: that are left out.
-        is_moved: whether a world in which none of them changed the effects is answered alike.
+        robot: its kind.
+        effect: that it hides.
+        seed: of the world.
+        asked: passes, and options.
     """
-    robot, effect, seed = answer["key"].split("/")
-    if is_moved and not {*passes} & {*answer["moves"]}:
-        return {**answer, "alike": True}
-    return hidden_joints.study(robot, effect, int(seed), answer["duration"], passes)
+    os.environ["INCA_MJ_THREADS"] = "1"
+    with TemporaryDirectory() as folder:
+        try:
+            truth, toml, logs, told = _world(robot, effect, seed, Path(folder))
+        except UnseenError as error:
+            return {"unseen": str(error)}
+        passes = [name for name in asked if name in PASSES]
+        options = [name for name in asked if name not in PASSES]
+        try:
+            return {"asked": list(asked), **_answers(truth, toml, logs, told, passes, options)}
+        except Exception as error:
+            return {"error": f"{type(error).__name__}: {error}"}
+
+
+Told = Callable[[Any], dict[str, Any]]
+
+
+def _world(
+    robot: str, effect: str, seed: int, folder: Path
+) -> tuple[dict[str, Any], Path, list[Path], Told]:
+    """Returns the truth of a world, its files, and what says in its study's words what is found."""
+    if robot in ROBOTS:
+        world = make_world(robot, effect, seed, DURATION)
+        toml, *logs = write_world(world, folder)
+        return {"truth": truth_of(world)}, toml, logs, hidden_joints.answer_of
+    small, motions = make(robot, effect, seed)
+    toml, logs = write(small, motions, folder)
+    truth = {"robot": robot, "effect": effect, "joint": small.joint}
+    return truth, toml, logs, robot_models.answer_of
+
+
+def _answers(
+    truth: Row, toml: Path, logs: Sequence[Path], told: Told, passes: Sequence[str],
+    options: Sequence[str],
+) -> dict[str, Any]:  # fmt: skip
+    """Returns the answer of the search as it is, and those of others that differ from it."""
+    # These take long to import, and the processes that only write the page need them not.
+    from kept_steps import asked, kept_steps
+
+    from identification import read_robot
+    from identification.prediction.discovery import discover_records
+    from identification.robot.second_opinion import ask_torques
+    from identification.robot.suggestions import suggest
+
+    robot = read_robot(toml, logs[0], confirm=logs[1:])
+    torques = ask_torques(robot, None)
+    suggested = suggest(torques, robot) if torques else ()
+    model, candidates = robot.nominal_model, robot.candidates
+    whole: dict[str, Any] = {}
+    changed, seconds = {}, {}
+    with kept_steps():
+        for name, own in variants(passes, options).items():
+            begun = time.process_time()
+            found = discover_records(
+                model, (robot.log,), robot.records, candidates, None, asked(own), suggested
+            )
+            answer = told(found)
+            seconds[name] = time.process_time() - begun
+            row = {**truth, **answer}
+            short = {"good": is_good(row), "false": is_false(row), "verdict": answer["verdict"],
+                     "named": [[n["name"], n["where"]] for n in answer["named"]]}  # fmt: skip
+            if name == WHOLE:
+                whole = short
+            elif short != whole:
+                changed[name] = short
+    return {"truth": dict(truth), "whole": whole, "changed": changed, "seconds": seconds}
 
 
 def told(row: Row) -> str:
-    """A row in a line."""
-    return f"{row['key']} {row.get('verdict', 'no answer')}"
+    """Returns a row in a line."""
+    if "whole" not in row:
+        return f"{row['key']}: {row.get('unseen') or row['error']}"
+    others = ", ".join(f"{n} {row['whole']['good']:d}>{c['good']:d}"
+                       for n, c in row["changed"].items())  # fmt: skip
+    said = row["whole"]["named"] or row["whole"]["verdict"]
+    return f"{row['key']}: {said}, {sum(row['seconds'].values()):.0f} s; {others}"
 
 
-def pairs_of(answers: Sequence[Row], rows: Sequence[Row]) -> list[Row]:
-    """Returns answers of the whole search, each with that of the search without passes.
+def section(rows: Sequence[Row]) -> str:
+    """Returns the section of the page, Markdown."""
+    done = [row for row in rows if "whole" in row]
+    head = ["## What passes and options of a search are worth", "",
+            "    python benchmarks/ablation.py", ""]  # fmt: skip
+    if not done:
+        return "\n".join([*head, "Nothing has been left out of the present search.\n"])
+    good = sum(row["whole"]["good"] for row in done)
+    return "\n".join([
+        *head,
+        f"Search of {rows[-1]['commit']}, over a horizon. It answers {good} of {len(done)} worlds"
+        " right. A pass or an option counts by the worlds whose verdict or names change without the"
+        " pass, or with the option half and one and a half times as large. *Chance*: that as"
+        " unequal numbers come of a pass that is worth nothing (McNemar 1947). *Time*: processor"
+        " time of a search without it that is new, over that of the whole search.", "",
+        "| without, or with | worlds | other answer | right only with it | right only without it |"
+        " chance | laws that are not there, with it and without | time |",
+        "|---|---|---|---|---|---|---|---|", *lines(done), "",
+    ])  # fmt: skip
 
-    Args:
-        answers: of the whole search.
-        rows: of the search without passes.
-    """
-    whole = {row["key"]: row for row in of_newest(answers)} if answers else {}
-    mine = [row for row in rows if row["key"] in whole]
-    return [
-        {"with": whole[row["key"]], "without": row}
-        for row in mine if row["commit"] == whole[row["key"]]["commit"]
-    ]  # fmt: skip
+
+def lines(done: Sequence[Row]) -> Iterator[str]:
+    """Yields the lines of the table, the pass that changes most first."""
+    names = dict.fromkeys(name for row in done for name in row["seconds"] if name)
+    for name in sorted(names, key=lambda n: -sum(n in row["changed"] for row in done)):
+        mine = [row for row in done if name in row["seconds"]]
+        pairs = [(row["whole"], row["changed"].get(name, row["whole"])) for row in mine]
+        other = sum(name in row["changed"] for row in mine)
+        only_with = sum(a["good"] and not b["good"] for a, b in pairs)
+        only_without = sum(b["good"] and not a["good"] for a, b in pairs)
+        both = only_with + only_without
+        chance = binomtest(only_with, both).pvalue if both else 1.0
+        false = [sum(p[k]["false"] for p in pairs) for k in (0, 1)]
+        spent = sum(r["seconds"][name] for r in mine) / sum(r["seconds"][WHOLE] for r in mine)
+        yield (f"| `{name}` | {len(mine)} | {other} | {only_with} | {only_without} |"
+               f" {chance:.2g} | {false[0]}, {false[1]} | {spent:.2f} |")  # fmt: skip
 
 
-def section(answers: Sequence[Row], folder: Path) -> str:
-    """The section of the page, Markdown.
-
-    Args:
-        answers: of the whole search.
-        folder: of the rows of searches without passes.
-    """
-    lines = ["## What passes of a search are worth", "",
-             "    python benchmarks/ablation.py --without PASS", ""]  # fmt: skip
-    tables = []
-    for path in sorted(folder.glob("*.jsonl")):
-        if pairs := pairs_of(answers, rows_of(path)):
-            names = " and ".join(f"`{name}`" for name in path.stem.split("+"))
-            tables.append(f"Without {names}, search of {pairs[-1]['with']['commit']}:\n\n"
-                          f"{summary(pairs)}\n")  # fmt: skip
-    return "\n".join([*lines, *(tables or ["None has been left out of the present search.\n"])])
+def tasks(given: argparse.Namespace) -> Mapping[str, tuple[Any, ...]]:
+    """Returns the worlds by key: every robot and effect once before any twice."""
+    out: dict[str, tuple[Any, ...]] = {}
+    of_robot = {r: [*NAMES] for r in DRIVEN} | {
+        r: [NULL, *effects_of(ROBOTS[r]), THREE] for r in ROBOTS
+    }
+    asked = (*given.passes, *given.options)
+    for seed in range(given.seed, given.seed + given.count):
+        for k in range(max(map(len, of_robot.values()))):
+            for robot in given.worlds:
+                effects = of_robot[robot]
+                if k >= len(effects) or (
+                    effects[k] == "heavier" and (robot in robot_models.MASS_IS_FREE)
+                ):
+                    continue
+                out[f"{robot}/{effects[k]}/{seed}"] = (robot, effects[k], seed, asked)
+    return out
 
 
 def main() -> int:
-    """Answer the worlds that are not answered yet, and print the table."""
+    """Answer the worlds that are not answered yet, and write the table."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    add = parser.add_argument
-    add("--robot", nargs="+", choices=list(ROBOTS), default=["pendulum", "cart"])
-    add("--effect", nargs="+", default=[], help="of the project's names, nothing, or three")
-    add("--answers", type=Path, default=hidden_joints.RESULTS, help="of the whole search")
-    add("--without", nargs="+", choices=[PLAIN, *PASSES], default=[PLAIN], metavar="PASS")
-    add("--moved", action="store_true", help="only worlds in which one of the moves did something")
+    add, numbers = parser.add_argument, [
+        f.name for f in fields(DiscoveryOptions) if f.name not in ("without", "max_minutes")
+    ]  # fmt: skip
+    add("--worlds", nargs="+", choices=[*DRIVEN, *ROBOTS], default=[*SMALL, *JOINTS],
+        metavar="ROBOT")  # fmt: skip
+    add("--passes", nargs="*", choices=ASKED, default=ASKED, metavar="PASS")
+    add("--options", nargs="*", choices=numbers, default=[], metavar="OPTION")
+    add("--seed", type=int, default=1)
+    add("--count", type=int, default=1, help="worlds of each robot and effect")
     add("--processes", type=int, default=1)
-    add("--out", type=Path, default=RESULTS)
-    add("--page", type=Path, default=hidden_joints.PAGE)
+    add("--out", type=Path, default=ROWS)
+    add("--page", type=Path, default=PAGE)
     add("--only-page", action="store_true")
     given = parser.parse_args()
-    path = given.out / f"{'+'.join(given.without)}.jsonl"
-    answers = rows_of(given.answers)
-    asked = {
-        row["key"]: (row, passes_of(given.without), given.moved)
-        for row in (of_newest(answers) if answers else [])
-        if "verdict" in row and row["truth"]["robot"] in given.robot
-        and (not given.effect or row["truth"]["effect"] in given.effect)
-    }  # fmt: skip
-    if not given.only_page:
-        answered(study, asked, path, told, given.processes)
-        print(summary(pairs_of(answers, rows_of(path))))
-    write_part(given.page, BEGIN, END, section(answers, given.out))
+    rows = rows_of(given.out) if given.only_page else answered(
+        study, tasks(given), given.out, told, given.processes
+    )  # fmt: skip
+    write_part(given.page, BEGIN, END, section(of_newest(rows) if rows else []))
     return 0
 
 

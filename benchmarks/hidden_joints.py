@@ -29,6 +29,8 @@ from joint_worlds.motion import ROBOTS
 from joint_worlds.world import UnseenError, make_world
 from rows import Row, answered, of_newest, rows_of, write_part
 
+from identification.discovery.result import Discovery
+
 HERE = Path(__file__).parent
 RESULTS = HERE / "results" / "hidden_joints.jsonl"
 PAGE = HERE.parent / "docs" / "benchmarks.md"
@@ -73,6 +75,15 @@ def answer(toml: Path, a: Path, b: Path, without: tuple[str, ...] = ()) -> dict[
     error = compare_values(robot, robot.records[0], fitted, after)
     written = compare_values(robot, robot.records[0], {}, {})
     return {
+        **answer_of(found),
+        "errors": {"written": written.before, "fit": error.before, "discover": error.after},
+        "fitted": fitted, "fit_seconds": between - begin, "discover_seconds": end - between,
+    }  # fmt: skip
+
+
+def answer_of(found: Discovery) -> dict[str, Any]:
+    """Returns what a search says, as a row has it."""
+    return {
         "verdict": found.verdict, "moves": list(found.moves),
         "named": [
             {"name": n.candidate.effect.name, "where": n.candidate.where,
@@ -94,8 +105,6 @@ def answer(toml: Path, a: Path, b: Path, without: tuple[str, ...] = ()) -> dict[
         "findings": [f.kind.value for f in found.findings],
         "rejected": [[r.candidate.effect.name, r.candidate.where, r.doubt] for r in found.rejected],
         "scores": [[s.candidate.effect.name, s.candidate.where] for s in found.scores[:5]],
-        "errors": {"written": written.before, "fit": error.before, "discover": error.after},
-        "fitted": fitted, "fit_seconds": between - begin, "discover_seconds": end - between,
     }  # fmt: skip
 
 

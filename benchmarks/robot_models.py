@@ -22,6 +22,7 @@ from typing import Any
 from robot_worlds import DRIVEN, NAMES, UNLISTED, make, write
 from rows import ROOT, Row, answered, of_newest, rows_of
 
+from identification.discovery.result import Discovery
 from identification.sweep.statistics import median, rate, said
 
 ROWS = ROOT / "benchmarks" / "results" / "robot_models.jsonl"
@@ -63,8 +64,13 @@ def study(robot: str, effect: str, seed: int, without: tuple[str, ...]) -> dict[
             found = discover(read_robot(toml, logs[0], confirm=[logs[1]]), options=options)
     except Exception as error:
         return {**row, "error": f"{type(error).__name__}: {error}"}
+    return {**row, **answer_of(found), "seconds": time.process_time() - begun}
+
+
+def answer_of(found: Discovery) -> dict[str, Any]:
+    """Returns what a search says, as a row has it."""
     return {
-        **row, "verdict": found.verdict, "times_noise": found.times_noise(found.after),
+        "verdict": found.verdict, "times_noise": found.times_noise(found.after),
         "moves": list(found.moves), "cut_short": list(found.cut_short),
         "named": [
             {"name": n.name, "where": n.where, "confidence": n.confidence,
@@ -73,7 +79,6 @@ def study(robot: str, effect: str, seed: int, without: tuple[str, ...]) -> dict[
             for n in found.named
         ],
         "rejected": [[r.candidate.effect.name, r.candidate.where, r.doubt] for r in found.rejected],
-        "seconds": time.process_time() - begun,
     }  # fmt: skip
 
 
