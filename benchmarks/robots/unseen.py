@@ -44,6 +44,8 @@ def errors_of(
         own: by record and by name, what a record has for itself.
     """
     each = own or {}
+    if isinstance(plant, JointPlant):  # an effect among the values may need states of joints
+        plant = plant.with_states_of(n for n, v in values.items() if v != 0)
     return lambda log, horizon: window_error(
         plant, log, horizon, {**values, **each.get(log.name, {})}
     )

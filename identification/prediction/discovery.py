@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import inf, sqrt
-
-import numpy as np
 
 from identification.discovery.moves import Evidence
 from identification.discovery.nominal_model import NominalModel, without_starts
@@ -16,6 +13,7 @@ from identification.effects.effect import Candidate, Effect
 from identification.errors import InputError
 from identification.logs.log import Log
 from identification.prediction.records_fit import NO_HORIZON
+from identification.prediction.remaining import noise_ratio
 from identification.prediction.state import MOVES, first_state
 from identification.prediction.task import RecordsTask, WindowSearch
 from identification.prediction.verdict import conclude
@@ -37,9 +35,7 @@ RESTS: Rests = {
 
 def times_noise(state: WindowSearch) -> float:
     """Returns the rms error over unseen windows of the horizon that decide, over the noise."""
-    unseen = state.model.unseen.select
-    square = float(np.mean(np.concatenate(unseen.at_horizon)))
-    return sqrt(square / unseen.floor) if unseen.floor > 0 else inf
+    return noise_ratio(state, state.model.unseen.select)
 
 
 WINDOWS = Evidence(first_state, MOVES, conclude, times_noise, RESTS)

@@ -119,7 +119,8 @@ def is_much_left(model: WindowModel, options: DiscoveryOptions) -> bool:
 def _error_left(state: WindowSearch) -> RemainingError | None:
     """Returns the error above the sensors' noise; None where the noise alone explains it."""
     options, share = state.task.options, left_by_steps(state.model)
-    ratio, ratios = share * noise_ratio(state), share * output_ratios(state.model.unseen.report)
+    unseen = state.model.unseen.report
+    ratio, ratios = share * noise_ratio(state, unseen), share * output_ratios(unseen)
     names = state.task.records[0].log.output_names
     worst = int(np.argmax(ratios))
     if len(names) > 1 and ratios[worst] > max(MAX_OUTPUT_RATIO, ratio):
@@ -139,10 +140,10 @@ def output_ratios(unseen: Unseen) -> np.ndarray:
     return np.sqrt(np.divide(squares, noise, out=np.zeros_like(squares), where=noise > 0))
 
 
-def noise_ratio(state: WindowSearch) -> float:
-    """Returns the final model's rms error on unseen records over that of the sensors' noise."""
-    unseen, scale, log = state.model.unseen, state.model.scale, state.task.records[0].log
-    errors = errors_by_unit(np.concatenate(unseen.report.of_outputs), scale, log)
+def noise_ratio(state: WindowSearch, unseen: Unseen) -> float:
+    """Returns the model's rms error on some unseen windows over that of the sensors' noise."""
+    scale, log = state.model.scale, state.task.records[0].log
+    errors = errors_by_unit(np.concatenate(unseen.of_outputs), scale, log)
     return relative(errors, errors_by_unit(unseen.noise, scale, log))
 
 

@@ -73,13 +73,19 @@ def search_again(held: HeldWindows, d: np.ndarray, r: np.ndarray) -> tuple[np.nd
     far = np.flatnonzero(squares > WORSE_RATIO * np.median(squares))
     if not far.size:
         return d, r
-    begun = np.concatenate([share * d[far] for share in RESTART_SHARES])
-    part = held.rows(np.tile(far, len(RESTART_SHARES)))
+    starts = [share * d[far] for share in RESTART_SHARES]
+    act = held.first.act[far]
+    if act.size:  # what a friction or a gear carries may have begun on the other side
+        mirrored = np.array(d[far])
+        mirrored[:, -act.shape[1] :] = -2 * act - mirrored[:, -act.shape[1] :]
+        starts.append(mirrored)
+    begun = np.concatenate(starts)
+    part = held.rows(np.tile(far, len(starts)))
     first = part.residual(begun)
     if not np.isfinite(first).all():  # elsewhere it diverges: the states found stand
         return d, r
     found = search(states_at(part, begun, first))
-    for other, rest in zip(*(np.split(x, len(RESTART_SHARES)) for x in found), strict=True):
+    for other, rest in zip(*(np.split(x, len(starts)) for x in found), strict=True):
         better = np.sum(rest**2, axis=1) < np.sum(r[far] ** 2, axis=1)
         d[far[better]], r[far[better]] = other[better], rest[better]
     return d, r

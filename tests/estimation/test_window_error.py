@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from estimation_plants import record, slider
+from state_cases import F_C, PRESLIDING, Truth, measured, pendulum
 
 from identification.windows.held import held_records, held_windows
 from identification.windows.settling import settle
@@ -52,6 +53,15 @@ def test_the_start_of_a_window_is_the_best_there_is():
     y = log.outputs[:20, 0] - free
     expected = y - X @ np.linalg.lstsq(X, y, rcond=None)[0]
     np.testing.assert_allclose(error, expected, atol=1e-8)
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_a_friction_that_gives_may_have_pulled_either_way_when_a_window_began(seed):
+    """The true model leaves the noise in every window, also where its friction pulled back."""
+    log = measured(Truth(slip=3.0, f_c=F_C), seed, samples=150, noise=NOISE)
+    plant = pendulum(F_C, 0.0025).with_values({"J": 2e-3, "d": 0.02})
+    error = window_error(plant.with_states_of([PRESLIDING]), log, 0.2, {PRESLIDING: 3.0})
+    assert np.sqrt(np.mean(error**2, axis=(1, 2))).max() < 2 * NOISE
 
 
 def test_a_window_ends_where_it_ends_alone():
