@@ -82,8 +82,9 @@ class Outlook:
         return f"{said}: {told}" if (told := self._told()) else said
 
     def _told(self) -> str:
-        if self.left is not None:
-            return f"{between(*self.left)} left"
+        left = self.left  # asked once: the clock goes on, and soon nothing is left
+        if left is not None:
+            return f"{between(*left)} left"
         return "" if self.rest is None else "it takes longer than forecast"
 
 

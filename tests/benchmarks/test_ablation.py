@@ -1,6 +1,6 @@
-"""A pass is judged by the worlds that only one of the two searches answers right."""
+"""A pass is judged by the worlds that only one of two searches answers right."""
 
-import json
+import argparse
 
 import ablation
 import pytest
@@ -12,57 +12,61 @@ def row(effect, names, curve=""):
     truth = {"effect": effect, "names": [effect], "parameters": {}, "joint": "j1", "size": 1.0,
              "curve": curve}  # fmt: skip
     verdict = "named" if names else "nothing missing"
-    moves = ["add_effect"] * len(names)
-    return {"truth": truth, "verdict": verdict, "named": named, "moves": moves,
-            "processor_seconds": 2.0}  # fmt: skip
+    return {"truth": truth, "verdict": verdict, "named": named}
 
 
-def pair(with_it, without):
-    return {"key": "k", "with": with_it, "without": without}
-
-
-@pytest.mark.parametrize(("answer", "good"), [
-    (row("nothing", []), True), (row("nothing", ["delay"]), False),
-    (row("delay", ["delay"]), True), (row("delay", ["lag"]), False), (row("delay", []), False),
-    (row("tide", ["lag"], curve="curve_time"), False),
-    (row("tide", ["curve_time"], curve="curve_time"), True),
-    (row("tide", [], curve="curve_time"), False),
-    ({**row("tide", [], curve="curve_time"), "verdict": "unknown effect"}, True),
+@pytest.mark.parametrize(("answer", "good", "false"), [
+    (row("nothing", []), True, False), (row("nothing", ["delay"]), False, True),
+    (row("delay", ["delay"]), True, False), (row("delay", ["lag"]), False, True),
+    (row("delay", []), False, False),
+    (row("tide", ["lag"], curve="curve_time"), False, True),
+    (row("tide", ["curve_time"], curve="curve_time"), True, False),
+    (row("tide", [], curve="curve_time"), False, False),
+    ({**row("tide", [], curve="curve_time"), "verdict": "unknown effect"}, True, False),
 ])  # fmt: skip
-def test_silence_a_right_name_and_what_is_called_unknown_or_drawn_are_right(answer, good):
-    assert ablation.is_good(answer) is good
+def test_silence_a_right_name_and_what_is_called_unknown_or_drawn_are_right(answer, good, false):
+    assert (ablation.is_good(answer), ablation.is_false(answer)) == (good, false)
+
+
+def world(is_good, others):
+    def short(good):
+        return {"good": good, "false": not good, "verdict": "named", "named": [["x", str(good)]]}
+
+    changed = {name: short(good) for name, good in others.items() if good != is_good}
+    seconds = {"": 10.0} | {name: 5.0 if name in changed else 0.0 for name in others}
+    return {"key": "k", "commit": "new", "whole": short(is_good), "changed": changed,
+            "seconds": seconds}  # fmt: skip
 
 
 def test_only_worlds_that_one_search_alone_answers_right_count():
-    right, wrong = row("delay", ["delay"]), row("delay", ["lag"])
-    pairs = [pair(right, right)] * 5 + [pair(right, wrong)] * 6 + [pair(wrong, right)]
-    told = next(line for line in ablation.summary(pairs).splitlines() if "listed effect" in line)
-    cells = [cell.strip() for cell in told.strip("|").split("|")]
-    assert cells[3:5] == ["6", "1"]
-    assert float(cells[5]) == pytest.approx(2 * binom.cdf(1, 7, 0.5), rel=0.05)
+    rows = [world(True, {"add_set": True, "drop_places": True})] * 5
+    rows += [world(True, {"add_set": False, "drop_places": True})] * 6
+    rows += [world(False, {"add_set": True, "drop_places": False})]
+    told = [[c.strip() for c in line.strip("|").split("|")] for line in ablation.lines(rows)]
+    assert [cells[0] for cells in told] == ["`add_set`", "`drop_places`"]
+    assert told[0][1:5] == ["12", "7", "6", "1"]
+    assert float(told[0][5]) == pytest.approx(2 * binom.cdf(1, 7, 0.5), rel=0.05)
+    assert told[0][6:] == ["1, 6", "0.29"]
+    assert told[1][1:] == ["12", "0", "0", "0", "1", "1, 1", "0.00"]
+    assert "It answers 11 of 12 worlds right" in " ".join(ablation.section(rows).split())
 
 
-def test_a_world_in_which_no_move_that_is_left_out_did_anything_is_not_searched_again(monkeypatch):
-    asked = []
-    monkeypatch.setattr(ablation.hidden_joints, "study", lambda *task: asked.append(task) or {})
-    answer = {**row("delay", ["delay"]), "key": "cart/delay/3", "duration": 9.0}
-    for passes, is_moved in ((("add_set",), True), (("add_effect",), True), (("add_set",), False)):
-        assert ablation.study(answer, passes, is_moved).get("alike", False) == (not asked)
-    assert [task[-1] for task in asked] == [("add_effect",), ("add_set",)]
-    assert asked[0][:4] == ("cart", "delay", 3, 9.0)
+def test_every_pass_and_both_values_of_an_option_are_asked_beside_the_whole_search():
+    asked = ablation.variants(["add_set"], ["min_fall", "max_refits"])
+    assert [*asked] == ["", "add_set", "min_fall = 0.015", "min_fall = 0.045", "max_refits = 1",
+                        "max_refits = 4"]  # fmt: skip
+    assert asked["add_set"].without == ("add_set",)
+    assert asked["max_refits = 4"].max_refits == 4
 
 
-def test_only_answers_of_one_search_are_compared(tmp_path):
-    def of(commit, effect, names):
-        return {**row(effect, names), "key": f"cart/{effect}/1", "commit": commit}
-
-    answers = [of("new", "delay", ["delay"]), of("new", "lag", ["lag"])]
-    rows = [of("old", "lag", ["lag"]), of("new", "delay", []), of("new", "offset", ["offset"])]
-    (pair,) = ablation.pairs_of(answers, rows)
-    assert pair == {"with": answers[0], "without": rows[1]}
-    assert "None has been left out" in ablation.section(answers, tmp_path)
-    path = tmp_path / "add_set+begin_anew.jsonl"
-    path.write_text("".join(json.dumps(r) + "\n" for r in rows), encoding="utf-8")
-    told = ablation.section(answers, tmp_path)
-    assert "Without `add_set` and `begin_anew`, search of new" in told
-    assert "| a listed effect: named first, or alike | 1 of 1" in told
+def test_every_robot_hides_every_effect_once_before_any_twice():
+    given = argparse.Namespace(
+        passes=["add_set"], options=[], seed=3, count=2, worlds=["leg", "pendulum"]
+    )
+    keys = [*ablation.tasks(given)]
+    half = len(keys) // 2
+    assert {k.rpartition("/")[2] for k in keys[:half]} == {"3"}
+    assert {k.rpartition("/")[0] for k in keys[:half]} == {
+        k.rpartition("/")[0] for k in keys[half:]
+    }
+    assert keys[:2] == ["leg/nothing/3", "pendulum/nothing/3"]

@@ -56,6 +56,16 @@ def test_what_passes_is_taken_off_and_what_takes_longer_is_said():
     assert said[-1] == f"stage 5 of 5, {LEFT}"
 
 
+@pytest.mark.parametrize("step", [1.0, 20.0, 49.9])
+def test_the_clock_may_pass_the_forecast_while_it_is_told(step):
+    times = iter(step * k for k in range(1000))
+    outlook = Outlook([].append, RESTS, lambda: next(times))
+    for _ in range(2):
+        outlook.enter(SCORES)
+        for _ in range(30):
+            assert str(outlook).endswith(("left", "it takes longer than forecast"))
+
+
 def test_forecasts_are_ranges_of_stages_and_become_narrower_with_each():
     rests = WINDOWS.rests
     assert {stage for stage, _ in rests} == {*STAGES} - {FIT}
