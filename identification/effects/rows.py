@@ -20,6 +20,7 @@ import numpy as np
 from identification.effects.axes import Axis
 from identification.effects.bodies import BODY
 from identification.effects.effect import Effect
+from identification.effects.joint_law import JointTerms, joint_terms, key_of_law
 from identification.effects.moving_bodies import movable
 from identification.effects.values import (
     Values,
@@ -74,21 +75,28 @@ class JointLayout:
         refuse_misplaced(self.effects, (JOINT, INPUT, BODY, SENSOR, GEAR))
 
     @cached_property
+    def terms(self) -> JointTerms:
+        """The effects that act on joints, and the terms of their law."""
+        return joint_terms(terms_of(self.effects, JOINT))
+
+    @property
     def on_joints(self) -> tuple[Term, ...]:
         """The effects with parameters in a joint's row, columns counted from the first of them."""
-        return terms_of(self.effects, JOINT)
+        return self.terms.own
 
     @cached_property
     def key(self) -> float:
-        """Tells this set of joint effects from others."""
-        names = {term.effect for term in self.on_joints}
+        """Tells the law of these joint effects from others."""
         of = "joints with states" if self.has_states else "joints"
+        if self.terms.law is not self.terms.own:
+            return key_of_law(self.terms.law, of)
+        names = {term.effect for term in self.on_joints}
         return key_of([e for e in self.effects if e.name in names], of)
 
-    @property
+    @cached_property
     def entries(self) -> int:
         """Entries of a joint's row."""
-        return (state_width if self.has_states else width)(self.on_joints)
+        return (state_width if self.has_states else width)(self.terms.law)
 
     @property
     def has_bodies(self) -> bool:
@@ -98,7 +106,7 @@ class JointLayout:
 
     def install(self) -> None:
         """Install the law in this process; does nothing when it is installed already."""
-        install(_law(self.key, self.on_joints, self.has_states))
+        install(_law(self.key, self.terms.law, self.has_states))
 
 
 @cache

@@ -72,16 +72,13 @@ def run(plant, log, **values):
 
 def stopping_time(plant, joint):
     """T of a joint: its row is the one before the user data end with key and tag [s]."""
-    on_joints = [e for e in plant.effects if {"force", "friction"} & {*e.hooks}]
-    width = 8 + sum(len(e.names) for e in on_joints)
-    return float(plant.model.jnt_user[plant.model.joint(joint).id, -width])
+    return float(plant.model.jnt_user[plant.model.joint(joint).id, -plant.layout.entries])
 
 
 def reached(plant, joint):
     """What the records of a joint reach, which stands behind T: the last fields of its state."""
-    on_joints = [e for e in plant.effects if {"force", "friction"} & {*e.hooks}]
-    width = 7 + sum(len(e.names) for e in on_joints)
-    return plant.model.jnt_user[plant.model.joint(joint).id, -width:][:5].tolist()
+    row = plant.model.jnt_user[plant.model.joint(joint).id, -plant.layout.entries :]
+    return row[1:6].tolist()
 
 
 def share(plant, joint, q):
