@@ -70,6 +70,11 @@ def until(end: float) -> Iterator[None]:
         _here.end = before
 
 
+def lift_limit() -> None:
+    """Lets the work in the innermost block of `until` of this thread go on behind its time."""
+    _here.end = inf
+
+
 def end_if_given_up() -> None:
     """Ends the work of this thread where nobody waits for it any more, or its time is over.
 

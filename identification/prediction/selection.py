@@ -18,6 +18,7 @@ from identification.discovery.impossible import find_impossible
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.passes import uses
 from identification.effects.effect import Candidate
+from identification.pool import OutOfTime, lift_limit
 from identification.prediction.contenders import (
     count_numbers,
     list_contenders,
@@ -76,16 +77,25 @@ def refit_contenders(
     if uses(options, "suggested_effects"):
         has = {*(s.candidate.key for s in chosen), *(c.key for c in model.candidates)}
         chosen += window_scores(model.fit, [c for c in suggested if c.key not in has])
-    refits, crosses = len(chosen), uses(options, "states_of_others")
+    refits, crosses, is_late = len(chosen), uses(options, "states_of_others"), False
 
     def refit(each: Sequence[Begun]) -> list[WindowModel]:
+        nonlocal is_late
         tasks = [(b.candidate, partial(_refit, model, b, horizon, confirm)) for b in each]
         out = []
-        for new in counted(attempt_each(tasks), "refits", len(each)):
-            if isinstance(new, Begun):
-                tell_dropped(new.candidate, "its refit explains no more than the model without it")
-            elif new is not None:
-                out.append(new)
+        try:
+            for new in counted(attempt_each(tasks), "refits", len(each)):
+                if isinstance(new, Begun):
+                    reason = "its refit explains no more than the model without it"
+                    tell_dropped(new.candidate, reason)
+                elif new is not None:
+                    out.append(new)
+        except OutOfTime:
+            is_late = True
+            if not out:
+                raise
+        if out:
+            lift_limit()  # what was refitted in time, the best begun first, is judged and accepted
         return out
 
     def judge(
@@ -113,13 +123,13 @@ def refit_contenders(
     children = refit(_near_best(_begun(model, chosen, scores, options), options))
     parent, out = judge(model, children)
     proven = [c for c in out if c.is_proven]
-    curves = [] if proven else list_curves(scores, {s.candidate.key for s in chosen}, options)
-    if curves:
+    curves = list_curves(scores, {s.candidate.key for s in chosen}, options)
+    if curves and not proven and not is_late:
         refits += len(curves)
         more = refit(_near_best(_begun(model, curves, scores, options), options))
         parent, out = judge(parent, [*(c.model for c in out), *more])
         proven = [c for c in out if c.is_proven]
-    if proven and uses(options, "simpler_laws"):
+    if proven and not is_late and uses(options, "simpler_laws"):
         best = max(proven, key=lambda c: c.criterion)
         tried = {c.candidate.key for c in out}
         simpler = list_simpler(best.candidate, scores, options)

@@ -11,6 +11,7 @@ from identification.pool import (
     OutOfTime,
     each_part,
     end_if_given_up,
+    lift_limit,
     run_parts,
     split,
     threads,
@@ -79,6 +80,9 @@ def test_work_ends_behind_its_time_in_every_thread_and_only_in_the_block():
     with pytest.raises(OutOfTime), until(time.monotonic() - 1):
         run_parts(lambda _: end_if_given_up(), range(4))
     with until(time.monotonic() + 60):
+        end_if_given_up()
+    with until(time.monotonic() - 1):
+        lift_limit()
         end_if_given_up()
     end_if_given_up()
     run_parts(lambda _: end_if_given_up(), range(4))

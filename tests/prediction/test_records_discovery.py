@@ -1,14 +1,18 @@
 """From records to a verdict: a hidden law is named, an empty one is not, and what is refused."""
 
+import time
 from dataclasses import replace
 from functools import cache
+from types import SimpleNamespace
 
 import pytest
 from records_cases import nominal_model, pendulum, record, records
 
+from identification import pool
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.joint_plant import candidates
 from identification.errors import InputError
+from identification.prediction import selection
 from identification.prediction.discovery import discover_records
 from identification.report.discovery_json import discovery_to_json
 from identification.report.discovery_report import discovery_text
@@ -103,3 +107,23 @@ def test_a_search_behind_its_time_limit_answers_and_says_what_it_has_not_tried()
     assert discovery_to_json(answer)["cut_short"] == [*answer.cut_short]
     assert "within these moves: add effect and add set. " in discovery_text(answer)
     assert found().cut_short == ()
+
+
+def test_what_was_refitted_before_the_time_was_over_is_still_judged_and_named(monkeypatch):
+    """The clock jumps behind the limit once the first effect of the first round is refitted."""
+    is_late, refit, passed = [], selection._refit, time.monotonic
+
+    def first(*args):
+        new = refit(*args)
+        is_late.append(args[1].candidate.effect.name)
+        return new
+
+    monkeypatch.setenv("INCA_MJ_THREADS", "1")
+    monkeypatch.setattr(selection, "_refit", first)
+    late = SimpleNamespace(monotonic=lambda: passed() + 1e6 * bool(is_late))
+    monkeypatch.setattr(pool, "time", late)
+    logs = records(4, {MU: 0.15}, samples=SAMPLES)
+    effects = [e for e in candidates(pendulum(), ("J", "d")) if e.name in FEW]
+    answer = discover_records(nominal_model(), logs[:2], logs[2:], effects)
+    assert is_late == [FEW[0]]
+    assert [n.candidate.effect.name for n in answer.named] == [FEW[0]]
