@@ -239,9 +239,7 @@ def tasks(given: argparse.Namespace) -> Mapping[str, tuple[Any, ...]]:
         for k in range(max(map(len, of_robot.values()))):
             for robot in given.worlds:
                 effects = of_robot[robot]
-                if k >= len(effects) or (
-                    effects[k] == "heavier" and (robot in robot_models.MASS_IS_FREE)
-                ):
+                if k >= len(effects) or not robot_models.is_asked(robot, effects[k]):
                     continue
                 out[f"{robot}/{effects[k]}/{seed}"] = (robot, effects[k], seed, asked)
     return out

@@ -36,7 +36,7 @@ WORDS = {
     "crane": "a load on two tendons whose lengths are measured",
     "cart": "a cart with an end stop",
 }
-MASS_IS_FREE = ("cart", "crane")  # of the body that would be heavier: nothing would be missing
+MASS_IS_FREE = ("cart", "crane")  # of the body that would have more: nothing would be missing
 HEAD = """# Kinds of robots that were tried
 
 `benchmarks/robot_models.py` makes this page. Each robot is a small model in the manner of MuJoCo
@@ -80,6 +80,11 @@ def answer_of(found: Discovery) -> dict[str, Any]:
         ],
         "rejected": [[r.candidate.effect.name, r.candidate.where, r.doubt] for r in found.rejected],
     }  # fmt: skip
+
+
+def is_asked(robot: str, effect: str) -> bool:
+    """Returns whether a robot may hide an effect: no parameter that is free is the same."""
+    return effect not in ("heavier", "rotor") or robot not in MASS_IS_FREE
 
 
 def is_right(row: Row) -> bool:
@@ -169,7 +174,7 @@ def main() -> None:
         for seed in range(given.seed, given.seed + given.count)
         for effect in given.effects
         for robot in given.robots
-        if not (effect == "heavier" and robot in MASS_IS_FREE)
+        if is_asked(robot, effect)
     }
     rows = rows_of(given.out) if given.only_page else answered(
         study, tasks, given.out, lambda r: f"{r['key']}: {_told(r)}", given.processes

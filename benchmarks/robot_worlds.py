@@ -1,6 +1,6 @@
 """Worlds of small robots in the manner of MuJoCo Menagerie, each with something its model lacks.
 
-    Q_hidden = s F f(q, q̇) / rms(f)      at one driven joint, or inputs that come late, or a mass
+    Q_hidden = s F f(q, q̇) / rms(f)      at one driven joint; or inputs that come late, or a mass
 
 F: rms of the drives' force at that joint without the effect, s: its share. A simulation takes steps
 of a quarter of the model's and adds the force itself; no code of the search takes part.
@@ -32,6 +32,7 @@ DRIVEN: Mapping[str, linkages.Truth] = {
 SHARES = (0.1, 0.3)  # s, the least and the most
 LATE = (0.005, 0.02)  # of inputs that come late [s]
 HEAVIER = (0.2, 0.4)  # of the mass of a body that carries more
+ROTOR = (0.2, 0.6)  # of the inertia that a joint swings
 SEEN = 4.0  # rms change of the outputs over their noise, below which an effect is made larger
 MOST_DOUBLINGS = 4
 # Names that are right for what is hidden; none for forces that no law of the catalogue describes.
@@ -45,6 +46,8 @@ NAMES: Mapping[str, tuple[str, ...]] = {
     "delay": ("delay", "time_shift"),
     # its inertia grows too, and is all that a body on a vertical axis shows
     "heavier": ("mass_mismatch", "payload", "inertia_mismatch"),
+    # at a joint on the frame an inertia of its body acts alike
+    "rotor": ("rotor_inertia", "inertia_mismatch"),
     "bump": (),
     "stop": (),
 }
@@ -58,7 +61,7 @@ class World:
     robot: str
     effect: str  # of `NAMES`
     joint: str  # where, or the joint of the body that is heavier; "" where nothing is hidden
-    size: float  # amplitude of the force [N or N m], lateness [s], or mass [kg]
+    size: float  # amplitude of the force [N or N m], lateness [s], mass or inertia [kg or kg m²]
     seed: int
 
     @property
@@ -118,6 +121,9 @@ def simulate(world: World, force: Law | None, seed: int) -> Motion:
         joint = spec.joint(world.joint)
         joint.frictionloss, joint.solref_friction[:] = world.size, linkages.STIFF
         force = None
+    if world.effect == "rotor":
+        spec.joint(world.joint).armature += world.size
+        force = None
     model = spec.compile()
     if world.effect == "heavier":
         body = model.jnt_bodyid[model.joint(world.joint).id]
@@ -169,10 +175,12 @@ def make(robot: str, effect: str, seed: int) -> tuple[World, list[Motion]]:
     model = mujoco.MjModel.from_xml_path(str(world.folder / "model.xml"))
     felt = np.sqrt(np.mean(without[0].drive ** 2, axis=0))
     joint = int(chance.choice(np.flatnonzero(felt > 0.05 * felt.max())))
-    ranges = {"delay": LATE, "heavier": HEAVIER}
+    ranges = {"delay": LATE, "heavier": HEAVIER, "rotor": ROTOR}
     size = float(chance.uniform(*ranges.get(effect, SHARES)))
     if effect == "heavier":
         size *= float(model.body_mass[model.jnt_bodyid[joint]])
+    elif effect == "rotor":
+        size *= float(model.dof_M0[model.jnt_dofadr[joint]])
     elif effect != "delay":
         size *= float(felt[joint])
     world = World(robot, effect, model.joint(joint).name, size, seed)

@@ -60,8 +60,8 @@ class DiscoveryOptions(KalmanOptions):
     )  # fmt: skip
     max_minutes: float = option(
         10.0, "min",
-        "No further effect is sought after this time; effects that were refitted by then are judged,"
-        " the fit without effects, scores and last checks are always finished, and what was found"
+        "No further effect is sought after this time; effects refitted by then are judged, and"
+        " the fit without effects, scores and last checks are always finished. What was found"
         " is the answer, which says what was not tried. Most searches end far before.",
         "judgement",
     )  # fmt: skip

@@ -16,6 +16,7 @@ from identification.effects.forces import force_effects, time_effects
 from identification.effects.friction import drag_effects, friction_effects
 from identification.effects.inputs import drives, input_effects
 from identification.effects.joint_group import Group
+from identification.effects.rotors import rotor_effects
 from identification.effects.sensors import sensor_effects
 from identification.effects.state_effects import state_effects
 from identification.logs.log import Log
@@ -51,6 +52,7 @@ def all_effects(
     compiled = spec.copy().compile()
     return (
         *joint_effects(axes, turns, asked),
+        *(e for g in _groups(axes, turns) for e in rotor_effects(g, compiled.opt.timestep)),
         *body_effects(spec),
         *input_effects(drives(log)),
         *sensor_effects(compiled, log.output_names, axes),
@@ -73,16 +75,21 @@ def joint_effects(
             and of its slots.
         asked: names of effects that act wherever they may, also on shafts that turn on and on.
     """
-    kinds: list[Kind] = ["hinge", "slide"]
-    groups = [(kind, tuple(a for a in axes if a.kind == kind)) for kind in kinds]
-    both = all(group for _, group in groups)
     every = (
-        effect if effect.name in asked else _without(effect, turning(group))
-        for kind, group in groups if group
+        effect if effect.name in asked else _without(effect, turning(group.axes))
+        for group in _groups(axes, turns)
         for make in _OF_JOINTS
-        for effect in make(Group(kind, group, turns, both))
+        for effect in make(group)
     )  # fmt: skip
     return tuple(effect for effect in every if effect.places)
+
+
+def _groups(axes: Sequence[Axis], turns: Sequence[float]) -> list[Group]:
+    """Returns the hinges and the slides, where there are any."""
+    kinds: list[Kind] = ["hinge", "slide"]
+    each = [(kind, tuple(a for a in axes if a.kind == kind)) for kind in kinds]
+    both = all(group for _, group in each)
+    return [Group(kind, group, turns, both) for kind, group in each if group]
 
 
 def turning(axes: Iterable[Axis]) -> tuple[Axis, ...]:

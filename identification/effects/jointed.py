@@ -33,6 +33,7 @@ from identification.effects.joint_states import (
     with_actuators,
 )
 from identification.effects.moving_bodies import MovingBody, moving_bodies
+from identification.effects.rotors import rotor_numbers
 from identification.effects.rows import JointLayout, changed_rows, with_rows
 from identification.engine import derive
 from identification.model.parameter import ParameterSet
@@ -99,7 +100,7 @@ class JointPlant:
     @cached_property
     def model(self) -> mujoco.MjModel:
         """The compiled model at its nominal values."""
-        numbers = self._bodies((), np.empty((1, 0)), [])
+        numbers = self._inertias((), np.empty((1, 0)), [])
         steps = self._taken(self.steps)
         if not numbers and steps == 1:
             return self.bare.model
@@ -211,23 +212,24 @@ class JointPlant:
         shared = [k for k, name in enumerate(names) if name in known]
         start, numbers = self.bare.settings([names[k] for k in shared], values[:, shared])
         others = [k for k, name in enumerate(names) if name not in known]
-        bodies = self._bodies(names, values, numbers)
+        inertias = self._inertias(names, values, numbers)
         rows = self._rows([names[k] for k in others], values[:, others])
-        numbers = [*numbers, *bodies, *rows]
+        numbers = [*numbers, *inertias, *rows]
         every = self._every(names, values)
         return start, [*numbers, *self.gears.armatures(every, len(values), numbers)]
 
     def _every(self, names: Sequence[str], values: np.ndarray) -> effect_values.Values:
         return effect_values.merged(self.parameters.values(), names, values)
 
-    def _bodies(self, names: Sequence[str], values: np.ndarray, own: Numbers) -> Numbers:
-        """Returns the entries of the bodies that effects change."""
-        if not self.layout.has_bodies:
-            return []
-        every = self._every(names, values)
-        return body_numbers(
-            self.bare.model, self.effects, self.bodies, names, every, own, len(values)
-        )
+    def _inertias(self, names: Sequence[str], values: np.ndarray, own: Numbers) -> Numbers:
+        """Returns the entries of bodies and rotors that effects change."""
+        every, n = self._every(names, values), len(values)
+        bodies = self.bodies if self.layout.has_bodies else ()
+        about = (names, every, own, n)
+        return [
+            *body_numbers(self.bare.model, self.effects, bodies, *about),
+            *rotor_numbers(self.bare.model, self.effects, self.joints, *about),
+        ]
 
     def _rows(self, names: Sequence[str], values: np.ndarray) -> Numbers:
         """Returns the entries of the joints' rows that some parameters of effects change."""

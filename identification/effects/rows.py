@@ -22,6 +22,7 @@ from identification.effects.bodies import BODY
 from identification.effects.effect import Effect
 from identification.effects.joint_law import JointTerms, joint_terms, key_of_law
 from identification.effects.moving_bodies import movable
+from identification.effects.rotors import ROTOR
 from identification.effects.values import (
     Values,
     changed_columns,
@@ -72,7 +73,7 @@ class JointLayout:
     has_states: bool = False  # whether joints have states of their own, whose numbers stand behind
 
     def __post_init__(self) -> None:
-        refuse_misplaced(self.effects, (JOINT, INPUT, BODY, SENSOR, GEAR))
+        refuse_misplaced(self.effects, (JOINT, ROTOR, INPUT, BODY, SENSOR, GEAR))
 
     @cached_property
     def terms(self) -> JointTerms:

@@ -38,7 +38,7 @@ from identification.windows.comparison import Prediction
 Doubt = (
     Literal[
         "numbers", "chance", "lengths", "record", "little", "size", "bound", "exchange", "curve",
-        "drawn", "differ", "steps", "neighbour",
+        "drawn", "differ", "steps", "neighbour", "gap",
     ]
     | Impossible
 )  # fmt: skip

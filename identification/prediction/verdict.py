@@ -15,39 +15,38 @@ from functools import partial
 
 import numpy as np
 
-from identification.chances import mean_above_zero
 from identification.discovery.attempts import Failed, attempt, listed_once
 from identification.discovery.effect_results import (
     Gap,
     NamedEffect,
-    Proof,
     RecordDifference,
-    RejectedEffect,
-    Rival,
 )
 from identification.discovery.findings.finding import Finding, FindingKind
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.passes import uses
 from identification.discovery.result import Discovery, Verdict
-from identification.effects.effect import Candidate
 from identification.logs.joined import REPLAYED, replayed_share
 from identification.logs.log import Log
 from identification.prediction.clocks import record_shifts
 from identification.prediction.extension import as_last_fit, refitted
 from identification.prediction.model import WindowModel
-from identification.prediction.neighbours import find_neighbour, has_neighbours_name
-from identification.prediction.odds import find_odds
+from identification.prediction.neighbours import has_neighbours_name
 from identification.prediction.record_errors import error_of_all, errors_by_unit, record_errors
 from identification.prediction.recovery import recover_over_horizon
 from identification.prediction.remaining import find_remaining, left_by_steps, needed_input_error
 from identification.prediction.task import WindowSearch
-from identification.prediction.trial import Contender
-from identification.prediction.yardstick import Yardstick, measure
-from identification.windows.comparison import Prediction, rise
+from identification.prediction.told_effects import (
+    fitted_sizes,
+    named_effect,
+    rejected_effect,
+    unnamed_effect,
+)
+from identification.prediction.trial import Contender, Doubt
+from identification.prediction.yardstick import measure
+from identification.windows.comparison import rise
 from identification.windows.records import Record
 from identification.windows.unseen import Unseen
 
-MIN_LISTED_CONFIDENCE = 0.02  # a rival that is less likely is not listed
 EVEN_ODDS = 0.5  # a name below them is none, unless it is told with its look-alike
 # With these findings and no name, the model lacks something.
 SUSPECT = (
@@ -64,7 +63,7 @@ def conclude(state: WindowSearch) -> Discovery:
     state = _with_last_fit(state)
     task, model = state.task, state.model
     options = task.options
-    rejected = listed_once([_rejected(state, c) for c in state.rejected])
+    rejected = listed_once([rejected_effect(state, c) for c in state.rejected])
     shifts = record_shifts(task, model)
     differ = [a for a in state.accepted if a.candidate.effect.is_of_records]
     nominal = _with_differences(state, differ)
@@ -75,23 +74,20 @@ def conclude(state: WindowSearch) -> Discovery:
     findings = find_remaining(state, rejected, shifts, needed)
     limit = options.left_confidence if findings else options.max_confidence
     stick = attempt(None, partial(measure, model, task.effects)) if state.accepted else None
-    named = tuple(_named(state, a, limit, stick) for a in state.accepted if a not in differ)
+    named = tuple(named_effect(state, a, limit, stick) for a in state.accepted if a not in differ)
     is_unexplained = _is_worse(state) or _errs(model, needed, options)
-    verdict = decide(named, findings, is_unexplained, options)
+    closes = _share(nominal, model)
+    verdict = decide(named, findings, is_unexplained, closes, options)
     if verdict == "unknown effect":
-        unnamed = [_unnamed(n, options) for n in named]
+        doubt: Doubt | None = "gap" if _is_small(named, findings, closes, options) else None
+        unnamed = [unnamed_effect(n, options, doubt) for n in named]
         rejected, named, model = listed_once([*unnamed, *rejected]), (), nominal
-    floor = model.unseen.floor
-    before, after = (
-        float(np.mean(np.concatenate(m.unseen.report.at_horizon))) for m in (nominal, model)
-    )
-    above = before - min(floor, after)
     smooth = stick.share(nominal.fit.cost, model.fit.cost) if stick and named else None
     log = task.records[0].log
     noise = model.unseen.noise
     return Discovery(
         records=task.records, options=options, horizon=task.horizon, verdict=verdict, named=named,
-        rejected=rejected, share=float((before - after) / above) if above > 0 else 0.0,
+        rejected=rejected, share=_share(nominal, model),
         smooth_share=smooth,
         unexplained=verdict != "nothing missing" and (bool(findings) or not named),
         noise_rms=error_of_all(noise, nominal.scale, log), unit=log.output_unit,
@@ -117,7 +113,7 @@ def conclude(state: WindowSearch) -> Discovery:
 
 def decide(
     named: Sequence[NamedEffect], findings: Sequence[Finding], is_unexplained: bool,
-    options: DiscoveryOptions,
+    share: float, options: DiscoveryOptions,
 ) -> Verdict:  # fmt: skip
     """Returns the verdict.
 
@@ -125,16 +121,39 @@ def decide(
         named: the accepted effects, with their confidence.
         findings: what the final model leaves.
         is_unexplained: whether the model errs by more than noise, and no effect says why.
+        share: of the gap that the effects close.
         options: what is beyond chance, and enough to matter.
     """
     is_neighbour = any(has_neighbours_name(n.neighbour, options) for n in named)
     is_sure = all(n.confidence >= EVEN_ODDS or n.one_of for n in named)
-    if named and is_sure and not is_neighbour:
+    if named and is_sure and not is_neighbour and not _is_small(named, findings, share, options):
         is_drawn = all(n.candidate.effect.is_curve for n in named)
         return "unlisted effect" if is_drawn else "named"
     if named or is_unexplained or any(f.kind in SUSPECT for f in findings):
         return "unknown effect"
     return "nothing missing"
+
+
+def _is_small(
+    named: Sequence[NamedEffect], findings: Sequence[Finding], share: float,
+    options: DiscoveryOptions,
+) -> bool:  # fmt: skip
+    """Returns whether a law closes less of the gap than a name has to, and something is left.
+
+    Such a law is more often the neighbour of a force in no catalogue than one of several causes.
+    """
+    is_asked = bool(findings) and uses(options, "closed_gap")
+    is_law = any(not n.candidate.effect.is_curve for n in named)
+    return is_asked and is_law and not share > options.min_explained_share
+
+
+def _share(nominal: WindowModel, model: WindowModel) -> float:
+    """Returns the share of the power above the noise that a model takes away on untouched data."""
+    before, after = (
+        float(np.mean(np.concatenate(m.unseen.report.at_horizon))) for m in (nominal, model)
+    )
+    above = before - min(model.unseen.floor, after)
+    return (before - after) / above if above > 0 else 0.0
 
 
 def _with_differences(state: WindowSearch, differ: Sequence[Contender]) -> WindowModel:
@@ -149,7 +168,7 @@ def _with_differences(state: WindowSearch, differ: Sequence[Contender]) -> Windo
 
 def _difference(model: WindowModel, a: Contender) -> RecordDifference:
     """Returns what each record has for itself of an effect."""
-    candidate, parameters = _fitted(model, a.candidate)
+    candidate, parameters = fitted_sizes(model, a.candidate)
     (unit,) = {unit for _, _, unit in parameters.values()}
     return RecordDifference(
         candidate, {name: (value, std) for name, (value, std, _) in parameters.items()}, unit
@@ -186,110 +205,6 @@ def _repeats(records: Sequence[Record]) -> tuple[str, ...]:
         else:
             distinct.append(log)
     return tuple(repeats)
-
-
-def _named(
-    state: WindowSearch, accepted: Contender, limit: float, stick: Yardstick | None
-) -> NamedEffect:
-    """Returns an accepted effect at the values of the final model, with its rivals.
-
-    Args:
-        state: the finished state.
-        accepted: the effect.
-        limit: the upper limit of the confidence.
-        stick: what smooth forces would still explain; None where it is not known.
-    """
-    options, mine = state.task.options, accepted.candidate
-    is_final = any(c.key == mine.key for c in state.model.candidates)
-    final = state.model if is_final else accepted.model
-    odds = find_odds(accepted, final)
-    candidate, parameters = _fitted(final, mine)
-    return NamedEffect(
-        candidate=candidate, parameters=parameters, confidence=min(limit, odds.own),
-        rivals=tuple(
-            _rival(o, share) for o, share in odds.rivals if share > MIN_LISTED_CONFIDENCE
-        ),
-        compared=odds.compared,
-        one_of=bool(odds.likeliest and odds.likeliest[1] > options.set_confidence),
-        evidence=accepted.criterion, proof=_proof(state, accepted),
-        same_as=next((e for e in state.task.effects if e.name == odds.twin), None),
-        smooth_share=stick.share_of(mine, accepted.prediction.fall) if stick else None,
-        neighbour=find_neighbour(mine, accepted.prediction.fall, state.scores),
-    )  # fmt: skip
-
-
-def _proof(state: WindowSearch, effect: Contender) -> Proof:
-    """Returns what an effect does for the records that confirm: what decided, and what is told."""
-    seen = effect.prediction
-    told = None if seen.untouched is None else _proof_of(state, seen.untouched)
-    return replace(_proof_of(state, seen), untouched=told)
-
-
-def _proof_of(state: WindowSearch, seen: Prediction) -> Proof:
-    names = [r.log.name for r in state.task.confirm]
-    worse = [len(b) > 2 and mean_above_zero(-b)[1] < state.task.options.significance
-             for b in seen.blocks]  # fmt: skip
-    return Proof(
-        test="Student's t", t=seen.t, chance=seen.chance, fall=seen.fall,
-        blocks=sum(map(len, seen.blocks)), falls=seen.falls, records=seen.records,
-        is_everywhere=seen.is_everywhere,
-        agrees=tuple(n for n, g in zip(names, seen.records, strict=True) if g > 0),
-        disagrees=tuple(n for n, is_worse in zip(names, worse, strict=True) if is_worse),
-    )  # fmt: skip
-
-
-def _rejected(state: WindowSearch, contender: Contender) -> RejectedEffect:
-    """Returns an effect that was refitted and not accepted, at the values of its own model."""
-    c = contender
-    candidate, parameters = _fitted(c.model, c.candidate)
-    proof = _proof(state, c)
-    return RejectedEffect(
-        candidate, parameters, np.nan, proof, evidence=c.criterion, doubt=c.doubt
-    )  # fmt: skip
-
-
-def _unnamed(named: NamedEffect, options: DiscoveryOptions) -> RejectedEffect:
-    """Returns an effect that is told as tried, because its name is not sure."""
-    n = named
-    return RejectedEffect(
-        n.candidate, n.parameters, np.nan, n.proof, evidence=n.evidence, confidence=n.confidence,
-        doubt="neighbour" if has_neighbours_name(n.neighbour, options) else None,
-    )  # fmt: skip
-
-
-def _rival(contender: Contender, confidence: float) -> Rival:
-    """Returns another effect with the values of its law, at those of its own model."""
-    candidate, _ = _fitted(contender.model, contender.candidate)
-    every, own = contender.model.told_values, (*candidate.sizes, *candidate.fixed)
-    values = {n: float(every[n]) for n in own if n in every}
-    return Rival(candidate, confidence, values={**candidate.fixed, **candidate.whole, **values})
-
-
-def _fitted(
-    model: WindowModel, candidate: Candidate
-) -> tuple[Candidate, dict[str, tuple[float, float, str]]]:
-    """Returns an effect with its shape, and sizes and shapes by symbol: value, std, unit."""
-    c, plant, unknowns = candidate, model.plant, model.fit.problem.unknowns
-    values = model.told_values
-    # A bound holds a value as it holds what is not estimated: neither has a std.
-    std = {n: 0.0 if n in model.at_bound else s for n, s in model.told_std.items()}
-    parameters = {}
-    symbols = [plant.parameters[n].symbol for n in (*c.sizes, *c.fixed)]
-    for name in (*c.sizes, *c.fixed):
-        record = plant.parameters[name]
-        is_one = record.symbol and symbols.count(record.symbol) == 1
-        said = record.symbol if is_one else record.name.partition(".")[2] or record.name
-        if name in unknowns.own.names:
-            each = {f"{said} [{r}]": f"{name} [{r}]" for r in unknowns.records}
-        else:
-            each = {said: name}
-        for word, full in each.items():
-            parameters[word] = (float(values[full]), float(std.get(full, 0.0)), record.unit)
-        if name in unknowns.own.names:
-            for r, own in model.unseen.own.items():
-                parameters[f"{said} [{r}]"] = (*own[name], record.unit)
-    shape = {s.name: values[c.effect.parameter(s.name, c.where)] for s in c.effect.shapes}
-    return replace(c, shape=shape), parameters
 
 
 def _is_worse(state: WindowSearch) -> bool:
