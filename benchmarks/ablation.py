@@ -21,6 +21,7 @@ import argparse
 import os
 import sys
 import time
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import fields
 from pathlib import Path
@@ -198,10 +199,12 @@ def section(rows: Sequence[Row]) -> str:
     if not done:
         return "\n".join([*head, "Nothing has been left out of the present search.\n"])
     good = sum(row["whole"]["good"] for row in done)
+    robots = Counter(row["truth"].get("truth", row["truth"])["robot"] for row in done)
     return "\n".join([
         *head,
         f"Search of {rows[-1]['commit']}, over a horizon. It answers {good} of {len(done)} worlds"
-        " right. A pass or an option counts by the worlds whose verdict or names change without the"
+        f" right ({', '.join(f'{robot} {n}' for robot, n in sorted(robots.items()))}; most hide one"
+        " effect, so that they say little of passes for several effects). A pass or an option counts by the worlds whose verdict or names change without the"
         " pass, or with the option half and one and a half times as large. *Chance*: that as"
         " unequal numbers come of a pass that is worth nothing (McNemar 1947). *Time*: processor"
         " time of a search without it that is new, over that of the whole search.", "",

@@ -34,7 +34,7 @@ def world(is_good, others):
 
     changed = {name: short(good) for name, good in others.items() if good != is_good}
     seconds = {"": 10.0} | {name: 5.0 if name in changed else 0.0 for name in others}
-    return {"key": "k", "commit": "new", "whole": short(is_good), "changed": changed,
+    return {"key": "k", "commit": "new", "truth": {"robot": "leg"}, "whole": short(is_good), "changed": changed,
             "seconds": seconds}  # fmt: skip
 
 
@@ -48,7 +48,7 @@ def test_only_worlds_that_one_search_alone_answers_right_count():
     assert float(told[0][5]) == pytest.approx(2 * binom.cdf(1, 7, 0.5), rel=0.05)
     assert told[0][6:] == ["1, 6", "0.29"]
     assert told[1][1:] == ["12", "0", "0", "0", "1", "1, 1", "0.00"]
-    assert "It answers 11 of 12 worlds right" in " ".join(ablation.section(rows).split())
+    assert "It answers 11 of 12 worlds right (leg 12; " in " ".join(ablation.section(rows).split())
 
 
 def test_every_pass_and_both_values_of_an_option_are_asked_beside_the_whole_search():
