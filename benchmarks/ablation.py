@@ -204,10 +204,11 @@ def section(rows: Sequence[Row]) -> str:
         *head,
         f"Search of {rows[-1]['commit']}, over a horizon. It answers {good} of {len(done)} worlds"
         f" right ({', '.join(f'{robot} {n}' for robot, n in sorted(robots.items()))}; most hide one"
-        " effect, so that they say little of passes for several effects). A pass or an option counts by the worlds whose verdict or names change without the"
-        " pass, or with the option half and one and a half times as large. *Chance*: that as"
-        " unequal numbers come of a pass that is worth nothing (McNemar 1947). *Time*: processor"
-        " time of a search without it that is new, over that of the whole search.", "",
+        " effect, so that they say little of passes for several effects). A pass or an option"
+        " counts by the worlds whose verdict or names change without the pass, or with the option"
+        " half and one and a half times as large. *Chance*: that as unequal numbers come of a pass"
+        " that is worth nothing (McNemar 1947). *Time*: processor time of a search without it that"
+        " is new, over that of the whole search.", "",
         "| without, or with | worlds | other answer | right only with it | right only without it |"
         " chance | laws that are not there, with it and without | time |",
         "|---|---|---|---|---|---|---|---|", *lines(done), "",

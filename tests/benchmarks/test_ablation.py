@@ -34,8 +34,8 @@ def world(is_good, others):
 
     changed = {name: short(good) for name, good in others.items() if good != is_good}
     seconds = {"": 10.0} | {name: 5.0 if name in changed else 0.0 for name in others}
-    return {"key": "k", "commit": "new", "truth": {"robot": "leg"}, "whole": short(is_good), "changed": changed,
-            "seconds": seconds}  # fmt: skip
+    return {"key": "k", "commit": "new", "truth": {"robot": "leg"}, "whole": short(is_good),
+            "changed": changed, "seconds": seconds}  # fmt: skip
 
 
 def test_only_worlds_that_one_search_alone_answers_right_count():
