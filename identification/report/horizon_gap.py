@@ -24,6 +24,7 @@ from identification.windows.unseen import Unseen
 
 WORST = 4  # windows that are drawn
 SURE = 1.96  # std on each side of 95 %
+MUCH = 0.1  # of the fitted error: what explains less is not told where it may be luck
 APART = 3  # windows between two of them: neighbours fail for the same reason
 
 
@@ -104,6 +105,9 @@ class HorizonGap:
     lengths: tuple[LengthError, ...]
     # of each joint at which a curve would explain more than luck, the largest share first
     forces: tuple[NeededForce, ...]
+    # where there is none: the curve at one joint that explains most; None where none explains much
+    doubtful: NeededForce | None
+    curves: int  # how many curves at one joint were tried
     windows: tuple[FailedWindow, ...]  # fitted ones in which the final model fails most
 
 
@@ -133,9 +137,13 @@ def find_gap(found: Discovery) -> HorizonGap | None:
         )
         for log, at, a, b in zip(logs, places, *squares, strict=True)
     ]
+    curves = _curves(found, final)
+    forces = _forces(found, curves)
+    most = max(curves, key=lambda c: c.fall, default=None)
     return HorizonGap(
         outputs=tuple(outputs), records=(*fitted, *confirm),
-        lengths=_lengths(found.horizon or 0.0, *told, level), forces=_forces(found, final),
+        lengths=_lengths(found.horizon or 0.0, *told, level), forces=forces,
+        doubtful=None if forces or most is None or most.fall < MUCH else most, curves=len(curves),
         windows=_worst(final, [r.after for r in fitted], scale, found.outputs),
     )  # fmt: skip
 
@@ -156,21 +164,26 @@ def _lengths(
     return tuple(out)
 
 
-def _forces(found: Discovery, final: WindowModel) -> tuple[NeededForce, ...]:
-    """Returns the best curve of each joint that explains more than luck among all scores."""
-    most = found.options.significance / max(1, len(found.remaining))
-    best: dict[str, NeededForce] = {}
+def _curves(found: Discovery, final: WindowModel) -> list[NeededForce]:
+    """Returns all curves that act on one joint, as the scores of the final model have them."""
+    out = []
     for s in found.remaining:
         if not isinstance(s, WindowScore) or not s.candidate.effect.is_curve:
             continue
         nodes = curve_nodes(s.candidate, final.plant)
-        is_one = len(nodes) == 1 and len(s.size) == NODES
-        if not is_one or s.fall <= found.options.min_fall or s.p_value >= most:
-            continue
-        unit = s.candidate.effect.sizes[0].unit
-        needed = NeededForce(nodes[0], s.size, s.std, unit, s.fall, s.p_value)
-        if needed.known.any():
-            best.setdefault(nodes[0].joint, needed)
+        if len(nodes) == 1 and len(s.size) == NODES:
+            unit = s.candidate.effect.sizes[0].unit
+            out.append(NeededForce(nodes[0], s.size, s.std, unit, s.fall, s.p_value))
+    return out
+
+
+def _forces(found: Discovery, curves: Sequence[NeededForce]) -> tuple[NeededForce, ...]:
+    """Returns the best curve of each joint that explains more than luck among all scores."""
+    most = found.options.significance / max(1, len(found.remaining))
+    best: dict[str, NeededForce] = {}
+    for c in curves:
+        if c.fall > found.options.min_fall and c.chance < most and c.known.any():
+            best.setdefault(c.nodes.joint, c)
     return tuple(sorted(best.values(), key=lambda n: -n.fall))
 
 

@@ -13,6 +13,7 @@ from identification.report.finding_words import sentence
 from identification.report.horizon_figures import needed_forces, windows_over_time, worst_windows
 from identification.report.horizon_gap import OutputError, find_gap
 from identification.report.horizon_words import (
+    doubtful_sentences,
     force_line,
     length_lines,
     output_line,
@@ -62,8 +63,10 @@ def horizon_sections(found: Discovery) -> list[Section]:
     text = [f"{' '.join(map(sentence, rest))} {GROWTH}"]
     plain = [listed_below(f"where {model} fails", [*lines, *rest, *map(force_line, forces)])]
     if is_far and not forces:
-        text.append(NO_FORCE)
-        plain.append(NO_FORCE)
+        most = gap.doubtful
+        said = NO_FORCE if most is None else doubtful_sentences(most, gap.curves)
+        text.append(said)
+        plain.append(said)
     is_drawn = is_far and bool(gap.windows)
     sections = [
         Section(
@@ -76,10 +79,10 @@ def horizon_sections(found: Discovery) -> list[Section]:
     ]
     if forces:
         is_answer = found.verdict == "unknown effect"
-        said = [f"{' '.join(sentence(force_line(f)) for f in forces)} {FORCES}"]
-        said += [TRY] if is_answer else []
+        needed = [f"{' '.join(sentence(force_line(f)) for f in forces)} {FORCES}"]
+        needed += [TRY] if is_answer else []
         drawn = cache(lambda: ((NEEDED, needed_forces(forces)),))
-        sections.append(Section(NEEDED, "\n\n".join(said), figures=drawn, first=int(is_answer)))
+        sections.append(Section(NEEDED, "\n\n".join(needed), figures=drawn, first=int(is_answer)))
     return sections
 
 

@@ -60,6 +60,24 @@ def force_line(needed: NeededForce) -> str:
     )
 
 
+def doubtful_sentences(needed: NeededForce, tried: int) -> str:
+    """Returns which force at a joint would explain most, where it is not told to be missing.
+
+    Args:
+        needed: the force.
+        tried: how many forces at one joint were tried.
+    """
+    which = f"one on {needed.nodes.joint} that depends on the {needed.nodes.reads}"
+    chance = percent(needed.chance, 2)
+    doubt = f"This may be luck (chance {chance}, {tried} such forces were tried)."
+    if not needed.known.any():
+        doubt = "The motion tells its size nowhere."
+    return (
+        f"The force that would explain most is {which}: {percent(needed.fall)} of the fitted"
+        f" error. {doubt}"
+    )
+
+
 def largest_force(needed: NeededForce) -> tuple[str, str]:
     """Returns the largest force with its std, and where it is, both with their units."""
     k, nodes = needed.largest, needed.nodes

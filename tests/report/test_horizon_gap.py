@@ -1,5 +1,7 @@
 """Where a model fails over a horizon: the errors that are told, and the force that is missing."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from fake_discovery import found as free_run
@@ -59,6 +61,22 @@ def test_the_force_that_is_needed_is_the_one_that_is_missing():
     truth = -LEVEL * np.sign(needed.nodes.at)
     assert np.all(np.abs(needed.force - truth)[told] < 4 * needed.std[told] + 0.2 * LEVEL)
     assert needed.known[needed.largest]
+
+
+@pytest.mark.parametrize(("share", "told"), [
+    (0.42, "is one on hinge that depends on the rate of hinge: 42 % of the fitted error. This may"
+           " be luck (chance 3.7 %, 2 such forces were tried)."),
+    (0.09, NO_FORCE),
+])  # fmt: skip
+def test_a_force_that_may_be_luck_is_told_as_such(share, told):
+    answer = unknown()
+    falls = {"curve_speed": share, "curve_position": share / 2}
+    scores = [replace(s, fall=falls.get(s.candidate.effect.name, 0.9), p_value=0.037)
+              for s in answer.remaining]  # fmt: skip
+    (section,) = horizon_sections(replace(answer, remaining=tuple(scores)))
+    assert told in section.plain
+    assert told in section.text
+    assert (NO_FORCE in section.plain) == (told is NO_FORCE)
 
 
 def test_once_the_friction_is_named_no_force_is_needed():
