@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 
-from identification.discovery.result import Discovery
 from identification.quantities import held
 from identification.report.missing_place import MissingPlace
 
@@ -12,17 +12,23 @@ FIELDS = {"position": "s.q", "rate": "s.v", "time": "s.time", "force": "s.f_u"} 
 LARGEST, PROBE = 5.0, 0.1  # of the size that is to be believed, and of that which is tried
 
 
-def own_stub(found: Discovery, place: MissingPlace, robot: str) -> str:
-    """Returns a Python file with an effect at the place, and a search that tries it."""
+def own_stub(
+    place: MissingPlace, robot: str, logs: Sequence[str], confirm: Sequence[str] = ()
+) -> str:
+    """Returns a Python file with an effect at the place, and a search that tries it.
+
+    Args:
+        place: where a force is missing.
+        robot: path of the robot's TOML from the folder of the file, as are those of all logs.
+        logs: paths of those that are fitted.
+        confirm: paths of those that confirm.
+    """
     x = next(field for word, field in FIELDS.items() if place.reads.startswith(word))
     middle, half = (place.low + place.high) / 2, (place.high - place.low) / 2
     width = half or 0.1 * abs(middle) or 1.0
     ways = {"rising": " if s.v > 0 else 0.0", "falling": " if s.v < 0 else 0.0"}
     kind = "Torque" if place.force_unit == "N m" else "Force"
-    size, logs = abs(place.force), [r.log.name for r in found.records if r.role == "fit"]
-    confirm = [r.log.name for r in found.records if r.role == "confirm"]
-    also = [name for name in confirm if name not in logs]
-    confirming = f"confirm=[{_files(also)}], " if also else ""
+    size, confirming = abs(place.force), f"confirm=[{_files(confirm)}], " if confirm else ""
     bounds = f"largest={_number(LARGEST * size)}, probe={_number(PROBE * size)}"
     return f'''"""An effect of your own: {place}.
 
@@ -31,6 +37,7 @@ place of this bump, and run the file: python own_effect.py
 """
 
 from math import exp
+from pathlib import Path
 
 from numba import njit
 
@@ -57,16 +64,16 @@ MINE = Effect(
 )
 
 if __name__ == "__main__":
+    here = Path(__file__).parent  # from which all paths are told
     robot = read_robot(
-        # write the paths of your files
-        "{robot}", [{_files(logs)}], {confirming}own_effects=[MINE]
+        {_files([robot])}, [{_files(logs)}], {confirming}own_effects=[MINE]
     )
     print(discovery_text(discover(robot)))
 '''
 
 
-def _files(names: Sequence[str]) -> str:
-    return ", ".join(f'"{name}.csv"' for name in names)
+def _files(paths: Sequence[str]) -> str:
+    return ", ".join(f"here / {json.dumps(path, ensure_ascii=False)}" for path in paths)
 
 
 def _number(value: float) -> str:

@@ -81,10 +81,15 @@ class RobotDiscoveryFiles(DiscoveryFiles):
         Args:
             folder: in which the file will lie; that of the program when None.
         """
-        at, robot = find_place(self.found), str(self.robot.file.path)
-        if folder is not None:
-            robot = os.path.relpath(robot, folder)
-        return "" if at is None else own_stub(self.found, at, robot)
+        at = find_place(self.found)
+        if at is None:
+            return ""
+        robot, *logs = (
+            str(path) if folder is None else os.path.relpath(path, folder)
+            for path in (self.robot.file.path, *self.robot.paths)
+        )
+        fitted = 1 + len(self.robot.others)
+        return own_stub(at, robot, logs[:fitted], logs[fitted:])
 
     @cached_property
     def _confirmed(self) -> Sequence[Confirmation]:

@@ -76,10 +76,10 @@ def read_robot(
     file = read_robot_file(path)
     file = replace(file, trust=(*file.trust, *trusted(trust, "given as trust")))
     file = with_spread(file, spread)
+    given = [log] if isinstance(log, str | Path | Log) else [*log]
     records = tuple(_log(file, record) for record in confirm)
-    first, *others = (
-        _log(file, each) for each in ([log] if isinstance(log, str | Path | Log) else log)
-    )
+    first, *others = (_log(file, each) for each in given)
+    read_from = tuple(None if isinstance(each, Log) else Path(each) for each in (*given, *confirm))
     robot = without_untold(robot_of(file, first, others, records, own_effects))
     every = (robot.log, *robot.others, *records)
     touches = find_touches(robot, every)
@@ -93,7 +93,7 @@ def read_robot(
             axes(robot.plant.model, record, file.trust)  # a sensor that froze is refused
         for measured in every:
             refuse_miswired(robot, measured)
-    robot = replace(robot, touches=text)
+    robot = replace(robot, touches=text, read_from=read_from)
     return replace(robot, remarks=_remarks(robot, every))
 
 

@@ -63,6 +63,8 @@ class Robot:
         mean: means of these priors by name, in the parameters' units.
         touches: one sentence on what touches along its logs; "" where nothing does.
         own_effects: candidates of the user's own, beside those of the catalogue.
+        read_from: the file of each log that was read, by the place of the log among `log`, `others`
+            and `records`; None for one that was given.
     """
 
     file: RobotFile
@@ -75,10 +77,18 @@ class Robot:
     mean: Mapping[str, float] = field(default_factory=dict)
     touches: str = ""
     own_effects: tuple[Effect, ...] = ()
+    read_from: tuple[Path | None, ...] = ()
 
     def __repr__(self) -> str:
         logs = listed(log.name for log in (self.log, *self.others, *self.records))
         return f"Robot of {Path(self.file.path).name}, free: {listed(self.file.free)}; logs: {logs}"
+
+    @property
+    def paths(self) -> tuple[Path, ...]:
+        """The file of each log, in the order of `read_from`; NAME.csv for one that was given."""
+        logs = (self.log, *self.others, *self.records)
+        files = self.read_from or (None,) * len(logs)
+        return tuple(f or Path(f"{log.name}.csv") for f, log in zip(files, logs, strict=True))
 
     @property
     def nominal_model(self) -> NominalModel:

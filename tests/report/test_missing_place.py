@@ -1,6 +1,6 @@
 """With an unknown effect the answer is the joint, the place and the size of the missing force."""
 
-import re
+import runpy
 from dataclasses import replace
 
 import fake_discovery
@@ -16,6 +16,7 @@ from identification.report.horizon_gap import NeededForce, find_gap
 from identification.report.missing_place import find_place, place_of
 from identification.report.named_words import Nodes
 from identification.report.own_stub import own_stub
+from identification.robot import discovery_files
 from identification.robot.discovery_files import STUB, RobotDiscoveryFiles
 
 
@@ -85,7 +86,7 @@ def test_along_a_free_run_the_direction_is_told(rising):
 
 def test_the_stub_is_an_effect_at_the_place_that_a_search_takes(tmp_path):
     place = find_place(unknown())
-    text = own_stub(unknown(), place, "robot.toml")
+    text = own_stub(place, "robot.toml", ["a.csv"], ["../b c.mcap", "d.csv"])
     names = {"__name__": "stub"}
     exec(compile(text, STUB, "exec"), names)
     (size,) = names["MINE"].sizes
@@ -98,8 +99,8 @@ def test_the_stub_is_an_effect_at_the_place_that_a_search_takes(tmp_path):
     law = names["mine"].py_func
     assert law(At, (2.0,)) == pytest.approx(2.0, rel=0.1)
     assert law(At, (0.0,)) == 0.0
-    assert 'read_robot(\n        # write the paths of your files\n        "robot.toml"' in text
-    assert re.search(r'confirm=\["record 3.csv", "record 4.csv"\]', text)
+    assert 'read_robot(\n        here / "robot.toml", [here / "a.csv"], ' in text
+    assert 'confirm=[here / "../b c.mcap", here / "d.csv"]' in text
 
 
 def test_an_own_effect_is_a_candidate_of_a_robot_beside_those_of_its_file(tmp_path):
@@ -108,12 +109,32 @@ def test_an_own_effect_is_a_candidate_of_a_robot_beside_those_of_its_file(tmp_pa
 
     place = replace(find_place(unknown()), joint="slide", force_unit="N")
     names = {"__name__": "stub"}
-    exec(compile(own_stub(unknown(), place, "robot.toml"), STUB, "exec"), names)
+    exec(compile(own_stub(place, "robot.toml", ["log.csv"]), STUB, "exec"), names)
     (tmp_path / "slider.xml").write_text(SLIDER)
     (tmp_path / "robot.toml").write_text(TOML + '\n[effects]\nonly = ["offset"]\n')
     write_log(simulated({"damping": 3.0, "mass": 2.0}, 200), tmp_path / "log.csv")
     robot = read_robot(tmp_path / "robot.toml", tmp_path / "log.csv", own_effects=[names["MINE"]])
     assert [e.name for e in robot.candidates] == ["offset", "mine"]
+
+
+def test_the_stub_reads_its_files_from_any_folder(tmp_path, monkeypatch):
+    from elbow_cases import ELBOW, elbow
+
+    place, (robot, found) = find_place(unknown()), elbow()
+    monkeypatch.setattr(discovery_files, "find_place", lambda _: place)
+    out = tmp_path / "out"
+    out.mkdir()
+    RobotDiscoveryFiles(found, robot).keep(out, out)
+    monkeypatch.chdir(tmp_path)
+    read = []
+    monkeypatch.setattr("identification.read_robot", lambda *a, **k: read.append((a, k)))
+    monkeypatch.setattr("identification.discover", lambda robot: None)
+    monkeypatch.setattr("identification.discovery_text", lambda found: "")
+    runpy.run_path(str(out / STUB), run_name="__main__")
+    ((file, logs), more) = read[0]
+    paths = [file, *logs, *more["confirm"]]
+    names = "elbow.toml", "first.csv", "second.csv"
+    assert [p.resolve() for p in paths] == [(ELBOW / n).resolve() for n in names]
 
 
 def test_the_folder_of_a_search_without_a_name_has_the_stub(tmp_path):
