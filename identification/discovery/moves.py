@@ -66,13 +66,21 @@ class SearchState:
     seconds: Mapping[str, float]  # wall time by kind of work [s]
     failed: tuple[Failed, ...] = ()  # what was tried and could not be evaluated
     made: tuple[str, ...] = ()  # names of the moves that changed the effects, in their order
-    end: float = inf  # when moves that may take long have to end, in seconds of `time.monotonic`
+    # in seconds of `time.monotonic`: when the search began, None where each step is asked for; and
+    # when moves that may take long have to end
+    began: float | None = None
+    end: float = inf
     cut_short: tuple[str, ...] = ()  # names of the moves that were ended at that time
 
     @property
     def is_finished(self) -> bool:
         """Tells whether there is nothing left to ask."""
         return not self.moves
+
+    @property
+    def took(self) -> float:
+        """Returns the wall time of the search up to now [s]; of its kinds of work where stepped."""
+        return sum(self.seconds.values()) if self.began is None else time.monotonic() - self.began
 
     @property
     def room(self) -> int:
@@ -171,10 +179,11 @@ class Evidence(Generic[State]):
         """
         say = progress or _say_nothing
         outlook = Outlook(say, self.rests)
-        end = time.monotonic() + 60 * task.options.max_minutes
+        began = time.monotonic()
+        end = began + 60 * task.options.max_minutes
         with following(outlook):
             outlook.enter(FIT)
-            state, asked = replace(self.begin(task, say), end=end), -1
+            state, asked = replace(self.begin(task, say), began=began, end=end), -1
             while not state.is_finished:
                 grown, effects = asked != len(state.accepted), len(state.accepted)
                 if state.moves[0].grows and grown:

@@ -107,7 +107,8 @@ class Discovery(Shown, Written):
             tell nothing, and for a free run.
         repeats: names of the records that confirm, but whose motion is that of a fitted record or
             of one that confirms before them; likewise.
-        seconds: wall time by stage [s].
+        took: wall time of the whole search [s].
+        seconds: of it by stage, as far as stages were finished.
         failed: what was tried and could not be evaluated.
         moves: names of the moves that changed the effects, in their order
             (`identification.discovery.passes`).
@@ -155,6 +156,7 @@ class Discovery(Shown, Written):
     differences: tuple[RecordDifference, ...] = ()
     torques: tuple[TorqueOpinion, ...] = ()
     repeats: tuple[str, ...] = ()
+    took: float
     seconds: Mapping[str, float]
     failed: tuple[Failed, ...] = ()
     moves: tuple[str, ...] = ()

@@ -188,7 +188,7 @@ def conclude(state: InnovationSearch) -> Discovery:
         hidden=list_hidden(scores, model.refit.level, options), findings=findings,
         seconds=state.seconds, failed=state.failed, moves=state.made,
         cut_short=state.cut_short, run=run,
-        recover=partial(recover_force, model.refit),
+        recover=partial(recover_force, model.refit), took=state.took,
     )  # fmt: skip
     return replace(found, share=closed_share(found))
 

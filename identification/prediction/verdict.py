@@ -107,7 +107,7 @@ def conclude(state: WindowSearch) -> Discovery:
         differences=tuple(_difference(state.model, a) for a in differ),
         repeats=_repeats(task.records),
         seconds=state.seconds, moves=state.made, cut_short=state.cut_short,
-        failed=_failed(state), recover=partial(recover_over_horizon, model),
+        failed=_failed(state), recover=partial(recover_over_horizon, model), took=state.took,
     )  # fmt: skip
 
 

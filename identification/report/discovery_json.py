@@ -92,7 +92,7 @@ def discovery_to_json(found: Discovery) -> dict[str, Any]:
         "fails": _fails_to_json(found),
         **plain_fields(found, "options", "moves", "cut_short"),
         "stages": [{"stage": name, "seconds": t} for name, t in found.seconds.items()],
-        "seconds": float(sum(found.seconds.values())),
+        "seconds": found.took,
     }  # fmt: skip
 
 

@@ -135,7 +135,7 @@ def found(verdict="named", *, one_of=False, unexplained=False, several=False) ->
         scored_by="gain",
         hidden=(Hidden(MISMATCH, {"delta": (0.002, 0.006, "")}, 0.3, 4.0),),
         detectable=(Detectable(STRIBECK, "f_s", 2e-4, "N m"), Detectable(LATE, "tau", np.inf, "s")),
-        findings=(DRIVE_3,) * unexplained, seconds={"fit": 1.5, "score": 2.0},
+        findings=(DRIVE_3,) * unexplained, seconds={"fit": 1.5, "score": 2.0}, took=3.5,
         files_of=TwinDiscoveryFiles,
     )  # fmt: skip
 

@@ -5,11 +5,12 @@ from math import inf
 from pathlib import Path
 from types import SimpleNamespace
 
+from identification.discovery import moves as moves_module
 from identification.discovery.moves import Evidence, Move, SearchState
 from identification.discovery.passes import PASSES
 from identification.errors import InputError
 from identification.innovations import state as innovations
-from identification.pool import end_if_given_up
+from identification.pool import OutOfTime, end_if_given_up
 from identification.prediction import state as windows
 
 ROOT = Path(__file__).parents[2]
@@ -88,6 +89,25 @@ def test_behind_the_time_limit_no_effect_is_added_and_the_checks_are_made():
     assert end.rejected == ()
     assert end.scores == ("checked",)
     assert searched(begun(), every).cut_short == ()
+
+
+def test_the_time_of_a_search_counts_moves_that_were_ended(monkeypatch):
+    now = [1000.0]
+    monkeypatch.setattr(moves_module, "time", SimpleNamespace(monotonic=lambda: now[0]))
+
+    def ended(state, progress):
+        now[0] += 45.0
+        raise OutOfTime
+
+    def finished(state, progress):
+        now[0] += 7.0
+        return replace(state, seconds={"refits": 6.0})
+
+    every = (Move("add_set", ended, takes_long=True), Move("drop_effects", finished))
+    end = searched(begun(), every)
+    assert end.cut_short == ("add_set",)
+    assert (end.took, sum(end.seconds.values())) == (52.0, 6.0)
+    assert replace(end, began=None).took == 6.0
 
 
 def test_a_move_that_is_left_out_is_not_asked():
