@@ -6,7 +6,7 @@ The numbers are those of docs/json.md. A model goes on from its own file: robot.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import nan
 from pathlib import Path
@@ -14,6 +14,7 @@ from typing import Any
 
 from identification.errors import InputError
 from identification.results import CURE, read_result
+from identification.shown import Shown, verdict_of
 
 Parameters = Mapping[str, tuple[float, float, str]]
 
@@ -39,8 +40,8 @@ class SavedEffect:
     rivals: tuple[SavedRival, ...] = ()  # other effects that were refitted in its place
 
 
-@dataclass(frozen=True)
-class SavedDiscovery:
+@dataclass(frozen=True, repr=False)
+class SavedDiscovery(Shown):
     """The result of a search for what a model lacks, as it was saved.
 
     Attributes:
@@ -56,13 +57,20 @@ class SavedDiscovery:
     verdict: str
     unexplained: bool
     named: tuple[SavedEffect, ...]
-    rejected: tuple[SavedEffect, ...] = field(repr=False)
-    values: Mapping[str, float] = field(repr=False)
-    record: Mapping[str, Any] = field(repr=False)
+    rejected: tuple[SavedEffect, ...]
+    values: Mapping[str, float]
+    record: Mapping[str, Any]
 
     def to_dict(self) -> dict[str, Any]:
         """Returns all that was saved as plain values."""
         return dict(self.record)
+
+
+@verdict_of.register
+def _sentences(saved: SavedDiscovery) -> Sequence[str]:
+    """Returns the sentences of the verdict; the word and the names of a result without them."""
+    names = "; ".join(f"{n.name}, {n.where}" for n in saved.named)
+    return saved.record.get("sentences") or [": ".join(filter(None, [saved.verdict, names]))]
 
 
 @dataclass(frozen=True)

@@ -26,6 +26,11 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 _BACKENDS = ("egl", "osmesa", "glfw")  # of MuJoCo, by the words of MUJOCO_GL
+LOG_KINDS = (
+    "A log of any kind: .csv (with a TOML beside it), .mat (with u, y and Ts), .npz, .parquet, an"
+    " episode of LeRobot, .mcap, .db3, .bag, or a folder of ROS."
+)
+OneLog = Annotated[Path, tyro.conf.Positional, tyro.conf.arg(metavar="LOG", help=LOG_KINDS)]
 LogLists = Annotated[  # an option that takes logs and may be given again; see `flat`
     tuple[tuple[Path, ...], ...], tyro.conf.UseAppendAction, tyro.conf.arg(metavar="LOG")
 ]

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from identification.commands.common import Output, conclude, output_field, table
+from identification.commands.common import OneLog, Output, conclude, output_field, table
 
 if TYPE_CHECKING:
     from identification.inspection.inspected import Inspection
@@ -24,8 +24,7 @@ class Inspect:
         identification inspect run.csv
     """
 
-    log: Annotated[Path, tyro.conf.Positional, tyro.conf.arg(metavar="LOG")]
-    """A log of any kind: .csv, .npz, .parquet, an episode of LeRobot, .mcap, .db3, .bag."""
+    log: OneLog
     output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
 
     def run(self) -> int:

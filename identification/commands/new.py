@@ -8,7 +8,7 @@ from typing import Annotated
 
 import tyro
 
-from identification.commands.common import Output, conclude, output_field
+from identification.commands.common import OneLog, Output, conclude, output_field
 from identification.quantities import plain_fields
 
 
@@ -23,8 +23,7 @@ class New:
 
     model: Annotated[Path, tyro.conf.Positional, tyro.conf.arg(metavar="MODEL")]
     """MJCF or URDF."""
-    log: Annotated[Path, tyro.conf.Positional, tyro.conf.arg(metavar="LOG")]
-    """A log of any kind: .csv, .npz, .parquet, an episode of LeRobot, .mcap, .db3, .bag."""
+    log: OneLog
     robot: Annotated[Path, tyro.conf.arg(metavar="FILE")] = Path("robot.toml")
     """Where the file goes; one that exists is never replaced."""
     output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field

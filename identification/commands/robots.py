@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import tyro
 
 from identification.commands.common import (
+    LOG_KINDS,
     LogLists,
     Output,
     conclude,
@@ -38,8 +39,10 @@ class OnRobot:
 
     robot: Annotated[Path, tyro.conf.Positional, tyro.conf.arg(metavar="ROBOT")]
     """TOML that names model, columns, free parameters and candidates."""
-    logs: Annotated[tuple[Path, ...], tyro.conf.Positional, tyro.conf.arg(metavar="LOG")]
-    """CSV (with a TOML beside it) or MATLAB .mat with u, y, Ts; several are fitted together."""
+    logs: Annotated[
+        tuple[Path, ...], tyro.conf.Positional,
+        tyro.conf.arg(metavar="LOG", help=f"{LOG_KINDS} Several are fitted together."),
+    ]  # fmt: skip
     confirm: LogLists = ()
     """Records to which nothing is fitted."""
     trust: Annotated[

@@ -130,10 +130,11 @@ def without_repeated(table: Table) -> Table:
         return table
     keep = np.flatnonzero(np.append(True, ~same))
     kept = replace(table, data=table.data[keep], place=lambda row: table.place(int(keep[row])))
-    return kept.told(
-        f"{int(same.sum())} rows of log {table.path.stem!r} repeat the row before them to the last"
-        " digit and were left out."
-    )
+    n, log = int(same.sum()), f"of log {table.path.stem!r}"
+    said = f"1 row {log} repeats the row before it to the last digit and was left out."
+    if n > 1:
+        said = f"{n} rows {log} repeat the row before them to the last digit and were left out."
+    return kept.told(said)
 
 
 def moves_on(time: FloatArray, x: FloatArray) -> bool | None:

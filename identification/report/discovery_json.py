@@ -15,6 +15,7 @@ from identification.discovery.result import Discovery
 from identification.effects.effect import Candidate
 from identification.model.predictor import Plant
 from identification.quantities import plain, plain_fields
+from identification.report.discovery_verdict import discovery_verdict
 from identification.report.finding_words import describe_finding
 from identification.report.horizon_gap import find_gap
 from identification.report.named_words import curve_nodes
@@ -35,6 +36,7 @@ def discovery_to_json(found: Discovery) -> dict[str, Any]:
     findings, plant = (*found.located, *found.findings), found.final.plant
     return {
         "verdict": found.verdict,
+        "sentences": discovery_verdict(found),
         "effects": [_named_to_json(named, plant) for named in found.named],
         "rejected": [
             {**_rejected_to_json(r), **_called(r.candidate, plant)} for r in found.rejected

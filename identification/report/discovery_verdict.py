@@ -27,6 +27,14 @@ from identification.shares import HELD, change, fall_words, percent, ratio_of, t
 from identification.shown import verdict_of
 
 NOT_FITTED = "the fit has not seen, but on which the search has decided"
+SOUGHT = {  # what the moves that the time limit ends seek, by their names
+    "add_effect": "the next effect",
+    "add_yielding_friction": "a friction that yields before it slips",
+    "add_set": "sets of several effects",
+    "set_for_effects": "sets in the place of effects that were found one by one",
+    "add_pair": "pairs of effects",
+    "add_deviants": "parts that deviate from the others",
+}
 ALMOST = 0.9999  # nearly all: "more than 99.9 %"
 
 
@@ -66,14 +74,14 @@ def _cut_short(found: Discovery) -> list[str]:
     if not found.cut_short:
         return []
     limit = duration(60 * found.options.max_minutes)
-    names = [name.replace("_", " ") for name in found.cut_short]
+    sought = listed([SOUGHT[name] for name in found.cut_short])
     rest = (
         "What is named is proven as always, but more may be missing"
         if found.named
         else "Effects that it has not tried may explain the error"
     )
     return [
-        f"The time limit of {limit} ended the search within these moves: {listed(names)}. {rest};"
+        f"The time limit of {limit} ended the search while it sought {sought}. {rest};"
         " give more time by --minutes or max_minutes."
     ]
 

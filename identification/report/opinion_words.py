@@ -2,31 +2,38 @@
 
 from __future__ import annotations
 
+from math import hypot
+
+from identification.discovery.effect_results import NamedEffect
 from identification.discovery.result import Discovery
 from identification.discovery.second_opinion import TorqueOpinion
 from identification.report.effect_words import value_with_std
 from identification.report.value_words import phrase
 from identification.shares import fall_words
 
+SURE = 3.0  # std of both together, from which two sizes are not the same
+
 
 def opinion_sentences(found: Discovery) -> list[str]:
     """Returns a sentence on each effect of which the joints' torques say something."""
-    phrases = {n.candidate.key: phrase(n.candidate.effect) for n in found.named}
-    return [
-        _sentence(o, phrases.get((o.name, o.where), o.name.replace("_", " ")))
-        for o in found.torques
-    ]
+    named = {n.candidate.key: n for n in found.named}
+    return [_sentence(o, named.get((o.name, o.where))) for o in found.torques]
 
 
-def _sentence(o: TorqueOpinion, said: str) -> str:
+def _sentence(o: TorqueOpinion, named: NamedEffect | None) -> str:
+    said = phrase(named.candidate.effect) if named else o.name.replace("_", " ")
     sizes = ", ".join(f"{n} = {value_with_std(v, s, u)}" for n, (v, s, u) in o.sizes.items())
     by = f"{o.t:.1f} std from what the model has"
     if o.fall is not None:
         by = f"their mean square on data that no fit has seen {fall_words(o.fall)}, t {o.t:z.1f}"
     which = f"{said}, {o.where}"
     if o.is_named and o.is_proven:
+        what = "the same"
+        if named and _is_another_size(o, named):
+            kind = "a friction" if "friction" in o.name else "such an effect"
+            what = f"{kind} there too, with another size"
         return (
-            "The torques of the measured motion, computed without a simulation, prove the same:"
+            f"The torques of the measured motion, computed without a simulation, prove {what}:"
             f" {which}, {sizes}; {by}."
         )
     if o.is_named:
@@ -38,3 +45,9 @@ def _sentence(o: TorqueOpinion, said: str) -> str:
         "The torques of the measured motion, computed without a simulation, name another effect"
         f" first: {which}, {sizes}; {by}. The command `identification torques` tells more."
     )
+
+
+def _is_another_size(o: TorqueOpinion, named: NamedEffect) -> bool:
+    """Tells whether torques have another size than the search, by more than both are uncertain."""
+    both = [(each, named.parameters[n]) for n, each in o.sizes.items() if n in named.parameters]
+    return any(abs(a - b) > SURE * hypot(s, t) for (a, s, _), (b, t, _) in both)

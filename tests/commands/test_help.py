@@ -9,6 +9,7 @@ from identification.__main__ import main as identification
 from identification.commands.arguments import _commands, examples_of, parsed
 from identification.commands.cli import EXAMPLES as ROBOT_EXAMPLES
 from identification.commands.cli import Command as RobotCommand
+from identification.logs.formats import KINDS
 from inca_mj.cli import EXAMPLES, Command
 from inca_mj.cli import main as inca
 
@@ -34,6 +35,15 @@ def test_an_example_is_a_right_command_line(program, name, example, request):
     for word in arguments:
         if word.startswith(SHIPPED):
             assert (request.config.rootpath / word).is_file()
+
+
+@pytest.mark.parametrize("command", ["new", "inspect", "fit", "discover", "torques"])
+def test_the_help_of_a_log_names_every_kind(command, capsys):
+    with pytest.raises(SystemExit):
+        identification([command, "--help"])
+    said = capsys.readouterr().out
+    assert [kind for kind in KINDS if kind not in said] == []
+    assert "LeRobot" in said
 
 
 def test_bash_completes_a_command(capsys):

@@ -12,6 +12,7 @@ from identification.errors import InputError
 from identification.innovations import state as innovations
 from identification.pool import OutOfTime, end_if_given_up
 from identification.prediction import state as windows
+from identification.report.discovery_verdict import SOUGHT
 
 ROOT = Path(__file__).parents[2]
 
@@ -134,6 +135,11 @@ def test_every_move_of_both_searches_has_a_reason_and_can_be_left_out():
             state = begun(without=(move.name,))
             assert move not in Evidence(None, every, None).asked(state)
             assert len(Evidence(None, every, None).asked(state)) == len(every) - 1
+
+
+def test_what_each_move_that_the_time_limit_ends_seeks_is_told_in_words():
+    every = {*innovations.MOVES, *windows.MOVES}
+    assert {*SOUGHT} == {move.name for move in every if move.grows or move.takes_long}
 
 
 def test_the_page_lists_every_pass_with_what_it_does():

@@ -101,6 +101,10 @@ def test_what_was_saved_is_read_again_from_the_folder_or_its_file(result, tmp_pa
         assert [*saved.verdict] == record["verdict"]
         return
     assert isinstance(saved, SavedDiscovery)
+    assert repr(saved) == repr(result)
+    assert saved._repr_html_() == result._repr_html_()
+    older = {name: each for name, each in record.items() if name != "sentences"}
+    assert repr(replace(saved, record=older)).startswith(result.verdict)
     assert (saved.verdict, saved.unexplained) == (result.verdict, result.unexplained)
     assert saved.values == dict(result.final.told_values)
     for mine, theirs in zip(saved.named, result.named, strict=True):

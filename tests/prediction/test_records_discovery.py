@@ -105,7 +105,8 @@ def test_a_search_behind_its_time_limit_answers_and_says_what_it_has_not_tried()
     assert answer.scores
     assert answer.cut_short == ("add_effect", "add_set")
     assert discovery_to_json(answer)["cut_short"] == [*answer.cut_short]
-    assert "within these moves: add effect and add set. " in discovery_text(answer)
+    said = discovery_text(answer)
+    assert "while it sought the next effect and sets of several effects. Effects that it" in said
     assert found().cut_short == ()
 
 

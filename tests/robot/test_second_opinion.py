@@ -25,6 +25,18 @@ def test_torques_find_the_size_that_a_search_over_windows_has_found():
     assert "prove the same: friction – Coulomb, joint elbow, f_c = " in sentence
 
 
+def test_another_size_of_torques_is_told_as_such():
+    _, found = elbow()
+    (told,) = found.torques
+    value, std, unit = found.named[0].parameters["f_c"]
+    for far, other in ((2.8, False), (3.2, True)):
+        size = value + far * np.hypot(std, 0.004), 0.004, unit
+        moved = replace(found, torques=(replace(told, sizes={"f_c": size}),))
+        (sentence,) = opinion_sentences(moved)
+        assert ("prove a friction there too, with another size: friction" in sentence) == other
+        assert ("prove the same: " in sentence) != other
+
+
 def score(name, is_proven=True, where="joint a"):
     missing = SimpleNamespace(key=(name, where), name=name, where=where, sizes=(f"{name}.k@a",),
                               units=("N m",))  # fmt: skip
