@@ -187,17 +187,49 @@ def _refuse_twice(table: Table, name: str, unit: str, overrule: str, trusted: bo
     alone = (*ends, x[first], x[last])
     noise = min(float(noise_floor(y[:, None])[0]) for y in alone)
     encoder = min(map(encoder_step, alone))
-    allowed = max(BEYOND * moved, NOISE * noise, STEPS * encoder, ALLOWED * float(np.ptp(x)))
-    bad = same[np.abs(x[same + 1] - x[same]) > allowed]
+    least_judged = max(NOISE * noise, STEPS * encoder, ALLOWED * float(np.ptp(x)))
+    bad = same[np.abs(x[same + 1] - x[same]) > max(BEYOND * moved, least_judged)]
+    between = "between such stamps"
+    if not bad.size:
+        between = "from row to row elsewhere"
+        bad, moved = _there_and_back(x, is_same, least_judged)
     if len(bad) > (MOST * len(first) if trusted else 0):
         k = int(bad[0])
         raise InputError(
             f"{table.place(int(rows[k + 1]))}: there are two rows with one stamp, {t[k]:.9g} s, and"
             f" they contradict each other: {name} is {x[k]:.4g} and {x[k + 1]:.4g} {unit}".rstrip()
-            + f", though it moves by {moved:.2g} at most between such stamps"
+            + f", though it moves by {moved:.2g} at most {between}"
             f"{_more(len(bad), 'pair')}; keep the rows of one publisher"
             + (UNTOLD if trusted else overrule)
         )
+
+
+def _there_and_back(x: FloatArray, is_same: np.ndarray, least: float) -> tuple[np.ndarray, float]:
+    """Returns pairs of rows with one stamp, in one of which alone an output is somewhere else.
+
+    Such a pair stands among rows with stamps of their own, and without one of its two rows the
+    output moves there as it does in the rest of the log. So much is known of how it moves only
+    where most stamps have one row.
+
+    Args:
+        x: the output, shape (n,).
+        is_same: whether each row but the first has the stamp of the row before it, shape (n - 1,).
+        least: what a distance has to exceed to be judged.
+
+    Returns:
+        The first row of each such pair, and how far the output moves at most between other rows.
+    """
+    none = np.array([], dtype=int)
+    alone = ~np.append(False, is_same) & ~np.append(is_same, False)
+    steps = np.abs(np.diff(x))[alone[1:] & alone[:-1]]
+    if len(steps) <= MOST * float(np.sum(~is_same)):
+        return none, 0.0
+    step = float(steps.max())
+    k = np.flatnonzero(is_same[1:-1] & alone[:-3] & alone[3:]) + 1
+    near = [np.abs(x[a] - x[b]) <= step
+            for a, b in ((k, k - 1), (k + 2, k), (k + 1, k - 1), (k + 2, k + 1))]  # fmt: skip
+    is_far = np.abs(x[k + 1] - x[k]) > max(BEYOND * step, least)
+    return k[is_far & (near[0] & near[1] | near[2] & near[3])], step
 
 
 def _refuse_zeros(table: Table, name: str, zero: np.ndarray, unit: str, overrule: str) -> None:

@@ -63,6 +63,43 @@ def test_two_publishers_that_always_differ(refusal, later):
     assert "two rows with one stamp" in refusal(judge, *twice)
 
 
+@pytest.mark.parametrize("is_first", [True, False])
+def test_one_row_that_contradicts_another_of_its_stamp(refusal, is_first):
+    """It is farther away than the joint moves in a row, and nearer than it moves in four."""
+    t, u, q = motion()
+    step, k = np.abs(np.diff(q)).max(), 431
+    t, u, q = (np.insert(x, k, x[k]) for x in (t, u, q))
+    q[k + (not is_first)] += 3.0 * step
+    said = refusal(judge, t, u, q)
+    assert f"row {k + 1}: there are two rows with one stamp, {t[k]:.9g} s" in said
+    assert f"moves by {step:.2g} at most from row to row elsewhere" in said
+    q[k : k + 2] = q[k - 1] + np.array([0.9, 1.1]) * step  # both are where it may be
+    judge(t, u, q)
+
+
+@given(
+    seed=st.integers(0, 999),
+    noise=st.sampled_from([0.0, 1e-4, 1e-2]),
+    encoder=st.sampled_from([0.0, 2e-3, 0.05]),
+    pairs=st.integers(1, 200),
+    lost=st.integers(0, 60),
+)
+def test_rows_that_waited_for_one_another_are_right(seed, noise, encoder, pairs, lost):
+    """Some rows have the stamp of the next one, and rows are lost, also between two of a stamp."""
+    rng = np.random.default_rng(seed)
+    t, u, q = motion(noise=noise, seed=seed)
+    if encoder:
+        q = encoder * np.round(q / encoder)
+    kept = np.sort(rng.permutation(len(t))[lost:])
+    first = rng.integers(0, len(t) - 40)
+    kept = kept[(kept < first) | (kept > first + lost // 2)]
+    t, u, q = t[kept], u[kept], q[kept]
+    late = rng.permutation(len(t) - 1)[:pairs]
+    stamps = t.copy()
+    stamps[late] = t[late + 1]
+    judge(np.maximum.accumulate(stamps), u, q)
+
+
 @given(
     seed=st.integers(0, 999),
     noise=st.sampled_from([0.0, 1e-4, 1e-2]),
