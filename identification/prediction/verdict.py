@@ -76,7 +76,8 @@ def conclude(state: WindowSearch) -> Discovery:
     stick = attempt(None, partial(measure, model, task.effects)) if state.accepted else None
     named = tuple(named_effect(state, a, limit, stick) for a in state.accepted if a not in differ)
     is_unexplained = _is_worse(state) or _errs(model, needed, options)
-    closes = _share(nominal, model)
+    # Where the fit was worse than the values with which it began, an effect says why.
+    closes = _share(state.worse_fit or nominal.unseen, model.unseen)
     verdict = decide(named, findings, is_unexplained, closes, options)
     if verdict == "unknown effect":
         doubt: Doubt | None = "gap" if _is_small(named, findings, closes, options) else None
@@ -87,7 +88,7 @@ def conclude(state: WindowSearch) -> Discovery:
     noise = model.unseen.noise
     return Discovery(
         records=task.records, options=options, horizon=task.horizon, verdict=verdict, named=named,
-        rejected=rejected, share=_share(nominal, model),
+        rejected=rejected, share=_share(nominal.unseen, model.unseen),
         smooth_share=smooth,
         unexplained=verdict != "nothing missing" and (bool(findings) or not named),
         noise_rms=error_of_all(noise, nominal.scale, log), unit=log.output_unit,
@@ -147,13 +148,11 @@ def _is_small(
     return is_asked and is_law and not share > options.min_explained_share
 
 
-def _share(nominal: WindowModel, model: WindowModel) -> float:
+def _share(before: Unseen, after: Unseen) -> float:
     """Returns the share of the power above the noise that a model takes away on untouched data."""
-    before, after = (
-        float(np.mean(np.concatenate(m.unseen.report.at_horizon))) for m in (nominal, model)
-    )
-    above = before - min(model.unseen.floor, after)
-    return (before - after) / above if above > 0 else 0.0
+    old, new = (float(np.mean(np.concatenate(u.report.at_horizon))) for u in (before, after))
+    above = old - min(after.floor, new)
+    return (old - new) / above if above > 0 else 0.0
 
 
 def _with_differences(state: WindowSearch, differ: Sequence[Contender]) -> WindowModel:
