@@ -3,8 +3,8 @@
     columns of a joint's row = (all laws of the catalogue, and again where a set has a law twice)
 
 A set of effects takes its columns of this row. What it lacks has sizes of zero there and adds
-nothing. So robots whose sets differ share their machine code, which takes numba 12 s, and each law
-that is not there costs a step less than two nanoseconds. A robot with hinges and slides has each
+nothing. So robots whose sets differ share their machine code, which takes numba 12 s; a step asks
+of each law that is not there whether its sizes are zero. A robot with hinges and slides has each
 law twice. A set with an effect of a user's own has a law of its own, and so has the empty set.
 """
 

@@ -141,7 +141,7 @@ def _is_small(
 ) -> bool:  # fmt: skip
     """Returns whether a law closes less of the gap than a name has to, and something is left.
 
-    Such a law is more often the neighbour of a force in no catalogue than one of several causes.
+    Such a law may be the neighbour of a force in no catalogue.
     """
     is_asked = bool(findings) and uses(options, "closed_gap")
     is_law = any(not n.candidate.effect.is_curve for n in named)
