@@ -48,7 +48,7 @@ def rotor_effects(g: Group, timestep: float) -> list[Effect]:
     if not inertias:
         return []
     unit = "kg m^2" if g.kind == "hinge" else "kg"
-    size = g.size("a", LARGEST * max(inertias), unit, "what its armature has more")
+    size = g.size("a", LARGEST * max(inertias), unit, "inertia that is added to its armature")
     return [g.effect(HOOK, rotor_inertia, "armature + a", "motor: another rotor inertia", size)]
 
 
