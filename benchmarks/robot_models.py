@@ -36,6 +36,7 @@ WORDS = {
     "crane": "a load on two tendons whose lengths are measured",
     "cart": "a cart with an end stop",
 }
+WITH_LINKS = ("arm", "finger", "leg")  # bodies on which a load has a place
 MASS_IS_FREE = ("cart", "crane")  # of the body that would have more: nothing would be missing
 HEAD = """# Kinds of robots that were tried
 
@@ -71,10 +72,12 @@ def answer_of(found: Discovery) -> dict[str, Any]:
     """Returns what a search says, as a row has it."""
     return {
         "verdict": found.verdict, "times_noise": found.times_noise(found.after),
+        "share": found.share, "smooth_share": found.smooth_share,
         "moves": list(found.moves), "cut_short": list(found.cut_short),
         "named": [
             {"name": n.name, "where": n.where, "confidence": n.confidence,
              "rivals": [[r.name, r.where, r.confidence] for r in n.rivals],
+             "smooth_share": n.smooth_share,
              "sizes": {name: p[0] for name, p in n.parameters.items()}}
             for n in found.named
         ],
@@ -84,6 +87,8 @@ def answer_of(found: Discovery) -> dict[str, Any]:
 
 def is_asked(robot: str, effect: str) -> bool:
     """Returns whether a robot may hide an effect: no parameter that is free is the same."""
+    if effect == "load":
+        return robot in WITH_LINKS
     return effect not in ("heavier", "rotor") or robot not in MASS_IS_FREE
 
 

@@ -1,8 +1,9 @@
 """Worlds of small robots in the manner of MuJoCo Menagerie, each with something its model lacks.
 
-    Q_hidden = s F f(q, q̇) / rms(f)      at one driven joint; or inputs that come late, or a mass
+    Q_hidden = s F f(q, q̇, Q) / rms(f)      at one driven joint; or inputs that come late, or a mass
 
-F: rms of the drives' force at that joint without the effect, s: its share. A simulation takes steps
+F: rms of the drives' force Q at that joint without the effect, s: its share; a voltage limit and a
+lever are as large as they are. A simulation takes steps
 of a quarter of the model's and adds the force itself; no code of the search takes part.
 """
 
@@ -32,6 +33,9 @@ DRIVEN: Mapping[str, linkages.Truth] = {
 SHARES = (0.1, 0.3)  # s, the least and the most
 LATE = (0.005, 0.02)  # of inputs that come late [s]
 HEAVIER = (0.2, 0.4)  # of the mass of a body that carries more
+LOAD = (0.1, 0.3)  # of the mass of the body that carries it
+LOAD_AT = (0.4, 1.2)  # of the way to the body's end; and aside by as much as `ASIDE` of it
+ASIDE = 0.3
 ROTOR = (0.2, 0.6)  # of the inertia that a joint swings
 SEEN = 4.0  # rms change of the outputs over their noise, below which an effect is made larger
 MOST_DOUBLINGS = 4
@@ -46,12 +50,18 @@ NAMES: Mapping[str, tuple[str, ...]] = {
     "delay": ("delay", "time_shift"),
     # its inertia grows too, and is all that a body on a vertical axis shows
     "heavier": ("mass_mismatch", "payload", "inertia_mismatch"),
+    "load": ("load",),
     # at a joint on the frame an inertia of its body acts alike
     "rotor": ("rotor_inertia", "inertia_mismatch"),
     "bump": (),
     "stop": (),
+    "voltage": (),
+    "lever": (),
+    "guide": (),
 }
-UNLISTED = ("bump", "stop")
+OF_TWO = ("voltage", "lever", "guide")  # forces that depend on two variables at once
+UNLISTED = ("bump", "stop", *OF_TWO)
+AS_THEY_ARE = ("voltage", "lever")  # forces whose size is no choice
 
 
 @dataclass(frozen=True)
@@ -63,6 +73,7 @@ class World:
     joint: str  # where, or the joint of the body that is heavier; "" where nothing is hidden
     size: float  # amplitude of the force [N or N m], lateness [s], mass or inertia [kg or kg m²]
     seed: int
+    place: tuple[float, ...] = ()  # of a load, in its body's frame, shape (3,) [m]
 
     @property
     def folder(self) -> Path:
@@ -83,33 +94,45 @@ class Motion:
     drive: np.ndarray  # the drives' force on each joint, likewise
 
 
-Law = Callable[[float, float], float]
+Law = Callable[[float, float, float], float]  # of q, q̇ and the drives' force there
 
 
-def law(effect: str, motion: Motion, joint: int) -> Law:
-    """Returns the force of an effect at (q, q̇), whose rms along a motion is one.
+def law(effect: str, motion: Motion, joint: int) -> tuple[Law, float]:
+    """Returns the force of an effect at (q, q̇, Q), in units of its rms along a motion, and that.
 
     Args:
         effect: a force of `NAMES`.
         motion: along which it is scaled.
         joint: its index.
     """
-    q, v = motion.q[:, joint], motion.v[:, joint]
+    q, v, Q = motion.q[:, joint], motion.v[:, joint], motion.drive[:, joint]
     low, high = np.percentile(q, [2, 98])
     middle, width, waves = np.percentile(q, 65), (high - low) / 10, 4 * np.pi / (high - low)
     edge = np.percentile(q, 85)
-    laws: dict[str, Callable[[Any, Any], Any]] = {
-        "coulomb_friction": lambda q, v: -np.sign(v),
-        "quadratic_friction": lambda q, v: -v * np.abs(v),
-        "hardening": lambda q, v: -(q**3),
-        "offset": lambda q, v: 1.0 + 0.0 * q,
-        "cogging": lambda q, v: np.sin(max(1, round(waves)) * q + 1.0),
-        "bump": lambda q, v: np.exp(-(((q - middle) / width) ** 2)),
-        "stop": lambda q, v: -np.maximum(q - edge, 0.0),
+    stall, fastest = np.percentile(np.abs(Q), 80), 2 * np.percentile(np.abs(v), 98)
+    slow = 0.05 * float(np.sqrt(np.mean(v**2)))
+
+    def limited(v: Any, Q: Any) -> Any:
+        return np.clip(Q, -stall * (1 + v / fastest), stall * (1 - v / fastest))
+
+    laws: dict[str, Callable[[Any, Any, Any], Any]] = {
+        "coulomb_friction": lambda q, v, Q: -np.sign(v),
+        "quadratic_friction": lambda q, v, Q: -v * np.abs(v),
+        "hardening": lambda q, v, Q: -(q**3),
+        "offset": lambda q, v, Q: 1.0 + 0.0 * q,
+        "cogging": lambda q, v, Q: np.sin(max(1, round(waves)) * q + 1.0),
+        "bump": lambda q, v, Q: np.exp(-(((q - middle) / width) ** 2)),
+        "stop": lambda q, v, Q: -np.maximum(q - edge, 0.0),
+        # a supply whose voltage the motor's own uses up: less force the faster it turns
+        "voltage": lambda q, v, Q: limited(v, Q) - Q,
+        # a crank between drive and joint
+        "lever": lambda q, v, Q: Q * (np.cos(2.2 * (q - middle) / (high - low)) - 1),
+        # a bent rail: friction on one part of the travel is five times that on the other
+        "guide": lambda q, v, Q: -np.tanh(v / slow) * np.where(q > middle, 5.0, 1.0),
     }
     f = laws[effect]
-    size = float(np.sqrt(np.mean(np.broadcast_to(f(q, v), q.shape) ** 2)))
-    return lambda q, v: float(f(q, v)) / size
+    size = float(np.sqrt(np.mean(np.broadcast_to(f(q, v, Q), q.shape) ** 2)))
+    return lambda q, v, Q: float(f(q, v, Q)) / size, size
 
 
 def simulate(world: World, force: Law | None, seed: int) -> Motion:
@@ -123,6 +146,11 @@ def simulate(world: World, force: Law | None, seed: int) -> Motion:
         force = None
     if world.effect == "rotor":
         spec.joint(world.joint).armature += world.size
+        force = None
+    if world.effect == "load":
+        small = np.full(3, 1e-6 * world.size)
+        load = spec.joint(world.joint).parent.add_body(pos=world.place, mass=world.size)
+        load.inertia, load.explicitinertial = small, True
         force = None
     model = spec.compile()
     if world.effect == "heavier":
@@ -153,7 +181,9 @@ def simulate(world: World, force: Law | None, seed: int) -> Motion:
         for i in range(each):
             data.ctrl[:] = steps[k * each + i]
             if force:
-                data.qfrc_applied[dof] = world.size * force(data.qpos[place], data.qvel[dof])
+                data.qfrc_applied[dof] = world.size * force(
+                    data.qpos[place], data.qvel[dof], data.qfrc_actuator[dof]
+                )
             mujoco.mj_step(model, data)
     return Motion(time, inputs, *map(np.array, (outputs, q, v, drive)))
 
@@ -175,22 +205,38 @@ def make(robot: str, effect: str, seed: int) -> tuple[World, list[Motion]]:
     model = mujoco.MjModel.from_xml_path(str(world.folder / "model.xml"))
     felt = np.sqrt(np.mean(without[0].drive ** 2, axis=0))
     joint = int(chance.choice(np.flatnonzero(felt > 0.05 * felt.max())))
-    ranges = {"delay": LATE, "heavier": HEAVIER, "rotor": ROTOR}
+    ranges = {"delay": LATE, "heavier": HEAVIER, "load": LOAD, "rotor": ROTOR}
     size = float(chance.uniform(*ranges.get(effect, SHARES)))
-    if effect == "heavier":
+    force, rms = (None, 0.0) if effect in ranges else law(effect, without[0], joint)
+    place: tuple[float, ...] = ()
+    if effect in ("heavier", "load"):
         size *= float(model.body_mass[model.jnt_bodyid[joint]])
     elif effect == "rotor":
         size *= float(model.dof_M0[model.jnt_dofadr[joint]])
+    elif effect in AS_THEY_ARE:
+        size = rms
     elif effect != "delay":
         size *= float(felt[joint])
-    world = World(robot, effect, model.joint(joint).name, size, seed)
-    force = None if effect in ranges else law(effect, without[0], joint)
+    if effect == "load":
+        place = place_of_load(model, int(model.jnt_bodyid[joint]), chance)
+    world = World(robot, effect, model.joint(joint).name, size, seed, place)
     for _ in range(1 + MOST_DOUBLINGS):
         motions = [simulate(world, force, s) for s in seeds]
         if change_over_noise(world, motions, without) >= SEEN:
             break
         world = replace(world, size=2 * world.size)
     return world, motions
+
+
+def place_of_load(
+    model: mujoco.MjModel, body: int, chance: np.random.Generator
+) -> tuple[float, ...]:
+    """Returns where a load sits on a body, in its frame, shape (3,) [m]."""
+    carried = np.flatnonzero(model.body_parentid == body)
+    end = model.body_pos[carried[0]] if len(carried) else 2 * model.body_ipos[body]
+    aside = chance.standard_normal(3)
+    aside *= chance.uniform(0, ASIDE) * np.linalg.norm(end) / np.linalg.norm(aside)
+    return tuple(map(float, end * chance.uniform(*LOAD_AT) + aside))
 
 
 def change_over_noise(world: World, motions: list[Motion], without: list[Motion]) -> float:

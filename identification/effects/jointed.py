@@ -22,7 +22,7 @@ import numpy as np
 
 from identification.effects import values as effect_values
 from identification.effects.axes import Axis
-from identification.effects.bodies import body_numbers
+from identification.effects.body_numbers import body_numbers
 from identification.effects.effect import Effect
 from identification.effects.gears import Gears
 from identification.effects.joint_states import (

@@ -1,10 +1,10 @@
 """Effects that the joints' torques name, as candidates of a search over windows.
 
-A load at any place is another mass, another centre of mass or a payload at the body's end. Every
-fit of torques has Coulomb friction and an offset of each joint: where those are far from the
-model's, the model lacks them. A robot of one joint needs no such help with its frictions, because
-the search compares them with their rivals at that joint. A name that is no candidate of the search,
-such as a gain, is left out.
+A load at any place may sit at the body's end, where it needs no place of its own; where neither is
+a candidate, it is another mass or another centre of mass. Every fit of torques has Coulomb friction
+and an offset of each joint: where those are far from the model's, the model lacks them. A robot of
+one joint needs no such help with its frictions, because the search compares them with their rivals
+at that joint. A name that is no candidate of the search, such as a gain, is left out.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from identification.robot.robot import Robot
 from identification.robot.second_opinion import frictions
 from identification.torques.evidence import Evidence
 
-OF_A_LOAD = ("payload", "mass_mismatch", "com_offset")
+OF_A_LOAD = (("payload", "load"), ("mass_mismatch",), ("com_offset",))
 
 
 def suggest(evidence: Evidence, robot: Robot) -> tuple[Candidate, ...]:
@@ -26,10 +26,10 @@ def suggest(evidence: Evidence, robot: Robot) -> tuple[Candidate, ...]:
     for score in evidence.named:
         m = score.missing
         shape = {name: value for name, value, _ in m.shape}
-        for name in OF_A_LOAD if m.name == "load" else (m.name,):
-            effect = known.get(name)
-            if effect and m.where in effect.places:
-                out.append(Candidate(effect, m.where, shape or next(iterate_shapes(effect))))
+        for names in OF_A_LOAD if m.name == "load" else ((m.name,),):
+            each = [known[n] for n in names if n in known and m.where in known[n].places]
+            out += [Candidate(e, m.where, shape or next(iterate_shapes(e))) for e in each]
+            if each:
                 break
     return (*out, *_frictions(evidence, robot, known))
 

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
-from identification.effects.bodies import about, frame_inertia
+from identification.effects.body_numbers import about, frame_inertia
 
 NUMBERS = ("m", "h_x", "h_y", "h_z", "I_xx", "I_yy", "I_zz", "I_xy", "I_xz", "I_yz")
 UNITS = ("kg", *["kg m"] * 3, *["kg m^2"] * 6)

@@ -27,7 +27,8 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from identification.effects.bodies import HOOK, frame_inertia, seen
+from identification.effects.bodies import HOOK
+from identification.effects.body_numbers import frame_inertia, seen
 from identification.effects.effect import Effect
 from identification.effects.inputs import SHIFT
 from identification.effects.moving_bodies import MovingBody
@@ -62,7 +63,7 @@ def list_missing(
         is_of_neighbour = effect.is_curve and not effect.name.endswith(tuple(CURVES))
         if effect.hooks and {*effect.hooks} <= FORCES and not is_of_neighbour:
             out += laws.of(effect)
-        elif {*effect.hooks} == {HOOK}:
+        elif {*effect.hooks} == {HOOK} and not effect.shapes:  # a load is linear here: see below
             out += [
                 c for c in _of_bodies(model, equations, effect, bodies) if not _is_free(c, free)
             ]

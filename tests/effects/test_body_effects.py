@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 from joint_cases import ARM, SLIDER, arm, arm_log, run, slider, slider_log, steps
 
-from identification.effects.bodies import body_effects, frame_inertia, principal
+from identification.effects.bodies import body_effects
+from identification.effects.body_numbers import frame_inertia, principal
 from identification.effects.joint_plant import joint_plant
 from identification.effects.moving_bodies import moving_bodies
 from identification.model.plant import ModelPlant
@@ -47,6 +48,21 @@ def test_a_payload_is_a_small_heavy_body_at_the_farthest_site():
     found = run(plant, LOG, **{"payload.M@lower": 0.4})
     np.testing.assert_allclose(found, expected, rtol=0, atol=1e-7)
     assert np.abs(expected - said(ARM)).max() > 0.01
+
+
+def test_a_load_is_a_small_heavy_body_at_any_place():
+    text = ARM.replace(LOWER, LOWER + TIP)
+    small = (
+        '<body pos="-0.05 0 -0.1"><inertial pos="0 0 0" mass="0.4" diaginertia="1e-9 1e-9 1e-9"/>'
+    )
+    expected = said(ARM.replace(LOWER, LOWER + small + "</body>"))
+    place = {"load.x": -0.1, "load.z": 0.2}  # from the tip
+    found = run(joint_plant(text, (), LOG), LOG, **{"load.M@lower": 0.4, **place})
+    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-7)
+    assert np.abs(expected - said(ARM)).max() > 0.01
+    at_the_tip = run(joint_plant(text, (), LOG), LOG, **{"load.M@lower": 0.4})
+    payload = run(joint_plant(text, (), LOG), LOG, **{"payload.M@lower": 0.4})
+    np.testing.assert_allclose(at_the_tip, payload, rtol=0, atol=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -118,7 +134,10 @@ def test_what_cannot_be_felt_is_no_candidate():
     known = {e.name: e for e in body_effects(mujoco.MjSpec.from_string(SLIDER))}
     assert known.keys() == {"mass_mismatch"}
     known = {e.name: e for e in body_effects(mujoco.MjSpec.from_string(ARM))}
-    assert known.keys() == {"mass_mismatch", "com_offset", "inertia_mismatch", "payload"}
+    names = {"mass_mismatch", "com_offset", "inertia_mismatch", "payload", "load"}
+    assert known.keys() == names
     assert [s.name for s in known["com_offset"].sizes] == ["x", "z"]  # they turn about y
     assert known["payload"].places == {"body lower": "@lower"}
     assert known["payload"].sizes[0].sign == 1
+    assert known["load"].places == {"body upper": "@upper", "body lower": "@lower"}
+    assert [s.name for s in known["load"].shapes] == ["x", "z"]
