@@ -150,7 +150,7 @@ def simulate(world: World, force: Law | None, seed: int) -> Motion:
     if world.effect == "load":
         small = np.full(3, 1e-6 * world.size)
         load = spec.joint(world.joint).parent.add_body(pos=world.place, mass=world.size)
-        load.inertia, load.explicitinertial = small, True
+        load.ipos, load.inertia, load.explicitinertial = np.zeros(3), small, True
         force = None
     model = spec.compile()
     if world.effect == "heavier":

@@ -18,6 +18,7 @@ robot's own parameters make it, so that a mass may be both free and wrong.
 
 from __future__ import annotations
 
+import math
 from collections import namedtuple
 from collections.abc import Sequence
 from functools import cache
@@ -51,6 +52,7 @@ BODY = Element(
 )  # fmt: skip
 
 PROBE = 0.02  # of the largest plausible size
+FARTHEST = 2.0  # a load sits no farther from a body's end than so many lengths of it
 LEAST = 1e-2  # a body that reaches no farther than this is taken to reach so far [m]
 WENSING = "Wensing, Kim, Slotine 2018"
 HOOK = "inertia"
@@ -149,8 +151,10 @@ def body_effects(spec: mujoco.MjSpec) -> tuple[Effect, ...]:
     reach = max(LEAST, *(b.reach for b in bodies))
     way = 0.3 * reach
     axes = "".join(a for a in "xyz" if any(a in felt.axes(b) for b in off))
+    far = max([LEAST, *(math.hypot(*b.point) for b in off)])
+    far = FARTHEST * max([LEAST, *(math.hypot(*b.point) for b in off)])
     of_place = [
-        Shape(a, "m", (0.0,), -reach, reach, about=f"way of its place along {a} from there")
+        Shape(a, "m", (0.0,), -far, far, about=f"way of its place along {a} from there")
         for a in axes
     ]
     every = (
