@@ -12,10 +12,9 @@ import numpy as np
 
 from identification.chances import mean_above_zero
 from identification.discovery.effect_results import NamedEffect, Proof, RejectedEffect, Rival
-from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate
 from identification.prediction.model import WindowModel
-from identification.prediction.neighbours import find_neighbour, has_neighbours_name
+from identification.prediction.neighbours import find_neighbour
 from identification.prediction.odds import find_odds
 from identification.prediction.task import WindowSearch
 from identification.prediction.trial import Contender, Doubt
@@ -85,14 +84,12 @@ def rejected_effect(state: WindowSearch, contender: Contender) -> RejectedEffect
     )  # fmt: skip
 
 
-def unnamed_effect(
-    named: NamedEffect, options: DiscoveryOptions, doubt: Doubt | None
-) -> RejectedEffect:
+def unnamed_effect(named: NamedEffect, doubt: Doubt | None) -> RejectedEffect:
     """Returns an effect that is told as tried, because its name is not sure."""
     n = named
     return RejectedEffect(
         n.candidate, n.parameters, np.nan, n.proof, evidence=n.evidence, confidence=n.confidence,
-        doubt="neighbour" if has_neighbours_name(n.neighbour, options) else doubt,
+        doubt=doubt,
     )  # fmt: skip
 
 

@@ -22,6 +22,7 @@ from identification.discovery.effect_results import (
     RecordDifference,
 )
 from identification.discovery.findings.finding import Finding, FindingKind
+from identification.discovery.impossible import find_impossible
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.passes import uses
 from identification.discovery.result import Discovery, Verdict
@@ -78,10 +79,13 @@ def conclude(state: WindowSearch) -> Discovery:
     is_unexplained = _is_worse(state) or _errs(model, needed, options)
     # Where the fit was worse than the values with which it began, an effect says why.
     closes = _share(state.worse_fit or nominal.unseen, model.unseen)
-    verdict = decide(named, findings, is_unexplained, closes, options)
+    final = [find_impossible(a.candidate, model, [r.log for r in task.records])
+             if uses(options, "impossible_sizes") else None
+             for a in state.accepted if a not in differ]  # fmt: skip
+    doubts = doubts_of_names(named, final, findings, closes, options)
+    verdict = decide(named, doubts, findings, is_unexplained)
     if verdict == "unknown effect":
-        doubt: Doubt | None = "gap" if _is_small(named, findings, closes, options) else None
-        unnamed = [unnamed_effect(n, options, doubt) for n in named]
+        unnamed = [unnamed_effect(n, d) for n, d in zip(named, doubts, strict=True)]
         rejected, named, model = listed_once([*unnamed, *rejected]), (), nominal
     smooth = stick.share(nominal.fit.cost, model.fit.cost) if stick and named else None
     log = task.records[0].log
@@ -112,22 +116,41 @@ def conclude(state: WindowSearch) -> Discovery:
     )  # fmt: skip
 
 
+def doubts_of_names(
+    named: Sequence[NamedEffect], impossible: Sequence[Doubt | None],
+    findings: Sequence[Finding], share: float, options: DiscoveryOptions,
+) -> tuple[Doubt | None, ...]:  # fmt: skip
+    """Returns why each accepted effect is no name; None where nothing is against it.
+
+    Args:
+        named: the accepted effects.
+        impossible: what physics forbids of each at the values of the final model; later effects
+            may have moved them since it was accepted.
+        findings: what the final model leaves.
+        share: of the gap that the effects close.
+        options: what is beyond chance, and enough to matter.
+    """
+    of_all: Doubt | None = "gap" if _is_small(named, findings, share, options) else None
+    return tuple(
+        "neighbour" if has_neighbours_name(n.neighbour, options) else forbidden or of_all
+        for n, forbidden in zip(named, impossible, strict=True)
+    )
+
+
 def decide(
-    named: Sequence[NamedEffect], findings: Sequence[Finding], is_unexplained: bool,
-    share: float, options: DiscoveryOptions,
+    named: Sequence[NamedEffect], doubts: Sequence[Doubt | None], findings: Sequence[Finding],
+    is_unexplained: bool,
 ) -> Verdict:  # fmt: skip
     """Returns the verdict.
 
     Args:
         named: the accepted effects, with their confidence.
+        doubts: why each of them is no name.
         findings: what the final model leaves.
         is_unexplained: whether the model errs by more than noise, and no effect says why.
-        share: of the gap that the effects close.
-        options: what is beyond chance, and enough to matter.
     """
-    is_neighbour = any(has_neighbours_name(n.neighbour, options) for n in named)
     is_sure = all(n.confidence >= EVEN_ODDS or n.one_of for n in named)
-    if named and is_sure and not is_neighbour and not _is_small(named, findings, share, options):
+    if named and is_sure and not any(doubts):
         is_drawn = all(n.candidate.effect.is_curve for n in named)
         return "unlisted effect" if is_drawn else "named"
     if named or is_unexplained or any(f.kind in SUSPECT for f in findings):

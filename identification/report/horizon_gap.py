@@ -2,8 +2,11 @@
 forces that it would need.
 
     r_y = √(mean (y - ŷ)²)           of an output over windows of the horizon, in its unit
-    e_w = √(mean_y (r_wy/s_y)²)      of a window, s of `Discovery.scale`;  e_w/√(mean_y ν_y²/s_y²),
-                                     ν the sensors' noise, is how many times the noise it errs
+    e_w = √(mean_g Σ_g r_wy²/Σ_g ν_y²)
+                                     of a window, how many times the noise it errs; Σ_g: over the
+                                     outputs of a unit, ν: the sensors' noise. It is the ratio of
+                                     the verdict (`Discovery.times_noise`), of one window
+    e(L) = e √(V(L)/V)               over another length: V, V(L) are mean squares in units of s²
     c, std(c)                        the curve of a joint that would take most of the fitted error,
                                      at its nodes, by the linear score of the last model
 """
@@ -12,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -118,50 +122,78 @@ def find_gap(found: Discovery) -> HorizonGap | None:
         return None
     told = nominal.unseen.report, final.unseen.report
     noise = final.unseen.noise  # ν²/s² of each output
-    level = float(np.sqrt(noise.mean())) or 1.0
+    ratios = partial(_ratios, units=[*found.outputs.values()], scale=scale, noise=noise)
     rms = [np.sqrt(np.concatenate(u.of_outputs).mean(axis=0)) * scale for u in told]
     each = zip(found.outputs.items(), *rms, np.sqrt(noise) * scale, strict=True)
     outputs = [OutputError(name, unit, *map(float, of)) for (name, unit), *of in each]
     outputs.sort(key=lambda o: -o.after / o.noise if o.noise > 0 else -np.inf)
     parts = [(p.predictor.log, p.cut.starts) for p in final.fit.problem.parts]
     fitted = [
-        RecordWindows(log.name, "fit", log.time[starts], *(_ratios(e, scale, level) for e in pair))
+        RecordWindows(
+            log.name,
+            "fit",
+            log.time[starts],
+            *(ratios(np.mean((e / scale) ** 2, axis=1)) for e in pair),
+        )
         for (log, starts), *pair in zip(parts, nominal.fit.errors, final.fit.errors, strict=True)
     ]
     places = final.unseen.places[final.unseen.lengths.index(1.0)]
     logs = [r.log for r in found.records if r.role == "confirm"]
-    squares = nominal.unseen.at_horizon, final.unseen.at_horizon
+    squares = nominal.unseen.of_outputs, final.unseen.of_outputs
     confirm = [
-        RecordWindows(
-            log.name, "confirm", log.time[at[:, 0]], np.sqrt(a) / level, np.sqrt(b) / level
-        )
+        RecordWindows(log.name, "confirm", log.time[at[:, 0]], ratios(a), ratios(b))
         for log, at, a, b in zip(logs, places, *squares, strict=True)
     ]
+    of_all = [float(ratios(np.concatenate(u.of_outputs).mean(axis=0)[None])[0]) for u in told]
     curves = _curves(found, final)
     forces = _forces(found, curves)
     most = max(curves, key=lambda c: c.fall, default=None)
     return HorizonGap(
         outputs=tuple(outputs), records=(*fitted, *confirm),
-        lengths=_lengths(found.horizon or 0.0, *told, level), forces=forces,
+        lengths=_lengths(found.horizon or 0.0, told, of_all), forces=forces,
         doubtful=None if forces or most is None or most.fall < MUCH else most, curves=len(curves),
         windows=_worst(final, [r.after for r in fitted], scale, found.outputs),
     )  # fmt: skip
 
 
-def _ratios(errors: np.ndarray, scale: np.ndarray, level: float) -> np.ndarray:
-    return np.asarray(np.sqrt(np.mean((errors / scale) ** 2, axis=(1, 2))) / level)
+def _ratios(
+    squares: np.ndarray, units: Sequence[str], scale: np.ndarray, noise: np.ndarray
+) -> np.ndarray:
+    """Returns e_w of windows, shape (W,); of a sensor without noise, its rms error in s.
+
+    Args:
+        squares: mean squares of each output in units of s², shape (W, ny).
+        units: of the outputs.
+        scale: s of each output, shape (ny,), in its unit.
+        noise: ν²/s² of each output, shape (ny,).
+    """
+    groups = [np.array([u == unit for u in units]) for unit in dict.fromkeys(units)]
+    each = []
+    for at in groups:
+        level = float(scale[at] ** 2 @ noise[at])
+        each.append(squares[:, at] @ scale[at] ** 2 / level if level else squares[:, at].sum(1))
+    return np.asarray(np.sqrt(np.mean(each, axis=0)))
 
 
 def _lengths(
-    horizon: float, before: Unseen, after: Unseen, level: float
+    horizon: float, told: Sequence[Unseen], of_all: Sequence[float]
 ) -> tuple[LengthError, ...]:
-    """Returns the errors over each length that both models were judged by."""
-    out = []
-    for length in (n for n in before.lengths if n in after.lengths):
-        squares = (np.concatenate(u.squares[u.lengths.index(length)]) for u in (before, after))
-        out.append(LengthError(horizon * length, *(float(np.sqrt(s.mean())) / level
-                                                   for s in squares)))  # fmt: skip
-    return tuple(out)
+    """Returns the errors over each length that both models were judged by.
+
+    Args:
+        horizon: [s].
+        told: errors of the model before and after.
+        of_all: e of both over the horizon.
+    """
+    before, after = told
+
+    def ratio(k: int, length: float) -> float:
+        u = told[k]
+        square = float(np.concatenate(u.squares[u.lengths.index(length)]).mean())
+        return of_all[k] * float(np.sqrt(square / np.concatenate(u.at_horizon).mean()))
+
+    lengths = [n for n in before.lengths if n in after.lengths]
+    return tuple(LengthError(horizon * n, ratio(0, n), ratio(1, n)) for n in lengths)
 
 
 def _curves(found: Discovery, final: WindowModel) -> list[NeededForce]:

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import pytest
 
 from identification.discovery.options import DiscoveryOptions
-from identification.prediction.verdict import decide
+from identification.prediction.verdict import decide, doubts_of_names
 
 LEFT = [SimpleNamespace(kind="remaining error")]
 
@@ -15,6 +15,12 @@ def effect(is_curve):
     return SimpleNamespace(candidate=candidate, confidence=0.85, one_of=False, neighbour=None)
 
 
+def verdict_of(named, findings, share, options, impossible=None):
+    forbidden = [None] * len(named) if impossible is None else impossible
+    doubts = doubts_of_names(named, forbidden, findings, share, options)
+    return decide(named, doubts, findings, True)
+
+
 @pytest.mark.parametrize(("curves", "findings", "share", "verdict"), [
     ([False], LEFT, 0.49, "unknown effect"), ([False], LEFT, 0.51, "named"),
     ([False], [], 0.3, "named"), ([True], LEFT, 0.3, "unlisted effect"),
@@ -22,11 +28,19 @@ def effect(is_curve):
 ])  # fmt: skip
 def test_what_is_left_and_how_much_is_closed_decide(curves, findings, share, verdict):
     named = [effect(is_curve) for is_curve in curves]
-    assert decide(named, findings, True, share, DiscoveryOptions()) == verdict
+    assert verdict_of(named, findings, share, DiscoveryOptions()) == verdict
 
 
 def test_the_pass_can_be_left_out_and_the_share_be_set():
     named = [effect(False)]
     for options in (DiscoveryOptions(without=("closed_gap",)),
                     DiscoveryOptions(min_explained_share=0.2)):  # fmt: skip
-        assert decide(named, LEFT, True, 0.3, options) == "named"
+        assert verdict_of(named, LEFT, 0.3, options) == "named"
+
+
+def test_what_physics_forbids_at_the_values_of_the_final_model_is_no_name():
+    """An effect is possible when it is accepted, and a later one may move its size."""
+    named, options = [effect(False), effect(False)], DiscoveryOptions()
+    assert verdict_of(named, LEFT, 0.9, options, [None, None]) == "named"
+    assert verdict_of(named, LEFT, 0.9, options, ["mass", None]) == "unknown effect"
+    assert doubts_of_names(named, ["mass", None], LEFT, 0.9, options) == ("mass", None)
