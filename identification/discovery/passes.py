@@ -83,6 +83,12 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
     "signed_ranks": (
         HORIZON, "proves by the ranks of the gains of blocks too, and not by their mean alone",
     ),
+    "gains_of_outputs": (
+        HORIZON, "weighs laws by what each output gains, and not by the mean over all outputs",
+    ),
+    "own_weights": (
+        HORIZON, "weighs outputs and priors by the errors of the model with what was found so far",
+    ),
     "values_of_start": (
         HORIZON, "begins at the given values where fitted ones predict unseen records worse",
     ),
@@ -111,7 +117,7 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
     "drop_beside_curves": (HORIZON, "drops laws that were found only beside a curve of the data"),
     "drop_drawn_laws": (HORIZON, "drops a law whose work a later curve of the data does"),
     "priors_of_last_fit": (
-        HORIZON, "lets priors of the last fit weigh against its own errors, which are smaller",
+        HORIZON, "weighs outputs and priors of the last fit by its own errors, which are smaller",
     ),
     "likeliest_of_set": (HORIZON, "puts the likeliest effect of a set of names into the model"),
 })  # fmt: skip

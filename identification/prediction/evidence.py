@@ -1,13 +1,16 @@
 """The evidence for a law against others in its place: fitted windows, and unseen that decide.
 
+    g_cb = mean_y g_cby
     E_c = n_y W mean_b g_cb - k_c ln W
     P_c = mean over resamples of the blocks of exp(E_c/2) / Σ_k exp(E_k/2)
 
-g_cb: gains of blocks b with the law c (`identification.windows.blocks`), W windows of n_y
-outputs, k_c numbers that c adds. E is twice the gain of a log likelihood with the price that BIC
-puts on numbers (Schwarz 1978), so that exp(E/2) are the odds of a law in one resample (Kass,
-Raftery 1995): two laws that predict alike share them, however surely one is a little better. Blocks
-are drawn with replacement (bootstrap; Efron 1979).
+g_cby: gains of blocks b and outputs y with the law c (`identification.windows.blocks`), W windows
+of n_y outputs, k_c numbers that c adds. Each output has an error of its own, as in a likelihood
+whose variances are found too: an output that a law predicts to its noise would else count for
+nothing beside one whose noise is larger in units of s. E is twice the gain of a log likelihood with
+the price that BIC puts on numbers (Schwarz 1978), so that exp(E/2) are the odds of a law in one
+resample (Kass, Raftery 1995): two laws that predict alike share them, however surely one is a
+little better. Blocks are drawn with replacement (bootstrap; Efron 1979).
 """
 
 from __future__ import annotations
@@ -16,20 +19,39 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from identification.discovery.options import DiscoveryOptions
+from identification.discovery.passes import uses
 from identification.prediction.model import WindowModel
-from identification.prediction.record_errors import scaled_squares
 from identification.windows.blocks import block_gains
 
 RESAMPLES = 2000  # of the blocks: a probability is then known to a hundredth
+# Of s²: what an output's noise is taken to be at least. An encoder that rests has none, and what is
+# a thousandth of the error of the model without effects is no reason for a law.
+LEAST_NOISE = 1e-6
 
 
-def all_gains(without: WindowModel, with_it: WindowModel) -> np.ndarray:
-    """Returns g of the blocks of fitted windows, then of unseen ones that decide, shape (B,)."""
+def all_gains(without: WindowModel, with_it: WindowModel, options: DiscoveryOptions) -> np.ndarray:
+    """Returns g of the blocks of fitted windows, then of unseen ones that decide, shape (B,).
+
+    Args:
+        without: the first model.
+        with_it: the second one.
+        options: whether each output counts by itself.
+    """
     before, after = (
-        [*scaled_squares(m.fit.errors, without.scale), *m.unseen.select.at_horizon]
+        [*(np.mean((e / without.scale) ** 2, axis=1) for e in m.fit.errors),
+         *m.unseen.select.of_outputs]
         for m in (without, with_it)
-    )
-    return np.concatenate(block_gains(before, after, without.unseen.floor))
+    )  # fmt: skip
+    noise = np.maximum(without.unseen.noise, LEAST_NOISE)
+    if not uses(options, "gains_of_outputs"):
+        before, after = ([x.mean(axis=1, keepdims=True) for x in each] for each in (before, after))
+        noise = np.array([without.unseen.floor])
+    each = [
+        np.concatenate(block_gains([x[:, y] for x in before], [x[:, y] for x in after], ν2))
+        for y, ν2 in enumerate(noise)
+    ]
+    return np.asarray(np.mean(each, axis=0))
 
 
 def count_windows(model: WindowModel) -> int:

@@ -17,15 +17,15 @@ from identification.effects.jointed import JointPlant
 from identification.model.predictor import Plant
 from identification.model.protocol import FINER
 from identification.prediction.first_fit import REFIT_TOLERANCE, Begun, shapes_of
-from identification.prediction.model import WindowModel, predict_fitted
+from identification.prediction.model import WindowModel, predict_fitted, rms_error
 from identification.prediction.nominal_fit import MAX_SCALE_FITS, SETTLED_CHANGE
 from identification.windows.coarse import steps_of
 from identification.windows.fit import solve
 from identification.windows.problem import (
     Problem,
-    with_lighter_priors,
     with_longer_steps,
     with_own_steps,
+    with_scale,
     with_unknowns,
 )
 from identification.windows.records import Record
@@ -122,35 +122,52 @@ def as_last_fit(
     It takes the steps of the user's model. Longer ones err by a share of what is left, and in the
     same direction in every window: beside the std of many windows that is much.
 
-    Its priors weigh against its own errors. In a search errors count in the scale of the nominal
-    model's, so that models can be compared: where an effect has taken most of them away, priors
-    would outweigh the data, pull values to their means, and make the std of all values too large.
-
     Args:
         model: fitted.
         horizon: [s].
         confirm: records that no fit may see.
-        is_weighed: whether priors weigh against its own errors.
+        is_weighed: whether outputs and priors weigh by its own errors (`with_own_weights`).
 
     Raises:
         DivergenceError: it cannot be simulated with the steps of the user's model.
     """
-    weight, task = 1.0, with_own_steps(model.fit.problem)
-    for _ in range(MAX_SCALE_FITS):
-        share = share_of_scale(model) if is_weighed else 1.0
-        if share < (1 - SETTLED_CHANGE) * weight:
-            task, weight = with_lighter_priors(task, share / weight), share
+    task = with_own_steps(model.fit.problem)
+    return _weighed(model, task, horizon, confirm, MAX_SCALE_FITS if is_weighed else 0)
+
+
+def with_own_weights(model: WindowModel, horizon: float, confirm: Sequence[Record]) -> WindowModel:
+    """Returns the model refitted with outputs and priors that weigh by its own errors.
+
+    Errors count in the scale of the nominal model's, so that models can be compared. Where an
+    effect has taken most of them away, priors would outweigh the data, pull values to their means,
+    and make the std of all values too large; and an output whose error has fallen to its noise
+    would tell less than it can. A model whose errors have not fallen stays as it is.
+
+    Args:
+        model: with an effect more than when its outputs were weighed.
+        horizon: [s].
+        confirm: records that no fit may see.
+
+    Raises:
+        DivergenceError: it cannot be simulated.
+    """
+    return _weighed(model, model.fit.problem, horizon, confirm, 1)
+
+
+def _weighed(
+    model: WindowModel, task: Problem, horizon: float, confirm: Sequence[Record], most: int
+) -> WindowModel:
+    """Returns the model refitted to a task, whose weights follow its errors in `most` fits."""
+    for k in range(max(1, most)):
+        old = 1 / np.diag(task.parts[0].whitener)
+        scale = np.minimum(rms_error(model.fit), old)
+        if k < most and np.any(scale < (1 - SETTLED_CHANGE) * old):
+            task = with_scale(task, scale)
         if task is model.fit.problem:
             break
         model = _refitted(model, task, horizon, confirm)
         task = model.fit.problem
     return model
-
-
-def share_of_scale(model: WindowModel) -> float:
-    """Returns the rms of a model's fitted errors over the scale in which they count."""
-    squares = sum(float(np.sum((e / model.scale) ** 2)) for e in model.fit.errors)
-    return float(np.sqrt(squares / sum(e.size for e in model.fit.errors)))
 
 
 def _refitted(

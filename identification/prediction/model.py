@@ -14,6 +14,7 @@ import numpy as np
 
 from identification.discovery.fitted import StepShift
 from identification.effects.effect import Candidate
+from identification.logs.noise import noise_floor
 from identification.model.predictor import Plant
 from identification.prediction.std import step_shift, told_std
 from identification.windows.fit import WindowFit
@@ -41,6 +42,12 @@ class WindowModel:
         """Values of all parameters that are not the plant's own and hold for all records."""
         fixed = {n: v for c in self.candidates for n, v in (*c.fixed.items(), *c.whole.items())}
         return {**fixed, **self.fit.shared}
+
+    @property
+    def fitted_power(self) -> float:
+        """Mean square of the errors of the fitted windows in units of s²."""
+        squares = sum(float(np.sum((e / self.scale) ** 2)) for e in self.fit.errors)
+        return squares / sum(e.size for e in self.fit.errors)
 
     @property
     def told_values(self) -> dict[str, float]:
@@ -113,6 +120,9 @@ def predict_fitted(
 ) -> Unseen:  # fmt: skip
     """Returns errors on unseen records; each half's own parameters are told by the other half.
 
+    Where the state of a window is sought, each output weighs by its error in the fitted windows:
+    with an s that is forty times its noise, an output would hardly be asked.
+
     Args:
         plant: the model.
         confirm: records that no fit has seen.
@@ -134,4 +144,13 @@ def predict_fitted(
     if m:
         start = found.q[len(unknowns.shared.names) :].reshape(-1, m).mean(axis=0)
     own = Own(unknowns.own, start)
-    return predict(plant, confirm, horizon, scale, values, near, own, others, lengths)
+    weights = np.minimum(scale, rms_error(found))
+    return predict(plant, confirm, horizon, scale, values, near, own, others, lengths, weights)
+
+
+def rms_error(found: WindowFit) -> np.ndarray:
+    """Returns the rms error of each output over the windows, at least the sensors' noise, (ny,)."""
+    logs = [p.predictor.log for p in found.problem.parts]
+    noise = np.mean([noise_floor(log.outputs) ** 2 for log in logs], axis=0)
+    square = np.mean(np.concatenate([np.mean(e**2, axis=1) for e in found.errors]), axis=0)
+    return np.sqrt(np.maximum(square, noise) + 1e-300)

@@ -15,9 +15,8 @@ from identification.discovery.nominal_model import NominalModel
 from identification.errors import InputError
 from identification.estimation.priors import Priors
 from identification.estimation.search import ROUGH_TOLERANCE
-from identification.logs.noise import noise_floor
 from identification.model.coordinates import coordinates
-from identification.prediction.model import WindowModel, predict_fitted
+from identification.prediction.model import WindowModel, predict_fitted, rms_error
 from identification.progress import Progress
 from identification.windows.fit import WindowFit, solve
 from identification.windows.problem import (
@@ -104,7 +103,7 @@ def fit_alone(
             task, q, moves, tolerance=ROUGH_TOLERANCE, progress=_of(length, horizon, 0, progress)
         )
         _refuse_idle(found)
-        values, scale = found.shared, _rms(found)
+        values, scale = found.shared, rms_error(found)
     if found is None:
         raise InputError(f"windows of {horizon:g} s fit no record; choose another horizon")
     task, q = problem(plant, fitted, shared, own, horizon, values, scale), found.q
@@ -114,7 +113,7 @@ def fit_alone(
         task, old = with_scale(task, scale), scale
         found = solve(task, q, moves, progress=_of(horizon, horizon, k + 1, progress))
         q, moves = found.q, found.moves
-        scale = _rms(found)
+        scale = rms_error(found)
         if np.all(np.abs(np.log(scale / old)) < SETTLED_CHANGE):
             break
     return found, old
@@ -197,14 +196,6 @@ def _refuse_idle(found: WindowFit) -> None:
             " records, where each window begins at a state of its own; leave it fixed, or check"
             " where it goes in the model"
         )
-
-
-def _rms(found: WindowFit) -> np.ndarray:
-    """Returns the rms error of each output over the windows, at least the sensors' noise, (ny,)."""
-    logs = [p.predictor.log for p in found.problem.parts]
-    noise = np.mean([noise_floor(log.outputs) ** 2 for log in logs], axis=0)
-    square = np.mean(np.concatenate([np.mean(e**2, axis=1) for e in found.errors]), axis=0)
-    return np.sqrt(np.maximum(square, noise) + 1e-300)
 
 
 def _scale_of_change(records: Sequence[Record]) -> np.ndarray:

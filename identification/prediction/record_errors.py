@@ -23,11 +23,6 @@ from identification.windows.unseen import Unseen
 Errors = Sequence[np.ndarray]  # y - ŷ of windows (W, L, ny), one array a record
 
 
-def scaled_squares(errors: Sequence[np.ndarray], scale: np.ndarray) -> list[np.ndarray]:
-    """Returns mean squares (W,) in units of s² of windows' errors (W, L, ny), an array a record."""
-    return [np.mean((e / scale) ** 2, axis=(1, 2)) for e in errors]
-
-
 def errors_by_unit(squares: np.ndarray, scale: np.ndarray, log: Log) -> dict[str, float]:
     """Returns rms_g by the outputs' units, each in its unit.
 

@@ -111,7 +111,9 @@ def is_much_left(model: WindowModel, options: DiscoveryOptions) -> bool:
     square = float(np.mean(np.concatenate(unseen.at_horizon)))
     if not square > unseen.floor * MAX_OUTPUT_RATIO**2:
         return False
-    asked = partial(needed_input_error, model.fit, options, unseen.floor, unseen.at_horizon)
+    asked = partial(
+        needed_input_error, model.fit, options, model.scale, unseen.noise, unseen.of_outputs
+    )
     needed = attempt(None, asked)
     return needed is None or needed > options.max_input_error
 
@@ -189,8 +191,9 @@ def _unproven(r: RejectedEffect, plant: Plant) -> UnprovenEffect:
 
 
 def needed_input_error(
-    fit: WindowFit, options: DiscoveryOptions, floor: float, unseen: Sequence[np.ndarray] = ()
-) -> float:
+    fit: WindowFit, options: DiscoveryOptions, scale: np.ndarray, noise: np.ndarray,
+    unseen: Sequence[np.ndarray] = (),
+) -> float:  # fmt: skip
     """Returns the inputs' rms error over a window that the residual needs, as a share of their rms.
 
     It is infinite where no input moves that may err. Unseen windows are taken to feel an error of
@@ -199,9 +202,13 @@ def needed_input_error(
     Args:
         fit: the model, on the windows of the records that were fitted.
         options: whether set points of servos are exact.
-        floor: σ², mean square of the sensors' noise in units of the errors' scale.
-        unseen: mean squares of windows that were not fitted, one array a record, in these units.
+        scale: s of each output, shape (ny,), in its unit; the fit may weigh its errors otherwise.
+        noise: σ², mean square of each sensor's noise in units of s², shape (ny,).
+        unseen: mean squares of each output over windows that were not fitted, shape (W, ny), one
+            array a record, in these units.
     """
+    weight = (scale * np.diag(fit.problem.parts[0].whitener)) ** 2
+    floor = float(np.mean(noise * weight))
     inputs = np.concatenate([p.predictor.log.inputs for p in fit.problem.parts])
     size = np.sqrt(np.mean(inputs**2, axis=0))
     moving = np.flatnonzero(size > 0)
@@ -218,7 +225,7 @@ def needed_input_error(
         count += readings
         felt += float(np.sum(_sensitivity(part, q, d, t, size, moving) ** 2))
     if unseen:
-        left = max(left, count * float(np.mean(np.concatenate(unseen)) - floor))
+        left = max(left, count * float(np.mean(np.concatenate(unseen) * weight) - floor))
     return float(np.sqrt(max(0.0, left) / felt)) if felt > 0 else np.inf
 
 

@@ -202,7 +202,7 @@ def judged(
     """
     c = new.candidates[-1]
     found = compare(worse_fit or model.unseen, new.unseen)
-    gains = all_gains(model, new)
+    gains = all_gains(model, new, options)
     records = len(model.unseen.at_horizon) + len(model.fit.problem.parts)
     numbers = count_numbers(c) * (records if c.effect.own else 1)
     windows, outputs = count_windows(model), len(model.scale)

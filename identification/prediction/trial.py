@@ -190,7 +190,7 @@ def find_rivals(
         then: scores on this one.
     """
     was, still = (
-        {s.candidate.key: s.fall * model.fit.cost for s in reversed(each)}
+        {s.candidate.key: s.fall * model.fitted_power for s in reversed(each)}
         for each, model in ((scores, before), (then, after))
     )
     return tuple(

@@ -87,7 +87,7 @@ def conclude(state: WindowSearch) -> Discovery:
     if verdict == "unknown effect":
         unnamed = [unnamed_effect(n, d) for n, d in zip(named, doubts, strict=True)]
         rejected, named, model = listed_once([*unnamed, *rejected]), (), nominal
-    smooth = stick.share(nominal.fit.cost, model.fit.cost) if stick and named else None
+    smooth = stick.share(nominal.fitted_power, model.fitted_power) if stick and named else None
     log = task.records[0].log
     noise = model.unseen.noise
     return Discovery(
@@ -244,7 +244,9 @@ def _errs(model: WindowModel, needed: float, options: DiscoveryOptions) -> bool:
 def _needed_input_error(model: WindowModel, options: DiscoveryOptions) -> float:
     """Returns the error of the inputs that would make what a model leaves, a share of their rms."""
     unseen = model.unseen
-    return needed_input_error(model.fit, options, unseen.floor, unseen.report.at_horizon)
+    return needed_input_error(
+        model.fit, options, model.scale, unseen.noise, unseen.report.of_outputs
+    )
 
 
 def _is_off(model: WindowModel, options: DiscoveryOptions) -> bool:

@@ -289,18 +289,6 @@ def with_own_steps(problem_: Problem) -> Problem:
     return replace(problem_, parts=tuple(parts))
 
 
-def with_lighter_priors(problem_: Problem, share: float) -> Problem:
-    """Returns the same windows with priors that weigh as where errors are a share of their scale.
-
-    Args:
-        problem_: whose errors count in units of their scale.
-        share: of the scale, that their rms is.
-    """
-    of = problem_.unknowns
-    shared, own = (replace(p, weight=share * p.weight) for p in (of.shared, of.own))
-    return replace(problem_, unknowns=replace(of, shared=shared, own=own))
-
-
 def with_scale(problem_: Problem, scale: np.ndarray) -> Problem:
     """Returns the same windows whose errors count in units of another scale s, shape (ny,)."""
     whitener = np.diag(1 / scale)

@@ -132,6 +132,7 @@ def predict(
     own: Own | None = None,
     others: Sequence[Unseen] = (),
     lengths: Sequence[float] = LENGTHS,
+    weights: np.ndarray | None = None,
 ) -> Unseen:
     """Returns the errors of a model on records, over windows of several lengths.
 
@@ -150,6 +151,8 @@ def predict(
             others begin with less error are sought again, from there.
         lengths: which, in units of the horizon; one that fits no record is left out, but for the
             horizon itself.
+        weights: rms error by which each output weighs where the state of a window is sought, shape
+            (ny,), in its unit; s where None.
 
     Raises:
         InputError: no window of the horizon fits a record.
@@ -162,6 +165,7 @@ def predict(
     squares, moves, places, told = [], [], [], []
     percent, of_outputs = np.zeros(len(scale)), ()
     halves = [own_values(plant, r, horizon, scale, values, own or Own()) for r in records]
+    weights = scale if weights is None else weights
     for factor in lengths:
         try:
             length = factor * horizon
@@ -171,7 +175,7 @@ def predict(
                 raise
             continue  # fewer than 3 samples, or longer than a record
         begun = near.begun(factor) if near is not None and factor in near.lengths else None
-        each = _settled(plant, records, cuts, scale, values, halves, begun,
+        each = _settled(plant, records, cuts, weights, values, halves, begun,
                         [o.begun(factor) for o in others if factor in o.lengths])  # fmt: skip
         if factor == 1.0:
             at = [inside(r.parts, "report", c.places)
@@ -220,7 +224,7 @@ def _is_better_elsewhere(own: Unseen, others: Sequence[Unseen], length: float) -
 
 
 def _settled(
-    plant: Plant, records: Sequence[Record], cuts: Sequence[Windows], scale: np.ndarray,
+    plant: Plant, records: Sequence[Record], cuts: Sequence[Windows], weights: np.ndarray,
     values: Mapping[str, float], halves: Sequence[tuple[Mapping[str, float], Mapping[str, float]]],
     near: Sequence[Starts] | None, others: Sequence[Sequence[Starts]],
 ) -> list[tuple[np.ndarray, np.ndarray]]:  # fmt: skip
@@ -244,7 +248,7 @@ def _settled(
             predictor = Predictor(plant, record.log, (), fixed)
             here = cut.rows(half)
             first = first_states(predictor, np.zeros(0), here)
-            parts.append(Shooting(predictor, NOTHING, here, first, np.diag(1 / scale), True))
+            parts.append(Shooting(predictor, NOTHING, here, first, np.diag(1 / weights), True))
             begun.append(moves[half])
             starts.append((elsewhere[half], is_better[half]))
             places.append((k, half))

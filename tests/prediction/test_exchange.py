@@ -1,7 +1,7 @@
 """Records exchange their roles: what holds for all stays, what one lacks is contradicted."""
 
 from dataclasses import replace
-from functools import cache, partial
+from functools import cache
 
 import numpy as np
 import pytest
@@ -25,6 +25,8 @@ from identification.prediction.screening import score_all
 from identification.prediction.selection import REFUTED, refit_contenders
 from identification.prediction.trial import Contender, find_doubt
 from identification.windows.comparison import compare
+from identification.windows.fit import solve
+from identification.windows.problem import with_scale
 from identification.windows.records import as_records
 from identification.windows.unseen import HORIZON as ALONE
 
@@ -159,11 +161,18 @@ def disturbed(seed, share):
     return replace(log, outputs=y[0] + NOISE * rng.standard_normal(y[0].shape))
 
 
+def needed(found, options=None, unseen=()):
+    """The error of the inputs that what a model leaves needs."""
+    return needed_input_error(
+        found.fit, options or DiscoveryOptions(), found.scale, found.unseen.noise, unseen
+    )
+
+
 @pytest.mark.parametrize("share", [0.0, 0.1])
 def test_an_error_of_the_inputs_is_found_as_large_as_it_is(share):
     logs = [disturbed(k, share) for k in range(1, 4)]
     found = fit_nominal(nominal_model(), as_records(logs[:2], logs[2:]))
-    error = needed_input_error(found.fit, DiscoveryOptions(), found.unseen.floor)
+    error = needed(found)
     if share:
         assert error == pytest.approx(share, rel=0.3)
     else:
@@ -174,18 +183,25 @@ def test_no_error_of_set_points_excuses_what_is_left(monkeypatch):
     logs = [disturbed(k, 0.1) for k in range(1, 4)]
     found = fit_nominal(nominal_model(), as_records(logs[:2], logs[2:]))
     monkeypatch.setattr(remaining, "is_set_point", lambda model, control: control == 0)
-    asked = partial(needed_input_error, found.fit, floor=found.unseen.floor)
-    assert asked(DiscoveryOptions()) == np.inf
-    assert asked(DiscoveryOptions(without=("exact_set_points",))) == pytest.approx(0.1, rel=0.3)
+    assert needed(found) == np.inf
+    without = DiscoveryOptions(without=("exact_set_points",))
+    assert needed(found, without) == pytest.approx(0.1, rel=0.3)
+
+
+def test_the_error_of_the_inputs_does_not_depend_on_how_a_fit_weighs_its_errors():
+    logs = [disturbed(k, 0.1) for k in range(1, 4)]
+    found = fit_nominal(nominal_model(), as_records(logs[:2], logs[2:]))
+    fit = found.fit
+    task = with_scale(fit.problem, 0.01 * found.scale)
+    other = replace(found, fit=solve(task, fit.q, fit.moves))
+    assert needed(other) == pytest.approx(needed(found), rel=0.05)
 
 
 def test_an_error_of_the_inputs_is_found_where_only_unseen_records_have_it():
     logs = [disturbed(1, 0.0), disturbed(2, 0.0), disturbed(3, 0.1)]
     found = fit_nominal(nominal_model(), as_records(logs[:2], logs[2:]))
-    unseen = found.unseen
-    assert needed_input_error(found.fit, DiscoveryOptions(), unseen.floor) < 0.005
-    error = needed_input_error(found.fit, DiscoveryOptions(), unseen.floor, unseen.at_horizon)
-    assert error == pytest.approx(0.1, rel=0.3)
+    assert needed(found) < 0.005
+    assert needed(found, unseen=found.unseen.of_outputs) == pytest.approx(0.1, rel=0.3)
 
 
 @pytest.mark.parametrize("force", [0.0, 0.05])

@@ -16,7 +16,7 @@ from identification.discovery.attempts import attempt
 from identification.discovery.moves import Watch
 from identification.discovery.passes import uses
 from identification.prediction.exchange import exchanged, without_contradicted
-from identification.prediction.extension import with_fitting_steps
+from identification.prediction.extension import with_fitting_steps, with_own_weights
 from identification.prediction.finer_steps import (
     at_finer_steps,
     is_made_by_steps,
@@ -62,6 +62,9 @@ def add_effect(state: WindowSearch, progress: Progress) -> WindowSearch:
         shorter = partial(with_fitting_steps, best.model, task.horizon, task.confirm)
         model = attempt(best.candidate, shorter)
         tried = tried if model else tried[1:]
+    if uses(task.options, "own_weights"):
+        weighed = partial(with_own_weights, model, task.horizon, task.confirm)
+        model = attempt(best.candidate, weighed) or model
     watch.stop("refits")
     scores = score_all(model, task.effects, task.options)
     others = find_rivals(tried[1:], state.model, state.scores, best.model, scores)

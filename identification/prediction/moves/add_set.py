@@ -20,6 +20,7 @@ import numpy as np
 
 from identification.discovery.attempts import attempt
 from identification.discovery.moves import Watch
+from identification.discovery.options import DiscoveryOptions
 from identification.discovery.passes import uses
 from identification.effects.effect import Candidate
 from identification.prediction.contenders import count_numbers, list_starts
@@ -117,7 +118,8 @@ def set_for_effects(state: WindowSearch, progress: Progress) -> WindowSearch:
     if not new or new <= old:
         return replace(state, seconds=found.seconds)
     numbers = [sum(a.numbers for a in s.accepted) for s in (state, found)]
-    gains = [all_gains(state.nominal, s.model) for s in (state, found)]
+    options = state.task.options
+    gains = [all_gains(state.nominal, s.model, options) for s in (state, found)]
     windows, outputs = count_windows(state.nominal), len(state.nominal.scale)
     before, after = evidence(gains, numbers, windows, outputs)[:, 0]
     if not after > before:
@@ -172,7 +174,7 @@ def _bic(model: WindowModel) -> float:
     """Returns BIC of a fit, of which a smaller value is better: N ln V + p ln N."""
     fit = model.fit
     samples = sum(p.cut.outputs.size for p in fit.problem.parts)
-    return float(samples * np.log(fit.cost) + len(fit.q) * np.log(samples))
+    return float(samples * np.log(model.fitted_power) + len(fit.q) * np.log(samples))
 
 
 def with_one(state: WindowSearch, model: WindowModel, candidate: Candidate) -> WindowModel | None:
@@ -212,7 +214,7 @@ def _each_at_its_best(
         )
         own = next((c for c in tried if c.candidate.key == key), None)
         best = max(tried, key=lambda c: c.criterion, default=None)
-        least = own.criterion if own else _criterion(parent, model, key)
+        least = own.criterion if own else _criterion(parent, model, key, options)
         if best is not None and best is not own and best.criterion > least:
             progress(f"{best.candidate.effect.name}, {best.candidate.where}: better in its place")
             model, key = best.model, best.candidate.key
@@ -220,11 +222,13 @@ def _each_at_its_best(
     return model, places
 
 
-def _criterion(parent: WindowModel, model: WindowModel, key: Key) -> float:
+def _criterion(
+    parent: WindowModel, model: WindowModel, key: Key, options: DiscoveryOptions
+) -> float:
     """Returns E of one of a model's effects, beside the others."""
     numbers = next(count_numbers(c) for c in model.candidates if c.key == key)
     windows, outputs = count_windows(parent), len(parent.scale)
-    return float(evidence([all_gains(parent, model)], [numbers], windows, outputs)[0, 0])
+    return float(evidence([all_gains(parent, model, options)], [numbers], windows, outputs)[0, 0])
 
 
 def _proven(

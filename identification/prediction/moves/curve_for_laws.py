@@ -66,7 +66,7 @@ def curve_for_laws(state: WindowSearch, progress: Progress) -> Change:
         parent, tried = refitted_curves
         windows, outputs = count_windows(parent), len(parent.scale)
         numbers = sum(count_numbers(a.candidate) for a in laws)
-        theirs = evidence([all_gains(parent, model)], [numbers], windows, outputs)[0, 0]
+        theirs = evidence([all_gains(parent, model, options)], [numbers], windows, outputs)[0, 0]
         best = next(iter(tried), None)
         if best is None or not best.is_proven:
             continue
