@@ -110,6 +110,9 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
     "neighbours_names": (
         HORIZON, "names no law beside which a curve of the data still explains much",
     ),
+    "smooth_neighbours": (
+        HORIZON, "names no law beside which a smooth force of two variables explains much",
+    ),
     "closed_gap": (HORIZON, "names no law that closes less than half of the gap"),
     "far_from_exact": (
         HORIZON, "asks less of a curve beside a law that is far from what both explain together",

@@ -8,14 +8,14 @@ from math import pi
 
 import mujoco
 
-from identification.effects.axes import Axis, Kind
+from identification.effects.axes import Axis
 from identification.effects.bodies import body_effects
 from identification.effects.curves import curve_effects
 from identification.effects.effect import Effect, places
 from identification.effects.forces import force_effects, time_effects
 from identification.effects.friction import drag_effects, friction_effects
 from identification.effects.inputs import drives, input_effects
-from identification.effects.joint_group import Group
+from identification.effects.joint_group import groups
 from identification.effects.rotors import rotor_effects
 from identification.effects.sensors import sensor_effects
 from identification.effects.state_effects import state_effects
@@ -52,7 +52,7 @@ def all_effects(
     compiled = spec.copy().compile()
     return (
         *joint_effects(axes, turns, asked),
-        *(e for g in _groups(axes, turns) for e in rotor_effects(g, compiled.opt.timestep)),
+        *(e for g in groups(axes, turns) for e in rotor_effects(g, compiled.opt.timestep)),
         *body_effects(spec),
         *input_effects(drives(log)),
         *sensor_effects(compiled, log.output_names, axes),
@@ -77,19 +77,11 @@ def joint_effects(
     """
     every = (
         effect if effect.name in asked else _without(effect, turning(group.axes))
-        for group in _groups(axes, turns)
+        for group in groups(axes, turns)
         for make in _OF_JOINTS
         for effect in make(group)
     )  # fmt: skip
     return tuple(effect for effect in every if effect.places)
-
-
-def _groups(axes: Sequence[Axis], turns: Sequence[float]) -> list[Group]:
-    """Returns the hinges and the slides, where there are any."""
-    kinds: list[Kind] = ["hinge", "slide"]
-    each = [(kind, tuple(a for a in axes if a.kind == kind)) for kind in kinds]
-    both = all(group for _, group in each)
-    return [Group(kind, group, turns, both) for kind, group in each if group]
 
 
 def turning(axes: Iterable[Axis]) -> tuple[Axis, ...]:

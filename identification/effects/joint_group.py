@@ -129,6 +129,19 @@ class Group:
     friction = partialmethod(effect, "friction")
 
 
+def groups(axes: Sequence[Axis], turns: Sequence[float] = ()) -> list[Group]:
+    """Returns the hinges and the slides, where there are any.
+
+    Args:
+        axes: the joints.
+        turns: periods in a turn of a hinge that are tried.
+    """
+    kinds: list[Kind] = ["hinge", "slide"]
+    each = [(kind, tuple(a for a in axes if a.kind == kind)) for kind in kinds]
+    both = all(group for _, group in each)
+    return [Group(kind, group, turns, both) for kind, group in each if group]
+
+
 def wave_sizes(g: Group) -> tuple[Size, ...]:
     """Returns the amplitudes of cosine and sine."""
     return (

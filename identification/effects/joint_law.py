@@ -6,6 +6,8 @@ A set of effects takes its columns of this row. What it lacks has sizes of zero 
 nothing. So robots whose sets differ share their machine code, which takes numba 12 s; a step asks
 of each law that is not there whether its sizes are zero. A robot with hinges and slides has each
 law twice. A set with an effect of a user's own has a law of its own, and so has the empty set.
+Surfaces, by which a finished search judges its names, stand behind the catalogue in a second law:
+their ninety sizes would be asked for in every step of every search.
 """
 
 from __future__ import annotations
@@ -18,6 +20,7 @@ from zlib import crc32
 
 from identification.effects.axes import Axis
 from identification.effects.catalogue import joint_effects
+from identification.effects.surfaces import surface_effects
 from identification.effects.values import terms_of
 from identification.native.element import Term
 from identification.native.joint_callback import JOINT
@@ -46,11 +49,12 @@ def joint_terms(own: tuple[Term, ...]) -> JointTerms:
         own: terms of the set on joints, with columns of a law that has them alone.
     """
     counts = {t.functions: sum(o.functions == t.functions for o in own) for t in own}
-    known = [t.functions for t in _catalogue()]
     if not own or not all(_is_known(t) for t in own):
         return JointTerms(own, own)
+    has_surfaces = any(_is_one_of(t, _surfaces()) for t in own)
+    known = [t.functions for t in _listed(has_surfaces)]
     copies = max(ceil(count / known.count(of)) for of, count in counts.items())
-    law = _law(copies)
+    law = _law(copies, has_surfaces)
     left = {of: iter([t for t in law if t.functions == of]) for of in counts}
     return JointTerms(tuple(replace(t, column=next(left[t.functions]).column) for t in own), law)
 
@@ -66,23 +70,32 @@ def key_of_law(law: Sequence[Term], of: str) -> float:
 
 
 def _is_known(own: Term) -> bool:
-    """Returns whether a term is one of the catalogue's, whatever it is called."""
+    """Returns whether a term is one of the catalogue's or a surface, whatever it is called."""
+    return _is_one_of(own, _listed(True))
+
+
+def _is_one_of(own: Term, terms: Sequence[Term]) -> bool:
     return any(
         (own.functions, len(own.names), own.sizes) == (t.functions, len(t.names), t.sizes)
-        for t in _catalogue()
+        for t in terms
     )
 
 
 @cache
-def _catalogue() -> tuple[Term, ...]:
-    """Returns the terms of all effects of the catalogue that act on joints."""
-    return terms_of(joint_effects(_AXES), JOINT)
+def _listed(has_surfaces: bool) -> tuple[Term, ...]:
+    """Returns the terms of all effects of the catalogue that act on joints, and of surfaces."""
+    every = joint_effects(_AXES)
+    return terms_of((*every, *surface_effects(_AXES)) if has_surfaces else every, JOINT)
 
 
 @cache
-def _law(copies: int) -> tuple[Term, ...]:
-    """Returns the terms of the catalogue so many times, one column behind the other."""
-    width = sum(len(t.names) for t in _catalogue())
-    return tuple(
-        replace(t, column=t.column + k * width) for k in range(copies) for t in _catalogue()
-    )
+def _surfaces() -> tuple[Term, ...]:
+    return terms_of(surface_effects(_AXES), JOINT)
+
+
+@cache
+def _law(copies: int, has_surfaces: bool) -> tuple[Term, ...]:
+    """Returns these terms so many times, one column behind the other."""
+    listed = _listed(has_surfaces)
+    width = sum(len(t.names) for t in listed)
+    return tuple(replace(t, column=t.column + k * width) for k in range(copies) for t in listed)

@@ -23,7 +23,7 @@ import numpy as np
 from identification.effects import values as effect_values
 from identification.effects.axes import Axis
 from identification.effects.body_numbers import body_numbers
-from identification.effects.effect import Effect
+from identification.effects.effect import Effect, effect_parameters
 from identification.effects.gears import Gears
 from identification.effects.joint_states import (
     JointState,
@@ -153,6 +153,19 @@ class JointPlant:
         with_them = self.with_states_of(n for n, v in values.items() if v != 0)
         return replace(with_them, parameters=self.parameters.with_values(values))
 
+    def with_effects(self, more: Sequence[Effect]) -> JointPlant:
+        """Returns the same plant with further effects, all of which are absent.
+
+        Args:
+            more: effects of joints, of which it has none.
+        """
+        effects = (*self.effects, *more)
+        records = [p for e in more for p in effect_parameters(e)]
+        every = ParameterSet(self.parameters.name, (*self.parameters, *records))
+        return replace(
+            self, bare=self._bare(self.states, effects), effects=effects, parameters=every
+        )
+
     def with_states_of(self, names: Iterable[str]) -> JointPlant:
         """Returns the same plant with the states that some sizes of effects need."""
         return self.with_states([state for n in names for state in self.needed_states.get(n, ())])
@@ -178,8 +191,10 @@ class JointPlant:
         """Plants with other states, by these."""
         return {self.states: self}
 
-    def _bare(self, states: tuple[JointState, ...]) -> ModelPlant:
-        layout = JointLayout(self.effects, bool(states))
+    def _bare(
+        self, states: tuple[JointState, ...], effects: tuple[Effect, ...] | None = None
+    ) -> ModelPlant:
+        layout = JointLayout(effects or self.effects, bool(states))
         model = with_rows(with_actuators(self.spec, states), self.axes, layout)
         return ModelPlant(model, self.bare.parameters, fitting(self.bare.start, model))
 

@@ -31,6 +31,8 @@ from identification.windows.problem import (
 from identification.windows.records import Record
 from identification.windows.unseen import HORIZON
 
+# Of logarithms: outputs whose errors have fallen by factors that differ by less keep their weights.
+UNLIKE_FALLS = 0.5
 MAX_LINEARISATIONS = 12  # of a refit: an effect that takes more is not what is missing
 
 
@@ -141,7 +143,8 @@ def with_own_weights(model: WindowModel, horizon: float, confirm: Sequence[Recor
     Errors count in the scale of the nominal model's, so that models can be compared. Where an
     effect has taken most of them away, priors would outweigh the data, pull values to their means,
     and make the std of all values too large; and an output whose error has fallen to its noise
-    would tell less than it can. A model whose errors have not fallen stays as it is.
+    would tell less than it can. A model whose outputs' errors have fallen alike stays as it is: its
+    priors weigh in the last fit.
 
     Args:
         model: with an effect more than when its outputs were weighed.
@@ -151,6 +154,9 @@ def with_own_weights(model: WindowModel, horizon: float, confirm: Sequence[Recor
     Raises:
         DivergenceError: it cannot be simulated.
     """
+    fallen = rms_error(model.fit) * np.diag(model.fit.problem.parts[0].whitener)
+    if not np.ptp(np.log(np.minimum(1.0, fallen))) > UNLIKE_FALLS:
+        return model
     return _weighed(model, model.fit.problem, horizon, confirm, 1)
 
 

@@ -15,6 +15,11 @@ though the curve itself, with its many numbers, is not proven. What acts in few 
 does, has a large chance whatever it explains. So where the curve explains more than
 `FAR_FROM_EXACT` of both, it need only be more likely than not that this is no luck. A law of a
 sensor, an input or a body has no joint of its own, and curves at all joints count.
+
+A force of two variables leaves what no single curve draws. So the smooth force of the law's joint
+is asked as well (`identification.prediction.yardstick`): all its curves at once, and where the
+model leaves something, its surfaces over two variables. Its f and its chance are of blocks of
+windows to which it was not fitted.
 """
 
 from __future__ import annotations
@@ -28,11 +33,12 @@ from identification.discovery.passes import uses
 from identification.effects.effect import Candidate
 from identification.prediction.scores import WindowScore
 from identification.prediction.screening import places_of
-from identification.prediction.yardstick import acts_on_joints
+from identification.prediction.yardstick import Yardstick, acts_on_joints
 
 # No law is right to more than a per mille of its power, which is 3 % of its force: steps of
 # the simulation and shapes of bodies are not known better.
 EXACT = 1e-3
+SMOOTH_FORCE = "smooth force"  # as it is called where a curve has its name
 
 
 def find_neighbour(
@@ -58,9 +64,34 @@ def find_neighbour(
         return None
     best = min(curves, key=lambda s: s.p_value)
     chance = min(1.0, len(curves) * best.p_value)
-    gain = best.fall * (1 - fall)
-    of_both = gain / (fall + gain) if fall + gain > 0 else 0.0
-    return Neighbour(best.candidate.effect.name, best.candidate.where, best.fall, chance, of_both)
+    c = best.candidate
+    return Neighbour(c.effect.name, c.where, best.fall, chance, _of_both(fall, best.fall))
+
+
+def _of_both(law: float, beside: float) -> float:
+    """Returns g/(F + g), for the falls by a law and by what is beside it."""
+    gain = beside * (1 - law)
+    return gain / (law + gain) if law + gain > 0 else 0.0
+
+
+def find_smooth_neighbour(
+    candidate: Candidate, fall: float, stick: Yardstick | None
+) -> Neighbour | None:
+    """Returns the smooth force at a law's joint that explains what the law leaves.
+
+    Args:
+        candidate: the law, or a curve.
+        fall: of the mean square by it, F.
+        stick: what smooth forces would still explain; None where it is not known.
+
+    Returns:
+        None for a curve, and for what is no law of a joint.
+    """
+    left = stick.left_at(candidate) if stick and not candidate.effect.is_curve else None
+    if left is None:
+        return None
+    where, share, chance = left
+    return Neighbour(SMOOTH_FORCE, where, share, chance, _of_both(fall, share))
 
 
 def has_neighbours_name(neighbour: Neighbour | None, options: DiscoveryOptions) -> bool:

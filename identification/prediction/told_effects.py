@@ -12,9 +12,14 @@ import numpy as np
 
 from identification.chances import mean_above_zero
 from identification.discovery.effect_results import NamedEffect, Proof, RejectedEffect, Rival
+from identification.discovery.passes import uses
 from identification.effects.effect import Candidate
 from identification.prediction.model import WindowModel
-from identification.prediction.neighbours import find_neighbour
+from identification.prediction.neighbours import (
+    find_neighbour,
+    find_smooth_neighbour,
+    has_neighbours_name,
+)
 from identification.prediction.odds import find_odds
 from identification.prediction.task import WindowSearch
 from identification.prediction.trial import Contender, Doubt
@@ -36,6 +41,10 @@ def named_effect(
         stick: what smooth forces would still explain; None where it is not known.
     """
     options, mine = state.task.options, accepted.candidate
+    fall = accepted.prediction.fall
+    each = [find_neighbour(mine, fall, state.scores)]
+    if uses(options, "smooth_neighbours"):
+        each.append(find_smooth_neighbour(mine, fall, stick))
     is_final = any(c.key == mine.key for c in state.model.candidates)
     final = state.model if is_final else accepted.model
     odds = find_odds(accepted, final)
@@ -49,8 +58,8 @@ def named_effect(
         one_of=bool(odds.likeliest and odds.likeliest[1] > options.set_confidence),
         evidence=accepted.criterion, proof=_proof(state, accepted),
         same_as=next((e for e in state.task.effects if e.name == odds.twin), None),
-        smooth_share=stick.share_of(mine, accepted.prediction.fall) if stick else None,
-        neighbour=find_neighbour(mine, accepted.prediction.fall, state.scores),
+        smooth_share=stick.share_of(mine, fall) if stick else None,
+        neighbour=next((n for n in each if has_neighbours_name(n, options)), each[0]),
     )  # fmt: skip
 
 

@@ -74,7 +74,11 @@ def conclude(state: WindowSearch) -> Discovery:
         needed = _needed_input_error(nominal, options)
     findings = find_remaining(state, rejected, shifts, needed)
     limit = options.left_confidence if findings else options.max_confidence
-    stick = attempt(None, partial(measure, model, task.effects)) if state.accepted else None
+    stick = (
+        attempt(None, partial(measure, model, task.effects, bool(findings)))
+        if state.accepted
+        else None
+    )
     named = tuple(named_effect(state, a, limit, stick) for a in state.accepted if a not in differ)
     is_unexplained = _is_worse(state) or _errs(model, needed, options)
     # Where the fit was worse than the values with which it began, an effect says why.

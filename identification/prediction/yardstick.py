@@ -3,22 +3,31 @@
 The smooth forces are the curves of rate, position, drive and time of each joint, all at once
 (`identification.discovery.smooth_force`). What they would explain beside a model is a moment of its
 linearisation over the fitted windows; blocks of windows judge it that it was not fitted to.
+
+Near a force of two variables, such as a motor's that falls with its speed, lies some law of the
+catalogue, and no curve of one variable tells them apart. So where a model leaves something, the
+surfaces over two variables (`identification.effects.surfaces`) of the joints on which its laws act
+are part of the smooth force. They are simulated in a plant of their own.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from identification.chances import mean_above_zero
 from identification.discovery.candidates import list_common
 from identification.discovery.smooth_force import SmoothForce, explained_share, find_smooth_force
 from identification.effects.curves import OF_JOINT
 from identification.effects.effect import Candidate, Effect
+from identification.effects.jointed import JointPlant
+from identification.effects.surfaces import surface_effects
 from identification.prediction.model import WindowModel
 from identification.prediction.scores import condensed
 from identification.prediction.screening import MAX_SCORED, places_of, some_windows
+from identification.windows.fit import WindowFit
 
 ON_JOINTS = {"force", "friction"}  # hooks of laws that a smooth force of a joint may imitate
 
@@ -29,6 +38,7 @@ class Yardstick:
 
     every: float  # share of the sum of squares that forces at all joints would take
     of_joint: Mapping[str, float]  # share that forces at one joint would take, by its name
+    chances: Mapping[str, float]  # of as much at one joint by luck, over blocks, by its name
 
     def share(self, before: float, after: float) -> float | None:
         """Returns what a model explains of what it and smooth forces at all joints could.
@@ -38,6 +48,22 @@ class Yardstick:
             after: with them.
         """
         return explained_share(before, after, self.every * after)
+
+    def left_at(self, candidate: Candidate) -> tuple[str, float, float] | None:
+        """Returns what smooth forces at a joint of an effect still take of what the model leaves.
+
+        Args:
+            candidate: the effect at its place.
+
+        Returns:
+            The joint at which they take most, their share, and the chance of as much by luck; None
+            for what is no law of a joint.
+        """
+        joints = [j for j in places_of(candidate.where) if j in self.of_joint]
+        if not acts_on_joints(candidate.effect) or not joints:
+            return None
+        most = max(joints, key=lambda j: self.of_joint[j])
+        return most, self.of_joint[most], self.chances[most]
 
     def share_of(self, candidate: Candidate, fall: float) -> float | None:
         """Returns what an effect explains of what it and smooth forces at its joints could.
@@ -49,11 +75,8 @@ class Yardstick:
         Returns:
             None for what is no law of a joint.
         """
-        joints = [j for j in places_of(candidate.where) if j in self.of_joint]
-        if not acts_on_joints(candidate.effect) or not joints:
-            return None
-        most = max(self.of_joint[j] for j in joints)
-        return explained_share(1.0, 1.0 - fall, most * (1.0 - fall))
+        left = self.left_at(candidate)
+        return None if left is None else explained_share(1.0, 1.0 - fall, left[1] * (1.0 - fall))
 
 
 def acts_on_joints(effect: Effect) -> bool:
@@ -61,12 +84,15 @@ def acts_on_joints(effect: Effect) -> bool:
     return bool(effect.hooks) and {*effect.hooks} <= ON_JOINTS
 
 
-def measure(model: WindowModel, effects: Sequence[Effect]) -> Yardstick | None:
+def measure(
+    model: WindowModel, effects: Sequence[Effect], is_left: bool = False
+) -> Yardstick | None:
     """Returns what smooth forces would still explain beside a model; None where there are none.
 
     Args:
         model: fitted.
         effects: of the catalogue, of which the curves of a joint make the smooth forces.
+        is_left: whether the model leaves something, so that forces of two variables are asked too.
 
     Raises:
         DivergenceError: the model cannot be simulated beside its values.
@@ -76,8 +102,13 @@ def measure(model: WindowModel, effects: Sequence[Effect]) -> Yardstick | None:
     each = [c for c in list_common(curves) if c.key not in has and c.effect.places[c.where]]
     if not each:
         return None
+    fit = model.fit
+    if is_left and isinstance(model.plant, JointPlant):
+        surfaces = _surfaces(model, model.plant)
+        plant = model.plant.with_effects([*{c.effect.name: c.effect for c in surfaces}.values()])
+        each, fit = [*each, *surfaces], _in_plant(fit, plant)
     columns = [len(c.sizes) for c in each]
-    fit = some_windows(model.fit) if sum(columns) > MAX_SCORED else model.fit
+    fit = some_windows(fit) if sum(columns) > MAX_SCORED else fit
     known = condensed(fit, each)
     G, a, squares = known.G, known.a, known.squares
     ends = np.cumsum(columns)
@@ -88,10 +119,31 @@ def measure(model: WindowModel, effects: Sequence[Effect]) -> Yardstick | None:
         nodes = [len(of_curves[k]) for k in some]
         return find_smooth_force(G[:, here][:, :, here], a[:, here], nodes)
 
-    def left(some: Sequence[int]) -> float:
-        return min(1.0, force(some).gain / float(squares.sum()))
+    def left(force: SmoothForce) -> float:
+        return min(1.0, force.gain / float(squares.sum()))
 
     joints = dict.fromkeys(c.where for c in each)
-    of_joint = {j: left([k for k, c in enumerate(each) if c.where == j]) for j in joints}
-    every = of_joint[next(iter(joints))] if len(joints) == 1 else left(range(len(each)))
-    return Yardstick(every, of_joint)
+    forces = {j: force([k for k, c in enumerate(each) if c.where == j]) for j in joints}
+    of_joint = {j: left(f) for j, f in forces.items()}
+    chances = {j: mean_above_zero(f.gains)[1] if f.gain > 0 else 1.0 for j, f in forces.items()}
+    every = of_joint[next(iter(joints))] if len(joints) == 1 else left(force(range(len(each))))
+    return Yardstick(every, of_joint, chances)
+
+
+def _surfaces(model: WindowModel, plant: JointPlant) -> list[Candidate]:
+    """Returns the surfaces at the joints of its plant on which laws of a model act."""
+    laws = [c for c in model.candidates if acts_on_joints(c.effect)]
+    at = {
+        joint
+        for c in laws
+        for joint in (places_of(c.where) if c.effect.places.get(c.where) else c.effect.places)
+    }
+    every = list_common(surface_effects(plant.axes))
+    return [c for c in every if c.where in at]
+
+
+def _in_plant(fit: WindowFit, plant: JointPlant) -> WindowFit:
+    """Returns a fit whose windows are those of a plant with further effects, all absent."""
+    task = fit.problem
+    parts = tuple(replace(p, predictor=replace(p.predictor, plant=plant)) for p in task.parts)
+    return replace(fit, problem=replace(task, parts=parts))

@@ -37,7 +37,7 @@ DOUBTS = {
     "exchange": "if the other records are fitted instead, it predicts a record worse, or all of"
     " them on average",
     "drawn": "a curve from the data at the same joint explains the same, and more",
-    "neighbour": "a curve from the data still explains much of what it leaves, beyond chance",
+    "neighbour": "a force drawn from the data still explains much of what it leaves, beyond chance",
     "gap": "it removes less than half of the power above the noise, and something is left",
     "curve": "it was found together with a curve from the data, and may be what the nodes of the"
     " curve cannot draw",

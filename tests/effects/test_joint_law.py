@@ -9,7 +9,7 @@ from joint_cases import ARM, SLIDER, arm_log, slider_log, steps
 from identification.effects import rows
 from identification.effects.axes import axes
 from identification.effects.catalogue import joint_effects
-from identification.effects.joint_law import JointTerms, _catalogue, joint_terms
+from identification.effects.joint_law import JointTerms, _listed, joint_terms
 from identification.effects.joint_plant import joint_plant
 from identification.effects.rows import JointLayout
 from identification.effects.values import terms_of
@@ -51,7 +51,8 @@ def test_different_sets_have_one_law_and_each_parameter_a_column_of_its_own():
 
 
 def test_columns_of_a_robot_with_each_law_twice_do_not_overlap():
-    twice = [*_catalogue(), *(replace(t, effect=f"slide_{t.effect}") for t in _catalogue())]
+    once = _listed(False)
+    twice = [*once, *(replace(t, effect=f"slide_{t.effect}") for t in once)]
     found = joint_terms(tuple(twice))
     spans = [range(t.column, t.column + len(t.names)) for t in found.own]
     assert len({c for span in spans for c in span}) == sum(map(len, spans))

@@ -108,7 +108,7 @@ def test_what_the_steps_of_the_simulation_make_is_nothing_that_is_left(monkeypat
     assert kinds(monkeypatch, 1.2 * LEAST, rejected=(made,)) == doubts[1:]
 
 
-BEFORE, AFTER = (SimpleNamespace(fit=SimpleNamespace(cost=cost)) for cost in (100.0, 50.0))
+BEFORE, AFTER = (SimpleNamespace(fitted_power=power) for power in (100.0, 50.0))
 
 
 def law(doubt=None, t=3.0, key=("other", "joint")):
@@ -143,6 +143,6 @@ def test_a_law_that_predicts_unseen_records_no_better_is_no_rival_however_well_i
 
 def test_what_explains_as_much_beside_the_name_is_missing_too_and_no_rival():
     other = law()
-    least = OWN_SHARE * 0.4 * BEFORE.fit.cost / AFTER.fit.cost
+    least = OWN_SHARE * 0.4 * BEFORE.fitted_power / AFTER.fitted_power
     assert rivals(other, 0.9 * least) == (other,)
     assert rivals(other, 1.1 * least) == ()

@@ -8,9 +8,11 @@ from records_cases import FREE, HORIZON, nominal_model, pendulum, records
 from scipy.optimize import lsq_linear
 
 from identification.discovery.candidates import list_common
+from identification.discovery.options import DiscoveryOptions
 from identification.effects.joint_plant import candidates
 from identification.prediction.extension import with_effect
 from identification.prediction.first_fit import begin
+from identification.prediction.neighbours import find_smooth_neighbour, has_neighbours_name
 from identification.prediction.nominal_fit import fit_nominal
 from identification.prediction.scores import condensed, window_scores
 from identification.prediction.yardstick import measure
@@ -66,3 +68,32 @@ def test_the_law_that_is_missing_leaves_nothing_to_a_smooth_force_and_a_neighbou
     assert left["coulomb_friction"] < 0.01
     assert share["sublinear_friction"] < 0.998
     assert left["sublinear_friction"] > 0.03
+
+
+@cache
+def damped():
+    """The fit where a damping grows with the angle: a force of speed and position at once."""
+    made = records(4, {"position_dependent_damping.d_q@hinge": 0.002}, samples=400)
+    logs = as_records(made[:2], made[2:])
+    return fit_nominal(nominal_model(), logs), [r for r in logs if r.role == "confirm"]
+
+
+def beside(name, is_left):
+    """What smooth forces explain beside a law, with surfaces or without them."""
+    model, confirm = damped()
+    best = window_scores(model.fit, listed(name))[0]
+    after = with_effect(model, begin(model, [best]), HORIZON, confirm)
+    fall = 1 - after.fit.cost / model.fit.cost
+    stick = measure(after, EFFECTS, is_left)
+    return find_smooth_neighbour(after.candidates[-1], fall, stick)
+
+
+def test_surfaces_unmask_the_neighbour_of_a_force_of_two_variables_and_no_curve_does():
+    near = "position_dependent_friction"
+    wrong, plain = beside(near, True), beside(near, False)
+    assert has_neighbours_name(wrong, DiscoveryOptions())
+    assert wrong.share > 0.8
+    assert plain.share < 0.1
+    right = beside("position_dependent_damping", True)
+    assert not has_neighbours_name(right, DiscoveryOptions())
+    assert right.share < 0.01
