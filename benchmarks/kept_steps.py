@@ -34,6 +34,7 @@ STEPS = (
         "nominal_fit:fit_alone", "nominal_fit:predicted", "nominal_fit:as_begun",
         "screening:score_all", "scores:window_scores", "first_fit:begin", "extension:with_effect",
         "extension:with_fitting_steps", "extension:with_finer_steps", "extension:as_last_fit",
+        "extension:with_own_weights",
         "extension:refitted", "crossing:at_their_best", "crossing:at_all_lengths",
         "selection:refit_contenders", "finer_steps:is_of_steps", "exchange:exchanged",
         "set_choice:choose", "moves.add_set:with_one", "clocks:record_shifts", "yardstick:measure",

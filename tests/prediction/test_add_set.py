@@ -88,5 +88,5 @@ def test_members_of_a_set_with_which_unseen_records_are_predicted_no_better_are_
     state = WINDOWS.begin(task, lambda line: None)
     monkeypatch.setattr(add_set, "is_much_left", lambda model, options: True)
     monkeypatch.setattr(add_set, "_with_set", lambda state, model, progress: state.model)
-    monkeypatch.setattr(add_set, "_each_at_its_best", None)
+    monkeypatch.setattr(add_set, "each_at_its_best", None)
     assert add_set.add_set(state, lambda line: None).accepted == ()
