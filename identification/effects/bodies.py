@@ -154,7 +154,7 @@ def body_effects(spec: mujoco.MjSpec) -> tuple[Effect, ...]:
     far = max([LEAST, *(math.hypot(*b.point) for b in off)])
     far = FARTHEST * max([LEAST, *(math.hypot(*b.point) for b in off)])
     of_place = [
-        Shape(a, "m", (0.0,), -far, far, about=f"way of its place along {a} from there")
+        Shape(a, "m", (0.0,), -far, far, about=f"its place along {a} of the body, from the end")
         for a in axes
     ]
     every = (
