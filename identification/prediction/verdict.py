@@ -98,7 +98,10 @@ def conclude(state: WindowSearch) -> Discovery:
         records=task.records, options=options, horizon=task.horizon, verdict=verdict, named=named,
         rejected=rejected, share=_share(nominal.unseen, model.unseen),
         smooth_share=smooth,
-        unexplained=verdict != "nothing missing" and (bool(findings) or not named),
+        unexplained=bool(findings) or (
+            # inputs that err by what is usual may excuse an error that is far above the noise
+            _is_off(model, options) if verdict == "nothing missing" else not named
+        ),
         noise_rms=error_of_all(noise, nominal.scale, log), unit=log.output_unit,
         scale=nominal.scale, input_error=needed,
         noise_by_unit=errors_by_unit(noise, nominal.scale, log),

@@ -218,3 +218,13 @@ def test_a_force_that_comes_after_the_fitted_record_is_something_that_is_missing
     assert [(e.record, e.others) for e in told] == (
         [("record 2", ("record 1 (fit)",))] if force else []
     )
+
+
+@pytest.mark.parametrize("share", [0.0, 0.008])
+def test_an_error_that_usual_errors_of_inputs_excuse_is_left_all_the_same(share):
+    logs = [disturbed(k, share) for k in range(1, 4)]
+    laws = [e for e in candidates(pendulum(), FREE) if e.name in ("hardening", "offset")]
+    found = discover_records(nominal_model(), logs[:2], logs[2:], laws)
+    assert found.verdict == "nothing missing"
+    assert found.unexplained == (share > 0)
+    assert found.is_good is (None if share else True)
