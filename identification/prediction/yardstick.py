@@ -29,6 +29,8 @@ from identification.prediction.scores import condensed
 from identification.prediction.screening import MAX_SCORED, places_of, some_windows
 from identification.windows.fit import WindowFit
 
+# A smooth force is found by solving for all of its nodes some thousand times.
+MAX_SURFACE_JOINTS = 3
 ON_JOINTS = {"force", "friction"}  # hooks of laws that a smooth force of a joint may imitate
 
 
@@ -102,11 +104,8 @@ def measure(
     each = [c for c in list_common(curves) if c.key not in has and c.effect.places[c.where]]
     if not each:
         return None
-    fit = model.fit
-    if is_left and isinstance(model.plant, JointPlant):
-        surfaces = _surfaces(model, model.plant)
-        plant = model.plant.with_effects([*{c.effect.name: c.effect for c in surfaces}.values()])
-        each, fit = [*each, *surfaces], _in_plant(fit, plant)
+    surfaces, fit = _with_surfaces(model) if is_left else ([], model.fit)
+    each = [*each, *surfaces]
     columns = [len(c.sizes) for c in each]
     fit = some_windows(fit) if sum(columns) > MAX_SCORED else fit
     known = condensed(fit, each)
@@ -130,20 +129,26 @@ def measure(
     return Yardstick(every, of_joint, chances)
 
 
-def _surfaces(model: WindowModel, plant: JointPlant) -> list[Candidate]:
-    """Returns the surfaces at the joints of its plant on which laws of a model act."""
+def _with_surfaces(model: WindowModel) -> tuple[list[Candidate], WindowFit]:
+    """Returns the surfaces at the joints on which laws act, and the fit in a plant that has them.
+
+    There are none where laws act on very many joints.
+    """
+    plant, fit = model.plant, model.fit
+    if not isinstance(plant, JointPlant):
+        return [], fit
     laws = [c for c in model.candidates if acts_on_joints(c.effect)]
     at = {
         joint
         for c in laws
         for joint in (places_of(c.where) if c.effect.places.get(c.where) else c.effect.places)
     }
-    every = list_common(surface_effects(plant.axes))
-    return [c for c in every if c.where in at]
-
-
-def _in_plant(fit: WindowFit, plant: JointPlant) -> WindowFit:
-    """Returns a fit whose windows are those of a plant with further effects, all absent."""
-    task = fit.problem
-    parts = tuple(replace(p, predictor=replace(p.predictor, plant=plant)) for p in task.parts)
-    return replace(fit, problem=replace(task, parts=parts))
+    effects = surface_effects(plant.axes)
+    chosen = [c for c in list_common(effects) if c.where in at]
+    if not 0 < len({c.where for c in chosen}) <= MAX_SURFACE_JOINTS:
+        return [], fit
+    there = plant.with_effects(effects)
+    parts = tuple(
+        replace(p, predictor=replace(p.predictor, plant=there)) for p in fit.problem.parts
+    )
+    return chosen, replace(fit, problem=replace(fit.problem, parts=parts))
