@@ -31,7 +31,7 @@ def crossed(fit: WindowFit, others: Sequence[WindowFit]) -> WindowFit:
         others: fits of the same windows with other effects.
     """
     mine, *theirs = (
-        [Starts(d, np.sum(t.r**2, axis=1)) for d, t in zip(f.moves, f.tangents, strict=True)]
+        [Starts(d, s) for d, s in zip(f.moves, _squares(f, fit), strict=True)]
         for f in (fit, *others)
     )
     starts = [best_starts(one, rest) for one, *rest in zip(mine, *theirs, strict=True)]
@@ -45,6 +45,17 @@ def crossed(fit: WindowFit, others: Sequence[WindowFit]) -> WindowFit:
     return replace(
         fit, moves=moves, tangents=tangents, cost=fit.problem.cost_of(fit.q, r)
     )  # fmt: skip
+
+
+def _squares(fit: WindowFit, like: WindowFit) -> list[np.ndarray]:
+    """Returns the sum of squares of each window, shape (W,), as another fit weighs its outputs."""
+    out = []
+    for own, part, t in zip(like.problem.parts, fit.problem.parts, fit.tangents, strict=True):
+        _, L, ny = part.cut.outputs.shape
+        factors = np.diag(own.whitener) / np.diag(part.whitener)
+        rows = t.r * np.concatenate([np.tile(factors, L), np.ones(t.r.shape[1] - L * ny)])
+        out.append(np.sum(rows**2, axis=1))
+    return out
 
 
 def at_their_best(

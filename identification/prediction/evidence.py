@@ -22,12 +22,9 @@ import numpy as np
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.passes import uses
 from identification.prediction.model import WindowModel
-from identification.windows.blocks import block_gains
+from identification.windows.blocks import output_gains
 
 RESAMPLES = 2000  # of the blocks: a probability is then known to a hundredth
-# Of s²: what an output's noise is taken to be at least. An encoder that rests has none, and what is
-# a thousandth of the error of the model without effects is no reason for a law.
-LEAST_NOISE = 1e-6
 
 
 def all_gains(without: WindowModel, with_it: WindowModel, options: DiscoveryOptions) -> np.ndarray:
@@ -43,15 +40,11 @@ def all_gains(without: WindowModel, with_it: WindowModel, options: DiscoveryOpti
          *m.unseen.select.of_outputs]
         for m in (without, with_it)
     )  # fmt: skip
-    noise = np.maximum(without.unseen.noise, LEAST_NOISE)
+    noise = without.unseen.noise
     if not uses(options, "gains_of_outputs"):
         before, after = ([x.mean(axis=1, keepdims=True) for x in each] for each in (before, after))
         noise = np.array([without.unseen.floor])
-    each = [
-        np.concatenate(block_gains([x[:, y] for x in before], [x[:, y] for x in after], ν2))
-        for y, ν2 in enumerate(noise)
-    ]
-    return np.asarray(np.mean(each, axis=0))
+    return np.concatenate(output_gains(before, after, noise))
 
 
 def count_windows(model: WindowModel) -> int:

@@ -20,9 +20,8 @@ from identification.prediction.crossing import at_their_best
 from identification.prediction.extension import MAX_LINEARISATIONS
 from identification.prediction.first_fit import REFIT_TOLERANCE
 from identification.prediction.model import WindowModel, predict_fitted
-from identification.prediction.trial import Contender, contradicts_a_record
+from identification.prediction.trial import Contender, compared, contradicts_a_record
 from identification.progress import Progress
-from identification.windows.comparison import compare
 from identification.windows.fit import solve
 from identification.windows.problem import ROUGH_STEPS, Problem, no_moves, problem
 from identification.windows.records import Record
@@ -101,7 +100,7 @@ def is_contradicted(without: WindowModel, with_it: WindowModel, options: Discove
         with_it: the model with it, likewise.
         options: what matters.
     """
-    found = compare(without.unseen, with_it.unseen)
+    found = compared(without.unseen, with_it.unseen, options)
     return found.gain <= 0 or contradicts_a_record(found, options)
 
 

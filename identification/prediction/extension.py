@@ -7,11 +7,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
 from identification.discovery.attempts import attempt, refuse_infinite
 from identification.discovery.nominal_model import NominalModel
+from identification.discovery.options import DiscoveryOptions
+from identification.discovery.passes import uses
 from identification.effects.effect import Candidate
 from identification.effects.jointed import JointPlant
 from identification.model.predictor import Plant
@@ -158,6 +161,18 @@ def with_own_weights(model: WindowModel, horizon: float, confirm: Sequence[Recor
     if not np.ptp(np.log(np.minimum(1.0, fallen))) > UNLIKE_FALLS:
         return model
     return _weighed(model, model.fit.problem, horizon, confirm, 1)
+
+
+def weighed(
+    model: WindowModel, horizon: float, confirm: Sequence[Record], options: DiscoveryOptions
+) -> WindowModel:
+    """Returns the model with its own weights where options ask for them and it can be simulated.
+
+    Two effects that act alike would else differ by what the old weights hardly ask of an output.
+    """
+    if not uses(options, "own_weights"):
+        return model
+    return attempt(None, partial(with_own_weights, model, horizon, confirm)) or model
 
 
 def _weighed(

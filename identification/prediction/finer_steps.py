@@ -40,7 +40,7 @@ def is_of_steps(parent: WindowModel, best: Contender) -> bool:
 def is_made_by_steps(parent: WindowModel, best: Contender) -> bool:
     """Returns whether finer steps alone do half of what an effect does, or more."""
     by_steps = 1 - parent.finer.error**2
-    return bool(by_steps > STEPS_SHARE * (1 - best.model.fit.cost / parent.fit.cost))
+    return bool(by_steps > STEPS_SHARE * (1 - best.model.fitted_power / parent.fitted_power))
 
 
 def _is_moved(best: Contender) -> bool:

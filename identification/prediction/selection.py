@@ -18,7 +18,7 @@ from identification.discovery.impossible import find_impossible
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.passes import uses
 from identification.effects.effect import Candidate
-from identification.pool import OutOfTime, lift_limit
+from identification.pool import OutOfTime, lift_limit, run_parts
 from identification.prediction.contenders import (
     count_numbers,
     list_contenders,
@@ -28,13 +28,14 @@ from identification.prediction.contenders import (
 )
 from identification.prediction.crossing import at_all_lengths, at_their_best
 from identification.prediction.evidence import all_gains, count_windows, evidence
-from identification.prediction.extension import with_effect
+from identification.prediction.extension import weighed, with_effect
 from identification.prediction.first_fit import Begun, begin
 from identification.prediction.model import WindowModel
 from identification.prediction.scores import WindowScore, window_scores
 from identification.prediction.trial import (
     Contender,
     Doubt,
+    compared,
     evidences,
     find_doubt,
     has_size,
@@ -42,7 +43,6 @@ from identification.prediction.trial import (
 )
 from identification.progress import Progress, counted
 from identification.shares import fall_words
-from identification.windows.comparison import compare
 from identification.windows.records import Record
 from identification.windows.unseen import Unseen
 
@@ -96,7 +96,8 @@ def refit_contenders(
                 raise
         if out:
             lift_limit()  # what was refitted in time, the best begun first, is judged and accepted
-        return out
+        own = partial(weighed, horizon=horizon, confirm=confirm, options=options)
+        return list(run_parts(own, out))
 
     def judge(
         parent: WindowModel, children: Sequence[WindowModel]
@@ -201,7 +202,7 @@ def judged(
         worse_fit: errors of the fitted values, where those with which the fit began were better.
     """
     c = new.candidates[-1]
-    found = compare(worse_fit or model.unseen, new.unseen)
+    found = compared(worse_fit or model.unseen, new.unseen, options)
     gains = all_gains(model, new, options)
     records = len(model.unseen.at_horizon) + len(model.fit.problem.parts)
     numbers = count_numbers(c) * (records if c.effect.own else 1)
@@ -235,13 +236,13 @@ def _explains_fitted(model: WindowModel, new: WindowModel, options: DiscoveryOpt
 
     Then the records differ in something that the effect stands for, and its gain is no luck.
     """
-    falls = 1 - new.fit.cost / model.fit.cost
+    falls = 1 - new.fitted_power / model.fitted_power
     return falls > options.min_gap_share and _is_worse(new.unseen, model.unseen, options)
 
 
 def _is_worse(new: Unseen, old: Unseen, options: DiscoveryOptions) -> bool:
     """Returns whether unseen records prove that a model predicts worse than another."""
-    return find_doubt(compare(new, old), 1, options) is None
+    return find_doubt(compared(new, old, options), 1, options) is None
 
 
 def ranked(found: Sequence[Contender], options: DiscoveryOptions) -> tuple[Contender, ...]:

@@ -20,9 +20,8 @@ from identification.prediction.selection import judged
 from identification.prediction.set_choice import find_members
 from identification.prediction.set_members import Key
 from identification.prediction.task import WindowSearch
-from identification.prediction.trial import Contender, find_doubt
+from identification.prediction.trial import Contender, compared, find_doubt
 from identification.progress import Progress
-from identification.windows.comparison import compare
 
 
 def proven_members(
@@ -60,7 +59,7 @@ def proven_members(
         if less is None:
             return ()
         model = less
-    seen = compare(parent.unseen, whole.unseen)
+    seen = compared(parent.unseen, whole.unseen, options)
     is_proven = find_doubt(seen, max(1, refits), options) is None
     return tuple(known) if is_proven and not _is_contradicted(state, parent, whole) else ()
 

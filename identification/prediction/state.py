@@ -26,11 +26,11 @@ from identification.prediction.moves.likeliest_of_set import likeliest_of_set
 from identification.prediction.nominal_fit import as_begun, fit_alone, predicted
 from identification.prediction.screening import score_all
 from identification.prediction.task import RecordsTask, WindowSearch, finishing
-from identification.prediction.trial import find_doubt
+from identification.prediction.trial import compared, find_doubt
 from identification.progress import Progress, enter
 from identification.shares import change
 from identification.windows.blocks import count_blocks
-from identification.windows.comparison import compare, rise
+from identification.windows.comparison import rise
 from identification.windows.dividing import divide_records
 from identification.windows.unseen import HORIZON, Unseen, predict
 
@@ -71,11 +71,14 @@ def first_state(task: RecordsTask, progress: Progress) -> WindowSearch:
     _refuse_few(nominal.unseen, task.horizon)
     begun = predict(nominal.plant, task.confirm, task.horizon, nominal.scale, {}, nominal.unseen,
                     lengths=HORIZON)  # fmt: skip
-    worse, refuted = None, find_doubt(compare(nominal.unseen, begun), 1, task.options)
+    worse, refuted = (
+        None,
+        find_doubt(compared(nominal.unseen, begun, task.options), 1, task.options),
+    )
     if refuted is None:  # over the other lengths too?
         begun = predict(nominal.plant, task.confirm, task.horizon, nominal.scale, {},
                         nominal.unseen)  # fmt: skip
-        refuted = find_doubt(compare(nominal.unseen, begun), 1, task.options)
+        refuted = find_doubt(compared(nominal.unseen, begun, task.options), 1, task.options)
     if refuted is None and uses(task.options, "values_of_start"):
         worse = nominal.unseen
         progress(

@@ -33,7 +33,8 @@ from identification.effects.joint_group import SLIDE
 from identification.prediction.evidence import count_windows, evidence
 from identification.prediction.model import WindowModel
 from identification.prediction.scores import WindowScore
-from identification.windows.comparison import Prediction
+from identification.windows.comparison import Prediction, compare
+from identification.windows.unseen import Unseen
 
 Doubt = (
     Literal[
@@ -84,6 +85,17 @@ def evidences(contenders: Sequence[Contender]) -> np.ndarray:
         [c.gains for c in contenders], [c.numbers for c in contenders], count_windows(model),
         len(model.scale),
     )  # fmt: skip
+
+
+def compared(without: Unseen, with_it: Unseen, options: DiscoveryOptions) -> Prediction:
+    """Returns what the second of two models predicts better on unseen windows.
+
+    Args:
+        without: errors of the first model.
+        with_it: of the second one.
+        options: whether each output counts by itself.
+    """
+    return compare(without, with_it, uses(options, "gains_of_outputs"))
 
 
 def find_doubt(found: Prediction, refits: int, options: DiscoveryOptions) -> Doubt | None:

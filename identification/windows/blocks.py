@@ -17,9 +17,32 @@ import numpy as np
 MAX_BLOCKS_PER_RECORD = 20
 
 
+# Of s²: what an output's noise is taken to be at least. An encoder that rests has none, and what is
+# a thousandth of the error of the model without effects is no reason for a law.
+LEAST_NOISE = 1e-6
+
+
 def count_blocks(windows: int) -> int:
     """Returns how many blocks a record with so many windows has."""
     return min(MAX_BLOCKS_PER_RECORD, max(1, windows // 2))
+
+
+def output_gains(
+    without: Sequence[np.ndarray], with_it: Sequence[np.ndarray], noise: np.ndarray
+) -> list[np.ndarray]:
+    """Returns the mean over the outputs of g of each, of the blocks of each record, shape (B,).
+
+    Args:
+        without: mean square of each output over each window under the first model, shape (W, ny),
+            a record each, in units of s².
+        with_it: the same under the second model.
+        noise: ε² of each output, shape (ny,), in these units.
+    """
+    each = [
+        block_gains([x[:, y] for x in without], [x[:, y] for x in with_it], max(e, LEAST_NOISE))
+        for y, e in enumerate(noise)
+    ]
+    return [np.asarray(np.mean(of_record, axis=0)) for of_record in zip(*each, strict=True)]
 
 
 def block_gains(

@@ -1,7 +1,9 @@
 """Comparison of the predictions of two models on records that no fit has seen.
 
 Gains of blocks of neighbouring windows (`identification.windows.blocks`) are the sample of a
-t-test and of a test of signed ranks, for windows of each length that both models predict. What acts
+t-test and of a test of signed ranks, for windows of each length that both models predict. At the
+horizon the gain of a block is the mean over the outputs of the gain of each: in the mean square
+over all outputs, the noise of one that was never wrong hides what another one gains. What acts
 seldom gains much in few blocks and a little in many: their scatter then hides their mean from the
 t-test, and their ranks show it.
 """
@@ -13,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from identification.chances import mean_above_zero, ranks_above_zero
-from identification.windows.blocks import block_gains
+from identification.windows.blocks import block_gains, output_gains
 from identification.windows.unseen import Unseen
 
 
@@ -53,18 +55,23 @@ class Prediction:
         return min(self.gains) > 0 and min(self.typical_falls) > 0
 
 
-def compare(without: Unseen, with_it: Unseen) -> Prediction:
+def compare(without: Unseen, with_it: Unseen, by_outputs: bool = True) -> Prediction:
     """Returns what the second of two models predicts better, over lengths that both have.
 
     It is of the windows on which a search decides; what is to be told of it is its `told`.
+
+    Args:
+        without: errors of the first model.
+        with_it: of the second one.
+        by_outputs: whether each output counts by itself.
     """
-    decided = _compare(without.select, with_it.select)
+    decided = _compare(without.select, with_it.select, by_outputs)
     if not any(with_it.parts):
         return decided
-    return replace(decided, untouched=_compare(without.report, with_it.report))
+    return replace(decided, untouched=_compare(without.report, with_it.report, by_outputs))
 
 
-def _compare(without: Unseen, with_it: Unseen) -> Prediction:
+def _compare(without: Unseen, with_it: Unseen, by_outputs: bool) -> Prediction:
     """Returns the same of all windows of two models."""
     falls, typical, gains = [], [], []
     lengths = [n for n in without.lengths if n in with_it.lengths]
@@ -75,6 +82,8 @@ def _compare(without: Unseen, with_it: Unseen) -> Prediction:
         typical.append(1 - float(np.exp(np.mean(ratios))))
         gains.append(block_gains(a, b, without.floor))
     at = lengths.index(1.0)
+    if by_outputs:
+        gains[at] = output_gains(without.of_outputs, with_it.of_outputs, without.noise)
     blocks, means = gains[at], tuple(float(np.concatenate(g).mean()) for g in gains)
     every = np.concatenate(blocks)
     t, chance = 0.0, 1.0

@@ -16,7 +16,7 @@ from identification.discovery.attempts import attempt
 from identification.discovery.moves import Watch
 from identification.discovery.passes import uses
 from identification.prediction.exchange import exchanged, without_contradicted
-from identification.prediction.extension import with_fitting_steps, with_own_weights
+from identification.prediction.extension import weighed, with_fitting_steps
 from identification.prediction.finer_steps import (
     at_finer_steps,
     is_made_by_steps,
@@ -25,7 +25,7 @@ from identification.prediction.finer_steps import (
 from identification.prediction.model import WindowModel
 from identification.prediction.screening import score_all
 from identification.prediction.selection import refit_contenders
-from identification.prediction.task import RecordsTask, WindowSearch
+from identification.prediction.task import WindowSearch
 from identification.prediction.trial import Contender, find_rivals
 from identification.progress import Progress
 from identification.quantities import quantity
@@ -62,7 +62,7 @@ def add_effect(state: WindowSearch, progress: Progress) -> WindowSearch:
         shorter = partial(with_fitting_steps, best.model, task.horizon, task.confirm)
         model = attempt(best.candidate, shorter)
         tried = tried if model else tried[1:]
-    model = weighed(replace(best, model=model), task)
+    model = weighed(model, task.horizon, task.confirm, task.options)
     watch.stop("refits")
     scores = score_all(model, task.effects, task.options)
     others = find_rivals(tried[1:], state.model, state.scores, best.model, scores)
@@ -72,18 +72,6 @@ def add_effect(state: WindowSearch, progress: Progress) -> WindowSearch:
         state, model=model, accepted=accepted, scores=scores, rejected=(), seconds=watch.seconds,
         exchanged=other_side,
     )  # fmt: skip
-
-
-def weighed(accepted: Contender, task: RecordsTask) -> WindowModel:
-    """Returns the model of an accepted effect, whose outputs weigh by its own errors.
-
-    Args:
-        accepted: the effect; where its model cannot be simulated so, it stays as it is.
-        task: what is asked.
-    """
-    own = partial(with_own_weights, accepted.model, task.horizon, task.confirm)
-    is_asked = uses(task.options, "own_weights")
-    return (attempt(accepted.candidate, own) if is_asked else None) or accepted.model
 
 
 def _may_be_of_steps(state: WindowSearch, tried: Sequence[Contender]) -> bool:

@@ -22,10 +22,9 @@ from identification.discovery.passes import uses
 from identification.effects.effect import Candidate
 from identification.prediction.contenders import list_starts
 from identification.prediction.evidence import all_gains, count_windows, evidence
-from identification.prediction.extension import refitted, with_effect
+from identification.prediction.extension import refitted, weighed, with_effect
 from identification.prediction.first_fit import begin
 from identification.prediction.model import WindowModel
-from identification.prediction.moves.add_effect import weighed
 from identification.prediction.remaining import is_much_left
 from identification.prediction.scores import window_scores
 from identification.prediction.screening import score_all
@@ -33,8 +32,8 @@ from identification.prediction.set_choice import choose, find_members
 from identification.prediction.set_members import Key, Place, each_at_its_best, with_rivals
 from identification.prediction.set_proof import proven_members
 from identification.prediction.task import WindowSearch
+from identification.prediction.trial import compared
 from identification.progress import Progress
-from identification.windows.comparison import compare
 
 MAX_CHOICES = 3  # of a set, each about the model with the one before
 MAX_ROUNDS = 2  # of a choice, and of asking each of its members in its place
@@ -58,7 +57,7 @@ def add_set(
     model, places, refits, asked = state.model, dict[Key, Place](), 0, list[set[Key]]()
     for _ in range(MAX_ROUNDS):
         chosen = _with_set(state, model, progress)
-        is_worse = not compare((present or state.model).unseen, chosen.unseen).t > 0
+        is_worse = not compared((present or state.model).unseen, chosen.unseen, task.options).t > 0
         if is_worse or _keys(chosen) in asked:
             break
         asked.append(_keys(chosen))
@@ -71,7 +70,7 @@ def add_set(
     watch.stop("refits")
     if not found:
         return replace(state, seconds=watch.seconds)
-    model = weighed(found[0], task)
+    model = weighed(found[0].model, task.horizon, task.confirm, task.options)
     scores = score_all(model, task.effects, task.options)
     watch.stop("scores")
     named = {c.candidate.key for c in found}

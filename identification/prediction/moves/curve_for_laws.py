@@ -32,10 +32,9 @@ from identification.prediction.neighbours import find_neighbour, has_neighbours_
 from identification.prediction.screening import places_of, score_all
 from identification.prediction.selection import refit_contenders
 from identification.prediction.task import Change, WindowSearch
-from identification.prediction.trial import Contender
+from identification.prediction.trial import Contender, compared
 from identification.prediction.yardstick import acts_on_joints
 from identification.progress import Progress
-from identification.windows.comparison import compare
 
 # Chance of a curve beside a law, among all curves of its joint, below which the law is asked. It
 # only saves refits: unseen records decide.
@@ -95,7 +94,7 @@ def _neighbours_names(state: WindowSearch) -> dict[tuple[str, str], str]:
 
 def _predicts_better(curve: Contender, laws: WindowModel, options: DiscoveryOptions) -> bool:
     """Returns whether unseen records are predicted better with a curve in the place of laws."""
-    found = compare(laws.unseen, curve.model.unseen)
+    found = compared(laws.unseen, curve.model.unseen, options)
     return found.is_everywhere and found.chance < options.significance
 
 

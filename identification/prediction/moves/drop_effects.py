@@ -15,9 +15,8 @@ from identification.prediction.crossing import at_their_best
 from identification.prediction.extension import refitted
 from identification.prediction.model import WindowModel
 from identification.prediction.task import Change, RecordsTask, WindowSearch
-from identification.prediction.trial import Contender, Doubt, find_doubt
+from identification.prediction.trial import Contender, Doubt, compared, find_doubt
 from identification.progress import Progress
-from identification.windows.comparison import compare
 
 NEEDLESS: tuple[Doubt, ...] = ("chance", "little")  # others make up for it
 
@@ -52,5 +51,5 @@ def as_good_without(
     best = model
     if uses(task.options, "states_of_others"):
         without, (best,) = at_their_best(without, [model], task.horizon, task.confirm)
-    doubt = find_doubt(compare(without.unseen, best.unseen), 1, task.options)
+    doubt = find_doubt(compared(without.unseen, best.unseen, task.options), 1, task.options)
     return without if doubt in NEEDLESS else None
