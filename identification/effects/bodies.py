@@ -52,7 +52,10 @@ BODY = Element(
 )  # fmt: skip
 
 PROBE = 0.02  # of the largest plausible size
-FARTHEST = 2.0  # a load sits no farther from a body's end than so many lengths of it
+# Of the length of the longest body: how far from a body's end the place of a load is tried, and how
+# far it may lie. At the end alone a free mass of the body may do what a load elsewhere does.
+TRIED = (-0.5, 0.0, 0.5)
+FARTHEST = 2.0
 LEAST = 1e-2  # a body that reaches no farther than this is taken to reach so far [m]
 WENSING = "Wensing, Kim, Slotine 2018"
 HOOK = "inertia"
@@ -151,10 +154,17 @@ def body_effects(spec: mujoco.MjSpec) -> tuple[Effect, ...]:
     reach = max(LEAST, *(b.reach for b in bodies))
     way = 0.3 * reach
     axes = "".join(a for a in "xyz" if any(a in felt.axes(b) for b in off))
-    far = max([LEAST, *(math.hypot(*b.point) for b in off)])
-    far = FARTHEST * max([LEAST, *(math.hypot(*b.point) for b in off)])
+    length = max([LEAST, *(math.hypot(*b.point) for b in off)])
     of_place = [
-        Shape(a, "m", (0.0,), -far, far, about=f"its place along {a} of the body, from the end")
+        Shape(
+            a,
+            "m",
+            tuple(share * length for share in TRIED),
+            -FARTHEST * length,
+            FARTHEST * length,
+            about=f"its place along {a} of the body, from the end",
+            usual=0.0,
+        )
         for a in axes
     ]
     every = (

@@ -39,7 +39,7 @@ from identification.windows.unseen import Unseen
 Doubt = (
     Literal[
         "numbers", "chance", "lengths", "record", "little", "size", "bound", "exchange", "curve",
-        "drawn", "differ", "steps", "neighbour", "gap",
+        "drawn", "differ", "steps", "neighbour", "gap", "odds", "beside",
     ]
     | Impossible
 )  # fmt: skip

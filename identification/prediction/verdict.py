@@ -89,7 +89,9 @@ def conclude(state: WindowSearch) -> Discovery:
     doubts = doubts_of_names(named, final, findings, closes, options)
     verdict = decide(named, doubts, findings, is_unexplained)
     if verdict == "unknown effect":
-        unnamed = [unnamed_effect(n, d) for n, d in zip(named, doubts, strict=True)]
+        unnamed = [unnamed_effect(n, d or _of_odds(n)) for n, d in zip(named, doubts, strict=True)]
+        alone = attempt(None, partial(_needed_input_error, nominal, options))
+        needed = needed if alone is None else alone  # what is told is of the model without effects
         rejected, named, model = listed_once([*unnamed, *rejected]), (), nominal
     smooth = stick.share(nominal.fitted_power, model.fitted_power) if stick and named else None
     log = task.records[0].log
@@ -156,13 +158,22 @@ def decide(
         findings: what the final model leaves.
         is_unexplained: whether the model errs by more than noise, and no effect says why.
     """
-    is_sure = all(n.confidence >= EVEN_ODDS or n.one_of for n in named)
-    if named and is_sure and not any(doubts):
+    if named and all(map(_is_sure, named)) and not any(doubts):
         is_drawn = all(n.candidate.effect.is_curve for n in named)
         return "unlisted effect" if is_drawn else "named"
     if named or is_unexplained or any(f.kind in SUSPECT for f in findings):
         return "unknown effect"
     return "nothing missing"
+
+
+def _is_sure(named: NamedEffect) -> bool:
+    """Returns whether a name is at least as likely as not, or one of a set that is told."""
+    return named.confidence >= EVEN_ODDS or named.one_of
+
+
+def _of_odds(named: NamedEffect) -> Doubt:
+    """Returns why an effect has no name against which nothing else speaks."""
+    return "beside" if _is_sure(named) else "odds"
 
 
 def _is_small(

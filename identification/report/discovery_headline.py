@@ -10,6 +10,7 @@ from identification.effects.named import phrase_there
 from identification.quantities import held
 from identification.report.effect_words import (
     describe_there,
+    none_explains,
     say_choice,
     shown_parameters,
     value_with_std,
@@ -39,7 +40,7 @@ def discovery_headline(found: Discovery) -> Headline:
         found.errors_of(found.before), None, found.floor, f"{UNSEEN}{found.over}"
     )  # fmt: skip
     tried = len({s.candidate.effect.name for s in found.scores})
-    none = f"None of the {tried} known effects surely explains it."
+    none = f"{capital(none_explains(tried))} it."
     if found.verdict == "unknown effect":
         ratio = found.times_noise(found.before)
         much = Tile("times the noise", held(ratio)) if isfinite(ratio) else None

@@ -12,6 +12,7 @@ from identification.report.effect_words import (
     describe_chance,
     describe_effect,
     difference_sentences,
+    none_explains,
 )
 from identification.report.error_words import change_words, describe_scale, error_words, listed
 from identification.report.finding_words import describe_finding, sentence
@@ -133,8 +134,8 @@ def _unknown(found: Discovery) -> str:
         needed = f"; the inputs would have to err by {size} to cause this"
     return " ".join(
         [
-            f"Something is missing that none of the {tried} known effects surely explains: the"
-            f" error of the fitted model on unseen data is {left}{found.over}{times}{needed}.",
+            f"Something is missing that {none_explains(tried)}: the error of the fitted model on"
+            f" unseen data is {left}{found.over}{times}{needed}.",
             "The program gives no name rather than a wrong one.",
             *_place(found),
             *needed_sentences(found),

@@ -39,6 +39,8 @@ DOUBTS = {
     "drawn": "a curve from the data at the same joint explains the same, and more",
     "neighbour": "a force drawn from the data still explains much of what it leaves, beyond chance",
     "gap": "it removes less than half of the power above the noise, and something is left",
+    "odds": "other effects in its place are together likelier than it",
+    "beside": "it was found beside an effect that has no sure name",
     "curve": "it was found together with a curve from the data, and may be what the nodes of the"
     " curve cannot draw",
     "differ": "it explains the fitted records and makes unseen ones much worse, so that the records"
@@ -49,6 +51,13 @@ DOUBTS = {
     "gain": "the gain would leave the range of 0.5 to 1.5 times its value within a record",
     "command": "the outputs would move before the command of their servo",
 }
+
+
+def none_explains(tried: int) -> str:
+    """Returns that no known effect explains something, behind "that" or before "it"."""
+    if tried == 1:
+        return "the one known effect that was tried does not surely explain"
+    return f"none of the {tried} known effects surely explains"
 
 
 def describe_effect(candidate: Candidate) -> str:

@@ -25,7 +25,7 @@ def output_line(o: OutputError) -> str:
     times = (
         f", {held(o.after / o.noise)} times its sensor's noise of {noise}" if o.noise > 0 else ""
     )
-    return f"the error of {o.name} on untouched data is {size} rms{times}"
+    return f"the error of {o.name} on unseen data is {size} rms{times}"
 
 
 def worst_lines(gap: HorizonGap) -> list[str]:
@@ -48,7 +48,7 @@ def length_lines(lengths: Sequence[LengthError]) -> list[str]:
         return []
     over = listed([f"{n.length:g} s" for n in lengths])
     ratios = listed([held(n.after) for n in lengths])
-    return [f"over {over} the error on untouched data is {ratios} times the noise"]
+    return [f"over {over} the error on unseen data is {ratios} times the noise"]
 
 
 def force_line(needed: NeededForce) -> str:

@@ -79,11 +79,16 @@ def test_with_the_roles_exchanged_a_fit_sees_no_window_that_is_kept():
 
 def test_errors_in_the_part_that_is_kept_decide_nothing_and_are_told():
     _, model = divided()
-    worse = replace(model.unseen, squares=tuple(
-        tuple(np.where(inside(p, "report", at), 4 * s, s)
-              for s, at, p in zip(squares, places, model.unseen.parts, strict=True))
-        for squares, places in zip(model.unseen.squares, model.unseen.places, strict=True)
-    ))  # fmt: skip
+    unseen = model.unseen
+
+    def louder(squares, places):
+        each = zip(squares, places, unseen.parts, strict=True)
+        return tuple((s.T * np.where(inside(p, "report", at), 4.0, 1.0)).T for s, at, p in each)
+
+    worse = replace(
+        unseen, squares=tuple(map(louder, unseen.squares, unseen.places)),
+        of_outputs=louder(unseen.of_outputs, unseen.places[unseen.lengths.index(1.0)]),
+    )  # fmt: skip
     found = compare(model.unseen, worse)
     assert (found.fall, found.t, found.gain) == (0.0, 0.0, 0.0)
     assert found.told.fall == pytest.approx(-3.0)

@@ -64,7 +64,7 @@ def test_steps_of_a_share_are_those_of_a_model_with_that_step():
 def model(cost=1.0, error=np.nan, shift=0.0):
     """A fitted model; `error` and `shift` are those of finer steps, the shift in std."""
     return SimpleNamespace(
-        fit=SimpleNamespace(cost=cost), finer=SimpleNamespace(error=error),
+        fitted_power=cost, finer=SimpleNamespace(error=error),
         told_std={"law.size [a]": 2.0, "d": 1.0},
         step_shift={"law.size [a]": 2.0 * shift, "d": 9.0},
     )  # fmt: skip
