@@ -36,13 +36,14 @@ def bilinear(x, y, c):
 
     Beyond the last nodes it keeps its value.
     """
-    z, side = min(3.0, 3.0 * abs(x)), 3 if x > 0.0 else 0
-    k = min(2, int(z))
+    half, last = X_NODES // 2, Y_NODES - 1
+    z, side = min(1.0 * half, half * abs(x)), half if x > 0.0 else 0
+    k = min(half - 1, int(z))
     u = z - k
-    t = min(4.0, max(0.0, 2.0 * (y + 1.0)))
-    j = min(3, int(t))
+    t = min(1.0 * last, max(0.0, 0.5 * last * (y + 1.0)))
+    j = min(last - 1, int(t))
     w = t - j
-    low, high = 6 * j + side + k, 6 * (j + 1) + side + k
+    low, high = X_NODES * j + side + k, X_NODES * (j + 1) + side + k
     first = u * c[low] + (0.0 if k == 0 else (1.0 - u) * c[low - 1])
     second = u * c[high] + (0.0 if k == 0 else (1.0 - u) * c[high - 1])
     return (1.0 - w) * first + w * second

@@ -169,6 +169,12 @@ def weighed(
     """Returns the model with its own weights where options ask for them and it can be simulated.
 
     Two effects that act alike would else differ by what the old weights hardly ask of an output.
+
+    Args:
+        model: with an effect more than when its outputs were weighed.
+        horizon: [s].
+        confirm: records that no fit may see.
+        options: the pass `own_weights`.
     """
     if not uses(options, "own_weights"):
         return model

@@ -71,10 +71,8 @@ def first_state(task: RecordsTask, progress: Progress) -> WindowSearch:
     _refuse_few(nominal.unseen, task.horizon)
     begun = predict(nominal.plant, task.confirm, task.horizon, nominal.scale, {}, nominal.unseen,
                     lengths=HORIZON)  # fmt: skip
-    worse, refuted = (
-        None,
-        find_doubt(compared(nominal.unseen, begun, task.options), 1, task.options),
-    )
+    worse: Unseen | None = None
+    refuted = find_doubt(compared(nominal.unseen, begun, task.options), 1, task.options)
     if refuted is None:  # over the other lengths too?
         begun = predict(nominal.plant, task.confirm, task.horizon, nominal.scale, {},
                         nominal.unseen)  # fmt: skip
