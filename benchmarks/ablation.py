@@ -43,7 +43,7 @@ from joint_worlds.files import truth_of, write_world
 from joint_worlds.hidden import NULL, THREE, effects_of
 from joint_worlds.motion import ROBOTS
 from joint_worlds.world import UnseenError, make_world
-from robot_worlds import DRIVEN, NAMES, make, write
+from robot_worlds import DRIVEN, NAMES, is_asked, make, write
 from rows import ROOT, Row, answered, of_newest, rows_of, write_part
 from scipy.stats import binomtest
 
@@ -243,7 +243,7 @@ def tasks(given: argparse.Namespace) -> Mapping[str, tuple[Any, ...]]:
         for k in range(max(map(len, of_robot.values()))):
             for robot in given.worlds:
                 effects = of_robot[robot]
-                if k >= len(effects) or not robot_models.is_asked(robot, effects[k]):
+                if k >= len(effects) or not is_asked(robot, effects[k]):
                     continue
                 out[f"{robot}/{effects[k]}/{seed}"] = (robot, effects[k], seed, asked)
     return out

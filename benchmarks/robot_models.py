@@ -19,14 +19,16 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from robot_worlds import DRIVEN, NAMES, UNLISTED, make, write
+from robot_worlds import DRIVEN, NAMES, SEVERAL, UNLISTED, is_asked, make, write
 from rows import ROOT, Row, answered, of_newest, rows_of
 
 from identification.discovery.result import Discovery
+from identification.effects.curves import CURVE
 from identification.sweep.statistics import median, rate, said
 
 ROWS = ROOT / "benchmarks" / "results" / "robot_models.jsonl"
 PAGE = ROOT / "docs" / "robot" / "models.md"
+NO_NAME = ("unlisted effect", "unknown effect")
 WORDS = {
     "arm": "an arm with position servos",
     "finger": "a finger whose joints a tendon drives together",
@@ -36,14 +38,12 @@ WORDS = {
     "crane": "a load on two tendons whose lengths are measured",
     "cart": "a cart with an end stop",
 }
-WITH_LINKS = ("arm", "finger", "leg")  # bodies on which a load has a place
-MASS_IS_FREE = ("cart", "crane")  # of the body that would have more: nothing would be missing
 HEAD = """# Kinds of robots that were tried
 
 `benchmarks/robot_models.py` makes this page. Each robot is a small model in the manner of MuJoCo
 Menagerie (`examples/linkages`, `benchmarks/robots/kinds`), simulated with one effect that its model
-lacks, at a joint that is driven. A log of 8 s at 100 Hz is fitted and searched, another one
-confirms. The search tries all candidates. An answer is right if the first name is that of the
+lacks, or several, each at a joint that is driven. A log of 8 s at 100 Hz is fitted and searched,
+another one confirms. The search tries all candidates. An answer is right if the first name is that of the
 effect at its joint; for the four-bar and the gripper, whose joints are coupled, also at another
 joint or at all of them, because the motion cannot tell these apart.
 """
@@ -55,7 +55,8 @@ def study(robot: str, effect: str, seed: int, without: tuple[str, ...]) -> dict[
 
     world, motions = make(robot, effect, seed)
     row: dict[str, Any] = {
-        "robot": robot, "effect": effect, "joint": world.joint, "size": world.size, "seed": seed,
+        "robot": robot, "effect": world.effect, "joint": world.joint,
+        "size": "+".join(f"{h.size:.4g}" for h in world.hidden), "seed": seed,
     }  # fmt: skip
     begun = time.process_time()
     try:
@@ -85,57 +86,89 @@ def answer_of(found: Discovery) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def is_asked(robot: str, effect: str) -> bool:
-    """Returns whether a robot may hide an effect: no parameter that is free is the same."""
-    if effect == "load":
-        return robot in WITH_LINKS
-    return effect not in ("heavier", "rotor") or robot not in MASS_IS_FREE
-
-
 def is_right(row: Row) -> bool:
-    """Returns whether the answer is as it should be: one name, its own; or none."""
+    """Returns whether the answer is as it should be: a name for each hidden effect, and no more.
+
+    A force of no catalogue must be drawn or unknown, and so may what is hidden beside it.
+    """
     named = row.get("named") or []
-    if row["effect"] in UNLISTED:
-        return row.get("verdict") in ("unlisted effect", "unknown effect")
-    if row["effect"] == "nothing":
+    hidden = _hidden(row)
+    if not hidden:
         return row.get("verdict") == "nothing missing"
-    return len(named) == 1 and _is_meant(row, named[0]["name"], named[0]["where"])
-
-
-def _is_meant(row: Row, name: str, where: str) -> bool:
-    """Returns whether a name at a place is what is hidden."""
-    is_name = name.removeprefix("slide_") in NAMES[row["effect"]]
-    is_place = (
-        row["robot"] in ("four_bar", "gripper")
-        or not where.startswith(("joint", "all joints"))  # inputs and bodies have other names
-        or row["joint"] in where
+    if _has_unlisted(row):
+        return row.get("verdict") in NO_NAME or (
+            row.get("verdict") == "named" and not is_wrong(row)
+        )
+    return len(named) == len(hidden) and all(
+        any(_is_meant(row, h, n["name"], n["where"]) for n in named) for h in hidden
     )
-    return is_name and is_place
 
 
 def is_wrong(row: Row) -> bool:
-    """Returns whether a law is named that is not there, and no set of names has the right one."""
+    """Returns whether a law is named that is not there, and no set of names has a right one."""
     if row.get("verdict") != "named":
         return False
     for n in row["named"]:
+        if n["name"].startswith(CURVE):
+            continue
         every = [[n["name"], n["where"]], *([r[0], r[1]] for r in n["rivals"])]
-        if not any(_is_meant(row, name, where) for name, where in every):
+        if not any(_is_meant(row, h, name, where) for h in _hidden(row) for name, where in every):
             return True
     return False
 
 
+def _hidden(row: Row) -> list[tuple[str, str]]:
+    """Returns what a world hides, each effect with its joint."""
+    if row["effect"] == "nothing":
+        return []
+    return list(zip(row["effect"].split("+"), row["joint"].split("+"), strict=True))
+
+
+def _has_unlisted(row: Row) -> bool:
+    """Returns whether a world hides a force of no catalogue."""
+    return any(effect in UNLISTED for effect, _ in _hidden(row))
+
+
+def _names_two(row: Row) -> bool:
+    """Returns whether at least two of what is hidden are named, each at its joint."""
+    named = row.get("named") or []
+    right = [
+        h for h in _hidden(row) if any(_is_meant(row, h, n["name"], n["where"]) for n in named)
+    ]
+    return len(right) > 1
+
+
+def _is_meant(row: Row, hidden: tuple[str, str], name: str, where: str) -> bool:
+    """Returns whether a name at a place is one of what is hidden."""
+    effect, joint = hidden
+    is_name = name.removeprefix("slide_") in NAMES[effect]
+    is_place = (
+        row["robot"] in ("four_bar", "gripper")
+        or not where.startswith(("joint", "all joints"))  # inputs and bodies have other names
+        or joint in where
+    )
+    return is_name and is_place
+
+
 def page(rows: Sequence[Row]) -> str:
     """Returns the page of the rows of one search."""
-    listed = [r for r in rows if NAMES[r["effect"]]]
+    listed = [r for r in rows if NAMES.get(r["effect"])]
+    several = [r for r in rows if "+" in r["effect"] and not _has_unlisted(r)]
     unlisted = [r for r in rows if r["effect"] in UNLISTED]
+    mixed = [r for r in rows if "+" in r["effect"] and _has_unlisted(r)]
     empty = [r for r in rows if r["effect"] == "nothing"]
     lines = [
         HEAD, "| of all robots | rate |", "|---|---|",
         f"| an effect of the catalogue is named first | {said(rate(listed, is_right))} |",
         f"| it is named, or is in the set of names that is told |"
         f" {said(rate(listed, lambda r: r.get('verdict') == 'named' and not is_wrong(r)))} |",
+        "| of several effects all are named, each at its joint"
+        f" | {said(rate(several, is_right))} |",
+        f"| of several effects at least two are named | {said(rate(several, _names_two))} |",
         f"| a law is named that is not there | {said(rate(rows, is_wrong))} |",
         f"| a force of no catalogue is drawn, or unknown | {said(rate(unlisted, is_right))} |",
+        f"| the same beside an effect of the catalogue, which may be named"
+        f" | {said(rate(mixed, is_right))} |",
         f"| nothing is named where nothing is missing | {said(rate(empty, is_right))} |",
         f"| a search ends in an error | {said(rate(rows, lambda r: 'error' in r))} |",
         "", "| robot | right | search, median [s] | what was not right |", "|---|---|---|---|",
@@ -165,7 +198,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     add = parser.add_argument
     add("--robots", nargs="*", choices=[*WORDS], default=[*DRIVEN])
-    add("--effects", nargs="*", choices=[*NAMES], default=[*NAMES])
+    add("--effects", nargs="*", choices=[*NAMES, *SEVERAL], default=[*NAMES, *SEVERAL])
     add("--seed", type=int, default=1)
     add("--count", type=int, default=1, help="worlds of each robot and effect")
     add("--without", nargs="*", default=[], help="passes that are left out; give --out too")

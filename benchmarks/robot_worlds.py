@@ -3,8 +3,9 @@
     Q_hidden = s F f(q, q̇, Q) / rms(f)      at one driven joint; or inputs that come late, or a mass
 
 F: rms of the drives' force Q at that joint without the effect, s: its share; a voltage limit and a
-lever are as large as they are. A simulation takes steps
-of a quarter of the model's and adds the force itself; no code of the search takes part.
+lever are as large as they are. A world hides one effect or several, each at a joint of its own
+choice and each large enough to be seen alone. A simulation takes steps of a quarter of the model's
+and adds the forces itself; no code of the search takes part.
 """
 
 from __future__ import annotations
@@ -59,9 +60,25 @@ NAMES: Mapping[str, tuple[str, ...]] = {
     "lever": (),
     "guide": (),
 }
+LISTED = tuple(name for name, right in NAMES.items() if right)
 OF_TWO = ("voltage", "lever", "guide")  # forces that depend on two variables at once
 UNLISTED = ("bump", "stop", *OF_TWO)
+IN_THE_MODEL = ("coulomb_friction",)  # a force that the simulated model has by itself
+WITH_LINKS = ("arm", "finger", "leg")  # bodies on which a load has a place
+MASS_IS_FREE = ("cart", "crane")  # of the body that would have more: nothing would be missing
 AS_THEY_ARE = ("voltage", "lever")  # forces whose size is no choice
+# Worlds that hide several effects: how many of the catalogue, and how many of none.
+SEVERAL: Mapping[str, tuple[int, int]] = {"two": (2, 0), "three": (3, 0), "two_unlisted": (1, 1)}
+
+
+@dataclass(frozen=True)
+class Hidden:
+    """An effect that the model lacks."""
+
+    effect: str  # of `NAMES`, but "nothing"
+    joint: str  # where, or the joint of the body that is heavier
+    size: float  # amplitude of the force [N or N m], lateness [s], mass or inertia [kg or kg m²]
+    place: tuple[float, ...] = ()  # of a load, in its body's frame, shape (3,) [m]
 
 
 @dataclass(frozen=True)
@@ -69,11 +86,18 @@ class World:
     """A robot and what its model lacks."""
 
     robot: str
-    effect: str  # of `NAMES`
-    joint: str  # where, or the joint of the body that is heavier; "" where nothing is hidden
-    size: float  # amplitude of the force [N or N m], lateness [s], mass or inertia [kg or kg m²]
     seed: int
-    place: tuple[float, ...] = ()  # of a load, in its body's frame, shape (3,) [m]
+    hidden: tuple[Hidden, ...] = ()
+
+    @property
+    def effect(self) -> str:
+        """The names of what is hidden, joined by "+"; "nothing" where nothing is."""
+        return "+".join(h.effect for h in self.hidden) or "nothing"
+
+    @property
+    def joint(self) -> str:
+        """Where it is hidden, in the same order and joined by "+"."""
+        return "+".join(h.joint for h in self.hidden)
 
     @property
     def folder(self) -> Path:
@@ -135,31 +159,18 @@ def law(effect: str, motion: Motion, joint: int) -> tuple[Law, float]:
     return lambda q, v, Q: float(f(q, v, Q)) / size, size
 
 
-def simulate(world: World, force: Law | None, seed: int) -> Motion:
-    """Returns the motion of a world under inputs of a seed; `force` acts at its joint."""
+def simulate(world: World, forces: Mapping[str, Law], seed: int) -> Motion:
+    """Returns the motion of a world under inputs of a seed.
+
+    Args:
+        world: what is simulated.
+        forces: the force of each hidden effect that is one, in units of its size.
+        seed: of the inputs.
+    """
     truth = DRIVEN[world.robot]
-    spec = mujoco.MjSpec.from_file(str(world.folder / "model.xml"))
-    spec.option.timestep /= linkages.FINER
-    if world.effect == "coulomb_friction":  # MuJoCo's own dry friction sticks; a sign chatters
-        joint = spec.joint(world.joint)
-        joint.frictionloss, joint.solref_friction[:] = world.size, linkages.STIFF
-        force = None
-    if world.effect == "rotor":
-        spec.joint(world.joint).armature += world.size
-        force = None
-    if world.effect == "load":
-        small = np.full(3, 1e-6 * world.size)
-        load = spec.joint(world.joint).parent.add_body(pos=world.place, mass=world.size)
-        load.ipos, load.inertia, load.explicitinertial = np.zeros(3), small, True
-        force = None
-    model = spec.compile()
-    if world.effect == "heavier":
-        body = model.jnt_bodyid[model.joint(world.joint).id]
-        grown = 1 + world.size / model.body_mass[body]
-        model.body_mass[body] *= grown
-        model.body_inertia[body] *= grown
-        mujoco.mj_setConst(model, mujoco.MjData(model))
-    chance, data = np.random.default_rng(seed), mujoco.MjData(model)
+    model = _with_hidden(world)
+    data = mujoco.MjData(model)
+    chance = np.random.default_rng(seed)
     time = np.arange(round(linkages.SECONDS / linkages.SAMPLING)) * linkages.SAMPLING
     mujoco.mj_forward(model, data)
     middle = data.ten_length if np.isnan(truth.middle) else truth.middle
@@ -167,11 +178,16 @@ def simulate(world: World, force: Law | None, seed: int) -> Motion:
     shape = np.sin(2 * np.pi * waves[0] * time[:, None, None] + waves[1]).sum(1) / 2.5
     inputs = np.round(middle + truth.reach * shape, 4)
     each = round(linkages.SAMPLING / model.opt.timestep)
-    late = round(world.size / model.opt.timestep) if world.effect == "delay" else 0
+    lateness = sum(h.size for h in world.hidden if h.effect == "delay")
+    late = round(lateness / model.opt.timestep)
     steps = np.repeat(inputs, each, axis=0)
     steps = np.vstack([np.repeat(steps[:1], late, axis=0), steps])[: len(steps)]
-    at = model.joint(world.joint).id if force else 0
-    place, dof = model.jnt_qposadr[at], model.jnt_dofadr[at]
+    acting = [
+        (h.size, forces[h.effect], model.jnt_qposadr[j], model.jnt_dofadr[j])
+        for h in world.hidden
+        if h.effect in forces and h.effect not in IN_THE_MODEL
+        for j in (model.joint(h.joint).id,)
+    ]
     outputs, q, v, drive = [], [], [], []
     for k in range(len(time)):
         mujoco.mj_forward(model, data)
@@ -180,52 +196,107 @@ def simulate(world: World, force: Law | None, seed: int) -> Motion:
             rows.append(np.array(of))
         for i in range(each):
             data.ctrl[:] = steps[k * each + i]
-            if force:
-                data.qfrc_applied[dof] = world.size * force(
-                    data.qpos[place], data.qvel[dof], data.qfrc_actuator[dof]
+            data.qfrc_applied[:] = 0.0
+            for size, force, at, dof in acting:
+                data.qfrc_applied[dof] += size * force(
+                    data.qpos[at], data.qvel[dof], data.qfrc_actuator[dof]
                 )
             mujoco.mj_step(model, data)
     return Motion(time, inputs, *map(np.array, (outputs, q, v, drive)))
 
 
+def _with_hidden(world: World) -> mujoco.MjModel:
+    """Returns the model with what is hidden in it, and with finer steps."""
+    spec = mujoco.MjSpec.from_file(str(world.folder / "model.xml"))
+    spec.option.timestep /= linkages.FINER
+    for h in world.hidden:
+        joint = spec.joint(h.joint)
+        if h.effect == "coulomb_friction":  # MuJoCo's own dry friction sticks; a sign chatters
+            joint.frictionloss, joint.solref_friction[:] = h.size, linkages.STIFF
+        elif h.effect == "rotor":
+            joint.armature += h.size
+        elif h.effect == "load":
+            load = joint.parent.add_body(pos=h.place, mass=h.size)
+            small = np.full(3, 1e-6 * h.size)
+            load.ipos, load.inertia, load.explicitinertial = np.zeros(3), small, True
+    model = spec.compile()
+    for h in world.hidden:
+        if h.effect == "heavier":
+            body = model.jnt_bodyid[model.joint(h.joint).id]
+            grown = 1 + h.size / model.body_mass[body]
+            model.body_mass[body] *= grown
+            model.body_inertia[body] *= grown
+            mujoco.mj_setConst(model, mujoco.MjData(model))
+    return model
+
+
 def make(robot: str, effect: str, seed: int) -> tuple[World, list[Motion]]:
-    """Returns a world with the motions of two records, its effect large enough to be seen.
+    """Returns a world with the motions of two records, each effect large enough to be seen.
 
     Args:
         robot: of `DRIVEN`.
-        effect: of `NAMES`.
-        seed: of the joint, the size and the inputs.
+        effect: of `NAMES`, or of `SEVERAL`.
+        seed: of the joint, the size and the inputs; and of the effects, where there are several.
     """
     chance = np.random.default_rng([seed, *map(ord, robot + effect)])
-    world = World(robot, "nothing", "", 0.0, seed)
+    bare = World(robot, seed)
     seeds = [int(s) for s in chance.integers(1, 2**31, 2)]
-    without = [simulate(world, None, s) for s in seeds]
+    without = [simulate(bare, {}, s) for s in seeds]
     if effect == "nothing":
-        return world, without
-    model = mujoco.MjModel.from_xml_path(str(world.folder / "model.xml"))
+        return bare, without
+    chosen = [effect]
+    if effect in SEVERAL:
+        listed, unlisted = SEVERAL[effect]
+        of = [e for e in LISTED if is_asked(robot, e)], [e for e in UNLISTED if e not in OF_TWO]
+        chosen = [*map(str, chance.choice(of[0], listed, replace=False)),
+                  *map(str, chance.choice(of[1], unlisted, replace=False))]  # fmt: skip
+    forces: dict[str, Law] = {}
+    hidden = []
+    for name in chosen:
+        one, mine = _seen(bare, name, chance, seeds, without)
+        forces.update(mine)
+        hidden.append(one)
+    world = replace(bare, hidden=tuple(hidden))
+    return world, [simulate(world, forces, s) for s in seeds]
+
+
+def _seen(
+    bare: World, effect: str, chance: np.random.Generator, seeds: list[int], without: list[Motion]
+) -> tuple[Hidden, dict[str, Law]]:
+    """Returns an effect that is seen alone, and its force where it is one."""
+    model = mujoco.MjModel.from_xml_path(str(bare.folder / "model.xml"))
     felt = np.sqrt(np.mean(without[0].drive ** 2, axis=0))
     joint = int(chance.choice(np.flatnonzero(felt > 0.05 * felt.max())))
     ranges = {"delay": LATE, "heavier": HEAVIER, "load": LOAD, "rotor": ROTOR}
     size = float(chance.uniform(*ranges.get(effect, SHARES)))
-    force, rms = (None, 0.0) if effect in ranges else law(effect, without[0], joint)
+    forces: dict[str, Law] = {}
     place: tuple[float, ...] = ()
-    if effect in ("heavier", "load"):
+    if effect not in ranges:
+        forces[effect], rms = law(effect, without[0], joint)
+        size = rms if effect in AS_THEY_ARE else size * float(felt[joint])
+    elif effect in ("heavier", "load"):
         size *= float(model.body_mass[model.jnt_bodyid[joint]])
     elif effect == "rotor":
         size *= float(model.dof_M0[model.jnt_dofadr[joint]])
-    elif effect in AS_THEY_ARE:
-        size = rms
-    elif effect != "delay":
-        size *= float(felt[joint])
     if effect == "load":
         place = place_of_load(model, int(model.jnt_bodyid[joint]), chance)
-    world = World(robot, effect, model.joint(joint).name, size, seed, place)
-    for _ in range(1 + MOST_DOUBLINGS):
-        motions = [simulate(world, force, s) for s in seeds]
-        if change_over_noise(world, motions, without) >= SEEN:
+    hidden = Hidden(effect, model.joint(joint).name, size, place)
+    for _ in range(MOST_DOUBLINGS):
+        world = replace(bare, hidden=(hidden,))
+        if (
+            change_over_noise(bare.robot, [simulate(world, forces, s) for s in seeds], without)
+            >= SEEN
+        ):
             break
-        world = replace(world, size=2 * world.size)
-    return world, motions
+        hidden = replace(hidden, size=2 * hidden.size)
+    return hidden, forces
+
+
+def is_asked(robot: str, effect: str) -> bool:
+    """Returns whether a robot may hide an effect: no parameter that is free is the same."""
+    if effect == "load":
+        return robot in WITH_LINKS
+    return effect not in ("heavier", "rotor") or robot not in MASS_IS_FREE
 
 
 def place_of_load(
@@ -239,10 +310,10 @@ def place_of_load(
     return tuple(map(float, end * chance.uniform(*LOAD_AT) + aside))
 
 
-def change_over_noise(world: World, motions: list[Motion], without: list[Motion]) -> float:
+def change_over_noise(robot: str, motions: list[Motion], without: list[Motion]) -> float:
     """Returns the rms change of the outputs that an effect makes, over their noise."""
     change = np.concatenate([a.outputs - b.outputs for a, b in zip(motions, without, strict=True)])
-    return float(np.sqrt(np.mean(change**2))) / DRIVEN[world.robot].noise
+    return float(np.sqrt(np.mean(change**2))) / DRIVEN[robot].noise
 
 
 def write(world: World, motions: list[Motion], folder: Path) -> tuple[Path, list[Path]]:
