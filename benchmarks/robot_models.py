@@ -41,10 +41,11 @@ WORDS = {
 HEAD = """# Kinds of robots that were tried
 
 `benchmarks/robot_models.py` makes this page. Each robot is a small model in the manner of MuJoCo
-Menagerie (`examples/linkages`, `benchmarks/robots/kinds`), simulated with one effect that its model
-lacks, or several, each at a joint that is driven. A log of 8 s at 100 Hz is fitted and searched,
-another one confirms. The search tries all candidates. An answer is right if the first name is that of the
-effect at its joint; for the four-bar and the gripper, whose joints are coupled, also at another
+Menagerie (`examples/linkages`, `benchmarks/robots/kinds`), simulated with one effect or several
+that its model lacks, each at a joint that is driven. A log of 8 s at 100 Hz is fitted and searched,
+another one confirms. The search tries all candidates. An answer is right if each name is that of a
+hidden effect at its joint, and no effect is left without one; for the four-bar and the gripper,
+whose joints are coupled, a name may also stand at another
 joint or at all of them, because the motion cannot tell these apart.
 """
 
@@ -96,9 +97,8 @@ def is_right(row: Row) -> bool:
     if not hidden:
         return row.get("verdict") == "nothing missing"
     if _has_unlisted(row):
-        return row.get("verdict") in NO_NAME or (
-            row.get("verdict") == "named" and not is_wrong(row)
-        )
+        is_a_name = row.get("verdict") == "named" and not is_wrong(row)
+        return is_a_name or row.get("verdict") in NO_NAME
     return len(named) == len(hidden) and all(
         any(_is_meant(row, h, n["name"], n["where"]) for n in named) for h in hidden
     )
@@ -131,11 +131,8 @@ def _has_unlisted(row: Row) -> bool:
 
 def _names_two(row: Row) -> bool:
     """Returns whether at least two of what is hidden are named, each at its joint."""
-    named = row.get("named") or []
-    right = [
-        h for h in _hidden(row) if any(_is_meant(row, h, n["name"], n["where"]) for n in named)
-    ]
-    return len(right) > 1
+    each = [(n["name"], n["where"]) for n in row.get("named") or []]
+    return sum(any(_is_meant(row, h, *n) for n in each) for h in _hidden(row)) > 1
 
 
 def _is_meant(row: Row, hidden: tuple[str, str], name: str, where: str) -> bool:

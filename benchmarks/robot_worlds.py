@@ -282,11 +282,8 @@ def _seen(
         place = place_of_load(model, int(model.jnt_bodyid[joint]), chance)
     hidden = Hidden(effect, model.joint(joint).name, size, place)
     for _ in range(MOST_DOUBLINGS):
-        world = replace(bare, hidden=(hidden,))
-        if (
-            change_over_noise(bare.robot, [simulate(world, forces, s) for s in seeds], without)
-            >= SEEN
-        ):
+        motions = [simulate(replace(bare, hidden=(hidden,)), forces, s) for s in seeds]
+        if change_over_noise(bare.robot, motions, without) >= SEEN:
             break
         hidden = replace(hidden, size=2 * hidden.size)
     return hidden, forces
