@@ -50,14 +50,17 @@ joint or at all of them, because the motion cannot tell these apart.
 """
 
 
-def study(robot: str, effect: str, seed: int, without: tuple[str, ...]) -> dict[str, Any]:
+def study(
+    robot: str, effect: str, seed: int, without: tuple[str, ...], is_rough: bool = False
+) -> dict[str, Any]:
     """Returns what a search says of a world; an error is a row too."""
     from identification import DiscoveryOptions, discover, read_robot
 
-    world, motions = make(robot, effect, seed)
+    world, motions = make(robot, effect, seed, is_rough)
     row: dict[str, Any] = {
         "robot": robot, "effect": world.effect, "joint": world.joint,
         "size": "+".join(f"{h.size:.4g}" for h in world.hidden), "seed": seed,
+        "rough": {joint: round(size, 6) for joint, size in world.rough},
     }  # fmt: skip
     begun = time.process_time()
     try:

@@ -6,6 +6,12 @@ F: rms of the drives' force Q at that joint without the effect, s: its share; a 
 lever are as large as they are. A world hides one effect or several, each at a joint of its own
 choice and each large enough to be seen alone. A simulation takes steps of a quarter of the model's
 and adds the forces itself; no code of the search takes part.
+
+No law is exact on a real robot. A rough world has at every driven joint j also
+
+    Q_j = ρ s F_j √(2/3) Σ_k sin(a_k q/σ_q + b_k q̇/σ_q̇ + c_k),   a_k, b_k ~ N(0, 1),  k = 1, 2, 3
+
+σ: standard deviations along the motion, ρ: drawn from `ROUGH`, s F: rms of the hidden force.
 """
 
 from __future__ import annotations
@@ -38,6 +44,8 @@ LOAD = (0.1, 0.3)  # of the mass of the body that carries it
 LOAD_AT = (0.4, 1.2)  # of the way to the body's end; and aside by as much as `ASIDE` of it
 ASIDE = 0.3
 ROTOR = (0.2, 0.6)  # of the inertia that a joint swings
+# What is no force of its own; all others are.
+RANGES = {"delay": LATE, "heavier": HEAVIER, "load": LOAD, "rotor": ROTOR}
 SEEN = 4.0  # rms change of the outputs over their noise, below which an effect is made larger
 MOST_DOUBLINGS = 4
 # Names that are right for what is hidden; none for forces that no law of the catalogue describes.
@@ -63,6 +71,7 @@ NAMES: Mapping[str, tuple[str, ...]] = {
 LISTED = tuple(name for name, right in NAMES.items() if right)
 OF_TWO = ("voltage", "lever", "guide")  # forces that depend on two variables at once
 UNLISTED = ("bump", "stop", *OF_TWO)
+ROUGH = (0.05, 0.2)  # ρ, the least and the most
 IN_THE_MODEL = ("coulomb_friction",)  # a force that the simulated model has by itself
 WITH_LINKS = ("arm", "finger", "leg")  # bodies on which a load has a place
 MASS_IS_FREE = ("cart", "crane")  # of the body that would have more: nothing would be missing
@@ -88,6 +97,7 @@ class World:
     robot: str
     seed: int
     hidden: tuple[Hidden, ...] = ()
+    rough: tuple[tuple[str, float], ...] = ()  # joints, and rms of what nobody could name there
 
     @property
     def effect(self) -> str:
@@ -159,13 +169,16 @@ def law(effect: str, motion: Motion, joint: int) -> tuple[Law, float]:
     return lambda q, v, Q: float(f(q, v, Q)) / size, size
 
 
-def simulate(world: World, forces: Mapping[str, Law], seed: int) -> Motion:
+def simulate(
+    world: World, forces: Mapping[str, Law], seed: int, roughness: Mapping[str, Law] | None = None
+) -> Motion:
     """Returns the motion of a world under inputs of a seed.
 
     Args:
         world: what is simulated.
         forces: the force of each hidden effect that is one, in units of its size.
         seed: of the inputs.
+        roughness: of each rough joint, in units of its rms.
     """
     truth = DRIVEN[world.robot]
     model = _with_hidden(world)
@@ -182,11 +195,15 @@ def simulate(world: World, forces: Mapping[str, Law], seed: int) -> Motion:
     late = round(lateness / model.opt.timestep)
     steps = np.repeat(inputs, each, axis=0)
     steps = np.vstack([np.repeat(steps[:1], late, axis=0), steps])[: len(steps)]
+    laws = [
+        *((h.joint, h.size, forces[h.effect]) for h in world.hidden
+          if h.effect in forces and h.effect not in IN_THE_MODEL),
+        *((joint, size, (roughness or {})[joint]) for joint, size in world.rough),
+    ]  # fmt: skip
     acting = [
-        (h.size, forces[h.effect], model.jnt_qposadr[j], model.jnt_dofadr[j])
-        for h in world.hidden
-        if h.effect in forces and h.effect not in IN_THE_MODEL
-        for j in (model.joint(h.joint).id,)
+        (size, force, model.jnt_qposadr[j], model.jnt_dofadr[j])
+        for joint, size, force in laws
+        for j in (model.joint(joint).id,)
     ]
     outputs, q, v, drive = [], [], [], []
     for k in range(len(time)):
@@ -230,21 +247,22 @@ def _with_hidden(world: World) -> mujoco.MjModel:
     return model
 
 
-def make(robot: str, effect: str, seed: int) -> tuple[World, list[Motion]]:
+def make(robot: str, effect: str, seed: int, is_rough: bool = False) -> tuple[World, list[Motion]]:
     """Returns a world with the motions of two records, each effect large enough to be seen.
 
     Args:
         robot: of `DRIVEN`.
         effect: of `NAMES`, or of `SEVERAL`.
         seed: of the joint, the size and the inputs; and of the effects, where there are several.
+        is_rough: whether the robot also has what no law describes.
     """
     chance = np.random.default_rng([seed, *map(ord, robot + effect)])
     bare = World(robot, seed)
     seeds = [int(s) for s in chance.integers(1, 2**31, 2)]
     without = [simulate(bare, {}, s) for s in seeds]
-    if effect == "nothing":
+    if effect == "nothing" and not is_rough:
         return bare, without
-    chosen = [effect]
+    chosen = [effect] if effect != "nothing" else []
     if effect in SEVERAL:
         listed, unlisted = SEVERAL[effect]
         of = [e for e in LISTED if is_asked(robot, e)], [e for e in UNLISTED if e not in OF_TWO]
@@ -257,7 +275,36 @@ def make(robot: str, effect: str, seed: int) -> tuple[World, list[Motion]]:
         forces.update(mine)
         hidden.append(one)
     world = replace(bare, hidden=tuple(hidden))
-    return world, [simulate(world, forces, s) for s in seeds]
+    roughness: Mapping[str, Law] = {}
+    if is_rough:
+        world, roughness = _roughened(world, chance, without[0])
+    return world, [simulate(world, forces, s, roughness) for s in seeds]
+
+
+def _roughened(
+    world: World, chance: np.random.Generator, motion: Motion
+) -> tuple[World, dict[str, Law]]:
+    """Returns a world that has what no law describes at its driven joints, and that by joint."""
+    model = mujoco.MjModel.from_xml_path(str(world.folder / "model.xml"))
+    felt = np.sqrt(np.mean(motion.drive**2, axis=0))
+    own = {h.joint: h.size for h in world.hidden if h.effect not in RANGES}
+    rough, laws = [], {}
+    for j in np.flatnonzero(felt > 0.05 * felt.max()):
+        name = model.joint(int(j)).name
+        size = own.get(name, float(chance.uniform(*SHARES) * felt[j]))
+        rough.append((name, float(chance.uniform(*ROUGH)) * size))
+        laws[name] = _rough_law(chance, motion.q[:, j].std(), motion.v[:, j].std())
+    return replace(world, rough=tuple(rough)), laws
+
+
+def _rough_law(chance: np.random.Generator, of_q: float, of_v: float) -> Law:
+    """Returns a force of position and rate that is in no catalogue, with an rms near 1."""
+    a, b, c = (
+        chance.standard_normal(3) / of_q,
+        chance.standard_normal(3) / of_v,
+        2 * np.pi * chance.random(3),
+    )
+    return lambda q, v, Q: float(np.sqrt(2 / 3) * np.sin(a * q + b * v + c).sum())
 
 
 def _seen(
@@ -267,11 +314,10 @@ def _seen(
     model = mujoco.MjModel.from_xml_path(str(bare.folder / "model.xml"))
     felt = np.sqrt(np.mean(without[0].drive ** 2, axis=0))
     joint = int(chance.choice(np.flatnonzero(felt > 0.05 * felt.max())))
-    ranges = {"delay": LATE, "heavier": HEAVIER, "load": LOAD, "rotor": ROTOR}
-    size = float(chance.uniform(*ranges.get(effect, SHARES)))
+    size = float(chance.uniform(*RANGES.get(effect, SHARES)))
     forces: dict[str, Law] = {}
     place: tuple[float, ...] = ()
-    if effect not in ranges:
+    if effect not in RANGES:
         forces[effect], rms = law(effect, without[0], joint)
         size = rms if effect in AS_THEY_ARE else size * float(felt[joint])
     elif effect in ("heavier", "load"):
