@@ -122,6 +122,9 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
     "priors_of_last_fit": (
         HORIZON, "weighs outputs and priors of the last fit by its own errors, which are smaller",
     ),
+    "drop_doubtful": (
+        HORIZON, "keeps effects that are sure where others are in doubt, and tells what is left",
+    ),
     "likeliest_of_set": (HORIZON, "puts the likeliest effect of a set of names into the model"),
 })  # fmt: skip
 

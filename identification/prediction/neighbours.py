@@ -9,7 +9,9 @@ the best curve at its joint, scored beside all that was found,
     has a chance below `significance`, paid for by the number of curves, and
     explains more than `EXACT` of what law and curve explain together:
 
-        g/(F + g),  g = f (1 - F)        F: fall by the law,  f: fall by the curve beside it
+        f m/(m_1 - m_2 + f m)       m_1 - m_2: mean square that the law took away,
+                                    m: what the model with all that was found leaves,
+                                    f: fall by the curve beside it
 
 though the curve itself, with its many numbers, is not proven. What acts in few windows, as a stop
 does, has a large chance whatever it explains. So where the curve explains more than
@@ -42,13 +44,13 @@ SMOOTH_FORCE = "smooth force"  # as it is called where a curve has its name
 
 
 def find_neighbour(
-    candidate: Candidate, fall: float, scores: Sequence[WindowScore]
+    candidate: Candidate, explained: float, scores: Sequence[WindowScore]
 ) -> Neighbour | None:
     """Returns the curve that explains what a law leaves with the least chance of luck.
 
     Args:
         candidate: the law, or a curve.
-        fall: of the mean square by it, F.
+        explained: mean square that it took away, over what the model with all leaves.
         scores: of all candidates, beside all that was found.
 
     Returns:
@@ -65,23 +67,22 @@ def find_neighbour(
     best = min(curves, key=lambda s: s.p_value)
     chance = min(1.0, len(curves) * best.p_value)
     c = best.candidate
-    return Neighbour(c.effect.name, c.where, best.fall, chance, _of_both(fall, best.fall))
+    return Neighbour(c.effect.name, c.where, best.fall, chance, _of_both(explained, best.fall))
 
 
 def _of_both(law: float, beside: float) -> float:
-    """Returns g/(F + g), for the falls by a law and by what is beside it."""
-    gain = beside * (1 - law)
-    return gain / (law + gain) if law + gain > 0 else 0.0
+    """Returns what is beside a law of both, each over what the model leaves."""
+    return beside / (law + beside) if law + beside > 0 else 0.0
 
 
 def find_smooth_neighbour(
-    candidate: Candidate, fall: float, stick: Yardstick | None
+    candidate: Candidate, explained: float, stick: Yardstick | None
 ) -> Neighbour | None:
     """Returns the smooth force at a law's joint that explains what the law leaves.
 
     Args:
         candidate: the law, or a curve.
-        fall: of the mean square by it, F.
+        explained: mean square that it took away, over what the model with all leaves.
         stick: what smooth forces would still explain; None where it is not known.
 
     Returns:
@@ -91,7 +92,7 @@ def find_smooth_neighbour(
     if left is None:
         return None
     where, share, chance = left
-    return Neighbour(SMOOTH_FORCE, where, share, chance, _of_both(fall, share))
+    return Neighbour(SMOOTH_FORCE, where, share, chance, _of_both(explained, share))
 
 
 def has_neighbours_name(neighbour: Neighbour | None, options: DiscoveryOptions) -> bool:

@@ -130,6 +130,14 @@ def _error_left(state: WindowSearch) -> RemainingError | None:
     return RemainingError(ratio) if ratio > 1 + options.min_gap_share else None
 
 
+def is_off(model: WindowModel, options: DiscoveryOptions) -> bool:
+    """Returns whether a model errs on unseen records by more than sensors' noise and steps make."""
+    square = (
+        float(np.mean(np.concatenate(model.unseen.report.at_horizon))) * left_by_steps(model) ** 2
+    )
+    return square > model.unseen.floor * (1 + options.min_gap_share)
+
+
 def left_by_steps(model: WindowModel) -> float:
     """Returns the share of a model's rms error that finer steps would leave: 1 where all of it."""
     error = model.finer.error

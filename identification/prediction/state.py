@@ -19,6 +19,7 @@ from identification.prediction.moves.add_set import add_set, set_for_effects
 from identification.prediction.moves.add_yielding_friction import add_yielding_friction
 from identification.prediction.moves.curve_for_laws import curve_for_laws
 from identification.prediction.moves.drop_beside_curves import drop_beside_curves
+from identification.prediction.moves.drop_doubtful import drop_doubtful
 from identification.prediction.moves.drop_drawn_laws import drop_drawn_laws
 from identification.prediction.moves.drop_effects import drop_effects
 from identification.prediction.moves.drop_places import drop_places
@@ -47,6 +48,7 @@ MOVES = (
             likeliest_of_set,
         )
     ),
+    Move("drop_doubtful", drop_doubtful),
 )  # fmt: skip
 
 

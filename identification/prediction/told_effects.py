@@ -22,7 +22,7 @@ from identification.prediction.neighbours import (
 )
 from identification.prediction.odds import find_odds
 from identification.prediction.task import WindowSearch
-from identification.prediction.trial import Contender, Doubt
+from identification.prediction.trial import Contender, Doubt, mean_square
 from identification.prediction.yardstick import Yardstick
 from identification.windows.comparison import Prediction
 
@@ -41,10 +41,10 @@ def named_effect(
         stick: what smooth forces would still explain; None where it is not known.
     """
     options, mine = state.task.options, accepted.candidate
-    fall = accepted.prediction.fall
-    each = [find_neighbour(mine, fall, state.scores)]
+    explained = accepted.explained / mean_square(state.model)
+    each = [find_neighbour(mine, explained, state.scores)]
     if uses(options, "smooth_neighbours"):
-        each.append(find_smooth_neighbour(mine, fall, stick))
+        each.append(find_smooth_neighbour(mine, explained, stick))
     is_final = any(c.key == mine.key for c in state.model.candidates)
     final = state.model if is_final else accepted.model
     odds = find_odds(accepted, final)
@@ -58,7 +58,7 @@ def named_effect(
         one_of=bool(odds.likeliest and odds.likeliest[1] > options.set_confidence),
         evidence=accepted.criterion, proof=_proof(state, accepted),
         same_as=next((e for e in state.task.effects if e.name == odds.twin), None),
-        smooth_share=stick.share_of(mine, fall) if stick else None,
+        smooth_share=stick.share_of(mine, explained) if stick else None,
         neighbour=next((n for n in each if has_neighbours_name(n, options)), each[0]),
     )  # fmt: skip
 

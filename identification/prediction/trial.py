@@ -77,6 +77,17 @@ class Contender:
         """The effect, its shapes as they began."""
         return self.model.candidates[-1]
 
+    @property
+    def explained(self) -> float:
+        """Fall of the mean square on unseen windows that decide, when it was found: m F/(1 - F)."""
+        fall = self.prediction.fall
+        return mean_square(self.model) * fall / (1 - fall)
+
+
+def mean_square(model: WindowModel) -> float:
+    """Returns the mean square of a model on unseen windows that decide."""
+    return float(np.mean(np.concatenate(model.unseen.select.at_horizon)))
+
 
 def evidences(contenders: Sequence[Contender]) -> np.ndarray:
     """Returns E of contenders for one place by resample, (k, R); the first is of all blocks."""

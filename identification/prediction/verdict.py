@@ -22,33 +22,25 @@ from identification.discovery.effect_results import (
     RecordDifference,
 )
 from identification.discovery.findings.finding import Finding, FindingKind
-from identification.discovery.impossible import find_impossible
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.passes import uses
 from identification.discovery.result import Discovery, Verdict
 from identification.logs.joined import REPLAYED, replayed_share
 from identification.logs.log import Log
 from identification.prediction.clocks import record_shifts
+from identification.prediction.doubts import doubts_of_names, forbidden_of, names_of
 from identification.prediction.extension import as_last_fit, refitted
 from identification.prediction.model import WindowModel
-from identification.prediction.neighbours import has_neighbours_name
 from identification.prediction.record_errors import error_of_all, errors_by_unit, record_errors
 from identification.prediction.recovery import recover_over_horizon
-from identification.prediction.remaining import find_remaining, left_by_steps, needed_input_error
+from identification.prediction.remaining import find_remaining, is_off, needed_input_error
 from identification.prediction.task import WindowSearch
-from identification.prediction.told_effects import (
-    fitted_sizes,
-    named_effect,
-    rejected_effect,
-    unnamed_effect,
-)
+from identification.prediction.told_effects import fitted_sizes, rejected_effect, unnamed_effect
 from identification.prediction.trial import Contender, Doubt
-from identification.prediction.yardstick import measure
 from identification.windows.comparison import rise
 from identification.windows.records import Record
 from identification.windows.unseen import Unseen
 
-EVEN_ODDS = 0.5  # a name below them is none, unless it is told with its look-alike
 # With these findings and no name, the model lacks something.
 SUSPECT = (
     FindingKind.UNPROVEN_EFFECT, FindingKind.DIFFERENT_RECORD, FindingKind.SHIFTED_RECORD,
@@ -74,22 +66,14 @@ def conclude(state: WindowSearch) -> Discovery:
         needed = _needed_input_error(nominal, options)
     findings = find_remaining(state, rejected, shifts, needed)
     limit = options.left_confidence if findings else options.max_confidence
-    stick = (
-        attempt(None, partial(measure, model, task.effects, bool(findings)))
-        if state.accepted
-        else None
-    )
-    named = tuple(named_effect(state, a, limit, stick) for a in state.accepted if a not in differ)
+    named, stick = names_of(state, limit, bool(findings))
     is_unexplained = _is_worse(state) or _errs(model, needed, options)
     # Where the fit was worse than the values with which it began, an effect says why.
     closes = _share(state.worse_fit or nominal.unseen, model.unseen)
-    final = [find_impossible(a.candidate, model, [r.log for r in task.records])
-             if uses(options, "impossible_sizes") else None
-             for a in state.accepted if a not in differ]  # fmt: skip
-    doubts = doubts_of_names(named, final, findings, closes, options)
+    doubts = doubts_of_names(named, forbidden_of(state), findings, closes, options)
     verdict = decide(named, doubts, findings, is_unexplained)
     if verdict == "unknown effect":
-        unnamed = [unnamed_effect(n, d or _of_odds(n)) for n, d in zip(named, doubts, strict=True)]
+        unnamed = [unnamed_effect(n, d or "beside") for n, d in zip(named, doubts, strict=True)]
         alone = attempt(None, partial(_needed_input_error, nominal, options))
         needed = needed if alone is None else alone  # what is told is of the model without effects
         rejected, named, model = listed_once([*unnamed, *rejected]), (), nominal
@@ -102,7 +86,7 @@ def conclude(state: WindowSearch) -> Discovery:
         smooth_share=smooth,
         unexplained=bool(findings) or (
             # inputs that err by what is usual may excuse an error that is far above the noise
-            _is_off(model, options) if verdict == "nothing missing" else not named
+            is_off(model, options) if verdict == "nothing missing" else not named
         ),
         noise_rms=error_of_all(noise, nominal.scale, log), unit=log.output_unit,
         scale=nominal.scale, input_error=needed,
@@ -125,27 +109,6 @@ def conclude(state: WindowSearch) -> Discovery:
     )  # fmt: skip
 
 
-def doubts_of_names(
-    named: Sequence[NamedEffect], impossible: Sequence[Doubt | None],
-    findings: Sequence[Finding], share: float, options: DiscoveryOptions,
-) -> tuple[Doubt | None, ...]:  # fmt: skip
-    """Returns why each accepted effect is no name; None where nothing is against it.
-
-    Args:
-        named: the accepted effects.
-        impossible: what physics forbids of each at the values of the final model; later effects
-            may have moved them since it was accepted.
-        findings: what the final model leaves.
-        share: of the gap that the effects close.
-        options: what is beyond chance, and enough to matter.
-    """
-    of_all: Doubt | None = "gap" if _is_small(named, findings, share, options) else None
-    return tuple(
-        "neighbour" if has_neighbours_name(n.neighbour, options) else forbidden or of_all
-        for n, forbidden in zip(named, impossible, strict=True)
-    )
-
-
 def decide(
     named: Sequence[NamedEffect], doubts: Sequence[Doubt | None], findings: Sequence[Finding],
     is_unexplained: bool,
@@ -158,35 +121,12 @@ def decide(
         findings: what the final model leaves.
         is_unexplained: whether the model errs by more than noise, and no effect says why.
     """
-    if named and all(map(_is_sure, named)) and not any(doubts):
+    if named and not any(doubts):
         is_drawn = all(n.candidate.effect.is_curve for n in named)
         return "unlisted effect" if is_drawn else "named"
     if named or is_unexplained or any(f.kind in SUSPECT for f in findings):
         return "unknown effect"
     return "nothing missing"
-
-
-def _is_sure(named: NamedEffect) -> bool:
-    """Returns whether a name is at least as likely as not, or one of a set that is told."""
-    return named.confidence >= EVEN_ODDS or named.one_of
-
-
-def _of_odds(named: NamedEffect) -> Doubt:
-    """Returns why an effect has no name against which nothing else speaks."""
-    return "beside" if _is_sure(named) else "odds"
-
-
-def _is_small(
-    named: Sequence[NamedEffect], findings: Sequence[Finding], share: float,
-    options: DiscoveryOptions,
-) -> bool:  # fmt: skip
-    """Returns whether a law closes less of the gap than a name has to, and something is left.
-
-    Such a law may be the neighbour of a force in no catalogue.
-    """
-    is_asked = bool(findings) and uses(options, "closed_gap")
-    is_law = any(not n.candidate.effect.is_curve for n in named)
-    return is_asked and is_law and not share > options.min_explained_share
 
 
 def _share(before: Unseen, after: Unseen) -> float:
@@ -256,7 +196,7 @@ def _is_worse(state: WindowSearch) -> bool:
 
 def _errs(model: WindowModel, needed: float, options: DiscoveryOptions) -> bool:
     """Returns whether a model errs by more than noise and than errors of its inputs would make."""
-    return _is_off(model, options) and needed > options.max_input_error
+    return is_off(model, options) and needed > options.max_input_error
 
 
 def _needed_input_error(model: WindowModel, options: DiscoveryOptions) -> float:
@@ -265,14 +205,6 @@ def _needed_input_error(model: WindowModel, options: DiscoveryOptions) -> float:
     return needed_input_error(
         model.fit, options, model.scale, unseen.noise, unseen.report.of_outputs
     )
-
-
-def _is_off(model: WindowModel, options: DiscoveryOptions) -> bool:
-    """Returns whether a model errs on unseen records by more than sensors' noise and steps make."""
-    square = (
-        float(np.mean(np.concatenate(model.unseen.report.at_horizon))) * left_by_steps(model) ** 2
-    )
-    return square > model.unseen.floor * (1 + options.min_gap_share)
 
 
 def _gap(unseen: Unseen, scale: np.ndarray, log: Log) -> Gap:

@@ -67,18 +67,18 @@ class Yardstick:
         most = max(joints, key=lambda j: self.of_joint[j])
         return most, self.of_joint[most], self.chances[most]
 
-    def share_of(self, candidate: Candidate, fall: float) -> float | None:
+    def share_of(self, candidate: Candidate, explained: float) -> float | None:
         """Returns what an effect explains of what it and smooth forces at its joints could.
 
         Args:
             candidate: the effect at its place.
-            fall: share of the sum of squares that it took away.
+            explained: sum of squares that it took away, over what the model leaves.
 
         Returns:
             None for what is no law of a joint.
         """
         left = self.left_at(candidate)
-        return None if left is None else explained_share(1.0, 1.0 - fall, left[1] * (1.0 - fall))
+        return None if left is None else explained_share(explained, 0.0, left[1])
 
 
 def acts_on_joints(effect: Effect) -> bool:

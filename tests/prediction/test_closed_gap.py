@@ -5,7 +5,8 @@ from types import SimpleNamespace
 import pytest
 
 from identification.discovery.options import DiscoveryOptions
-from identification.prediction.verdict import decide, doubts_of_names
+from identification.prediction.doubts import doubts_of_names
+from identification.prediction.verdict import decide
 
 LEFT = [SimpleNamespace(kind="remaining error")]
 

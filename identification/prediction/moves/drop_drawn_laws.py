@@ -13,13 +13,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import numpy as np
-
 from identification.prediction.extension import refitted
-from identification.prediction.model import WindowModel
 from identification.prediction.screening import places_of
 from identification.prediction.task import Change, WindowSearch
-from identification.prediction.trial import OWN_SHARE, Contender
+from identification.prediction.trial import OWN_SHARE, mean_square
 from identification.prediction.yardstick import acts_on_joints
 from identification.progress import Progress
 
@@ -38,19 +35,9 @@ def drop_drawn_laws(state: WindowSearch, progress: Progress) -> Change:
         without = refitted(model, rest, task.nominal_model, task.confirm)
         if without is None:
             continue
-        beside = _mean_square(without) - _mean_square(model)
-        if beside < OWN_SHARE * _explained(law):
+        beside = mean_square(without) - mean_square(model)
+        if beside < OWN_SHARE * law.explained:
             progress(f"{effect.name}, {law.candidate.where}: a curve does the same, and more")
             model, kept = without, [a for a in kept if a is not law]
             lost.append(replace(law, doubt="drawn"))
     return model, tuple(kept), tuple(lost)
-
-
-def _mean_square(model: WindowModel) -> float:
-    return float(np.mean(np.concatenate(model.unseen.select.at_horizon)))
-
-
-def _explained(law: Contender) -> float:
-    """Returns the fall of the mean square when the law was found: m_2 F/(1 - F)."""
-    after, fall = _mean_square(law.model), law.prediction.fall
-    return after * fall / (1 - fall)
