@@ -11,7 +11,7 @@ from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate, Effect
 from identification.effects.sizes import Size
 from identification.prediction.moves import drop_drawn_laws
-from identification.prediction.trial import has_size
+from identification.prediction.trial import Contender, has_size
 
 LAW = njit(lambda s, p: 0.0)
 SIZES = (Size("c", "N", 1.0, 0.1, about=""),)
@@ -35,6 +35,8 @@ class Accepted:
     @property
     def is_proven(self):
         return self.doubt is None
+
+    explained = Contender.explained
 
 
 def accepted(name, where="joint", hook="force", after=1.0, fall=0.9):

@@ -47,7 +47,7 @@ def with_law(name):
 
 def neighbour_of(name):
     _, model = with_law(name)
-    return find_neighbour(model.candidates[-1], 0.9, score_all(model, EFFECTS, OPTIONS))
+    return find_neighbour(model.candidates[-1], 9.0, score_all(model, EFFECTS, OPTIONS))
 
 
 def test_the_right_law_leaves_luck_to_a_curve_and_its_neighbour_leaves_the_pattern():
@@ -79,13 +79,12 @@ def test_the_chance_is_paid_for_by_the_number_of_curves_at_the_joint():
     _, model = with_law("stiffness")
     scores = score_all(model, EFFECTS, OPTIONS)
     curves = [s for s in scores if s.candidate.effect.is_curve]
-    found = find_neighbour(model.candidates[-1], 0.9, scores)
+    found = find_neighbour(model.candidates[-1], 9.0, scores)
     assert len(curves) > 2
     assert found.chance == pytest.approx(len(curves) * min(s.p_value for s in curves))
-    left = 0.1 * found.share
-    assert found.of_both == pytest.approx(left / (0.9 + left))
-    assert find_neighbour(curves[0].candidate, 0.9, scores) is None
-    assert find_neighbour(model.candidates[-1], 0.9, []) is None
+    assert found.of_both == pytest.approx(found.share / (9.0 + found.share))
+    assert find_neighbour(curves[0].candidate, 9.0, scores) is None
+    assert find_neighbour(model.candidates[-1], 9.0, []) is None
 
 
 def test_a_proven_curve_takes_the_place_of_a_neighbours_name():

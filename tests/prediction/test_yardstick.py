@@ -62,7 +62,7 @@ def test_the_law_that_is_missing_leaves_nothing_to_a_smooth_force_and_a_neighbou
         share[name] = stick.share(before.fit.cost, after.fit.cost)
         left[name] = stick.every
         fall = 1 - after.fit.cost / before.fit.cost
-        of_law = stick.share_of(after.candidates[-1], fall)
+        of_law = stick.share_of(after.candidates[-1], fall / (1 - fall))
         assert of_law == pytest.approx(share[name], abs=0.02)  # there is one joint
     assert share["coulomb_friction"] > 0.999
     assert left["coulomb_friction"] < 0.01
@@ -85,7 +85,7 @@ def beside(name, is_left):
     after = with_effect(model, begin(model, [best]), HORIZON, confirm)
     fall = 1 - after.fit.cost / model.fit.cost
     stick = measure(after, EFFECTS, is_left)
-    return find_smooth_neighbour(after.candidates[-1], fall, stick)
+    return find_smooth_neighbour(after.candidates[-1], fall / (1 - fall), stick)
 
 
 def test_surfaces_unmask_the_neighbour_of_a_force_of_two_variables_and_no_curve_does():
