@@ -13,7 +13,7 @@ from __future__ import annotations
 MOST_LEFT = 0.2
 # Of the power of both, which is a sixth of their force: no right law is as far from a robot's.
 FAR_FROM_EXACT = 0.03
-MORE_LIKELY_THAN_NOT = 0.5  # chance of a curve that is so much better, above which it may be luck
+MORE_LIKELY_THAN_NOT = 0.5  # chance of a curve beside a law, above which it may be luck
 
 
 def falls_short(law: float, curve: float) -> bool:

@@ -114,9 +114,6 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
         HORIZON, "names no law beside which a smooth force of two variables explains much",
     ),
     "closed_gap": (HORIZON, "names no law that closes less than half of the gap"),
-    "far_from_exact": (
-        HORIZON, "asks less of a curve beside a law that is far from what both explain together",
-    ),
     "drop_beside_curves": (HORIZON, "drops laws that were found only beside a curve of the data"),
     "drop_drawn_laws": (HORIZON, "drops a law whose work a later curve of the data does"),
     "priors_of_last_fit": (
