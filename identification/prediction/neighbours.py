@@ -6,8 +6,8 @@ does, and a curve of the position still explains a third of the rest. So a law i
 the best curve at its joint, scored beside all that was found, explains more than `MOST_OF_BOTH` of
 what law and curve explain together:
 
-    f m/(m_1 - m_2 + f m)       m_1 - m_2: mean square that the law took away,
-                                m: what the model with all that was found leaves,
+    (f + c)/(l + f + c)         l, c: mean squares that the law and the curves of the model took
+                                away, over what the model with all that was found leaves,
                                 f: fall by the curve beside it
 
 and it is more likely than not that this is no luck: what acts in few windows, as a stop does, has a
@@ -24,14 +24,17 @@ windows to which it was not fitted.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 from identification.discovery.effect_results import Neighbour
 from identification.discovery.neighbour import MORE_LIKELY_THAN_NOT
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.passes import uses
 from identification.effects.effect import Candidate
+from identification.prediction.model import WindowModel
 from identification.prediction.scores import WindowScore
 from identification.prediction.screening import places_of
+from identification.prediction.trial import Contender, mean_square
 from identification.prediction.yardstick import Yardstick, acts_on_joints
 
 # Of what law and curve explain together. Beside right laws of rough worlds curves explained up to
@@ -40,14 +43,56 @@ MOST_OF_BOTH = 0.15
 SMOOTH_FORCE = "smooth force"  # as it is called where a curve has its name
 
 
+@dataclass(frozen=True)
+class Explained:
+    """What a law and the curves beside it took away, over what the model with all leaves."""
+
+    law: float
+    curves: float = 0.0  # those of the model at the law's joint
+    chance: float = 1.0  # of as much as the surest of these by luck
+
+    def of_both(self, beside: float) -> float:
+        """Returns what curves explain of what they and the law do, with one more beside it.
+
+        Args:
+            beside: what that one takes away of what the model leaves.
+        """
+        curves = self.curves + beside
+        return curves / (self.law + curves) if self.law + curves > 0 else 0.0
+
+
+def explained_by(law: Contender, accepted: Sequence[Contender], model: WindowModel) -> Explained:
+    """Returns what an accepted law and the accepted curves at its joint explain.
+
+    Args:
+        law: one of those that were accepted.
+        accepted: all of them.
+        model: with all of them.
+    """
+    left = mean_square(model)
+    curves = [a for a in accepted if a is not law and _is_at(a.candidate, law.candidate)]
+    return Explained(
+        law.explained / left, sum(c.explained for c in curves) / left,
+        min((c.prediction.chance for c in curves), default=1.0),
+    )  # fmt: skip
+
+
+def _is_at(curve: Candidate, law: Candidate) -> bool:
+    """Returns whether a candidate is a curve at a joint on which a law may act."""
+    if not curve.effect.is_curve:
+        return False
+    has_joint = acts_on_joints(law.effect) and law.effect.places.get(law.where)
+    return not has_joint or bool({*places_of(law.where)} & {*places_of(curve.where)})
+
+
 def find_neighbour(
-    candidate: Candidate, explained: float, scores: Sequence[WindowScore]
+    candidate: Candidate, explained: Explained, scores: Sequence[WindowScore]
 ) -> Neighbour | None:
     """Returns the curve that explains what a law leaves with the least chance of luck.
 
     Args:
         candidate: the law, or a curve.
-        explained: mean square that it took away, over what the model with all leaves.
+        explained: what it and the curves of the model took away.
         scores: of all candidates, beside all that was found.
 
     Returns:
@@ -55,31 +100,23 @@ def find_neighbour(
     """
     if candidate.effect.is_curve:
         return None
-    curves = [s for s in scores if s.candidate.effect.is_curve]
-    if acts_on_joints(candidate.effect) and candidate.effect.places.get(candidate.where):
-        mine = {*places_of(candidate.where)}
-        curves = [s for s in curves if mine & {*places_of(s.candidate.where)}]
+    curves = [s for s in scores if _is_at(s.candidate, candidate)]
     if not curves:
         return None
     best = min(curves, key=lambda s: s.p_value)
-    chance = min(1.0, len(curves) * best.p_value)
+    chance = min(explained.chance, len(curves) * best.p_value)
     c = best.candidate
-    return Neighbour(c.effect.name, c.where, best.fall, chance, _of_both(explained, best.fall))
-
-
-def _of_both(law: float, beside: float) -> float:
-    """Returns what is beside a law of both, each over what the model leaves."""
-    return beside / (law + beside) if law + beside > 0 else 0.0
+    return Neighbour(c.effect.name, c.where, best.fall, chance, explained.of_both(best.fall))
 
 
 def find_smooth_neighbour(
-    candidate: Candidate, explained: float, stick: Yardstick | None
+    candidate: Candidate, explained: Explained, stick: Yardstick | None
 ) -> Neighbour | None:
     """Returns the smooth force at a law's joint that explains what the law leaves.
 
     Args:
         candidate: the law, or a curve.
-        explained: mean square that it took away, over what the model with all leaves.
+        explained: what it and the curves of the model took away.
         stick: what smooth forces would still explain; None where it is not known.
 
     Returns:
@@ -89,7 +126,8 @@ def find_smooth_neighbour(
     if left is None:
         return None
     where, share, chance = left
-    return Neighbour(SMOOTH_FORCE, where, share, chance, _of_both(explained, share))
+    chance = min(explained.chance, chance)
+    return Neighbour(SMOOTH_FORCE, where, share, chance, explained.of_both(share))
 
 
 def has_neighbours_name(neighbour: Neighbour | None, options: DiscoveryOptions) -> bool:

@@ -16,13 +16,14 @@ from identification.discovery.passes import uses
 from identification.effects.effect import Candidate
 from identification.prediction.model import WindowModel
 from identification.prediction.neighbours import (
+    explained_by,
     find_neighbour,
     find_smooth_neighbour,
     has_neighbours_name,
 )
 from identification.prediction.odds import find_odds
 from identification.prediction.task import WindowSearch
-from identification.prediction.trial import Contender, Doubt, mean_square
+from identification.prediction.trial import Contender, Doubt
 from identification.prediction.yardstick import Yardstick
 from identification.windows.comparison import Prediction
 
@@ -41,7 +42,7 @@ def named_effect(
         stick: what smooth forces would still explain; None where it is not known.
     """
     options, mine = state.task.options, accepted.candidate
-    explained = accepted.explained / mean_square(state.model)
+    explained = explained_by(accepted, state.accepted, state.model)
     each = [find_neighbour(mine, explained, state.scores)]
     if uses(options, "smooth_neighbours"):
         each.append(find_smooth_neighbour(mine, explained, stick))
@@ -58,7 +59,7 @@ def named_effect(
         one_of=bool(odds.likeliest and odds.likeliest[1] > options.set_confidence),
         evidence=accepted.criterion, proof=_proof(state, accepted),
         same_as=next((e for e in state.task.effects if e.name == odds.twin), None),
-        smooth_share=stick.share_of(mine, explained) if stick else None,
+        smooth_share=stick.share_of(mine, explained.law, explained.curves) if stick else None,
         neighbour=next((n for n in each if has_neighbours_name(n, options)), each[0]),
     )  # fmt: skip
 

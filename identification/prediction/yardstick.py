@@ -67,18 +67,19 @@ class Yardstick:
         most = max(joints, key=lambda j: self.of_joint[j])
         return most, self.of_joint[most], self.chances[most]
 
-    def share_of(self, candidate: Candidate, explained: float) -> float | None:
+    def share_of(self, candidate: Candidate, explained: float, curves: float = 0.0) -> float | None:
         """Returns what an effect explains of what it and smooth forces at its joints could.
 
         Args:
             candidate: the effect at its place.
             explained: sum of squares that it took away, over what the model leaves.
+            curves: likewise of the curves that the model has at its joints.
 
         Returns:
             None for what is no law of a joint.
         """
         left = self.left_at(candidate)
-        return None if left is None else explained_share(explained, 0.0, left[1])
+        return None if left is None else explained_share(explained, 0.0, left[1] + curves)
 
 
 def acts_on_joints(effect: Effect) -> bool:

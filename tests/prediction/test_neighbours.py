@@ -13,7 +13,12 @@ from identification.effects.joint_plant import candidates
 from identification.prediction.extension import with_effect
 from identification.prediction.first_fit import begin
 from identification.prediction.moves.curve_for_laws import curve_for_laws
-from identification.prediction.neighbours import MOST_OF_BOTH, find_neighbour, has_neighbours_name
+from identification.prediction.neighbours import (
+    MOST_OF_BOTH,
+    Explained,
+    find_neighbour,
+    has_neighbours_name,
+)
 from identification.prediction.nominal_fit import fit_nominal
 from identification.prediction.scores import window_scores
 from identification.prediction.screening import score_all
@@ -47,7 +52,9 @@ def with_law(name):
 def neighbour_of(name):
     bare, model = with_law(name)
     explained = (bare.fit.cost - model.fit.cost) / model.fit.cost
-    return find_neighbour(model.candidates[-1], explained, score_all(model, EFFECTS, OPTIONS))
+    return find_neighbour(
+        model.candidates[-1], Explained(explained), score_all(model, EFFECTS, OPTIONS)
+    )
 
 
 def test_the_right_law_leaves_luck_to_a_curve_and_its_neighbour_leaves_the_pattern():
@@ -73,12 +80,12 @@ def test_the_chance_is_paid_for_by_the_number_of_curves_at_the_joint():
     _, model = with_law("stiffness")
     scores = score_all(model, EFFECTS, OPTIONS)
     curves = [s for s in scores if s.candidate.effect.is_curve]
-    found = find_neighbour(model.candidates[-1], 9.0, scores)
+    found = find_neighbour(model.candidates[-1], Explained(9.0), scores)
     assert len(curves) > 2
     assert found.chance == pytest.approx(len(curves) * min(s.p_value for s in curves))
     assert found.of_both == pytest.approx(found.share / (9.0 + found.share))
-    assert find_neighbour(curves[0].candidate, 9.0, scores) is None
-    assert find_neighbour(model.candidates[-1], 9.0, []) is None
+    assert find_neighbour(curves[0].candidate, Explained(9.0), scores) is None
+    assert find_neighbour(model.candidates[-1], Explained(9.0), []) is None
 
 
 def test_a_proven_curve_takes_the_place_of_a_neighbours_name():
@@ -94,3 +101,17 @@ def test_a_proven_curve_takes_the_place_of_a_neighbours_name():
     _, kept, lost = curve_for_laws(state, lambda line: None)
     assert [a.candidate.effect.name for a in kept] == ["curve_position"]
     assert [a.doubt for a in lost] == ["drawn"]
+
+
+def test_what_a_curve_of_the_model_explains_counts_as_what_is_beside_a_law():
+    """The law would else look exact, because the curve has taken away what it misses."""
+    _, model = with_law("stiffness")
+    scores = score_all(model, EFFECTS, OPTIONS)
+    law = model.candidates[-1]
+    alone = find_neighbour(law, Explained(9.0), scores)
+    beside = find_neighbour(law, Explained(9.0, 3.0, 1e-6), scores)
+    assert beside.of_both == pytest.approx((3 + alone.share) / (12 + alone.share))
+    assert beside.chance <= 1e-6
+    luck = replace(alone, share=0.0, chance=1.0, of_both=Explained(9.0).of_both(0.0))
+    assert not has_neighbours_name(luck, OPTIONS)
+    assert Explained(0.0).of_both(0.0) == 0.0

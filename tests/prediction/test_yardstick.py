@@ -12,7 +12,11 @@ from identification.discovery.options import DiscoveryOptions
 from identification.effects.joint_plant import candidates
 from identification.prediction.extension import with_effect
 from identification.prediction.first_fit import begin
-from identification.prediction.neighbours import find_smooth_neighbour, has_neighbours_name
+from identification.prediction.neighbours import (
+    Explained,
+    find_smooth_neighbour,
+    has_neighbours_name,
+)
 from identification.prediction.nominal_fit import fit_nominal
 from identification.prediction.scores import condensed, window_scores
 from identification.prediction.yardstick import measure
@@ -85,7 +89,7 @@ def beside(name, is_left):
     after = with_effect(model, begin(model, [best]), HORIZON, confirm)
     fall = 1 - after.fit.cost / model.fit.cost
     stick = measure(after, EFFECTS, is_left)
-    return find_smooth_neighbour(after.candidates[-1], fall / (1 - fall), stick)
+    return find_smooth_neighbour(after.candidates[-1], Explained(fall / (1 - fall)), stick)
 
 
 def test_surfaces_unmask_the_neighbour_of_a_force_of_two_variables_and_no_curve_does():

@@ -28,11 +28,15 @@ from identification.prediction.contenders import count_numbers
 from identification.prediction.evidence import all_gains, count_windows, evidence
 from identification.prediction.extension import refitted
 from identification.prediction.model import WindowModel
-from identification.prediction.neighbours import find_neighbour, has_neighbours_name
+from identification.prediction.neighbours import (
+    explained_by,
+    find_neighbour,
+    has_neighbours_name,
+)
 from identification.prediction.screening import places_of, score_all
 from identification.prediction.selection import refit_contenders
 from identification.prediction.task import Change, WindowSearch
-from identification.prediction.trial import Contender, compared, mean_square
+from identification.prediction.trial import Contender, compared
 from identification.prediction.yardstick import acts_on_joints
 from identification.progress import Progress
 
@@ -85,10 +89,10 @@ def curve_for_laws(state: WindowSearch, progress: Progress) -> Change:
 
 def _neighbours_names(state: WindowSearch) -> dict[tuple[str, str], str]:
     """Returns laws that have the name of a neighbour of what is missing, and its curve's joint."""
-    left = mean_square(state.model)
+    every, model = state.accepted, state.model
     each = (
-        (a.candidate, find_neighbour(a.candidate, a.explained / left, state.scores))
-        for a in state.accepted
+        (a.candidate, find_neighbour(a.candidate, explained_by(a, every, model), state.scores))
+        for a in every
     )
     return {c.key: n.where for c, n in each if n and has_neighbours_name(n, state.task.options)}
 
