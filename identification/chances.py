@@ -1,6 +1,7 @@
 """Chances under the usual distributions, and tests of means.
 
-`scipy.stats` has them too; it takes most of a second to import.
+`scipy.stats` has them too; it takes most of a second to import. `scipy.special` takes a fifth of
+one: `scipy` imports it when a chance is first asked for.
 """
 
 from __future__ import annotations
@@ -8,48 +9,48 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from scipy import special
+import scipy
 
 
 def chi2_above(x: Any, freedom: float) -> Any:
     """Returns the chance that χ² of some degrees of freedom exceeds x; elementwise."""
-    return special.chdtrc(freedom, x)
+    return scipy.special.chdtrc(freedom, x)
 
 
 def chi2_level(chance: float, freedom: float) -> float:
     """Returns the x that χ² of some degrees of freedom exceeds with a chance."""
-    return float(special.chdtri(freedom, chance))
+    return float(scipy.special.chdtri(freedom, chance))
 
 
 def f_above(x: Any, numerator: float, denominator: float) -> Any:
     """Returns the chance that F of two degrees of freedom exceeds x; elementwise."""
-    return special.fdtrc(numerator, denominator, np.maximum(x, 0.0))
+    return scipy.special.fdtrc(numerator, denominator, np.maximum(x, 0.0))
 
 
 def student_above(t: float, freedom: float) -> float:
     """Returns the chance that Student's t of some degrees of freedom exceeds t."""
-    return float(special.stdtr(freedom, -t))
+    return float(scipy.special.stdtr(freedom, -t))
 
 
 def noncentral_student_above(t: float, freedom: float, moved: Any) -> Any:
     """Returns the chance that Student's t of a noncentrality `moved` exceeds t; elementwise."""
     # beyond 30 the chance is 0 or 1 for any t that a test asks for, and scipy has no number
-    return 1.0 - special.nctdtr(freedom, np.clip(moved, -30.0, 30.0), t)
+    return 1.0 - scipy.special.nctdtr(freedom, np.clip(moved, -30.0, 30.0), t)
 
 
 def student_level(chance: float, freedom: float) -> float:
     """Returns the t that Student's t of some degrees of freedom exceeds with a chance."""
-    return -float(special.stdtrit(freedom, chance))
+    return -float(scipy.special.stdtrit(freedom, chance))
 
 
 def normal_above(z: Any) -> Any:
     """Returns the chance that a standard normal number exceeds z; elementwise."""
-    return special.ndtr(-np.asarray(z))
+    return scipy.special.ndtr(-np.asarray(z))
 
 
 def normal_level(chance: float) -> float:
     """Returns the z that a standard normal number exceeds with a chance."""
-    return -float(special.ndtri(chance))
+    return -float(scipy.special.ndtri(chance))
 
 
 def mean_above_zero(x: np.ndarray) -> tuple[float, float]:

@@ -98,7 +98,7 @@ def information(
         return J.reshape(-1, J.shape[2]) / experiment.sigma
 
     if resolved:
-        found = resolve(predictor, space, q, whiten)
+        found = resolve(predictor, space, q, y, whiten)
     else:
         S = whiten(sensitivity(predictor, space, q))
         found = Resolved(every, S, np.zeros_like(S), round_off(whiten(y[:, :, None])))

@@ -176,7 +176,7 @@ def _assessed(estimate: Estimate, validation: Log | None) -> Fit:
         resolved = nothing_resolved(space.names, residual.size)
     else:
         prior = estimate.priors.rows
-        resolved = resolve(predictor, space, q, whiten)
+        resolved = resolve(predictor, space, q, predicted, whiten)
     S, found = resolved.S, resolved.found
     E = np.concatenate([resolved.E, np.zeros_like(prior)])
     known = identifiability(np.concatenate([S, prior]), space.names, E, resolved.least)

@@ -81,13 +81,21 @@ def nothing_resolved(names: tuple[str, ...], n: int) -> Resolved:
     return Resolved(names, S, S, 1.0)
 
 
-def resolve(predictor: Predictor, space: Coordinates, q: np.ndarray, whiten: Whiten) -> Resolved:
+def resolve(
+    predictor: Predictor, space: Coordinates, q: np.ndarray, y: np.ndarray, whiten: Whiten
+) -> Resolved:
     """Returns the sensitivities, whitened, of a predictor's outputs at q (p,), and their errors.
+
+    Args:
+        predictor: predicts the outputs.
+        space: coordinates of the parameters.
+        q: the point, shape (p,).
+        y: what is predicted there, shape (N, ny).
+        whiten: see `Whiten`.
 
     Raises:
         DivergenceError: a simulation left the finite numbers.
     """
-    y = predictor.predict(space.decode(q))[0]
 
     def at(step: float) -> tuple[np.ndarray, np.ndarray]:
         once, twice = two_sensitivities(predictor, space, q, step)

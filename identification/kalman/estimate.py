@@ -159,7 +159,7 @@ def _of_innovations(end: Refit, fit: Fit, filter_: Whitener, E: np.ndarray) -> F
     point, σ = end.point, end.level.sigma
     with one_blas_thread():
         resolved = resolve(
-            point.predictor, point.space, point.q,
+            point.predictor, point.space, point.q, point.log.outputs - point.e,
             lambda J: filter_(J).reshape(point.e.size, -1) / σ,
         )  # fmt: skip
     S, found = resolved.S, resolved.found

@@ -72,7 +72,7 @@ def machine() -> tuple[str, ...]:
 def _function(function: Any, seen: _Seen) -> Iterator[str]:
     """Yields the parts of a function: bytecode, defaults, closure and the globals that it reads."""
     code: CodeType = function.__code__
-    yield from _code(code, seen)
+    yield from _code(code)
     yield from _value(function.__defaults__, code, seen)
     for name, cell in zip(code.co_freevars, function.__closure__ or (), strict=True):
         yield f"closure {name}"
@@ -91,20 +91,21 @@ def _cell(cell: CellType, code: CodeType, seen: _Seen) -> Iterator[str]:
     yield from _value(value, code, seen)
 
 
-def _code(code: CodeType, seen: _Seen) -> Iterator[str]:
-    """Yields the parts of a code object, without where its file is."""
-    yield repr((
+@cache  # the callbacks of a law reach the same functions
+def _code(code: CodeType) -> tuple[str, ...]:
+    """Returns the parts of a code object, without where its file is."""
+    parts = [repr((
         code.co_name, code.co_argcount, code.co_posonlyargcount, code.co_kwonlyargcount,
         code.co_flags, code.co_code, code.co_names, code.co_varnames, code.co_freevars,
         code.co_cellvars, code.co_exceptiontable,
-    ))  # fmt: skip
+    ))]  # fmt: skip
     for constant in code.co_consts:
-        if isinstance(constant, CodeType):
-            yield from _code(constant, seen)
-        else:
-            yield from _value(constant, code, seen)
+        is_code = isinstance(constant, CodeType)
+        parts += _code(constant) if is_code else _value(constant, code, {})
+    return tuple(parts)
 
 
+@cache
 def _global_names(code: CodeType) -> set[str]:
     """Returns the global names that a code object reads, also those of functions inside it."""
     names = {i.argval for i in dis.get_instructions(code) if i.opname == "LOAD_GLOBAL"}

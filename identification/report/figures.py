@@ -3,21 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.figure import Figure
 
-from identification.estimation.profiles import PROFILE_LEVEL, Profile
-from identification.logs.log import Log
-from identification.model.predictor import Plant
 from identification.report.style import INK, SERIES, SIMULATED, literal, styled
-from identification.windows.window_error import window_error
-from identification.windows.windows import windows
+
+if TYPE_CHECKING:
+    from identification.estimation.profiles import Profile
+    from identification.logs.log import Log
+    from identification.model.predictor import Plant
 
 
 @styled
 def profile_figure(known: Profile, unit: str) -> Figure:
     """Returns a figure of the rise of the cost against one parameter, with the line of 95 %."""
+    from identification.estimation.profiles import PROFILE_LEVEL  # slow to import
+
     figure = Figure((5.2, 3.2), layout="constrained")
     ax = figure.subplots()
     seen = np.isfinite(known.rise)
@@ -46,6 +49,9 @@ def windows_figure(
         InputError: the windows do not fit the log, or a name is unknown.
         DivergenceError: a model cannot be simulated.
     """
+    from identification.windows.window_error import window_error  # slow to import
+    from identification.windows.windows import windows
+
     name = log.output_names[0]
     unit = log.units.get(name, "")
     errors = {label: window_error(plant, log, length, values)[..., 0]

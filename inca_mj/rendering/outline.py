@@ -46,7 +46,8 @@ def outline_of(
         if int(model.geom_type[i]) in (_SPHERE, _CAPSULE):
             corners = eye.pixels(_round(model, data, i, eye), size)
             if np.isfinite(corners).all():
-                shapes.append(_hull(corners))
+                is_hull = int(model.geom_type[i]) == _SPHERE
+                shapes.append(corners if is_hull else _hull(corners))
     cables = []
     for k in range(model.ntendon):
         first, count = int(data.ten_wrapadr[k]), int(data.ten_wrapnum[k])

@@ -142,15 +142,16 @@ class Lettering:
             pen.rectangle((left, top, left + width - 1, top + height - 1), outline="#C9CED4")
             self._caption(pen, left, top, width, times)
         self._title(pen, title, size[0])
-        pixels = np.asarray(image, np.uint16)
-        self._rows = np.flatnonzero(pixels[..., 3].any(axis=1))
-        alpha = pixels[self._rows][..., 3:]
-        self._ink, self._see = pixels[self._rows][..., :3] * alpha, 255 - alpha
+        pixels = np.asarray(image, np.uint16).reshape(-1, 4)
+        self._where = np.flatnonzero(pixels[:, 3])
+        alpha = pixels[self._where, 3:]
+        self._ink, self._see = pixels[self._where, :3] * alpha, 255 - alpha
 
     def write(self, frame: np.ndarray, time: float, distance: float | None = None,
               off: np.ndarray | None = None) -> None:  # fmt: skip
         """Letters a frame in place: time [s], distance from the path [m], errors [m, rad]."""
-        frame[self._rows] = (self._ink + frame[self._rows] * self._see) // 255
+        each = frame.reshape(-1, 3)
+        each[self._where] = (self._ink + each[self._where] * self._see) // 255
         self._say(frame, self._clock, f"t = {time:z.2f} s", 1.15)
         if off is not None:
             left, top = self._off

@@ -44,7 +44,8 @@ def planned_experiment(
     else:
         currents, sampling_time, hold = log.inputs, log.sampling_time, log.hold
         sigma = float(np.sqrt(np.mean(noise_floor(log.outputs) ** 2)))
-    robot = build_twin(parameters, geometry, timestep=timestep_for(sampling_time, timestep))
+    step = timestep_for(sampling_time, timestep)
+    robot = build_twin(parameters, geometry, timestep=step, visual=False)
     return Experiment(
         plant=robot, inputs=currents, sampling_time=sampling_time, outputs=ANGLES,
         sigma=sigma if noise is None else noise, hold=hold,
