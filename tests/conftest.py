@@ -74,6 +74,20 @@ def refusal() -> Callable[..., str]:
     return sentence
 
 
+@pytest.fixture(scope="module")
+def few_effects() -> Iterator[None]:
+    """Robots that are read have two effects: a law of all takes 18 s to compile for new axes."""
+    from identification.robot import robot as made
+
+    every, names = made.all_effects, ("coulomb_friction", "quadratic_friction")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(
+            made, "all_effects",
+            lambda *given: tuple(e for e in every(*given) if e.name.endswith(names)),
+        )  # fmt: skip
+        yield
+
+
 @pytest.fixture
 def undrawn(monkeypatch) -> None:
     """Pages have their words and no figures, which take a second each."""

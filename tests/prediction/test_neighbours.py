@@ -23,7 +23,8 @@ from identification.prediction.state import first_state
 from identification.prediction.task import RecordsTask
 from identification.windows.records import as_records
 
-EFFECTS = candidates(pendulum(), FREE)
+LAWS = ("hardening", "stiffness", "offset")
+EFFECTS = [e for e in candidates(pendulum(), FREE) if e.is_curve or e.name in LAWS]
 OPTIONS = DiscoveryOptions()
 WITHOUT = DiscoveryOptions(without=("neighbours_names",))
 STIFF = 0.06  # of a spring that hardens [N m/rad³]
@@ -45,9 +46,13 @@ def with_law(name):
     return bare, with_effect(bare, begin(bare, [score]), HORIZON, confirm)
 
 
+@cache
+def scores_beside(name):
+    return score_all(with_law(name)[1], EFFECTS, OPTIONS)
+
+
 def neighbour_of(name):
-    _, model = with_law(name)
-    return find_neighbour(model.candidates[-1], 0.9, score_all(model, EFFECTS, OPTIONS))
+    return find_neighbour(with_law(name)[1].candidates[-1], 0.9, scores_beside(name))
 
 
 def test_the_right_law_leaves_luck_to_a_curve_and_its_neighbour_leaves_the_pattern():
@@ -77,7 +82,7 @@ def test_without_its_pass_a_law_that_is_far_off_needs_the_same_chance_as_others(
 
 def test_the_chance_is_paid_for_by_the_number_of_curves_at_the_joint():
     _, model = with_law("stiffness")
-    scores = score_all(model, EFFECTS, OPTIONS)
+    scores = scores_beside("stiffness")
     curves = [s for s in scores if s.candidate.effect.is_curve]
     found = find_neighbour(model.candidates[-1], 0.9, scores)
     assert len(curves) > 2

@@ -25,6 +25,8 @@ from identification.refusals.columns import Doubt
 from identification.refusals.same_units import different_units
 from identification.refusals.wiring import refuse_miswired
 
+pytestmark = pytest.mark.usefixtures("few_effects")
+
 
 @pytest.mark.parametrize(
     ("xml", "horizon"), [(PENDULUM, ""), (ARM, "horizon = 0.2")], ids=["pendulum", "arm"]
