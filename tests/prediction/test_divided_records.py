@@ -115,7 +115,7 @@ def test_blocks_of_windows_are_as_long_as_their_errors_repeat(monkeypatch):
 
 @pytest.mark.parametrize("without", [(), ("untouched_part",)])
 def test_a_result_says_of_which_part_it_tells(without):
-    logs = records(4, FALSE, samples=300)
+    logs = records(4, FALSE)
     task = RecordsTask(
         nominal_model=nominal_model(), records=as_records(logs[:2], logs[2:]),
         effects=tuple(e for e in candidates(pendulum(), ("J", "d")) if e.name == "offset"),

@@ -19,7 +19,7 @@ KNOWN = np.array([0.3, 0.3])  # of what is free, far from which the truth lies: 
 
 @cache
 def logs():
-    return records(4, {HIDDEN: SIZE}, samples=300)
+    return records(4, {HIDDEN: SIZE}, samples=400)
 
 
 def model(names=FREE, known=KNOWN):

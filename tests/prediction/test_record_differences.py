@@ -38,7 +38,12 @@ def of_each(name, values):
     ("name", "values", "said"),
     [
         ("encoder_offset.c@angle", ZEROS, "its zero differs between the records, sensor angle: by"),
-        ("offset.f_0@hinge", PUSHES, "constant, and differs between the records, joint hinge: by"),
+        pytest.param(
+            "offset.f_0@hinge",
+            PUSHES,
+            "constant, and differs between the records, joint hinge: by",
+            marks=pytest.mark.long,
+        ),
     ],
 )
 def test_a_value_of_each_record_is_told_and_nothing_is_missing(name, values, said):
@@ -58,7 +63,10 @@ def test_a_value_of_each_record_is_told_and_nothing_is_missing(name, values, sai
 
 @pytest.mark.parametrize(
     ("name", "size", "right"),
-    [("offset.f_0@hinge", 0.04, "offset"), ("stiffness.k@hinge", 0.1, "stiffness")],
+    [
+        ("offset.f_0@hinge", 0.04, "offset"),
+        pytest.param("stiffness.k@hinge", 0.1, "stiffness", marks=pytest.mark.long),
+    ],
 )
 def test_what_all_records_have_is_named_and_not_hidden_by_values_of_each(name, size, right):
     answer = found(of_each(name, (size,) * 4))

@@ -19,7 +19,7 @@ from identification.windows.comparison import compare
 from identification.windows.records import as_records
 from identification.windows.unseen import predict
 
-SAMPLES = 200  # of each record
+SAMPLES = 300  # of each record
 LOAD = {"transmitted_load_friction.mu@hinge": 0.15}
 
 
