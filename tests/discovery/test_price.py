@@ -24,7 +24,7 @@ from identification.windows.comparison import Prediction
 
 OPTIONS = DiscoveryOptions()
 STRICT = DiscoveryOptions(without=("weak_scores",))
-DRAWS, FEWER = 2000, 1000  # without their price 8 refits prove 80 of 1000, and with it 10
+DRAWS, FEWER = 2000, 500  # without their price 8 refits prove 40 of 500, and with it 5
 
 
 CANDIDATES = [

@@ -54,7 +54,7 @@ def test_one_of_a_joint_is_found_beside_those_of_the_catalogue(own, monkeypatch)
     every = find.__globals__["candidates"]
     few = lambda *given: [e for e in every(*given) if e.name in beside]  # noqa: E731
     monkeypatch.setitem(find.__globals__, "candidates", few)
-    found = find(own["slider_log"](600))
+    found = find(own["slider_log"]())
     assert [n.candidate.effect.name for n in found.named] == ["guide_friction"]
     value, std, unit = found.named[0].parameters["c"]
     assert abs(value - 1.0) < 5 * std
