@@ -20,9 +20,14 @@ settings.register_profile("patient", deadline=None, max_examples=50)
 settings.load_profile("patient")
 
 
-# Files of which one worker runs all, and their laws or searches once.
-TOGETHER = ("tests/worlds/", "tests/worlds_of_joints/", "tests/report/test_horizon_gap.py",
-            "tests/report/test_missing_place.py")  # fmt: skip
+# Files of which one worker runs all, and their laws or searches once, by what they share.
+TOGETHER = {
+    "worlds": ("tests/worlds/",),
+    "worlds of joints": ("tests/worlds_of_joints/",),
+    "elbow": ("tests/report/test_horizon_gap.py", "tests/report/test_missing_place.py",
+              "tests/report/test_headline.py", "tests/robot/test_second_opinion.py",
+              "tests/packaging/test_results_"),
+}  # fmt: skip
 
 
 class ByLaws(LoadFileScheduling):
@@ -30,7 +35,7 @@ class ByLaws(LoadFileScheduling):
 
     def _split_scope(self, nodeid: str) -> str:
         file = nodeid.partition("::")[0]
-        return file.rpartition("/")[0] if file.startswith(TOGETHER) else file
+        return next((name for name, files in TOGETHER.items() if file.startswith(files)), file)
 
 
 def pytest_xdist_make_scheduler(config: pytest.Config, log: Producer) -> ByLaws | None:
@@ -72,6 +77,20 @@ def refusal() -> Callable[..., str]:
         return text
 
     return sentence
+
+
+@pytest.fixture(scope="module")
+def few_effects() -> Iterator[None]:
+    """Robots that are read have two effects: a law of all takes 18 s to compile for new axes."""
+    from identification.robot import robot as made
+
+    every, names = made.all_effects, ("coulomb_friction", "quadratic_friction")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(
+            made, "all_effects",
+            lambda *given: tuple(e for e in every(*given) if e.name.endswith(names)),
+        )  # fmt: skip
+        yield
 
 
 @pytest.fixture

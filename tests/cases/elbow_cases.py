@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from identification import discover, read_robot
+from identification import discover, fit, read_robot
 from identification.robot import discovery as of_robots
 
 ELBOW = Path(__file__).parents[2] / "examples" / "elbow"
@@ -26,3 +26,8 @@ def elbow():
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(of_robots, "discover_records", short)
         return robot, discover(robot)
+
+
+@cache
+def fitted():
+    return fit(elbow()[0])

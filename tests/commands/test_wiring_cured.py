@@ -18,7 +18,7 @@ from inca_mj.twin.run import simulate
 from inca_mj.twin.twin import build_twin
 from inca_mj.workflows.comparison import compare, compare_twin
 
-LOG = read_inca_log(Path(__file__).parents[2] / "examples" / "log.csv").between(0.0, 4.0)
+LOG = read_inca_log(Path(__file__).parents[2] / "examples" / "log.csv").between(0.0, 3.0)
 UNIT = {"deg": np.pi / 180, "mrad": 1e-3, "rev": 2 * np.pi, "rad": 1.0}
 pytestmark = pytest.mark.usefixtures("each_run_once")
 

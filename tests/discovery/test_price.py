@@ -24,7 +24,7 @@ from identification.windows.comparison import Prediction
 
 OPTIONS = DiscoveryOptions()
 STRICT = DiscoveryOptions(without=("weak_scores",))
-DRAWS = 2000
+DRAWS, FEWER = 2000, 500  # without their price 8 refits prove 40 of 500, and with it 5
 
 
 CANDIDATES = [
@@ -41,9 +41,9 @@ def scores_of(p):
     ]
 
 
-def is_rate(found, level):
+def is_rate(found, level, draws=DRAWS):
     """Whether so many of all draws are within what chance makes of a level, or fewer."""
-    return found <= binom.ppf(0.9999, DRAWS, level)
+    return found <= binom.ppf(0.9999, draws, level)
 
 
 @pytest.mark.parametrize("count", [10, 100])
@@ -73,14 +73,14 @@ def proof_of(blocks):
     return Proof(t=2.0, chance=flip_chance(blocks), fall=0.1, above=0.5, blocks=len(blocks))
 
 
-@pytest.mark.parametrize("refits", [1, 3, 8])
+@pytest.mark.parametrize("refits", [1, 8])
 def test_of_several_refits_along_a_free_run_one_is_proven_as_seldom_as_of_one(refits):
     rng = np.random.default_rng(refits)
     found = sum(
         any(is_confirmed(proof_of(b), OPTIONS, refits) for b in gains(rng, refits))
-        for _ in range(DRAWS)
+        for _ in range(FEWER)
     )
-    assert is_rate(found, 0.031)  # Student's t above 2 with 19 degrees of freedom
+    assert is_rate(found, 0.031, FEWER)  # Student's t above 2 with 19 degrees of freedom
 
 
 def prediction(blocks, record_falls, t=5.0, chance=1e-6, rank_chance=1.0):
@@ -113,20 +113,20 @@ def test_a_record_in_which_a_law_does_nothing_contradicts_it():
     assert find_doubt(prediction(gains, (0.9, -0.1)), 1, OPTIONS) == "record"
 
 
-@pytest.mark.parametrize("refits", [1, 3, 8])
+@pytest.mark.parametrize("refits", [1, 8])
 def test_of_several_refits_over_a_horizon_one_is_proven_as_seldom_as_of_one(refits):
     rng = np.random.default_rng(refits)
     by_mean, by_both = DiscoveryOptions(without=("signed_ranks",)), OPTIONS
     found = {options: 0 for options in (by_mean, by_both)}
-    for _ in range(DRAWS):
+    for _ in range(FEWER):
         every = [
             prediction((b,), (0.1,), *mean_above_zero(b), ranks_above_zero(b))
             for b in gains(rng, refits)
         ]
         for options in found:
             found[options] += any(find_doubt(seen, refits, options) is None for seen in every)
-    assert is_rate(found[by_mean], OPTIONS.significance)
-    assert is_rate(found[by_both], OPTIONS.significance)
+    assert is_rate(found[by_mean], OPTIONS.significance, FEWER)
+    assert is_rate(found[by_both], OPTIONS.significance, FEWER)
 
 
 def test_gains_of_many_blocks_prove_where_a_few_large_ones_hide_their_mean():

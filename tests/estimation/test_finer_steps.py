@@ -10,6 +10,8 @@ from identification import fit, read_robot
 from identification.model.protocol import FINER
 from identification.report.fit_verdict import fit_verdict
 
+pytestmark = pytest.mark.usefixtures("few_effects")
+
 PENDULUM = """<mujoco><option timestep="{step}" integrator="RK4"/><worldbody><body>
   <joint name="hinge" axis="0 1 0" damping="0.04" armature="0.005"/>
   <geom type="capsule" size="0.02" fromto="0 0 0 0 0 -0.4" mass="0.5" contype="0" conaffinity="0"/>

@@ -25,6 +25,8 @@ from identification.windows.shooting import Shooting, slower, tangent
 from identification.windows.unknowns import Unknowns
 from identification.windows.windows import first_states, windows
 
+pytestmark = pytest.mark.usefixtures("few_effects")
+
 FINE = 0.00125  # [s], an eighth of the sampling time
 TRUTH = {"J": 2e-3, "d": 0.02}
 

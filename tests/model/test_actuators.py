@@ -12,6 +12,8 @@ from identification.model.rollout import State
 from identification.model.tied import value_of
 from identification.robot.model_file import unit_of
 
+pytestmark = pytest.mark.usefixtures("few_effects")
+
 ARM = """<mujoco><option timestep="0.002" integrator="implicitfast"/>
   <worldbody><body name="arm"><joint name="q" axis="0 1 0" damping="0.2"/>
     <inertial pos="0 0 -0.3" mass="0.8" diaginertia="0.02 0.02 0.001"/></body></worldbody>

@@ -9,7 +9,7 @@ from pathlib import Path
 import fake_discovery
 import numpy as np
 import pytest
-from elbow_cases import ELBOW, elbow
+from elbow_cases import ELBOW, elbow, fitted
 from folder_cases import content, made
 from page_text import text_of
 
@@ -18,7 +18,6 @@ from identification import (
     SavedDiscovery,
     SavedFit,
     discover,
-    fit,
     load,
 )
 from identification.commands.cli import main
@@ -27,11 +26,6 @@ from identification.shown import verdict_of
 
 ROOT = Path(__file__).parents[2]
 LINE = [ELBOW / "elbow.toml", ELBOW / "first.csv", "--confirm", ELBOW / "second.csv"]
-
-
-@cache
-def fitted():
-    return fit(elbow()[0])
 
 
 @cache

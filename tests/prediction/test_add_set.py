@@ -18,10 +18,7 @@ from identification.prediction.scores import condensed, window_scores
 from identification.prediction.task import RecordsTask
 from identification.windows.records import as_records
 
-NAMES = (
-    "offset", "asymmetric_friction", "quadratic_friction", "hardening", "stiffness",
-    "gravity_force", "sublinear_friction", "encoder_scale", "encoder_offset",
-)  # fmt: skip
+NAMES = ("quadratic_friction", "hardening", "gravity_force", "offset", "stiffness", "encoder_scale")
 HIDDEN = {
     "hardening.k_3@hinge": 0.1, "gravity_force.alpha@hinge": 0.3, "quadratic_friction.c@hinge": 0.02
 }  # fmt: skip

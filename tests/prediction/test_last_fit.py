@@ -28,7 +28,7 @@ def model(names=FREE, known=KNOWN):
 
 @cache
 def found(*without):
-    laws = [e for e in candidates(pendulum(), FREE) if e.name in ("hardening", "offset")]
+    laws = [e for e in candidates(pendulum(), FREE) if e.name == "hardening"]
     options = DiscoveryOptions(without=without)
     return discover_records(model(), logs()[:2], logs()[2:], laws, None, options).final
 

@@ -27,7 +27,8 @@ from identification.prediction.state import first_state
 from identification.prediction.task import RecordsTask
 from identification.windows.records import as_records
 
-EFFECTS = candidates(pendulum(), FREE)
+LAWS = ("hardening", "stiffness", "offset")
+EFFECTS = [e for e in candidates(pendulum(), FREE) if e.is_curve or e.name in LAWS]
 OPTIONS = DiscoveryOptions()
 WITHOUT = DiscoveryOptions(without=("neighbours_names",))
 STIFF = 0.06  # of a spring that hardens [N m/rad³]
@@ -49,12 +50,15 @@ def with_law(name):
     return bare, with_effect(bare, begin(bare, [score]), HORIZON, confirm)
 
 
+@cache
+def scores_beside(name):
+    return score_all(with_law(name)[1], EFFECTS, OPTIONS)
+
+
 def neighbour_of(name):
     bare, model = with_law(name)
-    explained = (bare.fit.cost - model.fit.cost) / model.fit.cost
-    return find_neighbour(
-        model.candidates[-1], Explained(explained), score_all(model, EFFECTS, OPTIONS)
-    )
+    explained = Explained((bare.fit.cost - model.fit.cost) / model.fit.cost)
+    return find_neighbour(model.candidates[-1], explained, scores_beside(name))
 
 
 def test_the_right_law_leaves_luck_to_a_curve_and_its_neighbour_leaves_the_pattern():
@@ -78,7 +82,7 @@ def test_what_may_be_luck_or_is_little_is_no_reason_against_a_law(chance, of_bot
 
 def test_the_chance_is_paid_for_by_the_number_of_curves_at_the_joint():
     _, model = with_law("stiffness")
-    scores = score_all(model, EFFECTS, OPTIONS)
+    scores = scores_beside("stiffness")
     curves = [s for s in scores if s.candidate.effect.is_curve]
     found = find_neighbour(model.candidates[-1], Explained(9.0), scores)
     assert len(curves) > 2
@@ -106,7 +110,7 @@ def test_a_proven_curve_takes_the_place_of_a_neighbours_name():
 def test_what_a_curve_of_the_model_explains_counts_as_what_is_beside_a_law():
     """The law would else look exact, because the curve has taken away what it misses."""
     _, model = with_law("stiffness")
-    scores = score_all(model, EFFECTS, OPTIONS)
+    scores = scores_beside("stiffness")
     law = model.candidates[-1]
     alone = find_neighbour(law, Explained(9.0), scores)
     beside = find_neighbour(law, Explained(9.0, 3.0, 1e-6), scores)

@@ -52,14 +52,7 @@ def found(name):
 
 
 @pytest.mark.long
-@pytest.mark.parametrize(
-    "name",
-    [
-        pytest.param(ELASTIC, marks=pytest.mark.long),
-        pytest.param(BACKLASH, marks=pytest.mark.long),
-        PRESLIDING,
-    ],
-)
+@pytest.mark.parametrize("name", CASES)
 def test_what_is_missing_is_named_first_with_its_size(name):
     answer = found(name)
     assert answer.verdict == "named"

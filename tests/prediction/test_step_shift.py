@@ -18,7 +18,8 @@ FRICTION = "coulomb_friction.f_c@elbow"
 
 
 def recorded(elbow, seed):
-    time, current, angle = elbow["record"](seed).T
+    """The first half of a record of the example."""
+    time, current, angle = np.array_split(elbow["record"](seed), 2)[0].T
     names = {"input_names": ("current",), "output_names": ("angle",), "name": f"log {seed}"}
     return Log(time=time, inputs=current[:, None], outputs=angle[:, None], **names)
 

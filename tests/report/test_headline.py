@@ -2,9 +2,8 @@
 
 from xml.etree import ElementTree
 
-from elbow_cases import elbow
+from elbow_cases import fitted
 
-from identification import fit
 from identification.quantities import quantity
 from identification.report.fit_headline import fit_headline
 from identification.report.page import Section, Table, write_report
@@ -15,13 +14,13 @@ def plain(words):
 
 
 def test_a_fit_says_whether_its_values_can_be_used():
-    fitted = fit(elbow()[0])
-    (one,) = fit_headline(fitted.found, {"mass": "kg", "damping": "N m s/rad"}).answers
+    fit = fitted()
+    (one,) = fit_headline(fit.found, {"mass": "kg", "damping": "N m s/rad"}).answers
     assert one.name == "Fitted, and something is missing"
     mass, damping, error = one.tiles
-    assert plain(mass.value) == quantity(fitted.values["mass"], fitted.std["mass"], "kg")
+    assert plain(mass.value) == quantity(fit.values["mass"], fit.std["mass"], "kg")
     assert plain(damping.note) == "began at 0.300 N m s/rad"
-    before, after = fitted.found.unseen_rms
+    before, after = fit.found.unseen_rms
     assert plain(error.value) == f"{1e3 * before:.1f} → {1e3 * after:.1f} mrad"
 
 

@@ -5,7 +5,6 @@ from joint_cases import SLIDER
 from robot_cases import HIDDEN, TOML, simulated
 
 from identification import write_log
-from identification.robot import robot as made
 
 
 @pytest.fixture(scope="module")
@@ -18,13 +17,3 @@ def folder(tmp_path_factory):
     write_log(simulated(plain, seed=5, start=0.2), path / "other.csv")
     write_log(simulated({**plain, **HIDDEN}, samples=700), path / "hidden.csv")
     return path
-
-
-@pytest.fixture
-def few_effects(monkeypatch):
-    """Robots that are read have two effects: a law of all takes 18 s to compile for new axes."""
-    every = made.all_effects
-    names = ("coulomb_friction", "quadratic_friction")
-    monkeypatch.setattr(
-        made, "all_effects", lambda *args: tuple(e for e in every(*args) if e.name.endswith(names))
-    )

@@ -16,6 +16,8 @@ from identification.refusals.forces import tendon_forces
 from identification.refusals.wiring import refuse_miswired
 from identification.robot.robot import read_robot_log
 
+pytestmark = pytest.mark.usefixtures("few_effects")
+
 HEAD = '<mujoco><compiler autolimits="true"/><option timestep="0.0025" integrator="RK4"{}/>'
 WINCHES = (
     HEAD.format("")

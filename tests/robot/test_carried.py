@@ -11,6 +11,8 @@ from identification import fit, read_robot
 from identification.errors import InputError
 from identification.robot.carried import digest
 
+pytestmark = pytest.mark.usefixtures("few_effects")
+
 
 @pytest.fixture(scope="module")
 def kept(tmp_path_factory):

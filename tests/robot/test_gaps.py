@@ -17,6 +17,8 @@ from identification.logs.decimation import decimate
 from identification.report.figures import windows_figure
 from identification.windows.windows import windows
 
+pytestmark = pytest.mark.usefixtures("few_effects")
+
 DROPPED = range(60, 76)  # while the drive turns the pendulum round
 
 

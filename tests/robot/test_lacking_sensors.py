@@ -11,6 +11,8 @@ from identification import fit, read_robot
 from identification.robot.file import read_robot_file
 from identification.robot.robot import read_robot_log
 
+pytestmark = pytest.mark.usefixtures("few_effects")
+
 ARM = """<mujoco><option timestep="0.002" integrator="RK4"/><worldbody>
 <body name="upper" pos="0 0 1"><joint name="shoulder" axis="0 1 0" damping="{damping}"/>
 <inertial pos="0 0 -0.2" mass="1.2" diaginertia="0.012 0.012 0.001"/>

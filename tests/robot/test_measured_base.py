@@ -12,6 +12,8 @@ from identification.robot.measured_base import with_measured_base
 from identification.robot.robot import read_robot_log
 from identification.robot.write import write_robot
 
+pytestmark = pytest.mark.usefixtures("few_effects")
+
 BUOY = """<mujoco>
 <compiler angle="{angle}"/>
 <option timestep="0.002" integrator="RK4" viscosity="{viscosity}" density="1"/>

@@ -9,6 +9,8 @@ from identification import fit, read_robot
 from identification.robot.file import read_robot_file
 from identification.robot.robot import read_robot_log
 
+pytestmark = pytest.mark.usefixtures("few_effects")
+
 CRANE = """<mujoco><option timestep="0.002" integrator="RK4"/><worldbody>
 <site name="left" pos="-1 0 2"/><site name="right" pos="1 0 2"/>
 <body name="load" pos="0.1 0 1"><joint name="x" type="slide" axis="1 0 0" damping="{damping}"/>

@@ -146,7 +146,7 @@ def test_an_elastic_gear_is_written_read_and_fitted(tmp_path):
     (tmp_path / "robot.toml").write_text(TOML)
     paths = [tmp_path / f"log_{k}.csv" for k in range(2)]
     for k, path in enumerate(paths):
-        write_log(measured_states(Truth(c=0.05), k, samples=200), path)
+        write_log(measured_states(Truth(c=0.05), k, samples=120), path)
     robot = read_robot(tmp_path / "robot.toml", paths[0], confirm=[paths[1]])
     found = {"J": 1.8e-3, "d": 0.03, **elastic(0.04)}
     again = read_robot(

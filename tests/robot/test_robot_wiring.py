@@ -20,6 +20,8 @@ from identification.refusals.wiring import refuse_miswired
 from identification.robot.file import read_robot_file
 from identification.robot.robot import read_robot_log, robot_of
 
+pytestmark = pytest.mark.usefixtures("few_effects")
+
 RNG = np.random.default_rng(5)
 
 

@@ -11,6 +11,8 @@ from identification.inspection.beginning import write_beginning
 from identification.robot.file import read_robot_file
 from identification.robot.robot import read_robot_log
 
+pytestmark = pytest.mark.usefixtures("few_effects")
+
 FOLDER = Path(__file__).parents[2] / "examples" / "servo_arm"
 spec = importlib.util.spec_from_file_location("servo_arm_record", FOLDER / "record.py")
 script = importlib.util.module_from_spec(spec)
@@ -41,7 +43,8 @@ def test_the_robot_s_file_is_the_one_that_is_written_to_begin_with(tmp_path):
 
 
 def test_gains_and_damping_are_recovered_from_the_recording():
-    values = fit(read_robot(FOLDER / "servo_arm.toml", FOLDER / "first.mcap")).values
+    log = read_robot_log(ROBOT, FOLDER / "first.mcap").between(0.0, 15.0)
+    values = fit(read_robot(FOLDER / "servo_arm.toml", log)).values
     for k, joint in enumerate(script.JOINTS):
         # The encoder's steps and those of the simulation err by one or two per cent.
         assert values[f"actuator/{joint}_servo.kp"] == pytest.approx(script.KP[k], rel=0.05)

@@ -16,6 +16,8 @@ from identification.logs.joined import REPLAYED, replayed_share
 from identification.robot.file import read_robot_file
 from identification.robot.fit_json import robot_fit_to_json
 
+pytestmark = pytest.mark.usefixtures("few_effects")
+
 
 @pytest.fixture
 def folder(tmp_path):

@@ -15,6 +15,8 @@ from identification.effects.rows import read_model
 from identification.robot.reading import doubtful
 from identification.robot.start import measured_begin
 
+pytestmark = pytest.mark.usefixtures("few_effects")
+
 HELD = TOML.replace('"qpos[0]", "qvel[0]"', "").replace('.damping", ]', '.damping"]')
 MODEL = read_model(SLIDER).compile()
 

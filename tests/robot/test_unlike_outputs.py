@@ -15,6 +15,8 @@ from identification.report.fit_verdict import fit_verdict
 from identification.robot.fit_json import worse_unit
 from identification.robot.record_error import AS_WRITTEN, FITTED, Confirmation
 
+pytestmark = pytest.mark.usefixtures("few_effects")
+
 PAIR = r"[\d.]+ [mµ]*rad{0} \(angles\) and [\d.]+ [mµ]*m{0} \(slides\)"
 
 
@@ -80,8 +82,7 @@ def over_windows(tmp_path_factory):
     lines = TOML.replace("free = ", "horizon = 0.3\nfree = ").replace("robot.xml", "stiff.xml")
     stiff = (path / "robot.xml").read_text().replace('stiffness="200"', 'stiffness="201"')
     (path / "stiff.xml").write_text(stiff)
-    known = "[effects]\njoints = ['slide']\nonly = ['stiffness', 'offset']\n"
-    (path / "horizon.toml").write_text(lines + known)
+    (path / "horizon.toml").write_text(lines)
     return path / "horizon.toml", path / "first.csv", "--confirm", path / "second.csv"
 
 

@@ -7,6 +7,8 @@ from touching_cases import make_robot, simulated
 from identification import InputError, read_robot
 from identification.refusals.unmeasured import refuse_unmeasured
 
+pytestmark = pytest.mark.usefixtures("few_effects")
+
 LEG = """<mujoco>
 <option timestep="0.002" integrator="RK4"/>
 <worldbody>

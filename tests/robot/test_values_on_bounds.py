@@ -20,6 +20,8 @@ from identification.model.parameter import Parameter, ParameterSet
 from identification.robot.fit_json import robot_fit_to_json
 from identification.robot.write import write_robot
 
+pytestmark = pytest.mark.usefixtures("few_effects")
+
 DRAWN, MORE = 1e-3, 4e-3  # inertia about the centre in the drawing, and what the true arm has more
 INERTIA = "body/arm.inertia[1]"
 FREE = f'free = ["{INERTIA}", "joint/hinge.damping"]\n[parameters."{INERTIA}"]\nknown = 3.0\n'

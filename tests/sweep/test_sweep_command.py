@@ -83,7 +83,7 @@ def until(folder, count):
 
 
 def test_ctrl_c_ends_with_130_and_keeps_the_records(tmp_path):
-    path, out = write(tmp_path, SLOW, 40), tmp_path / "out"
+    path, out = write(tmp_path, SLOW, 15), tmp_path / "out"
     line = [*LINE, str(path), "--out", str(out), "--jobs", "1"]
     process = subprocess.Popen(line, cwd=tmp_path, stderr=subprocess.PIPE, text=True)
     until(out / "records", 2)
@@ -93,7 +93,7 @@ def test_ctrl_c_ends_with_130_and_keeps_the_records(tmp_path):
     assert "stopping" in error
     assert "Traceback" not in error
     kept = read(out)
-    assert 2 <= len(kept) < 40
+    assert 2 <= len(kept) < 15
     assert kept == run(path, tmp_path / "whole")[: len(kept)]
 
 

@@ -76,12 +76,16 @@ def test_what_the_reference_can_say_it_says_the_same(moved):
     np.testing.assert_allclose(X[:, base.POSITION], expected.position, atol=CLOSE)
 
 
+@cache
+def without():
+    return simulate_world(plant(), prbs())[:, : base.STATES]
+
+
 @pytest.mark.parametrize(("name", "other_shape"), ALL)
 def test_no_size_is_no_effect_and_a_size_is_one(name, other_shape):
     u, e = prbs(), effect(name, other_shape=other_shape)
-    without = simulate_world(plant(), u)[:, : base.STATES]
-    assert np.array_equal(simulate_world(plant(e.scaled(0)), u)[:, : base.STATES], without)
-    change = abs(simulate_world(plant(e), u)[:, : base.STATES] - without)[:, base.ANGLES].max()
+    assert np.array_equal(simulate_world(plant(e.scaled(0)), u)[:, : base.STATES], without())
+    change = abs(simulate_world(plant(e), u)[:, : base.STATES] - without())[:, base.ANGLES].max()
     # The clip at 0.95 A loses much, the hardening of a cable in a second little.
     assert 1e-6 < change < 1.0
 

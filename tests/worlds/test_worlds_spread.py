@@ -124,7 +124,8 @@ def test_records_are_of_one_robot_and_each_has_a_start_input_and_noise_of_its_ow
 
 
 def test_a_ratio_is_that_of_the_robot_as_built():
-    log, truth = world(6, [HiddenStribeckFriction()], ratio=6.0, setting=BUILT)
+    setting = replace(BUILT, duration=0.5)
+    log, truth = world(6, [HiddenStribeckFriction()], ratio=6.0, setting=setting)
     robot = with_spread(parameter_set("trial")).with_values(truth.parameters)
     names = (*VARIED, "R", "k_s", "beta")
     absorbed = HiddenAbsorbed(robot, log.inputs, 0.01, names, AS_BUILT, truth.noise_rms)

@@ -64,6 +64,7 @@ def test_encoders_that_are_late_show_earlier_positions():
 def test_a_world_is_read_as_a_robot_and_repeats_itself(tmp_path):
     world, again = (make_world("cart", "offset", 4, duration=2.0) for _ in range(2))
     np.testing.assert_array_equal(world.records[0].outputs, again.records[0].outputs)
+    assert world.acting == ()  # one effect acts, which is that of the world itself
     toml, a, b = write_world(world, tmp_path)
     robot = read_robot(toml, a, confirm=[b])
     assert set(robot.nominal_model.names) == set(world.truth)

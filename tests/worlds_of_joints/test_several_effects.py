@@ -14,8 +14,6 @@ def test_the_truth_has_every_one_of_them_and_no_two_with_one_name():
     assert len(names) == len({*names})
     assert {*names} == {*world.names}
     assert all(a.effect in a.names and a.size != 0 for a in world.acting)
-    alone = make_world("pendulum", world.acting[0].effect, 7, duration=3.0)
-    assert alone.acting == ()
     known = {k for a in world.acting for k in EVERY[a.effect].known}
     assert not known & {f.kind for f in world.free}  # what would pass for one of them
 
