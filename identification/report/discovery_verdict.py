@@ -36,6 +36,7 @@ SOUGHT = {  # what the moves that the time limit ends seek, by their names
     "add_pair": "pairs of effects",
     "add_deviants": "parts that deviate from the others",
 }
+EXACT_SHARE = 0.97  # a law with less is told to be inexact
 ALMOST = 0.9999  # nearly all: "more than 99.9 %"
 
 
@@ -210,13 +211,22 @@ def _proof(found: Discovery) -> str:
 
 
 def _smooth(found: Discovery) -> str:
-    """Returns a sentence on what the named effects explain of what smooth forces could."""
+    """Returns sentences on what the named effects explain of what smooth forces could.
+
+    Each of several that is not exact is told by itself.
+    """
     if found.smooth_share is None:
         return ""
+    inexact = [
+        f"{percent(n.smooth_share)} for {describe_effect(n.candidate)}"
+        for n in found.named
+        if len(found.named) > 1 and n.smooth_share is not None and n.smooth_share < EXACT_SHARE
+    ]
+    each = f" At their own joints the shares are {listed(inexact)}." if inexact else ""
     is_one, share = len(found.named) == 1, found.smooth_share
     who, whom = ("This effect alone explains", "it explains") if is_one else (
         "These effects alone explain", "they explain")  # fmt: skip
     return (
         f" {who} {percent(share)} of what {whom} together with any smooth forces at the joints"
-        " (functions of rate, position, drive or time)."
+        f" (functions of rate, position, drive or time).{each}"
     )

@@ -37,7 +37,7 @@ DOUBTS = {
     "exchange": "if the other records are fitted instead, it predicts a record worse, or all of"
     " them on average",
     "drawn": "a curve from the data at the same joint explains the same, and more",
-    "neighbour": "a force drawn from the data still explains much of what it leaves, beyond chance",
+    "neighbour": "beside it a force drawn from the data explains much of what the two explain",
     "gap": "it removes less than half of the power above the noise, and something is left",
     "odds": "other effects in its place are together likelier than it",
     "beside": "it was found beside an effect that has no sure name",
