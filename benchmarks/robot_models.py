@@ -46,9 +46,9 @@ Menagerie (`examples/linkages`, `benchmarks/robots/kinds`), simulated with one e
 that its model lacks, each at a joint that is driven. No law is exact on a real robot: a *rough* one
 also has at each driven joint 5 to 20 % of a force of position and rate that is in no catalogue. A
 log of 8 s at 100 Hz is fitted and searched, another one confirms. The search tries all candidates.
-An answer is right if each name is that of a
-hidden effect at its joint, and no effect is left without one; what makes a robot rough must have no
-name. For the four-bar and the gripper, whose joints are coupled, a name may also stand at another
+An answer is right if each name is that of a hidden effect at its joint, and no effect is left
+without one; what makes a robot rough must have no name. For the four-bar and the gripper, whose
+joints are coupled, a name may also stand at another
 joint or at all of them, because the motion cannot tell these apart.
 """
 
