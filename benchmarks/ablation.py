@@ -43,7 +43,8 @@ from joint_worlds.files import truth_of, write_world
 from joint_worlds.hidden import NULL, THREE, effects_of
 from joint_worlds.motion import ROBOTS
 from joint_worlds.world import UnseenError, make_world
-from robot_worlds import DRIVEN, NAMES, is_asked, make, write
+from robot_motions import DRIVEN
+from robot_worlds import NAMES, is_asked, make, write
 from rows import ROOT, Row, answered, of_newest, rows_of, write_part
 from scipy.stats import binomtest
 

@@ -19,7 +19,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from robot_worlds import DRIVEN, NAMES, SEVERAL, UNLISTED, is_asked, make, write
+from robot_motions import DRIVEN
+from robot_worlds import NAMES, SEVERAL, UNLISTED, is_asked, make, write
 from rows import ROOT, Row, answered, of_newest, rows_of
 
 from identification.discovery.result import Discovery
