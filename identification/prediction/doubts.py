@@ -1,7 +1,7 @@
 """What speaks against the names of the effects that a search has accepted.
 
     neighbour     a force drawn from the data explains much of what it and the law explain
-    bound         its shape ends on a bound of what it may be
+    bound         its size or shape ends on a bound of what it may be
     mass, ...     physics forbids the size (`identification.discovery.impossible`)
     gap           it closes less of the gap than a name has to, and something is left
     odds          others in its place are likelier than it, and it is in no set with its look-alike
@@ -60,10 +60,9 @@ def forbidden_of(state: WindowSearch) -> tuple[Doubt | None, ...]:
 
 
 def _forbidden(state: WindowSearch, candidate: Candidate) -> Doubt | None:
-    """Returns what physics forbids of an effect, or that its shape ended on a bound."""
+    """Returns what physics forbids of an effect, or that it ended on a bound."""
     model, options = state.model, state.task.options
-    shapes = {*candidate.estimated} - {*candidate.free}
-    if uses(options, "shapes_on_bounds") and is_at_bound(model, shapes):
+    if is_at_bound(model, candidate, options):
         return "bound"
     logs = [r.log for r in state.task.records]
     is_asked = uses(options, "impossible_sizes")

@@ -213,8 +213,7 @@ def judged(
         doubt = "record"
     if doubt is None and not has_size(new, options):
         doubt = "size"
-    asked = c.estimated if uses(options, "shapes_on_bounds") else c.free
-    if doubt is None and is_at_bound(new, asked):
+    if doubt is None and is_at_bound(new, c, options):
         doubt = "bound"
     if doubt is None and uses(options, "impossible_sizes"):
         logs = [p.predictor.log for p in new.fit.problem.parts]

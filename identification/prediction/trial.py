@@ -18,7 +18,7 @@ brakes.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -178,7 +178,7 @@ def has_size(model: WindowModel, options: DiscoveryOptions) -> bool:
     )
 
 
-def is_at_bound(model: WindowModel, names: Collection[str]) -> bool:
+def is_at_bound(model: WindowModel, c: Candidate, options: DiscoveryOptions) -> bool:
     """Returns whether a size or a free shape of an effect ended on a bound of what it may be.
 
     The data then ask for more than physics allows: the effect stands for something else. A friction
@@ -187,10 +187,12 @@ def is_at_bound(model: WindowModel, names: Collection[str]) -> bool:
 
     Args:
         model: with the effect.
-        names: of the sizes and shapes that are asked, as the plant's parameters.
+        c: the effect.
+        options: whether shapes are asked.
     """
     parameters = model.plant.parameters
-    values = {n: v for n, v in model.fit.values.items() if n.partition(" [")[0] in names}
+    asked = c.estimated if uses(options, "shapes_on_bounds") else c.free
+    values = {n: v for n, v in model.fit.values.items() if n.partition(" [")[0] in asked}
     each = ((v, parameters[n.partition(" [")[0]]) for n, v in values.items())
     return any(
         bound != 0 and np.isfinite(bound) and abs(v - bound) <= BOUND_TOLERANCE * abs(bound)

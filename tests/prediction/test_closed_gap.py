@@ -5,8 +5,6 @@ from types import SimpleNamespace
 import pytest
 
 from identification.discovery.options import DiscoveryOptions
-from identification.model.parameter import Parameter, ParameterSet
-from identification.prediction import doubts
 from identification.prediction.doubts import doubts_of_names
 from identification.prediction.verdict import decide
 
@@ -47,22 +45,3 @@ def test_what_physics_forbids_at_the_values_of_the_final_model_is_no_name():
     assert verdict_of(named, LEFT, 0.9, options, [None, None]) == "named"
     assert verdict_of(named, LEFT, 0.9, options, ["mass", None]) == "unknown effect"
     assert doubts_of_names(named, ["mass", None], LEFT, 0.9, options) == ("mass", None)
-
-
-@pytest.mark.parametrize(("value", "without", "doubt"), [
-    (0.9, (), "bound"), (0.5, (), None), (0.9, ("shapes_on_bounds",), None),
-])  # fmt: skip
-def test_a_shape_that_the_final_model_moved_to_its_bound_is_no_name(
-    monkeypatch, value, without, doubt
-):
-    monkeypatch.setattr(doubts, "find_impossible", lambda *given: None)
-    share = Parameter(name="gear.rho", value=0.5, unit="", where="", lower=0.02, upper=0.9)
-    model = SimpleNamespace(
-        plant=SimpleNamespace(parameters=ParameterSet("effects", (share,))),
-        fit=SimpleNamespace(values={"gear.rho": value}),
-    )
-    effect = SimpleNamespace(is_of_records=False)
-    law = SimpleNamespace(effect=effect, free=("gear.c",), estimated=("gear.c", "gear.rho"))
-    task = SimpleNamespace(options=DiscoveryOptions(without=without), records=())
-    state = SimpleNamespace(model=model, task=task, accepted=(SimpleNamespace(candidate=law),))
-    assert doubts.forbidden_of(state) == (doubt,)
