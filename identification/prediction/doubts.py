@@ -1,13 +1,10 @@
 """What speaks against the names of the effects that a search has accepted.
 
-    neighbour     a force drawn from the data explains much of what it and the law explain
-    bound         its size or shape ends on a bound of what it may be
-    mass, ...     physics forbids the size (`identification.discovery.impossible`)
-    gap           it closes less of the gap than a name has to, and something is left
-    odds          others in its place are likelier than it, and it is in no set with its look-alike
-
-The first of them counts. An effect against which nothing speaks may have been found beside another
-one that has no sure name ("beside").
+neighbour     a force drawn from the data explains much of what a law leaves
+mass, ...     physics forbids the size (`identification.discovery.impossible`)
+odds          others in its place are likelier than it, and it is in no set with its look-alike
+gap           it closes less of the gap than a name has to, and something is left
+beside        nothing, but it was found beside an effect that has no sure name
 """
 
 from __future__ import annotations
@@ -21,11 +18,10 @@ from identification.discovery.findings.finding import Finding
 from identification.discovery.impossible import find_impossible
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.passes import uses
-from identification.effects.effect import Candidate
 from identification.prediction.neighbours import has_neighbours_name
 from identification.prediction.task import WindowSearch
 from identification.prediction.told_effects import named_effect
-from identification.prediction.trial import Contender, Doubt, is_at_bound
+from identification.prediction.trial import Contender, Doubt
 from identification.prediction.yardstick import Yardstick, measure
 
 EVEN_ODDS = 0.5  # a name below them is none, unless it is told with its look-alike
@@ -52,21 +48,16 @@ def laws_of(state: WindowSearch) -> tuple[Contender, ...]:
 
 
 def forbidden_of(state: WindowSearch) -> tuple[Doubt | None, ...]:
-    """Returns why each effect that may be named cannot be, at the model's values.
+    """Returns what physics forbids of each effect that may be named, at the model's values.
 
-    Later effects and the last fit may have moved them since it was accepted.
+    Later effects may have moved them since it was accepted.
     """
-    return tuple(_forbidden(state, a.candidate) for a in laws_of(state))
-
-
-def _forbidden(state: WindowSearch, candidate: Candidate) -> Doubt | None:
-    """Returns what physics forbids of an effect, or that it ended on a bound."""
-    model, options = state.model, state.task.options
-    if is_at_bound(model, candidate, options):
-        return "bound"
     logs = [r.log for r in state.task.records]
-    is_asked = uses(options, "impossible_sizes")
-    return find_impossible(candidate, model, logs) if is_asked else None
+    is_asked = uses(state.task.options, "impossible_sizes")
+    return tuple(
+        find_impossible(a.candidate, state.model, logs) if is_asked else None
+        for a in laws_of(state)
+    )
 
 
 def doubts_of_names(

@@ -213,33 +213,32 @@ def test_confidence_is_shared_by_equals_as_their_blocks_scatter():
 
 
 def fitted(value, lower, upper, is_shape=False):
-    """A model and its effect with one free size, or one free shape, which was fitted."""
+    """A model whose last effect has one free size, or one free shape, which was fitted."""
     name = "law.number@a"
     start = max(0.0, lower)
     number = Parameter(name=name, value=start, unit="N", where="", lower=lower, upper=upper)
     parameters = ParameterSet("effects", (number,))
-    candidate = SimpleNamespace(free=() if is_shape else (name,), estimated=(name,))
-    model = SimpleNamespace(
+    return SimpleNamespace(
         plant=SimpleNamespace(parameters=parameters),
+        candidates=(SimpleNamespace(free=() if is_shape else (name,), estimated=(name,)),),
         fit=SimpleNamespace(values={f"{name} [log]": value, "J": 1.0}),
     )
-    return model, candidate
 
 
 @given(st.floats(0.1, 10.0), st.floats(-0.999, 0.999), st.booleans())
 def test_only_a_number_on_a_bound_that_is_not_zero_stands_for_something_else(bound, share, shape):
     options = DiscoveryOptions()
-    assert is_at_bound(*fitted(bound, -bound, bound, shape), options)
-    assert is_at_bound(*fitted(-bound, -bound, bound, shape), options)
-    assert not is_at_bound(*fitted(share * bound, -bound, bound, shape), options)
-    assert not is_at_bound(*fitted(0.0, 0.0, bound, shape), options)
-    assert not is_at_bound(*fitted(share * bound, -np.inf, np.inf, shape), options)
+    assert is_at_bound(fitted(bound, -bound, bound, shape), options)
+    assert is_at_bound(fitted(-bound, -bound, bound, shape), options)
+    assert not is_at_bound(fitted(share * bound, -bound, bound, shape), options)
+    assert not is_at_bound(fitted(0.0, 0.0, bound, shape), options)
+    assert not is_at_bound(fitted(share * bound, -np.inf, np.inf, shape), options)
 
 
 def test_without_its_pass_a_shape_on_a_bound_is_no_reason():
     options = DiscoveryOptions(without=("shapes_on_bounds",))
-    assert not is_at_bound(*fitted(0.1, 0.1, 0.95, is_shape=True), options)
-    assert is_at_bound(*fitted(0.1, 0.1, 0.95), options)
+    assert not is_at_bound(fitted(0.1, 0.1, 0.95, is_shape=True), options)
+    assert is_at_bound(fitted(0.1, 0.1, 0.95), options)
 
 
 LEVEL_THERE = 0.1  # Coulomb friction [N m]
