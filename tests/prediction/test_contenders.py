@@ -215,8 +215,7 @@ def test_confidence_is_shared_by_equals_as_their_blocks_scatter():
 def fitted(value, lower, upper, is_shape=False):
     """A model whose last effect has one free size, or one free shape, which was fitted."""
     name = "law.number@a"
-    start = max(0.0, lower)
-    number = Parameter(name=name, value=start, unit="N", where="", lower=lower, upper=upper)
+    number = Parameter(name=name, value=0.0, unit="N", where="", lower=lower, upper=upper)
     parameters = ParameterSet("effects", (number,))
     return SimpleNamespace(
         plant=SimpleNamespace(parameters=parameters),
