@@ -34,9 +34,6 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
     ),
     "add_deviants": (RUN, "makes effects of parts that deviate by more than parts do"),
     "impossible_sizes": (BOTH, "names no effect of a size that physics forbids"),
-    "shapes_on_bounds": (
-        HORIZON, "proves no effect whose shape ends on a bound of what it may be",
-    ),
     "drop_effects": (BOTH, "drops an effect that later ones have made needless"),
     "exchange_effects": (
         RUN, "puts a rival in the place of an effect, where the model with it is better",

@@ -213,7 +213,7 @@ def judged(
         doubt = "record"
     if doubt is None and not has_size(new, options):
         doubt = "size"
-    if doubt is None and is_at_bound(new, options):
+    if doubt is None and is_at_bound(new):
         doubt = "bound"
     if doubt is None and uses(options, "impossible_sizes"):
         logs = [p.predictor.log for p in new.fit.problem.parts]

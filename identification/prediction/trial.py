@@ -178,20 +178,14 @@ def has_size(model: WindowModel, options: DiscoveryOptions) -> bool:
     )
 
 
-def is_at_bound(model: WindowModel, options: DiscoveryOptions) -> bool:
-    """Returns whether a size or a free shape of the last effect ended on a bound of what it may be.
+def is_at_bound(model: WindowModel) -> bool:
+    """Returns whether a size of the last effect ended on the bound of what is believed.
 
-    The data then ask for more than physics allows: the effect stands for something else. A friction
-    that grows with the least power of speed is another one's neighbour, and so is a gear whose
-    motor has all of the inertia. Zero as a bound of a size is no effect, and no reason.
-
-    Args:
-        model: with the effect as the last of its candidates.
-        options: whether shapes are asked.
+    The data then ask for more than physics allows: the effect stands for something else. Zero as a
+    bound of a size is no effect, and no reason.
     """
-    c, parameters = model.candidates[-1], model.plant.parameters
-    asked = c.estimated if uses(options, "shapes_on_bounds") else c.free
-    values = {n: v for n, v in model.fit.values.items() if n.partition(" [")[0] in asked}
+    parameters, sizes = model.plant.parameters, model.candidates[-1].free
+    values = {n: v for n, v in model.fit.values.items() if n.partition(" [")[0] in sizes}
     each = ((v, parameters[n.partition(" [")[0]]) for n, v in values.items())
     return any(
         bound != 0 and np.isfinite(bound) and abs(v - bound) <= BOUND_TOLERANCE * abs(bound)

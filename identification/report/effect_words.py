@@ -32,7 +32,7 @@ DOUBTS = {
     "record": "a record is predicted worse with it",
     "little": "it removes too little of the error to matter over windows of some length",
     "size": "its size is not known well enough to differ from zero",
-    "bound": "its size or shape ends on a bound of what it may be, so that it stands for something"
+    "bound": "its size ends on the largest value that is believed, so that it stands for something"
     " else",
     "exchange": "if the other records are fitted instead, it predicts a record worse, or all of"
     " them on average",

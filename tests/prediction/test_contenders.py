@@ -212,32 +212,25 @@ def test_confidence_is_shared_by_equals_as_their_blocks_scatter():
     assert 0 < shares.min() < shares.max() < 1
 
 
-def fitted(value, lower, upper, is_shape=False):
-    """A model whose last effect has one free size, or one free shape, which was fitted."""
-    name = "law.number@a"
-    number = Parameter(name=name, value=0.0, unit="N", where="", lower=lower, upper=upper)
-    parameters = ParameterSet("effects", (number,))
+def fitted(value, lower, upper):
+    """A model whose last effect has one free size, which was fitted."""
+    name = "law.size@a"
+    size = Parameter(name=name, value=0.0, unit="N", where="", lower=lower, upper=upper)
+    parameters = ParameterSet("effects", (size,))
     return SimpleNamespace(
         plant=SimpleNamespace(parameters=parameters),
-        candidates=(SimpleNamespace(free=() if is_shape else (name,), estimated=(name,)),),
+        candidates=(SimpleNamespace(free=(name,)),),
         fit=SimpleNamespace(values={f"{name} [log]": value, "J": 1.0}),
     )
 
 
-@given(st.floats(0.1, 10.0), st.floats(-0.999, 0.999), st.booleans())
-def test_only_a_number_on_a_bound_that_is_not_zero_stands_for_something_else(bound, share, shape):
-    options = DiscoveryOptions()
-    assert is_at_bound(fitted(bound, -bound, bound, shape), options)
-    assert is_at_bound(fitted(-bound, -bound, bound, shape), options)
-    assert not is_at_bound(fitted(share * bound, -bound, bound, shape), options)
-    assert not is_at_bound(fitted(0.0, 0.0, bound, shape), options)
-    assert not is_at_bound(fitted(share * bound, -np.inf, np.inf, shape), options)
-
-
-def test_without_its_pass_a_shape_on_a_bound_is_no_reason():
-    options = DiscoveryOptions(without=("shapes_on_bounds",))
-    assert not is_at_bound(fitted(0.1, 0.1, 0.95, is_shape=True), options)
-    assert is_at_bound(fitted(0.1, 0.1, 0.95), options)
+@given(st.floats(0.1, 10.0), st.floats(-0.999, 0.999))
+def test_only_a_size_on_a_bound_that_is_not_zero_stands_for_something_else(bound, share):
+    assert is_at_bound(fitted(bound, -bound, bound))
+    assert is_at_bound(fitted(-bound, -bound, bound))
+    assert not is_at_bound(fitted(share * bound, -bound, bound))
+    assert not is_at_bound(fitted(0.0, 0.0, bound))
+    assert not is_at_bound(fitted(share * bound, -np.inf, np.inf))
 
 
 LEVEL_THERE = 0.1  # Coulomb friction [N m]
