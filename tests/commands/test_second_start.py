@@ -17,8 +17,6 @@ sys.stderr.write(json.dumps(sorted(sys.modules)))
 SCIPY = ("stats", "special", "linalg", "optimize", "interpolate")
 SLOW = ("matplotlib", "jinja2", *(f"scipy.{part}" for part in SCIPY))
 SEARCH = "identification.innovations.discovery"
-
-
 COMMANDS = (
     ("simulate", "--duration", "0.05"),
     ("compare", str(example_path())),
@@ -26,31 +24,27 @@ COMMANDS = (
 )
 
 
-def test_commands_that_draw_nothing_import_neither_figures_nor_the_search(tmp_path):
+def modules_after(commands, folder):
+    """The names of all modules that a process has imported after some commands."""
+    words = json.dumps([*map(list, commands)])
     done = subprocess.run(
-        [sys.executable, "-c", WATCHED, json.dumps(COMMANDS)],
-        capture_output=True,
-        text=True,
-        cwd=tmp_path,
-        check=True,
-    )
-    modules = json.loads(done.stderr)
+        [sys.executable, "-c", WATCHED, words],
+        capture_output=True, text=True, cwd=folder, check=True,
+    )  # fmt: skip
+    return {*json.loads(done.stderr.splitlines()[-1])}
+
+
+def test_commands_that_draw_nothing_import_neither_figures_nor_the_search(tmp_path):
+    modules = modules_after(COMMANDS, tmp_path)
     assert "mujoco" in modules
-    assert not {*SLOW, SEARCH} & {*modules}
+    assert not {*SLOW, SEARCH} & modules
 
 
 def test_commands_that_draw_runs_import_no_optimiser(tmp_path):
-    words = [[*command, "--out", f"drawn{k}"] for k, command in enumerate(COMMANDS)]
-    done = subprocess.run(
-        [sys.executable, "-c", WATCHED, json.dumps(words)],
-        capture_output=True,
-        text=True,
-        cwd=tmp_path,
-        check=True,
-    )
-    modules = json.loads(done.stderr.splitlines()[-1])
+    drawn = [(*command, "--out", f"drawn{k}") for k, command in enumerate(COMMANDS)]
+    modules = modules_after(drawn, tmp_path)
     assert "matplotlib" in modules
-    assert not {"scipy.optimize", "scipy.special", SEARCH} & {*modules}
+    assert not {"scipy.optimize", "scipy.special", SEARCH} & modules
 
 
 ROOT = Path(__file__).parents[2]
