@@ -3,11 +3,15 @@
     τ = Σ_b s_b (M_b(q) q̈ + c_b(q, q̇)) + Σ_p m_p (M_p(q) q̈ + c_p) + Σ_g γ_g g_g(q) + …
         … + d q̇ + f_c sign q̇ + f_0 + κ k (q - q_0)          s, κ in [1/4, 4], m_p, d, f_c ≥ 0
     η_j = Σ (τ_j - right side)² / Σ (τ_j - mean τ_j)²      least over s, m, γ, d, f_c, f_0, κ
+    η   = Σ_j Σ (τ_j - right side)²/M_jj / Σ_j Σ (τ_j - mean τ_j)²/M_jj
 
 b are the model's bodies and rotors, p points of the outermost bodies that may carry a payload. Each
 γ is the weight of a body along an axis, or of what it carries: gravity may be missing, turned or
-too much. So η is what no payload, gravity, friction or mass explains; only a wrong unit, sign or
+too much. So η_j is what no payload, gravity, friction or mass explains; only a wrong unit, sign or
 order of columns does. The motion is smoothed by ψ (`identification.refusals.smoothing`).
+
+A drive that rests while other joints swing its own has a large η_j, because a little that the model
+lacks is more than what that drive gives. So η weighs all joints by the inertia M_jj that they move.
 
     min ‖A x - b‖²,  low ≤ x ≤ high                A = Q R,  Qᵀ b = c:  min ‖R x - c‖², R square
     R_f z + R_b y = c,  z without bounds  ->  min ‖P (R_b y - c)‖² over y,   P = I - R_f R_f⁺
@@ -19,6 +23,8 @@ that the solver, whose steps take the square of its columns, is spared them.
 """
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import mujoco
 import numpy as np
@@ -47,10 +53,26 @@ DEPENDENT = 1e-10
 PULL = 1e-4  # of an unknown, that it adds to what is left; columns are of a size of one, or more
 
 
+@dataclass(frozen=True)
+class Unbalanced:
+    """What the balance of forces leaves of the drives' forces."""
+
+    of_outputs: np.ndarray  # η_j of the joint of each output, shape (ny,), without unit
+    whole: float  # η of all joints, without unit; infinite where no drive gives a force
+
+
 def unbalanced_share(
     model: mujoco.MjModel, log: Log, springs: bool = False, wider: int = 1
 ) -> np.ndarray | None:
-    """Returns η of the joint of each output, shape (ny,), without unit.
+    """Returns η_j of the joint of each output, shape (ny,), without unit; see `unbalanced`."""
+    found = unbalanced(model, log, springs, wider)
+    return None if found is None else found.of_outputs
+
+
+def unbalanced(
+    model: mujoco.MjModel, log: Log, springs: bool = False, wider: int = 1
+) -> Unbalanced | None:
+    """Returns what the balance of forces leaves of the drives' forces.
 
     Args:
         model: with the log's actuators and sensors.
@@ -73,7 +95,7 @@ def unbalanced_share(
         return None
     motion, force = found
     A, low, high = _columns(model, motion, springs)
-    size = force.std(axis=0)
+    size = given = force.std(axis=0)
     masses = A[:, :, : int(np.sum(low > 0))].sum(axis=2)  # of the model's own masses
     size = np.where(size > 0, size, np.sqrt(np.mean(masses**2, axis=0)))  # joints without a drive
     size = np.where(size > 0, size, 1.0)
@@ -87,7 +109,9 @@ def unbalanced_share(
     eta = np.mean(rest**2, axis=0)
     joint = [i if field == "qvel" else int(model.jnt_dofadr[model.jnt_qposadr == i][0])
              for field, i in columns]  # fmt: skip
-    return np.asarray(eta[joint])
+    weight = 1 / np.maximum(model.dof_M0, np.finfo(float).tiny)
+    left, felt = (float(np.sum(x * weight)) for x in (eta * size**2, given**2))
+    return Unbalanced(np.asarray(eta[joint]), left / felt if felt > 0 else np.inf)
 
 
 def _shortest(

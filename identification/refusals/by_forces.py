@@ -1,6 +1,6 @@
 """What the forces of the drives say of a log and of other readings of it, without a simulation.
 
-    η(y) > 1      however light, friction, gravity, payload and springs may be, more is left of the
+    η > 1         however light, friction, gravity, payload and springs may be, more is left of the
                   balance of forces than the drives gave
 
 The balance is that of `identification.refusals.balance`, where masses may be off by a factor of
@@ -24,7 +24,7 @@ import numpy as np
 
 from identification.logs.log import Log
 from identification.quantities import held
-from identification.refusals.balance import unbalanced_share
+from identification.refusals.balance import Unbalanced, unbalanced, unbalanced_share
 from identification.refusals.columns import Doubt, factor_readings, turned_units, unit_readings
 from identification.refusals.readings import EXPLAINED, NEARER, SAME, UNEXPLAINED, Reading
 from identification.refusals.turned_inputs import with_turned_ranges
@@ -43,9 +43,14 @@ class Balance:
     log: Log
 
     @cached_property
+    def whole(self) -> Unbalanced | None:
+        """What the balance leaves of the log as it is read."""
+        return unbalanced(self.model, self.log)
+
+    @property
     def as_read(self) -> np.ndarray | None:
-        """η of each output, shape (ny,)."""
-        return unbalanced_share(self.model, self.log)
+        """η_j of each output, shape (ny,)."""
+        return None if self.whole is None else self.whole.of_outputs
 
     @property
     def contradicts(self) -> bool:
@@ -55,7 +60,7 @@ class Balance:
     @property
     def excludes(self) -> bool:
         """Tells whether forces cannot be those of the log as it is read, whatever it lacks."""
-        return self.as_read is not None and bool((self.as_read > NEEDED).any())
+        return self.whole is not None and self.whole.whole > NEEDED
 
     def confirms(self, reading: Reading, rest: np.ndarray) -> bool:
         """Returns whether forces speak for a reading that leaves ε (ny,)."""
@@ -80,7 +85,7 @@ class Balance:
         )
 
     def of(self, reading: Reading) -> np.ndarray | None:
-        """Returns η of another reading of the log, shape (ny,)."""
+        """Returns η_j of another reading of the log, shape (ny,)."""
         return unbalanced_share(with_turned_ranges(self.model, self.log, reading.log), reading.log)
 
 
@@ -103,24 +108,24 @@ def rescaled(
     """
     log = doubt.log
     as_read = _least_share(model, log)
-    if as_read is None or as_read.max() <= NEEDED:
+    if as_read is None or as_read <= NEEDED:
         return None
     both = turned_units(doubt) if signs else ()
-    found: list[tuple[Reading, np.ndarray]] = []
+    found: list[tuple[Reading, float]] = []
     for reading in chain(factor_readings(doubt), unit_readings(doubt, alone=alone), both):
-        rest = unbalanced_share(model, reading.log, springs=True)
-        if rest is not None and rest.max() <= EXPLAINED and rest.sum() <= NEARER * as_read.sum():
-            found.append((reading, rest))
+        rest = unbalanced(model, reading.log, springs=True)
+        if rest is not None and rest.whole <= min(EXPLAINED, NEARER * as_read):
+            found.append((reading, rest.whole))
     if not found:
         return None
-    least = min(rest.sum() for _, rest in found)
-    near = [(r, rest) for r, rest in found if NEARER * rest.sum() <= least]
+    least = min(rest for _, rest in found)
+    near = [(r, rest) for r, rest in found if NEARER * rest <= least]
     # Rounded, so that of two readings that are the same the first one counts.
-    reading, rest = min(near, key=lambda each: round(_change(each[0].log, log), DIGITS))
-    times = held(float(np.sqrt(as_read.max())))
+    reading, left = min(near, key=lambda each: round(_change(each[0].log, log), DIGITS))
+    times = held(float(np.sqrt(as_read)))
     return reading, (
         f"needs forces {times} times those of the drives for this motion, whatever"
-        f" payload and friction it has, and explains {percent(1 - float(rest.max()))} of them"
+        f" payload and friction it has, and explains {percent(1 - left)} of them"
         f" {reading.words}; {reading.cure} (where the outputs are right, the inputs are in a larger"
         " unit: write that of the inputs)"
     )
@@ -169,15 +174,14 @@ def _change(other: Log, log: Log) -> float:
     return sum(float(np.abs(np.log(a[b > 0] / b[b > 0])).sum()) for a, b in sizes)
 
 
-def _least_share(model: mujoco.MjModel, log: Log) -> np.ndarray | None:
-    """Returns η of each output (ny,), of the ψ that leaves least; None where it cannot be had."""
-    best: np.ndarray | None = None
+def _least_share(model: mujoco.MjModel, log: Log) -> float | None:
+    """Returns η with the ψ that leaves least; None where it cannot be had."""
+    best: float | None = None
     for wider in WIDER:
-        rest = unbalanced_share(model, log, springs=True, wider=wider)
+        rest = unbalanced(model, log, springs=True, wider=wider)
         if rest is None:
             return best
-        if best is None or rest.max() < best.max():
-            best = rest
-        if best.max() <= NEEDED:
+        best = rest.whole if best is None else min(best, rest.whole)
+        if best <= NEEDED:
             return best
     return best

@@ -6,7 +6,7 @@ from functools import cache
 import mujoco
 import numpy as np
 import pytest
-from plain_logs import plain_log
+from plain_logs import model_log, plain_log
 from tracked_cases import (
     ARM,
     MOTION,
@@ -20,7 +20,8 @@ from tracked_cases import (
 )
 
 from identification import InputError, Log
-from identification.refusals.by_forces import rescaled
+from identification.refusals.balance import unbalanced
+from identification.refusals.by_forces import NEEDED, rescaled
 from identification.refusals.columns import Doubt
 from identification.refusals.same_units import different_units
 from identification.refusals.wiring import refuse_miswired
@@ -80,6 +81,31 @@ def test_a_right_log_of_a_coarse_encoder_or_a_late_torque_passes(world, late, st
     read = replace(log, outputs=y, inputs=u, units=dict.fromkeys(log.output_names, "rad"))
     same = {n: n for n in (*log.input_names, *log.output_names)}
     assert rescaled(mujoco.MjModel.from_xml_string(ARM), Doubt.of(read, same)) is None
+
+
+def swung(model, idle, seed=0):
+    """A log of an arm whose last drive swings it, while the others give `idle` [N m] rms."""
+    rng, data = np.random.default_rng(seed), mujoco.MjData(model)
+    size = np.where(np.arange(model.nu) == model.nu - 1, 1.0, idle)
+    u = np.repeat(size * rng.standard_normal((30, model.nu)), 20, axis=0)
+    y = np.empty((len(u), model.nv))
+    for k in range(len(u)):
+        y[k], data.ctrl[:] = data.qpos, u[k]
+        mujoco.mj_step(model, data, 4)
+    return model_log(model, u, y + 2e-4 * rng.standard_normal(y.shape))
+
+
+def test_a_drive_that_rests_beside_others_is_no_reason_to_doubt_a_unit():
+    truth = mujoco.MjModel.from_xml_string(ARM)
+    truth.dof_frictionloss[:] = 0.2
+    known, log = mujoco.MjModel.from_xml_string(ARM), swung(truth, 1e-3)
+    left = unbalanced(known, log, springs=True)
+    assert left.of_outputs[0] > NEEDED > 4 * left.whole
+    same = {n: n for n in (*log.input_names, *log.output_names)}
+    assert rescaled(known, Doubt.of(log, same)) is None
+    turned = replace(log, outputs=log.outputs * DEG, units=dict.fromkeys(log.output_names, "rad"))
+    reading, _ = rescaled(known, Doubt.of(turned, same))
+    assert 'q1 = "deg"' in reading.cure
 
 
 def moved(samples=400, step=0.01, seed=0):
