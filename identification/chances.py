@@ -6,10 +6,13 @@ one: `scipy` imports it when a chance is first asked for.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 import scipy
+
+LEAST_OF_STRATUM = 3  # numbers, from which the scatter of a stratum is told
 
 
 def chi2_above(x: Any, freedom: float) -> Any:
@@ -65,6 +68,35 @@ def mean_above_zero(x: np.ndarray) -> tuple[float, float]:
     with np.errstate(divide="ignore", invalid="ignore"):
         t = float(x.mean() / np.sqrt(x.var(ddof=1) / len(x)))
     return t, student_above(t, len(x) - 1)
+
+
+def stratified_mean_above_zero(strata: Sequence[np.ndarray]) -> tuple[float, float]:
+    """Tests whether the mean of numbers from several strata is above zero (Cochran 1977, ch. 5).
+
+    Strata may have means and scatters of their own: that their means differ is no uncertainty of
+    the mean over all. Degrees of freedom are those of Satterthwaite (1946); one stratum is
+    Student's test. Strata too small to tell their scatter count as one.
+
+    Args:
+        strata: numbers of each, shape (n_r,).
+
+    Returns:
+        t, and the chance of as large a one where the mean is zero; NaN where nothing scatters.
+    """
+    large = [x for x in strata if len(x) >= LEAST_OF_STRATUM]
+    small = [x for x in strata if len(x) < LEAST_OF_STRATUM]
+    if small:
+        rest = np.concatenate(small)
+        if len(rest) < LEAST_OF_STRATUM and large:
+            large.sort(key=len)
+            rest = np.concatenate([rest, large.pop(0)])
+        large.append(rest)
+    n = sum(map(len, large))
+    each = np.array([len(x) * x.var(ddof=1) for x in large]) / n**2
+    with np.errstate(divide="ignore", invalid="ignore"):
+        t = sum(float(x.sum()) for x in large) / n / np.sqrt(each.sum())
+        freedom = each.sum() ** 2 / sum(each**2 / (np.array([*map(len, large)]) - 1))
+    return float(t), student_above(float(t), float(freedom))
 
 
 def ranks_above_zero(x: np.ndarray) -> float:

@@ -86,6 +86,10 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
     "gains_of_outputs": (
         HORIZON, "weighs laws by what each output gains, and not by the mean over all outputs",
     ),
+    "strata_of_records": (
+        HORIZON, "tests the mean gain by how blocks scatter within each record, and not by how"
+        " records differ",
+    ),
     "own_weights": (
         HORIZON, "weighs outputs and priors by the errors of the model with what was found so far",
     ),

@@ -33,7 +33,7 @@ from identification.effects.joint_group import SLIDE
 from identification.prediction.evidence import count_windows, evidence
 from identification.prediction.model import WindowModel
 from identification.prediction.scores import WindowScore
-from identification.windows.comparison import Prediction, compare
+from identification.windows.comparison import How, Prediction, compare
 from identification.windows.unseen import Unseen
 
 Doubt = (
@@ -104,9 +104,10 @@ def compared(without: Unseen, with_it: Unseen, options: DiscoveryOptions) -> Pre
     Args:
         without: errors of the first model.
         with_it: of the second one.
-        options: whether each output counts by itself.
+        options: whether each output counts by itself, and each record.
     """
-    return compare(without, with_it, uses(options, "gains_of_outputs"))
+    how = How(uses(options, "gains_of_outputs"), uses(options, "strata_of_records"))
+    return compare(without, with_it, how)
 
 
 def find_doubt(found: Prediction, refits: int, options: DiscoveryOptions) -> Doubt | None:

@@ -3,9 +3,10 @@
 Gains of blocks of neighbouring windows (`identification.windows.blocks`) are the sample of a
 t-test and of a test of signed ranks, for windows of each length that both models predict. At the
 horizon the gain of a block is the mean over the outputs of the gain of each: in the mean square
-over all outputs, the noise of one that was never wrong hides what another one gains. What acts
-seldom gains much in few blocks and a little in many: their scatter then hides their mean from the
-t-test, and their ranks show it.
+over all outputs, the noise of one that was never wrong hides what another one gains. Records are
+strata: a drag may gain nothing in a slow record and much in every block of a fast one, and that the
+two differ does not make their mean gain less sure. What acts seldom gains much in few blocks and a
+little in many: their scatter then hides their mean from the t-test, and their ranks show it.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from identification.chances import mean_above_zero, ranks_above_zero
+from identification.chances import ranks_above_zero, stratified_mean_above_zero
 from identification.windows.blocks import block_gains, output_gains
 from identification.windows.unseen import Unseen
 
@@ -55,7 +56,15 @@ class Prediction:
         return min(self.gains) > 0 and min(self.typical_falls) > 0
 
 
-def compare(without: Unseen, with_it: Unseen, by_outputs: bool = True) -> Prediction:
+@dataclass(frozen=True)
+class How:
+    """How two models are compared."""
+
+    by_outputs: bool = True  # whether each output counts by itself
+    by_records: bool = True  # whether blocks scatter about the mean of their record, or of all
+
+
+def compare(without: Unseen, with_it: Unseen, how: How = How()) -> Prediction:
     """Returns what the second of two models predicts better, over lengths that both have.
 
     It is of the windows on which a search decides; what is to be told of it is its `told`.
@@ -63,15 +72,15 @@ def compare(without: Unseen, with_it: Unseen, by_outputs: bool = True) -> Predic
     Args:
         without: errors of the first model.
         with_it: of the second one.
-        by_outputs: whether each output counts by itself.
+        how: they are compared.
     """
-    decided = _compare(without.select, with_it.select, by_outputs)
+    decided = _compare(without.select, with_it.select, how)
     if not any(with_it.parts):
         return decided
-    return replace(decided, untouched=_compare(without.report, with_it.report, by_outputs))
+    return replace(decided, untouched=_compare(without.report, with_it.report, how))
 
 
-def _compare(without: Unseen, with_it: Unseen, by_outputs: bool) -> Prediction:
+def _compare(without: Unseen, with_it: Unseen, how: How) -> Prediction:
     """Returns the same of all windows of two models."""
     falls, typical, gains = [], [], []
     lengths = [n for n in without.lengths if n in with_it.lengths]
@@ -82,13 +91,13 @@ def _compare(without: Unseen, with_it: Unseen, by_outputs: bool) -> Prediction:
         typical.append(1 - float(np.exp(np.mean(ratios))))
         gains.append(block_gains(a, b, without.floor))
     at = lengths.index(1.0)
-    if by_outputs:
+    if how.by_outputs:
         gains[at] = output_gains(without.of_outputs, with_it.of_outputs, without.noise)
     blocks, means = gains[at], tuple(float(np.concatenate(g).mean()) for g in gains)
     every = np.concatenate(blocks)
     t, chance = 0.0, 1.0
     if len(every) > 2 and every.std() > 0:
-        t, chance = mean_above_zero(every)
+        t, chance = stratified_mean_above_zero(blocks if how.by_records else [every])
     each = zip(without.at_horizon, with_it.at_horizon, strict=True)
     return Prediction(
         t=t, chance=chance, rank_chance=ranks_above_zero(every), gain=means[at], gains=means,

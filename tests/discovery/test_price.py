@@ -9,7 +9,11 @@ import numpy as np
 import pytest
 from scipy.stats import binom, wilcoxon
 
-from identification.chances import mean_above_zero, ranks_above_zero
+from identification.chances import (
+    mean_above_zero,
+    ranks_above_zero,
+    stratified_mean_above_zero,
+)
 from identification.discovery.effect_results import Proof
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate, Effect
@@ -127,6 +131,36 @@ def test_of_several_refits_over_a_horizon_one_is_proven_as_seldom_as_of_one(refi
             found[options] += any(find_doubt(seen, refits, options) is None for seen in every)
     assert is_rate(found[by_mean], OPTIONS.significance, FEWER)
     assert is_rate(found[by_both], OPTIONS.significance, FEWER)
+
+
+def unlike_records(rng):
+    """Gains of blocks of three records whose means differ, and are zero together."""
+    records = (-0.7, 0.2), (0.2, 0.5), (0.5, 0.8)  # mean and scatter of each
+    return [mean + scatter * rng.standard_normal(6) for mean, scatter in records]
+
+
+def test_unlike_records_prove_by_luck_as_seldom_as_the_test_says():
+    rng, level = np.random.default_rng(0), 0.01
+    found = sum(stratified_mean_above_zero(unlike_records(rng))[1] < level for _ in range(DRAWS))
+    assert is_rate(found, level, DRAWS)
+
+
+def test_that_records_differ_does_not_hide_what_all_of_them_gain():
+    """One record gains nothing, as a slow one of a drag, and the other one much in each block."""
+    rng, found = np.random.default_rng(1), {True: 0, False: 0}
+    for _ in range(FEWER):
+        blocks = [0.2 * rng.standard_normal(6), 1.6 + 0.3 * rng.standard_normal(6)]
+        found[True] += stratified_mean_above_zero(blocks)[1] < 1e-3
+        found[False] += mean_above_zero(np.concatenate(blocks))[1] < 1e-3
+    assert found[True] > 0.95 * FEWER
+    assert found[False] < 0.05 * FEWER
+
+
+def test_records_too_short_to_tell_their_scatter_count_as_one():
+    rng = np.random.default_rng(2)
+    a, b, c = rng.standard_normal(8), rng.standard_normal(1), rng.standard_normal(2)
+    assert stratified_mean_above_zero([a, b, c]) == stratified_mean_above_zero([a, np.r_[b, c]])
+    assert stratified_mean_above_zero([a, b]) == mean_above_zero(np.r_[b, a])
 
 
 def test_gains_of_many_blocks_prove_where_a_few_large_ones_hide_their_mean():

@@ -187,5 +187,8 @@ def test_of_means(seed, n, m):
     x, other = rng.normal(0.3, 1, n), rng.normal(0, 2, m)
     one = stats.ttest_1samp(x, 0.0, alternative="greater")
     assert chances.mean_above_zero(x) == pytest.approx((one.statistic, one.pvalue), rel=1e-9)
+    assert chances.stratified_mean_above_zero([x]) == pytest.approx(
+        (one.statistic, one.pvalue), rel=1e-9
+    )
     two = stats.ttest_ind(x, other, equal_var=False, alternative="greater")
     assert chances.mean_above_other(x, other) == pytest.approx(two.pvalue, rel=1e-9)
