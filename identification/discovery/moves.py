@@ -1,7 +1,8 @@
 """A search is a list of moves: each is asked for a better model, until none is left to ask.
 
-    growing moves     the first that adds an effect is taken, and all of them are asked again
-    finishing moves   once none adds an effect, or there is room for no more, each is asked once
+    growing moves     the first that adds an effect is taken, and all moves are asked again
+    other moves       each is asked once: those before the growing ones after every new effect, the
+                      rest once none adds an effect, or there is room for no more
 
 What tells one model from another is an `Evidence`: the innovations of a free run
 (`identification.innovations`), or predictions over a horizon (`identification.prediction`). Each
@@ -186,9 +187,10 @@ class Evidence(Generic[State]):
             state, asked = replace(self.begin(task, say), began=began, end=end), -1
             while not state.is_finished:
                 grown, effects = asked != len(state.accepted), len(state.accepted)
-                if state.moves[0].grows and grown:
+                may_grow = any(m.grows for m in state.moves)
+                if may_grow and grown:
                     outlook.enter(EFFECT, effects, self._told(state))
-                elif not state.moves[0].grows and outlook.stage != CHECKS:
+                elif not may_grow and outlook.stage != CHECKS:
                     outlook.enter(CHECKS, effects)
                 asked = effects
                 state = self.step(state, say)

@@ -22,6 +22,7 @@ class Odds:
 
     own: float  # share of the effect
     rivals: tuple[tuple[Contender, float], ...]  # others that may be meant, each with its share
+    forbidden: float  # share of those that physics forbids
     compared: int  # how many others were compared with it
     twin: str  # name of the effect that is the same force by another name; "" where there is none
 
@@ -48,5 +49,6 @@ def find_odds(accepted: Contender, final: WindowModel) -> Odds:
     possible = [o for o in others if o.doubt not in IMPOSSIBLE]
     forbidden = [o for o in others if o.doubt in IMPOSSIBLE and not contains(o.candidate, mine)]
     shares = compute_confidence(evidences([accepted, *possible, *forbidden]))
-    rivals = zip(possible, map(float, shares[1 : 1 + len(possible)]), strict=True)
-    return Odds(float(shares[0]), tuple(rivals), len(others), twin)
+    last = 1 + len(possible)
+    rivals = zip(possible, map(float, shares[1:last]), strict=True)
+    return Odds(float(shares[0]), tuple(rivals), float(shares[last:].sum()), len(others), twin)

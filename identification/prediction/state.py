@@ -37,6 +37,7 @@ from identification.windows.unseen import HORIZON, Unseen, predict
 
 FEWEST_BLOCKS = 3  # of unseen windows, whose scatter is known
 MOVES = (
+    Move("likeliest_of_set", finishing(likeliest_of_set)),
     Move("add_effect", add_effect, grows=True),
     Move("add_yielding_friction", add_yielding_friction, grows=True),
     Move("add_set", add_set, grows=True),
@@ -45,7 +46,6 @@ MOVES = (
         Move(change.__name__, finishing(change))
         for change in (
             drop_effects, drop_places, curve_for_laws, drop_beside_curves, drop_drawn_laws,
-            likeliest_of_set,
         )
     ),
     Move("drop_doubtful", drop_doubtful),

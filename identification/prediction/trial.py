@@ -195,16 +195,23 @@ def is_at_bound(model: WindowModel) -> bool:
     )
 
 
+def is_rival(other: Contender) -> bool:
+    """Returns whether an effect that was refitted in the place of another makes its name doubtful.
+
+    It need not be proven for that. But what some windows or a record contradict is no rival, nor
+    what ends on the bound of its size, nor what predicts unseen records no better than the model
+    without it.
+    """
+    return other.doubt not in CONTRADICTED and other.prediction.t > 0
+
+
 def find_rivals(
     others: Sequence[Contender], before: WindowModel, scores: Sequence[WindowScore],
     after: WindowModel, then: Sequence[WindowScore],
 ) -> tuple[Contender, ...]:  # fmt: skip
     """Returns other contenders that explain less than half as much once the best one is there.
 
-    What still explains as much is no rival of the best one: it is missing too. A rival need not be
-    proven to make a name doubtful; but what some windows or a record contradict is none, nor what
-    ends on the bound of its size, nor what predicts unseen records no better than the model without
-    it.
+    What still explains as much is no rival of the best one: it is missing too.
 
     Args:
         others: refitted in the place of the best one.
@@ -219,7 +226,7 @@ def find_rivals(
     )
     return tuple(
         o for o in others
-        if o.doubt not in CONTRADICTED and o.prediction.t > 0
+        if is_rival(o)
         and still.get(o.candidate.key, 0.0) < OWN_SHARE * was.get(o.candidate.key, 0.0)
     )  # fmt: skip
 

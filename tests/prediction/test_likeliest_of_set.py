@@ -60,7 +60,7 @@ def test_a_likelier_rival_takes_the_place_of_the_effect_that_was_accepted():
     assert lost == ()
     assert [c.key for c in model.candidates] == [new.candidate.key]
     odds = find_odds(new, model)
-    assert odds.own >= max(share for _, share in odds.rivals)
+    assert odds.own >= max((share for _, share in odds.rivals), default=0.0)
     assert model.values[TRUE[0]] == pytest.approx(TRUE[1], rel=0.1)
 
 
@@ -79,3 +79,23 @@ def test_the_shares_of_an_effect_and_its_rivals_are_odds():
         every = [odds.own, *(share for _, share in odds.rivals)]
         assert sum(every) == pytest.approx(1.0)
         assert min(every) >= 0.0
+
+
+def test_what_physics_forbids_is_asked_again_beside_what_was_found_since():
+    """It had more of the odds when the effect was found, because it imitated the next one too."""
+    state = with_accepted("quadratic_friction")
+    (mine,) = state.accepted
+    rival, *_ = mine.alternatives
+    far = replace(rival, gains=mine.gains + 1.0, doubt="mass")
+    mine = replace(mine, alternatives=(far,))
+    alone = replace(state, accepted=(mine,))
+    assert find_odds(mine, state.model).forbidden > 0.5
+    assert likeliest_of_set(alone, print)[1] == (mine,)
+    later = with_one(state, state.model, rival.candidate) or state.model
+    found = replace(rival, model=later)
+    model, (first, second), _ = likeliest_of_set(
+        replace(state, model=later, accepted=(mine, found)), print
+    )
+    assert first.candidate.key == mine.candidate.key
+    assert find_odds(first, model).own > 0.5
+    assert second is found

@@ -4,8 +4,8 @@ On a real robot no law is exact. The first law found may be the right name of mo
 missing, and those found later may be neighbours' names of what it leaves. So effects against which
 something speaks (`identification.prediction.doubts`) are taken out; the others are fitted again and
 asked again, until nothing speaks against any. What the model then lacks is told as what is left.
-Where all are in doubt, the last one is taken out first. Where none is sure at the end, all stay,
-and the verdict tells that none is a name.
+Where all are in doubt, the last one is taken out first. Where no law is sure at the end, all stay,
+and the verdict tells that none is a name: a curve alone would draw what the others explain, too.
 """
 
 from __future__ import annotations
@@ -38,7 +38,8 @@ def drop_doubtful(state: WindowSearch, progress: Progress) -> WindowSearch:
         doubtful = {a.candidate.key: d for a, d in zip(laws, doubts, strict=True) if d}
         if len(doubtful) == len(laws):
             doubtful = dict([[*doubtful.items()][-1]])
-        if len(laws) == len(doubtful):
+        rest = [a for a in laws if a.candidate.key not in doubtful]
+        if all(a.candidate.effect.is_curve for a in rest):
             return state
         less = _without(now, doubtful)
         if less is None:

@@ -1,23 +1,28 @@
 """The likeliest effect of a set of names is the one that the model has.
 
-An effect is accepted among what was refitted beside it at that time. Later effects change the odds,
-and so do resamples: the accepted one may keep 8 %, and a rival have the rest. Where a rival has the
-larger share it is refitted in the effect's place, and takes it if unseen records prove it there.
+An effect is accepted among what was refitted beside it at that time. Later effects change the odds:
+a mass of three bodies, which physics forbids, may be likelier than that of one as long as it also
+imitates what is found next. So after each effect that is found, an earlier one that is not the
+likeliest is asked again: it and the others are refitted in its place, beside all that was found
+since. The likeliest that unseen records prove there takes the place, and the odds are those of
+these refits.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 from identification.discovery.passes import uses
 from identification.prediction.crossing import at_all_lengths
+from identification.prediction.evidence import compute_confidence
 from identification.prediction.extension import refitted
 from identification.prediction.model import WindowModel
 from identification.prediction.moves.add_set import with_one
 from identification.prediction.odds import find_odds
 from identification.prediction.selection import judged
 from identification.prediction.task import Change, WindowSearch
-from identification.prediction.trial import Contender
+from identification.prediction.trial import Contender, evidences, is_rival
 from identification.progress import Progress
 
 
@@ -26,42 +31,53 @@ def likeliest_of_set(state: WindowSearch, progress: Progress) -> Change:
     model, out = state.model, list[Contender]()
     for old in state.accepted:
         odds = find_odds(old, model)
-        rival = odds.likeliest
-        is_likelier = rival is not None and rival[1] > odds.own
-        new = _in_its_place(state, model, old, rival[0]) if rival and is_likelier else None
+        is_forbidden = odds.forbidden > odds.own and old is not state.accepted[-1]
+        is_likelier = odds.likeliest is not None and odds.likeliest[1] > odds.own
+        new = _asked_again(state, model, old) if is_likelier or is_forbidden else None
         if new is None:
             out.append(old)
             continue
-        progress(f"{_label(new)}: likelier than {_label(old)}")
+        if new.candidate.key != old.candidate.key:
+            progress(f"{_label(new)}: likelier than {_label(old)}")
         model = new.model
         out.append(new)
     return model, tuple(out), ()
 
 
-def _in_its_place(
-    state: WindowSearch, model: WindowModel, old: Contender, rival: Contender
-) -> Contender | None:
-    """Returns a rival that was refitted in an effect's place; None where it is not proven there.
+def _asked_again(state: WindowSearch, model: WindowModel, old: Contender) -> Contender | None:
+    """Returns the likeliest of an effect and its rivals, refitted in its place.
 
     Args:
         state: whose data are fitted.
         model: with the effect.
         old: the effect.
-        rival: which is likelier.
+
+    Returns:
+        It, with the others as its rivals; None where unseen records prove none of them there.
     """
-    task, options = state.task, state.task.options
+    task = state.task
     rest = [c for c in model.candidates if c.key != old.candidate.key]
     without = refitted(model, rest, task.nominal_model, task.confirm)
-    new = with_one(state, without, rival.candidate) if without else None
-    if without is None or new is None:
+    if without is None:
         return None
+    each = [with_one(state, without, c.candidate) for c in (old, *old.alternatives)]
+    found = _judged_together(state, without, [c for c in each if c is not None])
+    if not any(c.is_proven for c in found):
+        return None
+    shares = compute_confidence(evidences(found))
+    best, _ = max(zip(found, shares, strict=True), key=lambda pair: (pair[0].is_proven, pair[1]))
+    others = (o for o in found if o is not best and is_rival(o))
+    return replace(best, alternatives=tuple(others))
+
+
+def _judged_together(
+    state: WindowSearch, without: WindowModel, models: Sequence[WindowModel]
+) -> list[Contender]:
+    """Returns models with one effect more each as contenders, over all lengths of windows."""
+    task, options = state.task, state.task.options
     crosses = uses(options, "states_of_others")
-    parent, (whole,) = at_all_lengths(without, [new], task.horizon, task.confirm, crosses)
-    if whole is None:
-        return None
-    found = judged(parent, whole, 1 + len(old.alternatives), options)
-    others = [o for o in old.alternatives if o is not rival]
-    return replace(found, alternatives=(old, *others)) if found.is_proven else None
+    parent, whole = at_all_lengths(without, models, task.horizon, task.confirm, crosses)
+    return [judged(parent, c, len(models), options) for c in whole if c is not None]
 
 
 def _label(c: Contender) -> str:
