@@ -32,6 +32,7 @@ from identification.prediction.extension import weighed, with_effect
 from identification.prediction.first_fit import Begun, begin
 from identification.prediction.model import WindowModel
 from identification.prediction.scores import WindowScore, window_scores
+from identification.prediction.screening import has_what_it_needs
 from identification.prediction.trial import (
     Contender,
     Doubt,
@@ -76,7 +77,8 @@ def refit_contenders(
     chosen = list_contenders(scores, options, windows * len(model.scale))
     if uses(options, "suggested_effects"):
         has = {*(s.candidate.key for s in chosen), *(c.key for c in model.candidates)}
-        chosen += window_scores(model.fit, [c for c in suggested if c.key not in has])
+        each = [c for c in suggested if c.key not in has and has_what_it_needs(model, c)]
+        chosen += window_scores(model.fit, each)
     refits, crosses, is_late = len(chosen), uses(options, "states_of_others"), False
 
     def refit(each: Sequence[Begun]) -> list[WindowModel]:

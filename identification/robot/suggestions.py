@@ -31,18 +31,30 @@ def suggest(evidence: Evidence, robot: Robot) -> tuple[Candidate, ...]:
             out += [Candidate(e, m.where, shape or next(iterate_shapes(e))) for e in each]
             if each:
                 break
-    return (*out, *_frictions(evidence, robot, known))
+    changed = [(c.effect.needs, c.where) for c in out if c.effect.needs]
+    return (*out, *_frictions(evidence, robot, known, changed))
 
 
-def _frictions(evidence: Evidence, robot: Robot, known: dict[str, Effect]) -> list[Candidate]:
-    """Returns the frictions and offsets that joints have and the model has not."""
+def _frictions(
+    evidence: Evidence, robot: Robot, known: dict[str, Effect], changed: list[tuple[str, str]]
+) -> list[Candidate]:
+    """Returns the frictions and offsets that joints have and the model has not.
+
+    Args:
+        evidence: of the torques.
+        robot: whose model may lack them.
+        known: the candidates of the search, by name.
+        changed: effects and places that what torques name only changes, such as a level of
+            friction that grows along the way; where it does so, the level itself is hard to tell.
+    """
     if len(robot.plant.joints) < 2:
         return []
+    proven = [key for key, opinion in frictions(evidence).items() if opinion.is_proven]
     far: dict[str, list[str]] = {}
-    for (name, where), opinion in frictions(evidence).items():
+    for name, where in dict.fromkeys((*proven, *changed)):
         effect, joint = known.get(name), where.removeprefix("joint ")
         is_fitted = f"joint/{joint}.frictionloss" in robot.file.free and name != "offset"
-        if effect and where in effect.places and opinion.is_proven and not is_fitted:
+        if effect and where in effect.places and not is_fitted:
             far.setdefault(name, []).append(where)
     out = []
     for name, places in far.items():

@@ -60,6 +60,18 @@ def test_a_load_at_any_place_is_a_payload_and_a_name_without_a_candidate_is_left
     assert [c.key for c in suggest(asked, loaded)] == [("payload", where), ("load", where)]
 
 
+def test_a_level_that_changes_is_suggested_with_the_level(loaded, evidence):
+    """Along a way that does not pass zero, a level that grows along it is hard to tell from one."""
+    elbow = "joint elbow"
+    grows = SimpleNamespace(name="position_dependent_friction", where=elbow, shape=())
+    asked = SimpleNamespace(
+        named=(SimpleNamespace(missing=grows),), friction=(), final=evidence.final
+    )
+    assert [c.key for c in suggest(asked, loaded)] == [
+        ("position_dependent_friction", elbow), ("coulomb_friction", elbow)
+    ]  # fmt: skip
+
+
 def search(hidden, suggested, *without):
     """What is found in two records to fit and two that confirm, with some effects suggested."""
     logs = records(4, hidden, samples=400)
@@ -79,6 +91,19 @@ def test_a_suggested_effect_is_refitted_whatever_its_score_is(monkeypatch):
     (named,) = search(hidden, ["hardening"], *rest).named
     assert named.name == "hardening"
     assert search(hidden, ["hardening"], *rest, "suggested_effects").named == ()
+
+
+def test_what_changes_a_level_is_not_refitted_without_one(monkeypatch):
+    """Else it takes the level's place: f_q q is nearly a level where q is far from zero."""
+    monkeypatch.setattr(selection, "list_contenders", lambda *_: [])
+    monkeypatch.setattr(selection, "list_curves", lambda *_: [])
+    logs = records(4, {"coulomb_friction.f_c@hinge": 0.3}, samples=400)
+    changes = [e for e in candidates(pendulum(), FREE) if e.name == "asymmetric_friction"]
+    options = DiscoveryOptions(without=("add_set", "add_yielding_friction"))
+    found = discover_records(
+        nominal_model(), logs[:2], logs[2:], changes, None, options, list_common(changes)
+    )
+    assert (found.named, found.rejected) == ((), ())
 
 
 def test_a_suggestion_that_is_not_there_is_not_named():
