@@ -88,12 +88,25 @@ def node_lines(named: NamedEffect, plant: Plant) -> list[str]:
         names = [f"c_{k + 1}" for k in range(NODES)]
         alone = names[0] in values
         each = [values[name if alone else f"{name}@{n.joint}"] for name in names]
-        most = max(abs(value) for value, *_ in each)
+        most = max((abs(v) for v, std, _ in each if 0 < std < np.inf), default=0.0)
         told = sorted(zip(n.at, each, strict=True), key=lambda pair: pair[0])
         lines.append(f"force on {n.joint} at these values of the {n.reads}:")
-        lines += [f"  {quantity(float(at), unit=n.unit)}: {quantity(v, std, unit, like=most)}"
-                  for at, (v, std, unit) in told]  # fmt: skip
+        lines += [f"  {quantity(float(at), unit=n.unit)}: {_force_there(*known, most)}"
+                  for at, known in told]  # fmt: skip
     return lines
+
+
+def _force_there(value: float, std: float, unit: str, most: float) -> str:
+    """Returns the force at a node in words; one that no data hold has no std, or ends on a bound.
+
+    Args:
+        value: of the force.
+        std: its standard deviation, in the same unit.
+        unit: of both.
+        most: the largest force of the curve, whose digits decide how this one is rounded.
+    """
+    is_known = 0 < std < np.inf
+    return quantity(value, std, unit, like=most) if is_known else "not known, too few data"
 
 
 RETUNED = 0.05  # the explanation without an effect gets a sentence above this confidence

@@ -55,3 +55,17 @@ def test_a_curve_has_its_sizes_at_its_nodes(plant, effect, where):
     assert nodes.reads in first
     order = np.argsort(nodes.at, kind="stable")
     assert [float(line.partition(": ")[2].split()[0]) for line in told] == [C[k] for k in order]
+
+
+@pytest.mark.parametrize("std", [0.0, np.nan, np.inf], ids=["at a bound", "few data", "none"])
+def test_a_node_that_no_data_hold_has_no_force(std):
+    plant, effect, where = CASES[0]
+    parameters = {f"c_{k + 1}": (c, 0.1, "N m") for k, c in enumerate(C)}
+    parameters["c_2"] = (-13.1, std, "N m")
+    named = replace(
+        fake_discovery.found().named[0], candidate=Candidate(effect, where, {}),
+        parameters=parameters,
+    )  # fmt: skip
+    said = "\n".join(node_lines(named, plant))
+    assert said.count("not known, too few data") == 1
+    assert "13.1" not in said
