@@ -13,7 +13,8 @@ what law and curve explain together:
 and it is more likely than not that this is no luck: what acts in few windows, as a stop does, has a
 large chance whatever it explains. No law is exact on a real robot, so that less than this speaks
 against none. A law of a sensor, an input or a body has no joint of its own, and curves at all
-joints count.
+joints count. A curve of the model counts where it may draw what the law misses: it depends on a
+variable of the law. A curve of the position beside a friction is another thing that is missing.
 
 A force of two variables leaves what no single curve draws. So the smooth force of the law's joint
 is asked as well (`identification.prediction.yardstick`): all its curves at once, and where the
@@ -30,7 +31,8 @@ from identification.discovery.effect_results import Neighbour
 from identification.discovery.neighbour import MORE_LIKELY_THAN_NOT
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.passes import uses
-from identification.effects.effect import Candidate
+from identification.effects.effect import Candidate, Effect
+from identification.effects.variables import variables
 from identification.prediction.model import WindowModel
 from identification.prediction.scores import WindowScore
 from identification.prediction.screening import places_of
@@ -70,7 +72,11 @@ def explained_by(law: Contender, accepted: Sequence[Contender], model: WindowMod
         model: with all of them.
     """
     left = mean_square(model)
-    curves = [a for a in accepted if a is not law and _is_at(a.candidate, law.candidate)]
+    curves = [
+        a for a in accepted
+        if a is not law and _is_at(a.candidate, law.candidate)
+        and _are_alike(a.candidate.effect, law.candidate.effect)
+    ]  # fmt: skip
     return Explained(
         law.explained / left, sum(c.explained for c in curves) / left,
         min((c.prediction.chance for c in curves), default=1.0),
@@ -83,6 +89,12 @@ def _is_at(curve: Candidate, law: Candidate) -> bool:
         return False
     has_joint = acts_on_joints(law.effect) and law.effect.places.get(law.where)
     return not has_joint or bool({*places_of(law.where)} & {*places_of(curve.where)})
+
+
+def _are_alike(curve: Effect, law: Effect) -> bool:
+    """Returns whether a curve depends on a variable of a law, or the law on none of a joint."""
+    of_law = variables(law) if acts_on_joints(law) else frozenset()
+    return not of_law or bool(variables(curve) & of_law)
 
 
 def find_neighbour(

@@ -71,7 +71,7 @@ def score_all(
     strict = options.significance / max(1, len(found))
     beyond = [s for s in plausible if is_significant(s, strict, options)]
     is_each = uses(options, "several_places")
-    several = several_scores(model.fit, beyond, options) if is_each else []
+    several = several_scores(model, beyond, options) if is_each else []
     return tuple(sorted((*found, *several), key=lambda s: -s.fall))
 
 
@@ -176,25 +176,25 @@ def contains(more: Candidate, less: Candidate) -> bool:
 
 
 def several_scores(
-    fit: WindowFit, significant: Sequence[WindowScore], options: DiscoveryOptions
+    model: WindowModel, significant: Sequence[WindowScore], options: DiscoveryOptions
 ) -> list[WindowScore]:
     """Returns scores of the best effects at several places.
 
     Args:
-        fit: the model without them.
+        model: without them.
         significant: scores that are beyond chance and plausible, the best first.
         options: what a size must be to count.
     """
     first: dict[tuple[str, bool], Candidate] = {}
     for s in significant:
         effect = s.candidate.effect
-        if len(_single(effect)) > 1 and effect.own == effect.is_of_records:
+        if len(_places(model, s.candidate)) > 1 and effect.own == effect.is_of_records:
             first.setdefault((effect.name, effect.own), s.candidate)
     out: list[WindowScore] = []
     for c in [*first.values()][:MAX_SPREAD_EFFECTS]:
-        places = _single(c.effect)
+        places = _places(model, c)
         for _ in range(MAX_LEAVING_ROUNDS):
-            found = window_scores(fit, [_at(c, places)])
+            found = window_scores(model.fit, [_at(c, places)])
             keep = felt_places(found[0], places, c.effect, options) if found else []
             if c.effect.is_among and len(keep) == len(_single(c.effect)):
                 keep = _without_least(found[0], keep)
@@ -230,6 +230,11 @@ def is_felt(value: float, std: float, size: Size, options: DiscoveryOptions) -> 
         size.sign * value >= 0
         and options.min_proof_t * std < abs(value) <= options.size_factor * size.largest
     )
+
+
+def _places(model: WindowModel, c: Candidate) -> list[str]:
+    """Returns the single places of an effect at which a model has what the effect changes."""
+    return [w for w in _single(c.effect) if has_what_it_needs(model, replace(c, where=w))]
 
 
 def _single(effect: Effect) -> list[str]:

@@ -134,7 +134,7 @@ def test_what_all_places_have_in_common_is_no_part_of_an_effect_beside_others(
 
     monkeypatch.setattr(screening, "window_scores", scored)
     single = replace(several((0.06,), (0.001,)), candidate=Candidate(effect, "joint a", {}))
-    (found,) = screening.several_scores(None, [single], DiscoveryOptions())
+    (found,) = screening.several_scores(SimpleNamespace(fit=None), [single], DiscoveryOptions())
     kept = ["joint a", "joint c"] if is_among else ["joint a", "joint b", "joint c"]
     assert places_of(found.candidate.where) == kept
 
@@ -204,3 +204,14 @@ def test_nodes_at_several_joints_are_those_at_each_of_them(name):
         np.testing.assert_array_equal(n.at, alone.at)
         assert (n.reads, n.unit, n.depends_on) == (alone.reads, alone.unit, alone.depends_on)
     assert BOTH in describe_there(over_both(name), plant())
+
+
+def test_what_changes_a_level_has_places_where_the_model_has_one(monkeypatch):
+    monkeypatch.setattr(screening, "has_what_it_needs", lambda model, c: c.where != "joint b")
+    monkeypatch.setattr(
+        screening, "window_scores",
+        lambda fit, asked: [several([0.06, 0.07], [0.001] * 2, places_of(asked[0].where))],
+    )  # fmt: skip
+    single = replace(several((0.06,), (0.001,)), candidate=Candidate(EFFECT, "joint a", {}))
+    (found,) = screening.several_scores(SimpleNamespace(fit=None), [single], DiscoveryOptions())
+    assert places_of(found.candidate.where) == ["joint a", "joint c"]

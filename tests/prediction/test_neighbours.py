@@ -2,7 +2,9 @@
 
 from dataclasses import replace
 from functools import cache
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
 from records_cases import FREE, HORIZON, nominal_model, pendulum, records
 
@@ -16,6 +18,7 @@ from identification.prediction.moves.curve_for_laws import curve_for_laws
 from identification.prediction.neighbours import (
     MOST_OF_BOTH,
     Explained,
+    explained_by,
     find_neighbour,
     has_neighbours_name,
 )
@@ -119,3 +122,25 @@ def test_what_a_curve_of_the_model_explains_counts_as_what_is_beside_a_law():
     luck = replace(alone, share=0.0, chance=1.0, of_both=Explained(9.0).of_both(0.0))
     assert not has_neighbours_name(luck, OPTIONS)
     assert Explained(0.0).of_both(0.0) == 0.0
+
+
+@pytest.mark.parametrize(("law", "curve", "counts"), [
+    ("coulomb_friction", "curve_speed", True),
+    ("coulomb_friction", "curve_position", False),  # another force that is missing
+    ("hardening", "curve_position", True),
+    ("offset", "curve_position", True),  # any curve may draw a constant
+])  # fmt: skip
+def test_a_curve_of_the_model_counts_where_it_may_draw_what_the_law_misses(law, curve, counts):
+    known = {e.name: e for e in candidates(pendulum(), FREE)}
+    model = SimpleNamespace(unseen=SimpleNamespace(select=SimpleNamespace(at_horizon=[np.ones(4)])))
+
+    def found(name):
+        (c, *_) = list_common([known[name]])
+        return SimpleNamespace(
+            candidate=c, explained=3.0, prediction=SimpleNamespace(chance=1e-6)
+        )  # fmt: skip
+
+    both = [found(law), found(curve)]
+    explained = explained_by(both[0], both, model)
+    assert explained.law == 3.0
+    assert (explained.curves, explained.chance) == ((3.0, 1e-6) if counts else (0.0, 1.0))
