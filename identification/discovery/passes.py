@@ -126,7 +126,10 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
     "drop_doubtful": (
         HORIZON, "keeps effects that are sure where others are in doubt, and tells what is left",
     ),
-    "likeliest_of_set": (HORIZON, "puts the likeliest effect of a set of names into the model"),
+    "likeliest_of_set": (
+        HORIZON, "asks an effect that is not the likeliest again beside what was found later, and"
+        " puts the likeliest into the model",
+    ),
 })  # fmt: skip
 
 
