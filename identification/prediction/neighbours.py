@@ -13,8 +13,9 @@ what law and curve explain together:
 and it is more likely than not that this is no luck: what acts in few windows, as a stop does, has a
 large chance whatever it explains. No law is exact on a real robot, so that less than this speaks
 against none. A law of a sensor, an input or a body has no joint of its own, and curves at all
-joints count. A curve of the model counts where it may draw what the law misses: it depends on a
-variable of the law. A curve of the position beside a friction is another thing that is missing.
+joints count. A curve counts, in the model or beside it, where it may draw what the law misses: it
+depends on a variable of the law. A force of the position that is left beside a friction is another
+thing that is missing.
 
 A force of two variables leaves what no single curve draws. So the smooth force of the law's joint
 is asked as well (`identification.prediction.yardstick`): all its curves at once, and where the
@@ -31,13 +32,12 @@ from identification.discovery.effect_results import Neighbour
 from identification.discovery.neighbour import MORE_LIKELY_THAN_NOT
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.passes import uses
-from identification.effects.effect import Candidate, Effect
-from identification.effects.variables import variables
+from identification.effects.effect import Candidate
 from identification.prediction.model import WindowModel
 from identification.prediction.scores import WindowScore
 from identification.prediction.screening import places_of
 from identification.prediction.trial import Contender, mean_square
-from identification.prediction.yardstick import Yardstick, acts_on_joints
+from identification.prediction.yardstick import Yardstick, acts_on_joints, may_draw
 
 # Of what law and curve explain together: a judgement. In the worlds of docs/robot/models.md curves
 # explained less beside 32 of 34 right laws, and more beside 4 of 9 laws that were not there.
@@ -72,29 +72,19 @@ def explained_by(law: Contender, accepted: Sequence[Contender], model: WindowMod
         model: with all of them.
     """
     left = mean_square(model)
-    curves = [
-        a for a in accepted
-        if a is not law and _is_at(a.candidate, law.candidate)
-        and _are_alike(a.candidate.effect, law.candidate.effect)
-    ]  # fmt: skip
+    curves = [a for a in accepted if a is not law and _is_beside(a.candidate, law.candidate)]
     return Explained(
         law.explained / left, sum(c.explained for c in curves) / left,
         min((c.prediction.chance for c in curves), default=1.0),
     )  # fmt: skip
 
 
-def _is_at(curve: Candidate, law: Candidate) -> bool:
-    """Returns whether a candidate is a curve at a joint on which a law may act."""
-    if not curve.effect.is_curve:
+def _is_beside(curve: Candidate, law: Candidate) -> bool:
+    """Returns whether a candidate is a curve that may draw what a law misses at its joint."""
+    if not (curve.effect.is_curve and may_draw(curve.effect, law.effect)):
         return False
     has_joint = acts_on_joints(law.effect) and law.effect.places.get(law.where)
     return not has_joint or bool({*places_of(law.where)} & {*places_of(curve.where)})
-
-
-def _are_alike(curve: Effect, law: Effect) -> bool:
-    """Returns whether a curve depends on a variable of a law, or the law on none of a joint."""
-    of_law = variables(law) if acts_on_joints(law) else frozenset()
-    return not of_law or bool(variables(curve) & of_law)
 
 
 def find_neighbour(
@@ -112,7 +102,7 @@ def find_neighbour(
     """
     if candidate.effect.is_curve:
         return None
-    curves = [s for s in scores if _is_at(s.candidate, candidate)]
+    curves = [s for s in scores if _is_beside(s.candidate, candidate)]
     if not curves:
         return None
     best = min(curves, key=lambda s: s.p_value)
@@ -134,12 +124,11 @@ def find_smooth_neighbour(
     Returns:
         None for a curve, and for what is no law of a joint.
     """
-    left = stick.left_at(candidate) if stick and not candidate.effect.is_curve else None
+    left = stick.beyond.get(candidate.key) if stick else None
     if left is None:
         return None
-    where, share, chance = left
-    chance = min(explained.chance, chance)
-    return Neighbour(SMOOTH_FORCE, where, share, chance, explained.of_both(share))
+    share, chance = max(0.0, left.share), min(explained.chance, left.chance)
+    return Neighbour(SMOOTH_FORCE, left.joint, share, chance, explained.of_both(share))
 
 
 def has_neighbours_name(neighbour: Neighbour | None, options: DiscoveryOptions) -> bool:

@@ -8,6 +8,10 @@ Near a force of two variables, such as a motor's that falls with its speed, lies
 catalogue, and no curve of one variable tells them apart. So where a model leaves something, the
 surfaces over two variables (`identification.effects.surfaces`) of the joints on which its laws act
 are part of the smooth force. They are simulated in a plant of their own.
+
+What speaks against the name of a law is what smooth forces of its own variables explain beyond
+those of other variables: a force of the position that is left beside a friction is another thing
+that is missing.
 """
 
 from __future__ import annotations
@@ -24,6 +28,7 @@ from identification.effects.curves import OF_JOINT
 from identification.effects.effect import Candidate, Effect
 from identification.effects.jointed import JointPlant
 from identification.effects.surfaces import surface_effects
+from identification.effects.variables import variables
 from identification.prediction.model import WindowModel
 from identification.prediction.scores import condensed
 from identification.prediction.screening import MAX_SCORED, places_of, some_windows
@@ -35,12 +40,22 @@ ON_JOINTS = {"force", "friction"}  # hooks of laws that a smooth force of a join
 
 
 @dataclass(frozen=True)
+class Beyond:
+    """What smooth forces of a law's variables explain beyond those of other variables."""
+
+    joint: str  # in words, where they take most
+    share: float  # of what the model leaves
+    chance: float  # of as much by luck, over blocks
+
+
+@dataclass(frozen=True)
 class Yardstick:
     """What smooth forces would still explain beside a model, over what the model leaves."""
 
     every: float  # share of the sum of squares that forces at all joints would take
     of_joint: Mapping[str, float]  # share that forces at one joint would take, by its name
-    chances: Mapping[str, float]  # of as much at one joint by luck, over blocks, by its name
+    # of each law of the model: what smooth forces of its variables would take beyond others
+    beyond: Mapping[tuple[str, str], Beyond]
 
     def share(self, before: float, after: float) -> float | None:
         """Returns what a model explains of what it and smooth forces at all joints could.
@@ -50,22 +65,6 @@ class Yardstick:
             after: with them.
         """
         return explained_share(before, after, self.every * after)
-
-    def left_at(self, candidate: Candidate) -> tuple[str, float, float] | None:
-        """Returns what smooth forces at a joint of an effect still take of what the model leaves.
-
-        Args:
-            candidate: the effect at its place.
-
-        Returns:
-            The joint at which they take most, their share, and the chance of as much by luck; None
-            for what is no law of a joint.
-        """
-        joints = [j for j in places_of(candidate.where) if j in self.of_joint]
-        if not acts_on_joints(candidate.effect) or not joints:
-            return None
-        most = max(joints, key=lambda j: self.of_joint[j])
-        return most, self.of_joint[most], self.chances[most]
 
     def share_of(self, candidate: Candidate, explained: float, curves: float = 0.0) -> float | None:
         """Returns what an effect explains of what it and smooth forces at its joints could.
@@ -78,13 +77,21 @@ class Yardstick:
         Returns:
             None for what is no law of a joint.
         """
-        left = self.left_at(candidate)
-        return None if left is None else explained_share(explained, 0.0, left[1] + curves)
+        left = [self.of_joint[j] for j in places_of(candidate.where) if j in self.of_joint]
+        if not acts_on_joints(candidate.effect) or not left:
+            return None
+        return explained_share(explained, 0.0, max(left) + curves)
 
 
 def acts_on_joints(effect: Effect) -> bool:
     """Returns whether an effect is a force at joints and nothing else, as a curve there may be."""
     return bool(effect.hooks) and {*effect.hooks} <= ON_JOINTS
+
+
+def may_draw(curve: Effect, law: Effect) -> bool:
+    """Returns whether a curve or surface depends on a variable of a law, or the law on none."""
+    of_law = variables(law) if acts_on_joints(law) else frozenset()
+    return not of_law or bool(variables(curve) & of_law)
 
 
 def measure(
@@ -125,9 +132,21 @@ def measure(
     joints = dict.fromkeys(c.where for c in each)
     forces = {j: force([k for k, c in enumerate(each) if c.where == j]) for j in joints}
     of_joint = {j: left(f) for j, f in forces.items()}
-    chances = {j: mean_above_zero(f.gains)[1] if f.gain > 0 else 1.0 for j, f in forces.items()}
     every = of_joint[next(iter(joints))] if len(joints) == 1 else left(force(range(len(each))))
-    return Yardstick(every, of_joint, chances)
+
+    def beyond(law: Candidate, joint: str) -> Beyond:
+        others = [k for k, c in enumerate(each)
+                  if c.where == joint and not may_draw(c.effect, law.effect)]  # fmt: skip
+        gains = forces[joint].gains - (force(others).gains if others else 0.0)
+        share = float(gains.sum() / squares.sum())
+        return Beyond(joint, min(1.0, share), mean_above_zero(gains)[1] if share > 0 else 1.0)
+
+    found = {}
+    for law in model.candidates:
+        at = [j for j in places_of(law.where) if j in forces]
+        if at and acts_on_joints(law.effect) and not law.effect.is_curve:
+            found[law.key] = max((beyond(law, j) for j in at), key=lambda b: b.share)
+    return Yardstick(every, of_joint, found)
 
 
 def _with_surfaces(model: WindowModel) -> tuple[list[Candidate], WindowFit]:

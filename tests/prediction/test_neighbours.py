@@ -84,8 +84,8 @@ def test_what_may_be_luck_or_is_little_is_no_reason_against_a_law(chance, of_bot
 
 
 def test_the_chance_is_paid_for_by_the_number_of_curves_at_the_joint():
-    _, model = with_law("stiffness")
-    scores = scores_beside("stiffness")
+    _, model = with_law("offset")
+    scores = scores_beside("offset")
     curves = [s for s in scores if s.candidate.effect.is_curve]
     found = find_neighbour(model.candidates[-1], Explained(9.0), scores)
     assert len(curves) > 2

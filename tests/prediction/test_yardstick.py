@@ -101,3 +101,18 @@ def test_surfaces_unmask_the_neighbour_of_a_force_of_two_variables_and_no_curve_
     right = beside("position_dependent_damping", True)
     assert not has_neighbours_name(right, DiscoveryOptions())
     assert right.share < 0.01
+
+
+def test_a_force_of_the_position_that_is_left_speaks_against_no_friction():
+    """It is another thing that is missing, and the smooth force of the joint tells it."""
+    hidden = {"coulomb_friction.f_c@hinge": 0.05, "hardening.k_3@hinge": 0.02}
+    made = records(4, hidden, samples=400)
+    both = as_records(made[:2], made[2:])
+    model = fit_nominal(nominal_model(), both)
+    confirm = [r for r in both if r.role == "confirm"]
+    best = window_scores(model.fit, listed("coulomb_friction"))[0]
+    after = with_effect(model, begin(model, [best]), HORIZON, confirm)
+    stick = measure(after, EFFECTS, True)
+    (beyond,) = stick.beyond.values()
+    assert stick.of_joint["joint hinge"] > 0.5
+    assert beyond.share < 0.1 * stick.of_joint["joint hinge"]
