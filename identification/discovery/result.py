@@ -86,6 +86,8 @@ class Discovery(Shown, Written):
         unlogged: that error where a noise model has it; None where it was only computed.
         before: the gap of the fitted nominal model.
         after: the gap of the model with the named effects.
+        doubtful: the gap of the model with all effects that were proven, where the name of none of
+            them is sure, so that they stand among the rejected; None else, and along a free run.
         errors: of both models by record, in the order of `records`.
         nominal: the fit without effects.
         final: the fit with the named effects.
@@ -141,6 +143,7 @@ class Discovery(Shown, Written):
     unlogged: Unlogged | None = None
     before: Gap
     after: Gap
+    doubtful: Gap | None = None
     errors: tuple[RecordError, ...]
     nominal: Fitted
     final: Fitted

@@ -71,14 +71,15 @@ def conclude(state: WindowSearch) -> Discovery:
     # Where the fit was worse than the values with which it began, an effect says why.
     closes = _share(state.worse_fit or nominal.unseen, model.unseen)
     doubts = doubts_of_names(named, forbidden_of(state), findings, closes, options)
-    verdict = decide(named, doubts, findings, is_unexplained)
+    verdict, doubtful = decide(named, doubts, findings, is_unexplained), None
+    log = task.records[0].log
     if verdict == "unknown effect":
+        doubtful = _gap(model.unseen, nominal.scale, log) if named else None
         unnamed = [unnamed_effect(n, d or "beside") for n, d in zip(named, doubts, strict=True)]
         alone = attempt(None, partial(_needed_input_error, nominal, options))
         needed = needed if alone is None else alone  # what is told is of the model without effects
         rejected, named, model = listed_once([*unnamed, *rejected]), (), nominal
     smooth = stick.share(nominal.fitted_power, model.fitted_power) if stick and named else None
-    log = task.records[0].log
     noise = model.unseen.noise
     return Discovery(
         records=task.records, options=options, horizon=task.horizon, verdict=verdict, named=named,
@@ -92,7 +93,7 @@ def conclude(state: WindowSearch) -> Discovery:
         scale=nominal.scale, input_error=needed,
         noise_by_unit=errors_by_unit(noise, nominal.scale, log),
         before=_gap(nominal.unseen, nominal.scale, log),
-        after=_gap(model.unseen, nominal.scale, log),
+        after=_gap(model.unseen, nominal.scale, log), doubtful=doubtful,
         errors=record_errors(
             task.records, nominal.scale, (nominal.unseen, model.unseen),
             (nominal.fit.errors, model.fit.errors),

@@ -50,6 +50,7 @@ def discovery_to_json(found: Discovery) -> dict[str, Any]:
             ),
             "before": plain_fields(found.before, *GAP),
             "after": plain_fields(found.after, *GAP),
+            "doubtful": found.doubtful and plain_fields(found.doubtful, *GAP),
         },
         "records": [
             {**plain_fields(e, "role", "before", "after", file="name"),

@@ -138,12 +138,25 @@ def _unknown(found: Discovery) -> str:
             f"Something is missing that {none_explains(tried)}: the error of the fitted model on"
             f" unseen data is {left}{found.over}{times}{needed}.",
             "The program gives no name rather than a wrong one.",
+            *_doubtful(found),
             *_place(found),
             *needed_sentences(found),
             *_findings(found),
             *(sentence(describe_finding(f)) for f in found.located),
         ]
     )
+
+
+def _doubtful(found: Discovery) -> list[str]:
+    """Returns the sentence that says how far effects without a sure name predict together."""
+    if found.doubtful is None:
+        return []
+    of_each = found.errors_of(found.before), found.errors_of(found.doubtful)
+    moved, _ = change_words(*of_each, [found.floor])
+    return [
+        f"Effects that were proven, but whose names are not sure, together take this error {moved}:"
+        " they stand among those that are not believed."
+    ]
 
 
 def _place(found: Discovery) -> list[str]:

@@ -12,7 +12,7 @@ from identification import pool
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.joint_plant import candidates
 from identification.errors import InputError
-from identification.prediction import selection
+from identification.prediction import selection, verdict
 from identification.prediction.discovery import discover_records
 from identification.report.discovery_json import discovery_to_json
 from identification.report.discovery_report import discovery_text
@@ -111,6 +111,19 @@ def test_a_search_behind_its_time_limit_answers_and_says_what_it_has_not_tried()
     said = discovery_text(answer)
     assert "while it sought the next effect and sets of several effects. Effects that it" in said
     assert found().cut_short == ()
+
+
+def test_effects_without_a_sure_name_tell_how_far_they_predict_together(monkeypatch):
+    logs = records(4, {MU: 0.15}, samples=SAMPLES)
+    effects = [e for e in candidates(pendulum(), ("J", "d")) if e.name in FEW]
+    sure = found()
+    assert (sure.verdict, sure.doubtful) == ("named", None)
+    monkeypatch.setattr(verdict, "doubts_of_names", lambda named, *_: ("odds",) * len(named))
+    unsure = discover_records(nominal_model(), logs[:2], logs[2:], effects)
+    assert (unsure.verdict, unsure.named) == ("unknown effect", ())
+    assert unsure.doubtful.rms == sure.after.rms < 0.2 * unsure.after.rms
+    assert "whose names are not sure, together take this error from" in discovery_text(unsure)
+    assert discovery_to_json(unsure)["gap"]["doubtful"]["rms"] == unsure.doubtful.rms
 
 
 def test_what_was_refitted_before_the_time_was_over_is_still_judged_and_named(monkeypatch):
