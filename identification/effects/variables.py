@@ -7,6 +7,7 @@ gravity's force f_g is one of the positions.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cache
 
 import numpy as np
@@ -27,8 +28,10 @@ def variables(effect: Effect) -> frozenset[str]:
         effect: with hooks "force" or "friction"; those of other hooks are not looked at.
     """
     rng, found = np.random.default_rng(0), set[str]()
-    # sizes that differ, because a curve whose nodes are alike is a constant
-    p = (*rng.uniform(0.5, 1.5, len(effect.sizes)), *(s.at_first for s in effect.shapes))
+    # sizes of one place: an effect at several has them once for each
+    sizes = dict.fromkeys(size.name.partition("@")[0] for size in effect.sizes)
+    # numbers that differ, because a curve whose nodes are alike is a constant
+    p = (*rng.uniform(0.5, 1.5, len(sizes)), *(s.at_first for s in effect.shapes))
     for hook in ("force", "friction"):
         if hook not in effect.hooks:
             continue
@@ -38,5 +41,15 @@ def variables(effect: Effect) -> frozenset[str]:
             at, other = (dict(zip(VARIABLES, rng.uniform(-1, 1, len(VARIABLES)), strict=True))
                          for _ in range(2))  # fmt: skip
             s = Joint(**at, sign=1.0)
-            found |= {x for x in VARIABLES if law(s._replace(**{x: other[x]}), p) != law(s, p)}
+            force = _force(law, s, p)
+            found |= {x for x in VARIABLES
+                      if _force(law, s._replace(**{x: other[x]}), p) != force}  # fmt: skip
     return frozenset(found | {*POSITIONS} if "f_g" in found else found)
+
+
+def _force(law: Callable[..., float], s: Joint, p: tuple[float, ...]) -> float | None:
+    """Returns the force of a law; None where it has none, as a user's own may divide by zero."""
+    try:
+        return law(s, p)
+    except ArithmeticError:
+        return None

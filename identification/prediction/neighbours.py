@@ -33,9 +33,11 @@ from identification.discovery.neighbour import MORE_LIKELY_THAN_NOT
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.passes import uses
 from identification.effects.effect import Candidate
+from identification.effects.variables import POSITIONS, variables
 from identification.prediction.model import WindowModel
 from identification.prediction.scores import WindowScore
 from identification.prediction.screening import places_of
+from identification.prediction.task import WindowSearch
 from identification.prediction.trial import Contender, mean_square
 from identification.prediction.yardstick import Yardstick, acts_on_joints, may_draw
 
@@ -63,28 +65,85 @@ class Explained:
         return curves / (self.law + curves) if self.law + curves > 0 else 0.0
 
 
-def explained_by(law: Contender, accepted: Sequence[Contender], model: WindowModel) -> Explained:
-    """Returns what an accepted law and the accepted curves at its joint explain.
+def explained_by(
+    law: Contender, accepted: Sequence[Contender], model: WindowModel,
+    doubtful: Sequence[Contender] = (),
+) -> Explained:  # fmt: skip
+    """Returns what an accepted law and what is beside it in the model explain.
 
     Args:
         law: one of those that were accepted.
-        accepted: all of them.
+        accepted: all of them; the curves among them may draw what the law misses.
         model: with all of them.
+        doubtful: those among them that have no sure name, and may be what the law misses.
     """
-    left = mean_square(model)
-    curves = [a for a in accepted if a is not law and _is_beside(a.candidate, law.candidate)]
+    left, unsure = mean_square(model), {d.candidate.key for d in doubtful}
+    curves = [
+        a
+        for a in accepted
+        if a is not law
+        and (
+            _is_beside(a.candidate, law.candidate)
+            or (a.candidate.key in unsure and _may_be_of(a.candidate, law.candidate))
+        )
+    ]
     return Explained(
         law.explained / left, sum(c.explained for c in curves) / left,
         min((c.prediction.chance for c in curves), default=1.0),
     )  # fmt: skip
 
 
+def neighbour_of(
+    law: Contender, state: WindowSearch, stick: Yardstick | None,
+    doubtful: Sequence[Contender] = (),
+) -> Neighbour | None:  # fmt: skip
+    """Returns what speaks most against the name of a law; None where nothing is beside it.
+
+    Args:
+        law: one of the accepted effects.
+        state: whose model has them.
+        stick: what smooth forces would still explain; None where it is not known.
+        doubtful: accepted effects that have no sure name.
+    """
+    options = state.task.options
+    explained = explained_by(law, state.accepted, state.model, doubtful)
+    each = [find_neighbour(law.candidate, explained, state.scores)]
+    if uses(options, "smooth_neighbours"):
+        each.append(find_smooth_neighbour(law.candidate, explained, stick))
+    return next((n for n in each if has_neighbours_name(n, options)), each[0])
+
+
+def _may_be_of(other: Candidate, law: Candidate) -> bool:
+    """Returns whether an effect without a sure name may be what a law misses, as a curve may.
+
+    An effect of inputs acts as a force of the rate or of the drive, and one of a sensor or a body
+    as one of positions.
+    """
+    if not acts_on_joints(law.effect):
+        return True
+    of_law = variables(law.effect)
+    if acts_on_joints(other.effect):
+        return _share_a_joint(other, law) and may_draw(other.effect, law.effect)
+    is_of_inputs = "input" in other.where
+    return not of_law or bool(of_law & ({"v", "f_u"} if is_of_inputs else {*POSITIONS}))
+
+
 def _is_beside(curve: Candidate, law: Candidate) -> bool:
     """Returns whether a candidate is a curve that may draw what a law misses at its joint."""
     if not (curve.effect.is_curve and may_draw(curve.effect, law.effect)):
         return False
-    has_joint = acts_on_joints(law.effect) and law.effect.places.get(law.where)
-    return not has_joint or bool({*places_of(law.where)} & {*places_of(curve.where)})
+    return not acts_on_joints(law.effect) or _share_a_joint(curve, law)
+
+
+def _share_a_joint(a: Candidate, b: Candidate) -> bool:
+    """Returns whether two effects of joints act at one; an effect at all joints acts at any."""
+    of_a, of_b = ([] if _is_everywhere(c) else places_of(c.where) for c in (a, b))
+    return not of_a or not of_b or bool({*of_a} & {*of_b})
+
+
+def _is_everywhere(c: Candidate) -> bool:
+    """Returns whether an effect acts at all joints with one size."""
+    return not c.effect.places.get(c.where) and len(places_of(c.where)) == 1
 
 
 def find_neighbour(

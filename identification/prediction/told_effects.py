@@ -12,15 +12,9 @@ import numpy as np
 
 from identification.chances import mean_above_zero
 from identification.discovery.effect_results import NamedEffect, Proof, RejectedEffect, Rival
-from identification.discovery.passes import uses
 from identification.effects.effect import Candidate
 from identification.prediction.model import WindowModel
-from identification.prediction.neighbours import (
-    explained_by,
-    find_neighbour,
-    find_smooth_neighbour,
-    has_neighbours_name,
-)
+from identification.prediction.neighbours import explained_by, neighbour_of
 from identification.prediction.odds import find_odds
 from identification.prediction.task import WindowSearch
 from identification.prediction.trial import Contender, Doubt
@@ -43,9 +37,6 @@ def named_effect(
     """
     options, mine = state.task.options, accepted.candidate
     explained = explained_by(accepted, state.accepted, state.model)
-    each = [find_neighbour(mine, explained, state.scores)]
-    if uses(options, "smooth_neighbours"):
-        each.append(find_smooth_neighbour(mine, explained, stick))
     is_final = any(c.key == mine.key for c in state.model.candidates)
     final = state.model if is_final else accepted.model
     odds = find_odds(accepted, final)
@@ -60,7 +51,7 @@ def named_effect(
         evidence=accepted.criterion, proof=_proof(state, accepted),
         same_as=next((e for e in state.task.effects if e.name == odds.twin), None),
         smooth_share=stick.share_of(mine, explained.law, explained.curves) if stick else None,
-        neighbour=next((n for n in each if has_neighbours_name(n, options)), each[0]),
+        neighbour=accepted.neighbour or neighbour_of(accepted, state, stick),
     )  # fmt: skip
 
 

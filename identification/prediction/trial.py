@@ -24,6 +24,7 @@ from typing import Literal
 
 import numpy as np
 
+from identification.discovery.effect_results import Neighbour
 from identification.discovery.fitted import BOUND_TOLERANCE
 from identification.discovery.impossible import Impossible
 from identification.discovery.options import DiscoveryOptions
@@ -66,6 +67,8 @@ class Contender:
     doubt: Doubt | None  # why it is not proven; None where it is
     # what else was refitted in its place and may be meant, once it is accepted
     alternatives: tuple[Contender, ...] = ()
+    # what is beside it, where it was judged beside effects that have left the model since
+    neighbour: Neighbour | None = None
 
     @property
     def is_proven(self) -> bool:

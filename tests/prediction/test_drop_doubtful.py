@@ -4,6 +4,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from identification.discovery.effect_results import Neighbour
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import CURVE, Candidate, Effect
 from identification.effects.sizes import Size
@@ -12,6 +13,7 @@ from identification.prediction.task import RecordsTask, WindowSearch
 from identification.prediction.trial import Contender
 
 SIZES = (Size("c", "N", 1.0, 0.1, about=""),)
+N = "neighbour"
 
 
 def model(*candidates):
@@ -37,63 +39,67 @@ def state(*names):
     )  # fmt: skip
 
 
-def letters(found):
-    return "".join(c.effect.name[-1] for c in found)
+def letter(a):
+    return a.candidate.effect.name[-1]
 
 
-def after(monkeypatch, doubts, *names):
+def after(monkeypatch, doubts, parts=""):
     """The names that stay, and those that are lost with their doubts.
 
-    Doubts are those of each set of effects that is asked, by the joined names of its effects.
+    Args:
+        monkeypatch: of pytest.
+        doubts: of each effect, None for a sure one; a curve has a capital letter.
+        parts: pairs "ab": while b is in doubt, it may be a part of what a misses.
     """
-    asked = []
+    pairs = parts.split()
 
-    def of(now):
-        kept = letters(a.candidate for a in now.accepted)
-        assert kept == letters(now.model.candidates)
-        asked.append(kept)
-        return doubts[kept]
+    def beside(law, state, stick, doubtful=()):
+        is_part = any(letter(law) + letter(d) in pairs for d in doubtful)
+        return Neighbour("curve", "joint", 0.5, 0.0, 0.5 if is_part else 0.01)
 
-    monkeypatch.setattr(drop_doubtful, "_doubts", of)
+    monkeypatch.setattr(drop_doubtful, "names_of", lambda *given: ((), None))
+    monkeypatch.setattr(drop_doubtful, "forbidden_of", lambda state: ())
+    monkeypatch.setattr(drop_doubtful, "is_off", lambda *given: True)
+    monkeypatch.setattr(drop_doubtful, "doubts_of_names", lambda *given: tuple(doubts.values()))
+    monkeypatch.setattr(drop_doubtful, "neighbour_of", beside)
     monkeypatch.setattr(drop_doubtful, "refitted", lambda old, rest, base, confirm: model(*rest))
     monkeypatch.setattr(drop_doubtful, "score_all", lambda *given: ("again",))
-    begun = state(*names)
+    begun = state(*doubts)
     new = drop_doubtful.drop_doubtful(begun, lambda line: None)
     assert (new is begun) == (new.scores == ())
-    kept = letters(a.candidate for a in new.accepted)
-    return kept, [(a.candidate.effect.name, a.doubt) for a in new.rejected], asked
+    assert [*map(letter, new.accepted)] == [c.effect.name[-1] for c in new.model.candidates]
+    if new is not begun:  # judged beside all effects, and not again in the smaller model
+        assert all(a.neighbour.of_both == 0.01 for a in new.accepted)
+    return "".join(map(letter, new.accepted)), [(letter(a), a.doubt) for a in new.rejected]
 
 
-N = "neighbour"
-
-
-@pytest.mark.parametrize(("doubts", "names", "kept", "lost"), [
-    ({"ab": (None, None)}, "ab", "ab", []),
-    ({"ab": (None, N), "a": (None,)}, "ab", "a", [("b", N)]),
-    ({"ab": (N, None), "b": (None,)}, "ab", "b", [("a", N)]),
-    # what was hidden by the doubtful one speaks against the other
-    ({"ab": (None, N), "a": (N,)}, "ab", "ab", []),
-    # all are in doubt: the last one may be the reason
-    ({"ab": (N, "odds"), "a": (None,)}, "ab", "a", [("b", "odds")]),
-    ({"abc": (N, N, N), "ab": (None, "mass"), "a": (None,)}, "abc", "a", [("b", "mass"), ("c", N)]),
+@pytest.mark.parametrize(("doubts", "parts", "kept", "lost"), [
+    ({"a": None, "b": None}, "", "ab", []),
+    ({"a": None, "b": N}, "", "a", [("b", N)]),
+    ({"a": "odds", "b": None}, "", "b", [("a", "odds")]),
+    # what is in doubt may be a part of what another law misses
+    ({"a": None, "b": N}, "ab", "ab", []),
+    ({"a": None, "b": N, "c": None}, "ab", "c", [("a", N), ("b", N)]),
+    ({"a": None, "b": N, "c": None}, "ab ca", "abc", []),
+    ({"a": N, "b": N}, "", "ab", []),
     # a curve alone would draw what the law explains, too
-    ({"aC": (N, None)}, "aC", "aC", []),
-    ({"abC": (N, None, None), "bC": (None, None)}, "abC", "bC", [("a", N)]),
-    ({"abc": (N, N, N), "ab": (N, N), "a": (N,)}, "abc", "abc", []),
+    ({"a": N, "C": None}, "", "aC", []),
+    ({"a": N, "b": None, "C": None}, "", "bC", [("a", N)]),
 ])  # fmt: skip
-def test_what_is_sure_stays_without_what_is_in_doubt(monkeypatch, doubts, names, kept, lost):
-    stays, gone, asked = after(monkeypatch, doubts, *names)
-    assert stays == kept
-    assert gone == lost
-    assert asked == [*doubts]
+def test_what_is_sure_stays_without_what_is_in_doubt(monkeypatch, doubts, parts, kept, lost):
+    assert after(monkeypatch, doubts, parts) == (kept, lost)
 
 
 def test_one_effect_is_not_asked_because_nothing_would_stay(monkeypatch):
-    assert after(monkeypatch, {}, "a") == ("a", [], [])
+    monkeypatch.setattr(drop_doubtful, "names_of", lambda *given: pytest.fail("it is asked"))
+    begun = state("a")
+    assert drop_doubtful.drop_doubtful(begun, lambda line: None) is begun
 
 
 def test_no_effect_is_lost_where_the_others_cannot_be_fitted_alone(monkeypatch):
-    monkeypatch.setattr(drop_doubtful, "_doubts", lambda now: (None, N))
+    monkeypatch.setattr(drop_doubtful, "_judged", lambda state: (
+        [*state.accepted[:1]], [*state.accepted[1:]]
+    ))  # fmt: skip
     monkeypatch.setattr(drop_doubtful, "refitted", lambda *given: None)
     begun = state("a", "b")
     assert drop_doubtful.drop_doubtful(begun, lambda line: None) is begun

@@ -18,6 +18,7 @@ from identification.prediction.moves.curve_for_laws import curve_for_laws
 from identification.prediction.neighbours import (
     MOST_OF_BOTH,
     Explained,
+    _may_be_of,
     explained_by,
     find_neighbour,
     has_neighbours_name,
@@ -144,3 +145,18 @@ def test_a_curve_of_the_model_counts_where_it_may_draw_what_the_law_misses(law, 
     explained = explained_by(both[0], both, model)
     assert explained.law == 3.0
     assert (explained.curves, explained.chance) == ((3.0, 1e-6) if counts else (0.0, 1.0))
+
+
+@pytest.mark.parametrize(("law", "doubtful", "counts"), [
+    ("coulomb_friction", "asymmetric_viscous_friction", True),
+    ("coulomb_friction", "offset", False),
+    ("coulomb_friction", "encoder_offset", False),  # it acts as a force of the position
+    ("coulomb_friction", "delay", True),  # an input that is late acts as a damping
+    ("hardening", "encoder_offset", True),
+    ("hardening", "quadratic_friction", False),
+    ("offset", "stiffness", True),
+    ("encoder_offset", "offset", True),  # what is not of a joint has no variables of its own
+])  # fmt: skip
+def test_an_effect_without_a_sure_name_may_be_what_a_law_misses(law, doubtful, counts):
+    known = {e.name: next(iter(list_common([e]))) for e in candidates(pendulum(), FREE)}
+    assert _may_be_of(known[doubtful], known[law]) == counts
