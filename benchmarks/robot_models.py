@@ -4,8 +4,8 @@
                                       [--seed 1] [--rough | --exact] [--processes 2]
     python benchmarks/robot_models.py --only-page             the page anew, from the rows
 
-Each world (`robot_worlds`) is simulated with one effect that its model lacks. The first of three
-records is searched with all candidates, the others confirm. A finished world is a line of ROWS,
+Each world (`robot_worlds`) is simulated with one effect that its model lacks. The first of two
+records is searched with all candidates, the second confirms. A finished world is a line of ROWS,
 and is not made again by the same search. The page docs/robot/models.md is of one search. Seconds
 are those of the processor.
 """
@@ -46,12 +46,11 @@ HEAD = """# Kinds of robots that were tried
 Menagerie (`examples/linkages`, `benchmarks/robots/kinds`), simulated with one effect or several
 that its model lacks, each at a joint that is driven. No law is exact on a real robot: a *rough* one
 also has at each driven joint 5 to 20 % of a force of position and rate that is in no catalogue. A
-log of 8 s at 100 Hz is fitted and searched. Two others confirm; in the second of them the inputs
-reach 0.4 times as far. The search tries all candidates.
+log of 8 s at 100 Hz is fitted and searched, another one confirms. The search tries all candidates.
 An answer is right if each name is that of a hidden effect at its joint, and no effect is left
 without one; what makes a robot rough must have no name. For the four-bar and the gripper, whose
-joints are coupled, a name may also stand at another joint or at all of them, because the motion
-cannot tell these apart.
+joints are coupled, a name may also stand at another
+joint or at all of them, because the motion cannot tell these apart.
 """
 
 
@@ -72,7 +71,7 @@ def study(
         with TemporaryDirectory() as folder:
             toml, logs = write(world, motions, Path(folder))
             options = DiscoveryOptions(without=without)
-            found = discover(read_robot(toml, logs[0], confirm=logs[1:]), options=options)
+            found = discover(read_robot(toml, logs[0], confirm=[logs[1]]), options=options)
     except Exception as error:
         return {**row, "error": f"{type(error).__name__}: {error}"}
     return {**row, **answer_of(found), "seconds": time.process_time() - begun}

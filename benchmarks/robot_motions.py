@@ -127,11 +127,7 @@ def law(effect: str, motion: Motion, joint: int) -> tuple[Law, float]:
 
 
 def simulate(
-    world: World,
-    forces: Mapping[str, Law],
-    seed: int,
-    roughness: Mapping[str, Law] | None = None,
-    reach: float = 1.0,
+    world: World, forces: Mapping[str, Law], seed: int, roughness: Mapping[str, Law] | None = None
 ) -> Motion:
     """Returns the motion of a world under inputs of a seed.
 
@@ -140,7 +136,6 @@ def simulate(
         forces: the force of each hidden effect that is one, in units of its size.
         seed: of the inputs.
         roughness: of each rough joint, in units of its rms.
-        reach: of the inputs, over what the robot is usually driven with.
     """
     truth = DRIVEN[world.robot]
     model = _with_hidden(world)
@@ -151,7 +146,7 @@ def simulate(
     middle = data.ten_length if np.isnan(truth.middle) else truth.middle
     waves = chance.uniform(0.1, 1.6, (5, model.nu)), chance.uniform(0, 2 * np.pi, (5, model.nu))
     shape = np.sin(2 * np.pi * waves[0] * time[:, None, None] + waves[1]).sum(1) / 2.5
-    inputs = np.round(middle + reach * truth.reach * shape, 4)
+    inputs = np.round(middle + truth.reach * shape, 4)
     each = round(linkages.SAMPLING / model.opt.timestep)
     lateness = sum(h.size for h in world.hidden if h.effect == "delay")
     late = round(lateness / model.opt.timestep)

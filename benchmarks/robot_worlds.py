@@ -10,7 +10,7 @@ describes, of an rms ρ s F; ρ is drawn from `ROUGH`, and s F is the hidden for
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -27,8 +27,6 @@ ASIDE = 0.3
 ROTOR = (0.2, 0.6)  # of the inertia that a joint swings
 # What is no force of its own; all others are.
 RANGES = {"delay": LATE, "heavier": HEAVIER, "load": LOAD, "rotor": ROTOR}
-# Of the inputs of each record: one to fit, one like it and one of smaller motions that confirm.
-REACHES = (1.0, 1.0, 0.4)
 SEEN = 4.0  # rms change of the outputs over their noise, below which an effect is made larger
 MOST_DOUBLINGS = 4
 # Names that are right for what is hidden; none for forces that no law of the catalogue describes.
@@ -63,7 +61,7 @@ SEVERAL: Mapping[str, tuple[int, int]] = {"two": (2, 0), "three": (3, 0), "two_u
 
 
 def make(robot: str, effect: str, seed: int, is_rough: bool = False) -> tuple[World, list[Motion]]:
-    """Returns a world with the motions of its records, each effect large enough to be seen.
+    """Returns a world with the motions of two records, each effect large enough to be seen.
 
     Args:
         robot: of `DRIVEN`.
@@ -73,8 +71,8 @@ def make(robot: str, effect: str, seed: int, is_rough: bool = False) -> tuple[Wo
     """
     chance = np.random.default_rng([seed, *map(ord, robot + effect)])
     bare = World(robot, seed)
-    seeds = [int(s) for s in chance.integers(1, 2**31, len(REACHES))]
-    without = _records(bare, {}, seeds)
+    seeds = [int(s) for s in chance.integers(1, 2**31, 2)]
+    without = [simulate(bare, {}, s) for s in seeds]
     if effect == "nothing" and not is_rough:
         return bare, without
     chosen = [effect] if effect != "nothing" else []
@@ -93,16 +91,7 @@ def make(robot: str, effect: str, seed: int, is_rough: bool = False) -> tuple[Wo
     roughness: Mapping[str, Law] = {}
     if is_rough:
         world, roughness = _roughened(world, chance, without[0])
-    return world, _records(world, forces, seeds, roughness)
-
-
-def _records(
-    world: World, forces: Mapping[str, Law], seeds: Sequence[int],
-    roughness: Mapping[str, Law] | None = None,
-) -> list[Motion]:  # fmt: skip
-    """Returns the motions of all records of a world, each under inputs of its seed."""
-    pairs = zip(seeds, REACHES, strict=True)
-    return [simulate(world, forces, seed, roughness, reach) for seed, reach in pairs]
+    return world, [simulate(world, forces, s, roughness) for s in seeds]
 
 
 def _roughened(
@@ -142,7 +131,7 @@ def _seen(
         place = place_of_load(model, int(model.jnt_bodyid[joint]), chance)
     hidden = Hidden(effect, model.joint(joint).name, size, place)
     for _ in range(MOST_DOUBLINGS):
-        motions = _records(replace(bare, hidden=(hidden,)), forces, seeds)
+        motions = [simulate(replace(bare, hidden=(hidden,)), forces, s) for s in seeds]
         if change_over_noise(bare.robot, motions, without) >= SEEN:
             break
         hidden = replace(hidden, size=2 * hidden.size)

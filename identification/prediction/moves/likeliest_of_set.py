@@ -32,7 +32,9 @@ def likeliest_of_set(state: WindowSearch, progress: Progress) -> Change:
     for old in state.accepted:
         odds = find_odds(old, model)
         is_forbidden = odds.forbidden > odds.own and old is not state.accepted[-1]
-        is_likelier = odds.likeliest is not None and odds.likeliest[1] > odds.own
+        # what unseen records do not prove takes no place, however likely it is
+        proven = [share for rival, share in odds.rivals if rival.is_proven]
+        is_likelier = max(proven, default=0.0) > odds.own
         new = _asked_again(state, model, old) if is_likelier or is_forbidden else None
         if new is None:
             out.append(old)
