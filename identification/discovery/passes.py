@@ -108,9 +108,6 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
     "curve_for_laws": (
         HORIZON, "puts one curve of the data in the place of several laws at a joint",
     ),
-    "unmask_neighbours": (
-        HORIZON, "puts a curve of the data in the place of a law that it predicts better than",
-    ),
     "neighbours_names": (
         HORIZON, "names no law beside which a curve of the data still explains much",
     ),

@@ -6,12 +6,12 @@ acts from a speed on, that of a friction which grows with the square of the spee
 fitted in the place of all laws at the joint, and their cause is unlisted where it
 
     has more evidence for it than several laws have, with the price of its many numbers, or
-    predicts unseen records better than a law beyond chance, which needs no price, or
-    is proven, where the law has a neighbour's name (`identification.prediction.neighbours`).
+    is proven, where a single law has a neighbour's name (`identification.prediction.neighbours`).
 
-A single law is asked only where a curve beside it may explain what it leaves. Laws that are there
-have the evidence of their few numbers, which a curve has not. A law of a sensor or an input that
-has a neighbour's name is asked at the joint of the curve that explains what it leaves.
+That a curve predicts better than a single law is no reason by itself: no law is exact on a real
+robot, and a curve also draws what lies beside the law. Laws that are there have the evidence of
+their few numbers, which a curve has not. A law of a sensor or an input that has a neighbour's name
+is asked at the joint of the curve that explains what it leaves.
 """
 
 from __future__ import annotations
@@ -22,12 +22,9 @@ from dataclasses import replace
 from functools import partial
 
 from identification.discovery.attempts import attempt
-from identification.discovery.options import DiscoveryOptions
-from identification.discovery.passes import uses
 from identification.prediction.contenders import count_numbers
 from identification.prediction.evidence import all_gains, count_windows, evidence
 from identification.prediction.extension import refitted
-from identification.prediction.model import WindowModel
 from identification.prediction.neighbours import (
     explained_by,
     find_neighbour,
@@ -36,13 +33,9 @@ from identification.prediction.neighbours import (
 from identification.prediction.screening import places_of, score_all
 from identification.prediction.selection import refit_contenders
 from identification.prediction.task import Change, WindowSearch
-from identification.prediction.trial import Contender, compared
+from identification.prediction.trial import Contender
 from identification.prediction.yardstick import acts_on_joints
 from identification.progress import Progress
-
-# Chance of a curve beside a law, among all curves of its joint, below which the law is asked. It
-# only saves refits: unseen records decide.
-MAY_BE_NEIGHBOUR = 0.05
 
 
 def curve_for_laws(state: WindowSearch, progress: Progress) -> Change:
@@ -73,12 +66,7 @@ def curve_for_laws(state: WindowSearch, progress: Progress) -> Change:
         best = next(iter(tried), None)
         if best is None or not best.is_proven:
             continue
-        if len(laws) > 1:
-            is_better = best.criterion > theirs
-        else:
-            is_neighbour = laws[0].candidate.key in neighbours
-            is_better = is_neighbour or _predicts_better(best, model, options)
-        if is_better:
+        if len(laws) == 1 or best.criterion > theirs:
             counted_laws = "a law does" if len(laws) == 1 else f"{len(laws)} laws do"
             progress(f"{best.candidate.effect.name}, {where}: does what {counted_laws}")
             model = best.model
@@ -97,14 +85,8 @@ def _neighbours_names(state: WindowSearch) -> dict[tuple[str, str], str]:
     return {c.key: n.where for c, n in each if n and has_neighbours_name(n, state.task.options)}
 
 
-def _predicts_better(curve: Contender, laws: WindowModel, options: DiscoveryOptions) -> bool:
-    """Returns whether unseen records are predicted better with a curve in the place of laws."""
-    found = compared(laws.unseen, curve.model.unseen, options)
-    return found.is_everywhere and found.chance < options.significance
-
-
 def _joints_of_laws(state: WindowSearch, doubtful: Collection[str]) -> list[str]:
-    """Returns the joints of several laws, or of one that may be a neighbour's, and of no curve."""
+    """Returns the joints of several laws, or of one that is in doubt, and of no curve."""
     curves = {
         place
         for a in state.accepted
@@ -112,16 +94,8 @@ def _joints_of_laws(state: WindowSearch, doubtful: Collection[str]) -> list[str]
         for place in places_of(a.candidate.where)
     }
     count = Counter(a.candidate.where for a in state.accepted if _is_law(a))
-    asked = [w for w, n in count.items() if n > 1 or _may_be_neighbour(state, w)]
+    asked = [where for where, n in count.items() if n > 1]
     return [where for where in dict.fromkeys((*asked, *doubtful)) if where not in curves]
-
-
-def _may_be_neighbour(state: WindowSearch, where: str) -> bool:
-    """Returns whether a curve at a joint may explain what the model leaves."""
-    beside = [s.p_value for s in state.scores
-              if s.candidate.effect.is_curve and s.candidate.where == where]  # fmt: skip
-    is_asked = uses(state.task.options, "unmask_neighbours")
-    return is_asked and min(beside, default=1.0) * len(beside) < MAY_BE_NEIGHBOUR
 
 
 def _is_law(a: Contender) -> bool:
