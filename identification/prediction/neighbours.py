@@ -42,7 +42,7 @@ from identification.prediction.trial import Contender, mean_square
 from identification.prediction.yardstick import Yardstick, acts_on_joints, may_draw
 
 # Of what law and curve explain together: a judgement. In the worlds of docs/robot/models.md curves
-# explained less beside 32 of 34 right laws, and more beside 4 of 9 laws that were not there.
+# explained less beside 33 of 34 right laws, and more beside 2 of 8 laws that were not there.
 MOST_OF_BOTH = 0.15
 SMOOTH_FORCE = "smooth force"  # as it is called where a curve has its name
 
