@@ -48,8 +48,12 @@ def variables(effect: Effect) -> frozenset[str]:
 
 
 def _force(law: Callable[..., float], s: Joint, p: tuple[float, ...]) -> float | None:
-    """Returns the force of a law; None where it has none, as a user's own may divide by zero."""
+    """Returns the force of a law; None where it has none.
+
+    A user's own may divide by zero or take the root of a negative number in states that its robot
+    does not reach, and no finished search is lost to that.
+    """
     try:
         return law(s, p)
-    except ArithmeticError:
+    except (ArithmeticError, ValueError):
         return None

@@ -34,7 +34,7 @@ from identification.effects.joint_group import SLIDE
 from identification.prediction.evidence import count_windows, evidence
 from identification.prediction.model import WindowModel
 from identification.prediction.scores import WindowScore
-from identification.windows.comparison import How, Prediction, compare
+from identification.windows.comparison import Prediction, compare
 from identification.windows.unseen import Unseen
 
 Doubt = (
@@ -109,8 +109,10 @@ def compared(without: Unseen, with_it: Unseen, options: DiscoveryOptions) -> Pre
         with_it: of the second one.
         options: whether each output counts by itself, and each record.
     """
-    how = How(uses(options, "gains_of_outputs"), uses(options, "strata_of_records"))
-    return compare(without, with_it, how)
+    return compare(
+        without, with_it, by_outputs=uses(options, "gains_of_outputs"),
+        by_records=uses(options, "strata_of_records"),
+    )  # fmt: skip
 
 
 def find_doubt(found: Prediction, refits: int, options: DiscoveryOptions) -> Doubt | None:

@@ -58,7 +58,8 @@ class Unbalanced:
     """What the balance of forces leaves of the drives' forces."""
 
     of_outputs: np.ndarray  # η_j of the joint of each output, shape (ny,), without unit
-    whole: float  # η of all joints, without unit; infinite where no drive gives a force
+    # η of all joints, without unit; zero where no drive gives a force, so that nothing contradicts
+    whole: float
 
 
 def unbalanced_share(
@@ -111,7 +112,7 @@ def unbalanced(
              for field, i in columns]  # fmt: skip
     weight = 1 / np.maximum(model.dof_M0, np.finfo(float).tiny)
     left, felt = (float(np.sum(x * weight)) for x in (eta * size**2, given**2))
-    return Unbalanced(np.asarray(eta[joint]), left / felt if felt > 0 else np.inf)
+    return Unbalanced(np.asarray(eta[joint]), left / felt if felt > 0 else 0.0)
 
 
 def _shortest(

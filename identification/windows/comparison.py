@@ -56,15 +56,9 @@ class Prediction:
         return min(self.gains) > 0 and min(self.typical_falls) > 0
 
 
-@dataclass(frozen=True)
-class How:
-    """How two models are compared."""
-
-    by_outputs: bool = True  # whether each output counts by itself
-    by_records: bool = True  # whether blocks scatter about the mean of their record, or of all
-
-
-def compare(without: Unseen, with_it: Unseen, how: How = How()) -> Prediction:
+def compare(
+    without: Unseen, with_it: Unseen, *, by_outputs: bool = True, by_records: bool = True
+) -> Prediction:
     """Returns what the second of two models predicts better, over lengths that both have.
 
     It is of the windows on which a search decides; what is to be told of it is its `told`.
@@ -72,15 +66,17 @@ def compare(without: Unseen, with_it: Unseen, how: How = How()) -> Prediction:
     Args:
         without: errors of the first model.
         with_it: of the second one.
-        how: they are compared.
+        by_outputs: whether each output counts by itself.
+        by_records: whether blocks scatter about the mean of their record, or about that of all.
     """
-    decided = _compare(without.select, with_it.select, how)
+    decided = _compare(without.select, with_it.select, by_outputs, by_records)
     if not any(with_it.parts):
         return decided
-    return replace(decided, untouched=_compare(without.report, with_it.report, how))
+    told = _compare(without.report, with_it.report, by_outputs, by_records)
+    return replace(decided, untouched=told)
 
 
-def _compare(without: Unseen, with_it: Unseen, how: How) -> Prediction:
+def _compare(without: Unseen, with_it: Unseen, by_outputs: bool, by_records: bool) -> Prediction:
     """Returns the same of all windows of two models."""
     falls, typical, gains = [], [], []
     lengths = [n for n in without.lengths if n in with_it.lengths]
@@ -91,13 +87,13 @@ def _compare(without: Unseen, with_it: Unseen, how: How) -> Prediction:
         typical.append(1 - float(np.exp(np.mean(ratios))))
         gains.append(block_gains(a, b, without.floor))
     at = lengths.index(1.0)
-    if how.by_outputs:
+    if by_outputs:
         gains[at] = output_gains(without.of_outputs, with_it.of_outputs, without.noise)
     blocks, means = gains[at], tuple(float(np.concatenate(g).mean()) for g in gains)
     every = np.concatenate(blocks)
     t, chance = 0.0, 1.0
     if len(every) > 2 and every.std() > 0:
-        t, chance = stratified_mean_above_zero(blocks if how.by_records else [every])
+        t, chance = stratified_mean_above_zero(blocks if by_records else [every])
     each = zip(without.at_horizon, with_it.at_horizon, strict=True)
     return Prediction(
         t=t, chance=chance, rank_chance=ranks_above_zero(every), gain=means[at], gains=means,

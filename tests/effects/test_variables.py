@@ -1,9 +1,14 @@
 """Which variables of a joint a law depends on is found by trying."""
 
+from math import sqrt
+
 import pytest
+from numba import njit
 
 from identification.effects.catalogue import joint_effects
+from identification.effects.effect import Effect
 from identification.effects.joint_law import _AXES
+from identification.effects.sizes import Size
 from identification.effects.variables import VARIABLES, variables
 from identification.prediction.screening import at_several
 from identification.prediction.yardstick import ON_JOINTS
@@ -39,3 +44,14 @@ def test_a_law_depends_on_what_changes_its_force(name, read):
 def test_a_law_of_every_kind_can_be_asked(effect):
     assert variables(effect) <= {*VARIABLES}
     assert variables(effect) or effect.name == "offset" or not {*effect.hooks} & ON_JOINTS
+
+
+@njit
+def rooted(s, p):
+    return p[0] * sqrt(s.v)
+
+
+def test_a_law_of_a_user_that_has_no_force_somewhere_is_asked_elsewhere():
+    size = (Size("c", "N m", 1.0, 0.1, about=""),)
+    own = Effect("own", "", size, places={"joint": ""}, hooks={"force": rooted})
+    assert variables(own) == {"v"}
