@@ -53,25 +53,25 @@ def find_smooth_force(G: np.ndarray, a: np.ndarray, nodes: Sequence[int]) -> Smo
     """
     of = np.repeat(np.arange(len(nodes)), nodes)
     folds = np.array_split(np.arange(len(a)), min(FOLDS, len(a)))
-    parts = [(G[f].sum(axis=0), a[f].sum(axis=0)) for f in folds]
-    every, b = G.sum(axis=0), a.sum(axis=0)
+    own = np.array([G[f].sum(axis=0) for f in folds])
+    mine = np.array([a[f].sum(axis=0) for f in folds])
+    every, b = own.sum(axis=0), mine.sum(axis=0)
+    others, theirs = every - own, b - mine
     diagonal = np.diag(every)
     h = np.array([diagonal[of == k].mean() for k in range(len(nodes))])
 
     def fitted(H: np.ndarray, b: np.ndarray, ridges: np.ndarray) -> np.ndarray:
-        c = np.zeros(len(b))
+        """Returns ĉ for each of F normal equations, shape (F, k)."""
+        c = np.zeros(b.shape)
         has = np.isfinite(ridges[of]) & (diagonal > 0)
         if has.any():
-            R = np.diag(ridges[of[has]] * h[of[has]])
-            c[has] = np.linalg.lstsq(H[np.ix_(has, has)] + R, b[has], rcond=1e-12)[0]
+            R = np.diag(ridges[of[has]] * h[of[has]])  # all > 0: the sum below has an inverse
+            c[:, has] = np.linalg.solve(H[:, has][:, :, has] + R, b[:, has, None])[..., 0]
         return c
 
     def gain(ridges: np.ndarray) -> float:
-        out = 0.0
-        for own, mine in parts:
-            c = fitted(every - own, b - mine, ridges)
-            out += float(2 * mine @ c - c @ own @ c)
-        return out
+        c = fitted(others, theirs, ridges)
+        return float(np.sum(2 * mine * c) - np.einsum("fi,fij,fj->", c, own, c, optimize=True))
 
     best = np.full(len(nodes), np.inf)
     most = 0.0
@@ -86,10 +86,9 @@ def find_smooth_force(G: np.ndarray, a: np.ndarray, nodes: Sequence[int]) -> Smo
         if not most > before:
             break
     gains = np.zeros(len(a))
-    for f, (own, mine) in zip(folds, parts, strict=True):
-        c = fitted(every - own, b - mine, best)
+    for f, c in zip(folds, fitted(others, theirs, best), strict=True):
         gains[f] = 2 * a[f] @ c - (G[f] @ c) @ c
-    return SmoothForce(gains, best, fitted(every, b, best))
+    return SmoothForce(gains, best, fitted(every[None], b[None], best)[0])
 
 
 def explained_share(before: float, after: float, gain: float) -> float | None:
