@@ -112,7 +112,9 @@ def measure(
     each = [c for c in list_common(curves) if c.key not in has and c.effect.places[c.where]]
     if not each:
         return None
-    surfaces, fit = _with_surfaces(model) if is_left else ([], model.fit)
+    # What laws took away was measured in these units too.
+    fit = model.fit.weighed(model.scale)
+    surfaces, fit = _with_surfaces(model, fit) if is_left else ([], fit)
     each = [*each, *surfaces]
     columns = [len(c.sizes) for c in each]
     fit = some_windows(fit) if sum(columns) > MAX_SCORED else fit
@@ -149,12 +151,12 @@ def measure(
     return Yardstick(every, of_joint, found)
 
 
-def _with_surfaces(model: WindowModel) -> tuple[list[Candidate], WindowFit]:
-    """Returns the surfaces at the joints on which laws act, and the fit in a plant that has them.
+def _with_surfaces(model: WindowModel, fit: WindowFit) -> tuple[list[Candidate], WindowFit]:
+    """Returns the surfaces at the joints on which laws act, and a fit in a plant that has them.
 
     There are none where laws act on very many joints.
     """
-    plant, fit = model.plant, model.fit
+    plant = model.plant
     if not isinstance(plant, JointPlant):
         return [], fit
     laws = [c for c in model.candidates if acts_on_joints(c.effect)]

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import count
 
 import numpy as np
@@ -24,7 +24,7 @@ from identification.model.rollout import State
 from identification.progress import Progress, counted
 from identification.quantities import alike
 from identification.windows.point import AtPoint, linearised
-from identification.windows.problem import Problem
+from identification.windows.problem import Problem, with_scale
 from identification.windows.shooting import Tangent
 
 # Of the squared norms of the columns of X and S.
@@ -92,6 +92,25 @@ class WindowFit:
         """Σ_w S_wᵀ(I - P_w) S_w: H without the priors, shape (p, p)."""
         each = (t.projected[0] for t in self.tangents)
         return np.asarray(sum(np.einsum("wmp,wmq->pq", S, S) for S in each))
+
+    def weighed(self, scale: np.ndarray) -> WindowFit:
+        """Returns the same values and slopes, with outputs that count in other units.
+
+        Args:
+            scale: of each output, shape (ny,), in its unit.
+        """
+        old = 1 / np.diag(self.problem.parts[0].whitener)
+        if np.allclose(old, scale):
+            return self
+        tangents = []
+        for part, t in zip(self.problem.parts, self.tangents, strict=True):
+            _, L, ny = part.cut.outputs.shape
+            states = np.ones(t.r.shape[1] - L * ny)
+            tangents.append(t.weighed(np.concatenate([np.tile(old / scale, L), states])))
+        return replace(
+            self, problem=with_scale(self.problem, scale), tangents=tuple(tangents),
+            cost=self.problem.cost_of(self.q, [t.r for t in tangents]),
+        )  # fmt: skip
 
     @property
     def curvature(self) -> np.ndarray:

@@ -184,6 +184,12 @@ class Tangent:
             changed[f.name][at] = getattr(other, f.name)
         return Tangent(**changed)
 
+    def weighed(self, weights: np.ndarray) -> Tangent:
+        """Returns the tangent of residuals whose rows count by other weights, shape (m,)."""
+        X = self.U * self.s[:, None] @ self.Vt * self.size[:, None]
+        w = weights[:, None]
+        return decomposed(self.r * weights, X * w, self.S * w)
+
     @property
     def freedom(self) -> int:
         """Number of directions of the initial states that are felt, over all windows."""
