@@ -10,7 +10,8 @@ what law and curve explain together:
                                 away, over what the model with all that was found leaves,
                                 f: fall by the curve beside it
 
-and it is more likely than not that this is no luck: what acts in few windows, as a stop does, has a
+All three are in units of the errors of the model without effects. The other condition is that it is
+more likely than not that this is no luck: what acts in few windows, as a stop does, has a
 large chance whatever it explains. No law is exact on a real robot, so that less than this speaks
 against none. A law of a sensor, an input or a body has no joint of its own, and curves at all
 joints count. A curve counts, in the model or beside it, where it may draw what the law misses: it
@@ -35,7 +36,6 @@ from identification.discovery.passes import uses
 from identification.effects.effect import Candidate
 from identification.effects.variables import POSITIONS, variables
 from identification.prediction.model import WindowModel
-from identification.prediction.scores import WindowScore
 from identification.prediction.screening import places_of
 from identification.prediction.task import WindowSearch
 from identification.prediction.trial import Contender, mean_square
@@ -107,7 +107,7 @@ def neighbour_of(
     """
     options = state.task.options
     explained = explained_by(law, state.accepted, state.model, doubtful)
-    each = [find_neighbour(law.candidate, explained, state.scores)]
+    each = [find_neighbour(law.candidate, explained, stick)]
     if uses(options, "smooth_neighbours"):
         each.append(find_smooth_neighbour(law.candidate, explained, stick))
     return next((n for n in each if has_neighbours_name(n, options)), each[0])
@@ -147,21 +147,21 @@ def _is_everywhere(c: Candidate) -> bool:
 
 
 def find_neighbour(
-    candidate: Candidate, explained: Explained, scores: Sequence[WindowScore]
+    candidate: Candidate, explained: Explained, stick: Yardstick | None
 ) -> Neighbour | None:
     """Returns the curve that explains what a law leaves with the least chance of luck.
 
     Args:
         candidate: the law, or a curve.
         explained: what it and the curves of the model took away.
-        scores: of all candidates, beside all that was found.
+        stick: what smooth forces would still explain; None where it is not known.
 
     Returns:
         None for a curve, and where no curve has a score.
     """
-    if candidate.effect.is_curve:
+    if candidate.effect.is_curve or stick is None:
         return None
-    curves = [s for s in scores if _is_beside(s.candidate, candidate)]
+    curves = [s for s in stick.curves if _is_beside(s.candidate, candidate)]
     if not curves:
         return None
     best = min(curves, key=lambda s: s.p_value)

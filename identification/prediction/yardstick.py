@@ -30,7 +30,7 @@ from identification.effects.jointed import JointPlant
 from identification.effects.surfaces import surface_effects
 from identification.effects.variables import variables
 from identification.prediction.model import WindowModel
-from identification.prediction.scores import condensed
+from identification.prediction.scores import WindowScore, condensed, window_scores
 from identification.prediction.screening import MAX_SCORED, places_of, some_windows
 from identification.windows.fit import WindowFit
 
@@ -56,6 +56,7 @@ class Yardstick:
     of_joint: Mapping[str, float]  # share that forces at one joint would take, by its name
     # of each law of the model: what smooth forces of its variables would take beyond others
     beyond: Mapping[tuple[str, str], Beyond]
+    curves: tuple[WindowScore, ...]  # each curve at each joint by itself
 
     def share(self, before: float, after: float) -> float | None:
         """Returns what a model explains of what it and smooth forces at all joints could.
@@ -114,6 +115,7 @@ def measure(
         return None
     # What laws took away was measured in these units too.
     fit = model.fit.weighed(model.scale)
+    scores = window_scores(fit, each)
     surfaces, fit = _with_surfaces(model, fit) if is_left else ([], fit)
     each = [*each, *surfaces]
     columns = [len(c.sizes) for c in each]
@@ -148,7 +150,7 @@ def measure(
         at = [j for j in places_of(law.where) if j in forces]
         if at and acts_on_joints(law.effect) and not law.effect.is_curve:
             found[law.key] = max((beyond(law, j) for j in at), key=lambda b: b.share)
-    return Yardstick(every, of_joint, found)
+    return Yardstick(every, of_joint, found, scores)
 
 
 def _with_surfaces(model: WindowModel, fit: WindowFit) -> tuple[list[Candidate], WindowFit]:

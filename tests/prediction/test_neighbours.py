@@ -29,6 +29,7 @@ from identification.prediction.screening import score_all
 from identification.prediction.selection import judged
 from identification.prediction.state import first_state
 from identification.prediction.task import RecordsTask
+from identification.prediction.yardstick import measure
 from identification.windows.records import as_records
 
 LAWS = ("hardening", "stiffness", "offset")
@@ -55,14 +56,14 @@ def with_law(name):
 
 
 @cache
-def scores_beside(name):
-    return score_all(with_law(name)[1], EFFECTS, OPTIONS)
+def forces_beside(name):
+    return measure(with_law(name)[1], EFFECTS)
 
 
 def neighbour_of(name):
     bare, model = with_law(name)
     explained = Explained((bare.fit.cost - model.fit.cost) / model.fit.cost)
-    return find_neighbour(model.candidates[-1], explained, scores_beside(name))
+    return find_neighbour(model.candidates[-1], explained, forces_beside(name))
 
 
 def test_the_right_law_leaves_luck_to_a_curve_and_its_neighbour_leaves_the_pattern():
@@ -86,14 +87,14 @@ def test_what_may_be_luck_or_is_little_is_no_reason_against_a_law(chance, of_bot
 
 def test_the_chance_is_paid_for_by_the_number_of_curves_at_the_joint():
     _, model = with_law("offset")
-    scores = scores_beside("offset")
-    curves = [s for s in scores if s.candidate.effect.is_curve]
-    found = find_neighbour(model.candidates[-1], Explained(9.0), scores)
+    forces = forces_beside("offset")
+    curves = forces.curves
+    found = find_neighbour(model.candidates[-1], Explained(9.0), forces)
     assert len(curves) > 2
     assert found.chance == pytest.approx(len(curves) * min(s.p_value for s in curves))
     assert found.of_both == pytest.approx(found.share / (9.0 + found.share))
-    assert find_neighbour(curves[0].candidate, Explained(9.0), scores) is None
-    assert find_neighbour(model.candidates[-1], Explained(9.0), []) is None
+    assert find_neighbour(curves[0].candidate, Explained(9.0), forces) is None
+    assert find_neighbour(model.candidates[-1], Explained(9.0), None) is None
 
 
 def test_a_proven_curve_takes_the_place_of_a_neighbours_name():
@@ -114,10 +115,10 @@ def test_a_proven_curve_takes_the_place_of_a_neighbours_name():
 def test_what_a_curve_of_the_model_explains_counts_as_what_is_beside_a_law():
     """The law would else look exact, because the curve has taken away what it misses."""
     _, model = with_law("stiffness")
-    scores = scores_beside("stiffness")
+    forces = forces_beside("stiffness")
     law = model.candidates[-1]
-    alone = find_neighbour(law, Explained(9.0), scores)
-    beside = find_neighbour(law, Explained(9.0, 3.0, 1e-6), scores)
+    alone = find_neighbour(law, Explained(9.0), forces)
+    beside = find_neighbour(law, Explained(9.0, 3.0, 1e-6), forces)
     assert beside.of_both == pytest.approx((3 + alone.share) / (12 + alone.share))
     assert beside.chance <= 1e-6
     luck = replace(alone, share=0.0, chance=1.0, of_both=Explained(9.0).of_both(0.0))

@@ -34,7 +34,7 @@ from identification.prediction.screening import places_of, score_all
 from identification.prediction.selection import refit_contenders
 from identification.prediction.task import Change, WindowSearch
 from identification.prediction.trial import Contender
-from identification.prediction.yardstick import acts_on_joints
+from identification.prediction.yardstick import acts_on_joints, measure
 from identification.progress import Progress
 
 
@@ -78,8 +78,11 @@ def curve_for_laws(state: WindowSearch, progress: Progress) -> Change:
 def _neighbours_names(state: WindowSearch) -> dict[tuple[str, str], str]:
     """Returns laws that have the name of a neighbour of what is missing, and its curve's joint."""
     every, model = state.accepted, state.model
+    if all(a.candidate.effect.is_curve for a in every):
+        return {}
+    stick = attempt(None, partial(measure, model, state.task.effects))
     each = (
-        (a.candidate, find_neighbour(a.candidate, explained_by(a, every, model), state.scores))
+        (a.candidate, find_neighbour(a.candidate, explained_by(a, every, model), stick))
         for a in every
     )
     return {c.key: n.where for c, n in each if n and has_neighbours_name(n, state.task.options)}
