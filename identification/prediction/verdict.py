@@ -69,7 +69,7 @@ def conclude(state: WindowSearch) -> Discovery:
     named, stick = names_of(state, limit, bool(findings))
     is_unexplained = _is_worse(state) or _errs(model, needed, options)
     # Where the fit was worse than the values with which it began, an effect says why.
-    closes = _share(state.worse_fit or nominal.unseen, model.unseen)
+    closes = largest_share(state.worse_fit or nominal.unseen, model.unseen, options)
     doubts = doubts_of_names(named, forbidden_of(state), findings, closes, options)
     verdict, doubtful = decide(named, doubts, findings, is_unexplained), None
     log = task.records[0].log
@@ -135,6 +135,17 @@ def _share(before: Unseen, after: Unseen) -> float:
     old, new = (float(np.mean(np.concatenate(u.report.at_horizon))) for u in (before, after))
     above = old - min(after.floor, new)
     return (old - new) / above if above > 0 else 0.0
+
+
+def largest_share(before: Unseen, after: Unseen, options: DiscoveryOptions) -> float:
+    """Returns the same share of the output of which a model takes away most.
+
+    An effect at one joint may do nothing for the outputs of others, which lack something else.
+    """
+    old, new = (np.concatenate(u.report.of_outputs).mean(axis=0) for u in (before, after))
+    above = old - np.minimum(after.noise, new)
+    is_off = old > after.noise * (1 + options.min_gap_share)
+    return float(np.max((old - new)[is_off] / above[is_off], initial=0.0))
 
 
 def _with_differences(state: WindowSearch, differ: Sequence[Contender]) -> WindowModel:

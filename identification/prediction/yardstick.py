@@ -156,7 +156,7 @@ def measure(
 def _with_surfaces(model: WindowModel, fit: WindowFit) -> tuple[list[Candidate], WindowFit]:
     """Returns the surfaces at the joints on which laws act, and a fit in a plant that has them.
 
-    There are none where laws act on very many joints.
+    Without laws they are those of all joints. There are none at very many joints.
     """
     plant = model.plant
     if not isinstance(plant, JointPlant):
@@ -168,7 +168,7 @@ def _with_surfaces(model: WindowModel, fit: WindowFit) -> tuple[list[Candidate],
         for joint in (places_of(c.where) if c.effect.places.get(c.where) else c.effect.places)
     }
     effects = surface_effects(plant.axes)
-    chosen = [c for c in list_common(effects) if c.where in at]
+    chosen = [c for c in list_common(effects) if c.where in at or not laws]
     if not 0 < len({c.where for c in chosen}) <= MAX_SURFACE_JOINTS:
         return [], fit
     there = plant.with_effects(effects)

@@ -2,11 +2,12 @@
 
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from identification.discovery.options import DiscoveryOptions
 from identification.prediction.doubts import doubts_of_names
-from identification.prediction.verdict import decide
+from identification.prediction.verdict import decide, largest_share
 
 LEFT = [SimpleNamespace(kind="remaining error")]
 
@@ -45,3 +46,18 @@ def test_what_physics_forbids_at_the_values_of_the_final_model_is_no_name():
     assert verdict_of(named, LEFT, 0.9, options, [None, None]) == "named"
     assert verdict_of(named, LEFT, 0.9, options, ["mass", None]) == "unknown effect"
     assert doubts_of_names(named, ["mass", None], LEFT, 0.9, options) == ("mass", None)
+
+
+@pytest.mark.parametrize(("before", "after", "share"), [
+    ([1.0, 1.0], [0.01, 1.0], 1.0),  # it does all for one output, which another one is not
+    ([1.0, 1.0], [0.505, 0.802], 0.5),
+    ([1.0, 0.01], [0.6, 0.001], 0.4 / 0.99),  # an output at its noise is nothing to close
+    ([0.01, 0.01], [0.01, 0.01], 0.0),
+])  # fmt: skip
+def test_the_gap_is_that_of_the_output_of_which_most_is_closed(before, after, share):
+    noise = np.array([0.01, 0.01])
+    old, new = (
+        SimpleNamespace(report=SimpleNamespace(of_outputs=[np.array([x])]), noise=noise)
+        for x in (before, after)
+    )
+    assert largest_share(old, new, DiscoveryOptions()) == pytest.approx(share)
