@@ -16,6 +16,7 @@ from typing import Literal
 import mujoco
 import numpy as np
 
+from identification.effects.servo_error import position_servo
 from identification.engine import quiet
 from identification.errors import InputError
 from identification.logs.log import Log
@@ -56,6 +57,9 @@ class Axis:
         share: of its inertia that its model gives to the motor, as armature; 0 where there is none.
         give: compliance on which its inertia swings once in 2π steps of the simulation: a stiffer
             one is not resolved [rad/(N m) or m/N].
+        servo: its position servo, "" where it has none or several.
+        gear: of this servo, by which it multiplies the position that it compares with its setpoint.
+        stiffness: of this servo at the joint, 0 where there is none [N m/rad or N/m].
 
     Raises:
         InputError: a magnitude is not positive, or is one that no robot has.
@@ -72,6 +76,9 @@ class Axis:
     middle: float = 0.0
     share: float = 0.0
     give: float = 0.0
+    servo: str = ""
+    gear: float = 1.0
+    stiffness: float = 0.0
 
     def __post_init__(self) -> None:
         for word in MAGNITUDES:
@@ -158,12 +165,13 @@ def _axis(model: mujoco.MjModel, log: Log, j: int, columns: dict[str, np.ndarray
         force = _pulled(model, log, dof)
     if not force and travel > 0:
         force = float(model.dof_M0[dof]) * speed**2 / travel
-    name = model.joint(j).name
+    name, is_plain = model.joint(j).name, all(_plain(model, i) for i in drives)
     return Axis(name, _KINDS[int(model.jnt_type[j])], force, speed, travel,
-                all(_plain(model, i) for i in drives), _heavy(model, j),
+                is_plain, _heavy(model, j),
                 log.begun + log.duration, float(way.min() + way.max()) / 2,
                 float(model.dof_armature[dof] * model.dof_invweight0[dof]),
-                float(model.opt.timestep**2 * model.dof_invweight0[dof]))  # fmt: skip
+                float(model.opt.timestep**2 * model.dof_invweight0[dof]),
+                *position_servo(model, drives if is_plain else ()))  # fmt: skip
 
 
 @quiet()

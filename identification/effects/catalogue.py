@@ -18,12 +18,14 @@ from identification.effects.inputs import drives, input_effects
 from identification.effects.joint_group import groups
 from identification.effects.rotors import rotor_effects
 from identification.effects.sensors import sensor_effects
+from identification.effects.servos import rate_limits, servo_effects
 from identification.effects.state_effects import state_effects
 from identification.logs.log import Log
 
 TURNS = (*map(float, range(1, 13)), 14.0, 16.0, 18.0, 20.0, 24.0, 28.0)  # harmonics of a turn
 _OF_JOINTS = (
     friction_effects, drag_effects, force_effects, time_effects, curve_effects, state_effects,
+    servo_effects,
 )  # fmt: skip
 
 
@@ -55,6 +57,7 @@ def all_effects(
         *(e for g in groups(axes, turns) for e in rotor_effects(g, compiled.opt.timestep)),
         *body_effects(spec),
         *input_effects(drives(log)),
+        *(e for g in groups(axes, turns) for e in rate_limits(g)),
         *sensor_effects(compiled, log.output_names, axes),
     )
 

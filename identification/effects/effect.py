@@ -21,7 +21,8 @@ from identification.effects.sizes import Onset, Shape, Size
 from identification.errors import InputError
 from identification.model.parameter import Parameter
 
-STATES = {"series": "motor", "slip": "grip"}  # hook, and the state of a joint that it needs
+# hook, and the state of a joint that it needs
+STATES = {"series": "motor", "slip": "grip", "integral": "sum"}
 CURVE = "curve"  # names of effects that begin so are curves drawn from the data
 
 
@@ -92,7 +93,7 @@ class Effect:
 
     @property
     def state(self) -> str:
-        """The kind of joint state that it needs: "motor", "grip" or, most often, none, ""."""
+        """The kind of joint state that it needs: "motor", "grip" or "sum"; most often none, ""."""
         return next((kind for hook, kind in STATES.items() if hook in self.hooks), "")
 
     @property

@@ -1,14 +1,15 @@
 """The states of a plant's joints, and the numbers of their gears in its model.
 
-row of a joint = (…, where θ and p stand, side, c, ε, J, ζ, c of friction, d_m, key, TAG)
+row of a joint = (…, where θ, p and z stand, side, c, ε, J, ζ, c of friction, d_m, k_i, key, TAG)
 armature - J                     the motor's inertia is moved from the joint, not added to it
 
 As a window knows them (s and w stay small where a gear becomes stiff):
 
     motor   s, w       δ = c s + ε s/(|s| + s_0),  dδ/dt = c w             [N m, N m/s or N, N/s]
     grip    p          the force of the friction                                     [N m or N]
+    sum     z          ∫ e dt of a servo with an integral part                   [rad s or m s]
 
-As MuJoCo integrates them: θ = q + δ, ω = v + dδ/dt, and p. Where the encoder sits on the motor's
+As MuJoCo integrates them: θ = q + δ, ω = v + dδ/dt, p and z. Where the encoder sits on the motor's
 side, what is measured is θ, so that q = θ - δ. Sizes of zero leave q and v as they are, to the bit.
 
 Where windows begin, a gear that does not swing carries what moves the link:
@@ -16,7 +17,7 @@ Where windows begin, a gear that does not swing carries what moves the link:
     s̄ = f_u - J dv/dt          p̄ = the force of friction          w̄ = 0
 
 The states of windows are free about that: s and p by their own rms, w by a change of s by its rms
-within a sample.
+within a sample; z as `identification.effects.servo_error` says.
 """
 
 from __future__ import annotations
@@ -39,16 +40,18 @@ from identification.effects.joint_states import (
     places_of,
     refuse_greedy,
 )
+from identification.effects.servo_error import sum_where
 from identification.effects.values import Values
 from identification.errors import InputError
+from identification.logs.log import Log
 from identification.logs.names import listed
 from identification.model.paths import Slot
 from identification.model.predictor import Numbers
 from identification.model.rollout import State
-from identification.native.gear import GEARS, GRIP, MOTOR, SIDE
+from identification.native.gear import GEARS, GRIP, MOTOR, SIDE, SUM
 from identification.native.joint_callback import LAST
 
-_WHERE = {"motor": MOTOR, "grip": GRIP}
+_WHERE = {"motor": MOTOR, "grip": GRIP, "sum": SUM}
 CERTAIN = 0.02  # s_0, of the largest force of the drives: with more, teeth are sure to touch
 LEAST = 1e-3  # of the largest force of the drives: the smallest std of a force
 
@@ -189,24 +192,34 @@ class Gears:
         return {**run, "qpos": qpos, "qvel": qvel}
 
     def first_states(
-        self, values: Values, loads: tuple[np.ndarray, np.ndarray, np.ndarray], sampling_time: float
+        self,
+        values: Values,
+        loads: tuple[np.ndarray, np.ndarray, np.ndarray],
+        log: Log,
+        starts: np.ndarray,
     ) -> tuple[np.ndarray, np.ndarray]:
         """Returns states where windows begin, shape (W, na), and how far off they may be, (na,).
 
-        `loads` are those of `first_loads`; `sampling_time` [s].
+        `loads` are those of `first_loads`; `starts` first samples of windows of the log, (W,).
         """
         drives, friction, rates = loads
         columns, far = [], []
         for state in self.states:
             dof = int(self.model.joint(state.joint).dofadr[0])
-            least = LEAST * self.joints[state.joint].force
+            axis = self.joints[state.joint]
+            least = LEAST * axis.force
+            if state.kind == "sum":
+                z, most = sum_where(self.model, axis.servo, axis.force, log, starts)
+                columns.append(z)
+                far.append(most)
+                continue
             if state.kind == "grip":
                 columns.append(friction[:, dof])
                 far.append(max(least, _rms(columns[-1])))
                 continue
             s = drives[:, dof] - self.of(state.joint, values, 1).J[0] * rates[:, dof]
             columns += [s, np.zeros(len(s))]
-            far += [max(least, _rms(s)), max(least, _rms(s)) / sampling_time]
+            far += [max(least, _rms(s)), max(least, _rms(s)) / log.sampling_time]
         return np.stack(columns, axis=1), np.array(far)
 
     def _motors(

@@ -100,6 +100,16 @@ class Group:
         return places("joint", tuple(a.joint for a in self.axes if a.plain and a.heavy))
 
     @cached_property
+    def servos(self) -> dict[str, str]:
+        """Places that a position servo drives."""
+        return places("joint", tuple(a.joint for a in self.axes if a.servo))
+
+    @property
+    def k(self) -> float:
+        """Largest stiffness of the position servos [N m/rad or N/m]."""
+        return max(a.stiffness for a in self.axes)
+
+    @cached_property
     def each(self) -> dict[str, str]:
         """Places: single joints."""
         return {where: suffix for where, suffix in self.at.items() if suffix}
@@ -114,7 +124,7 @@ class Group:
         """Returns an effect that is named like its law and acts on all these joints, or on one.
 
         Args:
-            hook: "force", "friction", "series" or "slip".
+            hook: "force", "friction", "series", "slip", "integral" or "input".
             law: its njit function.
             said: the law as a reader writes it.
             phrase: the effect in words.

@@ -28,7 +28,7 @@ from identification.native.joint_callback import JOINT
 # Joints on which every law of the catalogue has a place: each has joints before and behind it.
 _AXES = tuple(
     Axis(joint=name, kind="hinge", force=1.0, speed=1.0, travel=1.0, plain=True, heavy=True,
-         duration=1.0, middle=0.0, share=0.5, give=1.0)
+         duration=1.0, middle=0.0, share=0.5, give=1.0, servo=name, stiffness=1.0)
     for name in ("before", "between", "behind")
 )  # fmt: skip
 

@@ -2,6 +2,7 @@
 
     motor   θ, ω       of the motor behind a gear
     grip    p          the force of a friction that gives                            [N m or N]
+    sum     z          ∫ e dt of a servo with an integral part                [rad s or m s]
 
 The inertia that drives feel, and how much of it their motors may have:
 
@@ -15,9 +16,9 @@ ask for more than there is.
 from __future__ import annotations
 
 import copy
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, cast
 
 import mujoco
 import numpy as np
@@ -34,7 +35,8 @@ from identification.model.rollout import UNLOGGED, State
 from identification.native.gear import Gear
 from identification.native.joint_callback import FIRST, TAG
 
-WIDTH = {"motor": 2, "grip": 1}  # activations
+Kind = Literal["motor", "grip", "sum"]
+WIDTH: Mapping[str, int] = {"motor": 2, "grip": 1, "sum": 1}  # activations
 POSES = 8  # random ones, behind the model's own
 
 
@@ -42,8 +44,7 @@ POSES = 8  # random ones, behind the model's own
 class JointState:
     """A state of a joint."""
 
-    # "motor", θ and ω behind a gear; or "grip", p of a friction that gives
-    kind: Literal["motor", "grip"]
+    kind: Kind  # "motor", θ and ω behind a gear; "grip", p of a friction that gives; or "sum", z
     joint: str  # its name
 
 
@@ -58,11 +59,12 @@ class GearNumbers:
     side: np.ndarray
     slip: np.ndarray
     drag: np.ndarray
+    k_i: np.ndarray
 
     @property
     def columns(self) -> tuple[np.ndarray, ...]:
         """The columns in the order of a joint's row, from `SIDE` on."""
-        return self.side, self.c, self.gap, self.J, self.zeta, self.slip, self.drag
+        return self.side, self.c, self.gap, self.J, self.zeta, self.slip, self.drag, self.k_i
 
     @property
     def is_geared(self) -> np.ndarray:
@@ -93,20 +95,21 @@ def gear_numbers(
     effects: Sequence[Effect], joint: str, inertia: float, values: Values, n: int
 ) -> GearNumbers:
     """Returns the numbers of a joint's gear; of two effects that tell J, ζ and side, the larger."""
-    series, slip = np.zeros((6, n)), np.zeros(n)
+    series, alone = np.zeros((6, n)), {"grip": np.zeros(n), "sum": np.zeros(n)}
     for effect in (e for e in effects if e.state):
         numbers = [_each(x, n) for x in numbers_at(effect, joint, values)]
         (law,) = effect.hooks.values()
         told = law.py_func(Gear(inertia), tuple(numbers))  # type: ignore[attr-defined]
-        if effect.state == "grip":
-            slip = slip + told
+        if effect.state in alone:
+            alone[effect.state] = alone[effect.state] + told
             continue
         here, told = numbers[0] != 0, np.array([_each(x, n) for x in told])
         series[[0, 1, 5]] += told[[0, 1, 5]]
         for k in (2, 3, 4):
             series[k] = np.maximum(series[k], np.where(here, told[k], 0.0))
     c, gap, J, zeta, side, drag = series
-    return GearNumbers(c=c, gap=gap, J=J, zeta=zeta, side=side, slip=slip, drag=drag)
+    return GearNumbers(c=c, gap=gap, J=J, zeta=zeta, side=side, slip=alone["grip"], drag=drag,
+                       k_i=alone["sum"])  # fmt: skip
 
 
 def _each(x: float | np.ndarray, n: int) -> np.ndarray:
@@ -129,16 +132,14 @@ def needed_states(effects: Sequence[Effect]) -> dict[str, tuple[JointState, ...]
     """Returns the states that each size of an effect needs, by its name."""
     out: dict[str, tuple[JointState, ...]] = {}
     for effect in effects:
-        kind = effect.state
-        if kind not in WIDTH:
+        if effect.state not in WIDTH:
             continue
+        kind = cast("Kind", effect.state)
         single = [suffix[1:] for suffix in effect.places.values() if suffix]
         for where, suffix in effect.places.items():
             at = [suffix[1:]] if suffix else single
             for size in effect.sizes:
-                out[effect.parameter(size.name, where)] = tuple(
-                    JointState("motor" if kind == "motor" else "grip", joint) for joint in at
-                )
+                out[effect.parameter(size.name, where)] = tuple(JointState(kind, j) for j in at)
     return out
 
 

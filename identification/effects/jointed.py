@@ -36,6 +36,7 @@ from identification.effects.moving_bodies import MovingBody, moving_bodies
 from identification.effects.rotors import rotor_numbers
 from identification.effects.rows import JointLayout, changed_rows, with_rows
 from identification.engine import derive
+from identification.logs.log import Log
 from identification.model.parameter import ParameterSet
 from identification.model.paths import write
 from identification.model.plant import ModelPlant
@@ -282,11 +283,11 @@ class JointPlant:
         return self.gears.shown(self._every(names, values), len(values), run)
 
     def first_loads(
-        self, names: Sequence[str], values: np.ndarray, known: State, inputs: np.ndarray,
-        sampling_time: float,
+        self, names: Sequence[str], values: np.ndarray, known: State, log: Log, starts: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
         """Returns states where windows begin, and how far off they may be; see `WithStates`."""
         plain = self.without_states()
+        inputs = log.inputs[np.maximum(starts - (log.hold == "zoh"), 0)]  # has acted until then
         loads = first_loads(plain.bare.model, plain.layout, plain.settings(names, values)[1],
                             known, inputs)  # fmt: skip
-        return self.gears.first_states(self._every(names, values), loads, sampling_time)
+        return self.gears.first_states(self._every(names, values), loads, log, starts)

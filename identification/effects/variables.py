@@ -2,7 +2,7 @@
 
 They are found by trying: a law that gives another force where one variable alone is another number
 depends on it. A friction depends on the rate as well, because it is counted against the motion, and
-gravity's force f_g is one of the positions.
+gravity's force f_g is one of the positions. A servo's error e is one of its force f_u.
 """
 
 from __future__ import annotations
@@ -15,7 +15,8 @@ import numpy as np
 from identification.effects.effect import Effect
 from identification.native.joint_callback import Joint
 
-VARIABLES = ("time", "q", "v", "f_u", "f_g", "x_before", "x_behind", "v_before", "v_behind")
+VARIABLES = ("time", "q", "v", "f_u", "f_g", "x_before", "x_behind", "v_before", "v_behind",
+             "e")  # fmt: skip
 POSITIONS = ("q", "x_before", "x_behind")
 TRIES = 40  # states: a law with a dead zone or a stop gives a force in some of them only
 
@@ -40,11 +41,12 @@ def variables(effect: Effect) -> frozenset[str]:
         for _ in range(TRIES):
             at, other = (dict(zip(VARIABLES, rng.uniform(-1, 1, len(VARIABLES)), strict=True))
                          for _ in range(2))  # fmt: skip
-            s = Joint(**at, sign=1.0)
+            s = Joint(**at, sign=1.0, k_p=1.0)
             force = _force(law, s, p)
             found |= {x for x in VARIABLES
                       if _force(law, s._replace(**{x: other[x]}), p) != force}  # fmt: skip
-    return frozenset(found | {*POSITIONS} if "f_g" in found else found)
+    more = {*(POSITIONS if "f_g" in found else ()), *(("f_u",) if "e" in found else ())}
+    return frozenset(found | more)
 
 
 def _force(law: Callable[..., float], s: Joint, p: tuple[float, ...]) -> float | None:

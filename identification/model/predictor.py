@@ -64,7 +64,7 @@ class Predictor:
         return known if plant is None else plant.begun(*self._every(values), known)
 
     def first_loads(
-        self, values: np.ndarray, known: State, inputs: np.ndarray
+        self, values: np.ndarray, known: State, starts: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:
         """Returns the plant's states that no model file has, where windows begin; see `WithStates`.
 
@@ -74,7 +74,7 @@ class Predictor:
         plant = with_states(self.plant)
         if plant is None:
             raise InputError("the plant has no states beside those of its model")
-        return plant.first_loads(*self._every(values), known, inputs, self.log.sampling_time)
+        return plant.first_loads(*self._every(values), known, self.log, starts)
 
     @property
     def recorded(self) -> tuple[str, ...]:

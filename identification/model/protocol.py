@@ -10,6 +10,7 @@ import mujoco
 import numpy as np
 
 from identification.engine import derive
+from identification.logs.log import Log
 from identification.model.parameter import ParameterSet
 from identification.model.paths import Slot
 from identification.model.rollout import UNDERIVED, State
@@ -99,17 +100,16 @@ class WithStates(Protocol):
         """Returns positions and rates as sensors see them, of m simulations (qpos, qvel, act)."""
 
     def first_loads(
-        self, names: Sequence[str], values: np.ndarray, known: State, inputs: np.ndarray,
-        sampling_time: float,
-    ) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
+        self, names: Sequence[str], values: np.ndarray, known: State, log: Log, starts: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
         """Returns the states where windows begin (W, na), and how far they may be off (na,).
 
         Args:
             names: as above.
             values: one value set, shape (1, p).
             known: the other states there, W rows.
-            inputs: there, shape (W, nu).
-            sampling_time: [s].
+            log: the record.
+            starts: first sample of each window, shape (W,).
         """
 
 

@@ -29,8 +29,12 @@ joint's own acceleration
 f is the drive that the joint feels, and I what is left of the motor's inertia: with r = 0 they are
 f_m and J, with r = 1 τ and 0.
 
+A position servo with an integral part, which is a part of the joint's drive within its limits:
+
+    f_i = clip(f_s + k_i z, f_low, f_high) - clip(f_s, f_low, f_high),    dz/dt = e
+
 Behind the parameters of the other effects a joint's row has `GEARS` numbers more. The states are
-activations: θ and ω of one actuator, p of another.
+activations: θ and ω of one actuator, p of another, z of a third.
 """
 
 from __future__ import annotations
@@ -46,7 +50,7 @@ from identification.native import structs
 from identification.native.element import Element, Hook
 from identification.native.holding import RESOLVED
 from identification.native.joint_callback import FIELDS as JOINT_FIELDS
-from identification.native.joint_callback import LAST, TIMESTEP, D, Joint, M, drive_force, joint
+from identification.native.joint_callback import LAST, TIMESTEP, D, Joint, M, drive, joint
 from identification.native.library import FIELDS as MASS_FIELDS
 from identification.native.library import mobility
 from identification.native.memory import (
@@ -75,15 +79,16 @@ GEAR = Element(
             ),
         ),
         Hook("slip", ("compliance of the friction that holds [rad/(N m)] or [m/N]",)),
+        Hook("integral", ("integral gain of the servo [N m/(rad s)] or [N/(m s)]",)),
     ),
 )  # fmt: skip
 
 
-GEARS = 9  # numbers of a row behind the parameters:
-MOTOR, GRIP = 0, 1  # where θ and p stand among the activations, -1 where there is none
-SIDE = 2  # 1: the drive's own feedback sees θ, 0: it sees q
-# c, ε, J, ζ, the friction's c, and d_m
-COMPLIANCE, GAP, INERTIA, RATIO, SLIP, DRAG = 3, 4, 5, 6, 7, 8
+GEARS = 11  # numbers of a row behind the parameters:
+MOTOR, GRIP, SUM = 0, 1, 2  # where θ, p and z stand among the activations, -1 where there is none
+SIDE = 3  # 1: the drive's own feedback sees θ, 0: it sees q
+# c, ε, J, ζ, the friction's c, d_m and k_i
+COMPLIANCE, GAP, INERTIA, RATIO, SLIP, DRAG, INTEGRAL = 4, 5, 6, 7, 8, 9, 10
 # κ h²/m and D h/m of what is far too stiff: a semi-implicit step halves what is left of δ and its
 # rate ((1 - z)² and 1 - z² for a double root z = 1/2), and teeth rebound by a quarter at most.
 SETTLED, DAMPED = 0.25, 0.75
@@ -106,6 +111,23 @@ def gears_of(m, j):
 def is_geared(gears):
     """Returns whether the motor of a joint moves by itself."""
     return load_constant(gears + 8 * COMPLIANCE) != 0.0 or load_constant(gears + 8 * GAP) != 0.0
+
+
+@inlined
+def integral_force(d, gears, f_s, f_low, f_high):
+    """Returns f_i, what the integral part of a servo adds to its force."""
+    k_i = load_constant(gears + 8 * INTEGRAL)
+    if k_i == 0.0:
+        return 0.0
+    f = f_s + k_i * double(d, D.act, np.int64(load_constant(gears + 8 * SUM)))
+    return max(f_low, min(f_high, f)) - max(f_low, min(f_high, f_s))
+
+
+@inlined
+def whole_drive(m, d, j, q, v, gears):
+    """Returns the force of the actuators on joint j with the integral part of its servo."""
+    f_u, _, _, f_s, f_low, f_high = drive(m, d, j, q, v)
+    return f_u + integral_force(d, gears, f_s, f_low, f_high)
 
 
 @inlined
@@ -148,8 +170,9 @@ def motor_force(m, d, j, gears):
     v = double(d, D.qvel, integer(m, M.jnt_dofadr, j))
     drag = load_constant(gears + 8 * DRAG) * omega
     if load_constant(gears + 8 * SIDE) != 0.0:
-        return drive_force(m, d, j, theta, omega) - drag, theta - q, omega - v
-    return drive_force(m, d, j, q, v) - drag, theta - q, omega - v
+        f = whole_drive(m, d, j, theta, omega, gears)
+        return f - drag, theta - q, omega - v
+    return whole_drive(m, d, j, q, v, gears) - drag, theta - q, omega - v
 
 
 @inlined
@@ -159,6 +182,9 @@ def felt(m, d, j, row, gears):
     Between the flanks of a gap it feels neither drive nor inertia.
     """
     s = joint(m, d, j, row)
+    f_i = integral_force(d, gears, s.f_s, s.f_low, s.f_high)
+    if f_i != 0.0:
+        s = _with_drive(s, (s.f_u + f_i,))
     if not is_geared(gears):
         return s, 0.0
     h = load_constant(m + TIMESTEP)

@@ -46,10 +46,14 @@ STEPS_ALONE = 3.0  # where each is held by itself, although the inertia of one i
 #   [rad/s or m/s]; f_top: largest force of its drives [N m or N]; t_end: duration [s]
 #   x_before, x_behind: (q - q_mid)/q_far of the joints before and behind it in the model, and
 #   v_before, v_behind: their v/v_top; NaN where there is none whose records reach anything
+#   of the joint's position servo: e, where it is to be less where it is [rad or m]; k_p, its
+#   stiffness [N m/rad or N/m], 0 where there is no servo; f_s, the force that it would give without
+#   its limits f_low and f_high [N m or N]
 Joint = namedtuple(
     "Joint", "time q v f_u f_g sign q_mid q_far v_top f_top t_end x_before x_behind"
-    " v_before v_behind",
-    defaults=(0.0, 1.0, 1.0, 1.0, 1.0, np.nan, np.nan, np.nan, np.nan),
+    " v_before v_behind e k_p f_s f_low f_high",
+    defaults=(0.0, 1.0, 1.0, 1.0, 1.0, np.nan, np.nan, np.nan, np.nan,
+              0.0, 0.0, 0.0, -np.inf, np.inf),
 )  # fmt: skip
 
 JOINT = Element(
@@ -86,6 +90,7 @@ _FIXED = int(mujoco.mjtGain.mjGAIN_FIXED)
 _NO_BIAS, _AFFINE = int(mujoco.mjtBias.mjBIAS_NONE), int(mujoco.mjtBias.mjBIAS_AFFINE)
 _USER_BIAS = int(mujoco.mjtBias.mjBIAS_USER)
 _GAINS, _BIASES, _GEARS = mujoco.mjNGAIN, mujoco.mjNBIAS, 6
+_NO_SERVO = (0.0, 0.0, 0.0, -np.inf, np.inf)  # e, k_p, f_s, f_low, f_high
 
 
 def stopping_steps(nv: int) -> float:
@@ -107,37 +112,59 @@ def _clipped(m, limited, range_, i, x):
 
 
 @inlined
-def _actuator_force(m, d, i, q, v):
-    """Returns actuator i's force on its joint, gain·u + bias [N or N m]; NaN for another law."""
+def _actuator(m, d, i, q, v):
+    """Returns what actuator i does to its joint: f, e, k_p, f_s, f_low and f_high.
+
+    f is gain·u + bias [N or N m], and NaN for another law; k_p is 0 where it is no position servo.
+    """
     bias = integer(m, M.actuator_biastype, i)
     if bias == _USER_BIAS and double(m, M.actuator_biasprm, _BIASES * i) == TAG:
-        return 0.0  # it carries a state of the joint (`identification.native.joint_states`)
+        return 0.0, *_NO_SERVO  # it carries a state of the joint (`native.joint_states`)
     if (
         integer(m, M.actuator_dyntype, i) != _NO_DYNAMICS
         or integer(m, M.actuator_gaintype, i) != _FIXED
         or (bias != _NO_BIAS and bias != _AFFINE)
     ):
-        return np.nan
+        return np.nan, *_NO_SERVO
     at = integer(m, M.actuator_ctrladr, i)
     u = _clipped(m, M.actuator_ctrllimited, M.actuator_ctrlrange, at, double(d, D.ctrl, at))
     gear = double(m, M.actuator_gear, _GEARS * i)
-    own = double(m, M.actuator_gainprm, _GAINS * i) * u
+    gain, follows = double(m, M.actuator_gainprm, _GAINS * i), 0.0
+    own = gain * u
     if bias == _AFFINE:
         b = _BIASES * i
+        follows = double(m, M.actuator_biasprm, b + 1)
         own += double(m, M.actuator_biasprm, b)
-        own += gear * double(m, M.actuator_biasprm, b + 1) * q
+        own += gear * follows * q
         own += gear * double(m, M.actuator_biasprm, b + 2) * v
-    return gear * _clipped(m, M.actuator_forcelimited, M.actuator_forcerange, i, own)
+    f = gear * _clipped(m, M.actuator_forcelimited, M.actuator_forcerange, i, own)
+    if gain * gear == 0.0 or follows != -gain:
+        return f, *_NO_SERVO
+    low, high = -np.inf, np.inf
+    if load_byte(word(m, M.actuator_forcelimited) + i):
+        one = gear * double(m, M.actuator_forcerange, 2 * i)
+        other = gear * double(m, M.actuator_forcerange, 2 * i + 1)
+        low, high = min(one, other), max(one, other)
+    return f, u / gear - q, gear**2 * gain, gear * own, low, high
+
+
+@inlined
+def drive(m, d, j, q, v):
+    """Returns the force of the actuators on joint j [N or N m], and e to f_high of its servo."""
+    f, (e, k_p, f_s, low, high) = 0.0, _NO_SERVO
+    for i in range(word(m, M.nactuator)):
+        if integer(m, M.actuator_trntype, i) == _JOINT and integer(m, M.actuator_trnid, 2 * i) == j:
+            of = _actuator(m, d, i, q, v)
+            f += of[0]
+            if of[2] != 0.0:
+                e, k_p, f_s, low, high = of[1], of[2], of[3], of[4], of[5]
+    return f, e, k_p, f_s, low, high
 
 
 @inlined
 def drive_force(m, d, j, q, v):
     """Returns the force of the actuators on joint j [N or N m]."""
-    f = 0.0
-    for i in range(word(m, M.nactuator)):
-        if integer(m, M.actuator_trntype, i) == _JOINT and integer(m, M.actuator_trnid, 2 * i) == j:
-            f += _actuator_force(m, d, i, q, v)
-    return f
+    return drive(m, d, j, q, v)[0]
 
 
 @inlined
@@ -186,13 +213,15 @@ def joint(m, d, j, row):
     """Returns the state of joint j, as a force sees it; `row` is the address of its row."""
     q = double(d, D.qpos, integer(m, M.jnt_qposadr, j))
     v = double(d, D.qvel, integer(m, M.jnt_dofadr, j))
+    f_u, e, k_p, f_s, f_low, f_high = drive(m, d, j, q, v)
     x_before, v_before = _neighbour(m, d, j, j - 1, row)
     x_behind, v_behind = _neighbour(m, d, j, j + 1, row)
     return Joint(
-        time=load_constant(d + 8 * D.time), q=q, v=v, f_u=drive_force(m, d, j, q, v),
+        time=load_constant(d + 8 * D.time), q=q, v=v, f_u=f_u,
         f_g=gravity_force(m, d, j), sign=0.0,
         q_mid=load_constant(row + 8 * REACH), q_far=load_constant(row + 8 * (REACH + 1)),
         v_top=load_constant(row + 8 * (REACH + 2)), f_top=load_constant(row + 8 * (REACH + 3)),
         t_end=load_constant(row + 8 * (REACH + 4)),
         x_before=x_before, x_behind=x_behind, v_before=v_before, v_behind=v_behind,
+        e=e, k_p=k_p, f_s=f_s, f_low=f_low, f_high=f_high,
     )  # fmt: skip

@@ -2,8 +2,9 @@
 
     mjcb_passive     friction and forces, as in `identification.native.joint_friction`; where gears
                      swing, of the joint behind its gear
-    mjcb_act_dyn     rates of θ, ω and p
-    mjcb_act_bias    τ in place of the drives' force, by the actuator that carries θ and ω
+    mjcb_act_dyn     rates of θ, ω, p and z
+    mjcb_act_bias    τ in place of the drives' force, by the actuator that carries θ and ω; f_i of a
+                     servo's integral part, by the actuator that carries z
 
 `identification.native.gear` has the laws of one gear. Gears that are not resolved feel each other:
 
@@ -34,13 +35,17 @@ from identification.native.gear import (
     IS_JOINT,
     MOTOR,
     RK4,
+    SIDE,
     SLIP,
+    SUM,
     felt,
     gears_of,
+    integral_force,
     is_geared,
     motor_force,
     spring,
     transmitted,
+    whole_drive,
 )
 from identification.native.joint_callback import (
     FIRST,
@@ -50,6 +55,7 @@ from identification.native.joint_callback import (
     TIMESTEP,
     D,
     M,
+    drive,
     drive_force,
     with_sign,
 )
@@ -124,8 +130,8 @@ def _gather(m, d, key, g):
             loose += g[count, SHARE] < 1.0
             count += 1
             continue
-        q = double(d, D.qpos, integer(m, M.jnt_qposadr, j))
-        f = drive_force(m, d, j, q, double(d, D.qvel, dof))
+        q, v = double(d, D.qpos, integer(m, M.jnt_qposadr, j)), double(d, D.qvel, dof)
+        f = whole_drive(m, d, j, q, v, gears) if ours else drive_force(m, d, j, q, v)
         if f == f and f != 0.0:  # where it is known
             store_double(a + 8 * dof, load_double(a + 8 * dof) + f)
     return count, loose, gives
@@ -214,8 +220,20 @@ def callbacks(terms: Sequence[Term], key: float) -> dict[str, Function]:
         if not is_ours(m, j, key):
             return -1
         gears = gears_of(m, j)
-        own = np.int64(load_constant(gears + 8 * MOTOR)), np.int64(load_constant(gears + 8 * GRIP))
-        return j if place in own else -1
+        for which in (MOTOR, GRIP, SUM):
+            if np.int64(load_constant(gears + 8 * which)) == place:
+                return j
+        return -1
+
+    @inlined
+    def servo(m, d, j, gears):
+        """Returns `drive` of a joint, as the encoder of its servo sees it."""
+        q = double(d, D.qpos, integer(m, M.jnt_qposadr, j))
+        v = double(d, D.qvel, integer(m, M.jnt_dofadr, j))
+        if load_constant(gears + 8 * SIDE) != 0.0 and is_geared(gears):
+            at = word(d, D.act) + 8 * np.int64(load_constant(gears + 8 * MOTOR))
+            q, v = load_constant(at), load_constant(at + 8)
+        return drive(m, d, j, q, v)
 
     def act_dyn(m, d, i):
         j = mine(m, i)
@@ -237,6 +255,8 @@ def callbacks(terms: Sequence[Term], key: float) -> dict[str, Function]:
                 store_double(out, double(d, D.act, place + 1) + semi * rate)
                 store_double(out + 8, rate)
             return 0.0
+        if np.int64(load_constant(gears + 8 * SUM)) == place:
+            return servo(m, d, j, gears)[1]
         c = load_constant(gears + 8 * SLIP)
         if np.int64(load_constant(gears + 8 * GRIP)) != place or c == 0.0:
             return 0.0
@@ -254,10 +274,11 @@ def callbacks(terms: Sequence[Term], key: float) -> dict[str, Function]:
         j = mine(m, i)
         if j < 0:
             return 0.0
-        gears = gears_of(m, j)
-        if np.int64(load_constant(gears + 8 * MOTOR)) != integer(m, M.actuator_actadr, i):
-            return 0.0
-        if not is_geared(gears):
+        gears, place = gears_of(m, j), integer(m, M.actuator_actadr, i)
+        if np.int64(load_constant(gears + 8 * SUM)) == place and not is_geared(gears):
+            _, _, _, f_s, f_low, f_high = servo(m, d, j, gears)
+            return integral_force(d, gears, f_s, f_low, f_high)
+        if np.int64(load_constant(gears + 8 * MOTOR)) != place or not is_geared(gears):
             return 0.0
         dof = integer(m, M.jnt_dofadr, j)
         q = double(d, D.qpos, integer(m, M.jnt_qposadr, j))

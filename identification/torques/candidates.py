@@ -32,6 +32,7 @@ from identification.effects.body_numbers import frame_inertia, seen
 from identification.effects.effect import Effect
 from identification.effects.inputs import SHIFT
 from identification.effects.moving_bodies import MovingBody
+from identification.effects.variables import variables
 from identification.torques.base import independent_columns, reach_of
 from identification.torques.bodies import NUMBERS, UNITS, label_of, list_bodies, read_numbers
 from identification.torques.equations import Columns, Equations
@@ -61,7 +62,8 @@ def list_missing(
     out: list[Missing] = []
     for effect in effects:
         is_of_neighbour = effect.is_curve and not effect.name.endswith(tuple(CURVES))
-        if effect.hooks and {*effect.hooks} <= FORCES and not is_of_neighbour:
+        is_of_servo = "e" in variables(effect)  # whose setpoint these equations do not have
+        if {*effect.hooks} <= FORCES and effect.hooks and not (is_of_neighbour or is_of_servo):
             out += laws.of(effect)
         elif {*effect.hooks} == {HOOK} and not effect.shapes:  # a load is linear here: see below
             out += [

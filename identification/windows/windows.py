@@ -145,9 +145,7 @@ def extended(
     predictor: Predictor, values: np.ndarray, cut: Windows, first: FirstStates
 ) -> FirstStates:
     """Returns first states, extended by those that a plant has beside its model's."""
-    log = predictor.log
-    before = np.maximum(cut.starts - (log.hold == "zoh"), 0)  # what has acted until then
-    known, more = predictor.first_loads(values, first.states, log.inputs[before])
+    known, more = predictor.first_loads(values, first.states, cut.starts)
     have = first.states.act.shape[1] + known.shape[1] - predictor.plant.model.na
     act = np.hstack([first.states.act, known[:, have:]])
     states = State(first.states.qpos, first.states.qvel, act)

@@ -1,5 +1,7 @@
 """Elastic gears in the joints of arms, against scipy's integration of other equations."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from arm_cases import (
@@ -145,7 +147,8 @@ def test_windows_begin_at_what_the_gears_and_frictions_of_an_arm_carry():
     q, v, u = np.array([0.4, -0.9]), np.array([1.5, -2.0]), np.array([2.0, -0.7])
     known = State(q[None], v[None], np.zeros((1, 0)))
     names, row = tuple(values), np.array([[*values.values()]])
-    first, far = plant.first_loads(names, row, known, u[None], SAMPLE)
+    log = replace(LOG, inputs=np.vstack([u, LOG.inputs[1:]]))
+    first, far = plant.first_loads(names, row, known, log, np.zeros(1, int))
     p = np.array([*FRICTION.values()]) * np.sign(v)
     x = np.concatenate([q, v, q, v, p])
     a = Arm(f_c=tuple(FRICTION.values())).rate(x, u)[2:4]
