@@ -1,9 +1,7 @@
 """An effect fitted to some of the windows: where its fit to all of them begins.
 
 It begins at the parent, moved by what the score gives or by the part of it that is best, with the
-states that then are best; the parent's parameters make room for it. What a large effect has bent
-without it may be too far away for that: where it explains more at the values with which all began,
-it begins there.
+states that then are best; the parent's parameters make room for it.
 
 The windows are spread evenly, so that shares of the error are those of all windows. Windows that
 were chosen by their residual would show rare events, and shares that are not those of the record.
@@ -79,9 +77,8 @@ def _begun(parent: WindowModel, score: WindowScore, is_loud: bool) -> Begun | No
     near = thinned_tangents(parent.fit.tangents, at)
     least = parent.fit.problem.cost_of(parent.fit.q, [t.r for t in near])
     tried = []
-    back = replace(score, along=parent.fit.problem.prior.mean - parent.fit.q)
-    for start, share in ((back, 1.0), *((score, share) for share in START_SHARES)):
-        q = _begin(task, parent, start, share)
+    for share in START_SHARES:
+        q = _begin(task, parent, score, share)
         # the states have made up for what was missing
         settled = attempt(None, partial(few.settled, q, begun, near))
         if settled is None:
@@ -89,7 +86,7 @@ def _begun(parent: WindowModel, score: WindowScore, is_loud: bool) -> Begun | No
         moves, r = settled
         cost = few.cost_of(q, r)
         tried.append((cost, q, moves, r))
-        if start is score and (cost < least or not c.free):
+        if cost < least or not c.free:
             break
     if not tried:
         return None
