@@ -143,7 +143,7 @@ def _written(found: Discovery, robot: Robot | None = None) -> Discovery:
 
 def _files(found: Discovery, robot: Robot | None) -> Files:
     # What draws figures is slow to import.
-    from identification.report.discovery_files import DiscoveryFiles
+    from identification.report.discovery_report import DiscoveryFiles
     from identification.robot.discovery_files import RobotDiscoveryFiles
 
     return DiscoveryFiles(found) if robot is None else RobotDiscoveryFiles(found, robot)
