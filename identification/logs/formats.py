@@ -17,11 +17,11 @@ from pathlib import Path
 
 from identification.errors import InputError
 from identification.files import LOG, check_file, read_bytes
+from identification.logs.arrays import read_npz
 from identification.logs.csv_files import parse_csv
 from identification.logs.read_bag import SUFFIXES as OF_ROS
 from identification.logs.read_bag import is_bag_folder, read_bag
 from identification.logs.read_mat import parse_mat
-from identification.logs.read_npz import read_npz
 from identification.logs.read_parquet import episode_of, read_parquet
 from identification.logs.table import Table
 

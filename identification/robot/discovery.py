@@ -20,8 +20,7 @@ from identification.robot.blame import told_of_factors
 from identification.robot.checks import refuse_horizon, refuse_unlike
 from identification.robot.file import refuse_nothing_free
 from identification.robot.robot import Robot
-from identification.robot.second_opinion import ask_torques, with_torques
-from identification.robot.suggestions import suggest
+from identification.robot.second_opinion import ask_torques, suggest, with_torques
 from identification.written import Files
 
 
