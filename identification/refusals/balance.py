@@ -65,11 +65,9 @@ class Unbalanced:
     whole: float
 
 
-def unbalanced_share(
-    model: mujoco.MjModel, log: Log, springs: bool = False, wider: int = 1
-) -> np.ndarray | None:
+def unbalanced_share(model: mujoco.MjModel, log: Log) -> np.ndarray | None:
     """Returns η_j of the joint of each output, shape (ny,), without unit; see `unbalanced`."""
-    found = unbalanced(model, log, springs, wider)
+    found = unbalanced(model, log)
     return None if found is None else found.of_outputs
 
 
