@@ -61,9 +61,7 @@ def log_table(
     kind = path.suffix.lower()
     if episode_of(path) is not None:
         return read_parquet(path, wanted, stamps)
-    if is_bag_folder(path):
-        return read_bag(path, wanted, asked)
-    if kind in OF_ROS:
+    if is_bag_folder(path) or kind in OF_ROS:
         return read_bag(path, wanted, asked)
     if kind == ".csv":
         return parse_csv(read_bytes(path), path, header, wanted, stamps)

@@ -25,7 +25,7 @@ from identification.report.experiment_words import (
 from identification.report.page import Section, Table, write_report
 from identification.report.page_files import PageFiles
 from identification.report.style import GREY, SERIES, literal, styled
-from identification.robot.next_experiment import NextExperiment
+from identification.robot.results import NextExperiment
 
 HEAD = ("value", "std now", "expected", "random experiment")
 

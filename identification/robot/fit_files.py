@@ -32,7 +32,7 @@ from identification.robot.confirmation import confirm, plant_with
 from identification.robot.free_swing import impossible_sentence
 from identification.robot.reading import doubtful
 from identification.robot.record_error import AS_WRITTEN, FITTED, Confirmation, find_repetitions
-from identification.robot.robot_fit import RobotFit
+from identification.robot.results import RobotFit
 from identification.robot.write import write_robot
 from identification.shares import change
 

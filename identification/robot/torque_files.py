@@ -11,7 +11,7 @@ from identification.report.page import Section, write_report
 from identification.report.page_files import PageFiles
 from identification.report.torque_report import evidence_to_json, torque_headline, torque_sections
 from identification.report.torque_words import torque_verdict
-from identification.robot.torque_fit import TorqueFit
+from identification.robot.results import TorqueFit
 
 
 @dataclass(frozen=True)
