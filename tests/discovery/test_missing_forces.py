@@ -30,7 +30,7 @@ from inca_mj.workflows.spread import KNOWN as KNOWN_INCA
 @pytest.mark.parametrize("seed", range(4))
 def test_the_smoother_is_the_conditional_mean(seed):
     rng = np.random.default_rng(seed)
-    plant, noise = linear_plant(rng), Noise(0.7, 0.05, (1.2, 0.75), (0.4, 1.3))
+    plant, noise = linear_plant(rng), Noise(0.7, 0.05, (1.2, 0.75))
     n, ny = len(plant.B) + 1, len(plant.C)
     e = rng.standard_normal((n, ny))
     T, W = response(plant), coloured(n, plant.B.shape[2], noise)
