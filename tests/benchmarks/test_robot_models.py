@@ -53,7 +53,10 @@ def test_the_page_counts_rough_robots_by_themselves():
     assert {("1 of 1", "0 of 1"), ("0 of 1", "1 of 2"), ("-", "1 of 1")} <= rates
 
 
-def test_a_world_of_two_effects_hides_two_that_its_robot_may_hide_and_is_made_again_alike():
+def test_a_world_of_two_effects_hides_two_that_its_robot_may_hide_and_is_made_again_alike(
+    monkeypatch,
+):
+    monkeypatch.setattr("robot_motions.linkages.SECONDS", 2.0)
     world, motions = make("cart", "two_unlisted", 3)
     again, _ = make("cart", "two_unlisted", 3)
     assert world == again

@@ -3,10 +3,7 @@
 from dataclasses import replace
 from functools import cache
 
-from records_cases import FREE, nominal_model, pendulum, records
-
-from identification.effects.joint_plant import candidates
-from identification.prediction.discovery import discover_records
+from records_cases import records, search
 
 LEVEL = 0.03  # of the hidden friction [N m]
 EFFECTS = ("coulomb_friction", "curve_speed", "curve_position")
@@ -15,9 +12,7 @@ EFFECTS = ("coulomb_friction", "curve_speed", "curve_position")
 @cache
 def named():
     """A discovery that names the friction."""
-    logs = records(4, {"coulomb_friction.f_c@hinge": LEVEL}, samples=300)
-    effects = [e for e in candidates(pendulum(), FREE) if e.name in EFFECTS]
-    return discover_records(nominal_model(), logs[:2], logs[2:], effects)
+    return search(records(4, {"coulomb_friction.f_c@hinge": LEVEL}, samples=300), EFFECTS)
 
 
 def unknown():

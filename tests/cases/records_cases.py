@@ -1,15 +1,22 @@
-"""Records of a pendulum whose friction holds, and a task of naming what its model lacks."""
+"""Records of a pendulum whose friction holds, and searches for what its model lacks."""
 
 from functools import cache
 
 import numpy as np
 
+from identification.discovery.candidates import list_common
 from identification.discovery.nominal_model import NominalModel
+from identification.discovery.options import DiscoveryOptions
 from identification.effects.axes import Axis
-from identification.effects.joint_plant import JointPlant, joint_plant
+from identification.effects.joint_plant import JointPlant, candidates, joint_plant
 from identification.logs.log import Log
 from identification.model.parameter import Parameter
 from identification.model.predictor import Predictor
+from identification.prediction.discovery import discover_records
+from identification.prediction.extension import with_effect
+from identification.prediction.first_fit import begin
+from identification.prediction.scores import window_scores
+from identification.windows.records import as_records
 
 STEP = 0.01  # between samples [s]
 HORIZON = 0.2  # [s]
@@ -65,3 +72,28 @@ def records(count=4, values=None, noise=NOISE, samples=500):
 def nominal_model():
     plant = pendulum().with_values({"J": 1.5e-3, "d": 0.03})
     return NominalModel(plant, FREE, KNOWN, HORIZON)
+
+
+def roles(logs):
+    """The first two logs to fit, and the others to confirm."""
+    return as_records(logs[:2], logs[2:])
+
+
+def listed(*names):
+    """Effects of the pendulum that a search may name."""
+    return tuple(e for e in candidates(pendulum(), FREE) if e.name in names)
+
+
+def search(logs, names, model=None, progress=None, **options):
+    """What a search among some effects finds in logs of which the first two are fitted."""
+    return discover_records(
+        model or nominal_model(), logs[:2], logs[2:], listed(*names), progress,
+        DiscoveryOptions(**options),
+    )  # fmt: skip
+
+
+def with_law(model, name, every):
+    """A fitted model with one law more, in the kind that scores best, as records confirm it."""
+    best, *_ = window_scores(model.fit, list_common(listed(name)))
+    confirm = [r for r in every if r.role == "confirm"]
+    return with_effect(model, begin(model, [best]), HORIZON, confirm)

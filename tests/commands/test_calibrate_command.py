@@ -17,7 +17,7 @@ TABLE = "[drives]\nK_t = 0.02\n[points]\nexit = 0.003\n"
 @pytest.fixture(scope="module")
 def files(tmp_path_factory):
     folder = tmp_path_factory.mktemp("as built")
-    write_log(log_as_built(2.5), folder / "a.csv")
+    write_log(log_as_built(1.5), folder / "a.csv")
     (folder / "mine.toml").write_text(TABLE)
     return folder
 

@@ -4,11 +4,11 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from effect_cases import full
 
 from inca_mj.control.controller import Controller, Gains, run_loop
 from inca_mj.control.observer import Observer
 from inca_mj.control.paths import Circle, Line, Point
-from inca_mj.effects.catalogue import CATALOGUE
 from inca_mj.robot.geometry import INCA
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.twin.run import simulate
@@ -17,11 +17,12 @@ from inca_mj.workflows.tracking import track
 
 CENTRE = (0.0, 0.0, 1.43)
 QUICK = Circle(radius=0.1, rate=3.0, ramp=0.5)  # as fast as the 0.3 m circle at 1 rad/s
-
-
-def robot_with(name, values):
-    (effect,) = (e for e in CATALOGUE if e.name == name)
-    return build_twin(effects=(effect,)).with_values(values)
+LOCKSTEP = {"load_dependent_friction.mu": 0.05, "delay.tau": 0.004, "encoder_scale.s": 0.01}
+COSTS = (
+    {"load_dependent_friction.mu": 0.1}, {"spring_hysteresis.eta": 0.15},
+    {"drum_radius_mismatch.delta@3": 0.02}, {"torque_constant_mismatch.delta@3": -0.2},
+    {"pulley_radius.r_p": 0.02},
+)  # fmt: skip
 
 
 def step_response(period, bandwidth=10.0, **values):
@@ -68,12 +69,8 @@ def test_the_nominal_twin_follows_within_a_tenth_of_a_millimetre():
 
 def test_the_run_is_what_the_robot_does_under_the_currents():
     """In lockstep with the simulation, also of effects before and after the law."""
-    for name, values in (
-        ("load_dependent_friction", {"load_dependent_friction.mu": 0.05}),
-        ("delay", {"delay.tau": 0.004}),
-        ("encoder_scale", {"encoder_scale.s": 0.01}),
-    ):
-        robot = robot_with(name, values)
+    for name, value in LOCKSTEP.items():
+        twin = full().with_values({name: value})
         told = []
 
         class Listens(Controller):
@@ -81,30 +78,19 @@ def test_the_run_is_what_the_robot_does_under_the_currents():
                 heard.append(np.array(angle))
                 return super().currents(angle, pose)
 
-        done = run_loop(robot, Listens(build_twin(), QUICK), 0.6)
-        run = simulate(robot, done.currents)
-        scale = 1.01 if name == "encoder_scale" else 1.0
+        done = run_loop(twin, Listens(build_twin(), QUICK), 0.6)
+        run = simulate(twin, done.currents)
+        scale = 1.01 if name == "encoder_scale.s" else 1.0
         np.testing.assert_allclose(told, scale * run.motor_angle, atol=1e-9, err_msg=name)
 
 
 @pytest.mark.parametrize(
-    ("name", "values"),
-    [
-        ("load_dependent_friction", {"load_dependent_friction.mu": 0.1}),
-        ("spring_hysteresis", {"spring_hysteresis.eta": 0.15}),
-        *(
-            pytest.param(*case, marks=pytest.mark.long)
-            for case in (
-                ("drum_radius_mismatch", {"drum_radius_mismatch.delta@3": 0.02}),
-                ("torque_constant_mismatch", {"torque_constant_mismatch.delta@3": -0.2}),
-                ("pulley_radius", {"pulley_radius.r_p": 0.02}),
-            )
-        ),
-    ],
-)
-def test_the_model_with_the_effect_wins_back_what_the_effect_costs(name, values):
-    robot = robot_with(name, values)
-    before, after = (track(robot, model, QUICK, duration=1.8).rms for model in (None, robot))
+    "values", [*COSTS[:2], *(pytest.param(c, marks=pytest.mark.long) for c in COSTS[2:])],
+    ids=lambda v: next(iter(v)),
+)  # fmt: skip
+def test_the_model_with_the_effect_wins_back_what_the_effect_costs(values):
+    twin = full().with_values(values)
+    before, after = (track(twin, model, QUICK, duration=1.8).rms for model in (None, twin))
     assert after < 1e-4
     assert before > 3 * after
 

@@ -7,13 +7,13 @@ import pytest
 pytest.importorskip("dm_control", reason="dm_control runs on neither MuJoCo 4 nor Python 3.13")
 
 from dm_control.rl.control import PhysicsError
+from effect_cases import full
 
 from inca_mj.control.controller import CONTROL_TIMESTEP, Controller, Gains
 from inca_mj.control.environment import load_environment as load
 from inca_mj.control.inverse import HIGHEST_CURRENT, LOWEST_CURRENT
 from inca_mj.control.paths import Point
 from inca_mj.control.tasks import REACH, START_SPREAD, TASKS
-from inca_mj.effects.catalogue import CATALOGUE
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.twin.run import simulate
 from inca_mj.twin.twin import build_twin
@@ -198,8 +198,7 @@ def test_the_baseline_controller_does_the_task_from_what_the_robot_measures(task
 
 
 def test_a_robot_with_an_effect_moves_as_its_twin_does():
-    (effect,) = (e for e in CATALOGUE if e.name == "load_dependent_friction")
-    robot = build_twin(effects=(effect,)).with_values({"load_dependent_friction.mu": 0.1})
+    robot = full().with_values({"load_dependent_friction.mu": 0.1})
     currents = np.random.default_rng(2).uniform(0.4, 1.0, (50, 8))
     env = load("track", 0, robot=robot)
     seen = np.array([step.observation["motor_angle"] for step in drive(env, currents)])

@@ -3,10 +3,10 @@
 import mujoco
 import numpy as np
 import pytest
+from effect_cases import full
 
 from inca_mj.control.inverse import Inverse, Tensions
 from inca_mj.control.paths import Motion
-from inca_mj.effects.catalogue import CATALOGUE
 from inca_mj.kinematics.jacobians import length_jacobian
 from inca_mj.robot.geometry import INCA
 from inca_mj.twin.run import simulate
@@ -30,8 +30,7 @@ def motion(velocity=(0, 0, 0), acceleration=(0, 0, 0)):
 
 
 def robot_with(name):
-    (effect,) = (e for e in CATALOGUE if e.name == name)
-    return build_twin(effects=(effect,)).with_values(EFFECTS[name])
+    return full().with_values(EFFECTS[name])
 
 
 def test_at_rest_with_the_springs_tension_no_current_is_needed():

@@ -12,7 +12,6 @@ from discovery_cases import (
     disturbed,
     nominal_model,
     record,
-    searched,
     slider,
     wander,
 )
@@ -20,7 +19,6 @@ from discovery_cases import (
 from identification import InputError
 from identification.discovery.findings.finding import FindingKind
 from identification.innovations.discovery import discover
-from identification.innovations.verdict import conclude
 
 OFFSET = {"offset.f": -0.8}
 
@@ -50,13 +48,6 @@ def test_what_is_hidden_is_named_with_its_size(name, size):
     assert std < 0.2 * abs(size)
     assert 0.5 < named.confidence <= 0.95
     assert answer.after.rms < answer.before.rms
-
-
-def test_the_verdict_is_that_of_a_search_that_is_stepped():
-    whole, answer = found_offset(), conclude(searched(**OFFSET)[-1])
-    assert answer.verdict == whole.verdict == "named"
-    assert [n.parameters for n in answer.named] == [n.parameters for n in whole.named]
-    assert [n.confidence for n in answer.named] == [n.confidence for n in whole.named]
 
 
 def test_where_nothing_is_missing_it_says_so_and_what_it_would_have_seen():

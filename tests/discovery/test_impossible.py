@@ -7,15 +7,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from joint_cases import ARM, arm, arm_log, steps
-from records_cases import FREE, nominal_model, pendulum, records
+from records_cases import records, search
 
 from identification.discovery.impossible import MOST_DRIFT, find_impossible
-from identification.discovery.options import DiscoveryOptions
 from identification.effects.axes import Axis
 from identification.effects.catalogue import MOST_TURNS, OF_ANGLE, joint_effects
 from identification.effects.effect import Candidate
-from identification.effects.joint_plant import candidates, joint_plant
-from identification.prediction.discovery import discover_records
+from identification.effects.joint_plant import joint_plant
 from identification.prediction.screening import contains
 from identification.report.discovery_report import discovery_text
 
@@ -66,11 +64,7 @@ def test_no_servo_is_followed_before_it_is_told_but_a_clock_may_be_early():
 def afloat(without=()):
     """A pendulum that compensates its weight, where no candidate does."""
     logs = records(4, {"gravity_force.alpha@hinge": 0.6}, samples=300)
-    names = ("mass_mismatch", "stiffness")
-    effects = [e for e in candidates(pendulum(), FREE) if e.name in names]
-    return discover_records(
-        nominal_model(), logs[:2], logs[2:], effects, options=DiscoveryOptions(without=without)
-    )
+    return search(logs, ("mass_mismatch", "stiffness"), without=without)
 
 
 def test_a_mass_that_is_nearly_lost_is_no_name_and_is_told():

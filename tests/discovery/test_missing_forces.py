@@ -40,15 +40,6 @@ def test_the_smoother_is_the_conditional_mean(seed):
     np.testing.assert_allclose(part.ravel(), T @ dense, atol=1e-8)
 
 
-def test_without_noise_of_the_inputs_nothing_is_missing():
-    rng = np.random.default_rng(0)
-    plant = linear_plant(rng)
-    e = rng.standard_normal((len(plant.B) + 1, len(plant.C)))
-    w, part = smooth(plant, Noise(0.0, 1.0), e, STEP)
-    assert not w.any()
-    assert not part.any()
-
-
 def test_a_force_that_the_model_lacks_is_seen_in_newtons():
     n = 500
     push = 0.4 * np.sin(2 * np.pi * 0.7 * STEP * np.arange(n))[:, None]  # of 5 N per unit

@@ -41,14 +41,6 @@ def test_oscillations_whose_norm_is_far_above_their_powers(seed, pairs, turns):
     np.testing.assert_allclose(A[0], exact, atol=1e-13 * np.abs(exact).max() * (1 + turns))
 
 
-@given(st.integers(0, 2**32 - 1), SIZES, SCALES)
-def test_two_halves_are_the_whole(seed, size, scale):
-    F, duration = drawn(seed, size, scale)
-    (A, Γ), (half, forced) = transitions(F, duration), transitions(F, duration / 2)
-    np.testing.assert_allclose(A, half @ half, atol=1e-13)
-    np.testing.assert_allclose(Γ, half @ forced + forced, atol=1e-13 * duration.max())
-
-
 @given(st.integers(0, 2**32 - 1), SIZES)
 def test_the_units_of_the_states_change_nothing(seed, size):
     F, duration = drawn(seed, size, 30.0)

@@ -4,19 +4,15 @@ from functools import cache
 
 import numpy as np
 import pytest
-from records_cases import FREE, nominal_model, pendulum, records
+from records_cases import listed, nominal_model, records, roles, search, with_law
 
 from identification.discovery.candidates import list_common
 from identification.discovery.options import DiscoveryOptions
-from identification.effects.joint_plant import candidates
-from identification.prediction.discovery import WINDOWS, discover_records
-from identification.prediction.extension import with_effect
-from identification.prediction.first_fit import begin
+from identification.prediction.discovery import WINDOWS
 from identification.prediction.moves import add_set
 from identification.prediction.nominal_fit import fit_nominal
-from identification.prediction.scores import condensed, window_scores
+from identification.prediction.scores import condensed
 from identification.prediction.task import RecordsTask
-from identification.windows.records import as_records
 
 NAMES = ("quadratic_friction", "hardening", "gravity_force", "offset", "stiffness", "encoder_scale")
 HIDDEN = {
@@ -24,18 +20,11 @@ HIDDEN = {
 }  # fmt: skip
 
 
-def laws():
-    return [e for e in candidates(pendulum(), FREE) if e.name in NAMES]
-
-
 @cache
 def found(*without):
-    logs = records(4, HIDDEN, samples=400)
     said = []
-    options = DiscoveryOptions(without=without)
-    return discover_records(
-        nominal_model(), logs[:2], logs[2:], laws(), said.append, options
-    ), said  # fmt: skip
+    logs = records(4, HIDDEN, samples=400)
+    return search(logs, NAMES, progress=said.append, without=without), said
 
 
 def test_three_effects_are_named_together_with_their_sizes():
@@ -56,14 +45,10 @@ def test_without_sets_they_are_not():
 
 def test_members_compete_for_their_places_as_if_they_were_not_there():
     """Held sizes make no room: a member's column is what it was, and the residual with it too."""
-    logs = records(2, {"offset.f_0@hinge": 0.06}, samples=300)
-    every = as_records(logs[:1], logs[1:])
-    confirm = [r for r in every if r.role == "confirm"]
-    without = fit_nominal(nominal_model(), every)
-    (offset,) = list_common([e for e in laws() if e.name == "offset"])
-    with_it = with_effect(
-        without, begin(without, window_scores(without.fit, [offset])), 0.2, confirm
-    )
+    logs = records(3, {"offset.f_0@hinge": 0.06}, samples=200)
+    every = roles(logs)
+    with_it = with_law(fit_nominal(nominal_model(), every), "offset", every)
+    (offset,) = list_common(listed("offset"))
     size = offset.sizes[0]
     known = condensed(with_it.fit, [offset], held={size})
     G, a, hidden = known.G, known.a, condensed(with_it.fit, [offset]).G
@@ -76,10 +61,9 @@ def test_members_compete_for_their_places_as_if_they_were_not_there():
 def test_members_of_a_set_with_which_unseen_records_are_predicted_no_better_are_not_asked(
     monkeypatch,
 ):
-    logs = records(2, {"offset.f_0@hinge": 0.06}, samples=300)
-    every = as_records(logs[:1], logs[1:])
+    logs = records(3, {"offset.f_0@hinge": 0.06}, samples=200)
     task = RecordsTask(
-        nominal_model=nominal_model(), records=every, effects=tuple(laws()),
+        nominal_model=nominal_model(), records=roles(logs), effects=listed(*NAMES),
         options=DiscoveryOptions(without=("untouched_part",)),
     )  # fmt: skip
     state = WINDOWS.begin(task, lambda line: None)

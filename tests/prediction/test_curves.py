@@ -5,26 +5,17 @@ from functools import cache
 
 import numpy as np
 import pytest
-from records_cases import FREE, HORIZON, nominal_model, pendulum, record, records
+from records_cases import nominal_model, records, roles, search, with_law
 
-from identification.discovery.candidates import list_common
 from identification.discovery.effect_results import Rival
-from identification.effects.joint_plant import candidates
-from identification.prediction.discovery import discover_records
-from identification.prediction.extension import with_effect
-from identification.prediction.first_fit import begin
 from identification.prediction.nominal_fit import fit_nominal
 from identification.prediction.recovery import recover_over_horizon
-from identification.prediction.scores import window_scores
-from identification.windows.records import as_records
 
 CURVES = ("curve_speed", "curve_load", "curve_position")
 
 
 def found(values, names, samples=260):
-    logs = [record(k, samples=samples, values=values, plant=pendulum()) for k in (1, 2, 3, 4)]
-    effects = [e for e in candidates(pendulum(), ("J", "d")) if e.name in names]
-    return discover_records(nominal_model(), logs[:2], logs[2:], effects)
+    return search(records(4, values, samples=samples), names)
 
 
 @pytest.mark.long
@@ -63,18 +54,12 @@ def fitted(true, name):
     """A model with an effect, fitted to records of a pendulum that has perhaps another."""
     values = TRUE[true][0]
     samples = 500 if true == "hardening.k_3" else 300  # a little of it shows in more of them
-    logs = as_records(*_split(records(4, values, samples=samples)))
+    logs = roles(records(4, values, samples=samples))
     base = nominal_model()
     known = {n: v for n, v in values.items() if not n.startswith(true)}
     parent = fit_nominal(replace(base, plant=base.plant.with_values(known)), logs)
-    effect = next(e for e in candidates(pendulum(), FREE) if e.name == name)
-    (score, *_) = window_scores(parent.fit, list_common([effect]))
-    start = begin(parent, [score])
-    return with_effect(parent, start, HORIZON, logs[2:]), score.candidate
-
-
-def _split(logs):
-    return logs[:2], logs[2:]
+    model = with_law(parent, name, logs)
+    return model, model.candidates[-1]
 
 
 @pytest.mark.parametrize("name", ["hardening", "encoder_scale"])

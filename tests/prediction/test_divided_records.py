@@ -5,10 +5,9 @@ from functools import cache
 
 import numpy as np
 import pytest
-from records_cases import HORIZON, STEP, nominal_model, pendulum, records
+from records_cases import HORIZON, STEP, listed, nominal_model, records, roles
 
 from identification.discovery.options import DiscoveryOptions
-from identification.effects.joint_plant import candidates
 from identification.logs.parts import MEMORIES, inside
 from identification.prediction.discovery import WINDOWS
 from identification.prediction.exchange import exchanged
@@ -19,7 +18,6 @@ from identification.report.parts_words import is_untouched, parts_sentence, part
 from identification.windows import dividing
 from identification.windows.comparison import compare
 from identification.windows.dividing import divide_records, memory_of
-from identification.windows.records import as_records
 from identification.windows.unseen import LENGTHS, cut_unseen
 
 FALSE = {"offset.f_0@hinge": 0.02}
@@ -29,7 +27,7 @@ FALSE = {"offset.f_0@hinge": 0.02}
 def alone(samples=500):
     """The records, two to fit and two that confirm, and the fit of the former."""
     logs = records(4, FALSE, samples=samples)
-    told = as_records(logs[:2], logs[2:])
+    told = roles(logs)
     return told, *fit_alone(nominal_model(), told)
 
 
@@ -117,8 +115,7 @@ def test_blocks_of_windows_are_as_long_as_their_errors_repeat(monkeypatch):
 def test_a_result_says_of_which_part_it_tells(without):
     logs = records(4, FALSE)
     task = RecordsTask(
-        nominal_model=nominal_model(), records=as_records(logs[:2], logs[2:]),
-        effects=tuple(e for e in candidates(pendulum(), ("J", "d")) if e.name == "offset"),
+        nominal_model=nominal_model(), records=roles(logs), effects=listed("offset"),
         options=DiscoveryOptions(without=without),
     )  # fmt: skip
     state = WINDOWS.begin(task, print)

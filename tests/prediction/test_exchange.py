@@ -5,22 +5,30 @@ from functools import cache
 
 import numpy as np
 import pytest
-from records_cases import FREE, HORIZON, NOISE, STEP, nominal_model, pendulum, record, records
+from records_cases import (
+    FREE,
+    HORIZON,
+    NOISE,
+    STEP,
+    listed,
+    nominal_model,
+    pendulum,
+    record,
+    records,
+    roles,
+    search,
+    with_law,
+)
 
-from identification.discovery.candidates import list_common
 from identification.discovery.findings.finding import FindingKind
 from identification.discovery.options import DiscoveryOptions
-from identification.effects.joint_plant import candidates
 from identification.model.predictor import Predictor
 from identification.prediction import remaining
 from identification.prediction.discovery import discover_records
 from identification.prediction.exchange import exchanged, is_contradicted, without_contradicted
-from identification.prediction.extension import with_effect
-from identification.prediction.first_fit import begin
 from identification.prediction.model import predict_fitted
 from identification.prediction.nominal_fit import fit_nominal
 from identification.prediction.remaining import needed_input_error
-from identification.prediction.scores import window_scores
 from identification.prediction.screening import score_all
 from identification.prediction.selection import REFUTED, refit_contenders
 from identification.prediction.trial import Contender, find_doubt
@@ -37,21 +45,15 @@ OPTIONS = DiscoveryOptions()
 SAMPLES = 300  # of each record
 
 
-def law():
-    return [e for e in candidates(pendulum(), FREE) if e.name == NAME]
-
-
 @cache
 def pair(second):
     """Two fitted records, of which the second may lack the law, and two that confirm; models."""
     logs = records(4, LOAD, samples=500 if second == "lacks it" else SAMPLES)
     if second == "lacks it":
         logs[1] = record(2, plant=pendulum())
-    every = as_records(logs[:2], logs[2:])
+    every = roles(logs)
     without = fit_nominal(nominal_model(), every)
-    begun = begin(without, window_scores(without.fit, list_common(law())))
-    with_it = with_effect(without, begun, HORIZON, [r for r in every if r.role == "confirm"])
-    return every, without, with_it
+    return every, without, with_law(without, NAME, every)
 
 
 @cache
@@ -62,9 +64,9 @@ def other_side(second):
 
 def test_the_model_with_roles_exchanged_is_that_of_a_fit_to_the_other_records():
     logs = records(4, samples=SAMPLES)
-    model = fit_nominal(nominal_model(), as_records(logs[:2], logs[2:]))
+    model = fit_nominal(nominal_model(), roles(logs))
     reverse = fit_nominal(nominal_model(), as_records(logs[2:], logs[:2]))
-    found = exchanged(model, as_records(logs[:2], logs[2:]), HORIZON)
+    found = exchanged(model, roles(logs), HORIZON)
     for name in FREE:  # some of the windows, and a coarser end of the search
         assert found.values[name] == pytest.approx(reverse.values[name], abs=3 * reverse.std[name])
     assert [p.predictor.log.name for p in found.fit.problem.parts] == ["record 3", "record 4"]
@@ -103,9 +105,8 @@ def test_a_law_that_one_fitted_record_lacks_is_proven_and_then_contradicted():
 @pytest.mark.long
 def test_what_is_contradicted_is_told_and_not_named():
     every, *_ = pair("lacks it")
-    fit, confirm = ([r.log for r in every if r.role == role] for role in ("fit", "confirm"))
     said = []
-    found = discover_records(nominal_model(), fit, confirm, law(), said.append)
+    found = search([r.log for r in every], [NAME], progress=said.append)
     assert found.named == ()
     assert found.verdict == "unknown effect"
     assert [r.doubt for r in found.rejected] == ["exchange"]
@@ -140,8 +141,7 @@ def test_a_length_is_predicted_the_same_alone_and_with_others():
 def test_what_the_horizon_refutes_is_predicted_over_no_other_length_and_the_rest_over_all(least):
     confirm, model = fitted()
     few = ("transmitted_load_friction", "quadratic_friction", "offset")
-    effects = [e for e in candidates(model.plant, ("J", "d")) if e.name in few]
-    scores = score_all(model, effects, DiscoveryOptions())
+    scores = score_all(model, listed(*few), DiscoveryOptions())
     options = DiscoveryOptions(min_proof_t=least)
     parent, tried = refit_contenders(model, scores, HORIZON, confirm, options, lambda _: None)
     assert tried[0].is_proven == (least < 1e3)
@@ -165,7 +165,7 @@ def disturbed(seed, share):
 def excused():
     """A fit of records whose inputs err by a tenth."""
     logs = [disturbed(k, 0.1) for k in range(1, 4)]
-    return fit_nominal(nominal_model(), as_records(logs[:2], logs[2:]))
+    return fit_nominal(nominal_model(), roles(logs))
 
 
 def needed(found, options=None, unseen=()):
@@ -193,7 +193,7 @@ def test_the_error_of_the_inputs_does_not_depend_on_how_a_fit_weighs_its_errors(
 
 def test_an_error_of_the_inputs_is_found_where_only_unseen_records_have_it():
     logs = [disturbed(1, 0.0), disturbed(2, 0.0), disturbed(3, 0.1)]
-    found = fit_nominal(nominal_model(), as_records(logs[:2], logs[2:]))
+    found = fit_nominal(nominal_model(), roles(logs))
     assert needed(found) < 0.005
     assert needed(found, unseen=found.unseen.of_outputs) == pytest.approx(0.1, rel=0.3)
 
@@ -205,7 +205,7 @@ def test_a_force_that_comes_after_the_fitted_record_is_something_that_is_missing
         record(1, 400, plant=pendulum()),
         record(2, 400, {OFFSET: force}, plant=pendulum()),
     )
-    effects = [e for e in candidates(pendulum(), FREE) if e.name in ("quadratic_friction", "delay")]
+    effects = listed("quadratic_friction", "delay")
     found = discover_records(nominal_model(), [before], [after], effects)
     told = [f.evidence for f in found.findings if f.kind is FindingKind.DIFFERENT_RECORD]
     assert found.verdict == ("unknown effect" if force else "nothing missing")
@@ -217,8 +217,7 @@ def test_a_force_that_comes_after_the_fitted_record_is_something_that_is_missing
 @pytest.mark.parametrize("share", [0.0, 0.008])
 def test_an_error_that_usual_errors_of_inputs_excuse_is_left_all_the_same(share):
     logs = [disturbed(k, share) for k in range(1, 4)]
-    laws = [e for e in candidates(pendulum(), FREE) if e.name in ("hardening", "offset")]
-    found = discover_records(nominal_model(), logs[:2], logs[2:], laws)
+    found = search(logs, ("hardening", "offset"))
     assert found.verdict == "nothing missing"
     assert found.unexplained == (share > 0)
     assert found.is_good is (None if share else True)

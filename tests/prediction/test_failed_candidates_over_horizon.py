@@ -10,10 +10,9 @@ from functools import cache
 import pytest
 from failing_cases import ERRORS, Failing
 from page_text import text_of
-from records_cases import nominal_model, pendulum, records
+from records_cases import listed, nominal_model, records
 
 from identification.discovery.options import DiscoveryOptions
-from identification.effects.joint_plant import candidates
 from identification.errors import InputError
 from identification.prediction import crossing, exchange, extension, selection, state
 from identification.prediction.discovery import WINDOWS
@@ -35,9 +34,7 @@ def task():
     return RecordsTask(
         nominal_model=nominal_model(),
         records=as_records(logs[:1], logs[1:]),
-        effects=tuple(
-            e for e in candidates(pendulum(), ("J", "d")) if e.name in (NAME, "offset")
-        ),
+        effects=listed(NAME, "offset"),
         options=DiscoveryOptions(without=("add_set",)),  # which would refit it once more
     )  # fmt: skip
 

@@ -4,14 +4,10 @@ from functools import cache
 
 import numpy as np
 import pytest
-from records_cases import FREE, HORIZON, nominal_model, pendulum, records
+from records_cases import FREE, HORIZON, nominal_model, records, roles, search
 
 from identification.discovery.nominal_model import NominalModel
-from identification.discovery.options import DiscoveryOptions
-from identification.effects.joint_plant import candidates
-from identification.prediction.discovery import discover_records
 from identification.prediction.nominal_fit import fit_nominal
-from identification.windows.records import as_records
 
 HIDDEN, SIZE = "hardening.k_3@hinge", 0.2
 KNOWN = np.array([0.3, 0.3])  # of what is free, far from which the truth lies: 2e-3 of 1.5e-3
@@ -28,16 +24,14 @@ def model(names=FREE, known=KNOWN):
 
 @cache
 def found(*without):
-    laws = [e for e in candidates(pendulum(), FREE) if e.name == "hardening"]
-    options = DiscoveryOptions(without=without)
-    return discover_records(model(), logs()[:2], logs()[2:], laws, None, options).final
+    return search(logs(), ["hardening"], model(), without=without).final
 
 
 @cache
 def told():
     """The fit of a model that has the effect from the beginning, whose size is free."""
     free = model((*FREE, HIDDEN), np.array([*KNOWN, 1e3]))
-    return fit_nominal(free, as_records(logs()[:2], logs()[2:])).fit
+    return fit_nominal(free, roles(logs())).fit
 
 
 @pytest.mark.parametrize("name", FREE)

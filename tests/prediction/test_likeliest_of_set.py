@@ -4,10 +4,9 @@ from dataclasses import replace
 from functools import cache
 
 import pytest
-from records_cases import nominal_model, pendulum, records
+from records_cases import listed, nominal_model, records
 
 from identification.discovery.options import DiscoveryOptions
-from identification.effects.joint_plant import candidates
 from identification.prediction.discovery import WINDOWS
 from identification.prediction.moves.add_set import with_one
 from identification.prediction.moves.likeliest_of_set import likeliest_of_set
@@ -24,10 +23,9 @@ def refits():
     """A search's first state, and what can be refitted in its first round."""
     logs = records(3, dict([TRUE]), samples=200)
     names = ("quadratic_friction", "stribeck_friction", "sublinear_friction")
-    effects = [e for e in candidates(pendulum(), ("J", "d")) if e.name in names]
     task = RecordsTask(
         nominal_model=nominal_model(), records=as_records(logs[:1], logs[1:]),
-        effects=tuple(effects), options=DiscoveryOptions(max_effects=1),
+        effects=listed(*names), options=DiscoveryOptions(max_effects=1),
     )  # fmt: skip
     state, best = WINDOWS.begin(task, print), {}
     for score in state.scores:

@@ -6,14 +6,13 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from records_cases import FREE, HORIZON, nominal_model, pendulum, records
+from records_cases import FREE, listed, nominal_model, pendulum, records, roles
+from records_cases import with_law as fitted_with
 
 from identification.discovery.candidates import list_common
 from identification.discovery.effect_results import Neighbour
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.joint_plant import candidates
-from identification.prediction.extension import with_effect
-from identification.prediction.first_fit import begin
 from identification.prediction.moves.curve_for_laws import curve_for_laws
 from identification.prediction.neighbours import (
     MOST_OF_BOTH,
@@ -24,7 +23,6 @@ from identification.prediction.neighbours import (
     has_neighbours_name,
 )
 from identification.prediction.nominal_fit import fit_nominal
-from identification.prediction.scores import window_scores
 from identification.prediction.screening import score_all
 from identification.prediction.selection import judged
 from identification.prediction.state import first_state
@@ -41,18 +39,14 @@ STIFF = 0.06  # of a spring that hardens [N m/rad³]
 
 @cache
 def logs():
-    made = records(4, {"hardening.k_3@hinge": STIFF}, samples=500)
-    return as_records(made[:2], made[2:])
+    return roles(records(4, {"hardening.k_3@hinge": STIFF}, samples=500))
 
 
 @cache
 def with_law(name):
     """The fit without effects, and with one law."""
     bare = fit_nominal(nominal_model(), logs())
-    (effect,) = (e for e in EFFECTS if e.name == name)
-    (score, *_) = window_scores(bare.fit, list_common([effect]))
-    confirm = [r for r in logs() if r.role == "confirm"]
-    return bare, with_effect(bare, begin(bare, [score]), HORIZON, confirm)
+    return bare, fitted_with(bare, name, logs())
 
 
 @cache
@@ -99,10 +93,10 @@ def test_the_chance_is_paid_for_by_the_number_of_curves_at_the_joint():
 
 def test_a_proven_curve_takes_the_place_of_a_neighbours_name():
     bare, model = with_law("stiffness")
-    effects = tuple(e for e in EFFECTS if e.name in ("stiffness", "curve_position"))
     task = RecordsTask(
-        nominal_model=nominal_model(), records=logs(), effects=effects, options=OPTIONS
-    )
+        nominal_model=nominal_model(), records=logs(), options=OPTIONS,
+        effects=listed("stiffness", "curve_position"),
+    )  # fmt: skip
     state = first_state(task, lambda line: None)
     law = judged(bare, model, 1, OPTIONS)
     scores = score_all(model, task.effects, OPTIONS)

@@ -5,13 +5,11 @@ from functools import cache
 
 import numpy as np
 import pytest
-from records_cases import FREE, nominal_model, pendulum, record
+from records_cases import listed, nominal_model, pendulum, record, search
 from test_contenders import OPTIONS, contender, effect
 
 from identification.discovery.findings.finding import FindingKind
-from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate, in_each_record
-from identification.effects.joint_plant import candidates
 from identification.prediction.discovery import discover_records
 from identification.prediction.scores import WindowScore
 from identification.prediction.screening import at_several, felt_places
@@ -27,9 +25,7 @@ ZEROS, PUSHES = (0.08, -0.07, 0.05, -0.09), (0.03, -0.02, 0.01, -0.04)
 def found(each, samples=400, names=FEW, without=()):
     """A search over four records, each of which has values of its own."""
     logs = [record(k + 1, samples, dict(own), plant=pendulum()) for k, own in enumerate(each)]
-    effects = [e for e in candidates(pendulum(), FREE) if e.name in names]
-    options = DiscoveryOptions(without=without)
-    return discover_records(nominal_model(), logs[:2], logs[2:], effects, options=options)
+    return search(logs, names, without=without)
 
 
 def of_each(name, values):
@@ -84,7 +80,7 @@ def test_friction_beside_zeros_that_differ_is_named_and_the_zeros_are_told():
     name = "coulomb_friction.f_c@hinge"
     each = tuple((("encoder_offset.c@angle", c), (name, 0.03)) for c in ZEROS)
     names = "encoder_offset", "coulomb_friction"
-    answer = found(each, 500, names, ("untouched_part",))  # all windows decide, so few do
+    answer = found(each, 400, names, ("untouched_part",))  # all windows decide, so few do
     assert [n.name for n in answer.named] == ["coulomb_friction"]
     assert [d.candidate.sizes for d in answer.differences] == [("encoder_offset.c@angle",)]
     assert not [f for f in answer.findings if f.kind == FindingKind.UNPROVEN_EFFECT]
@@ -94,7 +90,7 @@ def test_what_explains_fitted_records_and_worsens_unseen_ones_says_that_records_
     zeros = (0.08, 0.08, -0.08, -0.08)
     logs = [record(k, 400, {"encoder_offset.c@angle": c}, plant=pendulum())
             for k, c in enumerate(zeros, 1)]  # fmt: skip
-    (zero,) = [e for e in candidates(pendulum(), FREE) if e.name == "encoder_offset"]
+    (zero,) = listed("encoder_offset")
     alike = replace(zero, of_records="")  # a zero that is the same in all records
     answer = discover_records(nominal_model(), logs[:2], logs[2:], [alike])
     assert answer.verdict == "unknown effect"

@@ -6,11 +6,9 @@ from functools import cache
 from types import SimpleNamespace
 
 import pytest
-from records_cases import nominal_model, pendulum, record, records
+from records_cases import listed, nominal_model, pendulum, record, records, search
 
 from identification import pool
-from identification.discovery.options import DiscoveryOptions
-from identification.effects.joint_plant import candidates
 from identification.errors import InputError
 from identification.prediction import selection, verdict
 from identification.prediction.discovery import discover_records
@@ -32,9 +30,7 @@ FEW = ("transmitted_load_friction", "gravity_load_friction", "quadratic_friction
 
 @cache
 def found(mu=0.15, names=FEW):
-    logs = records(4, {MU: mu} if mu else None, samples=SAMPLES)
-    effects = [e for e in candidates(pendulum(), ("J", "d")) if e.name in names]
-    return discover_records(nominal_model(), logs[:2], logs[2:], effects)
+    return search(records(4, {MU: mu} if mu else None, samples=SAMPLES), names)
 
 
 def test_friction_under_the_transmitted_load_is_named_with_its_size():
@@ -53,11 +49,8 @@ def test_friction_under_the_transmitted_load_is_named_with_its_size():
 def test_a_record_that_repeats_another_is_no_further_witness():
     first, second, third = records(3, {MU: 0.15}, samples=SAMPLES)
     again = replace(third, name="again", outputs=third.outputs + 1e-5)
-    effects = [e for e in candidates(pendulum(), ("J", "d")) if e.name == FEW[0]]
-    options = DiscoveryOptions(max_minutes=0.0)  # which refits nothing: records are told before
-    answer = discover_records(
-        nominal_model(), [first, second], [third, again], effects, options=options
-    )
+    # which refits nothing: records are told before
+    answer = search([first, second, third, again], FEW[:1], max_minutes=0.0)
     assert answer.repeats == ("again",)
     assert discovery_to_json(answer)["repeats"] == ["again"]
 
@@ -65,9 +58,8 @@ def test_a_record_that_repeats_another_is_no_further_witness():
 def test_records_too_short_to_confirm_are_refused():
     first, second = records(2, {MU: 0.15})
     short = rows(second, 45)
-    effects = [e for e in candidates(pendulum(), ("J", "d")) if e.name == FEW[0]]
     with pytest.raises(InputError, match=r"hold 2 windows of 0\.2 s, too few to prove anything"):
-        discover_records(nominal_model(), [first], [short], effects)
+        discover_records(nominal_model(), [first], [short], listed(FEW[0]))
 
 
 def test_records_without_an_effect_get_no_name():
@@ -81,9 +73,7 @@ def clipped_and_not(names):
     hidden = {"saturation.c@drive": 1.0, "saturation.u_max": 0.4}
     logs = [record(k, SAMPLES, hidden, plant=pendulum()) for k in (1, 2)]
     logs += [record(k, SAMPLES, plant=pendulum(), largest=0.35) for k in (3, 4)]
-    effects = [e for e in candidates(pendulum(), ("J", "d")) if e.name in names]
-    base = replace(nominal_model(), plant=pendulum())
-    return discover_records(base, logs[:2], logs[2:], effects)
+    return search(logs, names, replace(nominal_model(), plant=pendulum()))
 
 
 def test_what_made_a_fit_worse_than_its_start_is_named_and_told():
@@ -100,10 +90,7 @@ def test_a_horizon_is_needed(refusal):
 
 
 def test_a_search_behind_its_time_limit_answers_and_says_what_it_has_not_tried():
-    logs = records(4, {MU: 0.15}, samples=SAMPLES)
-    effects = [e for e in candidates(pendulum(), ("J", "d")) if e.name in FEW]
-    options = DiscoveryOptions(max_minutes=0.0)
-    answer = discover_records(nominal_model(), logs[:2], logs[2:], effects, options=options)
+    answer = search(records(4, {MU: 0.15}, samples=SAMPLES), FEW, max_minutes=0.0)
     assert answer.verdict == "unknown effect"
     assert answer.scores
     assert answer.cut_short == ("add_effect", "add_set")
@@ -114,12 +101,10 @@ def test_a_search_behind_its_time_limit_answers_and_says_what_it_has_not_tried()
 
 
 def test_effects_without_a_sure_name_tell_how_far_they_predict_together(monkeypatch):
-    logs = records(4, {MU: 0.15}, samples=SAMPLES)
-    effects = [e for e in candidates(pendulum(), ("J", "d")) if e.name in FEW]
     sure = found()
     assert (sure.verdict, sure.doubtful) == ("named", None)
     monkeypatch.setattr(verdict, "doubts_of_names", lambda named, *_: ("odds",) * len(named))
-    unsure = discover_records(nominal_model(), logs[:2], logs[2:], effects)
+    unsure = search(records(4, {MU: 0.15}, samples=SAMPLES), FEW)
     assert (unsure.verdict, unsure.named) == ("unknown effect", ())
     assert unsure.doubtful.rms == sure.after.rms < 0.2 * unsure.after.rms
     assert "whose names are not sure, together take this error from" in discovery_text(unsure)
@@ -139,8 +124,6 @@ def test_what_was_refitted_before_the_time_was_over_is_still_judged_and_named(mo
     monkeypatch.setattr(selection, "_refit", first)
     late = SimpleNamespace(monotonic=lambda: passed() + 1e6 * bool(is_late))
     monkeypatch.setattr(pool, "time", late)
-    logs = records(4, {MU: 0.15}, samples=SAMPLES)
-    effects = [e for e in candidates(pendulum(), ("J", "d")) if e.name in FEW]
-    answer = discover_records(nominal_model(), logs[:2], logs[2:], effects)
+    answer = search(records(4, {MU: 0.15}, samples=SAMPLES), FEW)
     assert is_late == [FEW[0]]
     assert [n.candidate.effect.name for n in answer.named] == [FEW[0]]

@@ -6,11 +6,10 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from records_cases import FREE, nominal_model, pendulum, record, records
+from records_cases import listed, nominal_model, pendulum, record, records, roles
 
 from identification.discovery.candidates import list_common
 from identification.discovery.options import DiscoveryOptions
-from identification.effects.joint_plant import candidates
 from identification.estimation.priors import Priors
 from identification.model.coordinates import Coordinates
 from identification.prediction.clocks import record_shifts, told_shifts
@@ -55,13 +54,13 @@ def shifted(shift, seed):
 def test_records_whose_clocks_differ_have_a_shift_each():
     base = replace(nominal_model(), horizon=0.26)  # the inputs jump within windows
     logs = [shifted(s, k) for k, s in enumerate(SHIFTS, 1)]
-    roles = as_records(logs[:2], logs[2:])
-    parent = fit_nominal(base, roles)
-    effect = next(e for e in candidates(pendulum(), FREE) if e.name == "time_shift")
+    every = roles(logs)
+    parent = fit_nominal(base, every)
+    (effect,) = listed("time_shift")
     assert effect.own
     score = window_scores(parent.fit, list_common([effect]))[0]
     assert score.size.shape == (2,)
-    child = with_effect(parent, begin(parent, [score]), base.horizon, roles[2:])
+    child = with_effect(parent, begin(parent, [score]), base.horizon, every[2:])
     found = [child.fit.values[f"time_shift.tau@drive [record {k}]"] for k in (1, 2)]
     np.testing.assert_allclose(found, SHIFTS[:2], atol=1e-3)
     value, _ = child.unseen.own["record 3"]["time_shift.tau@drive"]
@@ -73,15 +72,13 @@ def test_a_record_that_is_late_is_told_and_the_others_are_not():
     """What is asked of each record alone: its clock. The fit has seen none that is late."""
     base = replace(nominal_model(), horizon=0.26)
     logs = [shifted(s, k) for k, s in enumerate((0.0, 0.0, 0.0, 0.02), 1)]
-    roles = as_records(logs[:2], logs[2:])
-    effect = next(e for e in candidates(pendulum(), FREE) if e.name == "time_shift")
+    every = roles(logs)
     task = RecordsTask(
-        nominal_model=base, records=roles, effects=(effect,),
-        options=DiscoveryOptions(),
-    )  # fmt: skip
-    model = fit_nominal(base, roles)
+        nominal_model=base, records=every, effects=listed("time_shift"), options=DiscoveryOptions()
+    )
+    model = fit_nominal(base, every)
     shifts = record_shifts(task, model)
-    (told,) = told_shifts(shifts, len(roles), task.options)
+    (told,) = told_shifts(shifts, len(every), task.options)
     assert told.record == "record 4"
     assert told.shift == pytest.approx(0.02, abs=1e-3)
     assert told.std < 2e-3
@@ -102,7 +99,7 @@ def test_offsets_of_their_own_leave_what_is_shared_as_it_is():
     ]
     base = nominal_model()
     own = replace(base, names=(*base.names, offset), std=with_offset(base), own=(offset,))
-    found = fit_nominal(own, as_records(logs[:2], logs[2:])).fit
+    found = fit_nominal(own, roles(logs)).fit
     assert found.values[f"{offset} [record 1]"] == pytest.approx(0.05, abs=2e-3)
     assert found.values[f"{offset} [record 2]"] == pytest.approx(-0.05, abs=2e-3)
     assert found.shared["J"] == pytest.approx(2e-3, rel=0.03)
@@ -112,8 +109,8 @@ def test_offsets_of_their_own_leave_what_is_shared_as_it_is():
 def test_one_record_with_a_parameter_of_its_own_is_a_record_with_a_shared_one():
     offset, base, logs = "offset.f_0@hinge", nominal_model(), records(2, samples=SAMPLES)
     more = replace(base, names=(*base.names, offset), std=with_offset(base))
-    roles = as_records(logs[:1], logs[1:])
-    shared, own = (fit_nominal(replace(more, own=o), roles) for o in ((), (offset,)))
+    every = as_records(logs[:1], logs[1:])
+    shared, own = (fit_nominal(replace(more, own=o), every) for o in ((), (offset,)))
     np.testing.assert_allclose(own.fit.q, shared.fit.q, rtol=1e-9)
     assert own.fit.cost == pytest.approx(shared.fit.cost, rel=1e-9)
 

@@ -5,12 +5,19 @@ from functools import cache
 
 import numpy as np
 import pytest
-from records_cases import FREE, HORIZON, nominal_model, pendulum, record, records
+from records_cases import (
+    FREE,
+    HORIZON,
+    listed,
+    nominal_model,
+    pendulum,
+    record,
+    records,
+    roles,
+    with_law,
+)
 
 from identification.discovery.candidates import list_common
-from identification.effects.joint_plant import candidates
-from identification.prediction.extension import with_effect
-from identification.prediction.first_fit import begin
 from identification.prediction.nominal_fit import fit_nominal
 from identification.prediction.scores import find_imitated, window_scores
 from identification.prediction.screening import has_what_it_needs
@@ -46,13 +53,8 @@ def rubbed():
     return fitted(logs[:2], logs[2:])
 
 
-def effects():
-    return {e.name: e for e in candidates(pendulum(), FREE)}
-
-
 def scored(model, *names):
-    known = effects()
-    return window_scores(model.fit, list_common([known[n] for n in names]))
+    return window_scores(model.fit, list_common(listed(*names)))
 
 
 def test_clean_records_give_the_values_that_made_them():
@@ -123,8 +125,7 @@ def test_a_score_is_that_of_least_squares_with_columns_by_hand():
 
 def test_a_child_never_explains_less_than_its_parent():
     parent, logs = rubbed(), records(4, LOAD, samples=SAMPLES)
-    (score, *_) = scored(parent, "offset")
-    child = with_effect(parent, begin(parent, [score]), HORIZON, as_records(logs[:2], logs[2:])[2:])
+    child = with_law(parent, "offset", roles(logs))
     assert child is None or child.fit.cost < parent.fit.cost
 
 
@@ -161,7 +162,7 @@ def test_a_free_parameter_by_another_name_is_imitated_and_a_law_is_not():
 def test_what_changes_a_level_of_friction_is_no_candidate_where_there_is_no_level():
     """One-sided friction and a constant force are Coulomb friction by another name."""
     model = rubbed()
-    effect = next(e for e in candidates(pendulum(), ("J", "d")) if e.name == "asymmetric_friction")
+    (effect,) = listed("asymmetric_friction")
     (candidate,) = list_common([effect])
     assert effect.needs == "coulomb_friction"
     assert not has_what_it_needs(model, candidate)

@@ -4,14 +4,12 @@ from functools import cache
 
 import numpy as np
 import pytest
-from records_cases import FREE, HORIZON, nominal_model, pendulum, records
+from records_cases import FREE, listed, nominal_model, pendulum, records, roles, with_law
 from scipy.optimize import lsq_linear
 
 from identification.discovery.candidates import list_common
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.joint_plant import candidates
-from identification.prediction.extension import with_effect
-from identification.prediction.first_fit import begin
 from identification.prediction.neighbours import (
     Explained,
     find_smooth_neighbour,
@@ -20,15 +18,13 @@ from identification.prediction.neighbours import (
 from identification.prediction.nominal_fit import fit_nominal
 from identification.prediction.scores import condensed, window_scores
 from identification.prediction.yardstick import measure
-from identification.windows.records import as_records
 
 EFFECTS = candidates(pendulum(), FREE)
 
 
 @cache
 def logs():
-    made = records(4, {"coulomb_friction.f_c@hinge": 0.02}, samples=300)
-    return as_records(made[:2], made[2:])
+    return roles(records(4, {"coulomb_friction.f_c@hinge": 0.02}, samples=300))
 
 
 @cache
@@ -36,19 +32,8 @@ def rubbed():
     return fit_nominal(nominal_model(), logs())
 
 
-def listed(name):
-    return list_common([e for e in EFFECTS if e.name == name])
-
-
-def with_law(name):
-    model = rubbed()
-    best = window_scores(model.fit, listed(name))[0]
-    confirm = [r for r in logs() if r.role == "confirm"]
-    return with_effect(model, begin(model, [best]), HORIZON, confirm)
-
-
 def test_sums_by_blocks_give_the_fall_of_a_curve():
-    (candidate,) = listed("curve_speed")
+    (candidate,) = list_common(listed("curve_speed"))
     known = condensed(rubbed().fit, [candidate])
     G, a, square = known.G, known.a, known.squares.sum()
     c = lsq_linear(G.sum(axis=0), a.sum(axis=0)).x
@@ -61,7 +46,7 @@ def test_the_law_that_is_missing_leaves_nothing_to_a_smooth_force_and_a_neighbou
     before = rubbed()
     share, left = {}, {}
     for name in ("coulomb_friction", "sublinear_friction"):
-        after = with_law(name)
+        after = with_law(before, name, logs())
         stick = measure(after, EFFECTS)
         share[name] = stick.share(before.fit.cost, after.fit.cost)
         left[name] = stick.every
@@ -77,16 +62,18 @@ def test_the_law_that_is_missing_leaves_nothing_to_a_smooth_force_and_a_neighbou
 @cache
 def damped():
     """The fit where a damping grows with the angle: a force of speed and position at once."""
-    made = records(4, {"position_dependent_damping.d_q@hinge": 0.002}, samples=400)
-    logs = as_records(made[:2], made[2:])
-    return fit_nominal(nominal_model(), logs), [r for r in logs if r.role == "confirm"]
+    every = roles(records(4, {"position_dependent_damping.d_q@hinge": 0.002}, samples=400))
+    return fit_nominal(nominal_model(), every), every
+
+
+@cache
+def damped_with(name):
+    return with_law(damped()[0], name, damped()[1])
 
 
 def beside(name, is_left):
     """What smooth forces explain beside a law, with surfaces or without them."""
-    model, confirm = damped()
-    best = window_scores(model.fit, listed(name))[0]
-    after = with_effect(model, begin(model, [best]), HORIZON, confirm)
+    (model, _), after = damped(), damped_with(name)
     fall = 1 - after.fit.cost / model.fit.cost
     stick = measure(after, EFFECTS, is_left)
     return find_smooth_neighbour(after.candidates[-1], Explained(fall / (1 - fall)), stick)
@@ -106,12 +93,8 @@ def test_surfaces_unmask_the_neighbour_of_a_force_of_two_variables_and_no_curve_
 def test_a_force_of_the_position_that_is_left_speaks_against_no_friction():
     """It is another thing that is missing, and the smooth force of the joint tells it."""
     hidden = {"coulomb_friction.f_c@hinge": 0.05, "hardening.k_3@hinge": 0.02}
-    made = records(4, hidden, samples=400)
-    both = as_records(made[:2], made[2:])
-    model = fit_nominal(nominal_model(), both)
-    confirm = [r for r in both if r.role == "confirm"]
-    best = window_scores(model.fit, listed("coulomb_friction"))[0]
-    after = with_effect(model, begin(model, [best]), HORIZON, confirm)
+    both = roles(records(4, hidden, samples=400))
+    after = with_law(fit_nominal(nominal_model(), both), "coulomb_friction", both)
     stick = measure(after, EFFECTS, True)
     (beyond,) = stick.beyond.values()
     assert stick.of_joint["joint hinge"] > 0.5

@@ -21,7 +21,7 @@ EVERY = [
     *(f"Figure {n}" for n in ("2.16", *(f"3.{k}" for k in range(2, 14)))),
 ]
 NAMES = {"λ": "lambda", "β": "beta"}
-STAND_IN = 0.6  # [s], for 10 s
+STAND_IN = 0.4  # [s], for 10 s
 
 
 @pytest.fixture(scope="module")
@@ -30,7 +30,7 @@ def found():
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("inca_mj.thesis.trials.DURATION", 0.3)
         patch.setattr("inca_mj.thesis.results.STAND_IN", STAND_IN)
-        return repeat_thesis(options=Options(horizons=(1.0,), max_evaluations=2))
+        return repeat_thesis(options=Options(horizons=(1.0,), max_evaluations=1))
 
 
 @pytest.fixture(scope="module")

@@ -142,7 +142,7 @@ CONNECTED = """<mujoco><option timestep="0.002" integrator="RK4"/><worldbody>
     ],
 )
 def test_a_damping_beyond_an_equality_is_found(tmp_path, equality):
-    log = simulated(CONNECTED.format(damping=0.3, equality=equality), samples=500)
+    log = simulated(CONNECTED.format(damping=0.3, equality=equality), samples=250)
     toml = 'model = "robot.xml"\nfree = ["joint/rocker.damping"]\nhorizon = 0.2\n'
     paths = write(
         tmp_path, CONNECTED.format(damping=0.1, equality=equality),

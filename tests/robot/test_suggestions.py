@@ -5,12 +5,11 @@ from __future__ import annotations
 from types import SimpleNamespace
 
 import pytest
-from records_cases import FREE, nominal_model, pendulum, records
+from records_cases import listed, nominal_model, records
 from torque_cases import TOML, planar_record, planar_robot
 
 from identification.discovery.candidates import list_common
 from identification.discovery.options import DiscoveryOptions
-from identification.effects.joint_plant import candidates
 from identification.prediction import selection
 from identification.prediction.discovery import discover_records
 from identification.robot.second_opinion import ask_torques, suggest
@@ -73,12 +72,12 @@ def test_a_level_that_changes_is_suggested_with_the_level(loaded, evidence):
 
 def search(hidden, suggested, *without):
     """What is found in two records to fit and two that confirm, with some effects suggested."""
-    logs = records(4, hidden, samples=400)
+    logs = records(4, hidden, samples=240)
     known = [e.partition(".")[0] for e in HIDDEN]
-    laws = [e for e in candidates(pendulum(), FREE) if e.name in known]
-    listed = [c for c in list_common(laws) if c.effect.name in suggested]
+    laws = listed(*known)
+    told = [c for c in list_common(laws) if c.effect.name in suggested]
     return discover_records(
-        nominal_model(), logs[:2], logs[2:], laws, None, DiscoveryOptions(without=without), listed
+        nominal_model(), logs[:2], logs[2:], laws, None, DiscoveryOptions(without=without), told
     )  # fmt: skip
 
 
@@ -96,8 +95,8 @@ def test_what_changes_a_level_is_not_refitted_without_one(monkeypatch):
     """Else it takes the level's place: f_q q is nearly a level where q is far from zero."""
     monkeypatch.setattr(selection, "list_contenders", lambda *_: [])
     monkeypatch.setattr(selection, "list_curves", lambda *_: [])
-    logs = records(4, {"coulomb_friction.f_c@hinge": 0.3}, samples=400)
-    changes = [e for e in candidates(pendulum(), FREE) if e.name == "asymmetric_friction"]
+    logs = records(4, {"coulomb_friction.f_c@hinge": 0.3}, samples=240)
+    changes = listed("asymmetric_friction")
     options = DiscoveryOptions(without=("add_set", "add_yielding_friction"))
     found = discover_records(
         nominal_model(), logs[:2], logs[2:], changes, None, options, list_common(changes)
