@@ -41,6 +41,17 @@ def at_taus(effect, u, before):
     return filtered(effect, u, {**values, f"{effect.name}.before": before}, drives)
 
 
+def test_impulse_and_moment_of_the_whole_are_kept():
+    """A delay within one step: the input's sum and first moment are those of the late input."""
+    u = np.zeros((9, 1))
+    u[2:5, 0] = 1.0, -2.0, 0.5
+    tau = 0.3e-3
+    out = filtered(ANY_ROBOT["delay"], u, {"delay.tau@u": tau}, ("u",))[:, 0]
+    assert out.sum() == pytest.approx(u.sum())
+    steps = np.arange(9)
+    assert steps @ out == pytest.approx(steps @ u[:, 0] + u.sum() * tau / STEP)
+
+
 @pytest.mark.parametrize("before", [0.0, -2.0])
 def test_lag(before):
     u = currents()

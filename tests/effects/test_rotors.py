@@ -31,6 +31,13 @@ def test_a_rotor_is_what_a_file_says(values, armatures):
     assert np.abs(expected - run(arm(), LOG)).max() > 1e-3
 
 
+def test_a_body_before_its_joint_does_not_feel_a_rotor():
+    """Inertia of the lower link, which turns with the upper one, moves the arm otherwise."""
+    rotor = run(arm(), LOG, **{"rotor_inertia.a@elbow": 0.005})
+    link = run(arm(), LOG, **{"inertia_mismatch.delta@lower": 0.5})
+    assert np.abs(rotor - link).max() > 1e-3
+
+
 def test_it_adds_to_an_armature_that_is_a_parameter_itself():
     own = Parameter(name="J", value=0.01, unit="kg m^2", where="joint/elbow.armature")
     plant = joint_plant(ARM, (own,), LOG)

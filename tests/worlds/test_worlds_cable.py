@@ -26,7 +26,7 @@ from inca_mj.studies.worlds.drive_effects import (
     HiddenSpringHardening,
     HiddenSpringHysteresis,
 )
-from inca_mj.studies.worlds.equations import drag, path, sagging, shake
+from inca_mj.studies.worlds.equations import drag, elastic, path, sagging, shake
 
 points = st.tuples(
     st.floats(0.3, 2.0), st.floats(-2.0, 2.0), st.floats(-2.0, 2.0)
@@ -112,6 +112,16 @@ def test_the_maxwell_branch_relaxes():
     # ε_v follows ε as a low-pass does
     lag = np.gradient(X[:, at.VISCOUS], 0.01, axis=0) * 0.2 - (ε - X[:, at.VISCOUS])
     assert abs(lag[100:-1]).max() < 0.02 * branch.max()
+
+
+def test_elastic_laws_by_their_letters():
+    ε, λ = 3e-4, 25000.0
+    for effect, expected in (
+        (HiddenCableHardening(kappa=500.0), λ * ε * (1 + 500 * ε)),
+        (HiddenCableHardening(kappa=1e6, exponent=2.0), λ * ε * (1 + 1e6 * ε**2)),
+        (HiddenCableCreep(fraction=0.2), λ * ε + 0.2 * λ * (ε - 1e-4)),
+    ):
+        assert elastic(ε, 1e-4, λ, plant(effect).D[0]) == pytest.approx(expected, rel=1e-12)
 
 
 @given(T=st.floats(-20.0, 50.0), K=st.floats(1e-9, 10.0))

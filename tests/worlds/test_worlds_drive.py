@@ -9,19 +9,25 @@ from inca_mj.studies.worlds import layout as at
 from inca_mj.studies.worlds.drive_effects import (
     HiddenAsymmetricFriction,
     HiddenBacklash,
+    HiddenCogging,
     HiddenCurrentLag,
     HiddenCurrentSaturation,
     HiddenDelay,
+    HiddenDrumEccentricity,
+    HiddenDrumLayering,
+    HiddenDrumRadiusMismatch,
     HiddenFrictionMismatch,
     HiddenLoadDependentFriction,
     HiddenPositionDependentFriction,
     HiddenQuadraticFriction,
+    HiddenSpringHardening,
     HiddenSpringHysteresis,
     HiddenStribeckFriction,
     HiddenTorqueConstantDrift,
+    HiddenTorqueConstantMismatch,
     HiddenTorqueRippleTime,
 )
-from inca_mj.studies.worlds.equations import friction, spring
+from inca_mj.studies.worlds.equations import friction, motor, radius, spring
 
 SAME = 1e-9  # two ways to one trajectory [rad]
 
@@ -47,14 +53,29 @@ def test_friction_takes_energy_and_never_gives(effect):
     assert friction(0.0, 1.0, 0.1, p.q, p.D[0]) == 0
 
 
-def test_a_friction_that_no_twin_has_is_that_of_its_letters():
-    """`test_both_move_alike` compares all others with the twin's."""
-    ω, φ, none = -3.0, 2.0, plant()
-    D = plant(HiddenPositionDependentFriction(a=0.2, b=0.1)).D[0]
-    gain = friction(ω, φ, 0.05, none.q, D) - friction(ω, φ, 0.05, none.q, none.D[0])
-    wave = 0.2 * np.cos(φ) + 0.1 * np.sin(φ)
-    expected = none.q[base.B_C] * wave * np.tanh(none.q[base.BETA] * ω)
-    assert gain == pytest.approx(expected, rel=1e-9)
+def test_each_friction_by_its_letters():
+    ω, φ, RT, none = -3.0, 2.0, 0.05, plant()
+    b_c, σ = none.q[base.B_C], np.tanh(none.q[base.BETA] * ω)
+    for effect, more in (
+        (HiddenStribeckFriction(f_s=0.01, v_s=2.0), 0.01 * np.exp(-2.25) * σ),
+        (HiddenStribeckFriction(f_s=0.01, v_s=2.0, exponent=1.0), 0.01 * np.exp(-1.5) * σ),
+        (HiddenAsymmetricFriction(f_a=0.002), 0.002 * abs(σ)),
+        (HiddenLoadDependentFriction(mu=0.1), 0.1 * RT * σ),
+        (HiddenQuadraticFriction(c=1e-6), -1e-6 * ω**2),
+        (HiddenFrictionMismatch(delta=0.2), 0.2 * b_c * σ),
+        (HiddenPositionDependentFriction(a=0.2, b=0.1),
+         b_c * (0.2 * np.cos(φ) + 0.1 * np.sin(φ)) * σ),
+    ):  # fmt: skip
+        D = plant(effect).D[0]
+        gain = friction(ω, φ, RT, none.q, D) - friction(ω, φ, RT, none.q, none.D[0])
+        assert gain == pytest.approx(more, rel=1e-9), effect
+
+
+def test_a_delay_shifts_and_gives_nothing_before():
+    u = prbs()
+    late, now = angles([HiddenDelay(delay=0.03)], u), angles([], u)
+    np.testing.assert_allclose(late[3:], now[:-3], atol=SAME)
+    np.testing.assert_allclose(late[:4], 0, atol=SAME)
 
 
 def test_a_delay_inside_a_sample_is_exact():
@@ -86,6 +107,13 @@ def test_saturation_is_another_input():
     assert HiddenCurrentSaturation(i_max=0.9).scaled(0.5).i_max == pytest.approx(0.95)
 
 
+def test_a_mismatch_of_torque_is_another_input():
+    u = prbs()
+    more = u * (1 + 0.05 * (np.arange(8) == 2))
+    got = angles([HiddenTorqueConstantMismatch(drive=3, delta=0.05)], u)
+    np.testing.assert_allclose(got, angles([], more), atol=SAME)
+
+
 def test_a_drift_is_an_input_that_fades():
     u, α = fine(prbs(0.5)), 0.1
     middle = (np.arange(len(u)) + 0.5)[:, None] * FINE
@@ -110,6 +138,24 @@ def test_a_ripple_in_time_is_another_input():
     np.testing.assert_allclose(got, angles([], u + more, FINE), atol=1e-6)
 
 
+def test_cogging_by_its_letters():
+    p = plant(HiddenCogging(a=1e-3, b=2e-3, n=8.0))
+    Γ = motor(0.0, 0.0, 0.0, 0.3, p.q, p.D[0])
+    assert pytest.approx(1e-3 * np.cos(2.4) + 2e-3 * np.sin(2.4)) == Γ
+
+
+def test_radii_by_their_letters():
+    for effect, expected in (
+        (
+            HiddenDrumEccentricity(a=0.01, b=0.02),
+            0.0175 * (1 + 0.01 * np.cos(2) + 0.02 * np.sin(2)),
+        ),
+        (HiddenDrumLayering(h=1e-5), 0.0175 + 2e-5),
+        (HiddenDrumRadiusMismatch(drive=1, delta=0.1), 0.01925),
+    ):
+        assert radius(2.0, 0.0175, plant(effect).D[0]) == pytest.approx(expected, rel=1e-12)
+
+
 @pytest.mark.parametrize("h", [0.01, 0.1])
 def test_the_drum_plays_behind_the_rotor(h):
     u = fine(prbs())
@@ -128,6 +174,17 @@ def test_the_drum_plays_behind_the_rotor(h):
     share = X[:, base.NO_LOAD] / d
     wound = np.diff(ψ, axis=0) * 0.0175 * (share[1:] + share[:-1]) / 2
     np.testing.assert_allclose(X[-1, base.NO_LOAD] - X[0, base.NO_LOAD], -wound.sum(0), atol=1e-6)
+
+
+def test_springs_by_their_letters():
+    φ, s, T_0 = 20.0, 0.006 * 20, 0.2
+    for effect, expected in (
+        (HiddenSpringHardening(k_3=8.0), T_0 / 0.006 - 16 * s * (1 + 8 * s**2)),
+        (HiddenSpringHardening(k_3=2.0, exponent=1.0), T_0 / 0.006 - 16 * s * (1 + 2 * s)),
+        (HiddenSpringHysteresis(eta=-0.1), (T_0 / 0.006 - 16 * s) * (1 - 0.1 * np.tanh(0.8 * 3))),
+    ):
+        p = plant(effect)
+        assert spring(φ, 3.0, T_0, p.q, p.D[0]) == pytest.approx(expected, rel=1e-12)
 
 
 def test_a_spring_with_hysteresis_loses_what_a_loop_encloses():
