@@ -44,7 +44,11 @@ class Sensitivity:
     def run(self) -> int:
         """Analyse, say, keep."""
         do_not_draw()
-        from inca_mj.report.information import information_json, information_verdict
+        from inca_mj.report.information import (
+            information_json,
+            information_section,
+            information_verdict,
+        )
         from inca_mj.workflows.sensitivity import planned_experiment, robot_information
 
         log = None if self.log is None else inca.read_inca_log(self.log)
@@ -58,8 +62,13 @@ class Sensitivity:
             what = f"The currents of {log.name}, {log.duration:g} s"
         about = f"{what}, noise {trial.sigma:.3g} rad."
         record = {"noise": trial.sigma, **information_json(found)}
-        text = "\n".join([summary_of_information(found), about, *information_verdict(found)])
-        conclude(self, record, text, draw=partial(draw_information, found, about))
+        verdict, title = information_verdict(found), "What an experiment can say"
+        conclude(
+            self, record, "\n".join([summary_of_information(found), about, *verdict]),
+            draw=lambda out: draw_report(
+                out, title, verdict, [information_section(found, about)]
+            ),
+        )  # fmt: skip
         return 0
 
 
@@ -68,14 +77,6 @@ def summary_of_information(found: Information) -> str:
     std = dict(zip(found.names, zip(found.std, found.conditional, strict=True), strict=False))
     rows = [(name, *(f"{x:.3g}" for x in std[name])) for name in found.ranking]
     return table(("parameter", "std", "others known"), rows)
-
-
-def draw_information(found: Information, about: str, out: Path) -> None:
-    """Write the figure and the one-file report into a folder."""
-    from inca_mj.report.information import information_section, information_verdict
-
-    title, sections = "What an experiment can say", [information_section(found, about)]
-    draw_report(out, title, information_verdict(found), sections)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -81,7 +80,12 @@ class Kinematics:
 
     def _at(self, pose: np.ndarray) -> None:
         from inca_mj.kinematics.cables import Pulleys, inverse
-        from inca_mj.report.poses import cables_json, cables_rows, cables_verdict
+        from inca_mj.report.poses import (
+            cables_json,
+            cables_rows,
+            cables_section,
+            cables_verdict,
+        )
         from inca_mj.robot.spread import displaced
 
         if self.noise is not None or self.std:
@@ -90,11 +94,15 @@ class Kinematics:
         cables = inverse(pose, place, Pulleys(self.pulley) if self.pulley else None)
         lines = cables_verdict(cables, place)
         text = "\n".join([table(*cables_rows(cables)), jacobian_text(cables), *lines])
-        draw = partial(draw_pose, pose, cables, place, lines)
-        conclude(self, cables_json(pose, cables), text, draw=draw)
+        conclude(
+            self, cables_json(pose, cables), text,
+            draw=lambda out: draw_report(
+                out, "A pose and its cables", lines, [cables_section(pose, cables, place)]
+            ),
+        )  # fmt: skip
 
     def _along(self) -> None:
-        from inca_mj.report.poses import poses_json, poses_verdict, write_poses
+        from inca_mj.report.poses import poses_json, poses_section, poses_verdict, write_poses
 
         if self.pulley:
             raise InputError("--pulley is for a pose; a log is read with straight cables: leave it")
@@ -103,10 +111,11 @@ class Kinematics:
             log, self.robot.parameters(), self.robot.place(), encoder=self.noise,
             std=assignments(self.std, "--std"), progress=self.output.tell,
         )  # fmt: skip
-        text = "\n".join([log_text(found), *poses_verdict(found)])
+        verdict, title = poses_verdict(found), f"{found.log.name}: where the platform was"
         conclude(
-            self, poses_json(found), text, draw=partial(draw_log, found),
+            self, poses_json(found), "\n".join([log_text(found), *verdict]),
             keep=lambda out: write_poses(found, out / "poses.csv"),
+            draw=lambda out: draw_report(out, title, verdict, [poses_section(found)]),
         )  # fmt: skip
 
 
@@ -128,20 +137,3 @@ def log_text(found: inca.LogPoses) -> str:
     some = np.unique(np.linspace(0, len(found.log) - 1, 11).round().astype(int))
     rows = [(f"{found.log.time[k]:.2f}", *(f"{x:z.4f}" for x in found.pose[k])) for k in some]
     return table(("time [s]", *(f"{n} [{'m' if n in 'xyz' else 'rad'}]" for n in POSE)), rows)
-
-
-def draw_pose(
-    pose: np.ndarray, cables: Cables, geometry: inca.Geometry, said: list[str], out: Path
-) -> None:
-    """Write the figure and the one-file report of a pose into a folder."""
-    from inca_mj.report.poses import cables_section
-
-    draw_report(out, "A pose and its cables", said, [cables_section(pose, cables, geometry)])
-
-
-def draw_log(found: inca.LogPoses, out: Path) -> None:
-    """Write the figure and the one-file report of a log into a folder."""
-    from inca_mj.report.poses import poses_section, poses_verdict
-
-    title = f"{found.log.name}: where the platform was"
-    draw_report(out, title, poses_verdict(found), [poses_section(found)])

@@ -58,6 +58,7 @@ class Linearize:
             grid_sentences,
             grid_to_json,
             handle_rows,
+            model_sections,
             model_sentences,
             model_to_json,
         )
@@ -72,9 +73,13 @@ class Linearize:
             grid, errors, runs = self._grid(models[0], rate)
             record["grid"] = grid_to_json(grid, errors, runs)
             lines += grid_sentences(errors, runs)
-        keep_all = partial(keep, models, rate, grid)
-        draw_all = partial(draw, models, labels, rate, lines)
-        conclude(self, record, "\n".join(lines), keep_all, draw_all)
+        verdict = [line for line in lines if "\n" not in line]
+        conclude(
+            self, record, "\n".join(lines), partial(keep, models, rate, grid),
+            lambda out: draw_report(
+                out, "The robot linearised", verdict, model_sections(models, labels, rate)
+            ),
+        )  # fmt: skip
         return 0
 
     def _refuse_unclear(self) -> None:
@@ -140,20 +145,6 @@ def keep(
     if grid is not None:
         for end in FORMATS:
             grid.save(out / f"grid{end}")
-
-
-def draw(
-    models: Sequence[inca.LinearModel],
-    labels: Sequence[str],
-    rate: float,
-    said: Sequence[str],
-    out: Path,
-) -> None:
-    """Write figures and the one-file report into a folder."""
-    from inca_mj.report.linear import model_sections
-
-    verdict = [line for line in said if "\n" not in line]
-    draw_report(out, "The robot linearised", verdict, model_sections(models, labels, rate))
 
 
 def grid_axes(words: Sequence[str]) -> dict[str, np.ndarray]:

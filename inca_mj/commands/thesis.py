@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -15,6 +15,8 @@ from inca_mj.commands.common import do_not_draw
 if TYPE_CHECKING:
     from inca_mj.thesis.results import ThesisResults
     from inca_mj.thesis.trials import TrialResult
+
+TITLE = "Modelling and identification of the INCA robot: the thesis, number by number"
 
 
 @dataclass(frozen=True)
@@ -38,35 +40,29 @@ class Thesis:
         """Compute, write, say."""
         do_not_draw()
         from identification.estimation.estimation import Options
-        from inca_mj.thesis.report import thesis_json
+        from inca_mj.thesis.report import thesis_json, thesis_sections, thesis_verdict
         from inca_mj.thesis.results import repeat_thesis
 
         options = Options(horizons=(1.0,)) if self.single else None
         found = repeat_thesis(seed=self.seed, options=options, progress=self.output.tell)
-        conclude(self, thesis_json(found), self._text(found), draw=partial(draw, found))
+        verdict = thesis_verdict(found)
+        conclude(
+            self, thesis_json(found), self._text(found, verdict),
+            draw=lambda out: draw_report(out, TITLE, verdict, thesis_sections(found)),
+        )  # fmt: skip
         return 0
 
-    def _text(self, found: ThesisResults) -> str:
-        from inca_mj.thesis.report import thesis_verdict
-
+    def _text(self, found: ThesisResults, verdict: Sequence[str]) -> str:
         rows = [
             (f"trial {r.trial.number}", f"3.{r.trial.number + 2}", f"3.{r.trial.number + 3}",
              f"{r.trial.thesis_fit:.2f}", f"{r.output_fit_percent.mean():.4f}")
             for r in found.trials
         ]  # fmt: skip
         said = table(("", "Table", "Figure", "thesis: fit [%]", "ours [%]"), rows)
-        said += "\n" + "\n".join(thesis_verdict(found)[2:])
+        said += "\n" + "\n".join(verdict[2:])
         if self.output.out is not None:
             said += f"\nThe report is {self.output.out / 'report.html'}"
         return said
-
-
-def draw(found: ThesisResults, out: Path) -> None:
-    """Write the report and its figures as PNG."""
-    from inca_mj.thesis.report import thesis_sections, thesis_verdict
-
-    title = "Modelling and identification of the INCA robot: the thesis, number by number"
-    draw_report(out, title, thesis_verdict(found), thesis_sections(found))
 
 
 @dataclass(frozen=True)

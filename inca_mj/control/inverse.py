@@ -16,7 +16,6 @@ at rest; a delay, a lag and errors of the encoders act outside the law and are n
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import mujoco
 import numpy as np
@@ -81,19 +80,10 @@ class Inverse:
         self._d_0 = begin.no_load_length.copy()
         self._act = activations(begin)
         self._length = self._d_0 * (1 + begin.strain)
-
-    @cached_property
-    def _tension_sensors(self) -> slice:
-        first = int(self.robot.model.sensor("tension_1").adr[0])
-        return slice(first, first + DRIVES)
-
-    @cached_property
-    def _K_t(self) -> np.ndarray:
-        return np.array(self.robot.model.actuator_gear[:DRIVES, 0])
-
-    @cached_property
-    def _λ(self) -> np.ndarray:
-        return at_drives("lambda", self.robot.parameters.values())
+        first = int(robot.model.sensor("tension_1").adr[0])
+        self._tension_sensors = slice(first, first + DRIVES)
+        self._K_t = np.array(robot.model.actuator_gear[:DRIVES, 0])
+        self._λ = at_drives("lambda", robot.parameters.values())
 
     def needed(
         self, motion: Motion, more: np.ndarray, angle: np.ndarray, time: float = 0.0

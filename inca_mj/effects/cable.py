@@ -34,9 +34,8 @@ from math import atan2, cos, sin, sqrt, tanh
 
 from numba import njit
 
-from identification.effects.effect import Effect
 from identification.effects.sizes import Shape, Size
-from inca_mj.effects.hooks import CABLES, DRIVES_EACH, ONE_DRIVE
+from inca_mj.effects.hooks import CABLES, ONE_DRIVE, by_law
 from inca_mj.robot.parameters import GRAVITY
 
 WAY = 0.05  # s₁, at which k₃ means the same for every power [m]
@@ -50,40 +49,14 @@ def drum_eccentricity(s, p):
     return s.R * (p[0] * cos(s.phi) + p[1] * sin(s.phi))
 
 
-DRUM_ECCENTRICITY = Effect(
-    "drum_eccentricity", "R (1 + a cos φ + b sin φ)",
-    (Size("a", "", 0.05, 3e-4, about="cosine part over the radius"),
-     Size("b", "", 0.05, 3e-4, about="sine part over the radius")),
-    places=DRIVES_EACH, phrase="roller: eccentric", reference="thesis 2.30",
-    hooks={"radius": drum_eccentricity},
-)  # fmt: skip
-
-
 @njit
 def drum_layering(s, p):
     return p[0] * s.phi
 
 
-DRUM_LAYERING = Effect(
-    "drum_layering", "R + h φ",
-    (Size("h", "m/rad", 1e-4, 4e-7, sign=1, about="growth of the radius per angle"),),
-    places=DRIVES_EACH, phrase="roller: cable piles up", reference=_POTT,
-    hooks={"radius": drum_layering},
-)  # fmt: skip
-
-
 @njit
 def backlash(s, p):
     return -s.lambda_ * s.R * p[0] / s.d
-
-
-BACKLASH = Effect(
-    "backlash",
-    "dead zone of ±h between rotor and drum, the drum at the edge to which its cable pulls",
-    (Size("h", "rad", 0.1, 2e-3, sign=1, about="half the gap"),),
-    places=DRIVES_EACH, phrase="roller: backlash", reference="Nordin, Gutman 2002",
-    hooks={"tension": backlash},
-)  # fmt: skip
 
 
 @njit
@@ -94,26 +67,9 @@ def spring_hardening(s, p):
     return s.R_s * max(-s.F_s, -s.k_s * k_3 * WAY * way * abs(way) * (abs(way) / WAY) ** (n - 1))
 
 
-SPRING_HARDENING = Effect(
-    "spring_hardening", "F_s with k_s (1 + k₃ s²), or with |s|; s = R_s φ",
-    (Size("k_3", "1/m²", 500.0, 2.0, about="growth of the stiffness"),),
-    (Shape("n", "", (1.0, 2.0), 0.5, 4.0, free=False, about="power of the way"),),
-    places=DRIVES_EACH, phrase="drum spring: stiffness not constant", reference="thesis 2.41",
-    hooks={"torque": spring_hardening},
-)  # fmt: skip
-
-
 @njit
 def spring_hysteresis(s, p):
     return p[0] * s.R_s * s.F_s * tanh(s.beta * s.omega)
-
-
-SPRING_HYSTERESIS = Effect(
-    "spring_hysteresis", "F_s (1 + η tanh(β ω))",
-    (Size("eta", "", 0.2, 2e-4, about="relative excess when winding in"),),
-    places=DRIVES_EACH, phrase="drum spring: hysteresis", reference="Wahl 1963",
-    hooks={"torque": spring_hysteresis},
-)  # fmt: skip
 
 
 @njit
@@ -122,15 +78,6 @@ def cable_hardening(s, p):
     kappa, n = p
     strain = max(0.0, s.strain)
     return s.lambda_ * kappa * strain**2 * (strain / STRAIN) ** (n - 1)
-
-
-CABLE_HARDENING = Effect(
-    "cable_hardening", "λ ε (1 + κ ε), or with ε²",
-    (Size("kappa", "", 2000.0, 200.0, sign=1, about="growth of the stiffness per strain"),),
-    (Shape("n", "", (1.0, 2.0), 0.5, 4.0, free=False, about="power of the strain", usual=1.0),),
-    places=CABLES, phrase="cable: stiffer when pulled", reference=_MIERMEISTER,
-    hooks={"tension": cable_hardening},
-)  # fmt: skip
 
 
 @njit
@@ -146,15 +93,6 @@ def creep_rate(s, p):
 @njit
 def creep_start(s, p):
     return s.strain
-
-
-CABLE_CREEP = Effect(
-    "cable_creep", "a Maxwell branch beside λ: stiffness c λ, time constant τ",
-    (Size("c", "", 0.5, 0.1, sign=1, about="stiffness of the branch over λ"),),
-    (Shape("tau", "s", (0.1, 0.3, 1.0, 3.0, 10.0), 0.02, 100.0, about="its time constant"),),
-    places=CABLES, phrase="cable: creeps", reference=_MIERMEISTER,
-    hooks={"tension": cable_creep, "rate": creep_rate, "start": creep_start},
-)  # fmt: skip
 
 
 @njit
@@ -177,29 +115,10 @@ def pulley_radius(s, p):
     )
 
 
-PULLEY_RADIUS = Effect(
-    "pulley_radius", "swivelling pulley of radius r_p at A_i",
-    (Size("r_p", "m", 0.03, 1e-3, sign=1, about="radius of the pulley"),),
-    (Shape("over", "", (0.0, 1.0), 0.0, 1.0, free=False, about="1: over it", usual=0.0,
-           words=("the cable runs under the pulley", "the cable runs over the pulley")),),
-    places=CABLES, phrase="cable: pulley at the exit point",
-    reference="Pott 2012, Influence of pulley kinematics on cable-driven parallel robots",
-    hooks={"path": pulley_radius},
-)  # fmt: skip
-
-
 @njit
 def cable_weight(s, p):
     d = sqrt(s.rx**2 + s.ry**2 + s.rz**2)
     return 0.0, 0.0, -0.5 * GRAVITY * p[0] * d
-
-
-CABLE_WEIGHT = Effect(
-    "cable_weight", "ρ d/2 of each cable hangs on its connector",
-    (Size("rho", "kg/m", 0.005, 1e-3, sign=1, about="mass of the cable per length"),),
-    places=CABLES, phrase="cable: has weight", reference="Irvine 1981, Cable Structures",
-    hooks={"force": cable_weight},
-)  # fmt: skip
 
 
 @njit
@@ -210,14 +129,47 @@ def anchor_offset(s, p):
     return new - old, x / new - s.rx / old, y / new - s.ry / old, z / new - s.rz / old
 
 
-ANCHOR_OFFSET = Effect(
-    "anchor_offset", "A_k moved by (x, y, z)",
-    tuple(Size(axis, "m", 0.03, 1e-3, about="offset of the exit point") for axis in "xyz"),
-    places=ONE_DRIVE, phrase="geometry: an exit point is elsewhere", reference=_POTT,
-    hooks={"path": anchor_offset},
-)  # fmt: skip
-
 OF_CABLES = (
-    DRUM_ECCENTRICITY, DRUM_LAYERING, BACKLASH, SPRING_HARDENING, SPRING_HYSTERESIS,
-    CABLE_HARDENING, CABLE_CREEP, PULLEY_RADIUS, CABLE_WEIGHT, ANCHOR_OFFSET,
+    by_law(drum_eccentricity, "radius", "R (1 + a cos φ + b sin φ)",
+           (Size("a", "", 0.05, 3e-4, about="cosine part over the radius"),
+            Size("b", "", 0.05, 3e-4, about="sine part over the radius")),
+           phrase="roller: eccentric", reference="thesis 2.30"),
+    by_law(drum_layering, "radius", "R + h φ",
+           (Size("h", "m/rad", 1e-4, 4e-7, sign=1, about="growth of the radius per angle"),),
+           phrase="roller: cable piles up", reference=_POTT),
+    by_law(backlash, "tension",
+           "dead zone of ±h between rotor and drum, the drum at the edge to which its cable pulls",
+           (Size("h", "rad", 0.1, 2e-3, sign=1, about="half the gap"),),
+           phrase="roller: backlash", reference="Nordin, Gutman 2002"),
+    by_law(spring_hardening, "torque", "F_s with k_s (1 + k₃ s²), or with |s|; s = R_s φ",
+           (Size("k_3", "1/m²", 500.0, 2.0, about="growth of the stiffness"),),
+           (Shape("n", "", (1.0, 2.0), 0.5, 4.0, free=False, about="power of the way"),),
+           phrase="drum spring: stiffness not constant", reference="thesis 2.41"),
+    by_law(spring_hysteresis, "torque", "F_s (1 + η tanh(β ω))",
+           (Size("eta", "", 0.2, 2e-4, about="relative excess when winding in"),),
+           phrase="drum spring: hysteresis", reference="Wahl 1963"),
+    by_law(cable_hardening, "tension", "λ ε (1 + κ ε), or with ε²",
+           (Size("kappa", "", 2000.0, 200.0, sign=1, about="growth of the stiffness per strain"),),
+           (Shape("n", "", (1.0, 2.0), 0.5, 4.0, free=False, about="power of the strain",
+                  usual=1.0),),
+           places=CABLES, phrase="cable: stiffer when pulled", reference=_MIERMEISTER),
+    by_law(cable_creep, "tension", "a Maxwell branch beside λ: stiffness c λ, time constant τ",
+           (Size("c", "", 0.5, 0.1, sign=1, about="stiffness of the branch over λ"),),
+           (Shape("tau", "s", (0.1, 0.3, 1.0, 3.0, 10.0), 0.02, 100.0,
+                  about="its time constant"),),
+           places=CABLES, phrase="cable: creeps", reference=_MIERMEISTER,
+           rate=creep_rate, start=creep_start),
+    by_law(pulley_radius, "path", "swivelling pulley of radius r_p at A_i",
+           (Size("r_p", "m", 0.03, 1e-3, sign=1, about="radius of the pulley"),),
+           (Shape("over", "", (0.0, 1.0), 0.0, 1.0, free=False, about="1: over it", usual=0.0,
+                  words=("the cable runs under the pulley", "the cable runs over the pulley")),),
+           places=CABLES, phrase="cable: pulley at the exit point",
+           reference="Pott 2012, Influence of pulley kinematics on cable-driven parallel robots"),
+    by_law(cable_weight, "force", "ρ d/2 of each cable hangs on its connector",
+           (Size("rho", "kg/m", 0.005, 1e-3, sign=1, about="mass of the cable per length"),),
+           places=CABLES, phrase="cable: has weight",
+           reference="Irvine 1981, Cable Structures"),
+    by_law(anchor_offset, "path", "A_k moved by (x, y, z)",
+           tuple(Size(axis, "m", 0.03, 1e-3, about="offset of the exit point") for axis in "xyz"),
+           places=ONE_DRIVE, phrase="geometry: an exit point is elsewhere", reference=_POTT),
 )  # fmt: skip

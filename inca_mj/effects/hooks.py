@@ -18,11 +18,13 @@ holds the key of the set, so that a model is never advanced by the law of anothe
 from __future__ import annotations
 
 from collections import namedtuple
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
 from identification.effects.effect import Effect
+from identification.effects.sizes import Shape, Size
 from identification.effects.values import key_of, refuse_misplaced, terms_of
 from identification.native.element import Element, Hook, Term
 from identification.native.input_filter import INPUT
@@ -92,6 +94,18 @@ DRIVES_EACH = {"all drives": "", **_EACH}  # on all alike, or on one
 ONE_DRIVE = _EACH  # on one only: common to all, it would be a base parameter
 CABLES = {"all cables": ""}
 ON_PLATFORM = {"platform": ""}
+
+
+def by_law(
+    function: Any, hook: str, text: str, sizes: tuple[Size, ...], shapes: tuple[Shape, ...] = (),
+    places: Mapping[str, str] = DRIVES_EACH, *, phrase: str, reference: str, **hooks: Any,
+) -> Effect:  # fmt: skip
+    """Returns the effect that a compiled function is named after; `hooks` are further ones."""
+    return Effect(
+        function.__name__, text, sizes, shapes, places=places, phrase=phrase, reference=reference,
+        hooks={hook: function, **hooks},
+    )  # fmt: skip
+
 
 KEY = law.ACTUATOR_COLUMNS  # column of `actuator_user` with the key of the set
 FIRST = KEY + 1

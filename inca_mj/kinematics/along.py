@@ -204,40 +204,28 @@ def components(
     The arguments are those of `balance`. Raises InputError where no pose agrees with a sample.
     """
     floor = (robot.R * encoder).mean()
-    found = _estimated(robot, measured, encoder, replace(σ, length=max(σ.length, floor)), no_load,
-                       begin)  # fmt: skip
-    if found.length < TOLD * floor:
-        found = _estimated(robot, measured, encoder, replace(found, length=0.0), no_load, begin)
-    return found
-
-
-def _estimated(
-    robot: Robot,
-    measured: Measured,
-    encoder: Array,
-    σ: Components,
-    no_load: NoLoad,
-    begin: tuple[Array, Array, Array],
-) -> Components:
-    """Returns the std that the search finds; a std of the lengths that is zero stays zero."""
     least = max(LEAST, float(np.mean(robot.J / robot.R * encoder)) * measured.rate_noise)
-    for _ in range(ROUNDS):
-        weights = weights_of(σ, robot, encoder)
-        now = balance(robot, measured, weights, no_load, begin)
-        begin = now.position, now.R, now.tension
-        square, remaining = now.residual**2, now.redundancy
-        d, T, F = (
-            float(np.sqrt(square[:, group].sum() / remaining[:, group].sum()))
-            for group in (LENGTHS, DRUMS, PLATFORM)
-        )
-        rms = float(np.sqrt(np.mean(weights.length**2)))
-        new = Components(
-            length=d * rms if σ.length else 0.0,
-            tension=max(least, T * σ.tension),
-            force=max(LEAST, F * σ.force),
-        )
-        change = np.abs(np.subtract(astuple(new), astuple(σ))) > STILL * np.array(astuple(σ))
-        σ = new
-        if not change.any():
+    for length in (max(σ.length, floor), 0.0):  # a std of the lengths that is zero stays zero
+        σ, at = replace(σ, length=length), begin
+        for _ in range(ROUNDS):
+            weights = weights_of(σ, robot, encoder)
+            now = balance(robot, measured, weights, no_load, at)
+            at = now.position, now.R, now.tension
+            square, remaining = now.residual**2, now.redundancy
+            d, T, F = (
+                float(np.sqrt(square[:, group].sum() / remaining[:, group].sum()))
+                for group in (LENGTHS, DRUMS, PLATFORM)
+            )
+            rms = float(np.sqrt(np.mean(weights.length**2)))
+            new = Components(
+                length=d * rms if σ.length else 0.0,
+                tension=max(least, T * σ.tension),
+                force=max(LEAST, F * σ.force),
+            )
+            change = np.abs(np.subtract(astuple(new), astuple(σ))) > STILL * np.array(astuple(σ))
+            σ = new
+            if not change.any():
+                break
+        if σ.length >= TOLD * floor:
             break
     return σ

@@ -14,16 +14,14 @@ from itertools import pairwise
 import mujoco
 import numpy as np
 from PIL import Image, ImageDraw
+from scipy.ndimage import morphological_gradient
 from scipy.spatial import ConvexHull, QhullError
 
-from inca_mj.rendering.overlay import Eye
+from inca_mj.rendering.overlay import FINER, Box, Eye, box_of
 
 _CIRCLE = np.linspace(0, 2 * np.pi, 24, endpoint=False)
 _SPHERE, _CAPSULE = int(mujoco.mjtGeom.mjGEOM_SPHERE), int(mujoco.mjtGeom.mjGEOM_CAPSULE)
-_FINER = 3  # times as many pixels are drawn, so that edges are smooth
 _DASH, _GAP = 7.0, 6.0  # of a broken line [px of 480 rows]
-
-Box = tuple[int, int, int, int]  # left, top, right, bottom [px]
 
 
 @dataclass(frozen=True)
@@ -74,15 +72,14 @@ def _edges(
     shapes: Sequence[np.ndarray], size: tuple[int, int], width: float
 ) -> Iterator[tuple[Box, Image.Image]]:
     """Yields the line round all shapes in parts: the box of each in the picture [px], its image."""
-    room, reach = round(width) + 2, max(1, round(_FINER * width / 2))
+    room, reach = round(width) + 2, max(1, round(FINER * width / 2))
     for (left, top, right, bottom), inside in _groups(shapes, size, room):
-        fine = Image.new("L", (_FINER * (right - left), _FINER * (bottom - top)))
+        fine = Image.new("L", (FINER * (right - left), FINER * (bottom - top)))
         pen = ImageDraw.Draw(fine)
         for shape in inside:
-            pen.polygon([*map(tuple, (_FINER * (shape - (left, top))).tolist())], fill=255)
-        pixels = np.asarray(fine)
-        edge = _extreme(np.maximum, pixels, reach) - _extreme(np.minimum, pixels, reach)
-        yield (left, top, right, bottom), Image.fromarray(edge).reduce(_FINER)
+            pen.polygon([*map(tuple, (FINER * (shape - (left, top))).tolist())], fill=255)
+        edge = morphological_gradient(np.asarray(fine), 2 * reach + 1, mode="nearest")
+        yield (left, top, right, bottom), Image.fromarray(edge).reduce(FINER)
 
 
 def _groups(
@@ -94,15 +91,14 @@ def _groups(
     """
     groups: list[tuple[Box, list[np.ndarray]]] = []
     for shape in shapes:
-        low = np.clip(np.floor(shape.min(axis=0)) - room, 0, size).astype(int)
-        high = np.clip(np.ceil(shape.max(axis=0)) + room, 0, size).astype(int)
-        if not (low < high).all():
+        box, inside = box_of(shape, room, size), [shape]
+        if box is None:
             continue
-        box, inside = (*low.tolist(), *high.tolist()), [shape]
         while meeting := [group for group in groups if _meet(group[0], box)]:
             groups = [group for group in groups if not _meet(group[0], box)]
             boxes = [box, *(other for other, _ in meeting)]
-            box = (*map(min, *(b[:2] for b in boxes)), *map(max, *(b[2:] for b in boxes)))
+            left, top, right, bottom = zip(*boxes, strict=True)
+            box = (min(left), min(top), max(right), max(bottom))
             inside += [one for _, shapes_of_it in meeting for one in shapes_of_it]
         groups.append((box, inside))
     return groups
@@ -112,18 +108,6 @@ def _meet(one: Box, other: Box) -> bool:
     return (
         one[0] < other[2] and other[0] < one[2] and one[1] < other[3] and other[1] < one[3]
     )  # fmt: skip
-
-
-def _extreme(of: np.ufunc, pixels: np.ndarray, reach: int) -> np.ndarray:
-    """Returns the largest or the least pixel of the square round each, `reach` to every side."""
-    for axis in (0, 1):
-        line = np.moveaxis(pixels, axis, 0)
-        out = line.copy()
-        for k in range(1, reach + 1):
-            of(out[k:], line[:-k], out=out[k:])
-            of(out[:-k], line[k:], out=out[:-k])
-        pixels = np.moveaxis(out, 0, axis)
-    return pixels
 
 
 def _round(model: mujoco.MjModel, data: mujoco.MjData, i: int, eye: Eye) -> np.ndarray:

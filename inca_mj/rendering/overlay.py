@@ -26,7 +26,9 @@ _FINE = 0.02  # [s] between corners of a line
 _MOST = 2000  # corners of a line, of a long run too
 _NEAR = 0.02  # [m] before the camera, from where on things are drawn
 _FAR = 1e5  # [px] outside: a corner there is as little seen as one behind the camera
-_FINER = 3  # times as many pixels are drawn, so that edges are smooth
+FINER = 3  # times as many pixels are drawn, so that edges are smooth
+
+Box = tuple[int, int, int, int]  # left, top, right, bottom [px]
 
 
 @dataclass(frozen=True)
@@ -65,16 +67,18 @@ def overlay(picture: np.ndarray, lines: Sequence[Line], eye: Eye) -> np.ndarray:
     image = Image.fromarray(picture)
     for line in lines:
         parts = _parts(eye.pixels(line.corners, image.size))
-        box = _box(parts, line.width, image.size)
+        if not parts:
+            continue
+        box = box_of(np.vstack(parts), ceil(line.width) + 1, image.size)
         if box is None:
             continue
         left, top, right, bottom = box
-        fine = Image.new("L", ((right - left) * _FINER, (bottom - top) * _FINER))
-        pen, width = ImageDraw.Draw(fine), max(1, round(line.width * _FINER))
+        fine = Image.new("L", ((right - left) * FINER, (bottom - top) * FINER))
+        pen, width = ImageDraw.Draw(fine), max(1, round(line.width * FINER))
         for part in parts:
-            at = _FINER * (part - (left, top))
+            at = FINER * (part - (left, top))
             pen.line([(float(x), float(y)) for x, y in at], fill=255, width=width, joint="curve")
-        image.paste(line.colour, box, fine.reduce(_FINER))
+        image.paste(line.colour, box, fine.reduce(FINER))
     return np.asarray(image)
 
 
@@ -86,15 +90,10 @@ def _parts(corners: np.ndarray) -> list[np.ndarray]:
     return [piece for piece in pieces if len(piece) > 1]
 
 
-def _box(
-    parts: Sequence[np.ndarray], width: float, size: tuple[int, int]
-) -> tuple[int, int, int, int] | None:
-    """Returns the box that holds the pieces [px]; None where none is in the picture."""
-    if not parts:
-        return None
-    corners, edge = np.vstack(parts), ceil(width) + 1
-    low = np.clip(np.floor(corners.min(axis=0)) - edge, 0, size).astype(int)
-    high = np.clip(np.ceil(corners.max(axis=0)) + edge, 0, size).astype(int)
+def box_of(corners: np.ndarray, room: int, size: tuple[int, int]) -> Box | None:
+    """Returns the box of corners (K, 2) [px], wider by some room; None where it is not seen."""
+    low = np.clip(np.floor(corners.min(axis=0)) - room, 0, size).astype(int)
+    high = np.clip(np.ceil(corners.max(axis=0)) + room, 0, size).astype(int)
     return (*low.tolist(), *high.tolist()) if (low < high).all() else None
 
 

@@ -19,11 +19,10 @@ from inca_mj.rendering.ghost import (
     ghost_positions,
 )
 from inca_mj.rendering.legend import TensionScale, tension_scale
-from inca_mj.rendering.overlay import Trace, between, trace_of
-from inca_mj.rendering.picture import BACKGROUND, Box, Layout, Lettering, Panel, layout, paste
+from inca_mj.rendering.overlay import between, trace_of
+from inca_mj.rendering.picture import BACKGROUND, Box, Lettering, Panel, layout, paste
 from inca_mj.rendering.scene import Scene
 from inca_mj.rendering.view import View, view
-from inca_mj.twin.run import Run
 
 # Radius that cables are drawn with [m]: their own millimetre would be less than a pixel.
 _CABLE_FAR, _CABLE_NEAR = 0.008, 0.0018
@@ -86,95 +85,63 @@ def stage(scenes: Sequence[Scene], look: Look) -> Iterator[Callable[[float], Beg
         ]
 
         def begin(time: float) -> Begun:
-            begun = [one.begin(time) for one in stages]
+            begun = [one(time) for one in stages]
             return lambda: np.hstack([end() for end in begun])
 
         yield begin
-
-
-@dataclass(frozen=True, kw_only=True)
-class _Stage:
-    """Everything that frames of one run share; `near` is the measured robot in the close view."""
-
-    run: Run
-    ghost: np.ndarray | None
-    near: np.ndarray | None
-    errors: np.ndarray | None
-    trace: Trace | None
-    scale: TensionScale
-    boxes: Layout
-    scene: View
-    handle: View | None
-    panel: Panel | None
-    lettering: Lettering
-    canvas: np.ndarray
-
-    def begin(self, time: float) -> Begun:
-        """Begin the picture at a time [s]; the result waits for it and puts it together."""
-        run = self.run
-        qpos = between(run.time, run.qpos, time)
-        ghost = None if self.ghost is None else between(run.time, self.ghost, time)
-        colours = self.scale(between(run.time, run.tension, time))
-        thickness = max(1.0, len(self.canvas) / _THIN)
-        lines = () if self.trace is None else self.trace.lines(time, thickness)
-        drawn = [(self.boxes.scene, self.scene.begin(qpos, colours, ghost, lines))]
-        if self.handle is not None and self.boxes.handle is not None:
-            near = None if self.near is None else between(run.time, self.near, time)
-            drawn.append((self.boxes.handle, self.handle.begin(qpos, colours, near, lines)))
-        return lambda: self._frame(time, drawn)
-
-    def _frame(self, time: float, drawn: Sequence[tuple[Box, Future[np.ndarray]]]) -> np.ndarray:
-        """Returns the picture of which the views are being drawn."""
-        frame = self.canvas.copy()
-        for box, picture in drawn:
-            paste(frame, box, picture.result())
-        if self.panel is not None and self.boxes.plots is not None:
-            paste(frame, self.boxes.plots, self.panel.at(time))
-        off = None if self.errors is None else between(self.run.time, self.errors, time)
-        distance = None if self.trace is None else self.trace.distance(time)
-        self.lettering.write(frame, time, distance, off)
-        return frame
 
 
 @contextmanager
 def _stage(
     shown: Scene, off: Difference | None, times: float, size: tuple[int, int], look: Look,
     plots: bool, scale: TensionScale, title: str,
-) -> Iterator[_Stage]:  # fmt: skip
-    run, measured = shown.run, shown.angles
-    errors = None if off is None else np.stack(ghost_errors(off), axis=1)
-    trace = trace_of(run, look.magnify)
+) -> Iterator[Callable[[float], Begun]]:  # fmt: skip
+    """Yields a function that begins the picture of one run at a time [s]; see `stage`."""
+    run, trace = shown.run, trace_of(shown.run, look.magnify)
     boxes = layout(size, look.camera, plots, bool(title))
     panel = None
     if boxes.plots is not None:
-        panel = Panel(run.time, run.motor_angle, measured, boxes.plots[2:])
+        panel = Panel(run.time, run.motor_angle, shown.angles, boxes.plots[2:])
     lettering = Lettering(
         size, boxes, scale, ghost=off is not None, assumed=run.twin.geometry.assumed,
         magnify=None if trace is None else trace.magnify, times=times, title=title,
     )  # fmt: skip
-    with ExitStack() as open_views:
-        model = run.twin.model
-        near = _CABLE_NEAR if look.camera == "handle" else _CABLE_FAR
-        scene = open_views.enter_context(view(model, look.camera, *boxes.scene[2:], cable=near))
-        handle = None
-        if boxes.handle is not None:
-            handle = open_views.enter_context(
-                view(model, "handle", *boxes.handle[2:], cable=_CABLE_NEAR)
-            )
-        yield _Stage(
-            run=run,
-            ghost=None if off is None else off.measured,
-            near=None if off is None else off.enlarged(times),
-            errors=errors,
-            trace=trace,
-            scale=scale,
-            boxes=boxes,
-            scene=scene,
-            handle=handle,
-            panel=panel,
-            lettering=lettering,
-            canvas=np.full((size[1], size[0], 3), BACKGROUND, np.uint8),
-        )
+    errors = None if off is None else np.stack(ghost_errors(off), axis=1)
+    canvas = np.full((size[1], size[0], 3), BACKGROUND, np.uint8)
+    views: list[tuple[Box, View, np.ndarray | None]] = []  # with the measured robot as it is seen
+
+    def at(values: np.ndarray | None, time: float) -> np.ndarray | None:
+        return None if values is None else between(run.time, values, time)
+
+    def begin(time: float) -> Begun:
+        qpos, tension = between(run.time, run.qpos, time), between(run.time, run.tension, time)
+        lines = () if trace is None else trace.lines(time, max(1.0, len(canvas) / _THIN))
+        drawn = [
+            (box, seen.begin(qpos, scale(tension), at(ghost, time), lines))
+            for box, seen, ghost in views
+        ]
+        return lambda: frame(time, drawn)
+
+    def frame(time: float, drawn: Sequence[tuple[Box, Future[np.ndarray]]]) -> np.ndarray:
+        out = canvas.copy()
+        for box, picture in drawn:
+            paste(out, box, picture.result())
+        if panel is not None and boxes.plots is not None:
+            paste(out, boxes.plots, panel.at(time))
+        distance = None if trace is None else trace.distance(time)
+        lettering.write(out, time, distance, at(errors, time))
+        return out
+
+    with ExitStack() as opened:
+        far = _CABLE_NEAR if look.camera == "handle" else _CABLE_FAR
+        for box, camera, cable, ghost in (
+            (boxes.scene, look.camera, far, None if off is None else off.measured),
+            (boxes.handle, "handle", _CABLE_NEAR, None if off is None else off.enlarged(times)),
+        ):
+            if box is not None:
+                seen = opened.enter_context(view(run.twin.model, camera, *box[2:], cable=cable))
+                views.append((box, seen, ghost))
+        yield begin
 
 
 def _difference(shown: Scene) -> Difference | None:

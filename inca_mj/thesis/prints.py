@@ -32,177 +32,119 @@ class PrintedFits:
     matlab_loss: float | None = None  # as MATLAB prints it; None where it is not given
 
 
-_INERTIA = "diag(0.8, 1.5, 1.8) 1e-4"
-_TRIAL = ("parameter", "value", "initial", "estimated", "fitting")
-_STEP = ("parameter", "initial value", "estimated value")
-_FIXED = ("(fix)", "(fix)", "(fix)")
 # How the symbols are called here; a triple is one row of the thesis.
 NAMES = {
     "λ": "lambda", "β": "beta", "[x, y, z]": "x y z", "[φ, θ, ψ]": "roll pitch yaw",
     "I": "I_x I_y I_z",
 }  # fmt: skip
+_SYMBOLS = "R | R_s | k_s | λ | b | J | b_v | b_c | β | K_t | m"
+_TRUE = "0.0175 | 0.006 | 16 | 25000 | 8 | 0.00008 | 0.0002 | 0.005 | 0.8 | 0.08 | 0.1725"
+_DATASHEET = "(fix) | (fix) | (fix)"
+
+
+def _table(number: str, title: str, /, **columns: str) -> PrintedTable:
+    """Returns a table of columns, each a heading (`_` for a space) and its cells between bars."""
+    cells = [column.split(" | ") for column in columns.values()]
+    headings = tuple(name.replace("_", " ") for name in columns)
+    return PrintedTable(number, title, headings, tuple(zip(*cells, strict=True)))
+
+
+def _trial(n: int, initial: str, estimated: str, fitting: str) -> PrintedTable:
+    """Returns the table of a trial."""
+    return _table(
+        f"3.{n + 2}", f"Trial.{n}: List of estimated parameters",
+        parameter=f"{_SYMBOLS} | [x, y, z]", value=f"{_TRUE} | [0, 0, 1.43]",
+        initial=initial, estimated=estimated, fitting=fitting,
+    )  # fmt: skip
+
+
+def _partial_trial(n: int, initial: str, estimated: str, fitting: str) -> PrintedTable:
+    """Returns the table of a trial that holds what a data sheet gives; columns from λ to β."""
+    columns = (f"{_DATASHEET} | {c} | {_DATASHEET}" for c in (initial, estimated, fitting))
+    return _trial(n, *columns)
+
+
+def _step(n: int, initial: str, estimated: str) -> PrintedTable:
+    """Returns the table of a step."""
+    return _table(
+        f"3.{n + 6}", f"Step.{n}: List of estimated parameters",
+        parameter=f"{_SYMBOLS} | [x, y, z]", initial_value=initial, estimated_value=estimated,
+    )  # fmt: skip
+
+
+def _list(number: str, title: str, spring: str, more: str = "", /, **columns: str) -> PrintedTable:
+    """Returns a list of parameters; `more` are parameters below those of the robot."""
+    return _table(
+        number, title,
+        parameter="Radius of the roller 1 (mm) | Radius of the roller 2 (mm) |"
+        f" Stiffness of {spring} (N/m) | Elastic modulus of cable (N.m/m) |"
+        " Damping coefficient of cable (N/m/s) | Moment of inertia (kgm^2) |"
+        " Viscous friction coefficient | Coulomb friction coefficient |"
+        " Smooth coefficient of friction | Motor torque constant (Nm/A) |"
+        f" Mass of moving platform (kg) | Moment of inertia of MP (kgm^2){more}",
+        **columns,
+    )  # fmt: skip
+
 
 _TABLES = (
-    PrintedTable(
-        "2.1",
-        "List of the parameters used in simulation",
-        ("parameter", "symbol", "value", "source"),
-        (
-            ("Radius of the roller 1 (mm)", "R", "17.5", "Datasheet"),
-            ("Radius of the roller 2 (mm)", "R_s", "6", "Datasheet"),
-            ("Stiffness of additional spring (N/m)", "k_s", "16", "Measurement"),
-            ("Elastic modulus of cable (N.m/m)", "λ", "32224", "Measurement"),
-            ("Damping coefficient of cable (N/m/s)", "b", "10", "Arbitrary"),
-            ("Moment of inertia (kgm^2)", "J", "3.0563e-5", "Computed"),
-            ("Viscous friction coefficient", "b_v", "0.3e-3", "Arbitrary"),
-            ("Coulomb friction coefficient", "b_c", "0.005", "Arbitrary"),
-            ("Smooth coefficient of friction", "β", "0.8", "Arbitrary"),
-            ("Motor torque constant (Nm/A)", "K_t", "0.0603", "Datasheet"),
-            ("Mass of moving platform (kg)", "m", "0.1725", "Datasheet"),
-            ("Moment of inertia of MP (kgm^2)", "I", _INERTIA, "Datasheet"),
-        ),
+    _list(
+        "2.1", "List of the parameters used in simulation", "additional spring",
+        symbol=f"{_SYMBOLS} | I",
+        value="17.5 | 6 | 16 | 32224 | 10 | 3.0563e-5 | 0.3e-3 | 0.005 | 0.8 | 0.0603 | 0.1725"
+        " | diag(0.8, 1.5, 1.8) 1e-4",
+        source="Datasheet | Datasheet | Measurement | Measurement | Arbitrary | Computed"
+        " | Arbitrary | Arbitrary | Arbitrary | Datasheet | Datasheet | Datasheet",
     ),
-    PrintedTable(
-        "3.1",
-        "Description of nonlinear grey-box model of the INCA robot in Matlab",
-        ("what", "number"),
-        (("inputs", "8"), ("states", "36"), ("outputs", "8"), ("free parameters", "5"),
-         ("parameters", "11")),
+    _table(
+        "3.1", "Description of nonlinear grey-box model of the INCA robot in Matlab",
+        what="inputs | states | outputs | free parameters | parameters",
+        number="8 | 36 | 8 | 5 | 11",
     ),
-    PrintedTable(
-        "3.2",
-        "List of parameters used to obtain simulated data",
-        ("parameter", "symbol", "value"),
-        (
-            ("Radius of the roller 1 (mm)", "R", "17.5"),
-            ("Radius of the roller 2 (mm)", "R_s", "6"),
-            ("Stiffness of the additional spring (N/m)", "k_s", "16"),
-            ("Elastic modulus of cable (N.m/m)", "λ", "25000"),
-            ("Damping coefficient of cable (N/m/s)", "b", "8"),
-            ("Moment of inertia (kgm^2)", "J", "8e-5"),
-            ("Viscous friction coefficient", "b_v", "0.0002"),
-            ("Coulomb friction coefficient", "b_c", "0.005"),
-            ("Smooth coefficient of friction", "β", "0.8"),
-            ("Motor torque constant (Nm/A)", "K_t", "0.08"),
-            ("Mass of moving platform (kg)", "m", "0.1725"),
-            ("Moment of inertia of MP (kgm^2)", "I", _INERTIA),
-            ("Initial position of moving platform (m)", "[x, y, z]", "[0, 0, 1.43]"),
-            ("Initial Euler angles of moving platform (rad)", "[φ, θ, ψ]", "[0, 0, 0]"),
-        ),
+    _list(
+        "3.2", "List of parameters used to obtain simulated data", "the additional spring",
+        " | Initial position of moving platform (m)"
+        " | Initial Euler angles of moving platform (rad)",
+        symbol=f"{_SYMBOLS} | I | [x, y, z] | [φ, θ, ψ]",
+        value="17.5 | 6 | 16 | 25000 | 8 | 8e-5 | 0.0002 | 0.005 | 0.8 | 0.08 | 0.1725"
+        " | diag(0.8, 1.5, 1.8) 1e-4 | [0, 0, 1.43] | [0, 0, 0]",
     ),
-    PrintedTable(
-        "3.3",
-        "Trial.1: List of estimated parameters",
-        _TRIAL,
-        (
-            ("R", "0.0175", "0.0175", "0.0199", "86.3%"),
-            ("R_s", "0.006", "0.006", "0.0070", "83.3%"),
-            ("k_s", "16", "16", "17.189", "93.1%"),
-            ("λ", "25000", "31250", "36171.1", "55.3%"),
-            ("b", "8", "16", "2.2650", "28.7%"),
-            ("J", "0.00008", "0.0001", "0.00011", "62.5%"),
-            ("b_v", "0.0002", "0.00017", "0.00027", "65.0%"),
-            ("b_c", "0.005", "0.004", "0.00697", "62.0%"),
-            ("β", "0.8", "1", "0.8075", "99.1%"),
-            ("K_t", "0.08", "0.08", "0.1099", "62.5%"),
-            ("m", "0.1725", "0.1725", "0.1725", "100%"),
-            ("[x, y, z]", "[0, 0, 1.43]", "[0.025, 0.025, 1.5]", "[0.003, 0.0, 1.421]", "99.3%"),
-        ),
+    _trial(
+        1,
+        "0.0175 | 0.006 | 16 | 31250 | 16 | 0.0001 | 0.00017 | 0.004 | 1 | 0.08 | 0.1725"
+        " | [0.025, 0.025, 1.5]",
+        "0.0199 | 0.0070 | 17.189 | 36171.1 | 2.2650 | 0.00011 | 0.00027 | 0.00697 | 0.8075"
+        " | 0.1099 | 0.1725 | [0.003, 0.0, 1.421]",
+        "86.3% | 83.3% | 93.1% | 55.3% | 28.7% | 62.5% | 65.0% | 62.0% | 99.1% | 62.5% | 100%"
+        " | 99.3%",
     ),
-    PrintedTable(
-        "3.4",
-        "Trial.2: List of estimated parameters",
-        _TRIAL,
-        (
-            ("R", "0.0175", *_FIXED),
-            ("R_s", "0.006", *_FIXED),
-            ("k_s", "16", *_FIXED),
-            ("λ", "25000", "31250", "29177.9", "83.3%"),
-            ("b", "8", "16", "13.35", "not fit"),
-            ("J", "0.00008", "0.0001", "7.79e-5", "97.4%"),
-            ("b_v", "0.0002", "0.00017", "0.000197", "98.5%"),
-            ("b_c", "0.005", "0.004", "0.00505", "99.0%"),
-            ("β", "0.8", "1", "0.7396", "92.5%"),
-            ("K_t", "0.08", *_FIXED),
-            ("m", "0.1725", *_FIXED),
-            ("[x, y, z]", "[0, 0, 1.43]", *_FIXED),
-        ),
+    _partial_trial(
+        2, "31250 | 16 | 0.0001 | 0.00017 | 0.004 | 1",
+        "29177.9 | 13.35 | 7.79e-5 | 0.000197 | 0.00505 | 0.7396",
+        "83.3% | not fit | 97.4% | 98.5% | 99.0% | 92.5%",
     ),
-    PrintedTable(
-        "3.5",
-        "Trial.3: List of estimated parameters",
-        _TRIAL,
-        (
-            ("R", "0.0175", *_FIXED),
-            ("R_s", "0.006", *_FIXED),
-            ("k_s", "16", *_FIXED),
-            ("λ", "25000", "26250", "25598.3", "97.6%"),
-            ("b", "8", "7.2", "17.036", "not fit"),
-            ("J", "0.00008", "8.4e-5", "7.78e-5", "97.4%"),
-            ("b_v", "0.0002", "0.00019", "0.000197", "98.5%"),
-            ("b_c", "0.005", "0.00475", "0.00506", "98.8%"),
-            ("β", "0.8", "0.84", "0.7374", "92.1%"),
-            ("K_t", "0.08", *_FIXED),
-            ("m", "0.1725", *_FIXED),
-            ("[x, y, z]", "[0, 0, 1.43]", *_FIXED),
-        ),
+    _partial_trial(
+        3, "26250 | 7.2 | 8.4e-5 | 0.00019 | 0.00475 | 0.84",
+        "25598.3 | 17.036 | 7.78e-5 | 0.000197 | 0.00506 | 0.7374",
+        "97.6% | not fit | 97.4% | 98.5% | 98.8% | 92.1%",
     ),
-    PrintedTable(
-        "3.6",
-        "Trial.4: List of estimated parameters",
-        _TRIAL,
-        (
-            ("R", "0.0175", *_FIXED),
-            ("R_s", "0.006", *_FIXED),
-            ("k_s", "16", *_FIXED),
-            ("λ", "25000", "26250", "25392.6", "98.4%"),
-            ("b", "8", "7.2", "19.0473", "not fit"),
-            ("J", "0.00008", "8.4e-5", "7.78e-5", "97.4%"),
-            ("b_v", "0.0002", "0.00019", "0.000197", "98.5%"),
-            ("b_c", "0.005", "0.00475", "0.00506", "98.8%"),
-            ("β", "0.8", "0.84", "0.741", "92.1%"),
-            ("K_t", "0.08", *_FIXED),
-            ("m", "0.1725", *_FIXED),
-            ("[x, y, z]", "[0, 0, 1.43]", *_FIXED),
-        ),
+    _partial_trial(
+        4, "26250 | 7.2 | 8.4e-5 | 0.00019 | 0.00475 | 0.84",
+        "25392.6 | 19.0473 | 7.78e-5 | 0.000197 | 0.00506 | 0.741",
+        "98.4% | not fit | 97.4% | 98.5% | 98.8% | 92.1%",
     ),
-    PrintedTable(
-        "3.7",
-        "Step.1: List of estimated parameters",
-        _STEP,
-        (
-            ("R", "0.0175", "0.0148"),
-            ("R_s", "0.006", "0.0085"),
-            ("k_s", "16", "18.877"),
-            ("λ", "25000", "36540.3"),
-            ("b", "2", "8.107"),
-            ("J", "0.0001", "8.934e-5"),
-            ("b_v", "0.0002", "7.999e-5"),
-            ("b_c", "0.005", "0.0143"),
-            ("β", "0.8", "0.9996"),
-            ("K_t", "0.0603", "0.1328"),
-            ("m", "0.17246", "0.2499"),
-            ("[x, y, z]", "[0, 0, 1.47]", "[-0.006, -0.005, 1.428]"),
-        ),
+    _step(
+        1,
+        "0.0175 | 0.006 | 16 | 25000 | 2 | 0.0001 | 0.0002 | 0.005 | 0.8 | 0.0603 | 0.17246"
+        " | [0, 0, 1.47]",
+        "0.0148 | 0.0085 | 18.877 | 36540.3 | 8.107 | 8.934e-5 | 7.999e-5 | 0.0143 | 0.9996"
+        " | 0.1328 | 0.2499 | [-0.006, -0.005, 1.428]",
     ),
-    PrintedTable(
-        "3.8",
-        "Step.2: List of estimated parameters",
-        _STEP,
-        (
-            ("R", "0.0175", "0.0115"),
-            ("R_s", "0.006", "fix"),
-            ("k_s", "16", "fix"),
-            ("λ", "36540.3", "26407.7"),
-            ("b", "8.107", "fix"),
-            ("J", "8.935e-5", "8.342e-5"),
-            ("b_v", "7.999e-5", "8.366e-5"),
-            ("b_c", "0.01428", "0.01457"),
-            ("β", "0.9996", "0.9189"),
-            ("K_t", "0.08", "0.073"),
-            ("m", "0.25", "0.2384"),
-            ("[x, y, z]", "[0, 0, 1.43]", "fix"),
-        ),
+    _step(
+        2,
+        "0.0175 | 0.006 | 16 | 36540.3 | 8.107 | 8.935e-5 | 7.999e-5 | 0.01428 | 0.9996 | 0.08"
+        " | 0.25 | [0, 0, 1.43]",
+        "0.0115 | fix | fix | 26407.7 | fix | 8.342e-5 | 8.366e-5 | 0.01457 | 0.9189 | 0.073"
+        " | 0.2384 | fix",
     ),
 )  # fmt: skip
 TABLES = {table.number: table for table in _TABLES}

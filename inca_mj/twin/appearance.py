@@ -38,24 +38,16 @@ def dress_world(spec: mujoco.MjSpec, geometry: Geometry) -> None:
     spec.visual.rgba.haze = [0.925, 0.945, 0.965, 1.0]
     spec.visual.headlight.specular = [0.1, 0.1, 0.1]
     spec.stat.center, spec.stat.extent = [0, 0, 1.5], 3.0
-    spec.add_texture(
-        name="sky",
-        type=mujoco.mjtTexture.mjTEXTURE_SKYBOX,
-        builtin=mujoco.mjtBuiltin.mjBUILTIN_GRADIENT,
-        rgb1=[0.97, 0.98, 0.99],
-        rgb2=[0.88, 0.91, 0.94],
-        width=256,
-        height=1536,
-    )
-    spec.add_texture(
-        name="floor",
-        type=mujoco.mjtTexture.mjTEXTURE_2D,
-        builtin=mujoco.mjtBuiltin.mjBUILTIN_CHECKER,
-        rgb1=[0.93, 0.94, 0.95],
-        rgb2=[0.895, 0.905, 0.915],
-        width=256,
-        height=256,
-    )
+    kinds, patterns = mujoco.mjtTexture, mujoco.mjtBuiltin
+    for name, kind, pattern, first, second, height in (
+        ("sky", kinds.mjTEXTURE_SKYBOX, patterns.mjBUILTIN_GRADIENT, [0.97, 0.98, 0.99],
+         [0.88, 0.91, 0.94], 1536),
+        ("floor", kinds.mjTEXTURE_2D, patterns.mjBUILTIN_CHECKER, [0.93, 0.94, 0.95],
+         [0.895, 0.905, 0.915], 256),
+    ):  # fmt: skip
+        spec.add_texture(
+            name=name, type=kind, builtin=pattern, rgb1=first, rgb2=second, width=256, height=height
+        )
     floor = spec.add_material(name="floor", texrepeat=[1, 1], texuniform=True, reflectance=0.0)
     floor.textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = "floor"
 

@@ -24,7 +24,7 @@ from inca_mj.effects.hooks import KEY, Layout
 from inca_mj.effects.values import centre_of_mass
 from inca_mj.effects.values import numbers as effect_numbers
 from inca_mj.robot import law
-from inca_mj.robot.geometry import DRIVES, Geometry
+from inca_mj.robot.geometry import Geometry
 from inca_mj.robot.spread import AXES
 
 Entries = Iterator[tuple[Slot, float | np.ndarray]]
@@ -40,8 +40,7 @@ def model_numbers(
     """
     changed = [
         *_in_paths(model, parameters, names, every),
-        *_exits(model, geometry, names, every),
-        *_connectors(model, geometry, layout, names, every, n),
+        *_points(model, geometry, layout, names, every, n),
         *effect_numbers(layout, names, every, model),
     ]
     return [(slot, np.broadcast_to(column, n)) for slot, column in changed]
@@ -64,33 +63,24 @@ def _in_paths(
             yield Slot(slot.field, (row,), slot.column), value * (1 + every[f"{name}@{k}"])
 
 
-def _exits(
-    model: mujoco.MjModel, geometry: Geometry, names: Sequence[str], every: Values
-) -> Entries:
-    """Returns the exit points that some parameters displace."""
-    for k in range(DRIVES):
-        for j, axis in enumerate(AXES):
-            name = f"exit_{axis}@{k + 1}"
-            if name in names:
-                site = int(model.site(f"exit_{k + 1}").id)
-                yield Slot("site_pos", (site,), j), geometry.A[k, j] + every[name]
-
-
-def _connectors(
+def _points(
     model: mujoco.MjModel, geometry: Geometry, layout: Layout, names: Sequence[str],
     every: Values, n: int,
 ) -> Entries:  # fmt: skip
-    """Returns the connectors seen from the centre of mass, where parameters move them or it."""
+    """Yields points that parameters displace; connectors are seen from the centre of mass."""
     touched = {name.partition(".")[0] for name in names}
     moves_centre = any("centre" in e.hooks and e.name in touched for e in layout.effects)
     centre = centre_of_mass(layout.effects, every, n)
-    for k in range(DRIVES):
-        for j, axis in enumerate(AXES):
-            name = f"connector_{axis}@{k + 1}"
-            if moves_centre or name in names:
-                site = int(model.site(f"connector_{k + 1}").id)
-                moved = every.get(name, 0.0) - centre[:, j]
-                yield Slot("site_pos", (site,), j), geometry.B[k, j] + moved
+    for point, places, seen_from, all_move in (
+        ("exit", geometry.A, np.zeros((n, 3)), False),
+        ("connector", geometry.B, centre, moves_centre),
+    ):
+        for k, j in np.ndindex(places.shape):
+            name = f"{point}_{AXES[j]}@{k + 1}"
+            if all_move or name in names:
+                site = int(model.site(f"{point}_{k + 1}").id)
+                moved = every.get(name, 0.0) - seen_from[:, j]
+                yield Slot("site_pos", (site,), j), places[k, j] + moved
 
 
 def owners(model: mujoco.MjModel, key: float) -> dict[tuple[str, int], int]:

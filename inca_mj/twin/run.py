@@ -30,8 +30,7 @@ FEWEST = 2  # samples
 UNEVEN = 1e-6  # of a step, by which steps may differ
 LONGEST = 86400.0  # [s]
 OLDER = {"effects": (), "settled": False}  # of a run that was saved before runs had effects
-_ARRAYS = ("time", "currents", "qpos", "qvel", "act", "tension", "length")
-_OPTIONAL = ("asked",)
+_ARRAYS = ("time", *_WIDTHS)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -196,8 +195,7 @@ def load_run(path: str | Path, effects: Sequence[Effect] = EVERY) -> Run:
     try:
         file = read_archive(Path(path), "run of inca simulate")
         header: dict[str, Any] = {**OLDER, **json.loads(str(file["header"]))}
-        arrays = {name: file[name] for name in _ARRAYS}
-        arrays.update({name: file[name] for name in _OPTIONAL if name in file})
+        arrays = {name: file[name] for name in _ARRAYS if name != "asked" or name in file}
         _refuse_damaged(arrays, Path(path))
         return Run(twin=twin_from_record(header, effects, Path(path)), **arrays)
     except InputError:
@@ -211,11 +209,8 @@ def load_run(path: str | Path, effects: Sequence[Effect] = EVERY) -> Run:
 
 def _arrays(run: Run) -> dict[str, Any]:
     """Returns the arrays that a run has, by name."""
-    optional = {name: getattr(run, name) for name in _OPTIONAL}
-    return {
-        **{name: getattr(run, name) for name in _ARRAYS},
-        **{name: array for name, array in optional.items() if array is not None},
-    }
+    every = {name: getattr(run, name) for name in _ARRAYS}
+    return {name: array for name, array in every.items() if array is not None}
 
 
 def _refuse_damaged(arrays: Mapping[str, np.ndarray], path: Path) -> None:

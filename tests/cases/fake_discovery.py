@@ -4,6 +4,7 @@ from dataclasses import replace
 from functools import cache, partial
 
 import numpy as np
+from effect_cases import BY_NAME
 
 from identification import Predictor, fit_percent
 from identification.discovery.effect_results import (
@@ -33,24 +34,21 @@ from identification.kalman.noise_model import Noise
 from identification.kalman.point import Point
 from identification.kalman.refit import Refit
 from identification.model.coordinates import coordinates
-from inca_mj.effects.change import MISMATCHES
-from inca_mj.effects.motor import DELAY, STRIBECK_FRICTION
 from inca_mj.robot.inputs import make_input
 from inca_mj.twin.logs import run_to_log
 from inca_mj.twin.run import simulate
 from inca_mj.twin.twin import Twin, build_twin
 from inca_mj.workflows.discovery_files import TwinDiscoveryFiles
 
-(FRICTION_MISMATCH,) = (e for e in MISMATCHES if e.name == "friction_mismatch")
-EFFECTS = (STRIBECK_FRICTION, FRICTION_MISMATCH, DELAY)
+EFFECTS = tuple(BY_NAME[name] for name in ("stribeck_friction", "friction_mismatch", "delay"))
 SIZES = {"stribeck_friction.f_s": 0.00412345678901234, "stribeck_friction.v_s": 1.9 / 1.01}
 BASE = ("b_v", "x")
 NOISE = 5e-4
 RETUNED = Retuned("m", 40.0, 0.0)
 
-STRIBECK = Candidate(STRIBECK_FRICTION, "all drives", {"v_s": 2.4, "n": 2.0})
-MISMATCH = Candidate(FRICTION_MISMATCH, "drive 3", {})
-LATE = Candidate(DELAY, "all drives", {})
+STRIBECK = Candidate(EFFECTS[0], "all drives", {"v_s": 2.4, "n": 2.0})
+MISMATCH = Candidate(EFFECTS[1], "drive 3", {})
+LATE = Candidate(EFFECTS[2], "all drives", {})
 WORSE = Proof(gain=-1.2, t=-0.7, chance=0.75, blocks=20, share=0.0, fall=-0.002, above=0.0)
 REJECTED = RejectedEffect(LATE, {"tau": (2.5e-4, 1e-4, "s")}, 4.0, WORSE)
 SLOW = Finding(FindingKind.WORST_INTERVAL, WorstInterval(0.2, 0.3, 0.4))

@@ -14,6 +14,7 @@ from discovery_cases import (
     response,
     slider,
 )
+from effect_cases import BY_NAME
 
 from identification.discovery.missing_forces import estimate_missing_forces, locate_error
 from identification.discovery.nominal_model import NominalModel
@@ -21,7 +22,6 @@ from identification.discovery.options import DiscoveryOptions
 from identification.innovations.fit import fit_with_effects
 from identification.kalman.noise_model import Noise, smooth
 from identification.report.finding_words import describe_finding
-from inca_mj.effects.motor import DELAY
 from inca_mj.studies.worlds import HiddenSetting, effect, world
 from inca_mj.twin.twin import build_twin
 from inca_mj.workflows.spread import KNOWN as KNOWN_INCA
@@ -58,7 +58,7 @@ def test_a_force_that_the_model_lacks_is_seen_in_newtons():
 
 def test_both_places_have_forces_in_their_units_and_sentences():
     log, _ = world(4, [effect("cogging")], ratio=20.0, setting=HiddenSetting(duration=1.5))
-    plant = build_twin(timestep=2e-3, effects=(DELAY,))
+    plant = build_twin(timestep=2e-3, effects=(BY_NAME["delay"],))
     nominal_model, options = (
         NominalModel(plant, tuple(KNOWN_INCA), np.array([*KNOWN_INCA.values()])), DiscoveryOptions()
     )  # fmt: skip

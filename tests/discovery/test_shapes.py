@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from discovery_cases import OPTIONS
-from effect_cases import full
+from effect_cases import BY_NAME, full
 from plain_logs import plain_log
 
 from identification import Predictor
@@ -20,7 +20,6 @@ from identification.kalman.point import evaluate_point
 from identification.model.coordinates import coordinates
 from inca_mj.effects.catalogue import CATALOGUE
 from inca_mj.effects.hooks import Drive
-from inca_mj.effects.motor import CURRENT_SATURATION
 from inca_mj.robot.inputs import make_input
 from inca_mj.studies.worlds import HiddenSetting, effect, world
 from inca_mj.twin.logs import ANGLES, CURRENTS
@@ -86,7 +85,7 @@ def test_a_limit_that_two_levels_of_current_reach_alike_is_a_hard_one():
     setting = HiddenSetting(duration=4.5)  # PRBS: 0.5 and 1 A
     log, truth = world(71, [replace(effect("current_saturation"), i_max=0.9)], setting=setting)
     assert np.unique(log.inputs).size == 2
-    answer = discover(log, effects=(CURRENT_SATURATION,), spread=spread_of("none"))
+    answer = discover(log, effects=(BY_NAME["current_saturation"],), spread=spread_of("none"))
     (named,) = answer.named
     assert named.candidate.shape["soft"] == 0.0
     assert named.parameters["i_max"][0] == pytest.approx(truth.effects[0].i_max, rel=0.02)

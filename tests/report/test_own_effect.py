@@ -6,11 +6,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from effect_cases import BY_NAME
 from fake_discovery import found, log, truth
 
 from identification.errors import InputError
 from inca_mj import build_twin, make_input, simulate
-from inca_mj.effects.motor import STRIBECK_FRICTION
 from inca_mj.twin.saved import load_twin, save_twin
 from inca_mj.workflows.discovery_model import named_twin, rerun
 
@@ -42,7 +42,7 @@ def test_it_is_kept_and_asked_for_by_name(own, tmp_path):
 @pytest.mark.long
 def test_it_is_found(own):
     found = own["find"](
-        own["log_with_it"](4.0), effects=(STRIBECK_FRICTION, own["WINDING_FRICTION"])
+        own["log_with_it"](4.0), effects=(BY_NAME["stribeck_friction"], own["WINDING_FRICTION"])
     )
     assert [n.candidate.effect.name for n in found.named] == ["winding_friction"]
     value, std, _ = found.named[0].parameters["c"]
@@ -70,7 +70,7 @@ def saved(tmp_path):
 def test_the_trajectory_comes_back_bit_for_bit(saved):
     robot, again = named_twin(found()), load_twin(saved)
     assert again.parameters.values() == robot.parameters.values()
-    assert again.effects == (STRIBECK_FRICTION,)
+    assert again.effects == (BY_NAME["stribeck_friction"],)
     a, b = rerun(robot, log()), rerun(again, log())
     for name in ("qpos", "qvel", "act", "tension"):
         np.testing.assert_array_equal(getattr(a, name), getattr(b, name))

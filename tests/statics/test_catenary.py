@@ -8,7 +8,7 @@ from scipy.integrate import solve_ivp
 from statics_cases import ROBOT
 
 from inca_mj import build_twin, parameter_set, simulate
-from inca_mj.effects.cable import CABLE_WEIGHT, cable_weight
+from inca_mj.effects.cable import cable_weight
 from inca_mj.effects.catalogue import CATALOGUE
 from inca_mj.effects.hooks import Drive
 from inca_mj.kinematics.cables import inverse
@@ -141,7 +141,7 @@ def test_half_of_the_weight_hangs_on_the_connector(exit_point, T):
 def test_the_twin_with_cable_weight_rests_where_catenaries_balance():
     rho = 1e-3
     values = {"cable_weight.rho": rho}
-    effects = tuple(e for e in CATALOGUE if e.name == CABLE_WEIGHT.name)
+    effects = tuple(e for e in CATALOGUE if e.name == "cable_weight")
     robot = build_twin(effects=effects).with_values(values)
     run = simulate(robot, np.zeros((6000, 8)), 0.01)
     pose = np.r_[run.position[-1], run.angles[-1]]

@@ -8,12 +8,11 @@ from pathlib import Path
 import mujoco
 import numpy as np
 import pytest
+from effect_cases import BY_NAME
 from hypothesis import given, settings
 from twin_cases import arrays, differing, laws, seeds
 
 from identification.model.export import to_xml
-from inca_mj.effects.cable import CABLE_CREEP
-from inca_mj.effects.motor import STRIBECK_FRICTION
 from inca_mj.files import model_path
 from inca_mj.refusals.agreement import assigned
 from inca_mj.robot import law
@@ -107,7 +106,7 @@ VALUES = {"stribeck_friction.f_s": 0.004, "cable_creep.c": 0.2, "R@3": 0.01, "ex
 def run():
     robot = build_twin(
         with_spread(parameter_set("simulation", {"m": 0.2})),
-        effects=(STRIBECK_FRICTION, CABLE_CREEP),
+        effects=(BY_NAME["stribeck_friction"], BY_NAME["cable_creep"]),
         timestep=5e-4,
         settled=True,
     )

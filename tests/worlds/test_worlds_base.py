@@ -22,11 +22,6 @@ from inca_mj.studies.worlds import (
     effect,
     world,
 )
-from inca_mj.studies.worlds.cable_effects import (
-    HiddenAnchorOffset,
-    HiddenComOffset,
-    HiddenExternalForce,
-)
 from inca_mj.twin.twin import build_twin
 
 CLOSE = 1e-7  # the oracle is adaptive, at 1e-11 [rad]
@@ -56,19 +51,19 @@ def test_what_the_reference_can_say_it_says_the_same(moved):
     u, robot, geometry, force, effects = prbs(0.5), TRIAL, INCA, (0.0, 0.0, 0.0), ()
     if moved == "external_force":
         force = (0.1, -0.2, 0.3)
-        effects = (HiddenExternalForce(x=0.1, y=-0.2, z=0.3),)
+        effects = (effect("external_force", x=0.1, y=-0.2, z=0.3),)
     if moved == "anchor_offset":
         A = INCA.A
         A[2] += (0.01, 0.02, -0.03)
         geometry, effects = (
             replace(INCA, exits=A),
-            (HiddenAnchorOffset(drive=3, x=0.01, y=0.02, z=-0.03),),
+            (effect("anchor_offset", drive=3, x=0.01, y=0.02, z=-0.03),),
         )
     if moved == "com_offset":
         c = np.array([0.002, 0.001, -0.004])
         geometry = replace(INCA, connectors=INCA.B - c)
         robot = TRIAL.with_values({"x": c[0], "y": c[1], "z": 1.43 + c[2]})
-        effects = (HiddenComOffset(x=c[0], y=c[1], z=c[2]),)
+        effects = (effect("com_offset", x=c[0], y=c[1], z=c[2]),)
     time = np.arange(len(u)) * 0.01
     expected = simulate_reference(robot, geometry, time, u, force=force)
     X = simulate_world(plant(*effects), u)

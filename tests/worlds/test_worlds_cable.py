@@ -7,25 +7,8 @@ from hypothesis import strategies as st
 from worlds_cases import FINE, plant, prbs, rate, simulate
 
 from inca_mj.reference import layout as base
+from inca_mj.studies.worlds import effect as hidden
 from inca_mj.studies.worlds import layout as at
-from inca_mj.studies.worlds.cable_effects import (
-    HiddenAirDrag,
-    HiddenAnchorOffset,
-    HiddenCableCreep,
-    HiddenCableHardening,
-    HiddenCableWeight,
-    HiddenComOffset,
-    HiddenExternalForce,
-    HiddenFrameVibration,
-    HiddenPulleyRadius,
-)
-from inca_mj.studies.worlds.drive_effects import (
-    HiddenDrumEccentricity,
-    HiddenDrumLayering,
-    HiddenDrumRadiusMismatch,
-    HiddenSpringHardening,
-    HiddenSpringHysteresis,
-)
 from inca_mj.studies.worlds.equations import drag, elastic, path, sagging, shake
 
 points = st.tuples(
@@ -61,20 +44,20 @@ def test_a_quarter_turn_over_a_pulley():
 @pytest.mark.parametrize(
     "effect",
     [
-        HiddenPulleyRadius(r_p=0.03),
-        HiddenAnchorOffset(drive=2, x=0.05),
-        HiddenComOffset(x=0.01, y=-0.01, z=0.02),
-        HiddenDrumRadiusMismatch(drive=7, delta=0.1),
-        HiddenDrumEccentricity(a=0.05),
-        HiddenDrumLayering(h=1e-4),
-        HiddenCableHardening(),
-        HiddenCableHardening(kappa=4e5, exponent=2.0),
-        HiddenCableCreep(),
-        HiddenSpringHardening(),
-        HiddenSpringHysteresis(),
-        HiddenCableWeight(rho=5e-3, balanced=True),
-        HiddenCableWeight(rho=5e-3, balanced=True, sag=True),
-        HiddenExternalForce(x=0.2, z=0.1, balanced=True),
+        hidden("pulley_radius", r_p=0.03),
+        hidden("anchor_offset", drive=2, x=0.05),
+        hidden("com_offset", x=0.01, y=-0.01, z=0.02),
+        hidden("drum_radius_mismatch", drive=7, delta=0.1),
+        hidden("drum_eccentricity", a=0.05),
+        hidden("drum_layering", h=1e-4),
+        hidden("cable_hardening"),
+        hidden("cable_hardening", kappa=4e5, exponent=2.0),
+        hidden("cable_creep"),
+        hidden("spring_hardening"),
+        hidden("spring_hysteresis"),
+        hidden("cable_weight", rho=5e-3, balanced=True),
+        hidden("cable_weight", rho=5e-3, balanced=True, sag=True),
+        hidden("external_force", x=0.2, z=0.1, balanced=True),
     ],
     ids=lambda e: e.name,
 )
@@ -84,12 +67,14 @@ def test_a_world_starts_at_rest(effect):
 
 
 def test_forces_act_from_the_first_instant_where_nothing_balances_them():
-    p = plant(HiddenExternalForce(x=0.1725, y=0.0), HiddenComOffset(x=0.0, y=0.0, z=-0.01))
+    p = plant(
+        hidden("external_force", x=0.1725, y=0.0), hidden("com_offset", x=0.0, y=0.0, z=-0.01)
+    )
     start = rate(p, p.start, np.zeros(8))
     assert start[base.VELOCITY] == pytest.approx([1.0, 0.0, 0.0], abs=1e-9)
     # the force acts at the platform's origin, 0.01 m above the centre of mass
     assert start[base.RATES] == pytest.approx([0, 0.01 * 0.1725 / 1.5e-4, 0], abs=1e-6)
-    hung = plant(HiddenCableWeight(rho=1e-3))
+    hung = plant(hidden("cable_weight", rho=1e-3))
     d = (1 + hung.start[at.VISCOUS]) * hung.start[base.NO_LOAD]
     fall = rate(hung, hung.start, np.zeros(8))[base.VELOCITY]
     assert fall[2] == pytest.approx(-0.5e-3 * d.sum() * 9.81 / 0.1725, rel=1e-9)
@@ -97,7 +82,7 @@ def test_forces_act_from_the_first_instant_where_nothing_balances_them():
 
 def test_the_maxwell_branch_relaxes():
     u = np.ones((400, 8)) * np.array([1, 0, 0, 0, 1, 0, 0, 0])
-    p = plant(HiddenCableCreep(fraction=0.5, tau=0.2))
+    p = plant(hidden("cable_creep", fraction=0.5, tau=0.2))
     X = simulate(p, u)
     A, B = (p.q[part].reshape(8, 3) for part in (base.EXITS, base.CONNECTORS))
     from inca_mj.reference import kinematics
@@ -117,9 +102,9 @@ def test_the_maxwell_branch_relaxes():
 def test_elastic_laws_by_their_letters():
     ε, λ = 3e-4, 25000.0
     for effect, expected in (
-        (HiddenCableHardening(kappa=500.0), λ * ε * (1 + 500 * ε)),
-        (HiddenCableHardening(kappa=1e6, exponent=2.0), λ * ε * (1 + 1e6 * ε**2)),
-        (HiddenCableCreep(fraction=0.2), λ * ε + 0.2 * λ * (ε - 1e-4)),
+        (hidden("cable_hardening", kappa=500.0), λ * ε * (1 + 500 * ε)),
+        (hidden("cable_hardening", kappa=1e6, exponent=2.0), λ * ε * (1 + 1e6 * ε**2)),
+        (hidden("cable_creep", fraction=0.2), λ * ε + 0.2 * λ * (ε - 1e-4)),
     ):
         assert elastic(ε, 1e-4, λ, plant(effect).D[0]) == pytest.approx(expected, rel=1e-12)
 
@@ -133,7 +118,7 @@ def test_sag_solves_its_equation_and_holds_a_slack_cable(T, K):
 
 def test_the_air_takes_energy():
     for n in (2.0, 1.5):
-        p = plant(HiddenAirDrag(c=0.2, exponent=n))
+        p = plant(hidden("air_drag", c=0.2, exponent=n))
         v = np.array([1.0, -2.0, 2.0])
         F = np.array(drag(tuple(v), p.P))
         assert pytest.approx(-0.2 * 3.0 ** (n - 1) * v) == F
@@ -141,7 +126,7 @@ def test_the_air_takes_energy():
 
 
 def test_the_frame_shakes_one_exit_point_at_one_frequency():
-    D = plant(HiddenFrameVibration(drive=6, x=1e-3, y=0.0, frequency=5.0)).D
+    D = plant(hidden("frame_vibration", drive=6, x=1e-3, y=0.0, frequency=5.0)).D
     assert not D[[0, 1, 2, 3, 4, 6, 7], at.SHAKE_X].any()
     for t in (0.0, 0.013, 0.2):
         moved, moving = shake(t, D[5])
@@ -151,7 +136,7 @@ def test_the_frame_shakes_one_exit_point_at_one_frequency():
 
 
 @pytest.mark.parametrize(
-    "effect", [HiddenCableWeight(sag=True, rho=5e-3), HiddenCableCreep(tau=0.05)]
+    "effect", [hidden("cable_weight", sag=True, rho=5e-3), hidden("cable_creep", tau=0.05)]
 )
 def test_the_step_is_small_enough(effect):
     p, u = plant(effect), prbs(0.5)

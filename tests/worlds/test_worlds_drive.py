@@ -5,28 +5,8 @@ import pytest
 from worlds_cases import FINE, angles, fine, plant, prbs, simulate
 
 from inca_mj.reference import layout as base
+from inca_mj.studies.worlds import effect as hidden
 from inca_mj.studies.worlds import layout as at
-from inca_mj.studies.worlds.drive_effects import (
-    HiddenAsymmetricFriction,
-    HiddenBacklash,
-    HiddenCogging,
-    HiddenCurrentLag,
-    HiddenCurrentSaturation,
-    HiddenDelay,
-    HiddenDrumEccentricity,
-    HiddenDrumLayering,
-    HiddenDrumRadiusMismatch,
-    HiddenFrictionMismatch,
-    HiddenLoadDependentFriction,
-    HiddenPositionDependentFriction,
-    HiddenQuadraticFriction,
-    HiddenSpringHardening,
-    HiddenSpringHysteresis,
-    HiddenStribeckFriction,
-    HiddenTorqueConstantDrift,
-    HiddenTorqueConstantMismatch,
-    HiddenTorqueRippleTime,
-)
 from inca_mj.studies.worlds.equations import friction, motor, radius, spring
 
 SAME = 1e-9  # two ways to one trajectory [rad]
@@ -35,14 +15,14 @@ SAME = 1e-9  # two ways to one trajectory [rad]
 @pytest.mark.parametrize(
     "effect",
     [
-        HiddenStribeckFriction(),
-        HiddenStribeckFriction(exponent=1.0),
-        HiddenAsymmetricFriction(),
-        HiddenLoadDependentFriction(),
-        HiddenQuadraticFriction(),
-        HiddenQuadraticFriction(exponent=1.5),
-        HiddenFrictionMismatch(delta=-0.5),
-        HiddenPositionDependentFriction(a=0.5, b=0.5),
+        hidden("stribeck_friction"),
+        hidden("stribeck_friction", exponent=1.0),
+        hidden("asymmetric_friction"),
+        hidden("load_dependent_friction"),
+        hidden("quadratic_friction"),
+        hidden("quadratic_friction", exponent=1.5),
+        hidden("friction_mismatch", delta=-0.5),
+        hidden("position_dependent_friction", a=0.5, b=0.5),
     ],
 )
 def test_friction_takes_energy_and_never_gives(effect):
@@ -57,13 +37,13 @@ def test_each_friction_by_its_letters():
     ω, φ, RT, none = -3.0, 2.0, 0.05, plant()
     b_c, σ = none.q[base.B_C], np.tanh(none.q[base.BETA] * ω)
     for effect, more in (
-        (HiddenStribeckFriction(f_s=0.01, v_s=2.0), 0.01 * np.exp(-2.25) * σ),
-        (HiddenStribeckFriction(f_s=0.01, v_s=2.0, exponent=1.0), 0.01 * np.exp(-1.5) * σ),
-        (HiddenAsymmetricFriction(f_a=0.002), 0.002 * abs(σ)),
-        (HiddenLoadDependentFriction(mu=0.1), 0.1 * RT * σ),
-        (HiddenQuadraticFriction(c=1e-6), -1e-6 * ω**2),
-        (HiddenFrictionMismatch(delta=0.2), 0.2 * b_c * σ),
-        (HiddenPositionDependentFriction(a=0.2, b=0.1),
+        (hidden("stribeck_friction", f_s=0.01, v_s=2.0), 0.01 * np.exp(-2.25) * σ),
+        (hidden("stribeck_friction", f_s=0.01, v_s=2.0, exponent=1.0), 0.01 * np.exp(-1.5) * σ),
+        (hidden("asymmetric_friction", f_a=0.002), 0.002 * abs(σ)),
+        (hidden("load_dependent_friction", mu=0.1), 0.1 * RT * σ),
+        (hidden("quadratic_friction", c=1e-6), -1e-6 * ω**2),
+        (hidden("friction_mismatch", delta=0.2), 0.2 * b_c * σ),
+        (hidden("position_dependent_friction", a=0.2, b=0.1),
          b_c * (0.2 * np.cos(φ) + 0.1 * np.sin(φ)) * σ),
     ):  # fmt: skip
         D = plant(effect).D[0]
@@ -73,7 +53,7 @@ def test_each_friction_by_its_letters():
 
 def test_a_delay_shifts_and_gives_nothing_before():
     u = prbs()
-    late, now = angles([HiddenDelay(delay=0.03)], u), angles([], u)
+    late, now = angles([hidden("delay", delay=0.03)], u), angles([], u)
     np.testing.assert_allclose(late[3:], now[:-3], atol=SAME)
     np.testing.assert_allclose(late[:4], 0, atol=SAME)
 
@@ -83,16 +63,16 @@ def test_a_delay_inside_a_sample_is_exact():
     quarter = np.repeat(u, 4, axis=0)
     shifted = np.vstack([np.zeros((5, 8)), quarter[:-5]])  # 1.25 samples
     np.testing.assert_allclose(
-        angles([HiddenDelay(delay=0.0125)], u), angles([], shifted, 0.0025)[::4], atol=SAME
+        angles([hidden("delay", delay=0.0125)], u), angles([], shifted, 0.0025)[::4], atol=SAME
     )
 
 
 def test_a_lagging_current_starts_at_the_first_and_rises_as_an_exponential():
     u = np.ones((40, 8))
-    steady = simulate(plant(HiddenCurrentLag(tau=5e-3)), u)[:, at.HEAT]
+    steady = simulate(plant(hidden("current_lag", tau=5e-3)), u)[:, at.HEAT]
     np.testing.assert_allclose(steady[:, 0], np.arange(40) * 0.01, rtol=1e-12)
     u[0], τ, t = 0.0, 5e-3, np.arange(39) * 0.01
-    heat = simulate(plant(HiddenCurrentLag(tau=τ)), u)[1:, at.HEAT]
+    heat = simulate(plant(hidden("current_lag", tau=τ)), u)[1:, at.HEAT]
     e = np.exp(-t / τ)
     expected = t - 2 * τ * (1 - e) + τ / 2 * (1 - e**2)  # ∫ (1 − e^(−t/τ))² dt
     np.testing.assert_allclose(heat[:, 2], expected, atol=1e-9)
@@ -100,17 +80,17 @@ def test_a_lagging_current_starts_at_the_first_and_rises_as_an_exponential():
 
 def test_saturation_is_another_input():
     u = prbs()
-    clipped = angles([HiddenCurrentSaturation(i_max=0.9)], u)
+    clipped = angles([hidden("current_saturation", i_max=0.9)], u)
     assert np.array_equal(clipped, angles([], np.clip(u, -0.9, 0.9)))
-    soft = angles([HiddenCurrentSaturation(i_max=2.0, soft=True)], u)
+    soft = angles([hidden("current_saturation", i_max=2.0, soft=True)], u)
     np.testing.assert_allclose(soft, angles([], 2.0 * np.tanh(u / 2.0)), atol=SAME)
-    assert HiddenCurrentSaturation(i_max=0.9).scaled(0.5).i_max == pytest.approx(0.95)
+    assert hidden("current_saturation", i_max=0.9).scaled(0.5).i_max == pytest.approx(0.95)
 
 
 def test_a_mismatch_of_torque_is_another_input():
     u = prbs()
     more = u * (1 + 0.05 * (np.arange(8) == 2))
-    got = angles([HiddenTorqueConstantMismatch(drive=3, delta=0.05)], u)
+    got = angles([hidden("torque_constant_mismatch", drive=3, delta=0.05)], u)
     np.testing.assert_allclose(got, angles([], more), atol=SAME)
 
 
@@ -118,15 +98,18 @@ def test_a_drift_is_an_input_that_fades():
     u, α = fine(prbs(0.5)), 0.1
     middle = (np.arange(len(u)) + 0.5)[:, None] * FINE
     for drift, loss in (
-        (HiddenTorqueConstantDrift(alpha=α), α * middle),
-        (HiddenTorqueConstantDrift(alpha=α, settle=0.2), α * 0.2 * (1 - np.exp(-middle / 0.2))),
+        (hidden("torque_constant_drift", alpha=α), α * middle),
+        (
+            hidden("torque_constant_drift", alpha=α, settle=0.2),
+            α * 0.2 * (1 - np.exp(-middle / 0.2)),
+        ),
     ):
         got = angles([drift], u, FINE)
         np.testing.assert_allclose(got, angles([], u * (1 - loss), FINE), atol=1e-6)
     ones = np.ones((50, 8))
-    hot = angles([HiddenTorqueConstantDrift(alpha=α, heat=True)], 2 * ones)
+    hot = angles([hidden("torque_constant_drift", alpha=α, heat=True)], 2 * ones)
     np.testing.assert_allclose(
-        hot, angles([HiddenTorqueConstantDrift(alpha=4 * α)], 2 * ones), atol=SAME
+        hot, angles([hidden("torque_constant_drift", alpha=4 * α)], 2 * ones), atol=SAME
     )
 
 
@@ -134,12 +117,12 @@ def test_a_ripple_in_time_is_another_input():
     u = fine(prbs(0.5))
     middle = (np.arange(len(u)) + 0.5)[:, None] * FINE
     more = 2e-3 * np.sin(2 * np.pi * 5 * middle + 1) / plant().q[base.K_T]
-    got = angles([HiddenTorqueRippleTime(a=2e-3, frequency=5.0, phase=1.0)], u, FINE)
+    got = angles([hidden("torque_ripple_time", a=2e-3, frequency=5.0, phase=1.0)], u, FINE)
     np.testing.assert_allclose(got, angles([], u + more, FINE), atol=1e-6)
 
 
 def test_cogging_by_its_letters():
-    p = plant(HiddenCogging(a=1e-3, b=2e-3, n=8.0))
+    p = plant(hidden("cogging", a=1e-3, b=2e-3, n=8.0))
     Γ = motor(0.0, 0.0, 0.0, 0.3, p.q, p.D[0])
     assert pytest.approx(1e-3 * np.cos(2.4) + 2e-3 * np.sin(2.4)) == Γ
 
@@ -147,11 +130,11 @@ def test_cogging_by_its_letters():
 def test_radii_by_their_letters():
     for effect, expected in (
         (
-            HiddenDrumEccentricity(a=0.01, b=0.02),
+            hidden("drum_eccentricity", a=0.01, b=0.02),
             0.0175 * (1 + 0.01 * np.cos(2) + 0.02 * np.sin(2)),
         ),
-        (HiddenDrumLayering(h=1e-5), 0.0175 + 2e-5),
-        (HiddenDrumRadiusMismatch(drive=1, delta=0.1), 0.01925),
+        (hidden("drum_layering", h=1e-5), 0.0175 + 2e-5),
+        (hidden("drum_radius_mismatch", drive=1, delta=0.1), 0.01925),
     ):
         assert radius(2.0, 0.0175, plant(effect).D[0]) == pytest.approx(expected, rel=1e-12)
 
@@ -159,7 +142,7 @@ def test_radii_by_their_letters():
 @pytest.mark.parametrize("h", [0.01, 0.1])
 def test_the_drum_plays_behind_the_rotor(h):
     u = fine(prbs())
-    X = simulate(plant(HiddenBacklash(h=h)), u, FINE, FINE)
+    X = simulate(plant(hidden("backlash", h=h)), u, FINE, FINE)
     φ, ψ = X[:, base.ANGLES], np.zeros((len(u), 8))
     for k in range(1, len(u)):  # the play operator, sample by sample
         ψ[k] = np.clip(ψ[k - 1], φ[k] - h, φ[k] + h)
@@ -179,16 +162,19 @@ def test_the_drum_plays_behind_the_rotor(h):
 def test_springs_by_their_letters():
     φ, s, T_0 = 20.0, 0.006 * 20, 0.2
     for effect, expected in (
-        (HiddenSpringHardening(k_3=8.0), T_0 / 0.006 - 16 * s * (1 + 8 * s**2)),
-        (HiddenSpringHardening(k_3=2.0, exponent=1.0), T_0 / 0.006 - 16 * s * (1 + 2 * s)),
-        (HiddenSpringHysteresis(eta=-0.1), (T_0 / 0.006 - 16 * s) * (1 - 0.1 * np.tanh(0.8 * 3))),
+        (hidden("spring_hardening", k_3=8.0), T_0 / 0.006 - 16 * s * (1 + 8 * s**2)),
+        (hidden("spring_hardening", k_3=2.0, exponent=1.0), T_0 / 0.006 - 16 * s * (1 + 2 * s)),
+        (
+            hidden("spring_hysteresis", eta=-0.1),
+            (T_0 / 0.006 - 16 * s) * (1 - 0.1 * np.tanh(0.8 * 3)),
+        ),
     ):
         p = plant(effect)
         assert spring(φ, 3.0, T_0, p.q, p.D[0]) == pytest.approx(expected, rel=1e-12)
 
 
 def test_a_spring_with_hysteresis_loses_what_a_loop_encloses():
-    p = plant(HiddenSpringHysteresis(eta=-0.1))
+    p = plant(hidden("spring_hysteresis", eta=-0.1))
     t = np.linspace(0, 2 * np.pi, 400, endpoint=False)
     work = sum(np.cos(a) * spring(np.sin(a), np.cos(a), 0.1, p.q, p.D[0]) for a in t)
     assert work < 0

@@ -24,14 +24,7 @@ from inca_mj.studies.worlds import (
     simulate_world,
     world,
 )
-from inca_mj.studies.worlds.drive_effects import (
-    HiddenCogging,
-    HiddenCurrentSaturation,
-    HiddenDrumEccentricity,
-    HiddenFrictionMismatch,
-    HiddenSpringHysteresis,
-    HiddenStribeckFriction,
-)
+from inca_mj.studies.worlds import effect as hidden
 from inca_mj.studies.worlds.ratio import HiddenAbsorbed
 from inca_mj.studies.worlds.sensor import encode, noise_rms
 from inca_mj.studies.worlds.setting import true_robot
@@ -68,7 +61,7 @@ def test_a_seed_gives_one_robot_whatever_its_effects_are():
     assert one.truth.parameters == same.truth.parameters
     assert np.array_equal(one.log.outputs, same.log.outputs)
     assert one.truth.parameters["lambda@1"] != other.truth.parameters["lambda@1"]
-    more = world(3, [HiddenStribeckFriction()], setting=BUILT)
+    more = world(3, [hidden("stribeck_friction")], setting=BUILT)
     assert more.truth.parameters == one.truth.parameters
     # Tolerances add to the robot of the seed: common values, start and input stay.
     plain = world(3, setting=SHORT)
@@ -98,8 +91,8 @@ def test_deviations_keep_their_widths():
 
 def test_records_are_of_one_robot_and_each_has_a_start_input_and_noise_of_its_own():
     setting = replace(BUILT, error_rms=1e-3, tilt=0.01)
-    made = records(8, [HiddenStribeckFriction()], setting=setting)
-    first = world(8, [HiddenStribeckFriction()], setting=setting)
+    made = records(8, [hidden("stribeck_friction")], setting=setting)
+    first = world(8, [hidden("stribeck_friction")], setting=setting)
     assert np.array_equal(made[0].log.outputs, first.log.outputs)
     assert len(made) == 3
     for k, (log, truth) in enumerate(made):
@@ -119,13 +112,13 @@ def test_records_are_of_one_robot_and_each_has_a_start_input_and_noise_of_its_ow
     levels = [len(np.unique(log.inputs)) for log, _ in made]
     assert levels[0] == levels[2] == 2 < levels[1]
     assert len(join_logs([log for log, _ in made])) == 300
-    again = records(8, [HiddenStribeckFriction()], n=2, setting=setting)
+    again = records(8, [hidden("stribeck_friction")], n=2, setting=setting)
     assert np.array_equal(again[1].log.outputs, made[1].log.outputs)
 
 
 def test_a_ratio_is_that_of_the_robot_as_built():
     setting = replace(BUILT, duration=0.5)
-    log, truth = world(6, [HiddenStribeckFriction()], ratio=6.0, setting=setting)
+    log, truth = world(6, [hidden("stribeck_friction")], ratio=6.0, setting=setting)
     robot = with_spread(parameter_set("trial")).with_values(truth.parameters)
     names = (*VARIED, "R", "k_s", "beta")
     absorbed = HiddenAbsorbed(robot, log.inputs, 0.01, names, AS_BUILT, truth.noise_rms)
@@ -141,7 +134,7 @@ def test_what_parts_absorb_is_the_least_squares_of_noise_and_tolerances():
         plant = make_plant(robot.with_values(values), INCA, effects)
         return simulate_world(plant, u, 0.01, 1e-3)[:, base.ANGLES].ravel()
 
-    effects, without = [HiddenDrumEccentricity()], angles({})
+    effects, without = [hidden("drum_eccentricity")], angles({})
     e = angles({}, effects) - without
     std = usual_std(robot, AS_BUILT)
     steps = {n: 1e-5 if n in POSE else 1e-4 * robot[n].value for n in (*VARIED, *POSE)}
@@ -180,7 +173,7 @@ def test_the_twin_at_the_true_values_explains_every_record_to_its_noise(twin):
 
 
 def test_an_effect_acts_on_drives_that_differ_as_the_twin_says(twin):
-    drawn = HiddenDrumEccentricity()
+    drawn = hidden("drum_eccentricity")
     log, truth = world(4, [drawn], setting=BUILT)
     effect = next(e for e in CATALOGUE if e.name == drawn.name)
     sizes = {effect.parameter(n, drawn.where): getattr(drawn, n) for n in drawn.sizes}
@@ -197,11 +190,11 @@ def test_what_other_parameters_do_as_well_is_no_effect():
     robot, u = true_robot(6, setting), make_currents(6, setting)
     names, σ = setting.absorbed, noise_rms(setting.counts, setting.noise)
     absorbed = HiddenAbsorbed(robot, u, 0.01, names, AS_BUILT, σ)
-    hysteresis, cogging = HiddenSpringHysteresis(eta=0.05), HiddenCogging()
+    hysteresis, cogging = hidden("spring_hysteresis", eta=0.05), hidden("cogging")
     assert absorbed.is_absorbed(hysteresis)
     assert not absorbed.is_absorbed(cogging)
-    assert not absorbed.is_absorbed(HiddenFrictionMismatch(drive=2, delta=0.5))  # a part
-    assert not absorbed.is_absorbed(HiddenCurrentSaturation(i_max=0.99))  # it is not linear
+    assert not absorbed.is_absorbed(hidden("friction_mismatch", drive=2, delta=0.5))  # a part
+    assert not absorbed.is_absorbed(hidden("current_saturation", i_max=0.99))  # it is not linear
     exact = HiddenAbsorbed(robot, u, 0.01, names, noise=σ)
     assert not exact.is_absorbed(hysteresis)  # where drives are alike the ratio is what it says
     ratio = absorbed.rms([hysteresis]) / σ

@@ -8,17 +8,7 @@ import pytest
 from identification.errors import InputError
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.studies.worlds import EVERY, VARIED, HiddenSetting, make_currents, world
-from inca_mj.studies.worlds.cable_effects import (
-    HiddenAnchorOffset,
-    HiddenCableHardening,
-    HiddenCableWeight,
-)
-from inca_mj.studies.worlds.drive_effects import (
-    HiddenBacklash,
-    HiddenCurrentSaturation,
-    HiddenStribeckFriction,
-    HiddenTorqueConstantMismatch,
-)
+from inca_mj.studies.worlds import effect as hidden
 from inca_mj.studies.worlds.ratio import HiddenAbsorbed
 from inca_mj.studies.worlds.sensor import coloured, encode, noise_rms
 
@@ -30,14 +20,14 @@ def test_seeds_reproduce_and_an_effect_leaves_robot_input_and_noise_alone():
     assert np.array_equal(one.log.outputs, same.log.outputs)
     assert not np.array_equal(one.log.outputs, other.log.outputs)
     assert not np.array_equal(one.log.inputs, other.log.inputs)
-    more = world(3, [HiddenStribeckFriction()], setting=SHORT)
+    more = world(3, [hidden("stribeck_friction")], setting=SHORT)
     assert more.truth.parameters == one.truth.parameters
     assert np.array_equal(more.log.inputs, one.log.inputs)
     assert not np.array_equal(more.log.outputs, one.log.outputs)
 
 
 def test_the_log_holds_nothing_of_the_truth():
-    log, truth = world(5, [HiddenAnchorOffset(drive=4)], setting=SHORT)
+    log, truth = world(5, [hidden("anchor_offset", drive=4)], setting=SHORT)
     assert log.inputs.shape == log.outputs.shape == (100, 8)
     assert not log.extras
     assert not log.notes
@@ -96,12 +86,14 @@ def test_inputs_stay_between_their_levels():
 def test_what_the_base_can_say_is_absorbed():
     robot, u = parameter_set("trial"), make_currents(1, SHORT)
     absorbed = HiddenAbsorbed(robot, u, 0.01, VARIED)
-    all_drives = [HiddenTorqueConstantMismatch(drive=k, delta=1e-3) for k in range(1, 9)]
+    all_drives = [hidden("torque_constant_mismatch", drive=k, delta=1e-3) for k in range(1, 9)]
     assert absorbed.rms(all_drives) < 1e-2 * absorbed.rms(all_drives[:1])
     assert absorbed.rms([]) == 0
 
 
-@pytest.mark.parametrize("effect", [HiddenTorqueConstantMismatch(drive=2), HiddenBacklash()])
+@pytest.mark.parametrize(
+    "effect", [hidden("torque_constant_mismatch", drive=2), hidden("backlash")]
+)
 def test_a_ratio_is_reached(effect):
     log, truth = world(6, [effect], ratio=6.0, setting=SHORT)
     robot = parameter_set("trial").with_values(truth.parameters)
@@ -110,14 +102,14 @@ def test_a_ratio_is_reached(effect):
 
 
 def test_an_effect_is_not_larger_than_a_robot_may_have_it():
-    line = HiddenCableWeight(balanced=True)
+    line = hidden("cable_weight", balanced=True)
     assert line.scaled(line.most).rho == pytest.approx(line.largest)
-    offset = HiddenAnchorOffset()
+    offset = hidden("anchor_offset")
     largest = offset.scaled(offset.most)
     assert np.linalg.norm([largest.x, largest.y, largest.z]) == pytest.approx(offset.largest)
-    cubic, square = HiddenCableHardening(exponent=2.0), HiddenCableHardening(exponent=1.0)
+    cubic, square = hidden("cable_hardening", exponent=2.0), hidden("cable_hardening", exponent=1.0)
     κ_2, κ_1 = cubic.scaled(cubic.most).kappa, square.scaled(square.most).kappa
     assert κ_2 * 1e-3**2 == pytest.approx(κ_1 * 1e-3)
-    assert np.isinf(HiddenCurrentSaturation().most)
+    assert np.isinf(hidden("current_saturation").most)
     with pytest.raises(InputError, match=r"rho = 0\.005\).* cannot be absorbed"):
         world(6, [line], ratio=1e4, setting=SHORT)

@@ -25,32 +25,10 @@ from inca_mj.studies.worlds.effect import (
     HiddenEffect,
     HiddenNumbers,
     HiddenOneDriveEffect,
+    kind,
     shape,
     size,
 )
-
-
-@dataclass(frozen=True, kw_only=True)
-class HiddenCableHardening(HiddenDriveEffect):
-    """λ ε (1 + κ ε^n)."""
-
-    name = "cable_hardening"
-    acts_on = "all cables"
-    largest = 2.0  # at a strain of 0.1 %: three times as stiff
-    reach = 1e-3
-    kappa: float = size(200.0, at.CABLE_HARD)
-    exponent: float = shape(1.0, at.CABLE_POWER)
-
-
-@dataclass(frozen=True, kw_only=True)
-class HiddenCableCreep(HiddenDriveEffect):
-    """A spring of c λ in series with a dashpot, time constant τ [s], relaxed at the start."""
-
-    name = "cable_creep"
-    acts_on = "all cables"
-    largest = 0.5  # a new braid that gives half as much again
-    fraction: float = size(0.1, at.MAXWELL)
-    tau: float = shape(1.0, at.MAXWELL_TIME)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -75,16 +53,6 @@ class HiddenCableWeight(HiddenDriveEffect):
 
 
 @dataclass(frozen=True, kw_only=True)
-class HiddenPulleyRadius(HiddenDriveEffect):
-    """A swivelling pulley of radius r_p [m] at A_i."""
-
-    name = "pulley_radius"
-    acts_on = "all cables"
-    largest = 0.03  # the largest pulley that fits [m]
-    r_p: float = size(0.01, at.PULLEY)
-
-
-@dataclass(frozen=True, kw_only=True)
 class HiddenAnchorOffset(HiddenOneDriveEffect):
     """A_k moved by (x, y, z) [m]."""
 
@@ -98,19 +66,6 @@ class HiddenAnchorOffset(HiddenOneDriveEffect):
         """Move A_k."""
         if self.drive is not None:
             numbers.A[self.drive - 1] += (self.x, self.y, self.z)
-
-
-@dataclass(frozen=True, kw_only=True)
-class HiddenFrameVibration(HiddenOneDriveEffect):
-    """A_k moved by (x, y, z) sin(2πf t + φ₀) [m]; f [Hz], φ₀ [rad]. In no catalogue."""
-
-    name = "frame_vibration"
-    largest = 2e-3  # a soft frame [m]
-    x: float = size(3e-4, at.SHAKE_X)
-    y: float = size(3e-4, at.SHAKE_Y)
-    z: float = size(0.0, at.SHAKE_Z)
-    frequency: float = shape(6.3, at.SHAKE_RATE, times=2 * pi)
-    phase: float = shape(0.0, at.SHAKE_PHASE, positive=False)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -148,11 +103,25 @@ class HiddenExternalForce(HiddenEffect):
             numbers.carried += (self.x, self.y, self.z)
 
 
-@dataclass(frozen=True, kw_only=True)
-class HiddenAirDrag(HiddenEffect):
-    """−c |v|^(n−1) v on the centre of mass; c [N (s/m)^n]."""
-
-    name = "air_drag"
-    largest = 0.5  # a sheet on the handle [N s²/m²]
-    c: float = size(0.15, at.DRAG)
-    exponent: float = shape(2.0, at.DRAG_POWER)
+KINDS = (
+    # at a strain of 0.1 % three times as stiff
+    kind("cable_hardening", HiddenDriveEffect, 2.0, acts_on="all cables", reach=1e-3,
+         kappa=size(200.0, at.CABLE_HARD), exponent=shape(1.0, at.CABLE_POWER)),
+    # a new braid that gives half as much again; the branch has the time constant τ [s]
+    kind("cable_creep", HiddenDriveEffect, 0.5, acts_on="all cables",
+         fraction=size(0.1, at.MAXWELL), tau=shape(1.0, at.MAXWELL_TIME)),
+    # the largest pulley that fits [m]
+    kind("pulley_radius", HiddenDriveEffect, 0.03, acts_on="all cables",
+         r_p=size(0.01, at.PULLEY)),
+    HiddenCableWeight,
+    HiddenAnchorOffset,
+    # a soft frame [m]; f [Hz], φ₀ [rad]
+    kind("frame_vibration", HiddenOneDriveEffect, 2e-3,
+         x=size(3e-4, at.SHAKE_X), y=size(3e-4, at.SHAKE_Y), z=size(0.0, at.SHAKE_Z),
+         frequency=shape(6.3, at.SHAKE_RATE, times=2 * pi),
+         phase=shape(0.0, at.SHAKE_PHASE, positive=False)),
+    HiddenComOffset,
+    HiddenExternalForce,
+    # a sheet on the handle [N s²/m²]; c [N (s/m)^n], at the centre of mass
+    kind("air_drag", HiddenEffect, 0.5, c=size(0.15, at.DRAG), exponent=shape(2.0, at.DRAG_POWER)),
+)  # fmt: skip

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import fields, replace
+from typing import Any
 
 import numpy as np
 
@@ -11,62 +12,17 @@ from inca_mj.robot.geometry import DRIVES
 from inca_mj.studies.worlds import cable_effects, changes, drive_effects, sensor
 from inca_mj.studies.worlds.effect import HiddenEffect, HiddenOneDriveEffect
 
-_KNOWN: tuple[type[HiddenEffect], ...] = (
-    drive_effects.HiddenStribeckFriction,
-    drive_effects.HiddenAsymmetricFriction,
-    drive_effects.HiddenLoadDependentFriction,
-    drive_effects.HiddenQuadraticFriction,
-    drive_effects.HiddenFrictionMismatch,
-    drive_effects.HiddenCogging,
-    drive_effects.HiddenCurrentLag,
-    drive_effects.HiddenDelay,
-    drive_effects.HiddenCurrentSaturation,
-    drive_effects.HiddenTorqueConstantDrift,
-    drive_effects.HiddenTorqueConstantMismatch,
-    drive_effects.HiddenDrumEccentricity,
-    drive_effects.HiddenDrumLayering,
-    drive_effects.HiddenDrumRadiusMismatch,
-    drive_effects.HiddenSpringHardening,
-    drive_effects.HiddenSpringHysteresis,
-    cable_effects.HiddenCableHardening,
-    cable_effects.HiddenCableCreep,
-    cable_effects.HiddenPulleyRadius,
-    cable_effects.HiddenCableWeight,
-    cable_effects.HiddenAnchorOffset,
-    cable_effects.HiddenComOffset,
-    cable_effects.HiddenExternalForce,
-    cable_effects.HiddenAirDrag,
-)
-_UNLISTED: tuple[type[HiddenEffect], ...] = (
-    drive_effects.HiddenBacklash,  # a play: the drum of the catalogue hangs at one edge of the gap
-    cable_effects.HiddenFrameVibration,
-    drive_effects.HiddenPositionDependentFriction,
-    drive_effects.HiddenTorqueRippleTime,
-)
+_LAWS = {kind.name: kind for kind in (*drive_effects.KINDS, *cable_effects.KINDS)}
+# What a discovery must call unknown, for it is in no catalogue. A backlash here is a play: the drum
+# of the catalogue hangs at one edge of the gap.
+_UNLISTED = ("backlash", "frame_vibration", "position_dependent_friction", "torque_ripple_time")
 
-_CHANGES: tuple[type[HiddenEffect], ...] = (
-    changes.HiddenFrictionDrift,
-    changes.HiddenViscousFrictionDrift,
-    changes.HiddenCableElasticityDrift,
-    changes.HiddenDrumSpringDrift,
-    changes.HiddenFrictionJump,
-    changes.HiddenViscousFrictionJump,
-    changes.HiddenCableElasticityJump,
-    changes.HiddenDrumSpringJump,
-    changes.HiddenTorqueConstantJump,
-)
-_FAULTS: tuple[type[HiddenEffect], ...] = (
-    sensor.HiddenEncoderScale,
-    sensor.HiddenEncoderEccentricity,
-    sensor.HiddenEncoderLag,
-    sensor.HiddenEncoderJump,
-)
-
-HIDDEN_EFFECTS = {kind.name: kind for kind in _KNOWN}  # what a discovery may name
-UNLISTED = {kind.name: kind for kind in _UNLISTED}  # what it must call unknown
-CHANGES = {kind.name: kind for kind in _CHANGES}  # parameters that drift or jump
-FAULTS = {kind.name: kind for kind in _FAULTS}  # of encoders
-ALL_EFFECTS = {**HIDDEN_EFFECTS, **UNLISTED, **CHANGES, **FAULTS}
+# What a discovery may name; the order is part of what a seed draws, here and below.
+HIDDEN_EFFECTS = {name: kind for name, kind in _LAWS.items() if name not in _UNLISTED}
+UNLISTED = {name: _LAWS[name] for name in _UNLISTED}
+CHANGES = {kind.name: kind for kind in changes.KINDS}  # parameters that drift or jump
+FAULTS = {kind.name: kind for kind in sensor.KINDS}  # of encoders
+ALL_EFFECTS: dict[str, Any] = {**HIDDEN_EFFECTS, **UNLISTED, **CHANGES, **FAULTS}
 
 # Sizes whose sign physics leaves open; the others keep that of their default.
 _SIGNED = {"a", "b", "x", "y", "z", "delta", "alpha", "s"}
@@ -86,25 +42,29 @@ SHAPES: dict[str, dict[str, float | bool]] = {
 }
 
 
-def effect(name: str, *, drive: int | None = None, other_shape: bool = False) -> HiddenEffect:
-    """Returns an effect of its default size.
+def effect(
+    name: str, *, drive: int | None = None, other_shape: bool = False, **values: Any
+) -> HiddenEffect:
+    """Returns an effect, of its default size where `values` give no other.
 
     Args:
         name: canonical name, of `ALL_EFFECTS`.
         drive: 1 to 8, for an effect that has one; all drives (or drive 1) when not given.
         other_shape: take the law of `SHAPES` instead of the usual one.
+        values: of its sizes and shapes.
 
     Raises:
         InputError: the name is unknown, or has no other shape.
     """
     if name not in ALL_EFFECTS:
         raise unknown_name("effect", name, ALL_EFFECTS)
-    options: dict[str, float | bool | int] = {} if drive is None else {"drive": drive}
+    options = values if drive is None else {"drive": drive, **values}
     if other_shape:
         if name not in SHAPES:
             raise unknown_name("effect with another shape", name, SHAPES)
-        options |= SHAPES[name]
-    return ALL_EFFECTS[name](**options)
+        options = {**SHAPES[name], **options}
+    made: HiddenEffect = ALL_EFFECTS[name](**options)
+    return made
 
 
 def draw_effect(name: str, seed: int, *, other_shape: bool = False) -> HiddenEffect:

@@ -18,6 +18,7 @@ from inca_mj.studies.worlds.effect import (
     HiddenDriveEffect,
     HiddenNumbers,
     HiddenOneDriveEffect,
+    kind,
     shape,
     size,
 )
@@ -63,59 +64,18 @@ class HiddenJump(HiddenOneDriveEffect):
         super().put(numbers)
 
 
-class HiddenFrictionDrift(HiddenDrift):
-    """b_c: grease gets warm."""
-
-    name, parameter = "friction_drift", base.B_C
-    largest = 0.025  # half of it in 20 s [1/s]
-
-
-class HiddenViscousFrictionDrift(HiddenDrift):
-    """b_v: grease gets warm."""
-
-    name, parameter = "viscous_friction_drift", base.B_V
-    largest = 0.025  # half of it in 20 s [1/s]
-
-
-class HiddenCableElasticityDrift(HiddenDrift):
-    """λ: fibres settle."""
-
-    name, parameter = "cable_elasticity_drift", base.LAMBDA
-    largest = 0.015  # 30 % in 20 s [1/s]
-
-
-class HiddenDrumSpringDrift(HiddenDrift):
-    """k_s: a spring settles."""
-
-    name, parameter = "drum_spring_drift", base.K_S
-    largest = 0.015  # 30 % in 20 s [1/s]
-
-
-class HiddenFrictionJump(HiddenJump):
-    """b_c: something begins to rub."""
-
-    name, parameter, largest = "friction_jump", base.B_C, 0.5
-
-
-class HiddenViscousFrictionJump(HiddenJump):
-    """b_v: something begins to rub."""
-
-    name, parameter, largest = "viscous_friction_jump", base.B_V, 1.0
-
-
-class HiddenCableElasticityJump(HiddenJump):
-    """λ: strands break."""
-
-    name, parameter, largest = "cable_elasticity_jump", base.LAMBDA, 0.3
-
-
-class HiddenDrumSpringJump(HiddenJump):
-    """k_s: a coil of the spring sticks."""
-
-    name, parameter, largest = "drum_spring_jump", base.K_S, 0.3
-
-
-class HiddenTorqueConstantJump(HiddenJump):
-    """K_t: an amplifier loses a part of its current."""
-
-    name, parameter, largest = "torque_constant_jump", base.K_T, 0.2
+KINDS = (
+    # grease gets warm: half of it in 20 s [1/s]
+    kind("friction_drift", HiddenDrift, 0.025, parameter=base.B_C),
+    kind("viscous_friction_drift", HiddenDrift, 0.025, parameter=base.B_V),
+    # fibres and a spring settle: 30 % in 20 s [1/s]
+    kind("cable_elasticity_drift", HiddenDrift, 0.015, parameter=base.LAMBDA),
+    kind("drum_spring_drift", HiddenDrift, 0.015, parameter=base.K_S),
+    # something begins to rub
+    kind("friction_jump", HiddenJump, 0.5, parameter=base.B_C),
+    kind("viscous_friction_jump", HiddenJump, 1.0, parameter=base.B_V),
+    # strands break; a coil of the spring sticks; an amplifier loses a part of its current
+    kind("cable_elasticity_jump", HiddenJump, 0.3, parameter=base.LAMBDA),
+    kind("drum_spring_jump", HiddenJump, 0.3, parameter=base.K_S),
+    kind("torque_constant_jump", HiddenJump, 0.2, parameter=base.K_T),
+)

@@ -40,98 +40,10 @@ from inca_mj.studies.worlds.effect import (
     HiddenEffect,
     HiddenNumbers,
     HiddenOneDriveEffect,
+    kind,
     shape,
     size,
 )
-
-
-@dataclass(frozen=True, kw_only=True)
-class HiddenStribeckFriction(HiddenDriveEffect):
-    """−f_s exp(−(|ω|/v_s)^n) tanh(βω); f_s [N m], v_s [rad/s]."""
-
-    name = "stribeck_friction"
-    largest = 0.04  # a winch at rest may hold twice its friction in motion [N m]
-    f_s: float = size(0.01, at.STRIBECK)
-    v_s: float = shape(1.2, at.STRIBECK_SPEED)
-    exponent: float = shape(2.0, at.STRIBECK_POWER)
-
-
-@dataclass(frozen=True, kw_only=True)
-class HiddenAsymmetricFriction(HiddenDriveEffect):
-    """−f_a |tanh(βω)|; f_a [N m]."""
-
-    name = "asymmetric_friction"
-    largest = 0.012  # 30 % of the friction of a winch, 0.04 [N m]
-    f_a: float = size(0.002, at.ASYMMETRY)
-
-
-@dataclass(frozen=True, kw_only=True)
-class HiddenLoadDependentFriction(HiddenDriveEffect):
-    """−μ R T tanh(βω)."""
-
-    name = "load_dependent_friction"
-    largest = 0.2  # small pulleys take up to 20 % of the load
-    mu: float = size(0.004, at.LOAD)
-
-
-@dataclass(frozen=True, kw_only=True)
-class HiddenQuadraticFriction(HiddenDriveEffect):
-    """−c ω |ω|^(n − 1); c [N m (s/rad)^n]."""
-
-    name = "quadratic_friction"
-    largest = 0.05  # at 50 rad/s [N m]
-    reach = 50.0
-    c: float = size(2e-6, at.QUADRATIC)
-    exponent: float = shape(2.0, at.QUADRATIC_POWER)
-
-
-@dataclass(frozen=True, kw_only=True)
-class HiddenFrictionMismatch(HiddenOneDriveEffect):
-    """b_c (1 + δ) on one drive."""
-
-    name = "friction_mismatch"
-    largest = 1.0  # a drive with twice the friction of the others
-    delta: float = size(0.1, at.COULOMB_ERROR)
-
-
-@dataclass(frozen=True, kw_only=True)
-class HiddenPositionDependentFriction(HiddenDriveEffect):
-    """b_c (1 + a cos φ + b sin φ) for b_c: a bent shaft; in no catalogue."""
-
-    name = "position_dependent_friction"
-    largest = 0.3  # 30 % of the friction
-    a: float = size(0.2, at.ANGLE_COS)
-    b: float = size(0.1, at.ANGLE_SIN)
-
-
-@dataclass(frozen=True, kw_only=True)
-class HiddenCogging(HiddenDriveEffect):
-    """+ a cos(nφ) + b sin(nφ) [N m]."""
-
-    name = "cogging"
-    largest = 0.05  # torque of motors without a compensation of it [N m]
-    a: float = size(2e-4, at.COG_COS)
-    b: float = size(4e-4, at.COG_SIN)
-    n: float = shape(6.0, at.COG_N)
-
-
-@dataclass(frozen=True, kw_only=True)
-class HiddenCurrentLag(HiddenDriveEffect):
-    """First-order lag τ [s] of the current loop, which starts at the first current."""
-
-    name = "current_lag"
-    largest = 0.01  # a slow current loop [s]
-    tau: float = size(1.5e-3, at.LAG)
-
-
-@dataclass(frozen=True, kw_only=True)
-class HiddenDelay(HiddenEffect):
-    """Pure delay [s] of all currents, zero before the first sample."""
-
-    name = "delay"
-    acts_on = "all drives"
-    largest = 0.01  # ten cycles of 1 kHz [s]
-    delay: float = size(1.5e-3, at.DELAY)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -180,81 +92,51 @@ class HiddenTorqueConstantDrift(HiddenDriveEffect):
         self.column(numbers, at.HEAT_LOSS if self.heat else at.DRIFT)[:] += self.alpha
 
 
-@dataclass(frozen=True, kw_only=True)
-class HiddenTorqueConstantMismatch(HiddenOneDriveEffect):
-    """K_t (1 + δ) on one drive."""
-
-    name = "torque_constant_mismatch"
-    largest = 0.25  # a motor of the next winding
-    delta: float = size(0.01, at.GAIN_ERROR)
-
-
-@dataclass(frozen=True, kw_only=True)
-class HiddenTorqueRippleTime(HiddenDriveEffect):
-    """A torque a sin(2πf t + φ₀) [N m] that no log shows; in no catalogue. f [Hz], φ₀ [rad]."""
-
-    name = "torque_ripple_time"
-    largest = 0.05  # as cogging [N m]
-    a: float = size(1e-3, at.RIPPLE)
-    frequency: float = shape(3.7, at.RIPPLE_RATE, times=2 * pi)
-    phase: float = shape(0.0, at.RIPPLE_PHASE, positive=False)
-
-
-@dataclass(frozen=True, kw_only=True)
-class HiddenDrumEccentricity(HiddenDriveEffect):
-    """R (1 + a cos φ + b sin φ)."""
-
-    name = "drum_eccentricity"
-    largest = 0.03  # half a millimetre of a drum of 17.5 mm
-    a: float = size(8e-4, at.ECC_COS)
-    b: float = size(8e-4, at.ECC_SIN)
-
-
-@dataclass(frozen=True, kw_only=True)
-class HiddenDrumLayering(HiddenDriveEffect):
-    """R + h φ; h [m/rad]."""
-
-    name = "drum_layering"
-    largest = 1e-4  # a cable of 0.6 mm, one turn on the other [m/rad]
-    h: float = size(1e-5, at.LAYER)
-
-
-@dataclass(frozen=True, kw_only=True)
-class HiddenDrumRadiusMismatch(HiddenOneDriveEffect):
-    """R (1 + δ) on one drive."""
-
-    name = "drum_radius_mismatch"
-    largest = 0.05  # a millimetre of a drum of 17.5 mm
-    delta: float = size(6e-3, at.RADIUS_ERROR)
-
-
-@dataclass(frozen=True, kw_only=True)
-class HiddenBacklash(HiddenDriveEffect):
-    """A dead zone of ±h [rad] between rotor and drum, which starts in its middle.
-
-    From about 0.03 rad on, the robot's motion is chaotic: no two steps give the same 20 s.
-    """
-
-    name = "backlash"
-    largest = 0.02  # a gap of two degrees [rad]
-    h: float = size(0.01, at.PLAY)
-
-
-@dataclass(frozen=True, kw_only=True)
-class HiddenSpringHardening(HiddenDriveEffect):
-    """k_s (1 + k₃ |s|^n), s = R_s φ [m]; k₃ [1/m^n]: n = 2 a cubic force, n = 1 a quadratic."""
-
-    name = "spring_hardening"
-    largest = 2.0  # at 0.2 m: three times as stiff
-    reach = 0.2
-    k_3: float = size(8.0, at.SPRING_HARD)
-    exponent: float = shape(2.0, at.SPRING_POWER)
-
-
-@dataclass(frozen=True, kw_only=True)
-class HiddenSpringHysteresis(HiddenDriveEffect):
-    """F_s (1 + η tanh(βω))."""
-
-    name = "spring_hysteresis"
-    largest = 0.1  # 10 % between loading and unloading
-    eta: float = size(-0.02, at.SPRING_LOSS)
+KINDS = (
+    # a winch at rest may hold twice its friction in motion; f_s [N m], v_s [rad/s]
+    kind("stribeck_friction", HiddenDriveEffect, 0.04,
+         f_s=size(0.01, at.STRIBECK), v_s=shape(1.2, at.STRIBECK_SPEED),
+         exponent=shape(2.0, at.STRIBECK_POWER)),
+    # 30 % of the friction of a winch, 0.04 N m
+    kind("asymmetric_friction", HiddenDriveEffect, 0.012, f_a=size(0.002, at.ASYMMETRY)),
+    # small pulleys take up to 20 % of the load
+    kind("load_dependent_friction", HiddenDriveEffect, 0.2, mu=size(0.004, at.LOAD)),
+    # 0.05 N m at 50 rad/s; c [N m (s/rad)^n]
+    kind("quadratic_friction", HiddenDriveEffect, 0.05, reach=50.0,
+         c=size(2e-6, at.QUADRATIC), exponent=shape(2.0, at.QUADRATIC_POWER)),
+    # a drive with twice the friction of the others
+    kind("friction_mismatch", HiddenOneDriveEffect, 1.0, delta=size(0.1, at.COULOMB_ERROR)),
+    # 30 % of the friction: a bent shaft
+    kind("position_dependent_friction", HiddenDriveEffect, 0.3,
+         a=size(0.2, at.ANGLE_COS), b=size(0.1, at.ANGLE_SIN)),
+    # torque of motors without a compensation of it [N m]
+    kind("cogging", HiddenDriveEffect, 0.05,
+         a=size(2e-4, at.COG_COS), b=size(4e-4, at.COG_SIN), n=shape(6.0, at.COG_N)),
+    # a slow current loop [s]
+    kind("current_lag", HiddenDriveEffect, 0.01, tau=size(1.5e-3, at.LAG)),
+    # ten cycles of 1 kHz [s]
+    kind("delay", HiddenEffect, 0.01, acts_on="all drives", delay=size(1.5e-3, at.DELAY)),
+    HiddenCurrentSaturation,
+    HiddenTorqueConstantDrift,
+    # a motor of the next winding
+    kind("torque_constant_mismatch", HiddenOneDriveEffect, 0.25, delta=size(0.01, at.GAIN_ERROR)),
+    # a torque a sin(2πf t + φ₀) that no log shows, as large as cogging [N m]; f [Hz], φ₀ [rad]
+    kind("torque_ripple_time", HiddenDriveEffect, 0.05, a=size(1e-3, at.RIPPLE),
+         frequency=shape(3.7, at.RIPPLE_RATE, times=2 * pi),
+         phase=shape(0.0, at.RIPPLE_PHASE, positive=False)),
+    # half a millimetre of a drum of 17.5 mm
+    kind("drum_eccentricity", HiddenDriveEffect, 0.03,
+         a=size(8e-4, at.ECC_COS), b=size(8e-4, at.ECC_SIN)),
+    # a cable of 0.6 mm, one turn on the other [m/rad]
+    kind("drum_layering", HiddenDriveEffect, 1e-4, h=size(1e-5, at.LAYER)),
+    # a millimetre of a drum of 17.5 mm
+    kind("drum_radius_mismatch", HiddenOneDriveEffect, 0.05, delta=size(6e-3, at.RADIUS_ERROR)),
+    # A gap of two degrees [rad], that starts in its middle. From about 0.03 rad on, the robot's
+    # motion is chaotic: no two steps give the same 20 s.
+    kind("backlash", HiddenDriveEffect, 0.02, h=size(0.01, at.PLAY)),
+    # at 0.2 m three times as stiff; k₃ [1/m^n]: n = 2 a cubic force, n = 1 a quadratic
+    kind("spring_hardening", HiddenDriveEffect, 2.0, reach=0.2,
+         k_3=size(8.0, at.SPRING_HARD), exponent=shape(2.0, at.SPRING_POWER)),
+    # 10 % between loading and unloading
+    kind("spring_hysteresis", HiddenDriveEffect, 0.1, eta=size(-0.02, at.SPRING_LOSS)),
+)  # fmt: skip

@@ -15,7 +15,8 @@ angles and rates. The lag is exact where φ is straight over `FINE` of a sample.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
@@ -25,6 +26,7 @@ from inca_mj.studies.worlds.effect import (
     HiddenDriveEffect,
     HiddenEffect,
     HiddenOneDriveEffect,
+    kind,
     size,
 )
 from inca_mj.studies.worlds.plant import HiddenPlant, simulate_world
@@ -98,31 +100,8 @@ class HiddenEncoderFault(HiddenDriveEffect):
         raise NotImplementedError
 
 
-@dataclass(frozen=True, kw_only=True)
-class HiddenEncoderScale(HiddenOneDriveEffect, HiddenEncoderFault):
-    """s φ."""
-
-    name = "encoder_scale"
-    largest = 0.05
-    s: float = size(0.003)
-
-    def added(self, motion: Motion) -> np.ndarray:
-        """Returns what the scale adds, s φ, shape (n, k) [rad]."""
-        return self.s * motion.angles
-
-
-@dataclass(frozen=True, kw_only=True)
-class HiddenEncoderEccentricity(HiddenOneDriveEffect, HiddenEncoderFault):
-    """a cos φ + b sin φ; a, b [rad]."""
-
-    name = "encoder_eccentricity"
-    largest = 0.05  # a disc that is off its centre by a twentieth of its radius
-    a: float = size(0.005)
-    b: float = size(0.005)
-
-    def added(self, motion: Motion) -> np.ndarray:
-        """Returns what the eccentric disc adds, a cos φ + b sin φ, shape (n, k) [rad]."""
-        return np.asarray(self.a * np.cos(motion.angles) + self.b * np.sin(motion.angles))
+class HiddenOneEncoderFault(HiddenOneDriveEffect, HiddenEncoderFault):
+    """A fault of one encoder."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -141,19 +120,23 @@ class HiddenEncoderLag(HiddenEncoderFault):
         return lagged(motion, self.tau) - motion.angles
 
 
-@dataclass(frozen=True, kw_only=True)
-class HiddenEncoderJump(HiddenOneDriveEffect, HiddenEncoderFault):
-    """c [rad] from t_s [s] on."""
+def _jumped(fault: Any, motion: Motion) -> np.ndarray:
+    """Returns what a jump adds, c where t ≥ t_s, shape (n, k) [rad]."""
+    late = motion.time >= fault.t_s - 1e-9
+    return np.asarray(fault.c * np.repeat(late[:, None], motion.angles.shape[1], axis=1))
 
-    name = "encoder_jump"
-    largest = 0.5
-    c: float = size(0.02)
-    t_s: float = 0.5
 
-    def added(self, motion: Motion) -> np.ndarray:
-        """Returns what the jump adds, c where t ≥ t_s, shape (n, k) [rad]."""
-        late = motion.time >= self.t_s - 1e-9
-        return self.c * np.repeat(late[:, None], motion.angles.shape[1], axis=1)
+KINDS = (
+    kind("encoder_scale", HiddenOneEncoderFault, 0.05, s=size(0.003),
+         added=lambda fault, motion: fault.s * motion.angles),
+    # a disc that is off its centre by a twentieth of its radius; a, b [rad]
+    kind("encoder_eccentricity", HiddenOneEncoderFault, 0.05, a=size(0.005), b=size(0.005),
+         added=lambda fault, motion: (
+             fault.a * np.cos(motion.angles) + fault.b * np.sin(motion.angles))),
+    HiddenEncoderLag,
+    kind("encoder_jump", HiddenOneEncoderFault, 0.5, c=size(0.02), t_s=field(default=0.5),
+         added=_jumped),
+)  # fmt: skip
 
 
 def lagged(motion: Motion, tau: float) -> np.ndarray:

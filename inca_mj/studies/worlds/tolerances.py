@@ -5,7 +5,7 @@
     connector        = nominal place + e            likewise, with an s of its own
     I_x, I_y, I_z, m = value (1 + δ),               δ uniform in ± the half-width, each by itself
 
-The common value is that of `HiddenSetting.varied` and `spread`.
+The common value is that of `VARIED` and `HiddenSetting.spread`.
 """
 
 from __future__ import annotations

@@ -85,7 +85,6 @@ def records(
     ratio: float | Sequence[float] | None = None,
     setting: HiddenSetting | None = None,
     inputs: Sequence[str] = INPUTS,
-    further: float = FURTHER,
     others: Sequence[HiddenEffect] = (),
 ) -> tuple[HiddenWorld, ...]:
     """Returns logs of one robot with these effects, each with its own input, start and noise.
@@ -99,7 +98,6 @@ def records(
         ratio: as of `world`; sizes are found on the first log.
         setting: of the experiment; its input does not count.
         inputs: "prbs" or "multisine" of each log, taken in turn where there are fewer.
-        further: a later start position may be off by this much more than the first, by axis [m].
         others: effects that take, in this order, the place of those whose ratio no size that a
             robot may have reaches.
 
@@ -114,8 +112,8 @@ def records(
         raise InputError("an effect is named twice in one place; give it once, with its size")
     if seed < 0:
         raise InputError(f"seed {seed} is negative; give 0 or more")
-    if n < 1 or not inputs or not further >= 0:
-        raise InputError("give one record or more, an input or more, and no negative distance")
+    if n < 1 or not inputs:
+        raise InputError("give one record or more, and an input or more")
     settings = [replace(setting, input=inputs[j % len(inputs)]) for j in range(n)]
     robot = true_robot(seed, setting)
     u = make_currents(seed, settings[0])
@@ -130,7 +128,7 @@ def records(
     made = [_record(seed, (), robot, chosen, settings[0], u)]
     for j in range(1, n):
         rng = np.random.default_rng([seed, 5, j])
-        moved = elsewhere(robot, setting.offset + further, setting.tilt, rng)
+        moved = elsewhere(robot, setting.offset + FURTHER, setting.tilt, rng)
         u = make_currents(int(rng.integers(2**31)), settings[j])
         made.append(_record(seed, (j,), moved, chosen, settings[j], u))
     return tuple(made)
