@@ -28,7 +28,6 @@ from identification.prediction.selection import judged
 from identification.prediction.state import first_state
 from identification.prediction.task import RecordsTask
 from identification.prediction.yardstick import measure
-from identification.windows.records import as_records
 
 LAWS = ("hardening", "stiffness", "offset")
 EFFECTS = [e for e in candidates(pendulum(), FREE) if e.is_curve or e.name in LAWS]
