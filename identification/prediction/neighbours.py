@@ -123,21 +123,26 @@ def _may_be_of(other: Candidate, law: Candidate) -> bool:
         return True
     of_law = variables(law.effect)
     if acts_on_joints(other.effect):
-        return _share_a_joint(other, law) and may_draw(other.effect, law.effect)
+        return share_a_joint(other, law) and may_draw(other.effect, law.effect)
     is_of_inputs = "input" in other.where
     return not of_law or bool(of_law & ({"v", "f_u"} if is_of_inputs else {*POSITIONS}))
 
 
 def _is_beside(curve: Candidate, law: Candidate) -> bool:
     """Returns whether a candidate is a curve that may draw what a law misses at its joint."""
-    if not (curve.effect.is_curve and may_draw(curve.effect, law.effect)):
-        return False
-    return not acts_on_joints(law.effect) or _share_a_joint(curve, law)
+    is_of_law = curve.effect.is_curve and may_draw(curve.effect, law.effect)
+    return is_of_law and share_a_joint(curve, law)
 
 
-def _share_a_joint(a: Candidate, b: Candidate) -> bool:
-    """Returns whether two effects of joints act at one; an effect at all joints acts at any."""
-    of_a, of_b = ([] if _is_everywhere(c) else places_of(c.where) for c in (a, b))
+def share_a_joint(a: Candidate, b: Candidate) -> bool:
+    """Returns whether two effects may act at one joint.
+
+    An effect at all joints acts at any, and so may one of a sensor, an input or a body.
+    """
+    of_a, of_b = (
+        [] if _is_everywhere(c) or not acts_on_joints(c.effect) else places_of(c.where)
+        for c in (a, b)
+    )
     return not of_a or not of_b or bool({*of_a} & {*of_b})
 
 

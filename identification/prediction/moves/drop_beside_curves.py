@@ -3,7 +3,8 @@
 A curve has eight nodes. What its cause does between them is left, and the law that imitates that
 best is proven like any other: a torque along the position of a neighbour, drawn as a curve, left a
 fifth of the error to a cogging that was not there. Only laws that were found before the curve, or
-that made it needless, are names.
+that made it needless, are names; and laws of other joints than the curve's, which are another
+thing that is missing.
 """
 
 from __future__ import annotations
@@ -11,13 +12,14 @@ from __future__ import annotations
 from dataclasses import replace
 
 from identification.prediction.extension import refitted
+from identification.prediction.neighbours import share_a_joint
 from identification.prediction.task import Change, WindowSearch
 from identification.prediction.trial import Contender
 from identification.progress import Progress
 
 
 def drop_beside_curves(state: WindowSearch, progress: Progress) -> Change:
-    """Returns the state's model without laws that were accepted after a curve that is still there.
+    """Returns the state's model without laws that were accepted after a curve at their joint.
 
     All are kept where the model without them cannot be simulated.
     """
@@ -25,7 +27,8 @@ def drop_beside_curves(state: WindowSearch, progress: Progress) -> Change:
     kept: list[Contender] = []
     lost: list[Contender] = []
     for old in accepted:
-        is_beside = any(k.candidate.effect.is_curve for k in kept)
+        curves = (k.candidate for k in kept if k.candidate.effect.is_curve)
+        is_beside = any(share_a_joint(c, old.candidate) for c in curves)
         is_law = not old.candidate.effect.is_curve
         (lost if is_law and is_beside else kept).append(old)
     keys = {old.candidate.key for old in lost}
