@@ -70,6 +70,9 @@ class Discovery(Shown, Written):
             away; None where nothing is above it.
         smooth_share: of what they and smooth forces at all joints could explain of the fitted
             windows, the share that they explain; None where that is not known.
+        smooth_by_joint: with an unknown effect, the share of the fitted error of the nominal model
+            that any smooth force at one joint could explain, by the joint in words, the largest
+            first; empty else, and along a free run.
         horizon: over which records were predicted [s]; None for a free run.
         unit: of errors and noise over all outputs; "" where these have several units, or none.
         scale: rms error of each output under the nominal model, shape (ny,), in its unit, by which
@@ -131,6 +134,7 @@ class Discovery(Shown, Written):
     unexplained: bool
     share: float | None
     smooth_share: float | None = None
+    smooth_by_joint: Mapping[str, float] = field(default_factory=dict)
     horizon: float | None = None
     unit: str
     scale: np.ndarray | None = None

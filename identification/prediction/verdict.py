@@ -37,6 +37,7 @@ from identification.prediction.remaining import find_remaining, is_off, needed_i
 from identification.prediction.task import WindowSearch
 from identification.prediction.told_effects import fitted_sizes, rejected_effect, unnamed_effect
 from identification.prediction.trial import Contender, Doubt
+from identification.prediction.yardstick import measure
 from identification.windows.comparison import rise
 from identification.windows.records import Record
 from identification.windows.unseen import Unseen
@@ -72,19 +73,22 @@ def conclude(state: WindowSearch) -> Discovery:
     closes = largest_share(state.worse_fit or nominal.unseen, model.unseen, options)
     doubts = doubts_of_names(named, forbidden_of(state), findings, closes, options)
     verdict, doubtful = decide(named, doubts, findings, is_unexplained), None
-    log = task.records[0].log
+    log, by_joint = task.records[0].log, dict[str, float]()
     if verdict == "unknown effect":
         doubtful = _gap(model.unseen, nominal.scale, log) if named else None
         unnamed = [unnamed_effect(n, d or "beside") for n, d in zip(named, doubts, strict=True)]
         alone = attempt(None, partial(_needed_input_error, nominal, options))
         needed = needed if alone is None else alone  # what is told is of the model without effects
         rejected, named, model = listed_once([*unnamed, *rejected]), (), nominal
+        any_force = attempt(None, partial(measure, nominal, task.effects, is_left=True))
+        by_joint = dict(any_force.of_joint) if any_force else by_joint
     smooth = stick.share(nominal.fitted_power, model.fitted_power) if stick and named else None
     noise = model.unseen.noise
     return Discovery(
         records=task.records, options=options, horizon=task.horizon, verdict=verdict, named=named,
         rejected=rejected, share=_share(nominal.unseen, model.unseen),
         smooth_share=smooth,
+        smooth_by_joint=dict(sorted(by_joint.items(), key=lambda share: -share[1])),
         unexplained=bool(findings) or (
             # inputs that err by what is usual may excuse an error that is far above the noise
             is_off(model, options) if verdict == "nothing missing" else not named

@@ -41,7 +41,8 @@ def discovery_to_json(found: Discovery) -> dict[str, Any]:
         "rejected": [
             {**_rejected_to_json(r), **_called(r.candidate, plant)} for r in found.rejected
         ],
-        **plain_fields(found, "failed", "unexplained", "share", "smooth_share"),
+        **plain_fields(found, "failed", "unexplained", "share"),
+        **plain_fields(found, "smooth_share", "smooth_by_joint"),
         "gap": {
             **plain_fields(
                 found, "noise_rms", "disturbance_rms", noise_rms_by_unit="noise_by_unit",

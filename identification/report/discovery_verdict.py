@@ -16,6 +16,7 @@ from identification.report.effect_words import (
 )
 from identification.report.error_words import change_words, describe_scale, error_words, listed
 from identification.report.finding_words import describe_finding, sentence
+from identification.report.horizon_gap import MUCH
 from identification.report.horizon_words import needed_sentences
 from identification.report.missing_place import find_place
 from identification.report.named_words import basis_sentence, named_sentences
@@ -141,10 +142,26 @@ def _unknown(found: Discovery) -> str:
             *_doubtful(found),
             *_place(found),
             *needed_sentences(found),
+            *_any_forces(found),
             *_findings(found),
             *(sentence(describe_finding(f)) for f in found.located),
         ]
     )
+
+
+def _any_forces(found: Discovery) -> list[str]:
+    """Returns the sentence that says at which joint some force is missing, whatever its law is."""
+    shares = found.smooth_by_joint
+    if not shares:
+        return []
+    which = "whether it follows the rate, the position, the drive or the time, or two of these"
+    most = max(shares.values())
+    if most < MUCH:
+        size = percent(most) if most > 0 else "a part"
+        return [f"No smooth force at one joint would explain more than {size} of the fitted error,"
+                f" {which}."]  # fmt: skip
+    each = [f"{percent(share)} at {joint}" for joint, share in shares.items() if share > 0]
+    return [f"A force at one joint would explain {listed(each)} of the fitted error, {which}."]
 
 
 def _doubtful(found: Discovery) -> list[str]:

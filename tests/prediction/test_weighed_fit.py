@@ -33,19 +33,23 @@ def plant():
     return joint_plant(text(0.002, "implicitfast"), (FREE,), LOG)
 
 
-def record(seed, samples=300):
+def record(seed, truth=TRUTH, samples=300):
     rng = np.random.default_rng(seed)
     u = np.repeat(rng.uniform(-1, 1, (samples // 20, 2)) * (4.0, 1.5), 20, axis=0)
     log = replace(LOG, time=0.01 * np.arange(samples), inputs=u, outputs=np.zeros((samples, 2)))
-    y = Predictor(plant(), log, tuple(TRUTH)).predict(np.array([[*TRUTH.values()]]))[0]
+    y = Predictor(plant(), log, tuple(truth)).predict(np.array([[*truth.values()]]))[0]
     return replace(log, outputs=y + NOISE * rng.standard_normal(y.shape), name=f"record {seed}")
+
+
+def fitted(truth):
+    roles = as_records([record(1, truth), record(2, truth)], [record(3, truth)])
+    return roles, fit_nominal(NominalModel(plant(), ("d",), np.array([0.5]), HORIZON), roles)
 
 
 @cache
 def rubbed():
     """The model with the friction of the elbow, and without what is left at the shoulder."""
-    roles = as_records([record(1), record(2)], [record(3)])
-    nominal = fit_nominal(NominalModel(plant(), ("d",), np.array([0.5]), HORIZON), roles)
+    roles, nominal = fitted(TRUTH)
     law = next(e for e in candidates(plant(), ("d",)) if e.name == "coulomb_friction")
     (best,) = window_scores(nominal.fit, [Candidate(law, "joint elbow", {})])
     confirm = [r for r in roles if r.role == "confirm"]
@@ -73,3 +77,12 @@ def test_what_smooth_forces_explain_does_not_depend_on_the_weights_of_the_last_f
         [x.share for x in b.beyond.values()], abs=1e-6
     )
     assert a.of_joint["joint shoulder"] > 0.2
+
+
+@pytest.mark.parametrize("joint", ["shoulder", "elbow"])
+def test_the_joint_of_a_force_of_two_variables_is_told_without_a_law(joint):
+    size = {"shoulder": 0.03, "elbow": 0.005}[joint]
+    _, model = fitted({f"position_dependent_damping.d_q@{joint}": size})
+    shares = measure(model, candidates(plant(), ("d",)), is_left=True).of_joint
+    other = next(share for name, share in shares.items() if name != f"joint {joint}")
+    assert shares[f"joint {joint}"] > max(0.5, 2 * other)
