@@ -155,8 +155,7 @@ def _answers(
 
     from identification import read_robot
     from identification.prediction.discovery import discover_records
-    from identification.robot.second_opinion import ask_torques
-    from identification.robot.suggestions import suggest
+    from identification.robot.second_opinion import ask_torques, suggest
 
     robot = read_robot(toml, logs[0], confirm=logs[1:])
     torques = ask_torques(robot, None)

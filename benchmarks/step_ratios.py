@@ -20,7 +20,7 @@ from mujoco.batch import Batch
 from identification.native import structs
 from identification.native.cache import compile_once
 from identification.native.memory import load_double, store_double
-from identification.native.table import SIGNATURES
+from identification.native.table import SIGNATURES, uninstall
 from inca_mj.reference import simulate_reference
 from inca_mj.robot import law
 from inca_mj.robot.geometry import INCA
@@ -84,7 +84,7 @@ def python_ratio(robot: Twin) -> float:
     """A step with the law as Python callbacks over one with the compiled law."""
     step = stepper(robot)
     (compiled,) = least([step], 50)
-    native.uninstall()
+    uninstall()
     install_python_law(robot.model)
     (slow,) = least([step], 20)
     uninstall_python_law()

@@ -28,15 +28,15 @@ if TYPE_CHECKING:  # the public names, by what they are for
     from identification.robot.reading import read_robot as read_robot
     from identification.robot.robot import Robot as Robot
     from identification.robot.fitting import fit as fit
-    from identification.robot.robot_fit import RobotFit as RobotFit
+    from identification.robot.results import RobotFit as RobotFit
     from identification.robot.torques import fit_torques as fit_torques
-    from identification.robot.torque_fit import TorqueFit as TorqueFit
+    from identification.robot.results import TorqueFit as TorqueFit
     from identification.robot.discovery import discover as discover
     from identification.robot.confirmation import confirm as confirm
     from identification.robot.record_error import Confirmation as Confirmation
     from identification.robot.write import write_robot as write_robot
     from identification.robot.experiment import design_experiment as design_experiment
-    from identification.robot.next_experiment import NextExperiment as NextExperiment
+    from identification.robot.results import NextExperiment as NextExperiment
 
     # results that were saved
     from identification.saved import load as load

@@ -43,12 +43,8 @@ def told_of(where: str) -> Iterator[None]:
 
 
 def _one_line(text: str) -> str:
-    words = ("".join(map(_printable, word)) for word in text.split())
+    words = ("".join(c if c.isprintable() else repr(c)[1:-1] for c in w) for w in text.split())
     return " ".join(w if len(w) <= _WORD else f"{w[:_ENDS]}...{w[-_ENDS:]}" for w in words)
-
-
-def _printable(letter: str) -> str:
-    return letter if letter.isprintable() else repr(letter)[1:-1]
 
 
 def repeated(names: Sequence[str]) -> list[str]:

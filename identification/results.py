@@ -65,11 +65,11 @@ def plain_text(value: Any) -> Any:
     return readable(str(value)) if isinstance(value, Path | str) else plain(value)
 
 
-def package_version(package: str) -> str:
-    """Returns the version of an installed package."""
+def package_version(package: str, missing: str = "not installed") -> str:
+    """Returns the version of an installed package; `missing` without one."""
     from importlib.metadata import PackageNotFoundError, version  # slow to import
 
     try:
         return version(package)
     except PackageNotFoundError:  # run from a source tree
-        return "not installed"
+        return missing

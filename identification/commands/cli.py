@@ -10,9 +10,8 @@ import tyro
 
 from identification.commands.common import import_without_graphics
 from identification.commands.excite import Excite
-from identification.commands.inspect import Inspect
+from identification.commands.inspect import Inspect, New
 from identification.commands.linearize import Linearize
-from identification.commands.new import New
 from identification.commands.program import run_program
 from identification.commands.robots import Discover, Fit, Torques
 from identification.commands.sweep import SweepCommand

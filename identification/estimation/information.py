@@ -6,8 +6,7 @@
     E = λ_min(F),   D = ln det F,   A = tr F⁻¹                  of the parameters that are asked for
 
 For a positive parameter q = ln(value), so that its std is relative. E is the information on the
-worst determined direction. F of an experiment is the sum of the F of its parts, and no further part
-can lower E.
+worst determined direction.
 Source: Ljung, System Identification (1999), 7.4 and 13.2; Swevers et al. (1997) for robots.
 """
 
@@ -18,7 +17,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from identification.errors import InputError, unknown_name
+from identification.errors import unknown_name
 from identification.estimation.identifiability import (
     Identifiability,
     column_errors,
@@ -94,22 +93,6 @@ class Information:
     def a_value(self) -> float:
         """Sum of the variances, infinite where a direction is blind."""
         return float((self.std**2).sum())
-
-    def with_data(self, other: Information) -> Information:
-        """Returns the information of both experiments together.
-
-        Raises:
-            InputError: the other is about other parameters.
-        """
-        if other.names != self.names or other.asked != self.asked:
-            raise InputError("two experiments add up when both are about the same parameters")
-        p = len(self.names)
-        beyond = np.vstack([self.error[p:], other.error[p:]])
-        S = np.vstack([self.root, other.root, np.zeros_like(beyond)])
-        root, error = _compressed(S, np.vstack([self.error[:p], other.error[:p], beyond]))
-        symmetries = tuple(s for s in self.symmetries if s in other.symmetries)
-        least = float(np.hypot(self.least, other.least))
-        return replace(self, root=root, error=error, least=least, symmetries=symmetries)
 
     def about(self, names: Sequence[str]) -> Information:
         """Returns the information on some of the parameters of interest when the others are known.

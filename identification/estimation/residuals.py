@@ -121,9 +121,9 @@ class Whiteness:
         return excess / (1 + excess)
 
 
-def whiteness(x: np.ndarray, lags: int = LAGS) -> Whiteness:
-    """Test a signal (N, ny) at 1..lags, and no more lags than a quarter of its samples."""
-    return Whiteness(autocorrelation(x, min(lags, len(x) // 4))[1:], len(x))
+def whiteness(x: np.ndarray) -> Whiteness:
+    """Test a signal (N, ny) at up to `LAGS` lags, no more than a quarter of its samples."""
+    return Whiteness(autocorrelation(x, min(LAGS, len(x) // 4))[1:], len(x))
 
 
 def autocorrelation(x: np.ndarray, lags: int) -> np.ndarray:

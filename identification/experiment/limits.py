@@ -117,18 +117,16 @@ def limits_of(
 
 @quiet()
 def margins(
-    model: mujoco.MjModel, limits: Limits, inputs: np.ndarray, qpos: np.ndarray, qvel: np.ndarray,
-    reaching: np.ndarray,
-) -> tuple[tuple[Margin, ...], str]:  # fmt: skip
+    model: mujoco.MjModel, limits: Limits, inputs: np.ndarray, qpos: np.ndarray, qvel: np.ndarray
+) -> tuple[tuple[Margin, ...], str]:
     """Returns the margins of a simulated experiment, the nearest first, and what touches.
 
     Args:
         model: of the robot.
         limits: of the experiment.
-        inputs: as commanded, shape (N, nu).
+        inputs: shape (N, nu).
         qpos: simulated, shape (N, nq).
         qvel: likewise, shape (N, nv).
-        reaching: inputs that reach the model, shape (N, nu).
 
     Returns:
         The margins, and two bodies that touch and may not, in words; "" where none do.
@@ -141,7 +139,7 @@ def margins(
                 out.append(Margin(limit, float(column.min()), float(column.max())))
     for limit, column in zip(limits.inputs, inputs.T, strict=True):
         out.append(Margin(limit, float(column.min()), float(column.max())))
-    force, touch = _looked(model, limits, qpos, qvel, reaching)
+    force, touch = _looked(model, limits, qpos, qvel, inputs)
     for limit, column in zip(limits.forces, force.T, strict=False):
         if limit is not None:
             out.append(Margin(limit, float(column.min()), float(column.max())))

@@ -187,7 +187,7 @@ class Stage:
         y = self._predictor(log).outputs(NONE, run)[0]
         log = replace(log, outputs=y)
         qpos, qvel = run["qpos"][0], run["qvel"][0]
-        found, touch = margins(self.model, self.limits, log.inputs, qpos, qvel, log.inputs)
+        found, touch = margins(self.model, self.limits, log.inputs, qpos, qvel)
         return Played(log, qpos, qvel, found, aim), touch
 
     def _predictor(self, log: Log) -> Predictor:

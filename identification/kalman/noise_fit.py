@@ -4,15 +4,16 @@
 
 E and Φ are the whitened residual and sensitivities; c is the small change of the parameters, held
 by their priors, that fits best. ρ is searched on a scale that the plant gives: at ρ₀ the inputs'
-error moves the outputs by as much as the sensors' noise. How the noise is shared out among sensors
-and inputs is found with c held, which never lowers L (`noise_shares`). Inputs may have shares of
-their own, where twice the log likelihood gains more than the price of their number by BIC.
+error moves the outputs by as much as the sensors' noise. How the noise is shared out among the
+sensors is found with c held, which never lowers L (`noise_shares`). All inputs have one ρ: where
+one errs by more, innovations would be white with a ρ of its own, but what follows from another
+input would be taken for that error too (of 12 logs of crosstalk it is told in 7, and else in 11).
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import isclose
 from threading import Lock
 
@@ -40,7 +41,7 @@ FIRST_LEVELS = (0.0, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0)
 class NoiseLevel:
     """A noise and the likelihood of a residual under it."""
 
-    noise: Noise  # ρ and τ, and the shares of sensors and inputs
+    noise: Noise  # ρ and τ, and the shares of the sensors
     sigma: float  # σ, rms of the sensors' noise over all outputs, in their unit
     log_likelihood: float  # of the residual, up to a constant that depends on the log only
 
@@ -54,7 +55,7 @@ class NoiseLevel:
         return self.sigma * self.noise.of_outputs(ny)
 
     def of_inputs(self, nu: int) -> np.ndarray:
-        """Returns ρ σ g: std of the unlogged error of each input, in its unit, shape (nu,)."""
+        """Returns ρ σ: std of the unlogged error of each input, in its unit, shape (nu,)."""
         return self.sigma * self.noise.of_inputs(nu)
 
 
@@ -107,7 +108,6 @@ def fit_noise(
     largest: float = np.inf,
     outputs: tuple[float, ...] = (),
     kinds: Sequence[Hashable] = (),
-    each_input: bool = False,
 ) -> NoiseLevel:
     """Returns the most likely noise of a residual; what it whitens of J is kept (see `whiten`).
 
@@ -125,10 +125,6 @@ def fit_noise(
         largest: largest error of the inputs that is believed on the grid, in the inputs' unit.
         outputs: shares of the sensors where no noise is known.
         kinds: see `share_noise`.
-        each_input: whether inputs may have errors of their own. No search asks for it yet: where
-            one input errs by more, innovations are white with it; but what follows from another
-            input is taken for that error too (of 12 logs of crosstalk it is told in 7, and else
-            in 11).
     """
     outputs = outputs if near is None else near.noise.outputs
     likeliest = _Likeliest()
@@ -141,27 +137,11 @@ def fit_noise(
                 likeliest.update(level, white)
             return level
 
-        def whitened(noise: Noise) -> Whitened:
-            return likeliest.find(noise) or whiten(plant, J, noise, sampling_time)
-
         def shared(best: NoiseLevel) -> NoiseLevel:
             if e.shape[1] == 1:
                 return best
-            white = whitened(best.noise)
+            white = likeliest.find(best.noise) or whiten(plant, J, best.noise, sampling_time)
             return _best([best, at(share_level(white, e, prior, sampling_time, kinds))])
-
-        def of_each_input(best: NoiseLevel) -> NoiseLevel:
-            white, inputs = whitened(best.noise), plant.B.shape[2]
-            if inputs == 1:
-                return best
-            noise = share_level(white, e, prior, sampling_time, kinds, each_input=True)
-            new = whiten(plant, J, noise, sampling_time)
-            level = evaluate_noise(new, e, prior)
-            gain = 2 * (level.log_likelihood - best.log_likelihood)
-            if gain <= (inputs - 1) * np.log(len(e)):
-                return best
-            likeliest.update(level, new)
-            return level
 
         def believed(noise: Noise, factors: Sequence[float]) -> list[NoiseLevel]:
             each = [noise.scaled(f) for f in factors]
@@ -182,11 +162,9 @@ def fit_noise(
         best = _best(found)
         times = sampling_time / 3, MAX_CORRELATION_TIME  # below the first it is white
         if fine:
-            alike = at(replace(best.noise, inputs=())) if best.noise.inputs else best
-            best = shared(alike)
+            best = shared(best)
             if best.noise.ratio:
                 best = shared(refine_noise(best, at, times))
-                best = of_each_input(best) if each_input else best
     likeliest.keep(best)
     return best
 
@@ -218,11 +196,11 @@ class _Likeliest:
 
 def share_level(
     white: Whitened, e: np.ndarray, prior: np.ndarray, sampling_time: float,
-    kinds: Sequence[Hashable] = (), each_input: bool = False,
+    kinds: Sequence[Hashable] = (),
 ) -> Noise:  # fmt: skip
     """Returns the noise of whitened sensitivities with its likeliest shares; see `share_noise`."""
     rest = e - white.J @ _adjust(white, e, prior)[1]
-    return share_noise(white.plant, white.noise, rest, sampling_time, kinds, each_input).noise
+    return share_noise(white.plant, white.noise, rest, sampling_time, kinds).noise
 
 
 def refine_noise(

@@ -1,11 +1,11 @@
 """The noise model of sensors and unlogged input errors, its whitening filter and its smoother.
 
     δx_{k+1} = A_k δx_k + B_k w_k          w: unlogged error of each input
-    w_{k+1}  = a w_k + √(1-a²) ρ g ν_k      of std ρ σ, correlation time τ, a = exp(-T_s/τ)
+    w_{k+1}  = a w_k + √(1-a²) ρ ν_k        of std ρ σ, correlation time τ, a = exp(-T_s/τ)
     e_k      = C δx_k + σ s v_k             v, ν: white, of unit variance
 
-The shares s of the sensors and g of the inputs have the mean square 1, so that σ and ρ σ are the
-rms over all of them (`noise_shares` estimates them).
+The shares s of the sensors have the mean square 1, so that σ is the rms over all of them
+(`noise_shares` estimates them).
 
 The Kalman filter W of this model turns residuals into innovations, which are white where the model
 is right (Kailath 1968). With the same filter applied to residuals and sensitivities, F = W Φ and
@@ -15,7 +15,7 @@ so that whoever divides by σ needs no s. The most likely w, given a whole log, 
 smoother:
 
     u = Wᵀ W e,    e - s² u = C ẑ,    r_k = (A_k - A_k K_k C)ᵀ r_{k+1} + Cᵀ S_k⁻¹ ε_k
-    ŵ_{k+1} = a ŵ_k + q_k r_{k+1},    ŵ_0 = (ρ g)² r_0      of r the part that belongs to w
+    ŵ_{k+1} = a ŵ_k + q_k r_{k+1},    ŵ_0 = ρ² r_0      of r the part that belongs to w
 
 z = (x, w) (Durbin and Koopman 2012, section 4.6). Nothing but vectors is propagated: the
 covariances of the filter and of the smoother are not needed.
@@ -44,27 +44,18 @@ class Noise:
     time: float  # τ, correlation time of the inputs' error [s]
     # s, std of the noise of each sensor over σ; none where all are alike
     outputs: tuple[float, ...] = ()
-    # g, std of the error of each input over ρ σ; none where all are alike
-    inputs: tuple[float, ...] = ()
 
     def of_outputs(self, ny: int) -> np.ndarray:
         """Returns s, shape (ny,)."""
         return np.array(self.outputs or (1.0,) * ny)
 
     def of_inputs(self, nu: int) -> np.ndarray:
-        """Returns ρ g, std of the error of each input over σ, shape (nu,)."""
-        return self.ratio * np.array(self.inputs or (1.0,) * nu)
+        """Returns ρ, std of the error of each input over σ, shape (nu,)."""
+        return np.full(nu, self.ratio)
 
     def scaled(self, factor: float) -> Noise:
         """Returns the same noise with ρ multiplied by a factor."""
         return replace(self, ratio=self.ratio * factor)
-
-    def calmed(self) -> Noise:
-        """Returns the same noise with no input's error above their median."""
-        each = self.of_inputs(len(self.inputs))
-        each = np.minimum(each, np.median(each))
-        ratio = float(np.sqrt(np.mean(each**2)))
-        return replace(self, ratio=ratio, inputs=tuple((each / ratio).tolist()))
 
     def lasting(self, time: float) -> Noise:
         """Returns a noise of another τ [s] and the same ρ²τ, to which a slow plant responds."""

@@ -1,8 +1,8 @@
-"""How the noise is shared out: σ s_i of each sensor, and ρ σ g_j of each input.
+"""How the noise is shared out: σ s_i of each sensor, and ρ σ of all inputs.
 
-    Ω = Σ_i σ² s_i² I_i + Σ_j (ρ σ g_j)² T_j        covariance of the residual e of a free run
-    x = Ω⁻¹ e,    q_i = xᵀ I_i x,    t_i = tr(Ω⁻¹ I_i)        of an input T_j in place of I_i
-    s_i² ← s_i² (q_i/t_i)^½        and likewise (ρ g_j)²
+    Ω = Σ_i σ² s_i² I_i + (ρ σ)² Σ_j T_j            covariance of the residual e of a free run
+    x = Ω⁻¹ e,    q_i = xᵀ I_i x,    t_i = tr(Ω⁻¹ I_i)        of the inputs Σ T_j in place of I_i
+    s_i² ← s_i² (q_i/t_i)^½        and likewise ρ²
 
 I_i picks the samples of sensor i, and T_j is what errors of input j, of one variance, do to the
 outputs. Each such step raises the likelihood, as it minimises a bound that touches it (Zhou, Hu,
@@ -41,8 +41,7 @@ class Shared:
     noise: Noise  # the noise
     log_likelihood: float  # with the likeliest σ, up to a constant that depends on the log only
     sensors: np.ndarray  # q_i/t_i of each sensor, shape (ny,)
-    inputs: np.ndarray  # q_j/t_j of each input, shape (nu,); empty where they have no error
-    input: float  # the same of all inputs together, 1 where they have no error
+    inputs: float  # the same of all inputs together, 1 where they have no error
 
 
 def share_noise(
@@ -51,7 +50,6 @@ def share_noise(
     e: np.ndarray,
     sampling_time: float,
     kinds: Sequence[Hashable] = (),
-    each_input: bool = False,
 ) -> Shared:
     """Returns the likeliest shares of a noise, τ held.
 
@@ -61,13 +59,12 @@ def share_noise(
         e: residual, shape (N, ny).
         sampling_time: [s].
         kinds: of each output, such as its unit; only those of one kind compare. All do without any.
-        each_input: whether each input has a share of its own, or all have that of `noise`.
     """
     kinds = tuple(kinds) or (None,) * e.shape[1]
     best = judge_shares(plant, noise, e, sampling_time)
     for _ in range(MAX_STEPS):
         for power in POWERS:
-            moved = _moved(best, power, kinds, each_input)
+            moved = _moved(best, power, kinds, plant.B.shape[2])
             new = judge_shares(plant, moved, e, sampling_time)
             rise = new.log_likelihood - best.log_likelihood
             if rise > 0:
@@ -89,7 +86,7 @@ def judge_shares(
     log_likelihood = -0.5 * (E.size * np.log(squares) + filter_.log_determinant)
     if not filter_.A.size:
         sensors = np.mean(E**2, axis=0) / squares
-        return Shared(noise, float(log_likelihood), sensors, np.empty(0), 1.0)
+        return Shared(noise, float(log_likelihood), sensors, 1.0)
     system = filter_.A, filter_.C, filter_.K, filter_.L
     x, r = transpose_filter(*system, E)
     V, N = information(*system)
@@ -100,16 +97,13 @@ def judge_shares(
         noise=noise,
         log_likelihood=float(log_likelihood),
         sensors=np.sum(x**2, axis=0) / squares / V.sum(axis=0),
-        inputs=np.divide(q, t, out=np.ones(nu), where=t > 0),  # no output feels an input of t = 0
-        input=float(of_inputs @ q / (of_inputs @ t)),
+        inputs=float(of_inputs @ q / (of_inputs @ t)),
     )
 
 
-def _moved(
-    now: Shared, power: float, kinds: Sequence[Hashable], each_input: bool
-) -> Noise:  # fmt: skip
+def _moved(now: Shared, power: float, kinds: Sequence[Hashable], nu: int) -> Noise:
     """Returns the noise after a step, its shares of the mean square 1 again."""
-    noise, ny, nu = now.noise, len(now.sensors), len(now.inputs)
+    noise, ny = now.noise, len(now.sensors)
     variances = noise.of_outputs(ny) ** 2 * now.sensors**power
     for kind in dict.fromkeys(kinds):
         chosen = np.array([k == kind for k in kinds])
@@ -117,10 +111,7 @@ def _moved(
         variances[chosen] = np.maximum(variances[chosen], least)
     scale = variances.mean()
     outputs = tuple(np.sqrt(variances / scale).tolist()) if ny > 1 else ()
-    of_inputs = noise.of_inputs(nu) ** 2
-    of_inputs = of_inputs * (now.inputs if each_input else now.input) ** power / scale
+    of_inputs = noise.of_inputs(nu) ** 2 * now.inputs**power / scale
     if not of_inputs.any():
         return replace(noise, outputs=outputs)
-    ratio = float(np.sqrt(of_inputs.mean()))
-    inputs = tuple((np.sqrt(of_inputs) / ratio).tolist()) if each_input else noise.inputs
-    return replace(noise, ratio=ratio, outputs=outputs, inputs=inputs)
+    return replace(noise, ratio=float(np.sqrt(of_inputs.mean())), outputs=outputs)

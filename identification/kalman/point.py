@@ -115,13 +115,12 @@ def evaluate_point(
     )
 
 
-def shift_point(point: Point, q: np.ndarray, run: Run | None = None) -> Point | None:
+def shift_point(point: Point, q: np.ndarray, run: Run) -> Point | None:
     """Returns the point after a short step, with the columns and the linearisation from before it.
 
     None where the outputs do not go where the columns say: they no longer hold.
     """
     inside = point.space.inside(q)
-    run = run or Run(point.predictor, point.space.decode(inside))
     e = point.log.outputs - run.outputs
     expected, found = point.J @ (inside - point.q), point.e - e
     if np.linalg.norm(found - expected) > SLOPE_ERROR * np.linalg.norm(found):

@@ -206,12 +206,11 @@ def estimate_noise(
 def share_out(point: Point, priors: Priors, level: NoiseLevel) -> NoiseLevel:
     """Returns the level of a point's residual with its likeliest shares; see `noise_shares`."""
     e, Ts = point.e, point.log.sampling_time
-    is_each = bool(level.noise.inputs)
-    if e.shape[1] == 1 and not is_each:
+    if e.shape[1] == 1:
         return level
     known = whiten(point.linear, point.J, level.noise, Ts)
     kinds = [*output_units(point.log).values()]
-    noise = share_level(known, e, priors.weight, Ts, kinds, is_each)
+    noise = share_level(known, e, priors.weight, Ts, kinds)
     white = whiten(point.linear, point.J, noise, Ts)
     shared = evaluate_noise(white, e, priors.weight)
     if shared.log_likelihood <= level.log_likelihood:

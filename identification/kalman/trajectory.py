@@ -16,6 +16,7 @@ from functools import cached_property, partial
 import mujoco
 import numpy as np
 
+from identification.linear.points import AtPoints
 from identification.model.predictor import Predictor
 from identification.model.protocol import with_numbers, with_states
 from identification.model.rollout import hold, rollout, substeps, without_sensors
@@ -30,17 +31,14 @@ POINTS = ("qpos", "qvel", "moved", "act", "inputs", "time")  # fields with a row
 
 
 @dataclass(frozen=True, kw_only=True)
-class Trajectory:
-    """One record's trajectory at M points, P of them for each of its N samples but the last."""
+class Trajectory(AtPoints):
+    """One record's trajectory at M points, P of them for each of its N samples but the last.
 
-    model: mujoco.MjModel  # with the numbers of the value set, without its sensors
-    qpos: np.ndarray  # positions, shape (M, nq)
-    qvel: np.ndarray  # velocities, shape (M, nv)
+    Its model has the numbers of the value set, and no sensors; its times are those in the record.
+    """
+
     # how far the velocities move in the time that a point stands for, shape (M, nv)
     moved: np.ndarray
-    act: np.ndarray  # activations, shape (M, na)
-    inputs: np.ndarray  # that reach the model, shape (M, nu)
-    time: np.ndarray  # of the points in the record [s], shape (M,)
     steps: np.ndarray  # of the simulation, between which the points lie, shape (M + 1,)
     timestep: float  # of the simulation [s]
     begins: np.ndarray  # first point of each interval, shape (L,)

@@ -18,7 +18,7 @@ import numpy as np
 
 from identification.errors import DivergenceError, InputError
 from identification.linear.derivatives import CENTRAL, differences
-from identification.linear.points import Points
+from identification.linear.points import AtPoints, Points
 from identification.model.predictor import Predictor
 from identification.model.protocol import with_numbers
 from identification.model.rollout import State, substeps
@@ -29,7 +29,7 @@ SMALLEST = 2.0**-20  # share of a Newton step
 
 
 @dataclass(frozen=True, kw_only=True)
-class OperatingPoints:
+class OperatingPoints(AtPoints):
     """M states of one model with the inputs that act there.
 
     Attributes:
@@ -43,13 +43,6 @@ class OperatingPoints:
     Raises:
         InputError: a shape does not fit the model.
     """
-
-    model: mujoco.MjModel
-    qpos: np.ndarray
-    qvel: np.ndarray
-    act: np.ndarray
-    inputs: np.ndarray
-    time: np.ndarray
 
     def __post_init__(self) -> None:
         m, count = self.model, len(self.time)

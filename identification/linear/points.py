@@ -10,7 +10,6 @@ import copy
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import islice
-from typing import Protocol
 
 import mujoco
 import numpy as np
@@ -27,32 +26,16 @@ TOGETHER = 32  # changes that share the positions of a point; more would save li
 MEMORY = 2**28  # bytes of their models at most: one with meshes has tens of millions
 
 
-class AtPoints(Protocol):
-    """M states of one model, each array with M rows."""
+@dataclass(frozen=True, kw_only=True)
+class AtPoints:
+    """M states of one model."""
 
-    @property
-    def model(self) -> mujoco.MjModel:
-        """The model."""
-
-    @property
-    def qpos(self) -> np.ndarray:
-        """Positions, shape (M, nq)."""
-
-    @property
-    def qvel(self) -> np.ndarray:
-        """Velocities, shape (M, nv)."""
-
-    @property
-    def act(self) -> np.ndarray:
-        """Activations, shape (M, na)."""
-
-    @property
-    def inputs(self) -> np.ndarray:
-        """Inputs that reach the model, shape (M, nu)."""
-
-    @property
-    def time(self) -> np.ndarray:
-        """The times of the points [s], shape (M,)."""
+    model: mujoco.MjModel  # with its numbers
+    qpos: np.ndarray  # positions, shape (M, nq)
+    qvel: np.ndarray  # velocities, shape (M, nv)
+    act: np.ndarray  # activations, shape (M, na)
+    inputs: np.ndarray  # that reach the model, shape (M, nu)
+    time: np.ndarray  # of the points [s], shape (M,)
 
 
 @dataclass(frozen=True)

@@ -17,11 +17,11 @@ from pathlib import Path
 
 from identification.errors import InputError
 from identification.files import LOG, check_file, read_bytes
+from identification.logs.arrays import read_npz
 from identification.logs.csv_files import parse_csv
 from identification.logs.read_bag import SUFFIXES as OF_ROS
 from identification.logs.read_bag import is_bag_folder, read_bag
 from identification.logs.read_mat import parse_mat
-from identification.logs.read_npz import read_npz
 from identification.logs.read_parquet import episode_of, read_parquet
 from identification.logs.table import Table
 
@@ -61,9 +61,7 @@ def log_table(
     kind = path.suffix.lower()
     if episode_of(path) is not None:
         return read_parquet(path, wanted, stamps)
-    if is_bag_folder(path):
-        return read_bag(path, wanted, asked)
-    if kind in OF_ROS:
+    if is_bag_folder(path) or kind in OF_ROS:
         return read_bag(path, wanted, asked)
     if kind == ".csv":
         return parse_csv(read_bytes(path), path, header, wanted, stamps)

@@ -84,7 +84,7 @@ class JoinedLog(Log):
         return _joined(parts, numbers, f"{self.name} [{name}]", float(self.time[0]))
 
 
-def join_logs(logs: Sequence[Log], name: str = "") -> Log:
+def join_logs(logs: Sequence[Log]) -> Log:
     """Returns several records as one log; a single one stays as it is."""
     if not logs:
         raise InputError("there is no log to join; give one or more")
@@ -94,7 +94,7 @@ def join_logs(logs: Sequence[Log], name: str = "") -> Log:
     for log in logs[1:]:
         _refuse_unlike(logs[0], log)
     numbers = [*range(1, 1 + len(logs))]
-    return _joined(logs, numbers, name or " + ".join(log.name for log in logs), 0.0)
+    return _joined(logs, numbers, " + ".join(log.name for log in logs), 0.0)
 
 
 def records_of(log: Log) -> tuple[tuple[int, Log], ...]:

@@ -38,7 +38,6 @@ from identification.native.table import (
     enter,
     hold,
     refuse_foreign,
-    release,
     table,
 )
 
@@ -78,11 +77,6 @@ def install(law: Law) -> None:
             if kind != SHARE:
                 hold(kind, compiled[kind] if laws == 1 else None)
         _ENTERED[law.name, law.key] = law
-
-
-def uninstall() -> None:
-    """Release MuJoCo's callbacks, to compare a step with a law and without it."""
-    release()
 
 
 @cache  # for the life of the process: MuJoCo holds bare pointers

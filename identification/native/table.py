@@ -174,8 +174,8 @@ def hold(kind: str, alone: Any | None) -> None:
         getattr(mujoco, f"set_mjcb_{kind}")(ours)
 
 
-def release() -> None:
-    """Take the callbacks back from MuJoCo; those of other libraries stay."""
+def uninstall() -> None:
+    """Take the callbacks back from MuJoCo, to compare a step; those of other libraries stay."""
     for kind in KINDS:
         if _is_ours(kind, getattr(mujoco, f"get_mjcb_{kind}")()):
             getattr(mujoco, f"set_mjcb_{kind}")(None)

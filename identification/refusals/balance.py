@@ -8,7 +8,7 @@
 b are the model's bodies and rotors, p points of the outermost bodies that may carry a payload. Each
 γ is the weight of a body along an axis, or of what it carries: gravity may be missing, turned or
 too much. So η_j is what no payload, gravity, friction or mass explains; only a wrong unit, sign or
-order of columns does. The motion is smoothed by ψ (`identification.refusals.smoothing`).
+order of columns does. The motion is smoothed by ψ (`identification.refusals.forces`).
 
 A drive that rests while other joints swing its own has a large η_j, because a little that the model
 lacks is more than what that drive gives. So η weighs all joints by the inertia M_jj that they move.
@@ -33,12 +33,15 @@ from identification.engine import quiet
 from identification.logs.log import Log
 from identification.model.predictor import output_columns
 from identification.refusals.forces import (
+    Smooth,
     inertial_force,
+    is_hidden,
     point_force,
+    smoothed,
     tendon_forces,
     weights,
+    widths,
 )
-from identification.refusals.smoothing import Smooth, is_hidden, smoothed, widths
 from identification.torques.bodies import follow_bodies
 
 FACTOR = 4.0  # that a mass, an inertia or a stiffness may be off; more is a matter of units
@@ -62,11 +65,9 @@ class Unbalanced:
     whole: float
 
 
-def unbalanced_share(
-    model: mujoco.MjModel, log: Log, springs: bool = False, wider: int = 1
-) -> np.ndarray | None:
+def unbalanced_share(model: mujoco.MjModel, log: Log) -> np.ndarray | None:
     """Returns η_j of the joint of each output, shape (ny,), without unit; see `unbalanced`."""
-    found = unbalanced(model, log, springs, wider)
+    found = unbalanced(model, log)
     return None if found is None else found.of_outputs
 
 

@@ -13,7 +13,6 @@ import numpy as np
 from identification.discovery.result import Discovery
 from identification.prediction.clocks import shown_shifts
 from identification.quantities import held
-from identification.report.departure_words import departures_found
 from identification.report.discovery_figures import gap_figures, where_figures
 from identification.report.effect_sections import listed_below
 from identification.report.error_words import error_words, pair_words
@@ -28,7 +27,7 @@ from identification.report.horizon_section import error_figures
 from identification.report.page import Section, Table
 from identification.report.parts_words import parts_sentence
 from identification.report.shown_words import shown_lines, shown_rows, shown_sentences
-from identification.report.value_words import gathered, words_of
+from identification.report.value_words import departures_found, gathered, words_of
 from identification.shares import decimal
 from identification.windows.coarse import steps_of
 

@@ -13,7 +13,6 @@ from identification.estimation.identifiability import in_words
 from identification.estimation.metrics import output_units, relative
 from identification.model.protocol import FINER
 from identification.quantities import held, quantity
-from identification.report.departure_words import departure_sentences
 from identification.report.error_words import describe_scale, error_words, times_words
 from identification.report.fitted_values import first_few, std_sentence, step_sentences
 from identification.report.untold_words import (
@@ -25,6 +24,7 @@ from identification.report.untold_words import (
     too_weak,
     weak_sentences,
 )
+from identification.report.value_words import departure_sentences
 from identification.shares import change
 
 if TYPE_CHECKING:  # both are slow to import

@@ -10,7 +10,6 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from datetime import date
 from hashlib import sha256
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,6 +17,7 @@ from identification.errors import InputError
 from identification.files import read_text, write_text
 from identification.report.headline import Headline
 from identification.report.media import drawing, image_source, video_source
+from identification.results import package_version
 
 if TYPE_CHECKING:
     from markupsafe import Markup
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 TEMPLATES = Path(__file__).parent / "templates"
 LONG = 12  # rows: a table of more is folded
 WIDE = 9.0  # a figure of so many inches has a row of its own
-PACKAGE = "inca-mj"
+PACKAGE, SOURCE = "inca-mj", "of a source tree"
 PROGRAMS = ("inca", "inca_mj", "identification")
 NUMBER = re.compile(r"[-+]?\d+(\.\d+)?(e[-+]?\d+)?")
 # in body/arm.mass, and in no unit such as N/m or rad/s
@@ -182,7 +182,9 @@ def save_figures(sections: Iterable[Section], folder: Path) -> list[Path]:
 
 def origin(data: Sequence[str] = ()) -> str:
     """Returns lines that say what made a report: version, command, names of logs, and date."""
-    lines = [f"{PACKAGE} {_version(PACKAGE)} with MuJoCo {_version('mujoco')}"]
+    lines = [
+        f"{PACKAGE} {package_version(PACKAGE, SOURCE)} with MuJoCo {package_version('mujoco')}"
+    ]
     if command := _command(sys.argv):
         lines.append(f"Command: {command}")
     if named := [name for name in data if name]:
@@ -270,10 +272,3 @@ def _command(argv: Sequence[str]) -> str:
         return ""
     begin = "python -m inca_mj" if name == "inca_mj" else name
     return shlex.join([*begin.split(), *argv[1:]])
-
-
-def _version(package: str) -> str:
-    try:
-        return version(package)
-    except PackageNotFoundError:  # run from a source tree
-        return "of a source tree"

@@ -1,4 +1,8 @@
-"""Parameters and sizes of effects in words: what a value is, and of which record or part."""
+"""Parameters and sizes of effects in words: what a value is, of which record or part, and how far.
+
+A value that left what was known by several std stands for something else: the model lacks an
+effect that the value imitates, or what was known of it is wrong.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +11,11 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:  # a search is slow to import, and a page may tell of a model alone
+from identification.discovery.fitted import Fitted
+from identification.quantities import held
+from identification.report.error_words import listed
+
+if TYPE_CHECKING:
     from identification.discovery.result import Discovery
     from identification.effects.effect import Effect
     from identification.model.parameter import Parameter
@@ -124,3 +132,29 @@ def _gathered(what: str, sign: str, at: Sequence[int]) -> str:
 def is_part(name: str) -> bool:
     """Returns whether a parameter is the deviation of one of many parts that are alike."""
     return "@" in name and "." not in name
+
+
+FAR = 3.0  # std of what was known: one value in 400 of a right model is farther
+
+
+def departure_sentences(model: Fitted, words: Mapping[str, str] | None = None) -> list[str]:
+    """Returns a sentence on the values that are far from what was known; none where none is."""
+    far = {n: abs(by) for n, by in model.departures.items() if abs(by) > FAR and not is_part(n)}
+    if not far:
+        return []
+    farthest_first = sorted(far, key=lambda n: -far[n])
+    told = [f"{(words or {}).get(n, n)} by {held(far[n])} std" for n in farthest_first]
+    return [
+        f"The fit moved values far from what was known of them: {listed(told)}. Either the model"
+        " lacks something that they imitate, or what was known is wrong."
+    ]
+
+
+def departures_found(found: Discovery) -> list[str]:
+    """Returns sentences on the values that a discovery's fits moved far from what was known."""
+    words = words_of(found)
+    final = departure_sentences(found.final, words)
+    if not found.named:
+        return final
+    before = departure_sentences(found.nominal, words)
+    return [*final, *(f"Before anything was named: {s[0].lower()}{s[1:]}" for s in before)]

@@ -16,8 +16,8 @@ from identification.prediction.model import predict_fitted
 from identification.prediction.record_errors import record_errors
 from identification.prediction.records_fit import RecordsFit
 from identification.robot.record_error import AS_WRITTEN, FITTED, Confirmation, of_record
+from identification.robot.results import RobotFit
 from identification.robot.robot import Robot
-from identification.robot.robot_fit import RobotFit
 from identification.windows.records import Record
 from identification.windows.unseen import predict
 from identification.windows.window_error import window_error

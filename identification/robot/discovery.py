@@ -20,8 +20,7 @@ from identification.robot.blame import told_of_factors
 from identification.robot.checks import refuse_horizon, refuse_unlike
 from identification.robot.file import refuse_nothing_free
 from identification.robot.robot import Robot
-from identification.robot.second_opinion import ask_torques, with_torques
-from identification.robot.suggestions import suggest
+from identification.robot.second_opinion import ask_torques, suggest, with_torques
 from identification.written import Files
 
 
@@ -143,7 +142,7 @@ def _written(found: Discovery, robot: Robot | None = None) -> Discovery:
 
 def _files(found: Discovery, robot: Robot | None) -> Files:
     # What draws figures is slow to import.
-    from identification.report.discovery_files import DiscoveryFiles
+    from identification.report.discovery_report import DiscoveryFiles
     from identification.robot.discovery_files import RobotDiscoveryFiles
 
     return DiscoveryFiles(found) if robot is None else RobotDiscoveryFiles(found, robot)

@@ -11,8 +11,8 @@ from typing import Any
 
 from identification.files import write_text
 from identification.quantities import plain
-from identification.report.discovery_files import DiscoveryFiles
 from identification.report.discovery_json import discovery_to_json
+from identification.report.discovery_report import DiscoveryFiles
 from identification.report.missing_place import find_place
 from identification.report.own_stub import own_stub
 from identification.report.page import Section

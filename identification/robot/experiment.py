@@ -14,8 +14,8 @@ from identification.experiment.limits import limits_of
 from identification.experiment.playing import stage_of
 from identification.pool import one_blas_thread
 from identification.results import RESULT, read_result
-from identification.robot.next_experiment import NextExperiment
 from identification.robot.reading import read_robot
+from identification.robot.results import NextExperiment
 from identification.robot.rivals import Model, read_rivals
 from identification.robot.robot import Robot
 from identification.written import Files

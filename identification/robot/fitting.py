@@ -17,8 +17,8 @@ from identification.prediction.records_fit import fit_records
 from identification.robot.blame import told_of_factors
 from identification.robot.checks import refuse_horizon
 from identification.robot.file import refuse_nothing_free
+from identification.robot.results import RobotFit
 from identification.robot.robot import Robot
-from identification.robot.robot_fit import RobotFit
 from identification.written import Files
 
 FEWEST = 10  # measured values for each parameter

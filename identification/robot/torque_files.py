@@ -9,11 +9,9 @@ from typing import Any
 
 from identification.report.page import Section, write_report
 from identification.report.page_files import PageFiles
-from identification.report.torque_headline import torque_headline
-from identification.report.torque_json import evidence_to_json
-from identification.report.torque_sections import torque_sections
+from identification.report.torque_report import evidence_to_json, torque_headline, torque_sections
 from identification.report.torque_words import torque_verdict
-from identification.robot.torque_fit import TorqueFit
+from identification.robot.results import TorqueFit
 
 
 @dataclass(frozen=True)

@@ -14,8 +14,8 @@ from identification.errors import refuse_kind
 from identification.logs.joined import refuse_different
 from identification.logs.log import Log
 from identification.model.protocol import with_numbers
+from identification.robot.results import TorqueFit
 from identification.robot.robot import Robot
-from identification.robot.torque_fit import TorqueFit
 from identification.torques.bodies import read_numbers
 from identification.torques.evidence import find_evidence
 from identification.torques.fits import FreeNumber, read_friction

@@ -76,7 +76,8 @@ def _files(pattern: str, label: Mapping[str, Any], folder: Path, where: str) -> 
     if not found:
         raise InputError(f"{where}: no file matches {base / name}; correct the pattern")
     if label:
-        labels = _labels(base)
+        labels = read_json(base / "labels.json", "JSON file of labels", "leave label out")
+        labels = labels if isinstance(labels, dict) else {}
         found = [f for f in found if _described(labels.get(Path(f).stem, {}), label)]
         if not found:
             raise InputError(
@@ -84,12 +85,6 @@ def _files(pattern: str, label: Mapping[str, Any], folder: Path, where: str) -> 
                 " correct label, or leave it out"
             )
     return tuple(f"{above}{slash}{file}" for file in found)
-
-
-def _labels(folder: Path) -> dict[str, Any]:
-    path = folder / "labels.json"
-    labels = read_json(path, "JSON file of labels", "leave label out")
-    return labels if isinstance(labels, dict) else {}
 
 
 def _described(told: Mapping[str, Any], label: Mapping[str, Any]) -> bool:

@@ -21,7 +21,7 @@ from typing import Any, Self
 from uuid import uuid4
 
 from identification.errors import InputError
-from identification.files import digest, read_json, write_text
+from identification.files import digest, read_json, to_disk, write_text
 from identification.lazy import needed
 from identification.sweep.rows import schema
 from identification.sweep.task import Sweep
@@ -206,7 +206,7 @@ def _write_whole(folder: Path, stem: str, schema: Any, tables: Iterable[Any]) ->
         os.fsync(stream.fileno())
     path = folder / f"{stem}-{_digest(draft)}.parquet"
     draft.replace(path)
-    _sync_folder(folder)
+    to_disk(folder)
     return path
 
 
@@ -225,15 +225,3 @@ def read_tasks(path: Path) -> set[int]:
 
 def _digest(path: Path) -> str:
     return digest(path, _LARGEST, "record of a sweep")[:16]
-
-
-def _sync_folder(folder: Path) -> None:
-    """Bring the names in a folder to the disk, where the system can."""
-    try:
-        number = os.open(folder, os.O_RDONLY)
-    except OSError:
-        return
-    try:
-        os.fsync(number)
-    finally:
-        os.close(number)

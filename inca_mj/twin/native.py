@@ -84,11 +84,6 @@ def install(layout: Layout | None = None) -> None:
     installer.install(_law(layout.key, layout.on_drives, layout.on_platform))
 
 
-def uninstall() -> None:
-    """Release MuJoCo's callbacks, to compare a step with the law and without it."""
-    installer.uninstall()
-
-
 @cache
 def _law(key: float, on_drives: tuple[Term, ...], on_platform: tuple[Term, ...]) -> installer.Law:
     """Returns the law of the drives with a set of effects."""

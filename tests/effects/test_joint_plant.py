@@ -22,6 +22,7 @@ from identification.effects.axes import Axis, axes
 from identification.effects.catalogue import joint_effects
 from identification.effects.joint_plant import joint_plant
 from identification.native.joint_callback import STEPS
+from identification.native.table import uninstall
 from identification.windows.window_error import window_error
 from identification.windows.window_estimate import estimate_windows
 
@@ -107,7 +108,7 @@ def test_joints_and_cables_live_in_one_process():
     before = run(slider(), log, **{"offset.f_0@slide": 0.2})
     cables = simulate(build_twin(), make_input("prbs", 0.2)).angles
     np.testing.assert_array_equal(before, run(slider(), log, **{"offset.f_0@slide": 0.2}))
-    native.uninstall()
+    uninstall()
     np.testing.assert_array_equal(before, run(slider(), log, **{"offset.f_0@slide": 0.2}))
     native.install()
     np.testing.assert_array_equal(cables, simulate(build_twin(), make_input("prbs", 0.2)).angles)

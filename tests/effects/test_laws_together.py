@@ -14,7 +14,7 @@ from scipy.interpolate import CubicSpline
 from identification.effects.effect import Effect, places
 from identification.effects.joint_plant import joint_plant
 from identification.effects.sizes import Size
-from identification.native.installer import uninstall
+from identification.native.table import uninstall
 from inca_mj.effects.hooks import KEY
 from inca_mj.twin import native
 from inca_mj.twin.twin import build_twin

@@ -12,10 +12,8 @@ from identification.estimation.estimation import Options, estimate
 from identification.estimation.experiment import Experiment, information
 from identification.estimation.fit import assess
 from identification.estimation.identifiability import identifiability
-from identification.estimation.information import information_of
 from identification.estimation.resolution import RESOLVED_STEPS, resolve_columns
 from identification.kalman.estimate import estimate_innovations
-from identification.model.coordinates import Coordinates
 from identification.model.plant import ModelPlant
 from identification.report.fit_verdict import fit_verdict
 from identification.windows.window_estimate import estimate_windows
@@ -85,19 +83,6 @@ def test_what_is_felt_does_not_depend_on_units():
         assert scaled.rank == resolved.found.rank == 3
         same = scaled.blind[0] * units / np.linalg.norm(scaled.blind[0] * units)
         assert abs(same @ resolved.found.blind[0]) == pytest.approx(1.0, abs=1e-9)
-
-
-def test_the_same_experiment_twice_is_felt_more_and_resolved_as_well():
-    _, at = rough(3, 1e-6)
-    resolved = resolve_columns(NAMES, at, 1e-12, RESOLVED_STEPS[:1])
-    space = Coordinates(NAMES, np.ones(4, bool), *(np.zeros(4) for _ in range(3)))
-    once = information_of(resolved, space)
-    twice = once.with_data(once)
-    assert once.found.rank == twice.found.rank == 3
-    np.testing.assert_allclose(once.found.leaks, resolved.found.leaks, rtol=1e-9)
-    np.testing.assert_allclose(twice.found.errors, 2**0.5 * resolved.errors, rtol=1e-9)
-    felt, more = once.found.strengths[:3], twice.found.strengths[:3]
-    np.testing.assert_allclose(more, 2**0.5 * felt, rtol=1e-9)
 
 
 ALL = ("mass", "damping", "stiffness", "gear")

@@ -86,14 +86,14 @@ def test_ranges_of_the_model_are_the_limits_and_contacts_are_found(wall):
     assert (limits.forces[0].low, limits.forces[0].high) == (-0.5, 0.5)
     q = np.linspace(0, 0.5, 11)[:, None]
     u = np.full((11, 1), 0.2)
-    found, touch = margins(model, limits, u, q, 0 * q, u)
+    found, touch = margins(model, limits, u, q, 0 * q)
     assert touch == ""
     assert keeps(found)
     (force,) = [m for m in found if m.limit.what == "force"]
     assert force.most == pytest.approx(0.2)
-    _, touch = margins(model, limits, u, q + 0.7, 0 * q, u)
+    _, touch = margins(model, limits, u, q + 0.7, 0 * q)
     assert touch == "the world and arm"
-    cut, _ = margins(model, limits, 4 * u, q, 0 * q, 4 * u)
+    cut, _ = margins(model, limits, 4 * u, q, 0 * q)
     assert not keeps(cut)  # the force is cut off at its range
 
 

@@ -20,9 +20,8 @@ from identification.prediction.discovery import WINDOWS
 from identification.prediction.moves import add_effect
 from identification.prediction.task import RecordsTask
 from identification.prediction.verdict import conclude
-from identification.report.discovery_files import DiscoveryFiles
 from identification.report.discovery_json import discovery_to_json
-from identification.report.discovery_report import discovery_text
+from identification.report.discovery_report import DiscoveryFiles, discovery_text
 from identification.windows.records import as_records
 
 SIZE, NAME, WHERE = "quadratic_friction.c@hinge", "quadratic_friction", "joint hinge"

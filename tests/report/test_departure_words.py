@@ -10,7 +10,7 @@ from records_cases import FREE, KNOWN, pendulum, record
 
 from identification.discovery.nominal_model import NominalModel
 from identification.prediction.nominal_fit import fit_nominal
-from identification.report.departure_words import FAR, departure_sentences
+from identification.report.value_words import FAR, departure_sentences
 from identification.windows.records import as_records
 
 moved = st.dictionaries(

@@ -13,7 +13,7 @@ import pytest
 from matplotlib.figure import Figure
 
 from identification.report import media
-from identification.report.discovery_files import DiscoveryFiles
+from identification.report.discovery_report import DiscoveryFiles
 from identification.report.media import drawing, svg
 from identification.report.page import (
     Section,

@@ -14,7 +14,7 @@ from state_cases import measured as measured_states
 from identification import confirm, fit, read_robot, window_error, write_log, write_robot
 from identification.robot.confirmation import compare_values
 from identification.robot.file import read_robot_file
-from identification.robot.fit_json import robot_fit_to_json
+from identification.robot.fit_files import robot_fit_to_json
 
 
 @pytest.fixture

@@ -13,8 +13,7 @@ from identification.discovery.options import DiscoveryOptions
 from identification.effects.joint_plant import candidates
 from identification.prediction import selection
 from identification.prediction.discovery import discover_records
-from identification.robot.second_opinion import ask_torques
-from identification.robot.suggestions import suggest
+from identification.robot.second_opinion import ask_torques, suggest
 
 HIDDEN = {
     "hardening.k_3@hinge": 0.1, "gravity_force.alpha@hinge": 0.3, "quadratic_friction.c@hinge": 0.02

@@ -12,7 +12,7 @@ from identification import InputError, discover, fit, read_robot
 from identification.estimation.metrics import relative
 from identification.prediction.record_errors import error_of_all, errors_by_unit
 from identification.report.fit_verdict import fit_verdict
-from identification.robot.fit_json import worse_unit
+from identification.robot.fit_files import worse_unit
 from identification.robot.record_error import AS_WRITTEN, FITTED, Confirmation
 
 pytestmark = pytest.mark.usefixtures("few_effects")

@@ -12,6 +12,7 @@ from mujoco.batch import Batch
 from identification.errors import DivergenceError, InputError
 from identification.model.rollout import State
 from identification.native import structs
+from identification.native.table import uninstall
 from inca_mj.robot import law
 from inca_mj.robot.inputs import make_input
 from inca_mj.twin import native
@@ -52,7 +53,7 @@ def installed():
     """Every test begins and ends with the law in place."""
     native.install()
     yield
-    native.uninstall()
+    uninstall()
     native.install()
 
 
@@ -70,14 +71,14 @@ def trajectory(model):
 def test_other_models_are_untouched():
     model = mujoco.MjModel.from_xml_string(ORDINARY)
     with_law = trajectory(model)
-    native.uninstall()
+    uninstall()
     np.testing.assert_array_equal(with_law, trajectory(model))
     assert np.ptp(with_law[:, 0]) > 0.1
 
 
 @pytest.mark.parametrize("name", ["passive", "sensor"])
 def test_a_foreign_callback_is_refused_and_left_in_place(name):
-    native.uninstall()
+    uninstall()
 
     def foreign(*_):
         return 0.0

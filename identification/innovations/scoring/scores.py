@@ -93,8 +93,6 @@ def _scorer(fit: Refit, blocks: int) -> _Scorer:
     """Returns what scores candidates on the last fit: a score does not depend on the others."""
     noise, samples = fit.level.noise, len(fit.point.e)
     noises = [noise.scaled(share) for share in (RATIO_FACTORS if noise.ratio else (1.0,))]
-    # What is missing at one input makes the error of that input large, and no other's.
-    noises += [noise.calmed()] if noise.inputs and noise.calmed().ratio else []
     levels = run_parts(partial(Projection, fit), noises)
     return _Scorer(levels, np.linspace(0, samples, blocks, endpoint=False).astype(int))
 

@@ -1,15 +1,27 @@
-"""Sections and figures of a report on torques."""
+"""A report on torques: headline, sections with figures, and what torques say as plain values."""
 
 from __future__ import annotations
+
+from typing import Any
 
 import mujoco
 import numpy as np
 from matplotlib.figure import Figure
 
+from identification.quantities import alike, plain, quantity
+from identification.report.effect_words import value_with_std
+from identification.report.headline import Answer, Headline, Tile, capital
 from identification.report.page import Section, Table
 from identification.report.style import GREY, INK, SIMULATED, literal, styled
-from identification.report.torque_words import base_rows, friction_rows, joint_names, score_rows
+from identification.report.torque_words import (
+    SHOWN,
+    base_rows,
+    friction_rows,
+    joint_names,
+    score_rows,
+)
 from identification.torques.evidence import Evidence
+from identification.torques.fits import Fitted
 from identification.torques.laws import CURVES
 from identification.torques.scores import Score
 
@@ -127,3 +139,101 @@ def torque_figure(evidence: Evidence, model: mujoco.MjModel, record: int) -> Fig
     handles = panels[0].get_legend_handles_labels()
     figure.legend(*handles, loc="outside upper right", ncols=3, fontsize=8)
     return figure
+
+
+def torque_headline(evidence: Evidence, model: mujoco.MjModel) -> Headline:
+    """Returns what torques say in a few words and numbers."""
+    tile = _residual(evidence, model)
+    if not evidence.named:
+        place = "Friction, which is always fitted, is in the table."
+        return Headline("", (Answer("No effect is proven", place, (tile,)),))
+    first, *others = (_answer(score) for score in evidence.named)
+    first = Answer(first.name, first.place, (*first.tiles, tile))
+    return Headline("The torques need", (first, *others))
+
+
+def _answer(score: Score) -> Answer:
+    missing = score.missing
+    if missing.is_curve:
+        tile = Tile("change", quantity(score.reach, unit=missing.units[0]), missing.phrase)
+        return Answer("An unlisted force", missing.where, (tile,))
+    value = value_with_std(float(score.size[0]), float(score.std[0]), missing.units[0])
+    name = missing.name.replace("_", " ")
+    return Answer(capital(name), missing.where, (Tile(missing.sizes[0], value, missing.phrase),))
+
+
+def _residual(evidence: Evidence, model: mujoco.MjModel) -> Tile:
+    """Returns the tile on the joint whose residual the model as it is leaves largest, by its own.
+
+    It is of data that no fit has seen.
+    """
+    _, nominal, final = evidence.unseen
+    names, units = joint_names(model)
+    fall = nominal / np.maximum(final, 1e-300)
+    j = int(np.argmax(np.where(np.isfinite(fall), fall, -1.0)))
+    before, after = alike([float(nominal[j]), float(final[j])], units[j])
+    same = nominal[j] == final[j]
+    return Tile(
+        f"residual of {names[j]} on unseen data",
+        after if same else f"{before} → {after}",
+        "" if same else "of the model, and with what it needs",
+    )
+
+
+FITS = ("whole", "model", "final")
+
+
+def evidence_to_json(evidence: Evidence, model: mujoco.MjModel) -> dict[str, Any]:
+    """Returns what torques say as plain values."""
+    names, units = joint_names(model)
+    joints = {}
+    for j, name in enumerate(names):
+        of = {
+            fit: {
+                "residual": float(getattr(evidence, fit).fit.σ[j]),
+                "unseen": float(evidence.unseen[k, j]),
+            }
+            for k, fit in enumerate(FITS)
+        }
+        joints[name] = {"unit": units[j], **of}
+    return plain({
+        "joints": joints,
+        "base_parameters": _values(
+            evidence.whole, np.append(evidence.base.values, evidence.friction), evidence.other
+        ),
+        "values": _values(evidence.final, None, None),
+        "named": [_score(s) for s in evidence.named],
+        "scores": [_score(s) for s in evidence.scores[:SHOWN]],
+        "rest": [_score(s) for s in evidence.rest[:SHOWN]],
+        "differences": [_score(s) for s in evidence.differences[:SHOWN]],
+        "asked": evidence.asked,
+        "inconsistent": [evidence.base.names[k] for k in evidence.inconsistent],
+        "bands": {r.name: r.band for r in evidence.equations.rows},
+    })  # fmt: skip
+
+
+def _values(
+    fit: Fitted, model: np.ndarray | None, other: np.ndarray | None
+) -> dict[str, dict[str, Any]]:
+    out = {}
+    for k, name in enumerate(fit.names):
+        one: dict[str, Any] = {"value": fit.fit.θ[k], "std": fit.fit.std[k], "unit": fit.units[k]}
+        if model is not None and k < len(model):
+            one["model"] = model[k]
+        if other is not None:
+            one["narrower"] = other[k]
+        out[name] = one
+    return out
+
+
+def _score(score: Score) -> dict[str, Any]:
+    return {
+        "name": score.missing.name, "where": score.missing.where,
+        "sizes": {
+            n: {"value": v, "std": s, "unit": u}
+            for n, v, s, u in zip(score.missing.sizes, score.size, score.std, score.missing.units,
+                                  strict=True)
+        },
+        "shape": {n: v for n, v, _ in score.missing.shape}, "fall": score.fall, "t": score.t,
+        "held_t": score.held_t, "chance": score.chance, "proven": score.is_proven,
+    }  # fmt: skip

@@ -1,16 +1,24 @@
-"""The result of a fit of a robot's free parameters, of a free run or of windows of records."""
+"""The results of what is done with a robot: a fit, a comparison of torques, the next experiment."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from identification.estimation.fit import Fit
+from identification.logs.log import Log
 from identification.prediction.records_fit import RecordsFit
 from identification.quantities import quantity
+from identification.report.torque_words import size_words
 from identification.robot.record_error import AS_WRITTEN, FITTED, Confirmation, of_record
 from identification.robot.robot import Robot
 from identification.written import Files, Written
+
+if TYPE_CHECKING:  # slow to import
+    from identification.experiment.design import Design
+    from identification.torques.evidence import Evidence
+    from identification.torques.scores import Score
 
 
 @dataclass(frozen=True)
@@ -97,3 +105,72 @@ class RobotFit(Written):
             for e in self.found.errors
             if e.role == "confirm"
         )
+
+
+@dataclass(frozen=True)
+class TorqueFit(Written):
+    """The result of `fit_torques`.
+
+    Attributes:
+        robot: whose logs were compared.
+        found: base parameters, fits and scores.
+        files_of: returns what writes its files (`identification.written`).
+    """
+
+    robot: Robot
+    found: Evidence
+    files_of: Callable[[TorqueFit], Files]
+
+    def __repr__(self) -> str:
+        named = [f"{score.missing.title}: {size_words(score)}" for score in self.named]
+        return "; ".join(named) or "torques: no effect is proven"
+
+    @property
+    def values(self) -> dict[str, float]:
+        """Base parameters and friction by name, in their units."""
+        fit = self.found.whole
+        return dict(zip(fit.names, fit.fit.θ.tolist(), strict=True))
+
+    @property
+    def std(self) -> dict[str, float]:
+        """Std of the values by name, in their units."""
+        fit = self.found.whole
+        return dict(zip(fit.names, fit.fit.std.tolist(), strict=True))
+
+    @property
+    def named(self) -> tuple[Score, ...]:
+        """The effects that were proven, in the order in which they were found."""
+        return self.found.named
+
+
+@dataclass(frozen=True)
+class NextExperiment(Written):
+    """The result of `design_experiment`.
+
+    Attributes:
+        robot: whose next experiment it is, with what was found.
+        found: the design: the experiment, its limits, and what it is expected to tell.
+        files_of: returns what writes its files (`identification.written`).
+    """
+
+    robot: Robot
+    found: Design
+    files_of: Callable[[NextExperiment], Files]
+
+    def __repr__(self) -> str:
+        return f"next experiment of {self.robot.file.path.name}, {self.log.duration:g} s"
+
+    @property
+    def log(self) -> Log:
+        """The inputs to play, and the outputs that the model expects: nothing was measured."""
+        return self.found.best.played.log
+
+    @property
+    def before(self) -> dict[str, float]:
+        """Std of the free values by name before the experiment, in their units."""
+        return dict(zip(self.found.hypotheses[0].names, self.found.before.tolist(), strict=True))
+
+    @property
+    def after(self) -> dict[str, float]:
+        """Expected std of the free values by name after it, in their units."""
+        return dict(zip(self.found.hypotheses[0].names, self.found.best.std.tolist(), strict=True))
