@@ -12,7 +12,7 @@ from identification.estimation.fit import Fit
 from identification.estimation.identifiability import in_words
 from identification.estimation.metrics import output_units, relative
 from identification.model.protocol import FINER
-from identification.quantities import held, quantity
+from identification.quantities import quantity
 from identification.report.error_words import describe_scale, error_words, times_words
 from identification.report.fitted_values import first_few, std_sentence, step_sentences
 from identification.report.untold_words import (
@@ -107,15 +107,15 @@ def coloured_outputs(fit: Fit) -> int:
 
 
 def _steps(fit: Fit) -> list[str]:
-    """Returns a sentence on what a finer step would change beyond what the std tell."""
+    """Returns a sentence on what a finer step would change, where this is most of the std."""
     if not (far := fit.far):
         return []
     step = float(fit.estimate.predictor.plant.model.opt.timestep) / FINER
     moves = dict(zip(fit.estimate.space.names, fit.step_shift.tolist(), strict=True))
-    told = [f"{name} by {moves[name]:+z.2g}, {held(std)} std" for name, std in far.items()]
+    told = [f"{name} by {moves[name]:+z.2g}" for name in far]
     return [
         f"A quarter of the model's step, {quantity(step, unit='s')}, would move"
-        f" {first_few(told, '; ')}; the std do not include this. If it matters, write"
+        f" {first_few(told, '; ')}. The std include this; for smaller ones write"
         f' timestep="{step:.6g}" into the <option> of the model, and run the command again.'
     ]
 
