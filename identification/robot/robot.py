@@ -24,6 +24,7 @@ from identification.logs.read import read_log
 from identification.logs.table import MissingColumnsError
 from identification.model.plant import start_place
 from identification.model.predictor import output_columns
+from identification.refusals.limits import refuse_limits
 from identification.refusals.unmeasured import refuse_unmeasured
 from identification.robot.carried import with_carried
 from identification.robot.checks import (
@@ -225,6 +226,8 @@ def robot_of(
     model = spec.copy().compile()
     refuse_start(file, model)
     refuse_unmeasured(file, model, log)
+    for each in (log, *others, *records):
+        refuse_limits(file, model, spec.compiler.degree, each)
     known = reach([axes(model, each, file.trust) for each in (log, *others)])
     for joint in file.joints:
         if joint not in {a.joint for a in known}:
