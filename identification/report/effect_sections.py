@@ -70,7 +70,8 @@ def added_section(found: Discovery, files: str = "") -> Section:
         for k, (name, value) in enumerate(_numbers(named)):
             rows.append((name, value, *(once if k == 0 else ("",) * 3)))
         proofs.append(sentence(f"{effect}: {gains}"))
-        lines += [f"+ {effect}: {describe_sizes(named)}", f"    law: {law}", f"    {gains}"]
+        sizes = describe_sizes(named, found.final.plant)
+        lines += [f"+ {effect}: {sizes}", f"    law: {law}", f"    {gains}"]
         if named.candidate.effect.is_curve:
             lines += [f"    {line}" for line in node_lines(named, found.final.plant)]
         other = named.retuned
@@ -129,7 +130,8 @@ def tried_section(found: Discovery) -> list[Section]:
     tried, plant = rejected_once(found), found.final.plant
     beside = " beside what is named" if found.named else ""
     rows = [
-        (describe_there(r.candidate, plant), describe_sizes(r), fall_words(r.proof.told.fall, 3),
+        (describe_there(r.candidate, plant), describe_sizes(r, plant),
+         fall_words(r.proof.told.fall, 3),
          chance_words(r.proof.told), describe_doubt(r, found.options))
         for r in tried
     ]  # fmt: skip

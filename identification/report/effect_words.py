@@ -24,6 +24,11 @@ if TYPE_CHECKING:  # a search is slow to import, and a page may tell of a model 
 
 
 FEW = 0.01  # a chance above it is told as a share, and not as a power of ten
+# Number of a joint or body to which the size of an effect is added, by the effect's name.
+ADDED_TO = {
+    "coulomb_friction": "joint/{}.frictionloss", "stiffness": "joint/{}.stiffness",
+    "rotor_inertia": "joint/{}.armature", "mass_mismatch": "body/{}.mass",
+}  # fmt: skip
 NOT_TOLD = "(std not known, because too few data depend on it)"
 DOUBTS = {
     "numbers": "its gain is too small for so many parameters",
@@ -83,22 +88,40 @@ def value_with_std(value: float, std: float, unit: str, like: float = 0.0) -> st
     return f"{said} {NOT_TOLD}" if isnan(std) else said
 
 
-def describe_sizes(found: NamedEffect | RejectedEffect) -> str:
+def describe_sizes(found: NamedEffect | RejectedEffect, plant: Plant | None = None) -> str:
     """Returns sizes and shapes of a fitted effect with std, but no shape that no data tell.
 
-    Of a curve, whose numbers are a figure, it returns the largest force of its nodes.
+    Where a size is added to a number that the plant's model has, it says that number too. Of a
+    curve, whose numbers are a figure, it returns the largest force of its nodes.
     """
     effect, shown = found.candidate.effect, shown_parameters(found)
     if effect.is_curve and shown:
         value, std, unit = shown[largest_known(shown)]
         return f"up to {quantity(abs(value), std, unit)}"
     about = effect.about
-    return ", ".join(
+    said = ", ".join(
         say_choice(found.candidate, name, value)
         or (f"{name} not felt" if isinf(std) else f"{name} = {value_with_std(value, std, unit)}")
         + (f" ({about[name]})" if about.get(name) else "")
         for name, (value, std, unit) in {in_record(n, {}): v for n, v in shown.items()}.items()
     )
+    has = "" if plant is None else _already(found.candidate, plant)
+    return f"{said}, in addition to the {has} of the model" if has else said
+
+
+def _already(candidate: Candidate, plant: Plant) -> str:
+    """Returns the number of the model to which an effect at one place adds; "" without one."""
+    from identification.effects.joint_group import SLIDE  # slow to import
+    from identification.effects.jointed import JointPlant
+    from identification.model.tied import value_of
+
+    name = candidate.effect.name.removeprefix(SLIDE)
+    (size, *_) = candidate.effect.sizes
+    at = candidate.effect.places[candidate.where].removeprefix("@")
+    if not isinstance(plant, JointPlant) or name not in ADDED_TO or not at:
+        return ""
+    value = value_of(plant.model, ADDED_TO[name].format(at))
+    return quantity(value, unit=size.unit) if value else ""
 
 
 def shown_parameters(
@@ -174,9 +197,10 @@ def describe_next(found: Discovery) -> str:
 
 def describe_rejected(rejected: RejectedEffect, found: Discovery) -> str:
     """Returns a rejected effect in a line: its size, what it does on unseen data, and why not."""
-    proof, why = rejected.proof, describe_doubt(rejected, found.options)
+    proof, plant = rejected.proof, found.final.plant
+    why = describe_doubt(rejected, found.options)
     return (
-        f"{describe_there(rejected.candidate, found.final.plant)}: {describe_sizes(rejected)};"
+        f"{describe_there(rejected.candidate, plant)}: {describe_sizes(rejected, plant)};"
         f" {_where_told(proof)} the mean square {fall_words(proof.told.fall, 3)}"
         f" (t = {proof.told.t:z.1f}, chance {chance_words(proof.told)}){why and f'; {why}'}"
     )
