@@ -41,6 +41,7 @@ from identification.prediction.trial import (
     find_doubt,
     has_size,
     is_at_bound,
+    luck_of,
 )
 from identification.progress import Progress, counted
 from identification.shares import fall_words
@@ -224,7 +225,7 @@ def judged(
         doubt = "differ"
     return Contender(
         model=new, prediction=found, gains=gains, numbers=numbers, criterion=gain,
-        doubt=doubt,
+        doubt=doubt, luck=luck_of(found, refits, options),
     )  # fmt: skip
 
 

@@ -32,10 +32,11 @@ ADDED_TO = {
 NOT_TOLD = "(std not known, because too few data depend on it)"
 DOUBTS = {
     "numbers": "its gain is too small for so many parameters",
-    "chance": "so many effects were tried that its gain may be luck",
+    "chance": "its gain on the data that decide may be luck",
     "lengths": "windows of some length are predicted worse with it",
     "record": "a record is predicted worse with it",
-    "little": "it removes too little of the error to matter over windows of some length",
+    "little": "over some of the lengths of time that are predicted it removes too little of the"
+    " error",
     "size": "its size is not known well enough to differ from zero",
     "bound": "its size ends on the largest value that is believed, so that it stands for something"
     " else",
@@ -209,7 +210,7 @@ def describe_rejected(rejected: RejectedEffect, found: Discovery) -> str:
 def describe_doubt(rejected: RejectedEffect, options: DiscoveryOptions) -> str:
     """Returns in words why an effect is not believed; "" where no number of its own says so."""
     proof = rejected.proof
-    why = DOUBTS.get(rejected.doubt or "", "")
+    why = doubt_words(rejected.doubt, rejected.luck)
     if rejected.doubt is None and rejected.bic_gain <= 0:
         why = DOUBTS["numbers"]
     elif rejected.doubt is None and proof.fall <= 0:
@@ -223,6 +224,14 @@ def describe_doubt(rejected: RejectedEffect, options: DiscoveryOptions) -> str:
     return why
 
 
+def doubt_words(doubt: str | None, luck: float) -> str:
+    """Returns what a word of doubt says, with the chance of luck; "" without a word."""
+    said = DOUBTS.get(doubt or "", "")
+    if doubt == "chance" and isfinite(luck):
+        said += f" (chance {_probability(luck)}, all effects that were tried counted)"
+    return said
+
+
 def describe_chance(proof: Proof) -> str:
     """Returns in words how far unseen samples are from chance, and by which test."""
     return f"t = {proof.t:z.1f}, chance {chance_words(proof)} by {proof.test}"
@@ -230,7 +239,11 @@ def describe_chance(proof: Proof) -> str:
 
 def chance_words(proof: Proof) -> str:
     """Returns the chance of a gain as large as this by luck."""
-    return f"{proof.chance:.2g}" if proof.chance > FEW else probability(proof.chance)
+    return _probability(proof.chance)
+
+
+def _probability(chance: float) -> str:
+    return f"{chance:.2g}" if chance > FEW else probability(chance)
 
 
 def describe_gains(named: NamedEffect) -> str:
