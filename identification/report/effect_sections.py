@@ -33,6 +33,7 @@ BEST, LISTED = 10, 6  # candidates with the best scores, in a figure and in a li
 MANY = 8  # lines on what failed; of more the count is told
 FAILED = "tried, and not possible to simulate"
 DROPPED = "begun, and left by the search"
+LUCK = 0.5  # chance from which on luck explains a score as well as the effect
 BLANK = ("", "", "")  # size, mean square and chance of what was not fitted
 TRIED = (
     "These effects were tried too. The change of the mean square and the chance that luck makes it"
@@ -157,11 +158,11 @@ def tried_section(found: Discovery) -> list[Section]:
 
 
 def best_scores(found: Discovery) -> list[Scored]:
-    """Returns the best score of each effect: its best place and shape."""
+    """Returns the best score of each effect that is more than luck: its best place and shape."""
     each: dict[str, Scored] = {}
     for score in found.scores:
         each.setdefault(score.candidate.effect.name, score)
-    return [*each.values()]
+    return [score for score in each.values() if score.p_value < LUCK]
 
 
 def describe_score(found: Discovery, score: Scored) -> str:
