@@ -263,10 +263,8 @@ def _smooth(found: Discovery) -> str:
         if len(found.named) > 1 and n.smooth_share is not None and n.smooth_share < EXACT_SHARE
     ]
     each = f" At their own joints the shares are {listed(inexact)}." if inexact else ""
-    is_one, share = len(found.named) == 1, found.smooth_share
-    who, whom = ("This effect alone explains", "it explains") if is_one else (
-        "These effects alone explain", "they explain")  # fmt: skip
+    who = "this effect explains" if len(found.named) == 1 else "these effects explain"
     return (
-        f" {who} {percent(share)} of what {whom} together with any smooth forces at the joints"
-        f" (functions of rate, position, drive or time).{each}"
+        " With free smooth forces at the joints (of rate, position, drive or time) the model would"
+        f" explain more; without them {who} {percent(found.smooth_share)} of that.{each}"
     )

@@ -250,7 +250,7 @@ def describe_gains(named: NamedEffect) -> str:
     """Returns in words what a named effect gains on fitted samples, and on those told of."""
     told, fitted = named.proof.told, f"BIC gain {named.bic_gain:z.4g} on fitted samples"
     if not isfinite(named.bic_gain):
-        fitted = f"evidence {named.evidence:z.4g} of the windows that decide"
+        fitted = f"evidence {named.evidence:z.4g} on the windows that decide"
     higher = f" log likelihood {told.gain:+z.4g}," if isfinite(told.gain) else ""
     return f"{fitted}; {_where_told(named.proof)}{higher} {describe_chance(told)}"
 

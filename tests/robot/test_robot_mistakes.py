@@ -77,7 +77,7 @@ def test_how_long_a_horizon_may_be_is_told(folder, capsys, confirm, horizon, mos
     other = ["--confirm", folder / "other.csv"] if confirm else []
     said = refused(capsys, "fit", path, folder / "plain.csv", *other)
     assert f"horizon in {path} is {horizon} s" in said
-    assert f"it may be 0.03 s, of 3 samples, to {most} s, to fit" in said
+    assert f"write one from 0.03 s (3 samples) to {most} s" in said
 
 
 @pytest.mark.parametrize(("change", "line"), [
