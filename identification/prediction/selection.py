@@ -165,9 +165,7 @@ def _near_best(begun: Sequence[Begun], options: DiscoveryOptions) -> list[Begun]
     least = min((e for e, _ in each[: options.max_refits]), default=0.0) - STRONG_BIC
     for e, b in each:
         if not e > least:
-            tell_dropped(
-                b.candidate, "others explain far more in a first fit"
-            )
+            tell_dropped(b.candidate, "others explain far more in a first fit")
     return [b for e, b in each if e > least]
 
 
