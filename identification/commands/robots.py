@@ -19,7 +19,7 @@ from identification.commands.common import (
     output_field,
     parameter_table,
 )
-from identification.commands.stopping import STOPPED
+from identification.commands.stopping import NO_ANSWER, STOPPED, leaving_out
 from identification.errors import InputError
 from identification.progress import duration
 
@@ -126,7 +126,8 @@ class Discover(OnRobot):
         from identification.robot.discovery import discover
         from identification.robot.discovery_files import RobotDiscoveryFiles
 
-        found = discover(robot, progress=self.output.tell, options=options)
+        with leaving_out(NO_ANSWER):
+            found = discover(robot, progress=self.output.tell, options=options)
         files = RobotDiscoveryFiles(found, robot)
         text = "\n".join([discovery_text(found), *files.sentences])
         conclude_files(self, files, text, "search")

@@ -25,6 +25,10 @@ _LEFT_OUT: deque[str] = deque()  # the sentence for an interrupt in what may be 
 GRACE = 1.5  # [s] for native code to return, and to keep what is worth keeping
 AGAIN = 0.01  # [s] after which an interrupt is raised again that machine code has lost
 STOPPED = 130  # exit code, as a shell gives it
+NO_ANSWER = (
+    "A search that is stopped keeps nothing; its lines above say which effects were in the model."
+    " --minutes 2 ends it sooner, with an answer."
+)
 
 
 @contextmanager

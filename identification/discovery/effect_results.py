@@ -181,6 +181,9 @@ class RejectedEffect(OfCandidate):
     # where no reason is told
     doubt: str | None = None
     confidence: float = 0.0  # that its name would have had
+    # chance that one of all that were refitted gains as much by luck on samples that decide; NaN
+    # where nobody asks
+    luck: float = nan
 
 
 @dataclass(frozen=True)

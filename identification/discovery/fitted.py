@@ -6,15 +6,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
 
+from identification.estimation.uncertainty import mostly_steps
 from identification.model.predictor import Plant
 
-TOLD_SHIFT = 1.0  # std of a value: a smaller one is within what the std tells
 # Of the error of the fitted windows: below it a fifth of the mean square comes from the steps, and
 # is nothing that is missing.
 TOLD_ERROR = 0.9
@@ -35,20 +35,13 @@ class StepShift:
         """Tells whether the windows could be simulated with finer steps."""
         return bool(np.isfinite(self.error) or np.isfinite(self.values).any())
 
-    def far(self, names: Sequence[str], std: np.ndarray) -> dict[str, float]:
-        """Returns the values that finer steps would move far enough to be told, the farthest first.
+    def far(self, std: Mapping[str, float]) -> list[str]:
+        """Returns the values whose std is mostly the error of the steps, the worst first.
 
         Args:
-            names: of the values, p of them.
-            std: shape (p,), in their units; NaN where it is not known.
-
-        Returns:
-            By name, how far [std].
+            std: by name, in the values' units, with the error of the steps; NaN where not known.
         """
-        with np.errstate(divide="ignore", invalid="ignore"):
-            moved = np.abs(self.values) / std
-        far = [int(k) for k in np.argsort(-moved) if moved[k] > TOLD_SHIFT]
-        return {names[k]: float(moved[k]) for k in far}
+        return mostly_steps(self.values, std)
 
     def is_lower(self) -> bool:
         """Returns whether finer steps would lower the error by so much that it is told."""
@@ -76,7 +69,7 @@ class Fitted(Protocol):
 
     @property
     def told_std(self) -> Mapping[str, float]:
-        """Std of the free values by name, in their units.
+        """Std of the free values by name, in their units, with the error of the model's steps.
 
         NaN where it is not known or a bound holds the value, inf where no data feel it.
         """

@@ -8,13 +8,14 @@ rate; the angle within one period of a law that repeats; its position; the force
 A friction may also be a function of one of them when it is counted against the motion. Where none
 is enough, it is the one with the least u, if this is below `FAIR_TOLERANCE`: where a joint turns, a
 friction is any force below its level. Else, as where a law is a product of two of them, it is what
-the law multiplies by its size.
+the law multiplies by its size; but where this is mostly zero or at an end, as of a friction that
+holds or slips, a figure over it shows nothing, and the rate is taken where the friction slips.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import mujoco
 import numpy as np
@@ -25,6 +26,7 @@ from identification.effects.effect import Candidate
 EXPLAINED_TOLERANCE = 0.01  # of a force: what may be left of it by the quantity that it follows
 FAIR_TOLERANCE = 0.1  # the same where no quantity is enough, and the best one is taken
 LAW_POINTS_SHARE = 0.8  # of the points: where a joint is held, no law of friction shows
+NEAR_END = 0.02  # of the range of what a law multiplies
 HELD_SPEED_SHARE = 2e-3  # of the top speed: below it a friction may hold the joint
 SLIDE = int(mujoco.mjtJoint.mjJNT_SLIDE)
 
@@ -78,7 +80,8 @@ def find_regressor(
         for turn in (plain, against)
         if along.is_timed and _is_of_time(along, turn)
     ]
-    options.append(follows("rate", v, plain, f"{x}/s"))
+    rate = follows("rate", v, plain, f"{x}/s")
+    options.append(rate)
     if (n := _waves(candidate, values)) is not None:
         options.append(follows("phase", np.mod(n * q, 2 * np.pi), plain, "rad"))
     for turn in (plain, against):
@@ -89,7 +92,13 @@ def find_regressor(
     best = min(options, key=lambda option: unexplained(option, force))
     size = _single(candidate, values)
     if size and unexplained(best, force) > FAIR_TOLERANCE:
-        return follows("law", force / size, plain, "")
+        law = follows("law", force / size, plain, "")
+        ends = np.array([law.values.min(initial=0.0), 0.0, law.values.max(initial=0.0)])
+        near = np.abs(law.values[..., None] - ends) <= NEAR_END * np.ptp(ends)
+        if np.mean(near.any(axis=-1)) > LAW_POINTS_SHARE:
+            slips = replace(rate, moving=moving & near[..., [0, 2]].any(axis=-1) & ~near[..., 1])
+            return slips if unexplained(slips, force) < FAIR_TOLERANCE else law
+        return law
     return best
 
 

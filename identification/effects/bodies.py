@@ -162,7 +162,7 @@ def body_effects(spec: mujoco.MjSpec) -> tuple[Effect, ...]:
             tuple(share * length for share in TRIED),
             -FARTHEST * length,
             FARTHEST * length,
-            about=f"its place along {a} of the body, from the end",
+            about=f"its place along {a} of the body, from the point p of the law",
             usual=0.0,
         )
         for a in axes

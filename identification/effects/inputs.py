@@ -139,7 +139,7 @@ def input_effects(drives: Sequence[Drive]) -> tuple[Effect, ...]:
                places=at, phrase="input: comes late", probes=(1.0, 40**0.5, 40.0), hooks=DELAY),
         Effect("time_shift", "u(t - τ), τ of each record's own, of either sign",
                (Size("tau", "s", SHIFT, 2e-3, 0, "how much later it acts than its stamps say"),),
-               places=at, phrase="input: its clock is not the outputs'", probes=SHIFTS, own=True,
+               places=at, phrase="input: its time stamps are shifted", probes=SHIFTS, own=True,
                hooks={"input": time_shift}),
         Effect("saturation", "u clipped at ±u_max", (share,), (limit,), places=at,
                phrase="input: clipped", hooks={"input": clipped}),

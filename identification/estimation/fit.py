@@ -18,15 +18,19 @@ from identification.estimation.metrics import by_unit, fit_percent, loss, rms, r
 from identification.estimation.residuals import ResidualTests, residual_tests
 from identification.estimation.resolution import nothing_resolved, resolve
 from identification.estimation.scaling_symmetry import Combination
-from identification.estimation.uncertainty import bounded, influence, sandwich, step_shift
+from identification.estimation.uncertainty import (
+    bounded,
+    influence,
+    mostly_steps,
+    sandwich,
+    step_shift,
+    with_steps,
+)
 from identification.logs.log import Log
 from identification.logs.noise import noise_floor
 from identification.model.predictor import Predictor
 from identification.model.sensitivity import sensitivity
 from identification.progress import stage
-
-# Std: a smaller shift, known to first order only, may have the other sign.
-MIN_TOLD_SHIFT = 2.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -35,7 +39,8 @@ class Fit:
 
     Attributes:
         estimate: where the search ended.
-        std: std of the values, in their units, shape (p,); infinite where neither the log nor a
+        std: std of the values, in their units, shape (p,), in which the error of the model's steps
+            counts; infinite where neither the log nor a
             prior determines a value, NaN where a bound holds it.
         correlation: correlation of the estimates, shape (p, p), without unit.
         at_bound: true where a value lies on a bound, shape (p,).
@@ -113,13 +118,10 @@ class Fit:
         return None
 
     @property
-    def far(self) -> dict[str, float]:
-        """Values that a finer step moves by more than `MIN_TOLD_SHIFT`, farthest first [std]."""
-        with np.errstate(divide="ignore", invalid="ignore"):
-            moved = np.abs(self.step_shift) / self.std
-        names = self.estimate.space.names
-        order = np.argsort(-moved)
-        return {names[k]: float(moved[k]) for k in order if moved[k] > MIN_TOLD_SHIFT}
+    def far(self) -> list[str]:
+        """Values whose std is mostly the error of the steps, the worst first."""
+        std = dict(zip(self.estimate.space.names, self.std.tolist(), strict=True))
+        return mostly_steps(self.step_shift, std)
 
     @property
     def rms(self) -> float:
@@ -189,9 +191,10 @@ def _assessed(estimate: Estimate, validation: Log | None) -> Fit:
     scale = np.sqrt(np.maximum(np.diag(covariance), np.finfo(float).tiny))
     fit, unseen, spread = beyond(estimate, validation, covariance)
     expected = np.hypot(rms(residual), spread)
+    shift = np.where(np.isfinite(std_q), step_shift(estimate, predicted, S, prior, whiten), np.nan)
     return Fit(
         estimate=estimate,
-        std=std_q * space.slope(q),
+        std=with_steps(std_q * space.slope(q), shift),
         correlation=bounded(covariance / np.outer(scale, scale)),
         at_bound=at_bound,
         found=found,
@@ -206,9 +209,7 @@ def _assessed(estimate: Estimate, validation: Log | None) -> Fit:
         floor=noise_floor(log.outputs),
         tests=residual_tests(residual, log.inputs),
         information=information_of(resolved, space),
-        step_shift=np.where(
-            np.isfinite(std_q), step_shift(estimate, predicted, S, prior, whiten), np.nan
-        ),
+        step_shift=shift,
     )
 
 

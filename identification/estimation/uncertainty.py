@@ -13,9 +13,9 @@ c times that of least squares (Huber 1964). Computed from e itself, the std woul
 outlier, although the loss has made the outlier harmless. For least squares ψ = e and c = 1.
 
 δ is the step of Gauss and Newton with which an estimate under the step Δ answers when the model is
-simulated with a quarter of it. The std of an estimate knows the noise, and nothing of this. Where
-dry friction turns within a step, an integrator of any order errs by about Δ, and so does the
-estimate. S are the whitened slopes, P the priors, C whitens.
+simulated with a quarter of it. The covariance knows the noise, and nothing of this; δ² is added to
+the variances that are told. Where dry friction turns within a step, an integrator of any order errs
+by about Δ, and so does the estimate. S are the whitened slopes, P the priors, C whitens.
 """
 
 from __future__ import annotations
@@ -58,6 +58,7 @@ LOSSES: Mapping[str, Loss] = {
 }
 # Least c: if it were smaller, nearly all residuals would be outliers, and no std could be believed.
 MIN_CURVATURE = 0.01
+MOSTLY = 0.7  # of a std: from here on the error of the steps is the larger part
 
 
 def sandwich(
@@ -134,3 +135,21 @@ def step_shift(
     out = unknown
     out[free] = np.linalg.pinv(A, rcond=1e-14, hermitian=True) @ g
     return out * estimate.space.slope(q)
+
+
+def with_steps(std: np.ndarray, shift: np.ndarray) -> np.ndarray:
+    """Returns √(std² + shift²): std that contain the error of the simulation's steps.
+
+    Args:
+        std: of noise and of what the model leaves, shape (p,).
+        shift: change of each value with a quarter of the step, shape (p,); NaN where not known.
+    """
+    return np.hypot(std, np.where(np.isfinite(shift), shift, 0.0))
+
+
+def mostly_steps(shift: np.ndarray, std: Mapping[str, float]) -> list[str]:
+    """Returns the values whose std, by name, is mostly their shift (p,), the worst first."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        share = np.abs(shift) / np.array([*std.values()])
+    names = [*std]
+    return [names[k] for k in np.argsort(-share) if share[k] > MOSTLY]

@@ -18,6 +18,7 @@ from identification.inspection.words import answer_sentences
 from identification.logs.names import listed
 from identification.logs.units import to_si
 from identification.model.tied import servo_kind
+from identification.refusals.limits import limit_sentence
 from identification.robot.completed import torques_without_motor
 from identification.robot.file import RobotFile
 from identification.robot.model_file import robot_spec
@@ -66,7 +67,7 @@ def write_beginning(found: Inspection, model: Path, path: Path) -> Beginning:
         spec, said = robot_spec(replace(file, columns=motors))
         compiled = spec.compile()
     matches = match(channels_of(compiled), found)
-    needs = _needs(compiled, matches)
+    needs = [*_needs(compiled, matches), *_limits(spec, compiled, matches, found, model)]
     place = os.path.relpath(model, path.parent)
     lines = _lines(found, compiled, matches, place, [*said, *(f"NEEDED: {n}" for n in needs)])
     with whole_file(path) as draft:
@@ -207,6 +208,21 @@ def _what(model: mujoco.MjModel, m: Match) -> str:
     row = int(model.actuator(m.channel.name).id)
     drives = _DRIVES.get(servo_kind(model, row) or "", "its input is a torque, force or current")
     return drives + (f" at joint {m.channel.joint}" if m.channel.joint else "")
+
+
+def _limits(
+    spec: mujoco.MjSpec, model: mujoco.MjModel, matches: Sequence[Match], found: Inspection,
+    path: Path,
+) -> list[str]:  # fmt: skip
+    """Returns a sentence on a joint that the log has far outside its limits, or none."""
+    factors = {c.name: to_si(c.unit)[1] if c.unit else 1.0 for c in found.columns}
+    positions = {
+        m.channel.joint: factors[m.column] * found.values[m.column]
+        for m in matches
+        if m.column and m.channel.joint and not m.channel.is_input and not m.channel.is_rate
+    }
+    said = limit_sentence(model, spec.compiler.degree, positions, path)
+    return [said] if said else []
 
 
 def _needs(model: mujoco.MjModel, matches: Sequence[Match]) -> list[str]:

@@ -26,6 +26,7 @@ _WORDS: tuple[tuple[tuple[str, ...], Role, str], ...] = (
     (("velocity", "velocities", "vel", "speed", "rate", "qd", "dq", "qvel"), "output", "rad/s"),
     (("position", "positions", "pos", "angle", "theta", "q", "qpos", "encoder", "state", "y"),
      "output", "rad"),
+    (("present", "actual", "measured"), "output", ""),
 )  # fmt: skip
 _TIMES = ("time", "t", "timestamp", "stamp", "secs", "sec", "seconds", "ms", "us", "ns")
 _STEPS = ((0.5, "s"), (200.0, "ms"), (2e5, "us"), (np.inf, "ns"))  # largest usual step in a unit

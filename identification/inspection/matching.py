@@ -1,8 +1,9 @@
 """Which column of a log an actuator or a sensor of a model is, as their names tell.
 
 The words of a column are compared with those of the actuator or sensor and of its joint. A column
-that shares more words with one than with any other is that one. What is left is taken in its order
-where there are as many columns left as actuators or sensors. Either way it is a guess.
+that shares more words with one than with any other is that one; of two that share as many, the one
+whose name says that it is an input, or an output. What is left is taken in its order where there
+are as many columns left as actuators or sensors. Either way it is a guess.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from dataclasses import dataclass
 
 import mujoco
 
-from identification.inspection.guesses import is_rate, words_of
+from identification.inspection.guesses import is_rate, role_of, words_of
 from identification.inspection.inspected import Inspection
 
 SAME = "the same name"  # how a column was found, which is no guess
@@ -65,13 +66,14 @@ def match(channels: Sequence[Channel], found: Inspection) -> tuple[Match, ...]:
     pairs = sorted(
         ((_alike(channel, name), i, k) for i, channel in enumerate(channels)
          for k, name in enumerate(free) if channel not in out and _may_be(channel, name, found)),
-        key=lambda pair: (-pair[0], pair[1], pair[2]),
+        key=lambda pair: pair[0],
+        reverse=True,
     )  # fmt: skip
     names = [*free]
     for score, i, k in pairs:
         rivals = [p for p in pairs if p[0] == score and (p[1] == i) != (p[2] == k)
                   and channels[p[1]] not in out and names[p[2]] in free]  # fmt: skip
-        if score > 0 and channels[i] not in out and names[k] in free and not rivals:
+        if score[0] > 0 and channels[i] not in out and names[k] in free and not rivals:
             out[channels[i]] = Match(channels[i], names[k], "guessed by the words of its name")
             free.remove(names[k])
     for kind in ((True, False), (False, False), (False, True)):
@@ -85,10 +87,11 @@ def match(channels: Sequence[Channel], found: Inspection) -> tuple[Match, ...]:
     return tuple(out.get(channel, Match(channel, "", "")) for channel in channels)
 
 
-def _alike(channel: Channel, name: str) -> int:
-    """Returns how many words a column shares with a channel or its joint, numbers among them."""
+def _alike(channel: Channel, name: str) -> tuple[int, bool]:
+    """Returns how many words a column shares with a channel or its joint, and if roles agree."""
     names = {*_words(channel.name), *_words(channel.joint)}
-    return len(names & {*_words(name)})
+    role = "input" if channel.is_input else "output"
+    return len(names & {*_words(name)}), role_of(name) == role
 
 
 def _words(name: str) -> set[str]:

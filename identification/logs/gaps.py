@@ -71,7 +71,10 @@ def find_gaps(log: str, c: Channel, y: FloatArray, h: float) -> Iterator[Gap]:
     for k in wide.tolist():
         error = errors[int(intervals[k])]
         if error > allowed:
-            errs = f"a line across so much errs by {error:.2g} elsewhere (allowed: {allowed:.2g})"
+            errs = (
+                "a straight line over a gap of this length would err by"
+                f" {error:.2g} elsewhere in the log (allowed: {allowed:.2g})"
+            )
             yield Gap(float(c.time[k]), float(c.time[k + 1]), f"{_missing(c, k)}, and {errs}")
 
 

@@ -227,6 +227,6 @@ def _sentence(log: str, why: str, timed: Sequence[Channel], t: FloatArray, h: fl
             widest, at = float(c.time[k + 1] - c.time[k]), float(c.time[k])
     return (
         f"Log {log!r} {why} and was put on a grid of {h:.6g} s ({1 / h:.4g} Hz); its"
-        f" largest gap is {widest:.3g} s, from {at:.6g} s, and {made} of {len(t)} samples, farther"
-        " than half a step from any that was measured, were made up."
+        f" largest gap is {widest:.3g} s, from {at:.6g} s, and {made} of {len(t)} samples were made"
+        " up, because nothing was measured within half a step of them."
     )

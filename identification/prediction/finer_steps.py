@@ -1,7 +1,7 @@
 """Effects that the steps of the simulation make: the search goes on with finer steps, once.
 
     1 - ε² > ½ (1 - V_e/V)       finer steps alone do half of what the effect does, or more
-    |δ_j| > 3 s_j                they would move a size of the effect by more than 3 std
+    δ_j² > 9 (s_j² - δ_j²)       they would move a size of the effect by more than 3 std of noise
 
 V, V_e: criterion of the fitted windows without and with the effect; ε, δ: error of the fit without
 it over what it is, and change of a size in the fit with it, after a quarter of the model's step
@@ -24,7 +24,7 @@ from identification.prediction.task import WindowSearch
 from identification.prediction.trial import Contender
 
 STEPS_SHARE = 0.5  # of what an effect explains
-MOVED = 3.0  # std of a size
+MOVED = 3.0  # std of a size, without the error of the steps, which a told std contains
 
 
 def is_of_steps(parent: WindowModel, best: Contender) -> bool:
@@ -50,7 +50,7 @@ def _is_moved(best: Contender) -> bool:
     model, sizes = best.model, {*best.candidate.free}
     std, shift = model.told_std, model.step_shift
     own = (n for n in std if n.partition(" [")[0] in sizes)
-    return any(abs(shift[n]) > MOVED * std[n] for n in own)
+    return any(shift[n] ** 2 > MOVED**2 * (std[n] ** 2 - shift[n] ** 2) for n in own)
 
 
 def at_finer_steps(state: WindowSearch) -> WindowSearch | None:

@@ -14,6 +14,7 @@ import numpy as np
 
 from identification.discovery.fitted import StepShift
 from identification.effects.effect import Candidate
+from identification.estimation.uncertainty import with_steps
 from identification.logs.noise import noise_floor
 from identification.model.predictor import Plant
 from identification.prediction.std import step_shift, told_std
@@ -75,8 +76,12 @@ class WindowModel:
 
     @property
     def told_std(self) -> dict[str, float]:
-        """Std of the free values; NaN where too few windows tell it, or a value is on a bound."""
-        return dict(zip(self.fit.problem.names, told_std(self.fit).tolist(), strict=True))
+        """Std of the free values, in which the error of the model's steps counts.
+
+        NaN where too few windows tell it, or a value is on a bound.
+        """
+        std = with_steps(told_std(self.fit), self.finer.values)
+        return dict(zip(self.fit.problem.names, std.tolist(), strict=True))
 
     @cached_property
     def finer(self) -> StepShift:
@@ -93,7 +98,7 @@ class WindowModel:
         """Std of each free value over the std that was known before; 0 where none was."""
         prior = self.fit.problem.prior
         slope = np.abs(prior.space.slope(self.fit.q))
-        left = prior.weight * np.array([*self.told_std.values()]) / slope
+        left = prior.weight * told_std(self.fit) / slope
         return dict(zip(self.fit.problem.names, left.tolist(), strict=True))
 
     @property

@@ -166,7 +166,9 @@ def begin(nominal_model: NominalModel, unknowns: Unknowns) -> np.ndarray:
     """
     values, of = nominal_model.plant.parameters.values(), nominal_model.own_values
     first = [values[n] for n in unknowns.shared.names]
-    first += [of.get(r, {}).get(n, values[n]) for r in unknowns.records for n in unknowns.own.names]
+    for r in unknowns.records:  # a part of a log, NAME [PART], begins where the log does
+        own = {**of.get(r.partition(" [")[0], {}), **of.get(r, {})}
+        first += [own.get(n, values[n]) for n in unknowns.own.names]
     return np.asarray(unknowns.all.space.encode(np.array(first)))
 
 

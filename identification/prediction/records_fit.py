@@ -30,7 +30,6 @@ from identification.prediction.record_errors import (
     errors_by_unit,
     record_errors,
 )
-from identification.prediction.std import told_std
 from identification.prediction.trial import find_doubt
 from identification.progress import Progress
 from identification.windows.comparison import Prediction, compare
@@ -84,12 +83,12 @@ class RecordsFit:
 
     @property
     def std(self) -> np.ndarray:
-        """Std of each value by blocks of windows, in its unit, shape (p,).
+        """Std of each value by blocks of windows and by the steps, in its unit, shape (p,).
 
         NaN where too few windows tell of it for a std to be known, or where it lies on a bound; inf
         where no window tells of it.
         """
-        return told_std(self.model.fit)
+        return np.array([*self.model.told_std.values()])
 
     @property
     def at_bound(self) -> np.ndarray:

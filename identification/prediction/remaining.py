@@ -194,7 +194,13 @@ def _unproven(r: RejectedEffect, plant: Plant) -> UnprovenEffect:
     c = r.candidate
     doubt = r.doubt or "chance"
     return UnprovenEffect(
-        c.effect.name, phrase_there(c, plant), c.where, r.proof.told.fall, r.proof.t, doubt
+        c.effect.name,
+        phrase_there(c, plant),
+        c.where,
+        r.proof.told.fall,
+        r.proof.told.t,
+        doubt,
+        r.luck,
     )
 
 

@@ -41,6 +41,7 @@ from identification.prediction.trial import (
     find_doubt,
     has_size,
     is_at_bound,
+    luck_of,
 )
 from identification.progress import Progress, counted
 from identification.shares import fall_words
@@ -164,7 +165,7 @@ def _near_best(begun: Sequence[Begun], options: DiscoveryOptions) -> list[Begun]
     least = min((e for e, _ in each[: options.max_refits]), default=0.0) - STRONG_BIC
     for e, b in each:
         if not e > least:
-            tell_dropped(b.candidate, "others explain far more of some of the windows")
+            tell_dropped(b.candidate, "others explain far more in a first fit")
     return [b for e, b in each if e > least]
 
 
@@ -224,7 +225,7 @@ def judged(
         doubt = "differ"
     return Contender(
         model=new, prediction=found, gains=gains, numbers=numbers, criterion=gain,
-        doubt=doubt,
+        doubt=doubt, luck=luck_of(found, refits, options),
     )  # fmt: skip
 
 

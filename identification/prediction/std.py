@@ -8,7 +8,7 @@ The variance of a value is a sum over blocks b of windows and a share w of its p
 ν degrees of freedom (Satterthwaite 1946, for clusters Bell and McCaffrey 2002) is too small by a
 factor of up to ν/χ²(ν, 2.5 %): of one window it is nothing, whatever number comes out of it.
 
-The std knows noise and what the model leaves, and nothing of the steps Δ of the simulation. Where
+The std by blocks knows noise and what the model leaves, and nothing of the steps Δ. Where
 dry friction turns within a step, an integrator of any order errs by about Δ, and so does the
 estimate: δ is the step of Gauss and Newton with which it answers to a quarter of the step. H, S_w,
 P_w and r_w are those of `identification.windows.point`.

@@ -81,7 +81,7 @@ def rejected_effect(state: WindowSearch, contender: Contender) -> RejectedEffect
     candidate, parameters = fitted_sizes(c.model, c.candidate)
     proof = _proof(state, c)
     return RejectedEffect(
-        candidate, parameters, np.nan, proof, evidence=c.criterion, doubt=c.doubt
+        candidate, parameters, np.nan, proof, evidence=c.criterion, doubt=c.doubt, luck=c.luck
     )  # fmt: skip
 
 

@@ -65,6 +65,7 @@ class Contender:
     numbers: int  # that it adds to the model, those of each record counted
     criterion: float  # E, what speaks for it against the model without it (`evidence`)
     doubt: Doubt | None  # why it is not proven; None where it is
+    luck: float = np.nan  # chance that one of all that were refitted gains as much by luck
     # what else was refitted in its place and may be meant, once it is accepted
     alternatives: tuple[Contender, ...] = ()
     # what is beside it, where it was judged beside effects that have left the model since
@@ -128,14 +129,19 @@ def find_doubt(found: Prediction, refits: int, options: DiscoveryOptions) -> Dou
         "record": a record is predicted worse, though physics is the same in all of them.
         "little": it takes away too little to matter.
     """
-    chance = _chance(found, refits, options)
-    if not (found.t > options.min_proof_t and chance * refits < options.significance):
+    luck = luck_of(found, refits, options)
+    if not (found.t > options.min_proof_t and luck < options.significance):
         return "chance"
     if not found.is_everywhere:
         return "lengths"
     if contradicts_a_record(found, options):
         return "record"
     return None if min(found.typical_falls) > options.min_fall else "little"
+
+
+def luck_of(found: Prediction, refits: int, options: DiscoveryOptions) -> float:
+    """Returns the chance that one of all effects that were refitted gains as much by luck."""
+    return min(1.0, _chance(found, refits, options) * refits)
 
 
 def _chance(found: Prediction, refits: int, options: DiscoveryOptions) -> float:

@@ -28,7 +28,7 @@ NAMED = (
     "confidence", "compared", "one_of", "bic_gain", "evidence", "retuned", "outside",
     "smooth_share", "neighbour",
 )  # fmt: skip
-REJECTED = ("name", "where", "confidence", "bic_gain", "evidence", "doubt", "outside")
+REJECTED = ("name", "where", "confidence", "bic_gain", "evidence", "doubt", "luck", "outside")
 
 
 def discovery_to_json(found: Discovery) -> dict[str, Any]:

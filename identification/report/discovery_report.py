@@ -69,7 +69,7 @@ def discovery_text(found: Discovery) -> str:
         *(section.plain for section in sections),
         "\n".join(further_sentences(found)),
         *steps_taken(found),
-        f"The search took {found.took:.1f} s.",
+        f"The search took {found.took:.1f} s, without reading the logs and drawing the report.",
     ]
     return "\n\n".join(filter(None, parts))
 

@@ -28,7 +28,7 @@ from identification.report.page import Section, Table
 from identification.report.parts_words import parts_sentence
 from identification.report.shown_words import shown_lines, shown_rows, shown_sentences
 from identification.report.value_words import departures_found, gathered, words_of
-from identification.shares import decimal
+from identification.shares import decimal, fall_words
 from identification.windows.coarse import steps_of
 
 DIGITS = 3  # of errors of records
@@ -38,8 +38,8 @@ LATER = (
     "Inputs that seem to act earlier may also be the answer of a controller to what the robot did."
 )
 SHIFTS = (
-    "by how much the inputs of a record seem to act later or earlier than their time stamps say,"
-    " where both halves of it tell the same"
+    "records whose inputs seem to act later or earlier than their time stamps say, by as much in"
+    " both halves of the record"
 )
 GAPS = {  # by what errors are of: what the gap on unseen data is
     "free run": "Measured minus simulated, from the inputs alone, over samples that no fit has"
@@ -174,13 +174,13 @@ def shifts_section(found: Discovery) -> list[Section]:
     shifts = shown_shifts(found.shifts, found.records, found.options)
     if not shifts:
         return []
-    rows = tuple((s.record, describe_shift(s), round(100 * s.fall)) for s in shifts)
-    lines = [f"  {name}: {shift}, {fall:z.0f} % of its mean square" for name, shift, fall in rows]
+    rows = tuple((s.record, describe_shift(s), fall_words(s.fall)) for s in shifts)
+    lines = [f"  {name}: {shift}; with this shift its mean square {f}" for name, shift, f in rows]
     return [
         Section(
             "Shifts in time",
             f"{sentence(SHIFTS)} {LATER}",
-            table=Table(("record", "its inputs act", "of its mean square [%]"), rows),
+            table=Table(("record", "its inputs act", "with this shift its mean square"), rows),
             plain="\n".join([f"{SHIFTS}:", *lines]),
         )
     ]

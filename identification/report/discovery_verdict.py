@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from math import hypot, inf, isfinite
 
-from identification.discovery.findings.finding import FindingKind
+from identification.discovery.effect_results import RejectedEffect
+from identification.discovery.findings.finding import Finding, FindingKind
+from identification.discovery.findings.records_evidence import UnprovenEffect
 from identification.discovery.result import Discovery
 from identification.progress import duration
 from identification.quantities import held, quantity
 from identification.report.effect_words import (
     describe_chance,
     describe_effect,
+    describe_rejected,
     difference_sentences,
     none_explains,
 )
@@ -118,10 +121,32 @@ def _findings(found: Discovery) -> list[str]:
 
     What effects that are not named would leave is no error of a model that is told of.
     """
-    unnamed = found.verdict == "unknown effect"
+    unnamed, likeliest = found.verdict == "unknown effect", _likeliest(found)
     told = [f for f in found.findings
-            if not (unnamed and f.kind is FindingKind.REMAINING_ERROR)]  # fmt: skip
+            if not (unnamed and f.kind is FindingKind.REMAINING_ERROR)
+            and not (likeliest and _is_of(f, likeliest))]  # fmt: skip
     return [sentence(describe_finding(finding)) for finding in told]
+
+
+def _likeliest(found: Discovery) -> RejectedEffect | None:
+    """Returns the likeliest effect of those that were tried and not believed, or None."""
+    tried = [
+        r for r in found.rejected
+        if isfinite(r.evidence) and r.proof.told.fall > 0 and not r.candidate.effect.is_curve
+    ]  # fmt: skip
+    return max(tried, key=lambda r: r.evidence, default=None)
+
+
+def _is_of(finding: Finding, tried: RejectedEffect) -> bool:
+    """Returns whether a finding tells of an effect that was tried."""
+    e = finding.evidence
+    return isinstance(e, UnprovenEffect) and (e.name, e.where) == tried.candidate.key
+
+
+def _likeliest_sentences(found: Discovery) -> list[str]:
+    """Returns the sentence on the likeliest effect that was tried, with its size; none without."""
+    best = _likeliest(found)
+    return [] if best is None else [f"The likeliest is {describe_rejected(best, found)}."]
 
 
 def _unknown(found: Discovery) -> str:
@@ -138,6 +163,7 @@ def _unknown(found: Discovery) -> str:
         [
             f"Something is missing that {none_explains(tried)}: the error of the fitted model on"
             f" unseen data is {left}{found.over}{times}{needed}.",
+            *_likeliest_sentences(found),
             "The program gives no name rather than a wrong one.",
             *_doubtful(found),
             *_place(found),
@@ -198,6 +224,7 @@ def _unexplained(found: Discovery) -> str:
         [
             f"Something is left that no known effect surely explains: with the {more} in the model,"
             f" the error on unseen data is still {left}{found.over}{times}.",
+            *_likeliest_sentences(found),
             *findings,
             *_nearest(found),
         ]
@@ -253,10 +280,8 @@ def _smooth(found: Discovery) -> str:
         if len(found.named) > 1 and n.smooth_share is not None and n.smooth_share < EXACT_SHARE
     ]
     each = f" At their own joints the shares are {listed(inexact)}." if inexact else ""
-    is_one, share = len(found.named) == 1, found.smooth_share
-    who, whom = ("This effect alone explains", "it explains") if is_one else (
-        "These effects alone explain", "they explain")  # fmt: skip
+    who = "this effect explains" if len(found.named) == 1 else "these effects explain"
     return (
-        f" {who} {percent(share)} of what {whom} together with any smooth forces at the joints"
-        f" (functions of rate, position, drive or time).{each}"
+        " With free smooth forces at the joints (of rate, position, drive or time) the model would"
+        f" explain more; without them {who} {percent(found.smooth_share)} of that.{each}"
     )

@@ -33,6 +33,7 @@ BEST, LISTED = 10, 6  # candidates with the best scores, in a figure and in a li
 MANY = 8  # lines on what failed; of more the count is told
 FAILED = "tried, and not possible to simulate"
 DROPPED = "begun, and left by the search"
+LUCK = 0.5  # chance from which on luck explains a score as well as the effect
 BLANK = ("", "", "")  # size, mean square and chance of what was not fitted
 TRIED = (
     "These effects were tried too. The change of the mean square and the chance that luck makes it"
@@ -70,7 +71,8 @@ def added_section(found: Discovery, files: str = "") -> Section:
         for k, (name, value) in enumerate(_numbers(named)):
             rows.append((name, value, *(once if k == 0 else ("",) * 3)))
         proofs.append(sentence(f"{effect}: {gains}"))
-        lines += [f"+ {effect}: {describe_sizes(named)}", f"    law: {law}", f"    {gains}"]
+        sizes = describe_sizes(named, found.final.plant)
+        lines += [f"+ {effect}: {sizes}", f"    law: {law}", f"    {gains}"]
         if named.candidate.effect.is_curve:
             lines += [f"    {line}" for line in node_lines(named, found.final.plant)]
         other = named.retuned
@@ -129,7 +131,8 @@ def tried_section(found: Discovery) -> list[Section]:
     tried, plant = rejected_once(found), found.final.plant
     beside = " beside what is named" if found.named else ""
     rows = [
-        (describe_there(r.candidate, plant), describe_sizes(r), fall_words(r.proof.told.fall, 3),
+        (describe_there(r.candidate, plant), describe_sizes(r, plant),
+         fall_words(r.proof.told.fall, 3),
          chance_words(r.proof.told), describe_doubt(r, found.options))
         for r in tried
     ]  # fmt: skip
@@ -155,11 +158,11 @@ def tried_section(found: Discovery) -> list[Section]:
 
 
 def best_scores(found: Discovery) -> list[Scored]:
-    """Returns the best score of each effect: its best place and shape."""
+    """Returns the best score of each effect that is more than luck: its best place and shape."""
     each: dict[str, Scored] = {}
     for score in found.scores:
         each.setdefault(score.candidate.effect.name, score)
-    return [*each.values()]
+    return [score for score in each.values() if score.p_value < LUCK]
 
 
 def describe_score(found: Discovery, score: Scored) -> str:

@@ -24,13 +24,19 @@ if TYPE_CHECKING:  # a search is slow to import, and a page may tell of a model 
 
 
 FEW = 0.01  # a chance above it is told as a share, and not as a power of ten
+# Number of a joint or body to which the size of an effect is added, by the effect's name.
+ADDED_TO = {
+    "coulomb_friction": "joint/{}.frictionloss", "stiffness": "joint/{}.stiffness",
+    "rotor_inertia": "joint/{}.armature", "mass_mismatch": "body/{}.mass",
+}  # fmt: skip
 NOT_TOLD = "(std not known, because too few data depend on it)"
 DOUBTS = {
     "numbers": "its gain is too small for so many parameters",
-    "chance": "so many effects were tried that its gain may be luck",
+    "chance": "its gain on the data that decide may be luck",
     "lengths": "windows of some length are predicted worse with it",
     "record": "a record is predicted worse with it",
-    "little": "it removes too little of the error to matter over windows of some length",
+    "little": "over some of the lengths of time that are predicted it removes too little of the"
+    " error",
     "size": "its size is not known well enough to differ from zero",
     "bound": "its size ends on the largest value that is believed, so that it stands for something"
     " else",
@@ -83,22 +89,40 @@ def value_with_std(value: float, std: float, unit: str, like: float = 0.0) -> st
     return f"{said} {NOT_TOLD}" if isnan(std) else said
 
 
-def describe_sizes(found: NamedEffect | RejectedEffect) -> str:
+def describe_sizes(found: NamedEffect | RejectedEffect, plant: Plant | None = None) -> str:
     """Returns sizes and shapes of a fitted effect with std, but no shape that no data tell.
 
-    Of a curve, whose numbers are a figure, it returns the largest force of its nodes.
+    Where a size is added to a number that the plant's model has, it says that number too. Of a
+    curve, whose numbers are a figure, it returns the largest force of its nodes.
     """
     effect, shown = found.candidate.effect, shown_parameters(found)
     if effect.is_curve and shown:
         value, std, unit = shown[largest_known(shown)]
         return f"up to {quantity(abs(value), std, unit)}"
     about = effect.about
-    return ", ".join(
+    said = ", ".join(
         say_choice(found.candidate, name, value)
         or (f"{name} not felt" if isinf(std) else f"{name} = {value_with_std(value, std, unit)}")
         + (f" ({about[name]})" if about.get(name) else "")
         for name, (value, std, unit) in {in_record(n, {}): v for n, v in shown.items()}.items()
     )
+    has = "" if plant is None else _already(found.candidate, plant)
+    return f"{said}, in addition to the {has} of the model" if has else said
+
+
+def _already(candidate: Candidate, plant: Plant) -> str:
+    """Returns the number of the model to which an effect at one place adds; "" without one."""
+    from identification.effects.joint_group import SLIDE  # slow to import
+    from identification.effects.jointed import JointPlant
+    from identification.model.tied import value_of
+
+    name = candidate.effect.name.removeprefix(SLIDE)
+    (size, *_) = candidate.effect.sizes
+    at = candidate.effect.places[candidate.where].removeprefix("@")
+    if not isinstance(plant, JointPlant) or name not in ADDED_TO or not at:
+        return ""
+    value = value_of(plant.model, ADDED_TO[name].format(at))
+    return quantity(value, unit=size.unit) if value else ""
 
 
 def shown_parameters(
@@ -174,9 +198,10 @@ def describe_next(found: Discovery) -> str:
 
 def describe_rejected(rejected: RejectedEffect, found: Discovery) -> str:
     """Returns a rejected effect in a line: its size, what it does on unseen data, and why not."""
-    proof, why = rejected.proof, describe_doubt(rejected, found.options)
+    proof, plant = rejected.proof, found.final.plant
+    why = describe_doubt(rejected, found.options)
     return (
-        f"{describe_there(rejected.candidate, found.final.plant)}: {describe_sizes(rejected)};"
+        f"{describe_there(rejected.candidate, plant)}: {describe_sizes(rejected, plant)};"
         f" {_where_told(proof)} the mean square {fall_words(proof.told.fall, 3)}"
         f" (t = {proof.told.t:z.1f}, chance {chance_words(proof.told)}){why and f'; {why}'}"
     )
@@ -185,7 +210,7 @@ def describe_rejected(rejected: RejectedEffect, found: Discovery) -> str:
 def describe_doubt(rejected: RejectedEffect, options: DiscoveryOptions) -> str:
     """Returns in words why an effect is not believed; "" where no number of its own says so."""
     proof = rejected.proof
-    why = DOUBTS.get(rejected.doubt or "", "")
+    why = doubt_words(rejected.doubt, rejected.luck)
     if rejected.doubt is None and rejected.bic_gain <= 0:
         why = DOUBTS["numbers"]
     elif rejected.doubt is None and proof.fall <= 0:
@@ -199,6 +224,14 @@ def describe_doubt(rejected: RejectedEffect, options: DiscoveryOptions) -> str:
     return why
 
 
+def doubt_words(doubt: str | None, luck: float) -> str:
+    """Returns what a word of doubt says, with the chance of luck; "" without a word."""
+    said = DOUBTS.get(doubt or "", "")
+    if doubt == "chance" and isfinite(luck):
+        said += f" (chance {_probability(luck)}, all effects that were tried counted)"
+    return said
+
+
 def describe_chance(proof: Proof) -> str:
     """Returns in words how far unseen samples are from chance, and by which test."""
     return f"t = {proof.t:z.1f}, chance {chance_words(proof)} by {proof.test}"
@@ -206,14 +239,18 @@ def describe_chance(proof: Proof) -> str:
 
 def chance_words(proof: Proof) -> str:
     """Returns the chance of a gain as large as this by luck."""
-    return f"{proof.chance:.2g}" if proof.chance > FEW else probability(proof.chance)
+    return _probability(proof.chance)
+
+
+def _probability(chance: float) -> str:
+    return f"{chance:.2g}" if chance > FEW else probability(chance)
 
 
 def describe_gains(named: NamedEffect) -> str:
     """Returns in words what a named effect gains on fitted samples, and on those told of."""
     told, fitted = named.proof.told, f"BIC gain {named.bic_gain:z.4g} on fitted samples"
     if not isfinite(named.bic_gain):
-        fitted = f"evidence {named.evidence:z.4g} of the windows that decide"
+        fitted = f"evidence {named.evidence:z.4g} on the windows that decide"
     higher = f" log likelihood {told.gain:+z.4g}," if isfinite(told.gain) else ""
     return f"{fitted}; {_where_told(named.proof)}{higher} {describe_chance(told)}"
 

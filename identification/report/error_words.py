@@ -35,8 +35,8 @@ def describe_scale(outputs: Mapping[str, str], scale: np.ndarray | None) -> list
         for (name, unit), s in zip(outputs.items(), scale, strict=True)
     )
     return [
-        "A mean square over outputs of several units counts the error of each output in multiples"
-        f" of its rms error under the fitted nominal model: {each}."
+        "Before outputs of several units are taken together in one mean square, the error of each"
+        f" is divided by its rms error under the fitted nominal model: {each}."
     ]
 
 

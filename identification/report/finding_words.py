@@ -10,10 +10,10 @@ from identification.discovery.findings.finding import Finding, FindingKind
 from identification.discovery.impossible import IMPOSSIBLE
 from identification.quantities import alike, error, probability, quantity
 from identification.report.effect_words import (
-    DOUBTS,
     describe_chance,
     describe_effect,
     describe_sizes,
+    doubt_words,
 )
 from identification.report.value_words import without_colon
 from identification.shares import HELD, change, decimal, fall_words, percent, ratio_of, times
@@ -207,7 +207,7 @@ def _unproven_effect(e: records_evidence.UnprovenEffect) -> str:
     return (
         f"{without_colon(e.phrase)}, {e.where}, predicts unseen data better on average (mean"
         f" square {change(-e.fall)}, t = {e.t:z.1f}), but is not"
-        f" {'believed' if e.doubt in IMPOSSIBLE else 'proven'}: {DOUBTS[e.doubt]}"
+        f" {'believed' if e.doubt in IMPOSSIBLE else 'proven'}: {doubt_words(e.doubt, e.luck)}"
     )
 
 

@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import inf, isfinite
+from math import isfinite, isnan
 
 import numpy as np
 
 from identification.estimation.fit import Fit
-from identification.estimation.metrics import relative
 from identification.prediction.record_errors import errors_by_unit
 from identification.prediction.records_fit import RecordsFit
 from identification.quantities import held
 from identification.report.effect_words import value_with_std
-from identification.report.fit_verdict import ABOVE, MUCH
+from identification.report.fit_verdict import ABOVE, error_over_noise
 from identification.report.headline import Answer, Headline, Tile, error_tile
 
 FEW = 2  # values that have a tile each
@@ -33,14 +32,13 @@ def _judged(fit: Fit | RecordsFit) -> tuple[str, str]:
         return "Stopped", "These are the best values that the search had seen."
     if not fit.converged:
         return "Not converged", "The search ran out of iterations."
-    floor = fit.floor_by_unit if isinstance(fit, Fit) else fit.noise_by_unit
-    ratio = relative(fit.rms_by_unit, floor) if any(floor.values()) else inf
-    if not isfinite(ratio):
+    ratio = error_over_noise(fit)
+    if isnan(ratio):
         return "Fitted", ""
-    if ratio > (ABOVE if isinstance(fit, Fit) else MUCH):
-        left = f"The fit leaves {held(ratio)} times the noise; discover looks for what it is."
-        return "Fitted, and something is missing", left
-    return "Fitted", f"The fit leaves {held(ratio)} times the noise."
+    left = f"The error is {held(ratio)} times the noise"
+    if ratio > ABOVE:
+        return "Fitted, and something is missing", f"{left}; discover looks for what it is."
+    return "Fitted, and the model explains the log", f"{left}."
 
 
 def _values(fit: Fit | RecordsFit, units: Mapping[str, str]) -> list[Tile]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import singledispatch
+from math import isnan, nan
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -24,7 +25,6 @@ from identification.report.untold_words import (
     too_weak,
     weak_sentences,
 )
-from identification.report.value_words import departure_sentences
 from identification.shares import change
 
 if TYPE_CHECKING:  # both are slow to import
@@ -34,11 +34,40 @@ if TYPE_CHECKING:  # both are slow to import
 # A residual above this multiple of the noise floor is more than noise; the floor itself is an upper
 # bound of the noise that errs by a few percent.
 ABOVE = 1.2
-MUCH = 3.0  # times the noise floor, beyond which windows are told to lack something
 HOLDS = 1.2  # a fit holds on unseen data up to this multiple of the residual that is expected there
 GROWN = 10.0  # a free run that errs by more than this multiple of the fitted residual has diverged
 LEVEL = 0.01  # significance of the tests of the residual: one false alarm in a hundred
 CONVERGED = {True: "The search converged.", False: "The search ran out of iterations."}
+
+
+def error_over_noise(fit: Fit | RecordsFit) -> float:
+    """Returns the error on unseen data over the sensors' noise; NaN where the noise is not known.
+
+    A free run strays on unseen data by small errors of its values: there the fitted data count,
+    unless what was fitted does not hold.
+    """
+    if isinstance(fit, Fit):
+        there, expected = fit.validation_rms_by_unit, fit.validation_expected_by_unit
+        floor, errors = fit.floor_by_unit, fit.rms_by_unit
+        if there and expected and not relative(there, expected) < HOLDS:
+            errors = there
+    else:
+        floor, errors = fit.noise_by_unit, fit.unseen_by_unit
+    return relative(errors, floor) if all(floor.values()) else nan
+
+
+def answer_sentence(fit: Fit | RecordsFit) -> str:
+    """Returns in one sentence whether the model explains the log."""
+    ratio = error_over_noise(fit)
+    if isnan(ratio):
+        return "Whether the model explains the log is not known: the log shows no sensor noise."
+    of_what = f"its error is {held(ratio)} times the noise of the sensors"
+    if not ratio <= ABOVE:
+        return (
+            f"Something is missing from the model, or a column is not what it expects: {of_what};"
+            " discover looks for what is missing."
+        )
+    return f"The model with the fitted values explains the log: {of_what}."
 
 
 @singledispatch
@@ -69,13 +98,8 @@ def _of_records(fit: RecordsFit) -> list[str]:
         *_unknown_std(fit),
         _left_by_windows(_count_windows(fit), fit.horizon, rms, floor),
     ]
-    if any(floor.values()) and relative(rms, floor) > MUCH:
-        said.append(
-            "That is far more than the noise of the sensors: the model lacks something, or a column"
-            " is not what the model expects; discover looks for what is missing."
-        )
     scale = describe_scale(output_units(fit.records[0].log), model.scale)
-    return [*said, *scale, *departure_sentences(model), *step_sentences(model)]
+    return [*said, *scale, *step_sentences(model)]
 
 
 def window_sentences(found: WindowEstimate, floor: float, unit: str) -> list[str]:
@@ -107,15 +131,15 @@ def coloured_outputs(fit: Fit) -> int:
 
 
 def _steps(fit: Fit) -> list[str]:
-    """Returns a sentence on what a finer step would change beyond what the std tell."""
+    """Returns a sentence on what a finer step would change, where this is most of the std."""
     if not (far := fit.far):
         return []
     step = float(fit.estimate.predictor.plant.model.opt.timestep) / FINER
     moves = dict(zip(fit.estimate.space.names, fit.step_shift.tolist(), strict=True))
-    told = [f"{name} by {moves[name]:+z.2g}, {held(std)} std" for name, std in far.items()]
+    told = [f"{name} by {moves[name]:+z.2g}" for name in far]
     return [
         f"A quarter of the model's step, {quantity(step, unit='s')}, would move"
-        f" {first_few(told, '; ')}; the std do not include this. If it matters, write"
+        f" {first_few(told, '; ')}. The std include this; for smaller ones write"
         f' timestep="{step:.6g}" into the <option> of the model, and run the command again.'
     ]
 

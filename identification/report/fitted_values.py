@@ -13,9 +13,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from math import isfinite
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from identification.discovery.fitted import TOLD_SHIFT, Fitted, StepShift
+from identification.discovery.fitted import Fitted, StepShift
 from identification.model.parameter import Parameter
 from identification.model.protocol import FINER
 from identification.quantities import alike, held, quantity
@@ -27,7 +25,7 @@ if TYPE_CHECKING:  # a search is slow to import
     from identification.discovery.result import Discovery
 
 TOLD_DIGITS = 4  # of values that finer steps would give
-SHOWN = 3  # values that are told, those that move most first
+SHOWN, MOST_SHOWN = 3, 8  # of more values than the latter only the first are told
 FEW = 3  # single parts that are shown where there are more than MANY
 MANY = 8
 NONE = "–"
@@ -139,42 +137,42 @@ def step_sentences(
         f" The last fit was checked with a quarter of the model's step, {quantity(finer, unit='s')}"
     )
     if not changed:
-        return [f"{said}: no value would move by more than {held(TOLD_SHIFT)} std."]
+        return [f"{said}: it would change little, and the std include it."]
     return [
-        f"{said}: it would {', and would '.join(changed)}. If this matters, write"
+        f"{said}: it would {', and would '.join(changed)}. For a better answer write"
         f' timestep="{finer:.6g}" into the <option> of the model, and run the command again.'
     ]
 
 
 def std_sentence(model: Fitted, words: Mapping[str, str] | None = None) -> str:
-    """Returns a warning that the std leave out the error of the steps, where it is larger; or "".
+    """Returns a warning that std are mostly the error of the steps, where they are; or "".
 
     It stands beside the std; `step_sentences` says by how much, and what to do.
     """
     if not (far := _far(model)):
         return ""
     return (
-        "The std do not include the error of the simulation's steps, which is more than"
-        f" {held(TOLD_SHIFT)} std for {first_few([(words or {}).get(n, n) for n in far])}."
+        "The std include the error of the simulation's steps, which is most of the std of"
+        f" {first_few([(words or {}).get(n, n) for n in far])}."
     )
 
 
 def first_few(told: Sequence[str], join: str = ", ") -> str:
-    """Returns the first of some words, and how many more there are."""
-    more = f" and {len(told) - SHOWN} more" if len(told) > SHOWN else ""
-    return f"{join.join(told[:SHOWN])}{more}"
+    """Returns some words; of more than `MOST_SHOWN` the first, and how many more there are."""
+    if len(told) <= MOST_SHOWN:
+        return join.join(told)
+    return f"{join.join(told[:SHOWN])} and {len(told) - SHOWN} more"
 
 
 def _changed(model: Fitted, words: Mapping[str, str]) -> list[str]:
-    """Returns clauses on what finer steps would do beyond what the std tell."""
+    """Returns clauses on what finer steps would do that is worth to be told."""
     finer, said = model.finer, []
     if finer is None:
         return []
     if far := _far(model):
         value = _at_finer_steps(model, finer, far)
-        told = first_few([f"{words.get(n, n)} by {held(std)} std to {value[n]}"
-                          for n, std in far.items()])  # fmt: skip
-        said.append(f"move {told}, which the std do not include")
+        told = first_few([f"{words.get(n, n)} to {value[n]}" for n in far])
+        said.append(f"move {told}, which the std include")
     if finer.is_lower():
         said.append(
             f"lower the error of the fitted windows to {held(finer.error)} of what it is: that part"
@@ -191,12 +189,9 @@ def _at_finer_steps(model: Fitted, shift: StepShift, names: Iterable[str]) -> di
     return {n: alike([values[n] + moved[n]], u, TOLD_DIGITS)[0] for n, u in units.items()}
 
 
-def _far(model: Fitted) -> dict[str, float]:
-    """Returns the values that finer steps would move far enough to be told, in std by name."""
-    if model.finer is None:
-        return {}
-    names, std = [*model.told_std], np.array([*model.told_std.values()])
-    return model.finer.far(names, std)
+def _far(model: Fitted) -> list[str]:
+    """Returns the values whose std is mostly the error of the steps, the worst first."""
+    return [] if model.finer is None else model.finer.far(model.told_std)
 
 
 def _of(name: str, parameters: Mapping[str, Parameter]) -> Parameter:

@@ -88,16 +88,16 @@ def law_figure(of: RecoveredForce) -> Figure:
     factor, said = (1e3, f"m{unit}") if top < SMALL and unit else (1.0, unit)
     near, follows = _bends(of), FOLLOWS.get(of.along)
     follows = follows or f"what the law multiplies by {of.candidate.effect.sizes[0].name}"
-    figure = Figure((9.0 if near else 7.0, 3.8), layout="constrained")
-    panels = figure.subplots(1, 2 if near else 1, squeeze=False)[0]
+    figure = Figure((7.0, 6.4 if near else 3.8), layout="constrained")
+    panels = figure.subplots(2 if near else 1, 1, squeeze=False)[:, 0]
     for ax in panels:
         _draw(ax, of, factor)
         ax.set_xlabel(literal(follows + (f" [{x_unit}]" if x_unit else "")))
+        ax.set_ylabel(literal(_force(of) + (f" [{said}]" if said else "")))
     if near:
         panels[0].set_title("all of it", loc="left", color=INK)
         panels[1].set_title("where it bends", loc="left", color=INK)
         panels[1].set_xlim(*near)
-    panels[0].set_ylabel(literal(_force(of) + (f" [{said}]" if said else "")))
     figure.legend(
         *panels[0].get_legend_handles_labels(), loc="outside upper center", ncols=2, fontsize=8
     )

@@ -137,13 +137,13 @@ def _named(found: Discovery, named: NamedEffect) -> str:
     if is_set:
         total = own + sum(r.confidence for r in rivals)
         return (
-            f"{first} is one of these, which the data do not surely tell apart:"
-            f" {'; '.join([f'{mine} ({percent(own)})', *others])}; together {percent(total)}."
-            f" The first is put into the model: {describe_sizes(named)}."
-            + (f" {named.advice}" if named.advice else "")
+            f"{first} is one of these, and the data do not tell which:"
+            f" {'; '.join([f'{mine} ({percent(own)})', *others])}. It is one of them with a"
+            f" confidence of {percent(total)}. The model got the first one, with"
+            f" {describe_sizes(named, plant)}." + (f" {named.advice}" if named.advice else "")
         )
     less = f" Less likely: {'; '.join(others)}." if others else ""
-    return f"{first}: {mine}, {describe_sizes(named)}; confidence {percent(own)}.{less}"
+    return f"{first}: {mine}, {describe_sizes(named, plant)}; confidence {percent(own)}.{less}"
 
 
 def likely_rivals(named: NamedEffect) -> list[Rival]:

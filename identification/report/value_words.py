@@ -81,9 +81,14 @@ def _size_words(effect: Effect, size: str, where: str) -> str:
 def words_of(found: Discovery) -> dict[str, str]:
     """Returns the words of all values of a discovery by name, also of those of single records."""
     told = [*found.nominal.told_values, *found.final.told_values]
-    effects = [named.candidate.effect for named in found.named]
+    named = [each.candidate for each in found.named]
+    effects = [c.effect for c in named]
     differing = [each.candidate.effect for each in found.differences]
-    return value_words(told, found.final.plant, [*differing, *effects])
+    words = value_words(told, found.final.plant, [*differing, *effects])
+    for c in named:  # a shape is one for all places of its effect, and is told of these
+        for shape in c.effect.shapes:
+            words[f"{c.effect.name}.{shape.name}"] += f", {c.where}"
+    return words
 
 
 def value_words(

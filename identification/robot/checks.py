@@ -174,6 +174,7 @@ def refuse_horizon(file: RobotFile, log: Log, is_whole: bool = False) -> None:
     if file.horizon is None or MIN_ROWS <= round(file.horizon / h) <= most:
         return
     raise InputError(
-        f"horizon in {file.path} is {file.horizon:g} s; in log {log.name!r} it may be"
-        f" {MIN_ROWS * h:g} s, of {MIN_ROWS} samples, to {most * h:g} s, to fit into what is unseen"
+        f"horizon in {file.path} is {file.horizon:g} s; for log {log.name!r} write one from"
+        f" {MIN_ROWS * h:g} s ({MIN_ROWS} samples) to {most * h:g} s"
+        f" ({'the log' if is_whole else 'its shorter part'})"
     )

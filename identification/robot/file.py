@@ -143,6 +143,7 @@ def read_robot_file(path: str | Path) -> RobotFile:
     every, fixed = content.get("columns", {}), content.get("fixed", {})
     columns = {name: each for name, each in every.items() if not isinstance(each, list)}
     poses = {n: texts(every[n], f"columns.{n}", path) for n in every if n not in columns}
+    check_table(columns, dict.fromkeys(columns, (str, "text in quotes")), f"columns in {path}")
     start = content.get("start", {})
     for key, table in (("fixed", fixed), ("start", start)):
         check_table(table, dict.fromkeys(table, ((int, float), "a number")), f"{key} in {path}")
@@ -166,7 +167,7 @@ def read_robot_file(path: str | Path) -> RobotFile:
         trust=trusted(content.get("trust", []), f"under trust in {path}"),
         start={name: float(value) for name, value in start.items()},
         log=content.get("log", {}),
-        columns=dict(zip(columns, texts([*columns.values()], "columns", path), strict=True)),
+        columns=columns,
         poses=poses,
         fixed={name: float(value) for name, value in fixed.items()},
         records=records,

@@ -91,8 +91,10 @@ def read_own_values(content: Mapping[str, Any], path: Path) -> dict[str, dict[st
 
 def texts(values: list[Any], key: str, path: Path) -> tuple[str, ...]:
     """Returns names as a tuple; refuses one that is no text or stands there twice."""
-    if not all(isinstance(v, str) for v in values) or len(set(values)) < len(values):
-        raise InputError(f"{key} in {path} must be names in quotes, each once")
+    if not all(isinstance(v, str) for v in values):
+        raise InputError(f"{key} in {path} must be names in quotes")
+    if twice := [v for v in values if values.count(v) > 1]:
+        raise InputError(f"{key} in {path} has {twice[0]!r} twice; keep one")
     return tuple(values)
 
 

@@ -25,9 +25,10 @@ from identification.report.error_words import kind, listed
 from identification.report.figures import compare_figure, windows_figure
 from identification.report.fit_headline import fit_headline
 from identification.report.fit_json import fit_to_json
+from identification.report.fit_verdict import answer_sentence
 from identification.report.page import Section, Table, write_report
 from identification.report.page_files import PageFiles
-from identification.report.value_words import value_words
+from identification.report.value_words import departure_sentences, value_words
 from identification.robot.confirmation import confirm, plant_with
 from identification.robot.free_swing import impossible_sentence
 from identification.robot.reading import doubtful
@@ -55,6 +56,9 @@ def robot_fit_to_json(result: RobotFit, confirmed: Sequence[Confirmation] = ()) 
         result.is_worse or result.stopped
     )  # then nothing else of the verdict matters as much
     far = [*doubtful(result.robot), *no_better(result, confirmed or result.unseen), *far]
+    if not first:
+        departures = departure_sentences(found.model) if isinstance(found, RecordsFit) else []
+        far = [answer_sentence(found), *departures, *far]
     if no_body := impossible_sentence(result.robot, result.shared):
         far.append(no_body)
     verdict = [*record["verdict"][:first], *far, *record["verdict"][first:], *map(str, said)]

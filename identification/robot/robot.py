@@ -24,6 +24,7 @@ from identification.logs.read import read_log
 from identification.logs.table import MissingColumnsError
 from identification.model.plant import start_place
 from identification.model.predictor import output_columns
+from identification.refusals.limits import refuse_limits
 from identification.refusals.unmeasured import refuse_unmeasured
 from identification.robot.carried import with_carried
 from identification.robot.checks import (
@@ -152,6 +153,13 @@ def _said_of_turning(known: Sequence[Axis], only: Sequence[str]) -> tuple[str, .
     )
 
 
+def _shared(columns: Mapping[str, str], name: str) -> list[str]:
+    """Returns that the column of an actuator or sensor is that of others too, or nothing."""
+    column = columns[name]
+    users = [n for n, other in columns.items() if other == column]
+    return [f"column {column!r} is that of {' and '.join(users)}"] if len(users) > 1 else []
+
+
 def read_robot_log(file: RobotFile, path: str | Path) -> Log:
     """Read a log with the columns of a robot."""
     refuse_same_stem(file, Path(path))
@@ -177,8 +185,12 @@ def read_robot_log(file: RobotFile, path: str | Path) -> Log:
                 f" {Path(path).with_suffix('.toml')}, or under [log.columns] in {file.path}"
             )
         if name not in (*inputs, *outputs, *tendons.sensors):
-            raise unknown_name(f"actuator or sensor under columns in {file.path}:", name,
-                               (*inputs, *outputs, *tendons.sensors))  # fmt: skip
+            unknown = unknown_name(f"actuator or sensor under columns in {file.path}:", name,
+                                   (*inputs, *outputs, *tendons.sensors))  # fmt: skip
+            raise InputError("; ".join([str(unknown), *_shared(file.columns, name)]))
+    for name in file.columns:
+        if shared := _shared(file.columns, name):
+            raise InputError(f"in {file.path}, {shared[0]}; give each a column of its own")
     if tendons.sensors:  # they stand in the place of the joints that they tell
         outputs = (*tendons.sensors, *(n for n in outputs if n not in tendons.joints))
     column = {name: file.columns.get(name, name) for name in (*inputs, *outputs)}
@@ -225,6 +237,8 @@ def robot_of(
     model = spec.copy().compile()
     refuse_start(file, model)
     refuse_unmeasured(file, model, log)
+    for each in (log, *others, *records):
+        refuse_limits(file, model, spec.compiler.degree, each)
     known = reach([axes(model, each, file.trust) for each in (log, *others)])
     for joint in file.joints:
         if joint not in {a.joint for a in known}:

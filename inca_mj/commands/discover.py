@@ -22,6 +22,7 @@ from identification.commands.common import (
     say,
     say_json,
 )
+from identification.commands.stopping import NO_ANSWER, leaving_out
 from identification.errors import InputError
 from identification.folders import draft_of
 from identification.progress import duration
@@ -91,10 +92,11 @@ class Discover:
         options = options_of(self.options, self.minutes)
         for path, log in zip(self.log, logs, strict=True):
             self.output.tell(f"log {path}: {log.duration:.4g} s, {len(log)} samples")
-        found = inca.discover(
-            logs, parameters, place, confirm=confirm, spread=spread, progress=self.output.tell,
-            settled=self.settled, options=options, trust=trust,
-        )  # fmt: skip
+        with leaving_out(NO_ANSWER):
+            found = inca.discover(
+                logs, parameters, place, confirm=confirm, spread=spread, progress=self.output.tell,
+                settled=self.settled, options=options, trust=trust,
+            )  # fmt: skip
         from identification.report.discovery_report import discovery_text  # slow to import
         from inca_mj.workflows.discovery_files import TwinDiscoveryFiles
 

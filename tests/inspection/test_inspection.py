@@ -14,6 +14,7 @@ from identification import InputError, fit, inspect_log, read_robot
 from identification.inspection.answers import find_answers
 from identification.inspection.beginning import write_beginning
 from identification.inspection.guesses import is_time, role_of, time_unit, unit_of
+from identification.inspection.matching import Channel, match
 from identification.inspection.words import answer_sentence, answer_sentences
 
 STEP = 0.01
@@ -117,6 +118,21 @@ ARM = """<mujoco><option timestep="0.002" integrator="implicitfast"/><worldbody>
   <position name="elbow_servo" joint="elbow" kp="6" kv="0.5"/></actuator>
 <sensor><jointpos name="shoulder_pos" joint="shoulder"/><jointpos name="elbow_pos" joint="elbow"/>
 </sensor></mujoco>"""
+
+
+@pytest.mark.parametrize(("sent", "seen"), [("goal", "present"), ("cmd", "meas"), ("goal", "is")])
+def test_columns_are_found_by_names_before_their_order(tmp_path, sent, seen):
+    """A setpoint and a position share the name of the joint; other words tell which is which."""
+    joints = ("pan", "lift", "elbow")
+    inputs = [Channel(j, j, True) for j in joints]
+    channels = inputs + [Channel(f"{j}_pos", j, False) for j in joints]
+    names = [f"{sent}_{j}" for j in joints] + [f"{seen}_{j}" for j in reversed(joints)]
+    data = np.random.default_rng(0).normal(size=(50, 7))
+    data[:, 0] = np.arange(50) / 50
+    path = tmp_path / "log.csv"
+    np.savetxt(path, data, delimiter=",", header=",".join(["time", *names]), comments="")
+    found = {m.channel.name: m.column for m in match(channels, inspect_log(path))}
+    assert found == {c.name: f"{sent if c.is_input else seen}_{c.joint}" for c in channels}
 
 
 @pytest.fixture(scope="module")

@@ -65,7 +65,7 @@ def model(cost=1.0, error=np.nan, shift=0.0):
     """A fitted model; `error` and `shift` are those of finer steps, the shift in std."""
     return SimpleNamespace(
         fitted_power=cost, finer=SimpleNamespace(error=error),
-        told_std={"law.size [a]": 2.0, "d": 1.0},
+        told_std={"law.size [a]": 2.0 * np.hypot(1, shift), "d": 10.0},
         step_shift={"law.size [a]": 2.0 * shift, "d": 9.0},
     )  # fmt: skip
 

@@ -9,7 +9,7 @@ import pytest
 
 from identification import Log, fit
 from identification.model.protocol import FINER
-from identification.prediction.std import step_shift
+from identification.prediction.std import step_shift, told_std
 from identification.robot.file import read_robot_file
 from identification.robot.robot import robot_of
 
@@ -47,14 +47,15 @@ def elbow(tmp_path_factory):
 @pytest.mark.long
 def test_it_is_the_change_of_a_search_with_a_finer_step(elbow):
     coarse, fine = (found.model for found in elbow)
-    shift, std = coarse.step_shift, coarse.told_std
+    shift, std = coarse.step_shift, dict(zip(coarse.fit.values, told_std(coarse.fit), strict=True))
     real = {n: fine.fit.values[n] - v for n, v in coarse.fit.values.items()}
     moved = {n: real[n] / std[n] for n in real}
-    assert max(map(abs, moved.values())) > 3  # the std know nothing of it
+    assert max(map(abs, moved.values())) > 3  # the std by blocks know nothing of it
     for name in real:
         assert shift[name] / std[name] == pytest.approx(moved[name], abs=0.6)
     # From the values of the finer step there is little left to move.
-    left = {n: s / fine.told_std[n] for n, s in fine.step_shift.items()}
+    assert all(abs(real[n]) < 1.5 * coarse.told_std[n] for n in real)
+    left = {n: s / std[n] for n, s in fine.step_shift.items()}
     assert max(map(abs, left.values())) < 0.5 * max(map(abs, moved.values()))
 
 

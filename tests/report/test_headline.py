@@ -1,11 +1,15 @@
 """The head of a report: the answer in large letters, with the numbers that the verdict says."""
 
+from types import SimpleNamespace
 from xml.etree import ElementTree
 
+import numpy as np
+import pytest
 from elbow_cases import fitted
 
 from identification.quantities import quantity
 from identification.report.fit_headline import fit_headline
+from identification.report.fit_verdict import ABOVE, answer_sentence
 from identification.report.page import Section, Table, write_report
 
 
@@ -22,6 +26,21 @@ def test_a_fit_says_whether_its_values_can_be_used():
     assert plain(damping.note) == "began at 0.300 N m s/rad"
     before, after = fit.found.unseen_rms
     assert plain(error.value) == f"{1e3 * before:.1f} → {1e3 * after:.1f} mrad"
+
+
+@pytest.mark.parametrize("ratio", [0.9, 1.1, 1.4, 20.0, np.inf])
+def test_the_first_sentence_of_a_fit_says_whether_the_model_explains_the_log(ratio):
+    found = SimpleNamespace(noise_by_unit={"m": 2.0}, unseen_by_unit={"m": 2.0 * ratio})
+    explained, missing = ("explains the log", "is missing")
+    said = answer_sentence(found)
+    assert (explained in said, missing in said) == (ratio <= ABOVE, ratio > ABOVE)
+    found.noise_by_unit = {"m": 0.0}
+    assert "not known" in answer_sentence(found)
+
+
+def test_the_sentence_comes_before_all_else_that_is_said_of_a_fit():
+    fit = fitted()
+    assert fit.to_dict()["verdict"][0] == answer_sentence(fit.found)
 
 
 def test_no_section_stands_empty_and_what_stands_above_stands_once(tmp_path):

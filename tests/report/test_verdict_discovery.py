@@ -6,9 +6,11 @@ from math import hypot
 import pytest
 from fake_discovery import NOISE, REJECTED, SLOW, found
 
+from identification.discovery.findings.finding import Finding, FindingKind
+from identification.discovery.findings.records_evidence import UnprovenEffect
 from identification.report.discovery_report import discovery_text
 from identification.report.discovery_verdict import discovery_verdict
-from identification.report.effect_words import describe_sizes
+from identification.report.effect_words import describe_effect, describe_rejected, describe_sizes
 from identification.report.finding_words import describe_finding, sentence
 from identification.report.named_words import nearest_law
 
@@ -68,3 +70,20 @@ def test_beside_a_curve_the_listed_law_that_comes_nearest_is_told():
     for rejected in ((), (REJECTED,), (elsewhere,)):
         assert nearest_law(replace(answer, rejected=rejected), curve) == ""
     assert nearest_law(answer, found().named[0]) == ""
+
+
+def test_of_an_unknown_effect_the_likeliest_that_was_tried_is_told_once_with_its_size():
+    """One number tells its gain wherever it stands, and a chance is that of all that were tried."""
+    proof = replace(REJECTED.proof, fall=0.59)
+    best = replace(REJECTED, doubt="chance", luck=0.2, evidence=5.0, proof=proof)
+    other = replace(best, evidence=9.0, proof=replace(proof, fall=-0.1))
+    c = best.candidate
+    finding = Finding(
+        FindingKind.UNPROVEN_EFFECT,
+        UnprovenEffect(*c.key[:1], c.effect.phrase, c.where, 0.59, proof.t, "chance", 0.2),
+    )
+    answer = replace(found("unknown effect"), rejected=(best, other), findings=(finding,))
+    (said,) = discovery_verdict(answer)
+    assert f"The likeliest is {describe_rejected(best, answer)}." in said
+    assert said.count(describe_effect(c)) + said.count(describe_effect(c).capitalize()) == 1
+    assert "chance 0.2, all effects that were tried counted" in said

@@ -88,6 +88,15 @@ def test_a_named_effect_that_each_record_has_for_itself_is_written_with_its_valu
     assert again.plant.parameters[shift].value == pytest.approx(0.03)
 
 
+def test_a_part_of_a_log_begins_with_the_values_of_the_log(folder):
+    robot = read_robot(folder / "own.toml", written(folder, measured(1)))
+    each = {robot.log.name: {OFFSET: 0.017}, "another": {OFFSET: 0.05}}
+    path = write_robot(robot, {"J": 2e-3, "d": 0.02}, folder / "part.toml", folder, own_values=each)
+    found = fit(read_robot(path, robot.log))
+    (began,) = [value for name, value in found.start.items() if name.startswith(OFFSET)]
+    assert began == pytest.approx(0.017)
+
+
 def test_what_was_known_stays_known_where_the_fitted_robot_is_fitted_again(folder):
     known = TOML.replace("value = 0.03", "value = 0.03\nknown = 0.05")
     known = known.replace('"d"]', f'"d", "{OFFSET}"]') + f'[parameters."{OFFSET}"]\nvalue = 0.01\n'

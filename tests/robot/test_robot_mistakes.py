@@ -35,6 +35,18 @@ def test_mistakes_are_named(folder, capsys, change, said):
     assert said in refused(capsys, "fit", path, folder / "plain.csv")
 
 
+@pytest.mark.parametrize("name", ["motor3", "position"])
+def test_a_column_that_is_used_twice_is_told_with_its_users(folder, capsys, name):
+    path = folder / "twice.toml"
+    lines = {"position": "x", "force": "u", name: "u"}
+    columns = "\n".join(f'{n} = "{column}"' for n, column in lines.items())
+    path.write_text(TOML.replace('position = "x"', columns))
+    said = refused(capsys, "fit", path, folder / "plain.csv")
+    users = [n for n, column in lines.items() if column == "u"]
+    assert f"column 'u' is that of {' and '.join(users)}" in said
+    assert ("unknown actuator or sensor" in said) == (name == "motor3")
+
+
 @pytest.mark.parametrize("log", [".", ""])
 def test_a_folder_is_no_log(folder, capsys, log):
     path = folder / "robot.toml"
@@ -65,7 +77,7 @@ def test_how_long_a_horizon_may_be_is_told(folder, capsys, confirm, horizon, mos
     other = ["--confirm", folder / "other.csv"] if confirm else []
     said = refused(capsys, "fit", path, folder / "plain.csv", *other)
     assert f"horizon in {path} is {horizon} s" in said
-    assert f"it may be 0.03 s, of 3 samples, to {most} s, to fit" in said
+    assert f"write one from 0.03 s (3 samples) to {most} s" in said
 
 
 @pytest.mark.parametrize(("change", "line"), [

@@ -92,7 +92,7 @@ def test_a_fit_over_a_horizon_tells_each_unit_by_itself(over_windows, capsys):
     for words in (
         rf"windows of 0.3 s leave {ERRORS}, [\d.]+ and [\d.]+ times the noise floor of {SIZES}\.",
         rf"On second: {ERRORS} with the values of the robot's file, {ERRORS} with those that were",
-        r"A mean square over outputs of several units counts the error of each output in multiples",
+        r"Before outputs of several units are taken together in one mean square, the error of each",
     ):
         assert re.search(words, text), words
     for key in ("rms_by_unit", "validation_rms_by_unit", "noise_floor_by_unit"):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import nan
 
 
 @dataclass(frozen=True)
@@ -33,8 +34,9 @@ class UnprovenEffect:
     phrase: str  # the effect in words, as its catalogue has them
     where: str  # its place
     fall: float  # relative fall of the unseen mean square, at the horizon
-    t: float  # of its gain over blocks
+    t: float  # of its gain over blocks there
     doubt: str  # what is against it, a word of `identification.prediction.trial.Doubt`
+    luck: float = nan  # see `RejectedEffect.luck`
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,93 @@
+"""Joints that a log has far outside the limits of the model.
+
+A simulation pushes such a joint back with all its force, and diverges. The usual cause is a range
+in radians in a file whose angles are degrees, as MuJoCo reads them unless the file says otherwise.
+A limit is soft: a right log goes a little beyond it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import mujoco
+import numpy as np
+
+from identification.errors import InputError
+from identification.logs.log import Log
+from identification.model.predictor import output_columns
+from identification.quantities import alike
+from identification.refusals.trust import RobotFile
+
+FAR = 1.0  # of its range's width: a soft limit gives way by less
+SHARE = 0.05  # of the samples that are so far outside; fewer are wrong readings
+# A reading beyond it [rad, m] that lies within the range as degrees or millimetres has a wrong
+# unit, which other checks say.
+LARGE = {int(mujoco.mjtJoint.mjJNT_HINGE): (4 * np.pi, np.pi / 180),
+         int(mujoco.mjtJoint.mjJNT_SLIDE): (10.0, 1e-3)}  # fmt: skip
+OFF = int(mujoco.mjtDisableBit.mjDSBL_LIMIT) | int(mujoco.mjtDisableBit.mjDSBL_CONSTRAINT)
+
+
+def refuse_limits(file: RobotFile, model: mujoco.MjModel, is_degree: bool, log: Log) -> None:
+    """Refuse a log that has a joint far outside the limits of the model.
+
+    Args:
+        file: the robot's.
+        model: with the log's sensors.
+        is_degree: whether the model's file gives angles in degrees.
+        log: what was measured.
+    """
+    columns = zip(output_columns(model, log.output_names), log.outputs.T, strict=True)
+    positions = {
+        model.joint(int(np.flatnonzero(model.jnt_qposadr == i)[0])).name: y
+        for (field, i), y in columns
+        if field == "qpos"
+    }
+    if said := limit_sentence(model, is_degree, positions, file.model):
+        raise InputError(f"log {log.name!r} does not belong to the model: {said}")
+
+
+def limit_sentence(
+    model: mujoco.MjModel, is_degree: bool, positions: Mapping[str, np.ndarray], path: Path
+) -> str:
+    """Returns what is wrong with the limits of a joint and how to mend it; "" where nothing is.
+
+    Args:
+        model: compiled.
+        is_degree: whether its file gives angles in degrees.
+        positions: measured, by joint, shape (n,) [rad or m].
+        path: of the model's file.
+    """
+    if model.opt.disableflags & OFF:
+        return ""
+    for name, every in positions.items():
+        q = every[np.isfinite(every)]
+        joint = model.joint(name)
+        (kind,) = joint.type.tolist()
+        low, high = joint.range.tolist()
+        if not joint.limited[0] or kind not in LARGE or not _is_far(q, low, high):
+            continue
+        large, factor = LARGE[kind]
+        if np.max(np.abs(q)) > large and not _is_far(factor * q, low, high):
+            continue
+        is_hinge = kind == int(mujoco.mjtJoint.mjJNT_HINGE)
+        least, most = np.quantile(q, [0.0, 1.0]).tolist()
+        told = alike([low, high, least, most], "rad" if is_hinge else "m")
+        cure = f"correct its range in {path.name}, or the unit of its column"
+        if is_hinge and is_degree:
+            cure = (
+                f"its range in {path.name} counts in degrees, as MuJoCo reads angles: write"
+                ' <compiler angle="radian"/> there if all its angles are radians, or else correct'
+                " the range"
+            )
+        return (
+            f"joint {name} can move from {told[0]} to {told[1]} in the model, and was measured from"
+            f" {told[2]} to {told[3]}; {cure}"
+        )
+    return ""
+
+
+def _is_far(q: np.ndarray, low: float, high: float) -> bool:
+    """Returns whether more than a few positions lie outside a range by more than its width."""
+    outside = np.maximum(low - q, q - high)
+    return bool(np.mean(outside > FAR * (high - low)) > SHARE)
