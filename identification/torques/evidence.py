@@ -32,6 +32,7 @@ from identification.torques.fits import (
     with_gains_held,
     with_std_of_gains,
 )
+from identification.torques.passive import with_expected_motion
 from identification.torques.rows import make_rows
 from identification.torques.scores import Base, Score, rank
 from identification.torques.search import add_proven, draw_curves, others_of
@@ -96,14 +97,16 @@ def find_evidence(
         InputError: no equations can be made of the model or of a log (`make_rows`).
     """
     say = say or (lambda text: None)
-    equations = Equations.of(make_rows(model, logs, own), confirm)
+    measured = Equations.of(make_rows(model, logs, own), confirm)
     base = find_base(model)
-    others = Others.of(free, equations, logs)
+    others = Others.of(free, measured, logs)
     plain = others.without_gains()
+    equations = with_expected_motion(model, measured, base, plain)
     expected = expect_drives(model, equations, base, plain)
     whole = base_fit(model, equations, base, expected, plain)
     narrow = Equations.of(make_rows(model, logs, own, OTHER_BAND), confirm)
     there = Others.of(free, narrow, logs, OTHER_BAND).without_gains()
+    narrow = with_expected_motion(model, narrow, base, there)
     other = base_fit(model, narrow, base, expect_drives(model, narrow, base, there), there).fit.θ
     nominal = model_fit(model, equations, free, expected, others)
     nominal = with_gains_held(nominal, others)

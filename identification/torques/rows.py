@@ -127,10 +127,22 @@ def _motion(model: mujoco.MjModel, log: Log, wider: float) -> Motion:
     at = {i: k for k, (field, i) in enumerate(columns) if field == "qpos"}
     q, h = log.outputs[:, [at[int(i)] for i in model.jnt_qposadr]], log.sampling_time
     chosen = [choose_band(x, h) for x in q.T]
-    # One band for all: the torque of a joint has the accelerations of all others in it.
+    # One band for all: the torque of a joint has the accelerations of all others in it. The widest
+    # where a joint has no drive: no torque goes through the filter that would leave out as much.
     moving = np.ptp(q, axis=0) > SLOW * np.ptp(q, axis=0).max()
-    band = float(np.median([f for (f, _), moves in zip(chosen, moving, strict=True) if moves]))
+    bands = [f for (f, _), moves in zip(chosen, moving, strict=True) if moves]
+    band = float(np.median(bands) if _have_drives(model) else max(bands))
     return smooth(q, h, wider * band, np.array([noise for _, noise in chosen]))
+
+
+def _have_drives(model: mujoco.MjModel) -> bool:
+    """Returns whether a drive acts on each joint."""
+    data, moment = mujoco.MjData(model), np.zeros((model.nu, model.nv))
+    mujoco.mj_fwdPosition(model, data)
+    mujoco.mju_sparse2dense(
+        moment, data.actuator_moment, data.moment_rownnz, data.moment_rowadr, data.moment_colind
+    )
+    return bool(moment.any(axis=0).all())
 
 
 def _rows(
