@@ -139,7 +139,7 @@ def rank(equations: Equations, base: Base, candidates: Sequence[Missing]) -> tup
     unseen = squares_of(whole, 0)
     of_joints = unseen_squares(base.M, base.fit.weights, base.P, base.θ_0, equations.confirms)
     of_joints = base.fit.weights * of_joints[:, judged].sum(axis=1)
-    weighted = _Weighted(equations, base)
+    weighted = Weighted(equations, base)
     found: list[tuple[Missing, np.ndarray, Scatter, list[np.ndarray], float]] = []
     left_out: list[Missing] = []
     for missing in chain(candidates, left_out):  # these are scored with the sizes that are apart
@@ -205,7 +205,7 @@ def choose(scores: Sequence[Score]) -> Score | None:
     return min(alike, key=lambda s: (len(s.size), -float(s.gains.sum())))
 
 
-class _Weighted:
+class Weighted:
     """The fit's columns and right side with their weights, joint by joint."""
 
     def __init__(self, equations: Equations, base: Base) -> None:
