@@ -68,12 +68,23 @@ class Evidence:
     inconsistent: tuple[int, ...]  # places of base parameters that no bodies have, within 3 std
 
     @property
+    def noise(self) -> np.ndarray:
+        """What noise alone would leave of each joint, shape (nv,), where it is white."""
+        return np.sqrt(np.mean([r.noise**2 for r in self.equations.rows], axis=0))
+
+    @property
+    def passive(self) -> np.ndarray:
+        """Which joints have no drive, shape (nv,)."""
+        return np.asarray(~self.equations.stacked("drives").any(axis=(0, 2)))
+
+    @property
     def named(self) -> tuple[Score, ...]:
         """The effects that were added, each with its sizes and their std in the final fit."""
         fit, begin, out = self.final.fit, len(self.model.names), []
         for score in self.found:
             some = slice(begin, begin + len(score.size))
-            out.append(replace(score, size=fit.θ[some], std=fit.std[some]))
+            fitted = replace(score, size=fit.θ[some], std=fit.std[some])
+            out.append(replace(fitted, size=fitted.possible))
             begin += len(score.size)
         return tuple(out)
 

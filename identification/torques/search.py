@@ -17,7 +17,7 @@ from identification.torques.candidates import together
 from identification.torques.equations import Equations
 from identification.torques.fits import Fitted, extended
 from identification.torques.laws import Missing
-from identification.torques.scores import CHANCE, Score, choose, rank
+from identification.torques.scores import CHANCE, Score, choose, rank, rises
 from identification.torques.unknown import Neighbour
 
 MOST_NAMED = 4  # effects that a search adds
@@ -38,7 +38,11 @@ def add_proven(
     """
     out, final, rest = [*found], _extended(equations, nominal, [s.missing for s in found]), scores
     while len(out) < MOST_NAMED and (score := choose(rest)) is not None:
-        final = extended(equations, final, score.missing)
+        more = extended(equations, final, score.missing)
+        if rises(equations, final.base, more.base):
+            rest = [s for s in rest if s.missing.key != score.missing.key]
+            continue
+        final = more
         out.append(score)
         say(f"{score.missing.title}: {fall_words(score.fall)} on unseen blocks, t {score.t:.1f}")
         # A law keeps the shape that was its best beside the model.
@@ -95,11 +99,11 @@ def drop_neighbours(
     out, gone = [*found], list[Neighbour]()
     while True:
         final = _extended(equations, nominal, [s.missing for s in out])
-        each = [
-            judge(final, _extended(equations, nominal, [s.missing for s in out if s is not law]), law)
-            for law in out if not law.missing.is_curve
-        ]  # fmt: skip
-        bad = [n for n in each if n is not None and n.has_name]
+        bad = []
+        for law in (s for s in out if not s.missing.is_curve):
+            without = _extended(equations, nominal, [s.missing for s in out if s is not law])
+            if (neighbour := judge(final, without, law)) and neighbour.has_name:
+                bad.append(neighbour)
         if not bad:
             break
         worst = max(bad, key=lambda n: n.of_both)
