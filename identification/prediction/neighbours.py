@@ -30,7 +30,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from identification.discovery.effect_results import Neighbour
-from identification.discovery.neighbour import MORE_LIKELY_THAN_NOT
+from identification.discovery.neighbour import has_name_of_neighbour, of_both
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.passes import uses
 from identification.effects.effect import Candidate
@@ -41,9 +41,6 @@ from identification.prediction.task import WindowSearch
 from identification.prediction.trial import Contender, mean_square
 from identification.prediction.yardstick import Yardstick, acts_on_joints, may_draw
 
-# Of what law and curve explain together: a judgement. In the worlds of docs/robot/models.md curves
-# explained less beside 33 of 34 right laws, and more beside 2 of 8 laws that were not there.
-MOST_OF_BOTH = 0.15
 SMOOTH_FORCE = "smooth force"  # as it is called where a curve has its name
 
 
@@ -61,8 +58,7 @@ class Explained:
         Args:
             beside: what that one takes away of what the model leaves.
         """
-        curves = self.curves + beside
-        return curves / (self.law + curves) if self.law + curves > 0 else 0.0
+        return of_both(self.law, self.curves + beside)
 
 
 def explained_by(
@@ -204,4 +200,4 @@ def has_neighbours_name(neighbour: Neighbour | None, options: DiscoveryOptions) 
     """
     if neighbour is None or not uses(options, "neighbours_names"):
         return False
-    return neighbour.of_both > MOST_OF_BOTH and neighbour.chance < MORE_LIKELY_THAN_NOT
+    return has_name_of_neighbour(neighbour.of_both, neighbour.chance)

@@ -7,8 +7,10 @@
 
 b are the model's bodies and rotors, p points of the outermost bodies that may carry a payload. Each
 γ is the weight of a body along an axis, or of what it carries: gravity may be missing, turned or
-too much. So η_j is what no payload, gravity, friction or mass explains; only a wrong unit, sign or
-order of columns does. The motion is smoothed by ψ (`identification.refusals.forces`).
+too much, but no more than what a mass four times as large and a payload weigh: else it would stand
+for a torque in a smaller unit. So η_j is what no payload, gravity, friction or mass explains; only
+a wrong unit, sign or order of columns does. The motion is smoothed by ψ
+(`identification.refusals.forces`).
 
 A drive that rests while other joints swing its own has a large η_j, because a little that the model
 lacks is more than what that drive gives. So η weighs all joints by the inertia M_jj that they move.
@@ -45,6 +47,7 @@ from identification.refusals.forces import (
 from identification.torques.bodies import follow_bodies
 
 FACTOR = 4.0  # that a mass, an inertia or a stiffness may be off; more is a matter of units
+GRAVITY = 9.81  # the most that a robot weighs by its mass [m/s^2]
 PAYLOAD = 1.0  # largest, of the mass of all that moves
 # Samples that are used; neighbours say the same, because ψ overlaps. Of many joints fewer are, as
 # each sample gives an equation a joint, and the unknowns are some twenty a joint.
@@ -173,15 +176,20 @@ def _columns(
             for j in range(nv) for x in (motion.v, np.sign(motion.v),
                                          *([motion.q] if may_have_springs else []))]  # fmt: skip
     each += resisting
-    level = [np.broadcast_to(np.arange(nv) == j, (n, nv)).astype(float) for j in range(nv)]
     most = max(PAYLOAD * float(model.body_mass[moving].sum()), least)
+    weights_of = np.repeat([float(model.body_subtreemass[b]) for b in bodies], 3 * len(near))
+    # With springs too, it is asked whether the motion is too large, and all else is free.
+    heavy = np.inf * weights_of if may_have_springs else GRAVITY * (FACTOR * weights_of + most)
+    level = [np.broadcast_to(np.arange(nv) == j, (n, nv)).astype(float) for j in range(nv)]
     low, high = [], []
     for found, (a, b) in (
         (masses + rotors + stiff, (1 / FACTOR, FACTOR)), (payload, (0.0, most)),
-        (each, (0.0, np.inf)), (weight + level, (-np.inf, np.inf)),
+        (each, (0.0, np.inf)),
     ):  # fmt: skip
         low += [a] * len(found)
         high += [b] * len(found)
+    low += [*-heavy, *[-np.inf] * nv]
+    high += [*heavy, *[np.inf] * nv]
     every = [*masses, *rotors, *stiff, *payload, *each, *weight, *level]
     return np.stack(every, axis=2), np.array(low), np.array(high)
 

@@ -137,7 +137,8 @@ def balanced_otherwise(
     """Returns the reading with which forces balance, where they do not as the log is read.
 
     Nothing is simulated, so that forces alone must tell: η of all outputs must fall below what is
-    unexplained, and to less than a fifth in all.
+    unexplained, and to less than a fifth in all. With another unit it need only fall to a fifth of
+    the largest one, because a robot may lack a force besides.
 
     Args:
         model: with the log's actuators and sensors.
@@ -153,9 +154,12 @@ def balanced_otherwise(
     if as_read is None or as_read.max() <= UNEXPLAINED:
         return None
     best, least = None, NEARER * float(as_read.sum())
+    most = max(UNEXPLAINED, NEARER * float(as_read.max()))
     for reading in readings:
         rest = balance.of(reading)
-        if rest is not None and rest.max() < UNEXPLAINED and rest.sum() < least:
+        if rest is None or rest.sum() >= least:
+            continue
+        if rest.max() < (most if "units" in reading.kinds else UNEXPLAINED):
             best, least = (reading, rest), (1 - SAME) * float(rest.sum())
     if best is None:
         return None

@@ -17,6 +17,8 @@ from identification.torques.scores import CHANCE, FAR, PROOF, Score
 SHOWN = 8  # candidates that are told
 COLUMNS = "sizes; fall of the mean square on unseen data, its t, chance that luck alone does it"
 LATE = 1e-3  # shift of the clocks that is told [s]
+LARGE = 3.0  # times the noise, a residual is more than noise
+RISEN = 1.05  # factor of a residual that rises
 MATTERS = 2.0  # std that a value moves with the band: told
 
 
@@ -32,6 +34,7 @@ def torque_verdict(evidence: Evidence, model: mujoco.MjModel) -> list[str]:
     """Returns what torques say, the most important sentence first."""
     return [
         *_missing(evidence),
+        *_unknown(evidence, model),
         *_residual(evidence, model),
         *_friction(evidence),
         *_far(evidence),
@@ -98,6 +101,17 @@ def _missing(evidence: Evidence) -> list[str]:
     return out
 
 
+def _unknown(evidence: Evidence, model: mujoco.MjModel) -> list[str]:
+    """Returns a sentence on each law that has no sure name, and on what is unknown there."""
+    names, _ = joint_names(model)
+    return [
+        f"{called(n.law)[:1].upper()}{called(n.law)[1:]} explains a part, but is not named: beside"
+        f" it a smooth force at joint {names[n.joint]} that is no law of the catalogue explains"
+        f" {percent(n.of_both)} of what both explain. What acts there is unknown."
+        for n in evidence.unknown
+    ]
+
+
 def called(score: Score) -> str:
     """Returns the name of a candidate, its place, and what it is, in words."""
     what = f" ({score.missing.phrase})" if score.missing.phrase else ""
@@ -154,13 +168,43 @@ def _residual(evidence: Evidence, model: mujoco.MjModel) -> list[str]:
             f"{n} {quantity(f, unit=u)}" + (f" (model {quantity(m, unit=u)})" if m != f else "")
             for n, f, m, u in zip(names, final, nominal, units, strict=True) if np.isfinite(f)
         )
-        + "."
+        + ".",
+        *_left(evidence, names),
     ]  # fmt: skip
     if told > 1.1:
         out.append(
             "A rigid arm whose inertial numbers and frictions are all free leaves less, above all"
             f" at {names[worst]} ({quantity(whole[worst], unit=units[worst])}): masses, positions"
             " or inertias of the model are wrong, or something acts like them."
+        )
+    return out
+
+
+def _left(evidence: Evidence, names: Sequence[str]) -> list[str]:
+    """Returns sentences on residuals in units of noise, on what rises, and on joints by a ratio."""
+    _, nominal, final = evidence.unseen
+    times = final / np.maximum(evidence.noise, 1e-300)
+    has = np.isfinite(times) & (evidence.noise > 0)
+    out = []
+    if has.any():
+        said = [f"{n} {t:.1f}" for n, t, h in zip(names, times, has, strict=True) if h]
+        out.append(
+            "In units of what the white noise of positions and drives alone would leave, these are"
+            f" {listed(said)}."
+        )
+    if large := [n for n, t, h in zip(names, times, has, strict=True) if h and t > LARGE]:
+        out[-1] += f" So something is left at {listed(large)} that the fit does not explain."
+    if more := [n for n, a, b in zip(names, nominal, final, strict=True) if b > RISEN * a]:
+        out.append(
+            f"With what was found more is left of {listed(more)} than without it: what is gained at"
+            " other joints is paid for there, so doubt what was found."
+        )
+    if evidence.passive.any():
+        without = listed([n for n, p in zip(names, evidence.passive, strict=True) if p])
+        out.append(
+            f"No drive acts on {without}. There the motion tells ratios of masses, inertias and"
+            " frictions only; their scale is told by the joints with drives that feel them, and by"
+            " what was known."
         )
     return out
 
@@ -260,5 +304,5 @@ def score_rows(scores: tuple[Score, ...]) -> list[tuple[str, str, str, str, str]
     return [
         (called(s), size_words(s), percent(s.fall), f"{s.t:.1f}",
          chance_words(s.chance))
-        for s in scores[:SHOWN]
+        for s in [s for s in scores if s.is_plausible][:SHOWN]
     ]  # fmt: skip

@@ -122,12 +122,13 @@ def _loads(model: mujoco.MjModel, equations: Equations) -> Iterator[Missing]:
         Y = np.where(used, bodies[:, :, i], 0.0).reshape(-1, 10) * scale / mass
         felt = independent_columns(Y, ROUNDING * largest, UNLIKE).tolist()
         if felt:
+            K = np.linalg.lstsq(Y[:, felt], Y, rcond=None)[0] * scale[felt][:, None] / scale
             yield Missing(
                 name="load", where=f"body {label_of(model, b)}",
                 phrase="body: a load at any place", sizes=tuple(NUMBERS[k] for k in felt),
                 units=tuple(UNITS[k] for k in felt), signs=tuple(int(k == 0) for k in felt),
                 columns=later(_load_columns, bodies[:, :, i], felt),
-                most=tuple(scale[felt].tolist()),
+                most=tuple(scale[felt].tolist()), of_body=(K, scale),
             )  # fmt: skip
 
 
@@ -203,6 +204,7 @@ def together(laws: Sequence[Missing]) -> Missing:
     return replace(
         laws[0], name=" + ".join(law.name for law in laws), sizes=every("sizes"),
         units=every("units"), signs=every("signs"), most=every("most"), columns=columns, shape=(),
+        of_body=None,
     )  # fmt: skip
 
 

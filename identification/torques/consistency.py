@@ -37,16 +37,34 @@ def find_inconsistent(base: BaseParameters, β: np.ndarray, std: np.ndarray) -> 
     A[:, :first] = A[:, :first] @ to_numbers
     z = inertia.values[at] / scale
     z[:first] = np.linalg.solve(to_numbers, z[:first])
+    left = A @ _nearest(A, β / std, z, n) - β / std
+    return tuple(np.flatnonzero(np.abs(left) > LEFT).tolist())
+
+
+def nearest_body(K: np.ndarray, β: np.ndarray, std: np.ndarray, scale: np.ndarray) -> np.ndarray:
+    """Returns the combinations K x of the ten numbers of a body that are nearest to some values.
+
+    Args:
+        K: the combinations, shape (r, 10).
+        β: their values, shape (r,).
+        std: of these, shape (r,).
+        scale: how large the numbers are, roughly, shape (10,).
+    """
+    to_numbers = np.array([_numbers(e) for e in np.eye(10)]).T
+    A = (K * scale) @ to_numbers / std[:, None]
+    return np.asarray(A @ _nearest(A, β / std, np.zeros(10), 1) * std)
+
+
+def _nearest(A: np.ndarray, b: np.ndarray, z: np.ndarray, n: int) -> np.ndarray:
+    """Returns entries u of n pseudo-inertias, and armatures, that leave least of A u - b."""
     U, s, Vt = np.linalg.svd(A, full_matrices=False)
-    left = A @ z - β / std
     for _ in range(STEPS):
-        y = z - Vt.T @ (s / (1 + s**2) * (U.T @ (A @ z - β / std)))
+        y = z - Vt.T @ (s / (1 + s**2) * (U.T @ (A @ z - b)))
         u = _cut(2 * y - z, n)
         z = z + u - y
-        left = A @ u - β / std
-        if np.abs(left).max() < CLOSE:
+        if np.abs(A @ u - b).max() < CLOSE:
             break
-    return tuple(np.flatnonzero(np.abs(left) > LEFT).tolist())
+    return u
 
 
 def _numbers(y: np.ndarray) -> np.ndarray:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import mujoco
 import numpy as np
@@ -32,9 +33,12 @@ from identification.torques.fits import (
     with_gains_held,
     with_std_of_gains,
 )
+from identification.torques.laws import Laws
+from identification.torques.passive import with_expected_motion
 from identification.torques.rows import make_rows
 from identification.torques.scores import Base, Score, rank
-from identification.torques.search import add_proven, draw_curves, others_of
+from identification.torques.search import add_proven, draw_curves, drop_neighbours, others_of
+from identification.torques.unknown import Neighbour, find_neighbour
 
 OTHER_BAND = 0.6  # factor of the bands of a second fit, which tells what they matter
 
@@ -51,6 +55,7 @@ class Evidence:
     final: Fitted  # the model fit with the effects that were found
     scores: tuple[Score, ...]  # of all candidates beside the model fit, the best first
     found: tuple[Score, ...]  # scores of the effects that were added, each when it was
+    unknown: tuple[Neighbour, ...]  # laws without a name, and what smooth forces explain there
     # scores beside the final fit; those of `scores` where nothing was found
     rest: tuple[Score, ...]
     # scores of loads in single records beside the base fit, the best first
@@ -63,12 +68,23 @@ class Evidence:
     inconsistent: tuple[int, ...]  # places of base parameters that no bodies have, within 3 std
 
     @property
+    def noise(self) -> np.ndarray:
+        """What noise alone would leave of each joint, shape (nv,), where it is white."""
+        return np.sqrt(np.mean([r.noise**2 for r in self.equations.rows], axis=0))
+
+    @property
+    def passive(self) -> np.ndarray:
+        """Which joints have no drive, shape (nv,)."""
+        return np.asarray(~self.equations.stacked("drives").any(axis=(0, 2)))
+
+    @property
     def named(self) -> tuple[Score, ...]:
         """The effects that were added, each with its sizes and their std in the final fit."""
         fit, begin, out = self.final.fit, len(self.model.names), []
         for score in self.found:
             some = slice(begin, begin + len(score.size))
-            out.append(replace(score, size=fit.θ[some], std=fit.std[some]))
+            fitted = replace(score, size=fit.θ[some], std=fit.std[some])
+            out.append(replace(fitted, size=fitted.possible))
             begin += len(score.size)
         return tuple(out)
 
@@ -96,14 +112,16 @@ def find_evidence(
         InputError: no equations can be made of the model or of a log (`make_rows`).
     """
     say = say or (lambda text: None)
-    equations = Equations.of(make_rows(model, logs, own), confirm)
+    measured = Equations.of(make_rows(model, logs, own), confirm)
     base = find_base(model)
-    others = Others.of(free, equations, logs)
+    others = Others.of(free, measured, logs)
     plain = others.without_gains()
+    equations = with_expected_motion(model, measured, base, plain)
     expected = expect_drives(model, equations, base, plain)
     whole = base_fit(model, equations, base, expected, plain)
     narrow = Equations.of(make_rows(model, logs, own, OTHER_BAND), confirm)
     there = Others.of(free, narrow, logs, OTHER_BAND).without_gains()
+    narrow = with_expected_motion(model, narrow, base, there)
     other = base_fit(model, narrow, base, expect_drives(model, narrow, base, there), there).fit.θ
     nominal = model_fit(model, equations, free, expected, others)
     nominal = with_gains_held(nominal, others)
@@ -115,6 +133,11 @@ def find_evidence(
     laws = [s for s in scores if not s.missing.is_curve]
     found, _ = add_proven(equations, nominal, [], laws, say)
     found, final = draw_curves(equations, nominal, found, scores, say)
+    judge = partial(
+        find_neighbour, equations, nominal, laws=Laws(model, equations, expected),
+        curves=[c for c in candidates if c.is_curve], effects={e.name: e for e in effects},
+    )  # fmt: skip
+    found, final, unknown = drop_neighbours(equations, nominal, found, scores, judge, say)
     rest = rank(equations, final.base, others_of(scores, found)) if found else scores
     final = with_std_of_gains(final, nominal, others)
     loads = [c for c in candidates if c.name == "load"]
@@ -125,7 +148,7 @@ def find_evidence(
     r = len(base.names)
     return Evidence(
         equations=equations, base=base, whole=whole, other=other, model=nominal, final=final,
-        scores=scores, found=tuple(found), rest=rest, differences=differences,
+        scores=scores, found=tuple(found), unknown=unknown, rest=rest, differences=differences,
         asked=len(candidates), unseen=np.array(unseen),
         friction=read_friction(model) if friction is None else friction,
         inconsistent=find_inconsistent(base, whole.fit.θ[:r], whole.fit.std[:r]),

@@ -31,6 +31,7 @@ from identification.torques.equations import Equations, Estimate, estimate
 from identification.torques.laws import Missing
 from identification.torques.rows import Rows, make_rows
 from identification.torques.scores import Base
+from identification.torques.smoothing import ATTENUATION
 
 FRICTION = ("viscous", "coulomb", "offset")
 CLOCK = "clock of the inputs"
@@ -133,6 +134,29 @@ class Fitted:
         return np.asarray(self.base.Φ @ self.fit.θ)
 
 
+def known_numbers(model: mujoco.MjModel) -> np.ndarray:
+    """Returns a model's numbers of bodies and armatures, as `all_columns` has them."""
+    return np.concatenate([read_numbers(model).ravel(), model.dof_armature])
+
+
+def list_passive(model: mujoco.MjModel, equations: Equations) -> np.ndarray:
+    """Returns which joints have no drive, or none that gives more than noise, shape (nv,).
+
+    As much noise as a band leaves in accelerations hides a force of this share of the inertia's.
+    """
+    used = equations.stacked("used")
+    force = np.where(used, equations.stacked("drives").sum(axis=2), 0.0)
+    needed = np.where(used, model_forces(model, equations), 0.0)
+    given, felt = ((x**2).sum(axis=0) for x in (force, needed))
+    return np.asarray(used.any(axis=0) & (given <= ATTENUATION * felt))
+
+
+def model_forces(model: mujoco.MjModel, equations: Equations) -> np.ndarray:
+    """Returns the forces that the model's masses alone need for the motion, shape (N, nv)."""
+    X = all_columns(equations.stacked("bodies"), equations.stacked("a"))
+    return np.asarray(X @ known_numbers(model))
+
+
 def friction_columns(rows: Sequence[Rows]) -> np.ndarray:
     """Returns columns of viscous and Coulomb friction and offset of joints, (N, nv, 3 nv)."""
     v, sign = (np.concatenate([getattr(r, n) for r in rows]) for n in ("v", "sign"))
@@ -160,11 +184,16 @@ def read_friction(model: mujoco.MjModel) -> np.ndarray:
     return np.stack([model.dof_damping, model.dof_frictionloss, none], axis=1).ravel()
 
 
-def _friction_scales(equations: Equations) -> np.ndarray:
-    """Returns how large frictions may be at most, roughly, shape (3 nv,)."""
-    v, y = (np.abs(equations.stacked(n)).max(axis=0) for n in ("v", "y"))
+def _friction_scales(model: mujoco.MjModel, equations: Equations) -> np.ndarray:
+    """Returns how large frictions may be at most, roughly, shape (3 nv,).
+
+    As large as the drive's force, or as what the model's masses need where there is no drive.
+    """
+    v = np.abs(equations.stacked("v")).max(axis=0)
     force = np.abs(equations.stacked("drives").sum(axis=2)).max(axis=0)
-    force = np.where(force > 0, force, np.where(y > 0, y, 1.0))
+    needed = np.abs(model_forces(model, equations)).max(axis=0)
+    force = np.where(list_passive(model, equations), needed, force)
+    force = np.where(force > 0, force, 1.0)
     return np.stack([force / np.where(v > 0, v, 1.0), force, force], axis=1).ravel()
 
 
@@ -175,16 +204,25 @@ def _nuisances(
     late = rate_of(equations, expected)[:, :, None]
     names, units = friction_names(model)
     columns = np.concatenate([friction_columns(equations.rows), late], axis=2)
-    return columns, np.append(_friction_scales(equations), SHIFT), [*names, CLOCK], [*units, "s"]
+    return (
+        columns,
+        np.append(_friction_scales(model, equations), SHIFT),
+        [*names, CLOCK],
+        [*units, "s"],
+    )
 
 
 def expect_drives(
     model: mujoco.MjModel, equations: Equations, base: BaseParameters, others: Others
 ) -> np.ndarray:
-    """Returns the drives' forces as a fit to all inertial numbers predicts them, shape (N, nv)."""
+    """Returns the drives' forces as a fit to all inertial numbers predicts them, shape (N, nv).
+
+    A joint without a drive has none: what the fit predicts there is the noise of its motion.
+    """
     force = equations.stacked("drives").sum(axis=2)
     first = base_fit(model, equations, base, np.zeros_like(force), others)
-    return np.asarray(first.predicted() + force - first.base.y)
+    expected = first.predicted() + force - first.base.y
+    return np.where(list_passive(model, equations), 0.0, expected)
 
 
 def base_fit(
@@ -213,7 +251,7 @@ def model_fit(
     free = [f for f in free if f.moved is None]
     bodies, a = equations.stacked("bodies"), equations.stacked("a")
     X = all_columns(bodies, a)
-    known = np.concatenate([read_numbers(model).ravel(), model.dof_armature])
+    known = known_numbers(model)
     change = np.array([f.change for f in free]).reshape(len(free), len(known))
     start = np.array([f.value for f in free])
     y = equations.stacked("y") - X @ (known - start @ change) + others.start

@@ -38,6 +38,8 @@ class Missing:
     shape: tuple[tuple[str, float, str], ...] = ()  # name, value and unit of each of its shapes
     columns: Callable[[], Columns]  # returns its columns
     most: tuple[float, ...]  # magnitudes of the sizes beyond which it is not believed
+    # of a load: its sizes as combinations of its ten numbers, (m, 10), and how large these may be
+    of_body: tuple[np.ndarray, np.ndarray] | None = None
 
     @property
     def is_curve(self) -> bool:
@@ -63,6 +65,7 @@ class Missing:
         return replace(
             self, columns=columns, sizes=kept(self.sizes), units=kept(self.units),
             signs=kept(self.signs), most=kept(self.most),
+            of_body=self.of_body and (self.of_body[0][places], self.of_body[1]),
         )  # fmt: skip
 
     @property

@@ -28,7 +28,14 @@ from identification.logs.log import Log
 from identification.model.predictor import output_columns
 from identification.model.rollout import logged_inputs
 from identification.torques.bodies import read_numbers, regressor
-from identification.torques.smoothing import EDGE, Motion, choose_band, low_pass, smooth
+from identification.torques.smoothing import (
+    EDGE,
+    Motion,
+    choose_band,
+    low_pass,
+    noise_gains,
+    smooth,
+)
 
 SCALAR = (int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE))
 PER_PERIOD = 4.0  # times of mean in a period of the band
@@ -36,6 +43,7 @@ SAMPLES = 20_000  # of which the regressor is made at once
 MOST = 8_000  # equations of each joint, over all records
 SLOW = 0.02  # of the top rate of a joint in all records: slower it is at rest
 TURNING = 0.1  # of a filtered sign, that it may be off
+STATES = 40  # of a record, over which the masses that joints move are averaged
 NOISY = 4.0  # std of a rate's noise: slower it may be at rest
 
 
@@ -54,6 +62,7 @@ class Rows:
     drives: np.ndarray  # forces of each actuator on the joints, shape (N, nv, nu) [N m or N]
     y: np.ndarray  # shape (N, nv) [N m or N]
     used: np.ndarray  # where a joint moves, shape (N, nv)
+    noise: np.ndarray  # std that noise of positions and drives makes in y, shape (nv,) [N m or N]
     band: float  # of the motion [Hz]
 
 
@@ -127,10 +136,22 @@ def _motion(model: mujoco.MjModel, log: Log, wider: float) -> Motion:
     at = {i: k for k, (field, i) in enumerate(columns) if field == "qpos"}
     q, h = log.outputs[:, [at[int(i)] for i in model.jnt_qposadr]], log.sampling_time
     chosen = [choose_band(x, h) for x in q.T]
-    # One band for all: the torque of a joint has the accelerations of all others in it.
+    # One band for all: the torque of a joint has the accelerations of all others in it. The widest
+    # where a joint has no drive: no torque goes through the filter that would leave out as much.
     moving = np.ptp(q, axis=0) > SLOW * np.ptp(q, axis=0).max()
-    band = float(np.median([f for (f, _), moves in zip(chosen, moving, strict=True) if moves]))
+    bands = [f for (f, _), moves in zip(chosen, moving, strict=True) if moves]
+    band = float(np.median(bands) if _have_drives(model) else max(bands))
     return smooth(q, h, wider * band, np.array([noise for _, noise in chosen]))
+
+
+def _have_drives(model: mujoco.MjModel) -> bool:
+    """Returns whether a drive acts on each joint."""
+    data, moment = mujoco.MjData(model), np.zeros((model.nu, model.nv))
+    mujoco.mj_fwdPosition(model, data)
+    mujoco.mju_sparse2dense(
+        moment, data.actuator_moment, data.moment_rownnz, data.moment_rowadr, data.moment_colind
+    )
+    return bool(moment.any(axis=0).all())
 
 
 def _rows(
@@ -153,6 +174,7 @@ def _rows(
     held = (np.vstack([u[:1], u[:-1]]) + u) / 2 if log.hold == "zoh" else u
     Y, gravity = _mean_regressor(model, q, v, a, count, width)
     inverse, drives = _forces(model, motion.q, motion.v, motion.a, held)
+    noise = _noise(model, motion, drives.sum(axis=2), h, width)
     drives = mean(low_pass(drives, h, band)[keep])
     sign = low_pass(np.sign(motion.v), h, band)[keep]
     known = mean(inverse[keep]) - np.einsum("kjbn,bn->kj", Y, numbers)
@@ -165,8 +187,29 @@ def _rows(
     return Rows(
         name=log.name, time=mean(time), q=mean(q), v=mean(v), a=mean(a), sign=mean(sign),
         bodies=Y, gravity=gravity, drives=drives,
-        y=drives.sum(axis=2) - known, used=used, band=motion.band,
+        y=drives.sum(axis=2) - known, used=used, noise=noise, band=motion.band,
     )  # fmt: skip
+
+
+def _noise(
+    model: mujoco.MjModel, motion: Motion, force: np.ndarray, h: float, width: int
+) -> np.ndarray:
+    """Returns the std that white noise of positions and of drives' forces makes in means of y.
+
+    That of accelerations with the model's masses, and that of forces, through the filter; of other
+    noise, such as what a controller makes of that of the positions in its band, it knows nothing.
+    """
+    of_a, of_force = noise_gains(motion.band, h, width)
+    white = motion.noise / motion.gain
+    data, M, squares = mujoco.MjData(model), np.empty((model.nv, model.nv)), np.zeros(model.nv)
+    some = np.linspace(0, len(motion.q) - 1, STATES).astype(int)
+    for k in some:
+        data.qpos = motion.q[k]
+        mujoco.mj_fwdPosition(model, data)
+        mujoco.mj_fullM(model, data, M)
+        squares += ((M * white * of_a) ** 2).sum(axis=1)
+    of_drives = np.array([choose_band(f, h)[1] if np.ptp(f) else 0.0 for f in force.T])
+    return np.sqrt(squares / len(some) + (of_force * of_drives) ** 2)
 
 
 def _mean_regressor(

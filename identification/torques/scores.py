@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import chain, pairwise
 
 import numpy as np
@@ -31,12 +32,15 @@ from identification.estimation.block_test import (
     p_values,
     scatter_of,
 )
+from identification.torques.consistency import nearest_body
 from identification.torques.equations import Columns, Equations, Estimate, unseen_squares
 from identification.torques.laws import Missing
 
 CHANCE = 0.05  # of any candidate by luck
 PROOF = 3.0  # t of the fall on blocks that the fit did not see, or of a difference between two
+POSSIBLE = 2.0  # std of a load's sizes, from the nearest ones that a body may have
 FAR = 3.0  # std of what was known, from which a free value may stand for something else
+RISE = 0.05  # of a joint's mean square, that is no rise
 HELD = 1e8  # times its precision, a prior holds a value
 UNFELT = 1e-6  # share of a column that the fit's columns leave, below which they imitate it
 
@@ -82,7 +86,19 @@ class Score:
     def is_plausible(self) -> bool:
         """Tells whether its sizes are some that a robot may have."""
         pairs = zip(self.size, self.missing.signs, self.missing.most, strict=True)
-        return all(abs(s) <= most and s * sign >= 0 for s, sign, most in pairs)
+        if not all(abs(s) <= most and s * sign >= 0 for s, sign, most in pairs):
+            return False
+        return bool((np.abs(self.possible - self.size) <= POSSIBLE * self.std).all())
+
+    @cached_property
+    def possible(self) -> np.ndarray:
+        """The nearest sizes that a body may have, shape (m,): its pseudo-inertia is not negative.
+
+        Those of a load; other sizes are as they are.
+        """
+        if self.missing.of_body is None or not (self.std > 0).all():
+            return self.size
+        return nearest_body(self.missing.of_body[0], self.size, self.std, self.missing.of_body[1])
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -139,7 +155,7 @@ def rank(equations: Equations, base: Base, candidates: Sequence[Missing]) -> tup
     unseen = squares_of(whole, 0)
     of_joints = unseen_squares(base.M, base.fit.weights, base.P, base.θ_0, equations.confirms)
     of_joints = base.fit.weights * of_joints[:, judged].sum(axis=1)
-    weighted = _Weighted(equations, base)
+    weighted = Weighted(equations, base)
     found: list[tuple[Missing, np.ndarray, Scatter, list[np.ndarray], float]] = []
     left_out: list[Missing] = []
     for missing in chain(candidates, left_out):  # these are scored with the sizes that are apart
@@ -191,6 +207,25 @@ def rank(equations: Equations, base: Base, candidates: Sequence[Missing]) -> tup
     return tuple(sorted(best.values(), key=lambda s: (-s.is_proven, -float(s.gains.sum()))))
 
 
+def rises(equations: Equations, before: Base, after: Base) -> bool:
+    """Returns whether a fit leaves more of a joint than another did, on blocks that none has seen.
+
+    A fit is of all joints together, so that it may pay for one joint with another: then it is no
+    law of the robot. What luck may do, or a small share, is no rise.
+    """
+    judged = equations.confirms if equations.confirms.any() else ~equations.confirms
+    judged = judged & (equations.counts.sum(axis=0) > 0)
+    left = [
+        unseen_squares(b.M, b.fit.weights, b.P, b.θ_0, equations.confirms)[:, judged]
+        for b in (before, after)
+    ]
+    for old, new in zip(*left, strict=True):
+        has = old > 0
+        if new.sum() > (1 + RISE) * old.sum() and _t_of(np.log(new[has] / old[has])) > PROOF:
+            return True
+    return False
+
+
 def _t_of(gains: np.ndarray) -> float:
     return float(mean_above_zero(gains)[0]) if gains.any() else 0.0
 
@@ -205,7 +240,7 @@ def choose(scores: Sequence[Score]) -> Score | None:
     return min(alike, key=lambda s: (len(s.size), -float(s.gains.sum())))
 
 
-class _Weighted:
+class Weighted:
     """The fit's columns and right side with their weights, joint by joint."""
 
     def __init__(self, equations: Equations, base: Base) -> None:

@@ -28,6 +28,7 @@ WIDEST = 0.2  # band that is tried, of the sampling rate
 SLOWEST = 4.0  # periods in a record of the narrowest band
 BANDS = 48  # that are tried
 ATTENUATION = 1e-4  # share of noise in the power of an acceleration
+FREQUENCIES = 4096  # over which the power of filtered noise is summed
 EDGE = 1.0  # periods of the band that are cut at each end
 
 
@@ -40,6 +41,7 @@ class Motion:
     a: np.ndarray  # accelerations, shape (n, nv)
     band: float  # f_c [Hz]
     noise: np.ndarray  # std that the noise of the positions makes in the rates, shape (nv,)
+    gain: float  # of white noise of positions in the rates [1/s]
 
 
 def smooth(q: np.ndarray, h: float, band: float, noise: np.ndarray) -> Motion:
@@ -53,7 +55,22 @@ def smooth(q: np.ndarray, h: float, band: float, noise: np.ndarray) -> Motion:
     """
     omega = np.pi * np.arange(len(q)) / ((len(q) - 1) * h)
     gain = float(np.sqrt(np.mean((omega * _pass(omega, band)) ** 2)))
-    return Motion(*_filtered(q, h, band), band, noise * gain)
+    return Motion(*_filtered(q, h, band), band, noise * gain, gain)
+
+
+def noise_gains(band: float, h: float, width: int) -> tuple[float, float]:
+    """Returns the std of means of accelerations, and of signals, that white noise of one makes.
+
+    Args:
+        band: f_c [Hz].
+        h: step [s].
+        width: number of samples of a mean.
+    """
+    omega = np.pi * np.arange(1, FREQUENCIES + 1) / (FREQUENCIES * h)
+    mean = np.sin(omega * h * width / 2) / (width * np.sin(omega * h / 2))
+    of = _pass(omega, band) * mean
+    of_a, of_x = (float(np.sqrt(np.mean(x**2))) for x in (omega**2 * of, of))
+    return of_a, of_x
 
 
 def low_pass(x: np.ndarray, h: float, band: float) -> np.ndarray:
