@@ -14,6 +14,7 @@ from mujoco.batch import Batch
 from gpu.worlds import FREE, Worlds, columns, motors
 from identification.engine import quiet, untimed
 from identification.model import rollout
+from identification.native.table import uninstall
 from inca_mj.robot.parameters import TIMESTEP
 from inca_mj.twin import native
 
@@ -22,7 +23,7 @@ ENOUGH = 0.5  # a measurement is repeated until it took so long [s]
 
 def on_processor(worlds: Worlds, threads: int, law: bool = True) -> np.ndarray:
     """Angles of the drums after each step, shape (n, steps, 8) [rad], as fits simulate them."""
-    (native.install if law else native.uninstall)()
+    (native.install if law else uninstall)()
     model, start = worlds.model, worlds.start
     if not law:
         model, start = motors(), replace(start, act=np.zeros((len(worlds), 0)))
@@ -62,7 +63,7 @@ class Processor:
 
     def run(self) -> None:
         """All steps of all worlds."""
-        (native.install if self.law else native.uninstall)()
+        (native.install if self.law else uninstall)()
         for name, rows in self.start.items():
             self.bound[name][:] = rows
         with quiet(), untimed():

@@ -11,11 +11,11 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from identification.discovery.fitted import Fitted
 from identification.quantities import held
 from identification.report.error_words import listed
 
 if TYPE_CHECKING:
+    from identification.discovery.fitted import Fitted
     from identification.discovery.result import Discovery
     from identification.effects.effect import Effect
     from identification.model.parameter import Parameter

@@ -18,7 +18,7 @@ DOUBTFUL = SimpleNamespace(
         effect=SimpleNamespace(name="spring", phrase="spring", sizes=()), where="joint"
     ),
     proof=SimpleNamespace(
-        is_everywhere=True, t=OPTIONS.min_proof_t + 0.4, told=SimpleNamespace(fall=0.07)
+        is_everywhere=True, t=OPTIONS.min_proof_t + 0.4, told=SimpleNamespace(fall=0.07, t=2.0)
     ),
     doubt="chance",
 )
