@@ -9,7 +9,6 @@ from inca_mj.robot.geometry import DRIVES
 
 LONGEST = 3600.0  # an hour of all states at every step is a gigabyte [s]
 SLOWEST, FASTEST = 10.0, 2000.0  # [Hz]: below, a cable's swing is lost; above, so is the memory
-TAPS = {2: 1, 3: 1, 4: 1, 5: 2, 6: 1, 7: 1}  # of a PRBS by its bits, beside the last
 INPUTS = ("zero", "step", "prbs", "multisine")
 
 
@@ -84,17 +83,20 @@ def prbs(
     `high` [A]; the drives get the same sequence at different phases [bits], drawn
     from `seed` unless given, shape (8,).
     """
-    from scipy.signal import max_len_seq  # slow to import
-
-    if bits not in TAPS:
-        raise InputError(f"no PRBS of {bits} bits; known: {', '.join(map(str, TAPS))}")
-    sequence, _ = max_len_seq(bits, taps=[TAPS[bits]])
+    register, sequence = np.ones(bits, int), []
+    taps = {2: (0, 1), 3: (1, 2), 4: (2, 3), 5: (2, 4), 6: (4, 5), 7: (5, 6)}
+    if bits not in taps:
+        raise InputError(f"no PRBS of {bits} bits; known: {', '.join(map(str, taps))}")
+    for _ in range(2**bits - 1):
+        sequence.append(register[-1])
+        register = np.concatenate([[register[taps[bits][0]] ^ register[taps[bits][1]]],
+                                   register[:-1]])  # fmt: skip
     period = len(sequence)
     if phases is None:
         phases = np.random.default_rng(seed).permutation(period)[np.arange(DRIVES) % period]
     # The small offset keeps a bit edge that falls on a sample on that sample.
     bit = np.floor(np.arange(n) * sampling_time / bit_time + 1e-9).astype(int)
-    return low + (high - low) * sequence[(bit[:, None] + phases) % period].astype(float)
+    return low + (high - low) * np.array(sequence)[(bit[:, None] + phases) % period].astype(float)
 
 
 def multisine(
