@@ -21,6 +21,7 @@ DOUBTFUL = SimpleNamespace(
         is_everywhere=True, t=OPTIONS.min_proof_t + 0.4, told=SimpleNamespace(fall=0.07, t=2.0)
     ),
     doubt="chance",
+    luck=0.02,
 )
 SHIFT = ShiftedRecord(record="a", shift=7e-4, std=1e-4, fall=0.06, chance=1e-4)
 
