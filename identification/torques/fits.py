@@ -25,13 +25,12 @@ import numpy as np
 from identification.effects.inputs import SHIFT
 from identification.logs.log import Log
 from identification.torques.base import BaseParameters, all_columns
-from identification.torques.bodies import read_numbers
 from identification.torques.candidates import rate_of
+from identification.torques.drives import known_numbers, list_passive, model_forces
 from identification.torques.equations import Equations, Estimate, estimate
 from identification.torques.laws import Missing
 from identification.torques.rows import Rows, make_rows
 from identification.torques.scores import Base
-from identification.torques.smoothing import ATTENUATION
 
 FRICTION = ("viscous", "coulomb", "offset")
 CLOCK = "clock of the inputs"
@@ -132,29 +131,6 @@ class Fitted:
     def predicted(self) -> np.ndarray:
         """Returns the right side, shape (N, nv)."""
         return np.asarray(self.base.Φ @ self.fit.θ)
-
-
-def known_numbers(model: mujoco.MjModel) -> np.ndarray:
-    """Returns a model's numbers of bodies and armatures, as `all_columns` has them."""
-    return np.concatenate([read_numbers(model).ravel(), model.dof_armature])
-
-
-def list_passive(model: mujoco.MjModel, equations: Equations) -> np.ndarray:
-    """Returns which joints have no drive, or none that gives more than noise, shape (nv,).
-
-    As much noise as a band leaves in accelerations hides a force of this share of the inertia's.
-    """
-    used = equations.stacked("used")
-    force = np.where(used, equations.stacked("drives").sum(axis=2), 0.0)
-    needed = np.where(used, model_forces(model, equations), 0.0)
-    given, felt = ((x**2).sum(axis=0) for x in (force, needed))
-    return np.asarray(used.any(axis=0) & (given <= ATTENUATION * felt))
-
-
-def model_forces(model: mujoco.MjModel, equations: Equations) -> np.ndarray:
-    """Returns the forces that the model's masses alone need for the motion, shape (N, nv)."""
-    X = all_columns(equations.stacked("bodies"), equations.stacked("a"))
-    return np.asarray(X @ known_numbers(model))
 
 
 def friction_columns(rows: Sequence[Rows]) -> np.ndarray:

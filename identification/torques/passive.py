@@ -25,8 +25,9 @@ import numpy as np
 
 from identification.torques.base import BaseParameters, all_columns
 from identification.torques.bodies import regressor
+from identification.torques.drives import known_numbers, list_passive
 from identification.torques.equations import Equations
-from identification.torques.fits import Others, base_fit, known_numbers, list_passive, model_fit
+from identification.torques.fits import Others, base_fit, model_fit
 
 ROUNDS = 4  # of δ: each leaves an error of second order
 LIGHT = 1e-2  # of the model's inertia: a fit with less has lost the scale, and δ stays as it was
