@@ -34,7 +34,6 @@ def torque_verdict(evidence: Evidence, model: mujoco.MjModel) -> list[str]:
     """Returns what torques say, the most important sentence first."""
     return [
         *_missing(evidence),
-        *_unknown(evidence, model),
         *_residual(evidence, model),
         *_friction(evidence),
         *_far(evidence),
@@ -99,17 +98,6 @@ def _missing(evidence: Evidence) -> list[str]:
         if len(rivals := rivals_of(evidence, score, k)):
             out[-1] += f" Within chance as good: {listed([called(r) for r in rivals])}."
     return out
-
-
-def _unknown(evidence: Evidence, model: mujoco.MjModel) -> list[str]:
-    """Returns a sentence on each law that has no sure name, and on what is unknown there."""
-    names, _ = joint_names(model)
-    return [
-        f"{called(n.law)[:1].upper()}{called(n.law)[1:]} explains a part, but is not named: beside"
-        f" it a smooth force at joint {names[n.joint]} that is no law of the catalogue explains"
-        f" {percent(n.of_both)} of what both explain. What acts there is unknown."
-        for n in evidence.unknown
-    ]
 
 
 def called(score: Score) -> str:

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 
 import mujoco
 import numpy as np
@@ -33,12 +32,10 @@ from identification.torques.fits import (
     with_gains_held,
     with_std_of_gains,
 )
-from identification.torques.laws import Laws
 from identification.torques.passive import with_expected_motion
 from identification.torques.rows import make_rows
 from identification.torques.scores import Base, Score, rank
-from identification.torques.search import add_proven, draw_curves, drop_neighbours, others_of
-from identification.torques.unknown import Neighbour, find_neighbour
+from identification.torques.search import add_proven, draw_curves, others_of
 
 OTHER_BAND = 0.6  # factor of the bands of a second fit, which tells what they matter
 
@@ -55,7 +52,6 @@ class Evidence:
     final: Fitted  # the model fit with the effects that were found
     scores: tuple[Score, ...]  # of all candidates beside the model fit, the best first
     found: tuple[Score, ...]  # scores of the effects that were added, each when it was
-    unknown: tuple[Neighbour, ...]  # laws without a name, and what smooth forces explain there
     # scores beside the final fit; those of `scores` where nothing was found
     rest: tuple[Score, ...]
     # scores of loads in single records beside the base fit, the best first
@@ -133,11 +129,6 @@ def find_evidence(
     laws = [s for s in scores if not s.missing.is_curve]
     found, _ = add_proven(equations, nominal, [], laws, say)
     found, final = draw_curves(equations, nominal, found, scores, say)
-    judge = partial(
-        find_neighbour, equations, nominal, laws=Laws(model, equations, expected),
-        curves=[c for c in candidates if c.is_curve], effects={e.name: e for e in effects},
-    )  # fmt: skip
-    found, final, unknown = drop_neighbours(equations, nominal, found, scores, judge, say)
     rest = rank(equations, final.base, others_of(scores, found)) if found else scores
     final = with_std_of_gains(final, nominal, others)
     loads = [c for c in candidates if c.name == "load"]
@@ -148,7 +139,7 @@ def find_evidence(
     r = len(base.names)
     return Evidence(
         equations=equations, base=base, whole=whole, other=other, model=nominal, final=final,
-        scores=scores, found=tuple(found), unknown=unknown, rest=rest, differences=differences,
+        scores=scores, found=tuple(found), rest=rest, differences=differences,
         asked=len(candidates), unseen=np.array(unseen),
         friction=read_friction(model) if friction is None else friction,
         inconsistent=find_inconsistent(base, whole.fit.θ[:r], whole.fit.std[:r]),

@@ -18,7 +18,6 @@ from identification.torques.equations import Equations
 from identification.torques.fits import Fitted, extended
 from identification.torques.laws import Missing
 from identification.torques.scores import CHANCE, Score, choose, rank, rises
-from identification.torques.unknown import Neighbour
 
 MOST_NAMED = 4  # effects that a search adds
 
@@ -85,34 +84,6 @@ def draw_curves(
     places = {s.missing.where for s in out}
     beside = rank(equations, final.base, [c for c in curves if c.where not in places])
     return add_proven(equations, nominal, out, beside, say)
-
-
-def drop_neighbours(
-    equations: Equations, nominal: Fitted, found: Sequence[Score], scores: Sequence[Score],
-    judge: Callable[..., Neighbour | None], say: Callable[[str], None],
-) -> tuple[list[Score], Fitted, tuple[Neighbour, ...]]:  # fmt: skip
-    """Returns effects without laws that are neighbours of what is missing, the fit, and those laws.
-
-    The one beside which a smooth force explains most is left out first, and the rest are judged
-    again without it. Where it is left out, a curve may be proven.
-    """
-    out, gone = [*found], list[Neighbour]()
-    while True:
-        final = _extended(equations, nominal, [s.missing for s in out])
-        bad = []
-        for law in (s for s in out if not s.missing.is_curve):
-            without = _extended(equations, nominal, [s.missing for s in out if s is not law])
-            if (neighbour := judge(final, without, law)) and neighbour.has_name:
-                bad.append(neighbour)
-        if not bad:
-            break
-        worst = max(bad, key=lambda n: n.of_both)
-        gone.append(worst)
-        say(f"{worst.law.missing.title}: a smooth force explains too much beside it")
-        out = [s for s in out if s is not worst.law]
-    if gone:
-        out, final = draw_curves(equations, nominal, out, scores, say)
-    return out, final, tuple(gone)
 
 
 def others_of(scores: Sequence[Score], found: Sequence[Score]) -> list[Missing]:
