@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from math import isfinite, isinf, isnan
 from typing import TYPE_CHECKING
 
+from identification.errors import InputError
 from identification.quantities import probability, quantity
 from identification.report.value_words import in_record, phrase, without_colon
 from identification.shares import fall_words, percent
@@ -121,7 +122,10 @@ def _already(candidate: Candidate, plant: Plant) -> str:
     at = candidate.effect.places[candidate.where].removeprefix("@")
     if not isinstance(plant, JointPlant) or name not in ADDED_TO or not at:
         return ""
-    value = value_of(plant.model, ADDED_TO[name].format(at))
+    try:
+        value = value_of(plant.model, ADDED_TO[name].format(at))
+    except InputError:  # a body without a name, which is called by its joint
+        return ""
     return quantity(value, unit=size.unit) if value else ""
 
 
