@@ -10,13 +10,12 @@ what law and curve explain together:
                                 away, over what the model with all that was found leaves,
                                 f: fall by the curve beside it
 
-All three are in units of the errors of the model without effects. The other condition is that it is
-more likely than not that this is no luck: what acts in few windows, as a stop does, has a
-large chance whatever it explains. No law is exact on a real robot, so that less than this speaks
-against none. A law of a sensor, an input or a body has no joint of its own, and curves at all
-joints count. A curve counts, in the model or beside it, where it may draw what the law misses: it
-depends on a variable of the law. A force of the position that is left beside a friction is another
-thing that is missing.
+All three are in units of the errors of the model without effects. It must also be more likely than
+not that this is no luck: what acts in few windows, as a stop does, has a large chance whatever it
+explains. No law is exact on a real robot, so that less than this speaks against none. A law of a
+sensor, an input or a body has no joint of its own, and curves at all joints count. A curve counts,
+in the model or beside it, where it may draw what the law misses: it depends on a variable of the
+law. A force of the position that is left beside a friction is another thing that is missing.
 
 A force of two variables leaves what no single curve draws. So the smooth force of the law's joint
 is asked as well (`identification.prediction.yardstick`): all its curves at once, and where the
@@ -30,7 +29,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from identification.discovery.effect_results import Neighbour
-from identification.discovery.neighbour import has_name_of_neighbour, of_both
+from identification.discovery.neighbour import MORE_LIKELY_THAN_NOT
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.passes import uses
 from identification.effects.effect import Candidate
@@ -41,6 +40,9 @@ from identification.prediction.task import WindowSearch
 from identification.prediction.trial import Contender, mean_square
 from identification.prediction.yardstick import Yardstick, acts_on_joints, may_draw
 
+# Of what law and curve explain together: a judgement, because no law of a real robot is exact. The
+# rates with it are in docs/robot/models.md.
+MOST_OF_BOTH = 0.15
 SMOOTH_FORCE = "smooth force"  # as it is called where a curve has its name
 
 
@@ -58,7 +60,8 @@ class Explained:
         Args:
             beside: what that one takes away of what the model leaves.
         """
-        return of_both(self.law, self.curves + beside)
+        curves = self.curves + beside
+        return curves / (self.law + curves) if self.law + curves > 0 else 0.0
 
 
 def explained_by(
@@ -200,4 +203,4 @@ def has_neighbours_name(neighbour: Neighbour | None, options: DiscoveryOptions) 
     """
     if neighbour is None or not uses(options, "neighbours_names"):
         return False
-    return has_name_of_neighbour(neighbour.of_both, neighbour.chance)
+    return neighbour.of_both > MOST_OF_BOTH and neighbour.chance < MORE_LIKELY_THAN_NOT

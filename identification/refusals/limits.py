@@ -29,7 +29,7 @@ OFF = int(mujoco.mjtDisableBit.mjDSBL_LIMIT) | int(mujoco.mjtDisableBit.mjDSBL_C
 
 
 def refuse_limits(file: RobotFile, model: mujoco.MjModel, is_degree: bool, log: Log) -> None:
-    """Refuse a log that has a joint far outside the limits of the model.
+    """Refuse a log that has a joint far outside the limits of the model, if nobody trusts it.
 
     Args:
         file: the robot's.
@@ -37,6 +37,8 @@ def refuse_limits(file: RobotFile, model: mujoco.MjModel, is_degree: bool, log: 
         is_degree: whether the model's file gives angles in degrees.
         log: what was measured.
     """
+    if "limits" in file.trust:
+        return
     columns = zip(output_columns(model, log.output_names), log.outputs.T, strict=True)
     positions = {
         model.joint(int(np.flatnonzero(model.jnt_qposadr == i)[0])).name: y
@@ -44,7 +46,10 @@ def refuse_limits(file: RobotFile, model: mujoco.MjModel, is_degree: bool, log: 
         if field == "qpos"
     }
     if said := limit_sentence(model, is_degree, positions, file.model):
-        raise InputError(f"log {log.name!r} does not belong to the model: {said}")
+        raise InputError(
+            f'log {log.name!r} does not belong to the model: {said}, or write trust = ["limits"]'
+            f" into {file.path} if all is right"
+        )
 
 
 def limit_sentence(

@@ -14,6 +14,7 @@ TRUST = {  # what a user may know better than a check
     "contacts": "geoms that touch all along the log are meant to",
     "gaps": "what is made up across a gap counts as measured",
     "joints": "joints that no sensor measures and nothing holds begin where the model does",
+    "limits": "joints were where the log says, also far outside the model's limits",
     "rows": "all rows are of this robot, also a few with one stamp, and those of zeros",
     "sensors": "a sensor that repeats one value is not frozen",
     "start": "simulations begin where the model does, also where the log begins elsewhere",

@@ -11,11 +11,11 @@ from records_cases import with_law as fitted_with
 
 from identification.discovery.candidates import list_common
 from identification.discovery.effect_results import Neighbour
-from identification.discovery.neighbour import MOST_OF_BOTH
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.joint_plant import candidates
 from identification.prediction.moves.curve_for_laws import curve_for_laws
 from identification.prediction.neighbours import (
+    MOST_OF_BOTH,
     Explained,
     _may_be_of,
     explained_by,

@@ -56,3 +56,4 @@ def test_a_fit_refuses_it_and_the_file_to_begin_with_says_it(tmp_path, capsys):
     assert "NEEDED: joint swing" in robot.read_text()
     with pytest.raises(InputError, match=RADIAN):
         read_robot(robot, log)
+    assert read_robot(robot, log, trust=["limits"]).log.name == "log"
