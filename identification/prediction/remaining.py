@@ -99,17 +99,16 @@ def find_remaining(
 def is_much_left(model: WindowModel, options: DiscoveryOptions) -> bool:
     """Returns whether a model errs by so much that more than one effect may be missing.
 
-    That is far above the sensors' noise, on windows on which the search decides, and more than
-    inputs make that are off by what is usual. Of a right model that errs by little there is nothing
-    to find, and what is asked then takes as long as all that was before it.
+    That is far above the sensors' noise at an output, on windows on which the search decides, and
+    more than inputs make that are off by what is usual. Of a right model that errs by little there
+    is nothing to find, and what is asked then takes as long as all that was before it.
 
     Args:
         model: fitted.
         options: the usual error of inputs.
     """
     unseen = model.unseen.select
-    square = float(np.mean(np.concatenate(unseen.at_horizon)))
-    if not square > unseen.floor * MAX_OUTPUT_RATIO**2:
+    if not output_ratios(unseen).max() > MAX_OUTPUT_RATIO:
         return False
     asked = partial(
         needed_input_error, model.fit, options, model.scale, unseen.noise, unseen.of_outputs
@@ -132,10 +131,10 @@ def _error_left(state: WindowSearch) -> RemainingError | None:
 
 def is_off(model: WindowModel, options: DiscoveryOptions) -> bool:
     """Returns whether a model errs on unseen records by more than sensors' noise and steps make."""
-    square = (
-        float(np.mean(np.concatenate(model.unseen.report.at_horizon))) * left_by_steps(model) ** 2
-    )
-    return square > model.unseen.floor * (1 + options.min_gap_share)
+    unseen, share = model.unseen.report, left_by_steps(model)
+    square = float(np.mean(np.concatenate(unseen.at_horizon))) * share**2
+    is_one_off = share * output_ratios(unseen).max() > MAX_OUTPUT_RATIO
+    return is_one_off or square > unseen.floor * (1 + options.min_gap_share)
 
 
 def left_by_steps(model: WindowModel) -> float:

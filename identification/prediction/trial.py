@@ -127,7 +127,7 @@ def find_doubt(found: Prediction, refits: int, options: DiscoveryOptions) -> Dou
     Returns:
         "chance": the gain may be luck. "lengths": windows of some length are predicted worse.
         "record": a record is predicted worse, though physics is the same in all of them.
-        "little": it takes away too little to matter.
+        "little": it takes away too little of the error of any output to matter.
     """
     luck = luck_of(found, refits, options)
     if not (found.t > options.min_proof_t and luck < options.significance):
@@ -136,7 +136,7 @@ def find_doubt(found: Prediction, refits: int, options: DiscoveryOptions) -> Dou
         return "lengths"
     if contradicts_a_record(found, options):
         return "record"
-    return None if min(found.typical_falls) > options.min_fall else "little"
+    return None if found.output_fall > options.min_fall else "little"
 
 
 def luck_of(found: Prediction, refits: int, options: DiscoveryOptions) -> float:

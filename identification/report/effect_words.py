@@ -36,8 +36,7 @@ DOUBTS = {
     "chance": "its gain on the data that decide may be luck",
     "lengths": "windows of some length are predicted worse with it",
     "record": "a record is predicted worse with it",
-    "little": "over some of the lengths of time that are predicted it removes too little of the"
-    " error",
+    "little": "it removes too little of the error of any output to matter",
     "size": "its size is not known well enough to differ from zero",
     "bound": "its size ends on the largest value that is believed, so that it stands for something"
     " else",

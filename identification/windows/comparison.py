@@ -11,12 +11,13 @@ little in many: their scatter then hides their mean from the t-test, and their r
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from identification.chances import ranks_above_zero, stratified_mean_above_zero
-from identification.windows.blocks import block_gains, output_gains
+from identification.windows.blocks import LEAST_NOISE, block_gains, output_gains
 from identification.windows.unseen import Unseen
 
 
@@ -34,6 +35,9 @@ class Prediction:
     # the same of each record's mean square by itself, in the geometric mean: a record that errs
     # most, whatever the model, does not decide alone
     typical_falls: tuple[float, ...]
+    # the same at the horizon, of the output of which it is largest: beside the noise of outputs
+    # that were never wrong, all that one of them lacks may be little
+    output_fall: float
     record_falls: tuple[float, ...]  # relative fall of the mean square by record, at the horizon
     # gain of each block of each record, at the horizon, shape (B,) a record
     blocks: tuple[np.ndarray, ...]
@@ -83,12 +87,17 @@ def _compare(without: Unseen, with_it: Unseen, by_outputs: bool, by_records: boo
     for length in lengths:
         a, b = (u.squares[u.lengths.index(length)] for u in (without, with_it))
         falls.append(1 - float(np.concatenate(b).mean() / np.concatenate(a).mean()))
-        ratios = [np.log(y.mean() / x.mean()) for x, y in zip(a, b, strict=True)]
-        typical.append(1 - float(np.exp(np.mean(ratios))))
+        typical.append(_typical_fall(a, b))
         gains.append(block_gains(a, b, without.floor))
     at = lengths.index(1.0)
+    output_fall = typical[at]
     if by_outputs:
         gains[at] = output_gains(without.of_outputs, with_it.of_outputs, without.noise)
+        of_outputs = (
+            [[x[:, y] for x in u.of_outputs] for u in (without, with_it)]
+            for y in range(len(without.noise))
+        )
+        output_fall = max(_typical_fall(a, b) for a, b in of_outputs)
     blocks, means = gains[at], tuple(float(np.concatenate(g).mean()) for g in gains)
     every = np.concatenate(blocks)
     t, chance = 0.0, 1.0
@@ -98,8 +107,16 @@ def _compare(without: Unseen, with_it: Unseen, by_outputs: bool, by_records: boo
     return Prediction(
         t=t, chance=chance, rank_chance=ranks_above_zero(every), gain=means[at], gains=means,
         fall=falls[at], falls=tuple(falls), typical_falls=tuple(typical),
+        output_fall=output_fall,
         record_falls=tuple(1 - float(b.mean() / a.mean()) for a, b in each), blocks=tuple(blocks),
     )  # fmt: skip
+
+
+def _typical_fall(without: Sequence[np.ndarray], with_it: Sequence[np.ndarray]) -> float:
+    """Returns the relative fall of each record's mean square, in the geometric mean."""
+    each = zip(without, with_it, strict=True)
+    ratios = [np.log((b.mean() + LEAST_NOISE) / (a.mean() + LEAST_NOISE)) for a, b in each]
+    return 1 - float(np.exp(np.mean(ratios)))
 
 
 def rise(begun: Unseen, fitted: Unseen) -> float:

@@ -9,7 +9,9 @@ from hypothesis import strategies as st
 
 from identification.discovery.options import DiscoveryOptions
 from identification.prediction.evidence import all_gains, compute_confidence, evidence
+from identification.prediction.trial import compared, find_doubt
 from identification.windows.blocks import count_blocks
+from identification.windows.unseen import Unseen
 
 WINDOWS, SAMPLES = 26, 30
 PLAIN, OTHER = DiscoveryOptions(), DiscoveryOptions(without=("gains_of_outputs",))
@@ -82,3 +84,40 @@ def test_an_output_that_never_errs_says_nothing():
     )
     np.testing.assert_allclose(2 * both, alone, rtol=1e-9)
     assert both.mean() == pytest.approx(np.log(2.0), abs=0.1)
+
+
+def unseen(errors, noise):
+    """Errors (W, L, ny) over the horizon, and over half and twice as much alike, with s of 1."""
+    squares = np.mean(errors**2, axis=1)
+    each = ((squares.mean(axis=1),),) * 3
+    return Unseen(
+        lengths=(0.5, 1.0, 2.0), squares=each, moves=each, of_outputs=(squares,), noise=noise**2,
+        fit_percent=np.zeros(len(noise)), places=each, parts=(None,),
+    )  # fmt: skip
+
+
+@given(st.integers(1, 8), st.floats(1.5, 20.0), st.floats(0.005, 0.03), st.integers(0, 2**31 - 1))
+def test_a_law_that_takes_one_output_to_its_noise_matters_beside_any_others(
+    others, times, least, seed
+):
+    """Others were never wrong: what the law takes away is little of the mean over all outputs."""
+    rng = np.random.default_rng(seed)
+    noise = np.array([least, *[1.0] * others])
+    white = noise * rng.standard_normal((WINDOWS, SAMPLES, 1 + others))
+    before = white * np.array([times, *[1.0] * others])
+    found = {
+        options: compared(unseen(before, noise), unseen(white, noise), options)
+        for options in (PLAIN, OTHER)
+    }
+    assert find_doubt(found[PLAIN], 1, PLAIN) is None
+    assert found[PLAIN].output_fall == pytest.approx(1 - times**-2, abs=0.05)
+    if times**2 * least**2 < PLAIN.min_fall * others / 2:
+        assert find_doubt(found[OTHER], 1, OTHER) == "little"
+
+
+def test_of_encoders_that_rest_nothing_falls():
+    noise = np.array([0.1, 0.0])
+    a, b = (np.stack([x, 0 * x], axis=-1) for x in 0.1 * np.random.default_rng(1).normal(
+        size=(2, WINDOWS, SAMPLES)))  # fmt: skip
+    found = compared(unseen(a, noise), unseen(b, noise), PLAIN)
+    assert abs(found.output_fall) < 0.2

@@ -71,6 +71,22 @@ def test_an_output_that_errs_is_told_whatever_the_others_do(monkeypatch, rms, ou
     np.testing.assert_allclose(remaining.output_ratios(unseen), [1.0, rms])
 
 
+def test_much_is_left_where_one_output_errs_by_much(monkeypatch):
+    monkeypatch.setattr(remaining, "needed_input_error", lambda *given: np.inf)
+    noise = np.array([1.0, 1e-6])
+    for rms, is_much in ((1.4, False), (1.6, True)):
+        each = noise * np.array([1.0, rms**2])
+        select = SimpleNamespace(
+            at_horizon=(np.array([each.mean()]),), noise=noise, of_outputs=(each[None],),
+            floor=noise.mean(),
+        )  # fmt: skip
+        steps = SimpleNamespace(error=np.nan)
+        told = SimpleNamespace(select=select, report=select, floor=select.floor)
+        model = SimpleNamespace(unseen=told, fit=None, scale=np.ones(2), finer=steps)
+        assert remaining.is_much_left(model, OPTIONS) == is_much
+        assert remaining.is_off(model, OPTIONS) == is_much
+
+
 @pytest.mark.parametrize("ratio", [0.9, 1.0, LEAST - 0.01])
 def test_at_the_noise_nothing_is_left_to_explain(monkeypatch, ratio):
     assert kinds(monkeypatch, ratio) == []
