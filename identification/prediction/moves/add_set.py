@@ -40,8 +40,9 @@ MAX_ROUNDS = 2  # of a choice, and of asking each of its members in its place
 
 
 def add_set(
-    state: WindowSearch, progress: Progress, present: WindowModel | None = None
-) -> WindowSearch:
+    state: WindowSearch, progress: Progress, present: WindowModel | None = None,
+    begin_at: WindowModel | None = None,
+) -> WindowSearch:  # fmt: skip
     """Returns the state with several effects more, or as it is where none are proven together.
 
     Args:
@@ -50,11 +51,15 @@ def add_set(
         present: the model that the set has to predict better than, on average over the blocks that
             decide, before its members are asked in their places, which takes most of the time; that
             of the state when None.
+        begin_at: the model about which the set is chosen first; that of the state when None. Where
+            it has effects and leaves much, these are asked in their places too.
     """
     task, watch = state.task, Watch(state.seconds)
     if state.room < 2 or not state.scores or not is_much_left(state.model, task.options):
         return state
-    model, places, refits, asked = state.model, dict[Key, Place](), 0, list[set[Key]]()
+    model, places, refits, asked = begin_at or state.model, dict[Key, Place](), 0, list[set[Key]]()
+    if begin_at is not None and not is_much_left(begin_at, task.options):
+        asked.append(_keys(begin_at))  # its effects are left in their places
     for _ in range(MAX_ROUNDS):
         chosen = _with_set(state, model, progress)
         is_worse = not compared((present or state.model).unseen, chosen.unseen, task.options).t > 0
@@ -85,19 +90,27 @@ def set_for_effects(state: WindowSearch, progress: Progress) -> WindowSearch:
     """Returns the state with a set in the place of all its effects, where more speaks for the set.
 
     It is asked where much is left, and where a curve stands beside other effects: the curve may be
-    what several laws do together, of which it hides each. A set that was found in this way is not
-    asked for again.
+    what several laws do together, of which it hides each. The set is first chosen about the model
+    with all that was found, which is nearer to the truth, where a linear choice errs less; then
+    about the model without effects. A set that was found in this way is not asked for again.
     """
     is_done = any(name == set_for_effects.__name__ for name in state.made)
     if is_done or not state.accepted or state.worse_fit is not None:
         return state
-    is_asked = _has_curve_beside_others(state) or is_much_left(state.model, state.task.options)
-    if not is_asked:
+    if not (_has_curve_beside_others(state) or is_much_left(state.model, state.task.options)):
         return state
     bare = replace(
         state, model=state.nominal, accepted=(), scores=state.nominal_scores, exchanged=None
     )
-    found = add_set(bare, progress, state.model)
+    near = _if_likelier(state, add_set(bare, progress, begin_at=state.model), progress)
+    if near.accepted is not state.accepted:
+        return near
+    bare = replace(bare, seconds=near.seconds)
+    return _if_likelier(state, add_set(bare, progress, state.model), progress)
+
+
+def _if_likelier(state: WindowSearch, found: WindowSearch, progress: Progress) -> WindowSearch:
+    """Returns the state with the effects of another one, where more speaks for these."""
     old, new = ({a.candidate.key for a in s.accepted} for s in (state, found))
     if not new or new <= old:
         return replace(state, seconds=found.seconds)
