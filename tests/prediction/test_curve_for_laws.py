@@ -18,10 +18,9 @@ WINDOWS = 30
 def model(rms, seed):
     """A model of one output whose unseen windows err by some rms, over every length alike."""
     rng = np.random.default_rng(seed)
-    squares = rms**2 * rng.chisquare(20, WINDOWS) / 20
-    each = ((squares,),) * 3
+    each = ((rms**2 * rng.chisquare(20, (WINDOWS, 1)) / 20,),) * 3
     return SimpleNamespace(unseen=Unseen(
-        lengths=(0.5, 1.0, 2.0), squares=each, moves=each, of_outputs=(squares[:, None],),
+        lengths=(0.5, 1.0, 2.0), powers=each, moves=each,
         noise=np.array([1.0]), fit_percent=np.zeros(1), places=each, parts=(None,),
     ))  # fmt: skip
 
