@@ -25,6 +25,7 @@ from identification.discovery.attempts import attempt
 from identification.prediction.contenders import count_numbers
 from identification.prediction.evidence import all_gains, count_windows, evidence
 from identification.prediction.extension import refitted
+from identification.prediction.forced import acts_on_joints
 from identification.prediction.neighbours import (
     explained_by,
     find_neighbour,
@@ -34,7 +35,7 @@ from identification.prediction.screening import places_of, score_all
 from identification.prediction.selection import refit_contenders
 from identification.prediction.task import Change, WindowSearch
 from identification.prediction.trial import Contender
-from identification.prediction.yardstick import acts_on_joints, measure
+from identification.prediction.yardstick import measure
 from identification.progress import Progress
 
 
