@@ -13,6 +13,13 @@
     stop                          -s R (|q| - q_s)₊ sign q / q
     fast                          -s R (|v| - v_c)₊ sign v / v
 
+Sizes are those that such records tell: cogging repeats more than twice within the joint's travel,
+and gains and delays, of 5 to 9 ms, are of the first three joints that carry weight, because of
+others a free armature and a friction do the same. Three kinds have sizes that they do not tell:
+
+    slow_cogging                 3 to 12 periods in a turn, mostly less than two within the travel
+    any_gain, short_delay        of any joint; a delay of 0.5 to 2 ms
+
 The controller knows nothing of it. It sees positions with noise, takes each step of the simulation,
 and its log holds every 20th.
 """
@@ -40,7 +47,12 @@ LISTED = (
     "load_dependent_friction", "cogging", "stiffness", "hardening", "gravity_force", "gain",
     "delay",
 )  # fmt: skip
+UNTOLD = {"slow_cogging": "cogging", "any_gain": "gain", "short_delay": "delay"}  # and their laws
+DRIVES = ("gain", "delay")  # of joints that carry weight
+HEAVY = 3  # joints, the first ones that carry weight
 STRENGTH = (0.05, 0.2)  # s
+PERIODS = (2.2, 3.2)  # of cogging, within the travel of a joint
+LATE = {"delay": (0.005, 0.009), "short_delay": (0.0005, 0.002)}  # [s]
 
 
 def arm(joints: int, rng: np.random.Generator | None, load: float = 0.0) -> str:
@@ -119,7 +131,8 @@ class Hidden:
 def hidden(name: str, joints: int, truth: str, rng: np.random.Generator) -> Hidden:
     """An effect of a name at a joint that is drawn, in units of a record without it."""
     turned = [k for k, axis in enumerate(AXES[joints]) if axis == Y]
-    joint = int(rng.choice(turned) if name == "gravity_force" else rng.integers(joints))
+    at = {"gravity_force": turned, **dict.fromkeys(DRIVES, turned[:HEAVY])}.get(name, range(joints))
+    joint = int(rng.choice(at))
     log, rates = _moved(truth, joints, np.random.default_rng(int(rng.integers(1 << 30))), Hidden())
     q, u = log[:, 1 + joints + joint], log[:, 1 + joint]
     shape = {
@@ -127,10 +140,12 @@ def hidden(name: str, joints: int, truth: str, rng: np.random.Generator) -> Hidd
         "phase": rng.uniform(0, 2 * np.pi), "at": rng.uniform(-0.8, 0.8),
         "width": rng.uniform(0.3, 0.8),
     }  # fmt: skip
-    if name == "delay":
-        shape["late"] = rng.uniform(0.0005, 0.002)
+    if name == "cogging":
+        shape["n"] = float(np.ceil(2 * np.pi * rng.uniform(*PERIODS) / np.ptp(q)))
+    if name in LATE:
+        shape["late"] = rng.uniform(*LATE[name])
     return Hidden(
-        name, joint, float(rng.uniform(*STRENGTH)), float(np.sqrt(np.mean(u**2))),
+        UNTOLD.get(name, name), joint, float(rng.uniform(*STRENGTH)), float(np.sqrt(np.mean(u**2))),
         float(np.sqrt(np.mean(rates[:, joint] ** 2))), float(q.std()), float(q.mean()), shape,
     )  # fmt: skip
 

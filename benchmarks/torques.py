@@ -24,7 +24,7 @@ from typing import Any
 
 import numpy as np
 from rows import search_commit
-from torque_arms import AXES, LISTED, SPREAD, UNLISTED, arm, hidden, record
+from torque_arms import AXES, LISTED, SPREAD, UNLISTED, UNTOLD, arm, hidden, record
 
 from identification import fit_torques, read_robot
 from identification.report.torque_words import rivals_of, size_words
@@ -33,12 +33,12 @@ from identification.torques.bodies import read_numbers
 ROWS = Path(__file__).resolve().parent / "results" / "torques.jsonl"
 PAYLOAD, NOTHING = "payload", "nothing"
 LARGEST = 0.2  # load, of the mass of an arm
-DRIVES = ("gain", "delay")  # effects whose place is an input
+DRIVES = ("gain", "delay", "any_gain", "short_delay")  # effects whose place is an input
 
 
 def world(joints: int, seed: int, hides: str) -> dict[str, Any]:
     """What torques say of one arm, which hides a load, an effect, or nothing."""
-    is_effect = hides in (*LISTED, *UNLISTED)
+    is_effect = hides in (*LISTED, *UNTOLD, *UNLISTED)
     key = [*hides.encode()] if is_effect else []
     rng = np.random.default_rng([seed, joints, hides == PAYLOAD, *key])
     mass = sum(6.0 * 0.6**k for k in range(joints))
@@ -134,7 +134,7 @@ def measured_axis(data: Path) -> dict[str, Any]:
 
 def main() -> None:
     """Make the rows of all worlds."""
-    every = (PAYLOAD, NOTHING, *LISTED, *UNLISTED)
+    every = (PAYLOAD, NOTHING, *LISTED, *UNTOLD, *UNLISTED)
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--hides", nargs="+", default=every, choices=every)
     parser.add_argument("--seeds", type=int, default=20, help="arms of each kind")

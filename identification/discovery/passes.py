@@ -13,7 +13,7 @@ from typing import Protocol
 
 from identification.errors import InputError, unknown_name
 
-RUN, HORIZON, BOTH = "free run", "horizon", "both"  # which search makes a pass
+RUN, HORIZON, BOTH, TORQUES = "free run", "horizon", "both", "torques"  # which search makes a pass
 # By the name that leaves it out: which search makes it, and what it does.
 PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
     "untouched_part": (
@@ -126,6 +126,18 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
     "likeliest_of_set": (
         HORIZON, "asks an effect that is not the likeliest again beside what was found later, and"
         " puts the likeliest into the model",
+    ),
+    "fitted_shapes": (
+        TORQUES, "fits the shapes of the best laws, of which the grids try only a few values",
+    ),
+    "held_nodes": (
+        TORQUES, "holds nodes of curves at zero where the fitted motion hardly is",
+    ),
+    "blocks_of_all_records": (
+        TORQUES, "proves by blocks of all records what those that confirm make likely",
+    ),
+    "neighbours_of_torques": (
+        TORQUES, "names no law of a joint beside which curves of its variables still predict",
     ),
 })  # fmt: skip
 

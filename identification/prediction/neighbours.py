@@ -10,7 +10,9 @@ what law and curve explain together:
                                 away, over what the model with all that was found leaves,
                                 f: fall by the curve beside it
 
-All three are in units of the errors of the model without effects. It must also be more likely than
+All three are of the fitted windows, in units of the errors of the model without effects: of a
+record that moves less, a law that grows with the cube of the position explains far less, whatever
+is beside it. It must also be more likely than
 not that this is no luck: what acts in few windows, as a stop does, has a large chance whatever it
 explains. No law is exact on a real robot, so that less than this speaks against none. A law of a
 sensor, an input or a body has no joint of its own, and curves at all joints count. A curve counts,
@@ -38,7 +40,7 @@ from identification.prediction.forced import acts_on_joints
 from identification.prediction.model import WindowModel
 from identification.prediction.screening import places_of
 from identification.prediction.task import WindowSearch
-from identification.prediction.trial import Contender, mean_square
+from identification.prediction.trial import Contender
 from identification.prediction.yardstick import Yardstick, may_draw
 
 # Of what law and curve explain together: a judgement, because no law of a real robot is exact. The
@@ -77,7 +79,7 @@ def explained_by(
         model: with all of them.
         doubtful: those among them that have no sure name, and may be what the law misses.
     """
-    left, unsure = mean_square(model), {d.candidate.key for d in doubtful}
+    left, unsure = model.fitted_power, {d.candidate.key for d in doubtful}
     curves = [
         a
         for a in accepted

@@ -225,6 +225,7 @@ def judged(
         doubt = "differ"
     return Contender(
         model=new, prediction=found, gains=gains, numbers=numbers, criterion=gain,
+        explained=model.fitted_power - new.fitted_power,
         doubt=doubt, luck=luck_of(found, refits, options),
     )  # fmt: skip
 

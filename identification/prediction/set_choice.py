@@ -5,7 +5,8 @@ in which its members compete with all other laws: their sizes make no room, and 
 
     r + Σ_j S_j η_j         j: members, η_j: their sizes
 
-as it would be without them.
+as it would be without them. A curve of the data among the members may be what several laws do: it
+gives way to them, and does not compete.
 """
 
 from __future__ import annotations
@@ -46,21 +47,24 @@ def choose(
     Returns:
         The members where a law cannot be simulated beside them.
     """
-    listed = [*members, *_listed(model, members, scores)]
+    listed = [*(m for m in members if not m.effect.is_curve), *_listed(model, members, scores)]
     listed.sort(key=lambda c: c.effect.state or "")  # those of one plant are simulated at once
+    every = [*listed, *(m for m in members if m.effect.is_curve)]
     fit = model.fit if len(scores) <= MAX_SCORED else some_windows(model.fit)
     held = {n for c in members for n in (*c.free, *shapes_of(c))}
-    known = attempt(None, partial(condensed, fit, listed, held)) if listed else None
+    known = attempt(None, partial(condensed, fit, every, held)) if listed else None
     if known is None:
         return tuple(members)
-    G, a = known.G, known.a
-    counts = [len(c.sizes) for c in listed]
-    ends = np.cumsum(counts)
     values = {**model.plant.parameters.values(), **model.fit.of_record(0)}
-    first = tuple(j for j, c in enumerate(listed) if any(c is m for m in members))
-    for j in first:
-        mine = np.array([values[n] for n in listed[j].sizes])
-        a = a + G[:, :, ends[j] - counts[j] : ends[j]] @ mine
+    is_member = [any(c is m for m in members) for c in every]
+    present = np.concatenate([
+        [values[n] if is_in else 0.0 for n in c.sizes]
+        for c, is_in in zip(every, is_member, strict=True)
+    ])  # fmt: skip
+    counts = [len(c.sizes) for c in listed]
+    k = sum(counts)
+    G, a = known.G[:, :k, :k], (known.a + known.G @ present)[:, :k]
+    first = tuple(j for j in range(len(listed)) if is_member[j])
     sizes = [size for c in listed for size in c.effect.sizes]
     columns = folded(
         G, a, counts, [f"{c.effect.name}, {c.where}" for c in listed],
@@ -84,10 +88,11 @@ def find_members(model: WindowModel, parent: WindowModel) -> list[Candidate]:
 def _listed(
     model: WindowModel, members: Sequence[Candidate], scores: Sequence[WindowScore]
 ) -> list[Candidate]:
-    """Returns the best laws by themselves, and of each the best shapes."""
+    """Returns the best laws in their best shapes, those at the joints of curves first."""
     count = Counter({c.key: MAX_SHAPES for c in members})
+    drawn = {c.where for c in members if c.effect.is_curve}
     out: list[Candidate] = []
-    for s in scores:
+    for s in sorted(scores, key=lambda s: s.candidate.where not in drawn):
         c = s.candidate
         is_own = c.effect.own and len(model.fit.problem.parts) > 1
         if c.effect.is_curve or is_own or AND in c.where or count[c.key] >= MAX_SHAPES:

@@ -64,6 +64,7 @@ class Contender:
     gains: np.ndarray  # by block of the fitted windows, then of the unseen ones, shape (B,)
     numbers: int  # that it adds to the model, those of each record counted
     criterion: float  # E, what speaks for it against the model without it (`evidence`)
+    explained: float  # fall of the mean square of the fitted windows, in units of s²
     doubt: Doubt | None  # why it is not proven; None where it is
     luck: float = np.nan  # chance that one of all that were refitted gains as much by luck
     # what else was refitted in its place and may be meant, once it is accepted
@@ -80,17 +81,6 @@ class Contender:
     def candidate(self) -> Candidate:
         """The effect, its shapes as they began."""
         return self.model.candidates[-1]
-
-    @property
-    def explained(self) -> float:
-        """Fall of the mean square on unseen windows that decide, when it was found: m F/(1 - F)."""
-        fall = self.prediction.fall
-        return mean_square(self.model) * fall / (1 - fall)
-
-
-def mean_square(model: WindowModel) -> float:
-    """Returns the mean square of a model on unseen windows that decide."""
-    return float(np.mean(np.concatenate(model.unseen.select.at_horizon)))
 
 
 def evidences(contenders: Sequence[Contender]) -> np.ndarray:

@@ -90,7 +90,9 @@ def _missing(evidence: Evidence) -> list[str]:
             f" mean square of their residual on {on} that no fit has seen {fall_words(score.fall)},"
             f" t {score.t:.1f}, chance {chance_words(score.chance)}."
         )
-        if score.t <= PROOF:
+        if score.t <= PROOF < score.confirmed_t:
+            out[-1] += f" On blocks of all records t is {score.confirmed_t:.1f}."
+        if score.confirmed_t <= PROOF:
             out[-1] += (
                 " Free parameters imitate it, with values far from what was known of them; if they"
                 f" are held at what was known, they do not (t {score.held_t:.1f})."

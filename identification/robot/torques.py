@@ -9,6 +9,7 @@ from dataclasses import replace
 import mujoco
 import numpy as np
 
+from identification.discovery.passes import refuse_unknown
 from identification.effects.jointed import JointPlant
 from identification.errors import refuse_kind
 from identification.logs.joined import refuse_different
@@ -25,7 +26,9 @@ FRICTIONS = (".damping", ".frictionloss")  # endings of paths
 STEP = 1e-3  # of a value, or of its scale where it is zero, by which it is moved
 
 
-def fit_torques(robot: Robot, progress: Callable[[str], None] | None = None) -> TorqueFit:
+def fit_torques(
+    robot: Robot, progress: Callable[[str], None] | None = None, without: Sequence[str] = ()
+) -> TorqueFit:
     """Compare the drives' forces with those that the measured motion needs.
 
     All positions must be measured, and the inputs must be what the drives gave. Nothing is
@@ -36,12 +39,15 @@ def fit_torques(robot: Robot, progress: Callable[[str], None] | None = None) -> 
         robot: the result of `read_robot`; its free masses, inertias and armatures are fitted with
             their priors, and friction always.
         progress: is told one line per step.
+        without: names of passes that are left out (docs/discovery.md has them).
 
     Raises:
-        InputError: a joint is neither hinge nor slide or is not measured, bodies are tied in a
-            loop, a drive has a state, a log is too short, or two logs hold the same samples.
+        InputError: `without` is no list of names of passes, a joint is neither hinge nor slide or
+            is not measured, bodies are tied in a loop, a drive has a state, a log is too short, or
+            two logs hold the same samples.
     """
     refuse_kind(robot, Robot, "fit_torques takes a robot (read_robot)")
+    refuse_unknown(without)
     logs = (robot.log, *robot.others, *robot.records)
     refuse_different(logs)
     model = _without_effects(robot.plant)
@@ -50,6 +56,7 @@ def fit_torques(robot: Robot, progress: Callable[[str], None] | None = None) -> 
         model, logs, own=own,
         confirm=len(robot.records), free=free_numbers(robot, logs), effects=robot.candidates,
         bodies=robot.plant.bodies, friction=_friction(robot, model), say=progress,
+        without=without,
     )  # fmt: skip
     return TorqueFit(robot, evidence, _files)
 

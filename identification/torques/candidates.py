@@ -203,8 +203,9 @@ def together(laws: Sequence[Missing]) -> Missing:
 
     return replace(
         laws[0], name=" + ".join(law.name for law in laws), sizes=every("sizes"),
-        units=every("units"), signs=every("signs"), most=every("most"), columns=columns, shape=(),
-        of_body=None,
+        units=every("units"), signs=every("signs"), most=every("most"), columns=columns,
+        shape=every("shape"), of_body=None, reshaped=None,
+        ridges=tuple(x for law in laws for x in law.ridges or [0.0] * len(law.sizes)),
     )  # fmt: skip
 
 

@@ -47,6 +47,7 @@ class Equations:
     block: np.ndarray  # of each short time, shape (N,)
     record: np.ndarray  # of each block, shape (B,)
     confirms: np.ndarray  # whether nothing is fitted to a block, shape (B,)
+    all_judge: bool = True  # whether blocks of fitted records judge too, by fits without them
 
     @classmethod
     def of(cls, rows: Sequence[Rows], confirm: int = 0) -> Equations:

@@ -8,12 +8,13 @@ The fits are those of `identification.torques.fits`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
 
 import mujoco
 import numpy as np
 
+from identification.discovery.passes import uses
 from identification.effects.effect import Effect
 from identification.effects.moving_bodies import MovingBody
 from identification.logs.log import Log
@@ -35,7 +36,8 @@ from identification.torques.fits import (
 from identification.torques.passive import with_expected_motion
 from identification.torques.rows import make_rows
 from identification.torques.scores import Base, Score, rank
-from identification.torques.search import add_proven, draw_curves, others_of
+from identification.torques.search import Search, add_proven, draw_curves, others_of
+from identification.torques.shapes import with_shapes
 
 OTHER_BAND = 0.6  # factor of the bands of a second fit, which tells what they matter
 
@@ -89,7 +91,7 @@ def find_evidence(
     model: mujoco.MjModel, logs: Sequence[Log], *, own: Sequence[mujoco.MjModel] = (),
     confirm: int = 0, free: Sequence[FreeNumber] = (), effects: Sequence[Effect] = (),
     bodies: Sequence[MovingBody] = (), friction: np.ndarray | None = None,
-    say: Callable[[str], None] | None = None,
+    say: Callable[[str], None] | None = None, without: Collection[str] = (),
 ) -> Evidence:  # fmt: skip
     """Returns what torques say of a robot.
 
@@ -103,12 +105,14 @@ def find_evidence(
         bodies: with places for payloads.
         friction: of the model, shape (3 nv,); its damping and friction loss where None.
         say: is told one line a step.
+        without: passes of the search that are left out (`identification.discovery.passes`).
 
     Raises:
         InputError: no equations can be made of the model or of a log (`make_rows`).
     """
     say = say or (lambda text: None)
     measured = Equations.of(make_rows(model, logs, own), confirm)
+    measured = replace(measured, all_judge="blocks_of_all_records" not in without)
     base = find_base(model)
     others = Others.of(free, measured, logs)
     plain = others.without_gains()
@@ -123,12 +127,17 @@ def find_evidence(
     nominal = with_gains_held(nominal, others)
     say(f"{int(equations.counts.sum())} equations, {len(base.names)} base parameters")
     candidates = list_missing(model, equations, expected, effects, bodies, [f.where for f in free])
+    search = Search(equations, nominal, say, without)
+    if not uses(search, "held_nodes"):
+        candidates = tuple(replace(c, ridges=()) for c in candidates)
     scores = rank(equations, nominal.base, candidates)
+    if uses(search, "fitted_shapes"):
+        scores = with_shapes(equations, nominal.base, scores, len(candidates))
     first = f", {scores[0].missing.title} first" if scores else ""
     say(f"{len(candidates)} candidates scored{first}")
     laws = [s for s in scores if not s.missing.is_curve]
-    found, _ = add_proven(equations, nominal, [], laws, say)
-    found, final = draw_curves(equations, nominal, found, scores, say)
+    found, _ = add_proven(search, [], laws)
+    found, final = draw_curves(search, found, scores)
     rest = rank(equations, final.base, others_of(scores, found)) if found else scores
     final = with_std_of_gains(final, nominal, others)
     loads = [c for c in candidates if c.name == "load"]

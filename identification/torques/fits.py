@@ -30,7 +30,7 @@ from identification.torques.drives import known_numbers, list_passive, model_for
 from identification.torques.equations import Equations, Estimate, estimate
 from identification.torques.laws import Missing
 from identification.torques.rows import Rows, make_rows
-from identification.torques.scores import Base
+from identification.torques.scores import Base, Weighted, held_by
 
 FRICTION = ("viscous", "coulomb", "offset")
 CLOCK = "clock of the inputs"
@@ -268,13 +268,16 @@ def with_std_of_gains(final: Fitted, nominal: Fitted, others: Others) -> Fitted:
 def extended(equations: Equations, fitted: Fitted, missing: Missing) -> Fitted:
     """Returns a fit with one effect more, of which nothing was known."""
     S, old, m = missing.columns().values, fitted.base, len(missing.sizes)
-    none = np.zeros(m)
+    none, held = np.zeros(m), np.zeros(m)
+    if missing.ridges:
+        moments = Weighted(equations, old).moments(missing.columns())
+        held = held_by(missing, moments[1][~equations.confirms]) if moments else held
     return Fitted(
         names=(*fitted.names, *(f"{missing.name}.{s}, {missing.where}" for s in missing.sizes)),
         units=(*fitted.units, *missing.units),
         base=_fitted(
             equations, np.concatenate([old.Φ, S], axis=2), old.y,
-            np.concatenate([old.P, none]), np.concatenate([old.θ_0, none]), old.known,
+            np.concatenate([old.P, held]), np.concatenate([old.θ_0, none]), old.known,
         ),
         inertial=fitted.inertial,
         added=(*fitted.added, missing),

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, partial
 from types import FunctionType
 from typing import Any
 
@@ -17,11 +17,14 @@ import numpy as np
 
 from identification.discovery.candidates import iterate_shapes
 from identification.effects.effect import CURVE, Effect
+from identification.effects.sizes import Shape
+from identification.effects.variables import variables
 from identification.native.joint_callback import Joint
 from identification.torques.equations import Columns, Equations
 
 # What the curves of a joint depend on, by the ends of their names, as fields of its state.
 CURVES = {"_speed": "v", "_load": "f_u", "_position": "q", "_time": "time"}
+RIDGE = 0.01  # of a curve's nodes: one that is felt less is held where it is, at zero
 PLACES = 801  # of a curve, between which it is straight
 
 
@@ -40,11 +43,20 @@ class Missing:
     most: tuple[float, ...]  # magnitudes of the sizes beyond which it is not believed
     # of a load: its sizes as combinations of its ten numbers, (m, 10), and how large these may be
     of_body: tuple[np.ndarray, np.ndarray] | None = None
+    shapes: tuple[Shape, ...] = ()  # with their bounds, in the order of `shape`
+    reshaped: Callable[[Sequence[float]], Missing] | None = None  # returns it with other shapes
+    ridges: tuple[float, ...] = ()  # of each size; none where empty (`scores.held_by`)
+    variables: frozenset[str] = frozenset()  # of a joint, on which its force depends
 
     @property
     def is_curve(self) -> bool:
         """Tells whether it is a force that is drawn from the data, and in no catalogue."""
         return self.name.startswith(CURVE)
+
+    @property
+    def numbers(self) -> int:
+        """How many numbers it takes from the data: sizes and shapes."""
+        return len(self.sizes) + len(self.shape)
 
     @property
     def key(self) -> tuple[str, str]:
@@ -65,6 +77,7 @@ class Missing:
         return replace(
             self, columns=columns, sizes=kept(self.sizes), units=kept(self.units),
             signs=kept(self.signs), most=kept(self.most),
+            ridges=self.ridges and kept(self.ridges),
             of_body=self.of_body and (self.of_body[0][places], self.of_body[1]),
         )  # fmt: skip
 
@@ -103,8 +116,20 @@ class Laws:
         """Yields an effect at each of its places, with each of its shapes."""
         for where, suffix in effect.places.items():
             joints = [suffix[1:]] if suffix else [p[1:] for p in effect.places.values() if p]
-            for shape in iterate_shapes(effect):
-                yield listed(effect, where, shape, later(self.columns, effect, joints, shape))
+            make = partial(self._listed, effect, where, joints)
+            yield from map(make, map(tuple, map(dict.values, iterate_shapes(effect))))
+
+    def _listed(
+        self, effect: Effect, where: str, joints: Sequence[str], values: Sequence[float]
+    ) -> Missing:
+        """Returns an effect at a place with values of its shapes."""
+        shape = dict(zip((s.name for s in effect.shapes), values, strict=True))
+        made = listed(effect, where, shape, later(self.columns, effect, joints, shape))
+        again = partial(self._listed, effect, where, joints)
+        return replace(
+            made, shapes=effect.shapes, reshaped=again if shape else None,
+            variables=variables(effect), ridges=(RIDGE,) * len(effect.sizes) * effect.is_curve,
+        )  # fmt: skip
 
     def columns(self, effect: Effect, joints: Sequence[str], shape: dict[str, float]) -> Columns:
         """Returns the columns of a law, of one size each, at joints that have it in common."""
@@ -145,15 +170,28 @@ def _along_curve(law: Any, states: Joint, p: Sequence[float]) -> np.ndarray:
     """Returns a curve at many states of a joint, shape (n,), between its values at many places."""
     name = law.py_func.__name__
     field = next(f for end, f in CURVES.items() if name.endswith(end))
+    z = {
+        "v": _root(states.v / states.v_top), "f_u": _root(states.f_u / states.f_top),
+        "q": (states.q - states.q_mid) / states.q_far, "time": 2.0 * states.time / states.t_end - 1,
+    }[field]  # fmt: skip
+    return np.interp(z, np.linspace(-1.0, 1.0, PLACES), _on_unit(law, field, tuple(p)))
+
+
+@cache
+def _on_unit(law: Any, field: str, p: tuple[float, ...]) -> np.ndarray:
+    """Returns a curve at places of a joint whose reaches are one, shape (PLACES,).
+
+    The nodes of each curve lie at shares of a joint's reach, so that all joints have these values.
+    """
     z = np.linspace(-1.0, 1.0, PLACES)
-    if field in ("v", "f_u"):  # their nodes are dense near zero
-        x = z * np.abs(z) * (states.v_top if field == "v" else states.f_top)
-    else:
-        of = np.asarray(getattr(states, field))
-        x = (of.min() + of.max()) / 2 + z * (np.ptp(of) / 2)
-    one = states._replace(time=0.0, q=0.0, v=0.0, f_u=0.0, f_g=0.0, sign=0.0)
-    values = [law.py_func(one._replace(**{field: float(place)}), p) for place in x]
-    return np.interp(getattr(states, field), x, values)
+    place = {"v": z * np.abs(z), "f_u": z * np.abs(z), "q": z, "time": z + 1.0}[field]
+    one = Joint(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 2.0)  # from `q_mid` on: reaches
+    return np.array([law.py_func(one._replace(**{field: float(x)}), p) for x in place])
+
+
+def _root(x: np.ndarray) -> np.ndarray:
+    """Returns sgn(x) √|x|, in which curves of rates and drives are straight between nodes."""
+    return np.asarray(np.sign(x) * np.sqrt(np.abs(x)))
 
 
 @cache

@@ -6,11 +6,13 @@
 
 The chance is that of a test by blocks (`identification.estimation.block_test`), times the number of
 candidates that were asked (Bonferroni). The fall and its t are those of folds of neighbouring
-blocks, each predicted by fits to all others. Where a free parameter is more than 3 std from what
-was known of it, it may stand for the missing effect, and hide it: then t may also be that of fits
-in which these parameters are held at what was known, if these fits predict better with it than the
-free ones without. A candidate is proven if chance and t say so; of proven ones that predict alike,
-as t of their blocks' differences tells, the one with the fewest sizes is taken.
+blocks, each predicted by fits to all others. Few blocks of a record that confirms tell little:
+where they make a candidate likely, those of the fitted records prove it too. Where a free parameter
+is more than 3 std from what was known of it, it may stand for the missing effect, and hide it: then
+t may also be that of fits in which these parameters are held at what was known, if these fits
+predict better with it than the free ones without. A candidate is proven if chance and t say so; of
+proven ones that predict alike, as t of their blocks' differences tells, the one with the fewest
+numbers is taken, sizes and shapes.
 """
 
 from __future__ import annotations
@@ -38,6 +40,7 @@ from identification.torques.laws import Missing
 
 CHANCE = 0.05  # of any candidate by luck
 PROOF = 3.0  # t of the fall on blocks that the fit did not see, or of a difference between two
+LIKELY = 2.0  # t on blocks that confirm, from which blocks of fitted records may prove the rest
 POSSIBLE = 2.0  # std of a load's sizes, from the nearest ones that a body may have
 FAR = 3.0  # std of what was known, from which a free value may stand for something else
 RISE = 0.05  # of a joint's mean square, that is no rise
@@ -55,7 +58,8 @@ class Score:
     chance: float  # of as much by luck, for the best of all that were asked
     fall: float  # of the mean square on blocks that the fit did not see; negative where it rises
     t: float  # of the fall
-    gains: np.ndarray  # g of each block that the fits did not see, shape (B,)
+    gains: np.ndarray  # g of each block that judges, by fits that did not see it, shape (B,)
+    every: np.ndarray  # g of each block of all records, by such fits
     # share of the mean square, without it, of the joints on which it acts
     share: float = 1.0
     held_t: float = 0.0  # t with the free parameters at what was known; 0 where it is not asked for
@@ -67,9 +71,14 @@ class Score:
         return float(max(np.ptp(x[x != 0]) if x.any() else 0.0 for x in f.T))
 
     @property
+    def confirmed_t(self) -> float:
+        """T of the fall, of blocks of all records if those that confirm make it likely."""
+        return self.t if self.t < LIKELY else max(self.t, t_of(self.every))
+
+    @property
     def is_proven(self) -> bool:
         """Tells whether it is beyond chance and confirmed by blocks that the fit did not see."""
-        is_confirmed = max(self.t, self.held_t) > PROOF and self.fall > 0
+        is_confirmed = max(self.confirmed_t, self.held_t) > PROOF and self.fall > 0
         return self.chance < CHANCE and is_confirmed and self.is_plausible
 
     def is_like(self, other: Score) -> bool:
@@ -78,7 +87,7 @@ class Score:
         A stop acts in few blocks, so that luck can always explain by how much a curve is better
         than a spring. So what falls far short of the other one does not predict as well either.
         """
-        difference = other.gains - self.gains
+        difference = other.every - self.every
         is_chance = not difference.any() or mean_above_zero(difference)[0] < PROOF
         return is_chance and not falls_short(self.fall / other.share, other.fall / other.share)
 
@@ -120,13 +129,16 @@ class Base:
         return np.asarray(off[: self.known])
 
 
-def rank(equations: Equations, base: Base, candidates: Sequence[Missing]) -> tuple[Score, ...]:
+def rank(
+    equations: Equations, base: Base, candidates: Sequence[Missing], asked: int = 0
+) -> tuple[Score, ...]:
     """Returns the score of each candidate with its best shape, the best on unseen blocks first.
 
     Args:
         equations: of the records.
         base: the fit without them.
         candidates: which.
+        asked: number of candidates of which these are the best ones.
     """
     scale = 1 / np.sqrt(np.maximum(np.diag(base.fit.H), 1e-300))
     inverse = np.linalg.pinv(base.fit.H * np.outer(scale, scale), rcond=1e-14, hermitian=True)
@@ -134,25 +146,23 @@ def rank(equations: Equations, base: Base, candidates: Sequence[Missing]) -> tup
     root = (vectors * np.sqrt(np.maximum(values, 0.0))).T * scale  # Λ^½: rootᵀ root = H⁻¹
     inverse = inverse * np.outer(scale, scale)
     whole, seen = np.einsum("j,jbpq->bpq", base.fit.weights, base.M), ~equations.confirms
-    judged = equations.confirms if equations.confirms.any() else seen
-    judged = judged & (
-        equations.counts.sum(axis=0) > 0
-    )  # a block in which all joints rest has none
+    has = equations.counts.sum(axis=0) > 0  # a block in which all joints rest has none
+    judged = (equations.confirms if equations.confirms.any() else seen) & has
+    told = judged[has]
     G = whole[seen]
 
     priors = [base.P]
     if (np.abs(base.far) > FAR).any():
         priors.append(np.where(np.arange(len(base.P)) < base.known, HELD * base.P, base.P))
 
-    def squares_of(M: np.ndarray, more: int) -> list[np.ndarray]:
-        none = np.zeros(more)
-        given = np.ones(1), np.append(base.θ_0, none), equations.confirms
+    def squares_of(M: np.ndarray, held: np.ndarray) -> list[np.ndarray]:
+        given = np.ones(1), np.append(base.θ_0, 0 * held), equations.confirms
         return [
-            np.log(unseen_squares(M[None], given[0], np.append(P, none), *given[1:])[0, judged])
+            np.log(unseen_squares(M[None], given[0], np.append(P, held), *given[1:])[0, has])
             for P in priors
         ]
 
-    unseen = squares_of(whole, 0)
+    unseen = squares_of(whole, np.zeros(0))
     of_joints = unseen_squares(base.M, base.fit.weights, base.P, base.θ_0, equations.confirms)
     of_joints = base.fit.weights * of_joints[:, judged].sum(axis=1)
     weighted = Weighted(equations, base)
@@ -186,20 +196,22 @@ def rank(equations: Equations, base: Base, candidates: Sequence[Missing]) -> tup
         scatter = scatter_of(blocks, a_all[:, None], np.ones(1), np.array([missing.signs]))
         acts = slice(None) if columns.joints is None else [*columns.joints]
         share = float(of_joints[acts].sum() / of_joints.sum())
-        found.append((missing, η, scatter, squares_of(joined, len(η)), share))
+        found.append((missing, η, scatter, squares_of(joined, held_by(missing, own)), share))
     common = common_scatter([scatter for _, _, scatter, _, _ in found])
     scores = []
     for missing, η, scatter, squares, share in found:
         p = float(p_values(scatter, common)[0])
-        gains, *held = (a - b for a, b in zip(unseen, squares, strict=True))
+        every, *held = (a - b for a, b in zip(unseen, squares, strict=True))
+        gains, held = every[told], [h[told] for h in held]
+        every = every if equations.all_judge else gains
         std = np.sqrt(np.maximum(np.diag(covariance(scatter, common)[0]), 0.0))
-        t, held_t = (_t_of(g) for g in (gains, *held, 0 * gains)[:2])
-        if held and not float((unseen[0] - squares[1]).sum()) > 0:
+        t, held_t = (t_of(g) for g in (gains, *held, 0 * gains)[:2])
+        if held and not float((unseen[0] - squares[1])[told].sum()) > 0:
             held_t = 0.0  # it does not make up for what the free values do
         scores.append(Score(
-            missing=missing, size=η, std=std, chance=min(1.0, p * len(found)), t=t,
-            fall=1 - float(np.exp(squares[0]).sum() / np.exp(unseen[0]).sum()), gains=gains,
-            held_t=held_t, share=share,
+            missing=missing, size=η, std=std, chance=min(1.0, p * max(asked, len(found))), t=t,
+            fall=1 - float(np.exp(squares[0][told]).sum() / np.exp(unseen[0][told]).sum()),
+            gains=gains, every=every, held_t=held_t, share=share,
         ))  # fmt: skip
     best: dict[tuple[str, str], Score] = {}
     for score in sorted(scores, key=lambda s: (-s.is_plausible, -float(s.gains.sum()))):
@@ -221,23 +233,60 @@ def rises(equations: Equations, before: Base, after: Base) -> bool:
     ]
     for old, new in zip(*left, strict=True):
         has = old > 0
-        if new.sum() > (1 + RISE) * old.sum() and _t_of(np.log(new[has] / old[has])) > PROOF:
+        if new.sum() > (1 + RISE) * old.sum() and t_of(np.log(new[has] / old[has])) > PROOF:
             return True
     return False
 
 
-def _t_of(gains: np.ndarray) -> float:
+def t_of(gains: np.ndarray) -> float:
+    """Returns t of the mean of gains; 0 where there are none."""
     return float(mean_above_zero(gains)[0]) if gains.any() else 0.0
 
 
 def choose(scores: Sequence[Score]) -> Score | None:
-    """Returns the proven candidate to take: of those that predict alike the one of fewest sizes."""
+    """Returns the proven candidate to take: of those that predict alike that of fewest numbers."""
     proven = [s for s in scores if s.is_proven]
     if not proven:
         return None
     first = proven[0]
     alike = [s for s in proven if s.is_like(first)]
-    return min(alike, key=lambda s: (len(s.size), -float(s.gains.sum())))
+    return min(alike, key=lambda s: (s.missing.numbers, -float(s.every.sum())))
+
+
+def held_by(missing: Missing, own: np.ndarray) -> np.ndarray:
+    """Returns the precisions with which sizes are held at zero, shape (m,).
+
+    Args:
+        missing: a candidate.
+        own: moments of its columns by blocks, shape (B, m, m).
+    """
+    ridges = np.array(missing.ridges or [0.0] * len(missing.sizes))
+    return (
+        ridges * np.einsum("bmm->bm", own).sum(axis=0)[ridges > 0].mean()
+        if ridges.any()
+        else ridges
+    )
+
+
+def unseen_of(equations: Equations, base: Base, missing: Missing | None) -> np.ndarray:
+    """Returns the weighted squares of each block of all records, by fits that did not see it.
+
+    Blocks of records that confirm are in the folds too: a curve is then asked nowhere where no fit
+    has seen the motion.
+
+    Args:
+        equations: of the records.
+        base: the fit.
+        missing: a candidate that is added; None where none is.
+    """
+    whole = np.einsum("j,jbpq->bpq", base.fit.weights, base.M)
+    held, of = np.zeros(0), None
+    if missing is not None and (of := Weighted(equations, base).moments(missing.columns())):
+        whole, held = _joined(whole, *of), held_by(missing, of[1])
+    P, θ_0 = np.append(base.P, held), np.append(base.θ_0, 0 * held)
+    none = np.zeros(len(equations.record), bool)
+    left = unseen_squares(whole[None], np.ones(1), P, θ_0, none)[0]
+    return np.asarray(left[equations.counts.sum(axis=0) > 0])
 
 
 class Weighted:

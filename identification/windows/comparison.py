@@ -1,9 +1,9 @@
 """Comparison of the predictions of two models on records that no fit has seen.
 
 Gains of blocks of neighbouring windows (`identification.windows.blocks`) are the sample of a
-t-test and of a test of signed ranks, for windows of each length that both models predict. At the
-horizon the gain of a block is the mean over the outputs of the gain of each: in the mean square
-over all outputs, the noise of one that was never wrong hides what another one gains. Records are
+t-test and of a test of signed ranks, for windows of each length that both models predict. The gain
+of a block is the mean over the outputs of the gain of each: in the mean square over all outputs,
+the noise of one that was never wrong hides what another one gains. Records are
 strata: a drag may gain nothing in a slow record and much in every block of a fast one, and that the
 two differ does not make their mean gain less sure. What acts seldom gains much in few blocks and a
 little in many: their scatter then hides their mean from the t-test, and their ranks show it.
@@ -17,7 +17,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from identification.chances import ranks_above_zero, stratified_mean_above_zero
-from identification.windows.blocks import LEAST_NOISE, block_gains, output_gains
+from identification.windows.blocks import LEAST_NOISE, output_gains
 from identification.windows.unseen import Unseen
 
 
@@ -32,11 +32,10 @@ class Prediction:
     gains: tuple[float, ...]  # mean gain over blocks, by length of the windows
     fall: float  # the one at the horizon, and `gain` likewise
     falls: tuple[float, ...]  # relative fall of the mean square over all records, by length
-    # the same of each record's mean square by itself, in the geometric mean: a record that errs
-    # most, whatever the model, does not decide alone
+    # the same of each output of each record by itself, in the geometric mean: one that errs most,
+    # whatever the model, does not decide alone
     typical_falls: tuple[float, ...]
-    # the same at the horizon, of the output of which it is largest: beside the noise of outputs
-    # that were never wrong, all that one of them lacks may be little
+    # the same at the horizon, of the output of which it is largest
     output_fall: float
     record_falls: tuple[float, ...]  # relative fall of the mean square by record, at the horizon
     # gain of each block of each record, at the horizon, shape (B,) a record
@@ -82,22 +81,15 @@ def compare(
 
 def _compare(without: Unseen, with_it: Unseen, by_outputs: bool, by_records: bool) -> Prediction:
     """Returns the same of all windows of two models."""
-    falls, typical, gains = [], [], []
+    falls, of_outputs, gains = [], [], []
     lengths = [n for n in without.lengths if n in with_it.lengths]
     for length in lengths:
-        a, b = (u.squares[u.lengths.index(length)] for u in (without, with_it))
+        a, b = (_powers(u, length, by_outputs) for u in (without, with_it))
+        noise = without.noise if by_outputs else np.array([without.floor])
         falls.append(1 - float(np.concatenate(b).mean() / np.concatenate(a).mean()))
-        typical.append(_typical_fall(a, b))
-        gains.append(block_gains(a, b, without.floor))
+        of_outputs.append(_log_ratios(a, b))
+        gains.append(output_gains(a, b, noise))
     at = lengths.index(1.0)
-    output_fall = typical[at]
-    if by_outputs:
-        gains[at] = output_gains(without.of_outputs, with_it.of_outputs, without.noise)
-        of_outputs = (
-            [[x[:, y] for x in u.of_outputs] for u in (without, with_it)]
-            for y in range(len(without.noise))
-        )
-        output_fall = max(_typical_fall(a, b) for a, b in of_outputs)
     blocks, means = gains[at], tuple(float(np.concatenate(g).mean()) for g in gains)
     every = np.concatenate(blocks)
     t, chance = 0.0, 1.0
@@ -106,17 +98,25 @@ def _compare(without: Unseen, with_it: Unseen, by_outputs: bool, by_records: boo
     each = zip(without.at_horizon, with_it.at_horizon, strict=True)
     return Prediction(
         t=t, chance=chance, rank_chance=ranks_above_zero(every), gain=means[at], gains=means,
-        fall=falls[at], falls=tuple(falls), typical_falls=tuple(typical),
-        output_fall=output_fall,
+        fall=falls[at], falls=tuple(falls),
+        typical_falls=tuple(1 - float(np.exp(logs.mean())) for logs in of_outputs),
+        output_fall=1 - float(np.exp(of_outputs[at].min())),
         record_falls=tuple(1 - float(b.mean() / a.mean()) for a, b in each), blocks=tuple(blocks),
     )  # fmt: skip
 
 
-def _typical_fall(without: Sequence[np.ndarray], with_it: Sequence[np.ndarray]) -> float:
-    """Returns the relative fall of each record's mean square, in the geometric mean."""
-    each = zip(without, with_it, strict=True)
-    ratios = [np.log((b.mean() + LEAST_NOISE) / (a.mean() + LEAST_NOISE)) for a, b in each]
-    return 1 - float(np.exp(np.mean(ratios)))
+def _powers(unseen: Unseen, length: float, by_outputs: bool) -> list[np.ndarray]:
+    """Returns mean squares over windows, (W, ny) or of all outputs together (W, 1), by record."""
+    each = unseen.powers[unseen.lengths.index(length)]
+    return [x if by_outputs else x.mean(axis=1, keepdims=True) for x in each]
+
+
+def _log_ratios(without: Sequence[np.ndarray], with_it: Sequence[np.ndarray]) -> np.ndarray:
+    """Returns ln(mean square with it/mean square without) of each output, mean over records."""
+    before, after = (
+        np.array([x.mean(axis=0) for x in powers]) + LEAST_NOISE for powers in (without, with_it)
+    )
+    return np.asarray(np.mean(np.log(after / before), axis=0))
 
 
 def rise(begun: Unseen, fitted: Unseen) -> float:

@@ -38,13 +38,11 @@ class Unseen:
     """Errors of one model on the records that confirm."""
 
     lengths: tuple[float, ...]  # of windows, in units of the horizon
-    # mean square of each window in units of s², shape (W,), by length and record
-    squares: tuple[tuple[np.ndarray, ...], ...]
+    # mean square of each output over each window in units of s², shape (W, ny), by length and
+    # record
+    powers: tuple[tuple[np.ndarray, ...], ...]
     # where each window begins, shape (W, nx), by length and record
     moves: tuple[tuple[np.ndarray, ...], ...]
-    # mean square of each output over each window of the horizon itself in units of s², shape (W,
-    # ny), by record
-    of_outputs: tuple[np.ndarray, ...]
     # mean square of the sensors' noise in units of s², shape (ny,): of each output the median over
     # the records; motion that is sampled slowly looks like noise, and an encoder that rests like
     # none
@@ -59,6 +57,11 @@ class Unseen:
     # its two halves
     own: Mapping[str, Mapping[str, tuple[float, float]]] = field(default_factory=dict)
 
+    @cached_property
+    def squares(self) -> tuple[tuple[np.ndarray, ...], ...]:
+        """Mean square of each window over its outputs, shape (W,), by length and record."""
+        return tuple(tuple(x.mean(axis=1) for x in of_length) for of_length in self.powers)
+
     def begun(self, length: float) -> tuple[Starts, ...]:
         """Returns starts and errors of windows of a length, in units of the horizon, by record."""
         k = self.lengths.index(length)
@@ -70,13 +73,13 @@ class Unseen:
         Args:
             other: of the same model, on the same records.
         """
-        each = {n: (u.squares[k], u.moves[k], u.places[k]) for u in (self, other)
+        each = {n: (u.powers[k], u.moves[k], u.places[k]) for u in (self, other)
                 for k, n in enumerate(u.lengths)}  # fmt: skip
         lengths = tuple(sorted(each))
-        squares, moves, places = zip(*(each[n] for n in lengths), strict=True)
+        powers, moves, places = zip(*(each[n] for n in lengths), strict=True)
         return replace(
             other if 1.0 in other.lengths else self,
-            lengths=lengths, squares=squares, moves=moves, places=places,
+            lengths=lengths, powers=powers, moves=moves, places=places,
         )  # fmt: skip
 
     @cached_property
@@ -104,10 +107,9 @@ class Unseen:
         every = range(len(self.lengths))
         return replace(
             self,
-            squares=tuple(kept(self.squares[k], k) for k in every),
+            powers=tuple(kept(self.powers[k], k) for k in every),
             moves=tuple(kept(self.moves[k], k) for k in every),
             places=tuple(kept(self.places[k], k) for k in every),
-            of_outputs=kept(self.of_outputs, self.lengths.index(1.0)),
             parts=(None,) * len(self.parts),
         )  # fmt: skip
 
@@ -115,6 +117,11 @@ class Unseen:
     def floor(self) -> float:
         """Mean square of the sensors' noise over all outputs, in units of s²."""
         return float(np.mean(self.noise))
+
+    @property
+    def of_outputs(self) -> tuple[np.ndarray, ...]:
+        """Mean squares of each output over windows of the horizon itself, (W, ny) a record."""
+        return self.powers[self.lengths.index(1.0)]
 
     @property
     def at_horizon(self) -> tuple[np.ndarray, ...]:
@@ -162,8 +169,8 @@ def predict(
         lengths = [n for n in lengths if _is_better_elsewhere(near, others, n)]
         if not lengths:
             return near
-    squares, moves, places, told = [], [], [], []
-    percent, of_outputs = np.zeros(len(scale)), ()
+    powers, moves, places, told = [], [], [], []
+    percent = np.zeros(len(scale))
     halves = [own_values(plant, r, horizon, scale, values, own or Own()) for r in records]
     weights = scale if weights is None else weights
     for factor in lengths:
@@ -185,15 +192,14 @@ def predict(
                 for of in ([c.outputs for c in cuts], [e for _, e in each])
             )
             percent = fit_percent(measured, measured - errors)
-            of_outputs = tuple(np.mean((e / scale) ** 2, axis=1) for _, e in each)
         told.append(factor)
         moves.append(tuple(d for d, _ in each))
         places.append(tuple(c.places for c in cuts))
-        squares.append(tuple(np.mean((e / scale) ** 2, axis=(1, 2)) for _, e in each))
+        powers.append(tuple(np.mean((e / scale) ** 2, axis=1) for _, e in each))
     noise = np.median([noise_floor(r.log.outputs) for r in records], axis=0)
     found = Unseen(
-        lengths=tuple(told), squares=tuple(squares), moves=tuple(moves),
-        of_outputs=of_outputs, noise=(noise / scale) ** 2, fit_percent=percent,
+        lengths=tuple(told), powers=tuple(powers), moves=tuple(moves),
+        noise=(noise / scale) ** 2, fit_percent=percent,
         places=tuple(places), parts=tuple(r.parts for r in records),
         own={r.log.name: of_halves(*h) for r, h in zip(records, halves, strict=True)},
     )  # fmt: skip

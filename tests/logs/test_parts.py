@@ -145,11 +145,11 @@ def true_fall(missing, S, theta, rows):
 
 
 def errors(e, parts, windows):
-    squares = np.mean(e.reshape(windows, -1) ** 2, axis=1)
+    powers = np.mean(e.reshape(windows, -1, 1) ** 2, axis=1)
     places = np.arange(SAMPLES).reshape(windows, -1)[:, [0, -1]] + [0, 1]
     return Unseen(
-        lengths=(1.0,), squares=((squares,),), moves=((np.zeros((windows, 1)),),),
-        of_outputs=(squares[:, None],), noise=np.array([1e-6]), fit_percent=np.zeros(1),
+        lengths=(1.0,), powers=((powers,),), moves=((np.zeros((windows, 1)),),),
+        noise=np.array([1e-6]), fit_percent=np.zeros(1),
         places=((places,),), parts=(parts,),
     )  # fmt: skip
 

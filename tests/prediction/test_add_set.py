@@ -11,7 +11,8 @@ from identification.discovery.options import DiscoveryOptions
 from identification.prediction.discovery import WINDOWS
 from identification.prediction.moves import add_set
 from identification.prediction.nominal_fit import fit_nominal
-from identification.prediction.scores import condensed
+from identification.prediction.scores import condensed, window_scores
+from identification.prediction.set_choice import choose, find_members
 from identification.prediction.task import RecordsTask
 
 NAMES = ("quadratic_friction", "hardening", "gravity_force", "offset", "stiffness", "encoder_scale")
@@ -56,6 +57,20 @@ def test_members_compete_for_their_places_as_if_they_were_not_there():
     again = a.sum() + G.sum() * with_it.values[size]  # Sᵀ(r + S η)
     assert again / G.sum() == pytest.approx(with_it.values[size], rel=0.02)
     assert np.abs(a.sum()) < 0.02 * again
+
+
+def test_a_curve_gives_way_to_the_laws_that_it_draws():
+    """Far from the truth a linear choice errs; about the model with the curve it finds both."""
+    logs = records(4, {"hardening.k_3@hinge": 0.1, "offset.f_0@hinge": 0.06}, samples=400)
+    every, laws = roles(logs), (*NAMES, "coulomb_friction", "sublinear_friction", "cogging")
+    nominal = fit_nominal(nominal_model(), every)
+    drawn = with_law(nominal, "curve_position", every)
+    scores = window_scores(nominal.fit, list_common(listed(*laws)))
+    members = find_members(drawn, nominal)
+    assert [m.effect.name for m in members] == ["curve_position"]
+    found = choose(drawn, members, scores, DiscoveryOptions(), 3)
+    assert {c.effect.name for c in found} >= {"hardening", "offset"}
+    assert not any(c.effect.is_curve for c in found)
 
 
 def test_members_of_a_set_with_which_unseen_records_are_predicted_no_better_are_not_asked(

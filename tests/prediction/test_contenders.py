@@ -168,7 +168,7 @@ def contender(e, gain, seed=0, numbers=1, is_proven=True):
     gains = gain + 0.1 * np.random.default_rng(seed).normal(size=20)
     return Contender(
         model=model, prediction=None, gains=gains, numbers=numbers,
-        criterion=float(evidence([gains], [numbers], 80, 1)[0, 0]),
+        criterion=float(evidence([gains], [numbers], 80, 1)[0, 0]), explained=0.0,
         doubt=None if is_proven else "chance",
     )  # fmt: skip
 

@@ -83,10 +83,7 @@ def test_errors_in_the_part_that_is_kept_decide_nothing_and_are_told():
         each = zip(squares, places, unseen.parts, strict=True)
         return tuple((s.T * np.where(inside(p, "report", at), 4.0, 1.0)).T for s, at, p in each)
 
-    worse = replace(
-        unseen, squares=tuple(map(louder, unseen.squares, unseen.places)),
-        of_outputs=louder(unseen.of_outputs, unseen.places[unseen.lengths.index(1.0)]),
-    )  # fmt: skip
+    worse = replace(unseen, powers=tuple(map(louder, unseen.powers, unseen.places)))
     found = compare(model.unseen, worse)
     assert (found.fall, found.t, found.gain) == (0.0, 0.0, 0.0)
     assert found.told.fall == pytest.approx(-3.0)

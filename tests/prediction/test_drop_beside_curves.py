@@ -23,7 +23,7 @@ def found(word):
     blank = dict.fromkeys(Prediction.__dataclass_fields__)
     return Contender(
         model=SimpleNamespace(candidates=(candidate,)), prediction=Prediction(**blank),
-        gains=None, numbers=1, criterion=0.0, doubt=None,
+        gains=None, numbers=1, criterion=0.0, explained=0.0, doubt=None,
     )  # fmt: skip
 
 

@@ -23,7 +23,13 @@ def model(*candidates):
 def accepted(name):
     candidate = Candidate(Effect(name, "", SIZES, places={"joint": ""}, hooks={}), "joint", {})
     return Contender(
-        model=model(candidate), prediction=None, gains=None, numbers=1, criterion=1.0, doubt=None
+        model=model(candidate),
+        prediction=None,
+        gains=None,
+        numbers=1,
+        criterion=1.0,
+        explained=1.0,
+        doubt=None,
     )
 
 

@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 from types import SimpleNamespace
 
-import numpy as np
 import pytest
 from numba import njit
 
@@ -11,15 +10,14 @@ from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate, Effect
 from identification.effects.sizes import Size
 from identification.prediction.moves import drop_drawn_laws
-from identification.prediction.trial import Contender, has_size
+from identification.prediction.trial import has_size
 
 LAW = njit(lambda s, p: 0.0)
 SIZES = (Size("c", "N", 1.0, 0.1, about=""),)
 
 
 def model(square, *candidates):
-    unseen = SimpleNamespace(select=SimpleNamespace(at_horizon=(np.array([square]),)))
-    return SimpleNamespace(candidates=list(candidates), unseen=unseen, scale=np.ones(1))
+    return SimpleNamespace(candidates=list(candidates), fitted_power=square)
 
 
 @dataclass(frozen=True)
@@ -28,7 +26,7 @@ class Accepted:
 
     candidate: Candidate
     model: SimpleNamespace = None
-    prediction: SimpleNamespace = None
+    explained: float = 9.0
     doubt: str | None = None
     criterion: float = 0.0
 
@@ -36,13 +34,10 @@ class Accepted:
     def is_proven(self):
         return self.doubt is None
 
-    explained = Contender.explained
 
-
-def accepted(name, where="joint", hook="force", after=1.0, fall=0.9):
+def accepted(name, where="joint", hook="force"):
     effect = Effect(name, "", SIZES, places={where: ""}, hooks={hook: LAW})
-    prediction = SimpleNamespace(fall=fall)
-    return Accepted(Candidate(effect, where, {}), model(after), prediction)
+    return Accepted(Candidate(effect, where, {}), model(1.0))
 
 
 def state(whole, every, effects=()):

@@ -66,7 +66,7 @@ def named(shoulder, elbow):
     model = with_effect(parent, begin(parent, [score]), HORIZON, roles[2:])
     claim = Contender(
         model=model, prediction=compare(parent.unseen, model.unseen), gains=np.zeros(0),
-        numbers=2, criterion=0.0, doubt=None,
+        numbers=2, criterion=0.0, explained=0.0, doubt=None,
     )  # fmt: skip
     return base, roles[2:], model, claim
 
@@ -182,7 +182,7 @@ def state_with_a_curve():
     model = with_effect(parent, begin(parent, [score]), HORIZON, task.confirm)
     claim = Contender(
         model=model, prediction=compare(parent.unseen, model.unseen), gains=np.ones(9),
-        numbers=16, criterion=50.0, doubt=None,
+        numbers=16, criterion=50.0, explained=0.0, doubt=None,
     )  # fmt: skip
     return replace(
         state, model=model, accepted=(claim,), moves=(),

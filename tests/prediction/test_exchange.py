@@ -91,6 +91,7 @@ def test_a_curve_is_not_asked_because_a_record_tells_only_the_nodes_that_it_reac
         contender = Contender(
             model=replace(with_it, candidates=(candidate,)), gains=gains, numbers=1, doubt=None,
             prediction=compare(without.unseen, with_it.unseen), criterion=1.0,
+            explained=0.0,
         )  # fmt: skip
         tried, _ = without_contradicted([contender], bare, every, HORIZON, OPTIONS, lambda _: None)
         assert [t.doubt for t in tried] == [doubt]

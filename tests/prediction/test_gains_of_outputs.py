@@ -88,10 +88,9 @@ def test_an_output_that_never_errs_says_nothing():
 
 def unseen(errors, noise):
     """Errors (W, L, ny) over the horizon, and over half and twice as much alike, with s of 1."""
-    squares = np.mean(errors**2, axis=1)
-    each = ((squares.mean(axis=1),),) * 3
+    each = ((np.mean(errors**2, axis=1),),) * 3
     return Unseen(
-        lengths=(0.5, 1.0, 2.0), squares=each, moves=each, of_outputs=(squares,), noise=noise**2,
+        lengths=(0.5, 1.0, 2.0), powers=each, moves=each, noise=noise**2,
         fit_percent=np.zeros(len(noise)), places=each, parts=(None,),
     )  # fmt: skip
 

@@ -70,7 +70,7 @@ def score(name, fall, sizes, share=0.5):
     )  # fmt: skip
     gains = np.linspace(1.0, 2.0, 12)
     return Score(missing=missing, size=np.ones(sizes), std=np.ones(sizes), chance=1e-6, fall=fall,
-                 t=9.0, gains=gains, share=share)  # fmt: skip
+                 t=9.0, gains=gains, every=gains, share=share)  # fmt: skip
 
 
 @pytest.mark.parametrize(("law", "is_like"), [(0.44, True), (0.30, False), (0.499, True)])

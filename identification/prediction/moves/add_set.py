@@ -18,6 +18,7 @@ import numpy as np
 
 from identification.discovery.attempts import attempt
 from identification.discovery.moves import Watch
+from identification.discovery.options import DiscoveryOptions
 from identification.discovery.passes import uses
 from identification.effects.effect import Candidate
 from identification.prediction.contenders import list_starts
@@ -32,7 +33,7 @@ from identification.prediction.set_choice import choose, find_members
 from identification.prediction.set_members import Key, Place, each_at_its_best, with_rivals
 from identification.prediction.set_proof import proven_members
 from identification.prediction.task import WindowSearch
-from identification.prediction.trial import compared
+from identification.prediction.trial import compared, find_doubt
 from identification.progress import Progress
 
 MAX_CHOICES = 3  # of a set, each about the model with the one before
@@ -40,25 +41,26 @@ MAX_ROUNDS = 2  # of a choice, and of asking each of its members in its place
 
 
 def add_set(
-    state: WindowSearch, progress: Progress, present: WindowModel | None = None
+    state: WindowSearch, progress: Progress, begin_at: WindowModel | None = None
 ) -> WindowSearch:
     """Returns the state with several effects more, or as it is where none are proven together.
 
     Args:
         state: the state before.
         progress: is told each set, and what is refitted in the places of its members.
-        present: the model that the set has to predict better than, on average over the blocks that
-            decide, before its members are asked in their places, which takes most of the time; that
-            of the state when None.
+        begin_at: the model about which the set is chosen first; that of the state when None. A set
+            that predicts worse is left before its members are asked in their places, which takes
+            most of the time. Where the model has effects and leaves much, these are asked too.
     """
     task, watch = state.task, Watch(state.seconds)
     if state.room < 2 or not state.scores or not is_much_left(state.model, task.options):
         return state
-    model, places, refits, asked = state.model, dict[Key, Place](), 0, list[set[Key]]()
+    model, places, refits, asked = begin_at or state.model, dict[Key, Place](), 0, list[set[Key]]()
+    if begin_at is not None and not is_much_left(begin_at, task.options):
+        asked.append(_keys(begin_at))  # its effects are left in their places
     for _ in range(MAX_ROUNDS):
         chosen = _with_set(state, model, progress)
-        is_worse = not compared((present or state.model).unseen, chosen.unseen, task.options).t > 0
-        if is_worse or _keys(chosen) in asked:
+        if _keys(chosen) in asked or _is_worse(chosen, begin_at or state.model, task.options):
             break
         asked.append(_keys(chosen))
         model, places = each_at_its_best(state, chosen, progress)
@@ -85,14 +87,14 @@ def set_for_effects(state: WindowSearch, progress: Progress) -> WindowSearch:
     """Returns the state with a set in the place of all its effects, where more speaks for the set.
 
     It is asked where much is left, and where a curve stands beside other effects: the curve may be
-    what several laws do together, of which it hides each. A set that was found in this way is not
-    asked for again.
+    what several laws do together, of which it hides each. The set is chosen about the model with
+    all that was found: it is nearer to the truth than the one without effects, and a linear choice
+    errs less there. A set that was found in this way is not asked for again.
     """
     is_done = any(name == set_for_effects.__name__ for name in state.made)
     if is_done or not state.accepted or state.worse_fit is not None:
         return state
-    is_asked = _has_curve_beside_others(state) or is_much_left(state.model, state.task.options)
-    if not is_asked:
+    if not (_has_curve_beside_others(state) or is_much_left(state.model, state.task.options)):
         return state
     bare = replace(
         state, model=state.nominal, accepted=(), scores=state.nominal_scores, exchanged=None
@@ -116,6 +118,17 @@ def set_for_effects(state: WindowSearch, progress: Progress) -> WindowSearch:
 def _has_curve_beside_others(state: WindowSearch) -> bool:
     """Returns whether one of several effects is a curve."""
     return len(state.accepted) > 1 and any(a.candidate.effect.is_curve for a in state.accepted)
+
+
+def _is_worse(chosen: WindowModel, present: WindowModel, options: DiscoveryOptions) -> bool:
+    """Returns whether a set predicts worse than the present model, beyond chance if that has any.
+
+    A curve has more numbers than the laws that it draws, and may predict a little better by luck.
+    """
+    if present.candidates:
+        seen = compared(chosen.unseen, present.unseen, options)
+        return find_doubt(seen, 1, options) is None
+    return not compared(present.unseen, chosen.unseen, options).t > 0
 
 
 def _keys(model: WindowModel) -> set[Key]:

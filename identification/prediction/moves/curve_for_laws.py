@@ -6,7 +6,8 @@ acts from a speed on, that of a friction which grows with the square of the spee
 fitted in the place of all laws at the joint, and their cause is unlisted where it
 
     has more evidence for it than several laws have, with the price of its many numbers, or
-    is proven, where a single law has a neighbour's name (`identification.prediction.neighbours`).
+    is proven, where a single law has a neighbour's name (`identification.prediction.neighbours`),
+    and unseen records do not prove that the law predicts better.
 
 That a curve predicts better than a single law is no reason by itself: no law is exact on a real
 robot, and a curve also draws what lies beside the law. Laws that are there have the evidence of
@@ -17,15 +18,17 @@ is asked at the joint of the curve that explains what it leaves.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 from functools import partial
 
 from identification.discovery.attempts import attempt
+from identification.discovery.options import DiscoveryOptions
 from identification.prediction.contenders import count_numbers
 from identification.prediction.evidence import all_gains, count_windows, evidence
 from identification.prediction.extension import refitted
 from identification.prediction.forced import acts_on_joints
+from identification.prediction.model import WindowModel
 from identification.prediction.neighbours import (
     explained_by,
     find_neighbour,
@@ -34,7 +37,7 @@ from identification.prediction.neighbours import (
 from identification.prediction.screening import places_of, score_all
 from identification.prediction.selection import refit_contenders
 from identification.prediction.task import Change, WindowSearch
-from identification.prediction.trial import Contender
+from identification.prediction.trial import Contender, compared, find_doubt
 from identification.prediction.yardstick import measure
 from identification.progress import Progress
 
@@ -61,19 +64,38 @@ def curve_for_laws(state: WindowSearch, progress: Progress) -> Change:
         if refitted_curves is None:
             continue
         parent, tried = refitted_curves
-        windows, outputs = count_windows(parent), len(parent.scale)
-        numbers = sum(count_numbers(a.candidate) for a in laws)
-        theirs = evidence([all_gains(parent, model, options)], [numbers], windows, outputs)[0, 0]
         best = next(iter(tried), None)
         if best is None or not best.is_proven:
             continue
-        if len(laws) == 1 or best.criterion > theirs:
+        if _does_what_they_do(best, laws, parent, model, options):
             counted_laws = "a law does" if len(laws) == 1 else f"{len(laws)} laws do"
             progress(f"{best.candidate.effect.name}, {where}: does what {counted_laws}")
             model = best.model
             accepted = [*(a for a in accepted if a not in laws), best]
             lost += [replace(a, doubt="drawn") for a in laws]
     return model, tuple(accepted), tuple(lost)
+
+
+def _does_what_they_do(
+    curve: Contender, laws: Sequence[Contender], parent: WindowModel, model: WindowModel,
+    options: DiscoveryOptions,
+) -> bool:  # fmt: skip
+    """Returns whether a proven curve may take the place of laws.
+
+    Args:
+        curve: beside what else is in the model.
+        laws: at its joint.
+        parent: the model without either.
+        model: with the laws.
+        options: what is beyond chance.
+    """
+    if len(laws) == 1:  # it has a neighbour's name
+        seen = compared(curve.model.unseen, model.unseen, options)
+        return find_doubt(seen, 1, options) is not None
+    windows, outputs = count_windows(parent), len(parent.scale)
+    numbers = sum(count_numbers(a.candidate) for a in laws)
+    theirs = evidence([all_gains(parent, model, options)], [numbers], windows, outputs)[0, 0]
+    return bool(curve.criterion > theirs)
 
 
 def _neighbours_names(state: WindowSearch) -> dict[tuple[str, str], str]:

@@ -1,6 +1,6 @@
 """Laws whose work a curve of the data does, which was found later at the same joint.
 
-    m: mean square on unseen records          m_1 - m_2: what the law explained when it was found
+    m: mean square of the fitted windows      m_1 - m_2: what the law explained when it was found
                                               m_3 - m_4: what it explains beside the curve
 
 A cause that is in no catalogue is first explained by its nearest neighbour, as well as that can,
@@ -17,7 +17,7 @@ from identification.prediction.extension import refitted
 from identification.prediction.forced import acts_on_joints
 from identification.prediction.screening import places_of
 from identification.prediction.task import Change, WindowSearch
-from identification.prediction.trial import OWN_SHARE, mean_square
+from identification.prediction.trial import OWN_SHARE
 from identification.progress import Progress
 
 
@@ -35,7 +35,7 @@ def drop_drawn_laws(state: WindowSearch, progress: Progress) -> Change:
         without = refitted(model, rest, task.nominal_model, task.confirm)
         if without is None:
             continue
-        beside = mean_square(without) - mean_square(model)
+        beside = without.fitted_power - model.fitted_power
         if beside < OWN_SHARE * law.explained:
             progress(f"{effect.name}, {law.candidate.where}: a curve does the same, and more")
             model, kept = without, [a for a in kept if a is not law]
