@@ -288,6 +288,30 @@ class JointPlant:
         """Returns states where windows begin, and how far off they may be; see `WithStates`."""
         plain = self.without_states()
         inputs = log.inputs[np.maximum(starts - (log.hold == "zoh"), 0)]  # has acted until then
-        loads = first_loads(plain.bare.model, plain.layout, plain.settings(names, values)[1],
-                            known, inputs)  # fmt: skip
+        felt = [k for k, name in enumerate(names) if name not in self._of_states]
+        loads = plain._loads([names[k] for k in felt], values[:, felt], known, inputs)
         return self.gears.first_states(self._every(names, values), loads, log, starts)
+
+    def _loads(
+        self, names: Sequence[str], values: np.ndarray, known: State, inputs: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Returns the loads of `first_loads`; a search asks for the same ones again and again."""
+        arrays = (values, known.qpos, known.qvel, known.act, inputs)
+        key = (*names, *(np.asarray(x).tobytes() for x in arrays))
+        if key not in self._last_loads:
+            self._last_loads.clear()
+            numbers = self.settings(names, values)[1]
+            self._last_loads[key] = first_loads(
+                self.bare.model, self.layout, numbers, known, inputs
+            )
+        return self._last_loads[key]
+
+    @cached_property
+    def _last_loads(self) -> dict[object, tuple[np.ndarray, np.ndarray, np.ndarray]]:
+        return {}
+
+    @cached_property
+    def _of_states(self) -> frozenset[str]:
+        """The parameters of effects that need states, which the plant without states leaves out."""
+        some = (e for e in self.effects if e.state)
+        return frozenset(p.name for e in some for p in effect_parameters(e))

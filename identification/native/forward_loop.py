@@ -56,7 +56,7 @@ def _copy(to, at, n):
 
 
 @internal
-def _load(m, d, row):
+def load_state(m, d, row):
     """Put a row of states into mjData; a solver of constraints begins without a guess."""
     row = _copy(d + 8 * D.time, row, 1)
     row = _copy(word(d, D.qpos), row, word(m, M.nq))
@@ -98,7 +98,7 @@ def _collect(d, results, kinds, own, to, weight, is_relative):
 
 
 @internal
-def _clear(x, n):
+def clear(x, n):
     """Set n doubles to zero."""
     for i in range(n):
         store_double(x + 8 * i, 0.0)
@@ -117,7 +117,7 @@ def _keep_shares(m, d, some, n, room):
     nv, f = word(m, M.nv), word(d, D.qfrc_passive)
     for k in range(n):
         i = load_word(some + 8 * k)
-        _clear(f, nv)
+        clear(f, nv)
         add_share(m, d, i)
         _copy(room + 8 * nv * i, f, nv)
 
@@ -127,7 +127,7 @@ def _exchange_shares(m, d, own, actuators, n, room):
     """Put the rates of the base into mjData, with the shares of some actuators as they are now."""
     nv, f = word(m, M.nv), word(d, D.qfrc_passive)
     _copy(word(d, D.act_dot), own + 8 * nv, word(m, M.na))
-    _clear(f, nv)
+    clear(f, nv)
     for k in range(n):
         i = load_word(actuators + 8 * k)
         add_share(m, d, i)
@@ -164,7 +164,7 @@ def _forward(
     for k in range(kinds):
         width += 8 * load_word(results + 8 * (2 * k + 1))
     for p in range(points):
-        _load(base, d, base_states + row * p)
+        load_state(base, d, base_states + row * p)
         mj_forwardSkip((base, d, NONE, 0))
         _collect(d, results, kinds, own, own, 0.0, False)
         _keep_shares(base, d, some, count, room)
@@ -173,7 +173,7 @@ def _forward(
             m, stage = load_word(case + 8), load_word(case + 24)
             first, end = load_word(case + 32), load_word(case + 40)
             _exchange(places + 8 * first, values + 8 * first, end - first)
-            _load(m, d, load_word(case + 16) + row * p)
+            load_state(m, d, load_word(case + 16) + row * p)
             if stage == SHARES:
                 alone, last = load_word(case + 64), load_word(case + 72)
                 _exchange_shares(m, d, own, actuators + 8 * alone, last - alone, room)

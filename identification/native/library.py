@@ -65,6 +65,9 @@ mj_rne = _function("mj_rne", (POINTER, POINTER, INT, POINTER))
 mj_fwdPosition = _function("mj_fwdPosition", (POINTER, POINTER))
 # model, data, the last stage that is there already, whether sensors are left out
 mj_forwardSkip = _function("mj_forwardSkip", (POINTER, POINTER, INT, INT))
+# model, data: the step of an integrator, after the forward dynamics
+mj_Euler = _function("mj_Euler", (POINTER, POINTER))
+mj_implicit = _function("mj_implicit", (POINTER, POINTER))
 # model, data: forces of springs, dampers and gravity compensation, and those of passive callbacks
 mj_passive = _function("mj_passive", (POINTER, POINTER))
 

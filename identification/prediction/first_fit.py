@@ -23,9 +23,10 @@ from identification.errors import InputError
 from identification.estimation.priors import Priors
 from identification.model.coordinates import coordinates
 from identification.model.predictor import Plant
+from identification.prediction.columns import inside
 from identification.prediction.joint_states import model_for
 from identification.prediction.model import WindowModel
-from identification.prediction.scores import WindowScore, inside
+from identification.prediction.scores import WindowScore
 from identification.windows.fit import solve
 from identification.windows.problem import MIN_WINDOWS, Problem, with_unknowns
 from identification.windows.shooting import Tangent

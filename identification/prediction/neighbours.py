@@ -36,11 +36,12 @@ from identification.discovery.options import DiscoveryOptions
 from identification.discovery.passes import uses
 from identification.effects.effect import Candidate
 from identification.effects.variables import POSITIONS, variables
+from identification.prediction.forced import acts_on_joints
 from identification.prediction.model import WindowModel
 from identification.prediction.screening import places_of
 from identification.prediction.task import WindowSearch
 from identification.prediction.trial import Contender
-from identification.prediction.yardstick import Yardstick, acts_on_joints, may_draw
+from identification.prediction.yardstick import Yardstick, may_draw
 
 # Of what law and curve explain together: a judgement, because no law of a real robot is exact. The
 # rates with it are in docs/robot/models.md.

@@ -19,7 +19,7 @@ from itertools import pairwise
 import numpy as np
 from scipy.linalg import block_diag
 
-from identification.discovery.attempts import attempt, refuse_infinite
+from identification.discovery.attempts import attempt
 from identification.effects.effect import Candidate
 from identification.estimation.block_test import (
     Common,
@@ -30,9 +30,8 @@ from identification.estimation.block_test import (
     p_values,
     scatter_of,
 )
-from identification.model.coordinates import coordinates
-from identification.model.parameter import ParameterSet
-from identification.prediction.joint_states import rows_for
+from identification.prediction.columns import columns
+from identification.prediction.forced import acts_on_joints
 from identification.progress import counted
 from identification.windows.fit import STD_BLOCKS, WindowFit
 
@@ -119,8 +118,8 @@ def condensed(
         DivergenceError: one of them cannot be simulated.
     """
     base = _Base(fit, held)
-    columns = np.hstack([np.vstack(base.columns(group)) for group in _groups(candidates)])
-    S = base.without_base(np.vstack([columns, np.zeros((len(fit.q), columns.shape[1]))]))
+    every = np.hstack([np.vstack(columns(fit, group)) for group in _groups(candidates)])
+    S = base.without_base(np.vstack([every, np.zeros((len(fit.q), every.shape[1]))]))
     G = np.array([S[rows].T @ S[rows] for rows in base.blocks])
     a = np.array([S[rows].T @ base.r[rows] for rows in base.blocks])
     squares = np.array([base.r[rows] @ base.r[rows] for rows in base.blocks])
@@ -148,13 +147,18 @@ def find_imitated(fit: WindowFit, scores: Sequence[WindowScore]) -> set[tuple[st
 def _groups(candidates: Sequence[Candidate]) -> Iterator[list[Candidate]]:
     group: list[Candidate] = []
     for candidate in candidates:
-        others = group and group[-1].effect.state != candidate.effect.state  # in another plant
+        others = group and _kind(group[-1]) != _kind(candidate)
         if others or (group and sum(len(c.sizes) for c in (*group, candidate)) > MAX_GROUP_COLUMNS):
             yield group
             group = []
         group.append(candidate)
     if group:
         yield group
+
+
+def _kind(candidate: Candidate) -> tuple[str, bool]:
+    """Returns what candidates share whose columns are computed at once: plant, and way."""
+    return candidate.effect.state, acts_on_joints(candidate.effect)
 
 
 class _Base:
@@ -186,11 +190,11 @@ class _Base:
 
     def scores(self, group: Sequence[Candidate]) -> list[tuple[WindowScore, Scatter]]:
         """Returns candidates with what they explain and its scatter, without chance and std."""
-        columns = self.columns(group)
+        found = columns(self.fit, group)
         ends = np.cumsum([len(c.sizes) for c in group])
         out = []
         for c, end in zip(group, ends, strict=True):
-            own = [S[:, end - len(c.sizes) : end] for S in columns]
+            own = [S[:, end - len(c.sizes) : end] for S in found]
             S = block_diag(*own) if c.effect.own else np.vstack(own)
             below = np.zeros((len(self.fit.q), S.shape[1]))
             out.append(self._score(c, np.vstack([S, below])))
@@ -202,58 +206,17 @@ class _Base:
         Their steps are as small as those of the free parameters: where joints stick, a large one
         shows something else.
         """
-        columns, out, end = self.columns(group, IMITATION_STEP), [], 0
+        found, out, end = columns(self.fit, group, IMITATION_STEP), [], 0
         for c in group:
-            each = [S[:, end : end + len(c.sizes)] for S in columns]
+            each = [S[:, end : end + len(c.sizes)] for S in found]
             S, end = block_diag(*each) if c.effect.own else np.vstack(each), end + len(c.sizes)
             left = np.linalg.norm(S - self.free @ (self.free.T @ S), axis=0)
             if np.all(left < share * np.linalg.norm(S, axis=0)):
                 out.append(c)
         return out
 
-    def columns(self, group: Sequence[Candidate], share: float = 1.0) -> list[np.ndarray]:
-        """Returns -∂r/∂η of the sizes of candidates, without the states' part, (rows, k) a record.
-
-        Args:
-            group: the candidates.
-            share: of their probes, by which sizes are moved.
-        """
-        fit = self.fit
-        plant = fit.problem.parts[0].predictor.plant
-        names = list(dict.fromkeys(
-            [*fit.problem.unknowns.local.names, *(n for c in group for n in (*c.sizes, *c.fixed))]
-        ))  # fmt: skip
-        out = []
-        for k, (part, d, t) in enumerate(
-            zip(fit.problem.parts, fit.moves, fit.tangents, strict=True)
-        ):
-            own = {**plant.parameters.values(), **part.predictor.fixed, **fit.of_record(k)}
-            rows, probes = [[own[n] for n in names]], []
-            for c in group:
-                for name, size in zip(c.sizes, c.effect.sizes, strict=True):
-                    probe = (-size.probe if size.sign < 0 else size.probe) * c.probe * share
-                    rows.append([{**own, **c.fixed, name: own[name] + probe}[n] for n in names])
-                    probes.append(probe)
-            values = np.array(rows)
-            # the coordinates of plain values need no logarithm
-            space = coordinates(
-                plant.parameters, names, inside(plant.parameters, names, values[0]), linear=names
-            )
-            there, moves = rows_for(part, d, group, fit.of_record(k))
-            rest = {n: v for n, v in part.predictor.fixed.items() if n not in names}
-            predictor = replace(there.predictor, names=tuple(names), fixed=rest)
-            moved = replace(there, space=space, predictor=predictor)
-            y = moved.outputs(space.encode(values), moves, is_rough=True)
-            r = np.stack([part.joined(one, d) for one in y], axis=-1)  # (W, m, 1 + k)
-            refuse_infinite(r)
-            S = (r[..., :1] - r[..., 1:]) / np.array(probes)
-            U = t.U * (t.s > 0)[:, None]
-            S = S - U @ (np.swapaxes(U, 1, 2) @ S)
-            out.append(S.reshape(-1, len(probes)))
-        return out
-
-    def _score(self, candidate: Candidate, columns: np.ndarray) -> tuple[WindowScore, Scatter]:
-        S = self.without_base(columns)
+    def _score(self, candidate: Candidate, every: np.ndarray) -> tuple[WindowScore, Scatter]:
+        S = self.without_base(every)
         norm = np.linalg.norm(S, axis=0)
         back = np.where(norm > 0, 1 / np.where(norm > 0, norm, 1.0), 0.0)
         H = (S * back).T @ (S * back)
@@ -261,7 +224,7 @@ class _Base:
         size = unit * back
         left = self.r - S @ size
         fall = 1 - float(left @ left) / max(float(self.r @ self.r), 1e-300)
-        along = np.linalg.lstsq(self.R, self.Q.T @ (columns @ size), rcond=1e-8)[0]
+        along = np.linalg.lstsq(self.R, self.Q.T @ (every @ size), rcond=1e-8)[0]
         score = WindowScore(
             candidate=candidate, size=size, std=np.full(len(size), np.nan), fall=fall, p_value=1.0,
             along=-along / self.scale,
@@ -279,13 +242,3 @@ class _Base:
         signs *= S.shape[1] // len(signs)  # of each record where they are its own
         blocks = make_blocks(G, Z)
         return scatter_of(blocks, a, np.array([variance]), np.array([signs]))
-
-
-def inside(parameters: ParameterSet, names: Sequence[str], values: np.ndarray) -> np.ndarray:
-    """Returns values a little inside the bounds, as coordinates ask of a start."""
-    out = []
-    for name, value in zip(names, values, strict=True):
-        record = parameters[name]
-        margin = 1e-9 * max(abs(value), record.scale)
-        out.append(min(max(value, record.lower + margin), record.upper - margin))
-    return np.array(out)

@@ -29,6 +29,7 @@ from identification.effects.effect import Candidate, Effect
 from identification.effects.jointed import JointPlant
 from identification.effects.surfaces import surface_effects
 from identification.effects.variables import variables
+from identification.prediction.forced import acts_on_joints
 from identification.prediction.model import WindowModel
 from identification.prediction.scores import WindowScore, condensed, window_scores
 from identification.prediction.screening import MAX_SCORED, places_of, some_windows
@@ -36,7 +37,6 @@ from identification.windows.fit import WindowFit
 
 # A smooth force is found by solving for all of its nodes some thousand times.
 MAX_SURFACE_JOINTS = 3
-ON_JOINTS = {"force", "friction"}  # hooks of laws that a smooth force of a joint may imitate
 
 
 @dataclass(frozen=True)
@@ -82,11 +82,6 @@ class Yardstick:
         if not acts_on_joints(candidate.effect) or not left:
             return None
         return explained_share(explained, 0.0, max(left) + curves)
-
-
-def acts_on_joints(effect: Effect) -> bool:
-    """Returns whether an effect is a force at joints and nothing else, as a curve there may be."""
-    return bool(effect.hooks) and {*effect.hooks} <= ON_JOINTS
 
 
 def may_draw(curve: Effect, law: Effect) -> bool:

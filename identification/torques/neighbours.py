@@ -26,8 +26,8 @@ from identification.torques.equations import Equations
 from identification.torques.laws import Missing
 from identification.torques.scores import Base, t_of, unseen_of
 
-# Of the power of both, a fourteenth of their force. Beside laws that were right, curves took 0.002
-# or less, and beside neighbours 0.006 or more (docs/benchmarks.md).
+# Of the power of both, a fourteenth of their force: a judgement. The rates with it are in
+# docs/benchmarks.md.
 MOST_BESIDE = 0.005
 SURE = 2.5  # t of what curves predict beside it
 

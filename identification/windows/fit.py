@@ -34,7 +34,7 @@ COLUMN_ROUNDING = 1e-20
 STD_BLOCKS = 40  # of windows, over all records: their scatter gives the std
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class WindowFit:
     """The result of a search over the windows of all records."""
 

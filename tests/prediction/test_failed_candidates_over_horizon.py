@@ -7,6 +7,7 @@ one stage of the search runs; the other candidates are tried all the same.
 from dataclasses import replace
 from functools import cache
 
+import numpy as np
 import pytest
 from failing_cases import ERRORS, Failing
 from page_text import text_of
@@ -14,7 +15,15 @@ from records_cases import listed, nominal_model, records
 
 from identification.discovery.options import DiscoveryOptions
 from identification.errors import InputError
-from identification.prediction import crossing, exchange, extension, selection, state
+from identification.prediction import (
+    columns,
+    crossing,
+    exchange,
+    extension,
+    forced,
+    selection,
+    state,
+)
 from identification.prediction.discovery import WINDOWS
 from identification.prediction.moves import add_effect
 from identification.prediction.task import RecordsTask
@@ -60,11 +69,27 @@ def failing(monkeypatch, how):
     return Failing(SIZE, how).install(monkeypatch)
 
 
-def test_a_candidate_whose_columns_fail_is_told_and_the_others_are_scored(monkeypatch):
+def test_a_candidate_whose_simulation_fails_is_told_and_the_others_are_scored(monkeypatch):
+    monkeypatch.setattr(columns, "_forces_of", lambda fit: (None,) * len(fit.moves))
     bad, said = failing(monkeypatch, "gives NaN"), []
     bad.within(monkeypatch, state, "score_all")
     first = WINDOWS.begin(task(), said.append)
     assert bad.reached
+    assert_only_the_other_is_scored(first, said)
+
+
+def test_a_candidate_whose_law_gives_nan_is_told_and_the_others_are_scored(monkeypatch):
+    whole, said = forced.hook_values, []
+
+    def values(function, states, numbers):
+        out = whole(function, states, numbers)
+        return np.full_like(out, np.nan) if function.__name__ == NAME else out
+
+    monkeypatch.setattr(forced, "hook_values", values)
+    assert_only_the_other_is_scored(WINDOWS.begin(task(), said.append), said)
+
+
+def assert_only_the_other_is_scored(first, said):
     assert {s.candidate.effect.name for s in first.scores} == {"offset"}
     assert [f.key for f in first.failed] == [KEY]
     assert str(first.failed[0]) in said

@@ -101,7 +101,7 @@ def test_a_score_is_that_of_least_squares_with_columns_by_hand():
     part, t, d = fit.problem.parts[0], fit.tangents[0], fit.moves[0]
     assert len(fit.problem.parts) == 2
     columns, rests, bases = [], [], []
-    probe = score.candidate.effect.sizes[0].probe
+    probe = 1e-4 * score.candidate.effect.sizes[0].probe  # what is scored is a derivative
     for part, t, d in zip(fit.problem.parts, fit.tangents, fit.moves, strict=True):
         plant = part.predictor.plant.with_values({name: probe})
         moved = replace(part, predictor=replace(part.predictor, plant=plant))
@@ -119,8 +119,8 @@ def test_a_score_is_that_of_least_squares_with_columns_by_hand():
     e = np.concatenate([*rests, fit.problem.prior.against(fit.q)])
     S, e = (x - F @ np.linalg.lstsq(F, x, rcond=None)[0] for x in (S, e))
     size = S @ e / (S @ S)
-    assert score.size[0] == pytest.approx(size, rel=1e-6)
-    assert score.fall == pytest.approx(size**2 * (S @ S) / (e @ e), rel=1e-6)
+    assert score.size[0] == pytest.approx(size, rel=1e-4)
+    assert score.fall == pytest.approx(size**2 * (S @ S) / (e @ e), rel=1e-4)
 
 
 def test_a_child_never_explains_less_than_its_parent():

@@ -27,6 +27,7 @@ from identification.discovery.options import DiscoveryOptions
 from identification.prediction.contenders import count_numbers
 from identification.prediction.evidence import all_gains, count_windows, evidence
 from identification.prediction.extension import refitted
+from identification.prediction.forced import acts_on_joints
 from identification.prediction.model import WindowModel
 from identification.prediction.neighbours import (
     explained_by,
@@ -37,7 +38,7 @@ from identification.prediction.screening import places_of, score_all
 from identification.prediction.selection import refit_contenders
 from identification.prediction.task import Change, WindowSearch
 from identification.prediction.trial import Contender, compared, find_doubt
-from identification.prediction.yardstick import acts_on_joints, measure
+from identification.prediction.yardstick import measure
 from identification.progress import Progress
 
 

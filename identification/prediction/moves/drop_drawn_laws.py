@@ -14,10 +14,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 from identification.prediction.extension import refitted
+from identification.prediction.forced import acts_on_joints
 from identification.prediction.screening import places_of
 from identification.prediction.task import Change, WindowSearch
 from identification.prediction.trial import OWN_SHARE
-from identification.prediction.yardstick import acts_on_joints
 from identification.progress import Progress
 
 
