@@ -11,7 +11,7 @@ from identification.effects.joint_law import _AXES
 from identification.effects.sizes import Size
 from identification.effects.variables import VARIABLES, variables
 from identification.prediction.screening import at_several
-from identification.prediction.yardstick import ON_JOINTS
+from identification.prediction.forced import ON_JOINTS
 
 EFFECTS = {e.name: e for e in joint_effects(_AXES)}
 
