@@ -10,8 +10,8 @@ from identification.effects.effect import Effect
 from identification.effects.joint_law import _AXES
 from identification.effects.sizes import Size
 from identification.effects.variables import VARIABLES, variables
-from identification.prediction.screening import at_several
 from identification.prediction.forced import ON_JOINTS
+from identification.prediction.screening import at_several
 
 EFFECTS = {e.name: e for e in joint_effects(_AXES)}
 
