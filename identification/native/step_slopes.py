@@ -127,6 +127,15 @@ def _integrate(m, d, is_euler, to):
 
 
 @internal
+def _step_from(m, d, x, at, step, skipped, is_euler, to):
+    """Take the step from a state of which one number is moved, and write the state after it."""
+    load_state(m, d, x)
+    store_double(at, load_double(at) + step)
+    mj_forwardSkip((m, d, skipped, 1))
+    _integrate(m, d, is_euler, to)
+
+
+@internal
 def _differ(to, columns, column, here, there, step, n):
     """Write a column of differences into a matrix of n rows."""
     for i in range(n):
@@ -191,30 +200,19 @@ def _slopes(
         _resisted(m, d, n, joints, entries, w, g + 8 * n * p, R + 8 * n * n * p)
         _integrate(m, d, is_euler, here)
         for i in range(nv):
-            load_state(m, d, x)
-            store_double(word(d, D.qfrc_applied) + 8 * i, 1.0)
-            mj_forwardSkip((m, d, VELOCITY, 1))
-            store_double(word(d, D.qfrc_applied) + 8 * i, 0.0)
-            _integrate(m, d, is_euler, there)
+            at = word(d, D.qfrc_applied) + 8 * i
+            _step_from(m, d, x, at, 1.0, VELOCITY, is_euler, there)
             _differ(B + 8 * nx * nv * p, nv, i, here, there, 1.0, nx)
+            store_double(at, 0.0)
         for i in range(na):
-            load_state(m, d, x)
             at = word(d, D.act) + 8 * i
-            store_double(at, load_double(at) + STEP)
-            mj_forwardSkip((m, d, VELOCITY, 1))
-            _integrate(m, d, is_euler, there)
+            _step_from(m, d, x, at, STEP, VELOCITY, is_euler, there)
             _differ(to, nx, 2 * nv + i, here, there, STEP, nx)
         for i in range(nv):
-            load_state(m, d, x)
             at = word(d, D.qvel) + 8 * i
-            store_double(at, load_double(at) + STEP)
-            mj_forwardSkip((m, d, POSITION, 1))
-            _integrate(m, d, is_euler, there)
+            _step_from(m, d, x, at, STEP, POSITION, is_euler, there)
             _differ(to, nx, nv + i, here, there, STEP, nx)
         for i in range(nv):
-            load_state(m, d, x)
             at = word(d, D.qpos) + 8 * i
-            store_double(at, load_double(at) + STEP)
-            mj_forwardSkip((m, d, NONE, 1))
-            _integrate(m, d, is_euler, there)
+            _step_from(m, d, x, at, STEP, NONE, is_euler, there)
             _differ(to, nx, i, here, there, STEP, nx)

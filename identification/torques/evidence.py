@@ -33,9 +33,10 @@ from identification.torques.fits import (
     with_gains_held,
     with_std_of_gains,
 )
+from identification.torques.moments import Base
 from identification.torques.passive import with_expected_motion
 from identification.torques.rows import make_rows
-from identification.torques.scores import Base, Score, rank
+from identification.torques.scores import Score, rank
 from identification.torques.search import Search, add_proven, draw_curves, others_of
 from identification.torques.shapes import with_shapes
 

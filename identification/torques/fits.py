@@ -29,8 +29,8 @@ from identification.torques.candidates import rate_of
 from identification.torques.drives import known_numbers, list_passive, model_forces
 from identification.torques.equations import Equations, Estimate, estimate
 from identification.torques.laws import Missing
+from identification.torques.moments import Base, Weighted, held_by
 from identification.torques.rows import Rows, make_rows
-from identification.torques.scores import Base, Weighted, held_by
 
 FRICTION = ("viscous", "coulomb", "offset")
 CLOCK = "clock of the inputs"

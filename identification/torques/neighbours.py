@@ -22,9 +22,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from identification.torques.candidates import together
-from identification.torques.equations import Equations
+from identification.torques.equations import Equations, unseen_squares
 from identification.torques.laws import Missing
-from identification.torques.scores import Base, t_of, unseen_of
+from identification.torques.moments import Base, Weighted, held_by, joined
+from identification.torques.scores import t_of
 
 # Of the power of both, a fourteenth of their force: a judgement. The rates with it are in
 # docs/benchmarks.md.
@@ -60,9 +61,29 @@ def curves_beside(
     if law.is_curve or not mine or "f_u" in law.variables:
         return None
     none, of_law, of_both = (
-        unseen_of(equations, bare, m)
-        for m in (None, law, replace(together([law, *mine]), ridges=()))
+        _unseen(equations, bare, m) for m in (None, law, replace(together([law, *mine]), ridges=()))
     )
     both = float((none - of_both).sum())
     share = float((of_law - of_both).sum()) / both if both > 0 else 0.0
     return Beside(share, t_of(np.log(of_law / of_both)))
+
+
+def _unseen(equations: Equations, base: Base, missing: Missing | None) -> np.ndarray:
+    """Returns the weighted squares of each block of all records, by fits that did not see it.
+
+    Blocks of records that confirm are in the folds too: a curve is then asked nowhere where no fit
+    has seen the motion.
+
+    Args:
+        equations: of the records.
+        base: the fit.
+        missing: a candidate that is added; None where none is.
+    """
+    whole = np.einsum("j,jbpq->bpq", base.fit.weights, base.M)
+    held, of = np.zeros(0), None
+    if missing is not None and (of := Weighted(equations, base).moments(missing.columns())):
+        whole, held = joined(whole, *of), held_by(missing, of[1])
+    P, θ_0 = np.append(base.P, held), np.append(base.θ_0, 0 * held)
+    none = np.zeros(len(equations.record), bool)
+    left = unseen_squares(whole[None], np.ones(1), P, θ_0, none)[0]
+    return np.asarray(left[equations.counts.sum(axis=0) > 0])

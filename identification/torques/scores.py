@@ -20,7 +20,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import chain, pairwise
+from itertools import chain
 
 import numpy as np
 
@@ -35,8 +35,9 @@ from identification.estimation.block_test import (
     scatter_of,
 )
 from identification.torques.consistency import nearest_body
-from identification.torques.equations import Columns, Equations, Estimate, unseen_squares
+from identification.torques.equations import Equations, unseen_squares
 from identification.torques.laws import Missing
+from identification.torques.moments import Base, Weighted, held_by, joined
 
 CHANCE = 0.05  # of any candidate by luck
 PROOF = 3.0  # t of the fall on blocks that the fit did not see, or of a difference between two
@@ -110,25 +111,6 @@ class Score:
         return nearest_body(self.missing.of_body[0], self.size, self.std, self.missing.of_body[1])
 
 
-@dataclass(frozen=True, kw_only=True)
-class Base:
-    """A fit to which candidates are added."""
-
-    Φ: np.ndarray  # columns, shape (N, nv, p)
-    y: np.ndarray  # right side, shape (N, nv)
-    P: np.ndarray  # precision of the priors, shape (p,)
-    θ_0: np.ndarray  # their means, shape (p,)
-    fit: Estimate  # of these
-    M: np.ndarray  # moments of (Φ, y), shape (nv, B, p + 1, p + 1)
-    known: int = 0  # number of sizes, the first ones, that are free with what was known of them
-
-    @property
-    def far(self) -> np.ndarray:
-        """Free sizes less what was known of them, in its std, shape (known,)."""
-        off = (self.fit.θ - self.θ_0) * np.sqrt(self.P)
-        return np.asarray(off[: self.known])
-
-
 def rank(
     equations: Equations, base: Base, candidates: Sequence[Missing], asked: int = 0
 ) -> tuple[Score, ...]:
@@ -172,7 +154,7 @@ def rank(
         columns = missing.columns()
         if (of := weighted.moments(columns)) is None:
             continue
-        joined = _joined(whole, *of)
+        both = joined(whole, *of)
         cross, own = of[0][seen], of[1][seen]  # (B, p + 1, m), (B, m, m)
         C = inverse @ cross[:, :-1].sum(axis=0)
         P_b = cross[:, :-1] - G[:, :-1, :-1] @ C
@@ -196,7 +178,7 @@ def rank(
         scatter = scatter_of(blocks, a_all[:, None], np.ones(1), np.array([missing.signs]))
         acts = slice(None) if columns.joints is None else [*columns.joints]
         share = float(of_joints[acts].sum() / of_joints.sum())
-        found.append((missing, η, scatter, squares_of(joined, held_by(missing, own)), share))
+        found.append((missing, η, scatter, squares_of(both, held_by(missing, own)), share))
     common = common_scatter([scatter for _, _, scatter, _, _ in found])
     scores = []
     for missing, η, scatter, squares, share in found:
@@ -251,80 +233,3 @@ def choose(scores: Sequence[Score]) -> Score | None:
     first = proven[0]
     alike = [s for s in proven if s.is_like(first)]
     return min(alike, key=lambda s: (s.missing.numbers, -float(s.every.sum())))
-
-
-def held_by(missing: Missing, own: np.ndarray) -> np.ndarray:
-    """Returns the precisions with which sizes are held at zero, shape (m,).
-
-    Args:
-        missing: a candidate.
-        own: moments of its columns by blocks, shape (B, m, m).
-    """
-    ridges = np.array(missing.ridges or [0.0] * len(missing.sizes))
-    return (
-        ridges * np.einsum("bmm->bm", own).sum(axis=0)[ridges > 0].mean()
-        if ridges.any()
-        else ridges
-    )
-
-
-def unseen_of(equations: Equations, base: Base, missing: Missing | None) -> np.ndarray:
-    """Returns the weighted squares of each block of all records, by fits that did not see it.
-
-    Blocks of records that confirm are in the folds too: a curve is then asked nowhere where no fit
-    has seen the motion.
-
-    Args:
-        equations: of the records.
-        base: the fit.
-        missing: a candidate that is added; None where none is.
-    """
-    whole = np.einsum("j,jbpq->bpq", base.fit.weights, base.M)
-    held, of = np.zeros(0), None
-    if missing is not None and (of := Weighted(equations, base).moments(missing.columns())):
-        whole, held = _joined(whole, *of), held_by(missing, of[1])
-    P, θ_0 = np.append(base.P, held), np.append(base.θ_0, 0 * held)
-    none = np.zeros(len(equations.record), bool)
-    left = unseen_squares(whole[None], np.ones(1), P, θ_0, none)[0]
-    return np.asarray(left[equations.counts.sum(axis=0) > 0])
-
-
-class Weighted:
-    """The fit's columns and right side with their weights, joint by joint."""
-
-    def __init__(self, equations: Equations, base: Base) -> None:
-        rest = np.concatenate([base.Φ, base.y[:, :, None]], axis=2)
-        self.weight = np.sqrt(base.fit.weights) * equations.stacked("used")
-        weighted = rest * self.weight[:, :, None]
-        self.whole = weighted.reshape(-1, rest.shape[2])
-        self.each = [np.ascontiguousarray(weighted[:, j]) for j in range(equations.joints)]
-        self.edges = np.searchsorted(equations.block, np.arange(len(equations.record) + 1))
-
-    def moments(self, columns: Columns) -> tuple[np.ndarray, np.ndarray] | None:
-        """Returns moments of columns with the fit's (B, p + 1, m), and with themselves (B, m, m).
-
-        None where one of them is zero.
-        """
-        x = columns.values * self.weight[:, :, None]
-        if columns.joints is not None and len(columns.joints) == 1:
-            (j,) = columns.joints
-            rest, x, times = self.each[j], x[:, j], 1
-        else:
-            rest, x, times = self.whole, x.reshape(-1, x.shape[2]), len(self.each)
-        if not x.any(axis=0).all():
-            return None
-        blocks = [slice(times * a, times * b) for a, b in pairwise(self.edges.tolist())]
-        cross = np.array([rest[some].T @ x[some] for some in blocks])
-        return cross, np.array([x[some].T @ x[some] for some in blocks])
-
-
-def _joined(G: np.ndarray, cross: np.ndarray, own: np.ndarray) -> np.ndarray:
-    """Returns moments of (Φ, S, y), shape (B, p + m + 1, p + m + 1)."""
-    p, m = G.shape[1] - 1, own.shape[1]
-    out = np.empty((len(G), p + m + 1, p + m + 1))
-    out[:, :p, :p], out[:, -1, -1] = G[:, :-1, :-1], G[:, -1, -1]
-    out[:, :p, -1] = out[:, -1, :p] = G[:, :-1, -1]
-    out[:, :p, p:-1], out[:, p:-1, p:-1] = cross[:, :-1], own
-    out[:, p:-1, :p] = np.swapaxes(cross[:, :-1], 1, 2)
-    out[:, p:-1, -1] = out[:, -1, p:-1] = cross[:, -1]
-    return out

@@ -19,7 +19,8 @@ from scipy import optimize
 from identification.effects.sizes import Shape
 from identification.torques.equations import Equations
 from identification.torques.laws import Missing
-from identification.torques.scores import CHANCE, Base, Score, Weighted, rank
+from identification.torques.moments import Base, Weighted
+from identification.torques.scores import CHANCE, Score, rank
 
 MOST_REFINED = 8  # laws whose shapes are fitted, the best ones
 PRECISION = 1e-3  # of a shape, in units of its bounds
