@@ -8,7 +8,7 @@ the same seed; noise and errors are drawn anew.
 
 from __future__ import annotations
 
-from dataclasses import fields, replace
+from dataclasses import asdict, fields, replace
 from typing import Any
 
 import numpy as np
@@ -82,7 +82,7 @@ def make_inca(
     log = replace(made.log, inputs=u, outputs=Δ * np.round((read + noise) / Δ))
     names = [] if departure.hides == "unlisted" else [e.name for e in effects]
     return log, {
-        "hidden": [{"name": e.name, "where": e.where, "sizes": e.values()} for e in effects],
+        "hidden": [{"name": e.name, "where": e.where, "sizes": asdict(e)} for e in effects],
         "names": names, "ratio": ratio if drawn else 0.0,
     }  # fmt: skip
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import wrong_worlds
 from departures import DEPARTURES, LOUDER, Departure
-from inca_departures import _controlled
+from inca_departures import _controlled, make_inca
 from joint_worlds.world import make_world
 
 from inca_mj.reference import layout as base
@@ -125,3 +125,11 @@ def test_every_world_has_a_seed_of_its_own_and_nulls_alternate():
                 assert not any(mine)
     few = wrong_worlds.tasks(["jumps"], 24)
     assert few == [t for t in every if t[0] == "jumps"]
+
+
+def test_a_world_of_inca_tells_what_it_hides_with_its_sizes():
+    log, truth = make_inca(DEPARTURES["two_unlisted"], False, 7009000, 4.0)
+    assert np.isfinite(log.outputs).all()
+    assert truth["names"] == []
+    assert len(truth["hidden"]) == 2
+    assert all(any(hidden["sizes"].values()) for hidden in truth["hidden"])
