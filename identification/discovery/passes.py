@@ -52,6 +52,13 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
     "weak_scores": (
         HORIZON, "refits effects whose scores may be luck, because unseen records decide",
     ),
+    "scores_of_much_left": (
+        HORIZON, "refits effects by their own chance, not that of all, where much is left",
+    ),
+    "names_of_curves": (
+        HORIZON, "asks the chance of a law alone where a curve proves that something acts there",
+    ),
+    "lone_curves": (HORIZON, "tries a set in the place of one curve that was found alone"),
     "large_scores": (
         HORIZON, "refits effects whose scores ask for too large a size: the refit judges the size",
     ),

@@ -19,7 +19,7 @@ MAX_SIMPLER_LAWS = 2  # with fewer numbers, refitted beside the best one
 
 
 def list_contenders(
-    scores: Sequence[WindowScore], options: DiscoveryOptions, errors: int
+    scores: Sequence[WindowScore], options: DiscoveryOptions, errors: int, is_left: bool = False
 ) -> list[WindowScore]:
     """Returns the few best scores beyond chance, with the best shape of each effect at each place.
 
@@ -32,9 +32,11 @@ def list_contenders(
         scores: of all candidates, the best first.
         options: what is beyond chance, and how many are refitted.
         errors: number of errors that count as a sample of the criterion.
+        is_left: as `refit_level`.
     """
-    laws = _best_few([s for s in scores if not s.candidate.effect.is_curve], scores, options)
-    curves = _best_few([s for s in scores if s.candidate.effect.is_curve], scores, options)
+    level = refit_level(scores, options, is_left)
+    laws = _best_few([s for s in scores if not s.candidate.effect.is_curve], level, options)
+    curves = _best_few([s for s in scores if s.candidate.effect.is_curve], level, options)
 
     def promised(s: WindowScore) -> float:
         return errors * s.gain - len(s.size) * np.log(max(2, errors))
@@ -44,26 +46,28 @@ def list_contenders(
 
 
 def list_curves(
-    scores: Sequence[WindowScore], tried: Collection[tuple[str, str]], options: DiscoveryOptions
-) -> list[WindowScore]:
+    scores: Sequence[WindowScore], tried: Collection[tuple[str, str]], options: DiscoveryOptions,
+    is_left: bool = False,
+) -> list[WindowScore]:  # fmt: skip
     """Returns curves beyond chance that were not refitted, for want of a law that is proven.
 
     Args:
         scores: of all candidates, the best first.
         tried: keys of the candidates that were refitted.
         options: what is beyond chance; the switch `curves_at_last`.
+        is_left: as `refit_level`.
     """
     if not uses(options, "curves_at_last"):
         return []
-    curves = _best_few([s for s in scores if s.candidate.effect.is_curve], scores, options)
+    level = refit_level(scores, options, is_left)
+    curves = _best_few([s for s in scores if s.candidate.effect.is_curve], level, options)
     return [s for s in curves if s.candidate.key not in tried][:MAX_CURVES]
 
 
 def _best_few(
-    listed: Sequence[WindowScore], scores: Sequence[WindowScore], options: DiscoveryOptions
+    listed: Sequence[WindowScore], level: float, options: DiscoveryOptions
 ) -> list[WindowScore]:
     each: dict[tuple[str, str], WindowScore] = {}
-    level = refit_level(scores, options)
     for s in listed:
         if is_significant(s, level, options) and is_plausible(s, options):
             each.setdefault(s.candidate.key, s)
@@ -83,22 +87,26 @@ def is_significant(s: WindowScore, level: float, options: DiscoveryOptions) -> b
     return s.p_value < level and s.fall > options.min_fall
 
 
-def refit_level(scores: Sequence[WindowScore], options: DiscoveryOptions) -> float:
+def refit_level(
+    scores: Sequence[WindowScore], options: DiscoveryOptions, is_left: bool = False
+) -> float:
     """Returns the chance below which the effect of a score is refitted.
 
     A refit is no proof, for unseen records decide, and a score about a model from which something
     is missing is less sure than what is refitted. So one false refit is expected where nothing is
-    missing. Where a score is beyond chance among all, something is, and only its name is asked: the
-    right one may be a law whose score, by itself, is weak.
+    missing. Where a score is beyond chance among all, or the model errs by far more than its
+    sensors, something is missing and only its name is asked: the right one may be a law whose
+    score, by itself, is weak.
 
     Args:
         scores: of all candidates.
         options: what is beyond chance.
+        is_left: whether much is left of the error of the model that was scored.
     """
     strict = options.significance / max(1, len(scores))
     if not uses(options, "weak_scores"):
         return strict
-    is_missing = any(
+    is_missing = (is_left and uses(options, "scores_of_much_left")) or any(
         is_significant(s, strict, options) and is_plausible(s, options) for s in scores
     )
     return options.significance if is_missing else min(MAX_CHANCE, 1.0 / max(1, len(scores)))
@@ -122,17 +130,19 @@ def is_plausible(s: WindowScore, options: DiscoveryOptions) -> bool:
 
 
 def list_simpler(
-    winner: Candidate, scores: Sequence[WindowScore], options: DiscoveryOptions
-) -> list[WindowScore]:
+    winner: Candidate, scores: Sequence[WindowScore], options: DiscoveryOptions,
+    is_left: bool = False,
+) -> list[WindowScore]:  # fmt: skip
     """Returns the best scores of laws with fewer numbers that act as the winner does, at its place.
 
     Args:
         winner: which promised most.
         scores: of all candidates, the best first.
         options: what is beyond chance.
+        is_left: as `refit_level`.
     """
     each: dict[str, WindowScore] = {}
-    level = refit_level(scores, options)
+    level = refit_level(scores, options, is_left)
     for s in scores:
         c = s.candidate
         is_alike = c.where == winner.where and {*c.effect.hooks} == {*winner.effect.hooks}

@@ -30,7 +30,9 @@ from identification.prediction.crossing import at_all_lengths, at_their_best
 from identification.prediction.evidence import all_gains, count_windows, evidence
 from identification.prediction.extension import weighed, with_effect
 from identification.prediction.first_fit import Begun, begin
+from identification.prediction.forced import acts_on_joints
 from identification.prediction.model import WindowModel
+from identification.prediction.remaining import is_much_left
 from identification.prediction.scores import WindowScore, window_scores
 from identification.prediction.screening import has_what_it_needs
 from identification.prediction.trial import (
@@ -75,7 +77,8 @@ def refit_contenders(
         The model without them, its windows at the best states that any of them found, and they.
     """
     windows = sum(len(p.cut.starts) for p in model.fit.problem.parts)
-    chosen = list_contenders(scores, options, windows * len(model.scale))
+    is_left = is_much_left(model, options)
+    chosen = list_contenders(scores, options, windows * len(model.scale), is_left)
     if uses(options, "suggested_effects"):
         has = {*(s.candidate.key for s in chosen), *(c.key for c in model.candidates)}
         each = [c for c in suggested if c.key not in has and has_what_it_needs(model, c)]
@@ -122,12 +125,12 @@ def refit_contenders(
                 del each[k]
             else:
                 each[k] = judge_one(c)
-        return parent, [*each.values()]
+        return parent, with_names_of_curves(parent, [*each.values()], options, worse_fit)
 
     children = refit(_near_best(_begun(model, chosen, scores, options), options))
     parent, out = judge(model, children)
     proven = [c for c in out if c.is_proven]
-    curves = list_curves(scores, {s.candidate.key for s in chosen}, options)
+    curves = list_curves(scores, {s.candidate.key for s in chosen}, options, is_left)
     if curves and not proven and not is_late:
         refits += len(curves)
         more = refit(_near_best(_begun(model, curves, scores, options), options))
@@ -136,7 +139,7 @@ def refit_contenders(
     if proven and not is_late and uses(options, "simpler_laws"):
         best = max(proven, key=lambda c: c.criterion)
         tried = {c.candidate.key for c in out}
-        simpler = list_simpler(best.candidate, scores, options)
+        simpler = list_simpler(best.candidate, scores, options, is_left)
         rest = [s for s in simpler if s.candidate.key not in tried]
         more = refit(_begun(model, rest, scores, options))
         if more:
@@ -228,6 +231,37 @@ def judged(
         explained=model.fitted_power - new.fitted_power,
         doubt=doubt, luck=luck_of(found, refits, options),
     )  # fmt: skip
+
+
+def with_names_of_curves(
+    model: WindowModel, found: Sequence[Contender], options: DiscoveryOptions,
+    worse_fit: Unseen | None = None,
+) -> list[Contender]:  # fmt: skip
+    """Returns contenders, laws proven that miss the level for which a curve beside them stands.
+
+    A curve that is proven at a joint proves that something acts there, and pays for all that was
+    refitted. What it is called is then asked of one law at a time, by the evidence.
+
+    Args:
+        model: without them.
+        found: judged with the price of all of them.
+        options: what is beyond chance; the switch `names_of_curves`.
+        worse_fit: as `judged`.
+    """
+    places = {
+        c.candidate.where for c in found if c.is_proven and c.candidate.effect.is_curve
+    } if uses(options, "names_of_curves") else set()  # fmt: skip
+    return [
+        judged(model, c.model, 1, options, worse_fit)
+        if c.doubt == "chance" and c.candidate.where in places and _is_law_of_joints(c)
+        else c
+        for c in found
+    ]
+
+
+def _is_law_of_joints(c: Contender) -> bool:
+    effect = c.candidate.effect
+    return acts_on_joints(effect) and not effect.is_curve
 
 
 def _against(c: Contender) -> float:

@@ -94,7 +94,7 @@ def set_for_effects(state: WindowSearch, progress: Progress) -> WindowSearch:
     is_done = any(name == set_for_effects.__name__ for name in state.made)
     if is_done or not state.accepted or state.worse_fit is not None:
         return state
-    if not (_has_curve_beside_others(state) or is_much_left(state.model, state.task.options)):
+    if not (_has_curve(state) or is_much_left(state.model, state.task.options)):
         return state
     bare = replace(
         state, model=state.nominal, accepted=(), scores=state.nominal_scores, exchanged=None
@@ -115,9 +115,10 @@ def set_for_effects(state: WindowSearch, progress: Progress) -> WindowSearch:
     return replace(found, rejected=(*lost, *state.rejected))
 
 
-def _has_curve_beside_others(state: WindowSearch) -> bool:
-    """Returns whether one of several effects is a curve."""
-    return len(state.accepted) > 1 and any(a.candidate.effect.is_curve for a in state.accepted)
+def _has_curve(state: WindowSearch) -> bool:
+    """Returns whether an effect is a curve, which may draw what several laws do."""
+    is_asked = len(state.accepted) > 1 or uses(state.task.options, "lone_curves")
+    return is_asked and any(a.candidate.effect.is_curve for a in state.accepted)
 
 
 def _is_worse(chosen: WindowModel, present: WindowModel, options: DiscoveryOptions) -> bool:
