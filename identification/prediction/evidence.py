@@ -12,16 +12,14 @@ the price that BIC puts on numbers (Schwarz 1978), so that exp(E/2) are the odds
 resample (Kass, Raftery 1995): two laws that predict alike share them, however surely one is a
 little better. Blocks are drawn with replacement (bootstrap; Efron 1979).
 
-A law that brings states z of joints, such as what a servo has summed up, finds them anew in each
+A law that brings states of joints, such as what a servo has summed up, finds them anew in each
 window, unseen ones too. A state that is free there draws a constant force in each window, whatever
-makes it. So each window pays for what its readings tell of such a state (Laplace; MacKay 1992):
+makes it. So a window pays for what its readings tell of these states z, in the way of Laplace:
 
-    g_cb -> g_cb - 1/n_y Σ_z mean_w ln(1 + s_z² h_zw)
-    h_zw = |Z⊥|²/(L σ²),    s_z² = max(0, Σ_w (h_zw d_zw² - 1)/Σ_w h_zw)
+    g_cb -> g_cb - 1/n_y mean_w ln det(H_z|x)/det(H_z)
 
-Z⊥: slope of the L n_y errors of a window along z without what its other states make up for, of mean
-square σ², d_z: how far z was moved from where it was expected. A window is one sample here too, and
-s_z is how far the windows show z to scatter: a state that is where it was expected costs nothing.
+H_z: what was known of z before, 1/std²; H_z|x: the same with the readings of the window, beside its
+other states x (Schur complement; MacKay 1992, Occam's factor).
 """
 
 from __future__ import annotations
@@ -34,7 +32,6 @@ from identification.discovery.options import DiscoveryOptions
 from identification.discovery.passes import uses
 from identification.prediction.model import WindowModel
 from identification.windows.blocks import output_gains
-from identification.windows.shooting import Tangent
 
 RESAMPLES = 2000  # of the blocks: a probability is then known to a hundredth
 
@@ -61,46 +58,19 @@ def all_gains(without: WindowModel, with_it: WindowModel, options: DiscoveryOpti
 
 
 def states_price(without: WindowModel, with_it: WindowModel) -> float:
-    """Returns what a window pays for the states of joints that only the second model has.
-
-    Args:
-        without: the first model.
-        with_it: the second one, of whose states the last may be new.
-    """
+    """Returns what a fitted window pays for the states of joints that only the second model has."""
     new = with_it.plant.model.na - without.plant.model.na
     if new <= 0:
         return 0.0
-    each = zip(with_it.fit.problem.parts, with_it.fit.tangents, strict=True)
-    told = [_told_of_states(part.cut.outputs[0].size, t, new) for part, t in each]
-    squares = np.mean(np.concatenate([r.ravel() for r, _ in told]) ** 2)
-    samples = with_it.fit.problem.parts[0].cut.outputs.shape[1]
-    h = np.concatenate([information for _, information in told]) / (samples * squares)
-    return price_of_states(h, np.concatenate([d[:, -new:] for d in with_it.fit.moves]))
-
-
-def _told_of_states(readings: int, t: Tangent, new: int) -> tuple[np.ndarray, np.ndarray]:
-    """Returns errors of windows (W, L ny), and |Z⊥|² of their last states, shape (W, new)."""
-    X = (t.U * t.s[:, None]) @ t.Vt * t.size[:, None]
-    H = np.swapaxes(X, 1, 2) @ X
-    Z = X[:, :readings, -new:]
-    others = X[..., :-new]
-    along = np.linalg.solve(H[:, :-new, :-new], np.swapaxes(others[:, :readings], 1, 2) @ Z)
-    told = np.sum(Z * (Z - others[:, :readings] @ along), axis=1)
-    return t.r[:, :readings], np.maximum(0.0, told)
-
-
-def price_of_states(h: np.ndarray, d: np.ndarray) -> float:
-    """Returns Σ_z mean_w ln(1 + s_z² h_zw).
-
-    Args:
-        h: what a window tells of a state, shape (W, z).
-        d: where the windows find the states, from where they were expected, shape (W, z).
-    """
-    total = h.sum(axis=0)
-    scatter = np.divide(
-        np.sum(h * d**2 - 1, axis=0), total, out=np.zeros_like(total), where=total > 0
-    )
-    return float(np.log1p(np.maximum(0.0, scatter) * h).mean(axis=0).sum())
+    total, windows = 0.0, 0
+    for part, t in zip(with_it.fit.problem.parts, with_it.fit.tangents, strict=True):
+        X = (t.U * t.s[:, None]) @ t.Vt * t.size[:, None]
+        H = np.swapaxes(X, 1, 2) @ X  # the rows of X behind the readings are what was known
+        told = np.linalg.slogdet(H)[1] - np.linalg.slogdet(H[:, :-new, :-new])[1]
+        known = np.sum(np.log(part.first.weight[-new:] ** 2))
+        total += float(np.sum(told - known))
+        windows += len(told)
+    return total / windows
 
 
 def count_windows(model: WindowModel) -> int:
