@@ -58,9 +58,6 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
     "names_of_curves": (
         HORIZON, "asks the chance of a law alone where a curve proves that something acts there",
     ),
-    "price_of_states": (
-        HORIZON, "lets each window pay for the states of joints that an effect finds in it",
-    ),
     "lone_curves": (HORIZON, "tries a set in the place of one curve that was found alone"),
     "large_scores": (
         HORIZON, "refits effects whose scores ask for too large a size: the refit judges the size",

@@ -11,15 +11,6 @@ nothing beside one whose noise is larger in units of s. E is twice the gain of a
 the price that BIC puts on numbers (Schwarz 1978), so that exp(E/2) are the odds of a law in one
 resample (Kass, Raftery 1995): two laws that predict alike share them, however surely one is a
 little better. Blocks are drawn with replacement (bootstrap; Efron 1979).
-
-A law that brings states of joints, such as what a servo has summed up, finds them anew in each
-window, unseen ones too. A state that is free there draws a constant force in each window, whatever
-makes it. So a window pays for what its readings tell of these states z, in the way of Laplace:
-
-    g_cb -> g_cb - 1/n_y mean_w ln det(H_z|x)/det(H_z)
-
-H_z: what was known of z before, 1/std²; H_z|x: the same with the readings of the window, beside its
-other states x (Schur complement; MacKay 1992, Occam's factor).
 """
 
 from __future__ import annotations
@@ -53,24 +44,7 @@ def all_gains(without: WindowModel, with_it: WindowModel, options: DiscoveryOpti
     if not uses(options, "gains_of_outputs"):
         before, after = ([x.mean(axis=1, keepdims=True) for x in each] for each in (before, after))
         noise = np.array([without.unseen.floor])
-    price = states_price(without, with_it) if uses(options, "price_of_states") else 0.0
-    return np.concatenate(output_gains(before, after, noise)) - price / len(noise)
-
-
-def states_price(without: WindowModel, with_it: WindowModel) -> float:
-    """Returns what a fitted window pays for the states of joints that only the second model has."""
-    new = with_it.plant.model.na - without.plant.model.na
-    if new <= 0:
-        return 0.0
-    total, windows = 0.0, 0
-    for part, t in zip(with_it.fit.problem.parts, with_it.fit.tangents, strict=True):
-        X = (t.U * t.s[:, None]) @ t.Vt * t.size[:, None]
-        H = np.swapaxes(X, 1, 2) @ X  # the rows of X behind the readings are what was known
-        told = np.linalg.slogdet(H)[1] - np.linalg.slogdet(H[:, :-new, :-new])[1]
-        known = np.sum(np.log(part.first.weight[-new:] ** 2))
-        total += float(np.sum(told - known))
-        windows += len(told)
-    return total / windows
+    return np.concatenate(output_gains(before, after, noise))
 
 
 def count_windows(model: WindowModel) -> int:

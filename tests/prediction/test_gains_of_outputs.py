@@ -25,7 +25,6 @@ def model(errors, noise, scale):
     powers = (noise / scale) ** 2
     return SimpleNamespace(
         fit=SimpleNamespace(errors=(fitted,)), scale=scale,
-        plant=SimpleNamespace(model=SimpleNamespace(na=0)),
         unseen=SimpleNamespace(select=told, noise=powers, floor=float(powers.mean())),
     )  # fmt: skip
 
