@@ -58,6 +58,9 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
     "names_of_curves": (
         HORIZON, "asks the chance of a law alone where a curve proves that something acts there",
     ),
+    "free_states": (
+        HORIZON, "takes no law with states of its joints where a smooth force there gains as much",
+    ),
     "lone_curves": (HORIZON, "tries a set in the place of one curve that was found alone"),
     "large_scores": (
         HORIZON, "refits effects whose scores ask for too large a size: the refit judges the size",

@@ -31,6 +31,7 @@ from identification.prediction.evidence import all_gains, count_windows, evidenc
 from identification.prediction.extension import weighed, with_effect
 from identification.prediction.first_fit import Begun, begin
 from identification.prediction.forced import acts_on_joints
+from identification.prediction.free_states import is_smooth_force
 from identification.prediction.model import WindowModel
 from identification.prediction.remaining import is_much_left
 from identification.prediction.scores import WindowScore, window_scores
@@ -224,6 +225,8 @@ def judged(
     if doubt is None and uses(options, "impossible_sizes"):
         logs = [p.predictor.log for p in new.fit.problem.parts]
         doubt = find_impossible(c, new, logs)
+    if doubt is None and uses(options, "free_states") and is_smooth_force(model, new):
+        doubt = "drawn"
     if doubt in REFUTED and _explains_fitted(model, new, options):
         doubt = "differ"
     return Contender(

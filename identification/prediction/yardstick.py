@@ -91,14 +91,16 @@ def may_draw(curve: Effect, law: Effect) -> bool:
 
 
 def measure(
-    model: WindowModel, effects: Sequence[Effect], is_left: bool = False
-) -> Yardstick | None:
+    model: WindowModel, effects: Sequence[Effect], is_left: bool = False,
+    joints: Sequence[str] = (),
+) -> Yardstick | None:  # fmt: skip
     """Returns what smooth forces would still explain beside a model; None where there are none.
 
     Args:
         model: fitted.
         effects: of the catalogue, of which the curves of a joint make the smooth forces.
         is_left: whether the model leaves something, so that forces of two variables are asked too.
+        joints: the only ones that are asked, in words; all of them when empty.
 
     Raises:
         DivergenceError: the model cannot be simulated beside its values.
@@ -106,12 +108,13 @@ def measure(
     has = {c.key for c in model.candidates}
     curves = [e for e in effects if e.is_curve and e.name.endswith(OF_JOINT)]
     each = [c for c in list_common(curves) if c.key not in has and c.effect.places[c.where]]
+    each = [c for c in each if c.where in joints or not joints]
     if not each:
         return None
     # What laws took away was measured in these units too.
     fit = model.fit.weighed(model.scale)
     scores = window_scores(fit, each)
-    surfaces, fit = _with_surfaces(model, fit) if is_left else ([], fit)
+    surfaces, fit = _with_surfaces(model, fit, joints) if is_left else ([], fit)
     each = [*each, *surfaces]
     columns = [len(c.sizes) for c in each]
     fit = some_windows(fit) if sum(columns) > MAX_SCORED else fit
@@ -128,10 +131,10 @@ def measure(
     def left(force: SmoothForce) -> float:
         return min(1.0, force.gain / float(squares.sum()))
 
-    joints = dict.fromkeys(c.where for c in each)
-    forces = {j: force([k for k, c in enumerate(each) if c.where == j]) for j in joints}
+    asked = dict.fromkeys(c.where for c in each)
+    forces = {j: force([k for k, c in enumerate(each) if c.where == j]) for j in asked}
     of_joint = {j: left(f) for j, f in forces.items()}
-    every = of_joint[next(iter(joints))] if len(joints) == 1 else left(force(range(len(each))))
+    every = of_joint[next(iter(asked))] if len(asked) == 1 else left(force(range(len(each))))
 
     def beyond(law: Candidate, joint: str) -> Beyond:
         others = [k for k, c in enumerate(each)
@@ -148,22 +151,25 @@ def measure(
     return Yardstick(every, of_joint, found, scores)
 
 
-def _with_surfaces(model: WindowModel, fit: WindowFit) -> tuple[list[Candidate], WindowFit]:
-    """Returns the surfaces at the joints on which laws act, and a fit in a plant that has them.
+def _with_surfaces(
+    model: WindowModel, fit: WindowFit, joints: Sequence[str]
+) -> tuple[list[Candidate], WindowFit]:
+    """Returns the surfaces at some joints, and a fit in a plant that has them.
 
-    Without laws they are those of all joints. There are none at very many joints.
+    Where no joints are given, they are those on which laws act; without laws, all. There are none
+    at very many joints.
     """
     plant = model.plant
     if not isinstance(plant, JointPlant):
         return [], fit
     laws = [c for c in model.candidates if acts_on_joints(c.effect)]
-    at = {
+    at = {*joints} or {
         joint
         for c in laws
         for joint in (places_of(c.where) if c.effect.places.get(c.where) else c.effect.places)
     }
     effects = surface_effects(plant.axes)
-    chosen = [c for c in list_common(effects) if c.where in at or not laws]
+    chosen = [c for c in list_common(effects) if c.where in at or not at]
     if not 0 < len({c.where for c in chosen}) <= MAX_SURFACE_JOINTS:
         return [], fit
     there = plant.with_effects(effects)
