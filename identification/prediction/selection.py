@@ -9,6 +9,7 @@ chosen        of the proven ones the one for which most speaks (`evidence`), or 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -148,7 +149,26 @@ def refit_contenders(
     for c in out:
         change, t = fall_words(c.prediction.fall), c.prediction.t
         progress(f"{_label(c.candidate)}: mean square error on unseen records {change}, t {t:z.1f}")
-    return parent, ranked(out, options)
+    found = ranked(out, options)
+    while found and found[0] is not (best := without_free_states(parent, found[0], options)):
+        found = ranked([best, *found[1:]], options)
+    return parent, found
+
+
+def without_free_states(
+    model: WindowModel, found: Contender, options: DiscoveryOptions
+) -> Contender:
+    """Returns a contender, unproven where a smooth force gains as much as its states do.
+
+    Args:
+        model: without it.
+        found: what was refitted.
+        options: the switch `free_states`.
+    """
+    is_asked = found.is_proven and uses(options, "free_states")
+    return (
+        replace(found, doubt="drawn") if is_asked and is_smooth_force(model, found.model) else found
+    )
 
 
 def _begun(
@@ -225,8 +245,6 @@ def judged(
     if doubt is None and uses(options, "impossible_sizes"):
         logs = [p.predictor.log for p in new.fit.problem.parts]
         doubt = find_impossible(c, new, logs)
-    if doubt is None and uses(options, "free_states") and is_smooth_force(model, new):
-        doubt = "drawn"
     if doubt in REFUTED and _explains_fitted(model, new, options):
         doubt = "differ"
     return Contender(

@@ -16,7 +16,7 @@ from identification.prediction.crossing import at_all_lengths, at_their_best
 from identification.prediction.exchange import exchanged, is_contradicted
 from identification.prediction.extension import refitted, with_fitting_steps
 from identification.prediction.model import WindowModel
-from identification.prediction.selection import judged
+from identification.prediction.selection import judged, without_free_states
 from identification.prediction.set_choice import find_members
 from identification.prediction.set_members import Key
 from identification.prediction.task import WindowSearch
@@ -75,7 +75,8 @@ def _beside(state: WindowSearch, model: WindowModel, key: Key, refits: int) -> C
     best = replace(model, candidates=(*rest, *mine))
     if uses(task.options, "states_of_others"):
         without, (best,) = at_their_best(without, [best], task.horizon, task.confirm)
-    return judged(without, best, max(1, refits), task.options)
+    found = judged(without, best, max(1, refits), task.options)
+    return without_free_states(without, found, task.options)
 
 
 def _is_contradicted(state: WindowSearch, parent: WindowModel, whole: WindowModel) -> bool:
