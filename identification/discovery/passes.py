@@ -29,6 +29,9 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
         HORIZON, "fits a friction that gives before it slips from its largest compliance",
     ),
     "add_set": (HORIZON, "adds several effects that are proven together and not alone"),
+    "plain_sets": (
+        HORIZON, "leaves laws with states of joints, on which a linear choice errs, out of sets",
+    ),
     "set_for_effects": (
         HORIZON, "puts effects that are proven together in the place of those found one by one",
     ),
@@ -55,8 +58,9 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
     "scores_of_much_left": (
         HORIZON, "refits effects by their own chance, not that of all, where much is left",
     ),
-    "names_of_curves": (
-        HORIZON, "asks the chance of a law alone where a curve proves that something acts there",
+    "proof_by_both_roles": (
+        HORIZON, "proves the likeliest law by blocks of fitted records too, as fits of the others"
+        " predict them",
     ),
     "free_states": (
         HORIZON, "takes no law with states of its joints where a smooth force there gains as much",

@@ -4,6 +4,10 @@ Which records are fitted is a choice, and physics does not depend on it. An effe
 with one choice is contradicted where, with the roles of the records exchanged, it predicts worse on
 average, or one of the records. It need not be proven once more: the records that confirm may be few
 and tell little. A curve of the data is not asked: a record tells only the nodes that it reaches.
+
+Where records that confirm are too few to prove the likeliest law, which misses chance alone, both
+roles prove it together: the blocks of all records are then the sample, each predicted by a fit that
+has not seen it (cross-fitting; Chernozhukov and others 2018).
 """
 
 from __future__ import annotations
@@ -20,8 +24,16 @@ from identification.prediction.crossing import at_their_best
 from identification.prediction.extension import MAX_LINEARISATIONS
 from identification.prediction.first_fit import REFIT_TOLERANCE
 from identification.prediction.model import WindowModel, predict_fitted
-from identification.prediction.trial import Contender, compared, contradicts_a_record
+from identification.prediction.selection import doubt_of_size, ranked
+from identification.prediction.trial import (
+    Contender,
+    compared,
+    contradicts_a_record,
+    find_doubt,
+    luck_of,
+)
 from identification.progress import Progress
+from identification.windows.comparison import joined
 from identification.windows.fit import solve
 from identification.windows.problem import ROUGH_STEPS, Problem, no_moves, problem
 from identification.windows.records import Record
@@ -59,6 +71,39 @@ def without_contradicted(
         progress(f"{c.effect.name}, {c.where}: contradicted where the records exchange their roles")
         contradicted.append(replace(rest.pop(0), doubt="exchange"))
     return (*contradicted, *rest), None
+
+
+def with_both_roles(
+    tried: Sequence[Contender], without: WindowModel, records: Sequence[Record], horizon: float,
+    options: DiscoveryOptions,
+) -> tuple[Contender, ...]:  # fmt: skip
+    """Returns contenders, of which the likeliest is proven if blocks of all records prove it.
+
+    It is asked where it is a law that misses chance alone.
+
+    Args:
+        tried: contenders in their order.
+        without: the model without them, with the roles of the records exchanged.
+        records: to fit and to confirm.
+        horizon: [s].
+        options: what is beyond chance, and what matters.
+    """
+    best = max(tried, key=lambda c: c.criterion)
+    if best.doubt != "chance" or best.candidate.effect.is_curve:
+        return tuple(tried)
+    with_it = exchanged(best.model, records, horizon)
+    if with_it is None:
+        return tuple(tried)
+    if uses(options, "states_of_others"):
+        unseen = [r for r in records if r.role == "fit"]
+        without, (with_it,) = at_their_best(without, [with_it], horizon, unseen)
+    both = joined(best.prediction, compared(without.unseen, with_it.unseen, options))
+    tested = replace(best.prediction, t=both.t, chance=both.chance, rank_chance=both.rank_chance)
+    asked = replace(best, prediction=tested, luck=luck_of(both, best.refits, options))
+    doubt = find_doubt(both, best.refits, options)
+    if doubt is None:
+        doubt = doubt_of_size(best.model, options)
+    return ranked([replace(asked, doubt=doubt), *(c for c in tried if c is not best)], options)
 
 
 def exchanged(model: WindowModel, records: Sequence[Record], horizon: float) -> WindowModel | None:

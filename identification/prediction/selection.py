@@ -31,7 +31,6 @@ from identification.prediction.crossing import at_all_lengths, at_their_best
 from identification.prediction.evidence import all_gains, count_windows, evidence
 from identification.prediction.extension import weighed, with_effect
 from identification.prediction.first_fit import Begun, begin
-from identification.prediction.forced import acts_on_joints
 from identification.prediction.free_states import is_smooth_force
 from identification.prediction.model import WindowModel
 from identification.prediction.remaining import is_much_left
@@ -127,7 +126,7 @@ def refit_contenders(
                 del each[k]
             else:
                 each[k] = judge_one(c)
-        return parent, with_names_of_curves(parent, [*each.values()], options, worse_fit)
+        return parent, [*each.values()]
 
     children = refit(_near_best(_begun(model, chosen, scores, options), options))
     parent, out = judge(model, children)
@@ -238,51 +237,32 @@ def judged(
     doubt: Doubt | None = "numbers" if gain <= 0 else find_doubt(found, refits, options)
     if doubt is None and worse_fit and _is_worse(new.unseen, model.unseen, options):
         doubt = "record"
-    if doubt is None and not has_size(new, options):
-        doubt = "size"
-    if doubt is None and is_at_bound(new):
-        doubt = "bound"
-    if doubt is None and uses(options, "impossible_sizes"):
-        logs = [p.predictor.log for p in new.fit.problem.parts]
-        doubt = find_impossible(c, new, logs)
+    if doubt is None:
+        doubt = doubt_of_size(new, options)
     if doubt in REFUTED and _explains_fitted(model, new, options):
         doubt = "differ"
     return Contender(
         model=new, prediction=found, gains=gains, numbers=numbers, criterion=gain,
         explained=model.fitted_power - new.fitted_power,
-        doubt=doubt, luck=luck_of(found, refits, options),
+        doubt=doubt, luck=luck_of(found, refits, options), refits=refits,
     )  # fmt: skip
 
 
-def with_names_of_curves(
-    model: WindowModel, found: Sequence[Contender], options: DiscoveryOptions,
-    worse_fit: Unseen | None = None,
-) -> list[Contender]:  # fmt: skip
-    """Returns contenders, laws proven that miss the level for which a curve beside them stands.
-
-    A curve that is proven at a joint proves that something acts there, and pays for all that was
-    refitted. What it is called is then asked of one law at a time, by the evidence.
+def doubt_of_size(model: WindowModel, options: DiscoveryOptions) -> Doubt | None:
+    """Returns what is against the size of the last effect of a model; None where nothing is.
 
     Args:
-        model: without them.
-        found: judged with the price of all of them.
-        options: what is beyond chance; the switch `names_of_curves`.
-        worse_fit: as `judged`.
+        model: with the effect.
+        options: what is beyond chance.
     """
-    places = {
-        c.candidate.where for c in found if c.is_proven and c.candidate.effect.is_curve
-    } if uses(options, "names_of_curves") else set()  # fmt: skip
-    return [
-        judged(model, c.model, 1, options, worse_fit)
-        if c.doubt == "chance" and c.candidate.where in places and _is_law_of_joints(c)
-        else c
-        for c in found
-    ]
-
-
-def _is_law_of_joints(c: Contender) -> bool:
-    effect = c.candidate.effect
-    return acts_on_joints(effect) and not effect.is_curve
+    if not has_size(model, options):
+        return "size"
+    if is_at_bound(model):
+        return "bound"
+    if not uses(options, "impossible_sizes"):
+        return None
+    logs = [p.predictor.log for p in model.fit.problem.parts]
+    return find_impossible(model.candidates[-1], model, logs)
 
 
 def _against(c: Contender) -> float:

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from identification.discovery.options import DiscoveryOptions
+from identification.discovery.passes import uses
 from identification.prediction.contenders import count_numbers
 from identification.prediction.evidence import all_gains, count_windows, evidence
 from identification.prediction.extension import refitted
@@ -39,7 +40,11 @@ def each_at_its_best(
 ) -> tuple[WindowModel, dict[Key, Place]]:
     """Returns the model in which each member is the best in its place, and what was tried there."""
     task, options = state.task, state.task.options
-    laws = [e for e in task.effects if not e.is_curve and not e.is_of_records]
+    is_plain = uses(options, "plain_sets")
+    laws = [
+        e for e in task.effects
+        if not e.is_curve and not e.is_of_records and not (is_plain and e.state)
+    ]  # fmt: skip
     asked, places = [c.key for c in find_members(model, state.model)], dict[Key, Place]()
     for key in asked if len(asked) > 1 else ():
         rest = [c for c in model.candidates if c.key != key]

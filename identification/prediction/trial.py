@@ -67,6 +67,7 @@ class Contender:
     explained: float  # fall of the mean square of the fitted windows, in units of s²
     doubt: Doubt | None  # why it is not proven; None where it is
     luck: float = np.nan  # chance that one of all that were refitted gains as much by luck
+    refits: int = 1  # how many effects were refitted, which chance has to pay for
     # what else was refitted in its place and may be meant, once it is accepted
     alternatives: tuple[Contender, ...] = ()
     # what is beside it, where it was judged beside effects that have left the model since

@@ -79,6 +79,21 @@ def compare(
     return replace(decided, untouched=told)
 
 
+def joined(one: Prediction, other: Prediction) -> Prediction:
+    """Returns the first of two predictions, its test and its records those of both.
+
+    Args:
+        one: of some records.
+        other: of other ones, which the fit of the first has seen and its own has not.
+    """
+    blocks = (*one.blocks, *other.blocks)
+    t, chance = stratified_mean_above_zero(blocks)
+    return replace(
+        one, t=t, chance=chance, rank_chance=ranks_above_zero(np.concatenate(blocks)),
+        record_falls=(*one.record_falls, *other.record_falls), blocks=blocks,
+    )  # fmt: skip
+
+
 def _compare(without: Unseen, with_it: Unseen, by_outputs: bool, by_records: bool) -> Prediction:
     """Returns the same of all windows of two models."""
     falls, of_outputs, gains = [], [], []

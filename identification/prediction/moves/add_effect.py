@@ -15,7 +15,7 @@ from functools import partial
 from identification.discovery.attempts import attempt
 from identification.discovery.moves import Watch
 from identification.discovery.passes import uses
-from identification.prediction.exchange import exchanged, without_contradicted
+from identification.prediction.exchange import exchanged, with_both_roles, without_contradicted
 from identification.prediction.extension import weighed, with_fitting_steps
 from identification.prediction.finer_steps import (
     at_finer_steps,
@@ -41,6 +41,7 @@ def add_effect(state: WindowSearch, progress: Progress) -> WindowSearch:
     )  # fmt: skip
     nominal = state.nominal if state.accepted else parent
     state = replace(state, model=parent, nominal=nominal)
+    state, tried = _proven_by_both(state, tried)
     if _may_be_of_steps(state, tried):
         watch.stop("refits")
         finer = at_finer_steps(state)
@@ -74,6 +75,29 @@ def add_effect(state: WindowSearch, progress: Progress) -> WindowSearch:
     )  # fmt: skip
 
 
+def _proven_by_both(
+    state: WindowSearch, tried: tuple[Contender, ...]
+) -> tuple[WindowSearch, tuple[Contender, ...]]:
+    """Returns contenders, the likeliest judged by both roles of the records where chance is all.
+
+    The state keeps the fit of the model without them to the records that confirm.
+    """
+    task = state.task
+    is_asked = uses(task.options, "proof_by_both_roles") and _may_exchange(state)
+    if not (is_asked and tried and max(tried, key=lambda c: c.criterion).doubt == "chance"):
+        return state, tried
+    without = state.exchanged or exchanged(state.model, task.records, task.horizon)
+    if without is None:
+        return state, tried
+    found = with_both_roles(tried, without, task.records, task.horizon, task.options)
+    return replace(state, exchanged=without), found
+
+
+def _may_exchange(state: WindowSearch) -> bool:
+    """Returns whether a fit began the search; other values have nothing to exchange."""
+    return state.worse_fit is None or bool(state.accepted)
+
+
 def _may_be_of_steps(state: WindowSearch, tried: Sequence[Contender]) -> bool:
     """Returns whether finer steps are to be asked of the effect that is to be accepted.
 
@@ -96,13 +120,9 @@ def _without_made(state: WindowSearch, tried: Sequence[Contender]) -> tuple[Cont
 def _checked(
     state: WindowSearch, tried: tuple[Contender, ...], progress: Progress
 ) -> tuple[tuple[Contender, ...], WindowModel | None]:
-    """Returns contenders, contradicted ones unproven, and the first one with roles exchanged.
-
-    Where the search began at values that no fit found, there is nothing to exchange.
-    """
+    """Returns contenders, contradicted ones unproven, and the first one with roles exchanged."""
     task = state.task
-    begun_elsewhere = state.worse_fit is not None and not state.accepted
-    is_asked = uses(task.options, "exchange_roles") and not begun_elsewhere
+    is_asked = uses(task.options, "exchange_roles") and _may_exchange(state)
     if not is_asked or not tried or not tried[0].is_proven:
         return tried, None
     without = state.exchanged or exchanged(state.model, task.records, task.horizon)
