@@ -77,9 +77,7 @@ def with_both_roles(
     tried: Sequence[Contender], without: WindowModel, records: Sequence[Record], horizon: float,
     options: DiscoveryOptions,
 ) -> tuple[Contender, ...]:  # fmt: skip
-    """Returns contenders, of which the likeliest is proven if blocks of all records prove it.
-
-    It is asked where it is a law that misses chance alone.
+    """Returns contenders, one that misses chance alone proven if blocks of all records prove it.
 
     Args:
         tried: contenders in their order.
@@ -88,8 +86,8 @@ def with_both_roles(
         horizon: [s].
         options: what is beyond chance, and what matters.
     """
-    best = max(tried, key=lambda c: c.criterion)
-    if best.doubt != "chance" or best.candidate.effect.is_curve:
+    best = missing_chance_alone(tried, options)
+    if best is None:
         return tuple(tried)
     with_it = exchanged(best.model, records, horizon)
     if with_it is None:
@@ -104,6 +102,20 @@ def with_both_roles(
     if doubt is None:
         doubt = doubt_of_size(best.model, options)
     return ranked([replace(asked, doubt=doubt), *(c for c in tried if c is not best)], options)
+
+
+def missing_chance_alone(tried: Sequence[Contender], options: DiscoveryOptions) -> Contender | None:
+    """Returns the law that would be taken if chance did not matter; None where one is taken anyway.
+
+    Args:
+        tried: contenders.
+        options: what matters.
+    """
+    each = [replace(c, doubt=None) if c.doubt == "chance" else c for c in tried]
+    first = next(iter(ranked(each, options)), None)
+    best = next((c for c in tried if first and c.candidate is first.candidate), None)
+    is_law = best is not None and not best.candidate.effect.is_curve
+    return best if best is not None and best.doubt == "chance" and is_law else None
 
 
 def exchanged(model: WindowModel, records: Sequence[Record], horizon: float) -> WindowModel | None:

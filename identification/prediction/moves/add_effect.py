@@ -15,7 +15,12 @@ from functools import partial
 from identification.discovery.attempts import attempt
 from identification.discovery.moves import Watch
 from identification.discovery.passes import uses
-from identification.prediction.exchange import exchanged, with_both_roles, without_contradicted
+from identification.prediction.exchange import (
+    exchanged,
+    missing_chance_alone,
+    with_both_roles,
+    without_contradicted,
+)
 from identification.prediction.extension import weighed, with_fitting_steps
 from identification.prediction.finer_steps import (
     at_finer_steps,
@@ -84,7 +89,7 @@ def _proven_by_both(
     """
     task = state.task
     is_asked = uses(task.options, "proof_by_both_roles") and _may_exchange(state)
-    if not (is_asked and tried and max(tried, key=lambda c: c.criterion).doubt == "chance"):
+    if not is_asked or missing_chance_alone(tried, task.options) is None:
         return state, tried
     without = state.exchanged or exchanged(state.model, task.records, task.horizon)
     if without is None:
