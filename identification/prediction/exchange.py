@@ -112,10 +112,11 @@ def missing_chance_alone(tried: Sequence[Contender], options: DiscoveryOptions) 
         options: what matters.
     """
     each = [replace(c, doubt=None) if c.doubt == "chance" else c for c in tried]
-    first = next(iter(ranked(each, options)), None)
-    best = next((c for c in tried if first and c.candidate is first.candidate), None)
-    is_law = best is not None and not best.candidate.effect.is_curve
-    return best if best is not None and best.doubt == "chance" and is_law else None
+    if not each:
+        return None
+    first = ranked(each, options)[0]
+    best = next(c for c, asked in zip(tried, each, strict=True) if asked is first)
+    return best if best.doubt == "chance" and not best.candidate.effect.is_curve else None
 
 
 def exchanged(model: WindowModel, records: Sequence[Record], horizon: float) -> WindowModel | None:

@@ -25,7 +25,13 @@ from identification.discovery.options import DiscoveryOptions
 from identification.model.predictor import Predictor
 from identification.prediction import remaining
 from identification.prediction.discovery import discover_records
-from identification.prediction.exchange import exchanged, is_contradicted, without_contradicted
+from identification.prediction.exchange import (
+    exchanged,
+    is_contradicted,
+    missing_chance_alone,
+    with_both_roles,
+    without_contradicted,
+)
 from identification.prediction.model import predict_fitted
 from identification.prediction.nominal_fit import fit_nominal
 from identification.prediction.remaining import needed_input_error
@@ -95,6 +101,60 @@ def test_a_curve_is_not_asked_because_a_record_tells_only_the_nodes_that_it_reac
         )  # fmt: skip
         tried, _ = without_contradicted([contender], bare, every, HORIZON, OPTIONS, lambda _: None)
         assert [t.doubt for t in tried] == [doubt]
+
+
+def unproven(second, doubt="chance", is_curve=False, **weak):
+    """A law whose gains in the records that confirm are no proof by themselves."""
+    _, without, with_it = pair(second)
+    (c,) = with_it.candidates
+    if is_curve:
+        with_it = replace(
+            with_it, candidates=(replace(c, effect=replace(c.effect, name="curve_speed")),)
+        )
+    seen = replace(compare(without.unseen, with_it.unseen), t=1.0, chance=0.2, rank_chance=0.2)
+    return Contender(
+        model=with_it, gains=np.zeros(4), numbers=1, doubt=doubt, prediction=seen, criterion=1.0,
+        explained=0.0, luck=0.2, **weak,
+    )  # fmt: skip
+
+
+def judged_by_both(second, contender):
+    every, *_ = pair(second)
+    (found,) = with_both_roles([contender], other_side(second)[0], every, HORIZON, OPTIONS)
+    return found
+
+
+def test_a_law_that_misses_chance_alone_is_proven_by_blocks_of_all_records():
+    weak = unproven("has it")
+    found = judged_by_both("has it", weak)
+    assert found.doubt is None
+    assert found.prediction.chance < OPTIONS.significance
+    assert found.luck < OPTIONS.significance
+    assert found.prediction.records == weak.prediction.records  # told of those that confirm
+
+
+def test_the_price_of_many_refits_is_asked_of_both_roles_too():
+    assert judged_by_both("has it", unproven("has it", refits=10**18)).doubt == "chance"
+
+
+def test_a_law_that_a_fitted_record_lacks_is_not_proven_by_it():
+    assert judged_by_both("lacks it", unproven("lacks it")).doubt is not None
+
+
+@pytest.mark.parametrize("doubt", [None, "record", "bound", "numbers"])
+def test_only_what_misses_chance_alone_is_asked(doubt):
+    assert missing_chance_alone([unproven("has it", doubt)], OPTIONS) is None
+
+
+def test_no_curve_is_asked_in_both_roles():
+    assert missing_chance_alone([unproven("has it", is_curve=True)], OPTIONS) is None
+
+
+def test_a_proven_law_that_is_likelier_leaves_nothing_to_ask():
+    weak = unproven("has it")
+    best = replace(weak, doubt=None, criterion=100.0)
+    assert missing_chance_alone([best, weak], OPTIONS) is None
+    assert missing_chance_alone([replace(best, criterion=-100.0), weak], OPTIONS) is weak
 
 
 def test_a_law_that_one_fitted_record_lacks_is_proven_and_then_contradicted():
