@@ -25,7 +25,7 @@ def hook_values(function: Function, states: np.ndarray, numbers: Sequence[float]
         states: rows with the fields of `Joint`, each contiguous, shape (P, fields).
         numbers: the parameters, sizes first.
     """
-    out, p = np.empty(len(states)), np.array(numbers, float)
+    out, p = np.zeros(len(states)), np.array(numbers, float)
     run = _compiled(function, len(p))
     run(len(states), states.ctypes.data, states.strides[0], p.ctypes.data, out.ctypes.data)
     return out

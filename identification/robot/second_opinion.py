@@ -9,7 +9,7 @@ at that joint. A name that is no candidate of the search, such as a gain, is lef
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 from identification.discovery.candidates import iterate_shapes
@@ -115,11 +115,27 @@ def suggest(evidence: Evidence, robot: Robot) -> tuple[Candidate, ...]:
         shape = {name: value for name, value, _ in m.shape}
         for names in OF_A_LOAD if m.name == "load" else ((m.name,),):
             each = [known[n] for n in names if n in known and m.where in known[n].places]
-            out += [Candidate(e, m.where, shape or next(iterate_shapes(e))) for e in each]
+            out += [Candidate(e, m.where, _believed(e, shape)) for e in each]
             if each:
                 break
     changed = [(c.effect.needs, c.where) for c in out if c.effect.needs]
     return (*out, *_frictions(evidence, robot, known, changed))
+
+
+def _believed(effect: Effect, told: Mapping[str, float]) -> dict[str, float]:
+    """Returns shapes that torques tell, moved to the nearest that the search believes.
+
+    Torques see a jump within one sample, which a simulation cannot: it takes some time there.
+
+    Args:
+        effect: the candidate of the search.
+        told: values by name; the first ones to try where there are none.
+    """
+    first = next(iterate_shapes(effect))
+    return {
+        shape.name: min(max(told.get(shape.name, first[shape.name]), shape.lower), shape.upper)
+        for shape in effect.shapes
+    }
 
 
 def _frictions(

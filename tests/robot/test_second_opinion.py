@@ -10,7 +10,7 @@ from elbow_cases import elbow
 from identification.errors import InputError
 from identification.report.opinion_words import opinion_sentences
 from identification.robot import second_opinion
-from identification.robot.second_opinion import ask_torques, opinions, with_torques
+from identification.robot.second_opinion import ask_torques, opinions, suggest, with_torques
 
 
 def test_torques_find_the_size_that_a_search_over_windows_has_found():
@@ -85,3 +85,17 @@ def test_torques_that_tell_nothing_are_no_opinion_and_where_nothing_is_missing_n
 
     monkeypatch.setattr(second_opinion, "fit_torques", refused)
     assert ask_torques(robot) is None
+
+
+def test_a_jump_that_torques_see_within_a_sample_takes_some_time_in_a_simulation():
+    """With a width of zero its law divided by zero, and its score was whatever memory held."""
+    robot, _ = elbow()
+    jump = next(e for e in robot.candidates if e.name == "friction_jump")
+    missing = SimpleNamespace(
+        name=jump.name, where=next(iter(jump.places)), shape=(("t_j", 0.6, "s"), ("w", 0.0, "s")),
+    )  # fmt: skip
+    evidence = SimpleNamespace(named=[SimpleNamespace(missing=missing)], scores=(), friction=())
+    (found,) = suggest(evidence, robot)
+    width = next(s for s in jump.shapes if s.name == "w")
+    assert found.shape["t_j"] == pytest.approx(0.6, rel=0.5)
+    assert found.shape["w"] == width.lower > 0
