@@ -9,7 +9,6 @@ chosen        of the proven ones the one for which most speaks (`evidence`), or 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -31,7 +30,7 @@ from identification.prediction.crossing import at_all_lengths, at_their_best
 from identification.prediction.evidence import all_gains, count_windows, evidence
 from identification.prediction.extension import weighed, with_effect
 from identification.prediction.first_fit import Begun, begin
-from identification.prediction.free_states import is_smooth_force
+from identification.prediction.free_states import without_free_states
 from identification.prediction.model import WindowModel
 from identification.prediction.remaining import is_much_left
 from identification.prediction.scores import WindowScore, window_scores
@@ -152,22 +151,6 @@ def refit_contenders(
     while found and found[0] is not (best := without_free_states(parent, found[0], options)):
         found = ranked([best, *found[1:]], options)
     return parent, found
-
-
-def without_free_states(
-    model: WindowModel, found: Contender, options: DiscoveryOptions
-) -> Contender:
-    """Returns a contender, unproven where a smooth force gains as much as its states do.
-
-    Args:
-        model: without it.
-        found: what was refitted.
-        options: the switch `free_states`.
-    """
-    is_asked = found.is_proven and uses(options, "free_states")
-    return (
-        replace(found, doubt="drawn") if is_asked and is_smooth_force(model, found.model) else found
-    )
 
 
 def _begun(

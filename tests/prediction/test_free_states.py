@@ -15,9 +15,9 @@ from identification import Parameter
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.joint_plant import candidates, joint_plant
-from identification.prediction import selection
-from identification.prediction.free_states import is_smooth_force
-from identification.prediction.selection import refit_contenders, without_free_states
+from identification.prediction import free_states
+from identification.prediction.free_states import is_smooth_force, without_free_states
+from identification.prediction.selection import refit_contenders
 from identification.prediction.state import first_state
 from identification.prediction.task import RecordsTask
 from identification.windows.records import as_records
@@ -98,7 +98,7 @@ def test_what_a_servo_does_sum_up_is_proven(without):
 
 def test_the_search_refuses_what_a_smooth_force_explains(monkeypatch):
     model, (law,) = searched(SUMMED)
-    monkeypatch.setattr(selection, "is_smooth_force", lambda *_: True)
+    monkeypatch.setattr(free_states, "is_smooth_force", lambda *_: True)
     assert without_free_states(model, law, DiscoveryOptions()).doubt == "drawn"
     without = DiscoveryOptions(without=("free_states",))
     assert without_free_states(model, law, without) is law

@@ -86,8 +86,8 @@ def add_set(
 def set_for_effects(state: WindowSearch, progress: Progress) -> WindowSearch:
     """Returns the state with a set in the place of all its effects, where more speaks for the set.
 
-    It is asked where much is left, and where a curve stands beside other effects: the curve may be
-    what several laws do together, of which it hides each. The set is chosen about the model with
+    It is asked where much is left, and where a curve was found: the curve may be what several laws
+    do together, of which it hides each. The set is chosen about the model with
     all that was found: it is nearer to the truth than the one without effects, and a linear choice
     errs less there. A set that was found in this way is not asked for again.
     """
