@@ -25,6 +25,7 @@ from identification.prediction.contenders import (
     list_curves,
     list_simpler,
     list_starts,
+    refit_level,
 )
 from identification.prediction.crossing import at_all_lengths, at_their_best
 from identification.prediction.evidence import all_gains, count_windows, evidence
@@ -77,7 +78,8 @@ def refit_contenders(
         The model without them, its windows at the best states that any of them found, and they.
     """
     windows = sum(len(p.cut.starts) for p in model.fit.problem.parts)
-    is_left = is_much_left(model, options)
+    # where scores themselves say that something is missing, what is left need not be simulated
+    is_left = refit_level(scores, options) < options.significance and is_much_left(model, options)
     chosen = list_contenders(scores, options, windows * len(model.scale), is_left)
     if uses(options, "suggested_effects"):
         has = {*(s.candidate.key for s in chosen), *(c.key for c in model.candidates)}

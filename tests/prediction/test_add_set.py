@@ -1,6 +1,7 @@
 """Effects that hide each other: none is proven alone, and all are named together."""
 
 from functools import cache
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -86,3 +87,38 @@ def test_members_of_a_set_with_which_unseen_records_are_predicted_no_better_are_
     monkeypatch.setattr(add_set, "_with_set", lambda state, model, progress: state.model)
     monkeypatch.setattr(add_set, "each_at_its_best", None)
     assert add_set.add_set(state, lambda line: None).accepted == ()
+
+
+@pytest.mark.parametrize(
+    ("names", "without", "is_asked"),
+    [
+        (["curve_speed"], (), True),
+        (["curve_speed"], ("lone_curves",), False),
+        (["curve_speed", "offset"], ("lone_curves",), True),
+        (["offset"], (), False),
+    ],
+)
+def test_a_curve_that_stands_alone_is_asked_for_laws(names, without, is_asked):
+    accepted = [SimpleNamespace(candidate=c) for c in list_common(listed(*names))]
+    task = SimpleNamespace(options=DiscoveryOptions(without=without))
+    assert add_set._has_curve(SimpleNamespace(accepted=accepted, task=task)) == is_asked
+
+
+@pytest.mark.parametrize(
+    ("without", "names"), [((), {"offset"}), (("plain_sets",), {"offset", "presliding"})]
+)
+def test_sets_are_chosen_among_laws_without_states(monkeypatch, without, names):
+    asked = []
+
+    def choose(model, members, scores, options, room):
+        asked.append({s.candidate.effect.name for s in scores})
+        return ()
+
+    monkeypatch.setattr(add_set, "find_members", lambda model, parent: [])
+    monkeypatch.setattr(add_set, "choose", choose)
+    state = SimpleNamespace(
+        task=SimpleNamespace(options=DiscoveryOptions(without=without)), model=None, room=3,
+        scores=[SimpleNamespace(candidate=c) for c in list_common(listed("offset", "presliding"))],
+    )  # fmt: skip
+    add_set._with_set(state, None, print)
+    assert asked == [names]

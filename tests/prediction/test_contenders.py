@@ -117,6 +117,16 @@ def test_where_something_is_missing_a_weak_law_is_refitted_and_without_the_pass_
     assert list_contenders([weak, *others, *others], OPTIONS, 100) == []
 
 
+def test_where_much_is_left_a_weak_law_is_refitted_though_no_score_is_beyond_chance():
+    weak = score(effect("law"), 0.5, p_value=0.005)
+    scores = [weak, *(score(effect(f"e{k}"), 0.1, p_value=0.5) for k in range(300))]
+    assert list_contenders(scores, OPTIONS, 100, is_left=False) == []
+    assert list_contenders(scores, OPTIONS, 100, is_left=True) == [weak]
+    for name in ("scores_of_much_left", "weak_scores"):
+        strict = DiscoveryOptions(without=(name,))
+        assert list_contenders(scores, strict, 100, is_left=True) == []
+
+
 def test_a_curve_that_promises_less_than_a_law_is_refitted_only_where_no_law_is_proven():
     law_, curve = score(effect("law"), 0.8), score(effect("curve_speed", 8), 0.7)
     weak = score(effect("curve_load", 8), 0.6, p_value=0.5)
