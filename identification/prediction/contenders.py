@@ -129,27 +129,35 @@ def is_plausible(s: WindowScore, options: DiscoveryOptions) -> bool:
     return all(z.sign * v >= 0 and abs(v) <= most * z.largest for v, z in pairs)
 
 
-def list_simpler(
-    winner: Candidate, scores: Sequence[WindowScore], options: DiscoveryOptions,
-    is_left: bool = False,
-) -> list[WindowScore]:  # fmt: skip
-    """Returns the best scores of laws with fewer numbers that act as the winner does, at its place.
+def simpler_than(winner: Candidate, scores: Sequence[WindowScore]) -> list[Candidate]:
+    """Returns laws with fewer numbers that act as the winner does, at its place.
 
     Args:
         winner: which promised most.
-        scores: of all candidates, the best first.
+        scores: of all candidates.
+    """
+    hooks, numbers = {*winner.effect.hooks}, count_numbers(winner)
+    each = (s.candidate for s in scores if s.candidate.where == winner.where)
+    return [c for c in each if {*c.effect.hooks} == hooks and count_numbers(c) < numbers]
+
+
+def list_simpler(
+    simpler: Sequence[WindowScore], scores: Sequence[WindowScore], options: DiscoveryOptions,
+    is_left: bool = False,
+) -> list[WindowScore]:  # fmt: skip
+    """Returns the best scores of laws that are simpler than the winner.
+
+    Args:
+        simpler: scores of the laws, the best first.
+        scores: of all candidates.
         options: what is beyond chance.
         is_left: as `refit_level`.
     """
     each: dict[str, WindowScore] = {}
     level = refit_level(scores, options, is_left)
-    for s in scores:
-        c = s.candidate
-        is_alike = c.where == winner.where and {*c.effect.hooks} == {*winner.effect.hooks}
-        if not (is_alike and count_numbers(c) < count_numbers(winner)):
-            continue
+    for s in simpler:
         if is_significant(s, level, options) and is_plausible(s, options):
-            each.setdefault(c.effect.name, s)
+            each.setdefault(s.candidate.effect.name, s)
     return [*each.values()][:MAX_SIMPLER_LAWS]
 
 

@@ -69,6 +69,27 @@ def with_effect(
     return WindowModel((*parent.candidates, begun.candidate), found, seen, parent.scale)
 
 
+def at_values_of(parent: WindowModel, child: WindowModel) -> WindowModel:
+    """Returns a model at the values and states that it has in another one, without a fit.
+
+    Where an effect is missing, a fit moves other values to make up for it, and what a score says
+    about these is far from the truth. Those of a model in which something acts as the effect does
+    are near it.
+
+    Args:
+        parent: the model, which says what is fitted.
+        child: the same model with effects more.
+
+    Raises:
+        DivergenceError: the parent cannot be simulated there.
+    """
+    task, at = parent.fit.problem, dict(zip(child.fit.problem.names, child.fit.q, strict=True))
+    q = np.array([at[name] for name in task.names])
+    pairs = zip(child.fit.moves, parent.fit.moves, strict=True)
+    moves = [new[:, : old.shape[1]] for new, old in pairs]  # states of joints stand last
+    return replace(parent, fit=solve(task, q, moves, most=1))
+
+
 def with_fitting_steps(
     model: WindowModel, horizon: float, confirm: Sequence[Record]
 ) -> WindowModel:

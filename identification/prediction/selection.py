@@ -13,7 +13,12 @@ from functools import partial
 
 import numpy as np
 
-from identification.discovery.attempts import attempt_each, refuse_infinite, tell_dropped
+from identification.discovery.attempts import (
+    attempt,
+    attempt_each,
+    refuse_infinite,
+    tell_dropped,
+)
 from identification.discovery.impossible import find_impossible
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.passes import uses
@@ -26,10 +31,11 @@ from identification.prediction.contenders import (
     list_simpler,
     list_starts,
     refit_level,
+    simpler_than,
 )
 from identification.prediction.crossing import at_all_lengths, at_their_best
 from identification.prediction.evidence import all_gains, count_windows, evidence
-from identification.prediction.extension import weighed, with_effect
+from identification.prediction.extension import at_values_of, weighed, with_effect
 from identification.prediction.first_fit import Begun, begin
 from identification.prediction.free_states import without_free_states
 from identification.prediction.model import WindowModel
@@ -140,12 +146,12 @@ def refit_contenders(
         proven = [c for c in out if c.is_proven]
     if proven and not is_late and uses(options, "simpler_laws"):
         best = max(proven, key=lambda c: c.criterion)
-        tried = {c.candidate.key for c in out}
-        simpler = list_simpler(best.candidate, scores, options, is_left)
-        rest = [s for s in simpler if s.candidate.key not in tried]
-        more = refit(_begun(model, rest, scores, options))
+        there, simpler = _simpler_laws(parent, best, scores, options, is_left)
+        known = {c.candidate.key for c in proven}
+        rest = [s for s in simpler if s.candidate.key not in known]
+        more = refit(_begun(there, rest, simpler, options))
         if more:
-            parent, out = judge(parent, [*(c.model for c in out), *more])
+            parent, out = judge(parent, _likelier([*(c.model for c in out), *more]))
     for c in out:
         change, t = fall_words(c.prediction.fall), c.prediction.t
         progress(f"{_label(c.candidate)}: mean square error on unseen records {change}, t {t:z.1f}")
@@ -153,6 +159,29 @@ def refit_contenders(
     while found and found[0] is not (best := without_free_states(parent, found[0], options)):
         found = ranked([best, *found[1:]], options)
     return parent, found
+
+
+def _simpler_laws(
+    parent: WindowModel, best: Contender, scores: Sequence[WindowScore],
+    options: DiscoveryOptions, is_left: bool,
+) -> tuple[WindowModel, list[WindowScore]]:  # fmt: skip
+    """Returns laws with fewer numbers that act as the best one does, and the model to begin at.
+
+    They are scored and begin where the best one ended: about the fit without any effect, whose
+    values make up for what is missing, the right law may have a weak score, and its refit may end
+    elsewhere.
+    """
+    there = attempt(None, partial(at_values_of, parent, best.model)) or parent
+    simpler = window_scores(there.fit, simpler_than(best.candidate, scores))
+    return there, list_simpler(simpler, scores, options, is_left)
+
+
+def _likelier(models: Sequence[WindowModel]) -> list[WindowModel]:
+    """Returns models without those that a fit of the same effect from elsewhere explains better."""
+    each: dict[tuple[str, str], WindowModel] = {}
+    for m in sorted(models, key=lambda m: m.fitted_power):
+        each.setdefault(m.candidates[-1].key, m)
+    return [m for m in models if each[m.candidates[-1].key] is m]
 
 
 def _begun(

@@ -24,6 +24,7 @@ from identification.prediction.contenders import (
     list_curves,
     list_simpler,
     refit_level,
+    simpler_than,
 )
 from identification.prediction.evidence import compute_confidence, evidence
 from identification.prediction.scores import WindowScore
@@ -155,7 +156,8 @@ def test_simpler_laws_act_as_the_winner_does():
     scores = [score(rich, 0.5), score(effect("force", hook="force"), 0.4),
               score(effect("plain"), 0.3), score(effect("as rich", sizes=2), 0.3)]  # fmt: skip
     assert count_numbers(scores[0].candidate) == 2
-    assert names(list_simpler(scores[0].candidate, scores, OPTIONS)) == ["plain"]
+    assert [c.effect.name for c in simpler_than(scores[0].candidate, scores)] == ["plain"]
+    assert names(list_simpler(scores, scores, OPTIONS)) == ["rich", "force"]
 
 
 @dataclass(frozen=True)
