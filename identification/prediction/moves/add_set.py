@@ -63,12 +63,14 @@ def add_set(
         if _keys(chosen) in asked or _is_worse(chosen, begin_at or state.model, task.options):
             break
         asked.append(_keys(chosen))
+        if not proven_members(state, chosen, refits, progress):
+            break  # what is asked in the places of members takes most of the time
         model, places = each_at_its_best(state, chosen, progress)
         refits += sum(len(p.tried) for p in places.values())
         if _keys(model) in asked:
             break
         asked.append(_keys(model))
-    found = proven_members(state, model, refits, progress)
+    found = proven_members(state, model, refits, progress) if places else ()
     watch.stop("refits")
     if not found:
         return replace(state, seconds=watch.seconds)
