@@ -65,6 +65,10 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
     "free_states": (
         HORIZON, "takes no law with states of its joints where a smooth force there gains as much",
     ),
+    "smooth_rivals": (
+        HORIZON, "takes no law of a sensor, a body or all inputs where a smooth force of one joint"
+        " does as much",
+    ),
     "lone_curves": (HORIZON, "tries a set in the place of one curve that was found alone"),
     "large_scores": (
         HORIZON, "refits effects whose scores ask for too large a size: the refit judges the size",

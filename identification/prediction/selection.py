@@ -37,11 +37,11 @@ from identification.prediction.crossing import at_all_lengths, at_their_best
 from identification.prediction.evidence import all_gains, count_windows, evidence
 from identification.prediction.extension import at_values_of, weighed, with_effect
 from identification.prediction.first_fit import Begun, begin
-from identification.prediction.free_states import without_free_states
 from identification.prediction.model import WindowModel
 from identification.prediction.remaining import is_much_left
 from identification.prediction.scores import WindowScore, window_scores
 from identification.prediction.screening import has_what_it_needs
+from identification.prediction.smooth_rivals import without_imitated
 from identification.prediction.trial import (
     Contender,
     Doubt,
@@ -156,7 +156,7 @@ def refit_contenders(
         change, t = fall_words(c.prediction.fall), c.prediction.t
         progress(f"{_label(c.candidate)}: mean square error on unseen records {change}, t {t:z.1f}")
     found = ranked(out, options)
-    while found and found[0] is not (best := without_free_states(parent, found[0], options)):
+    while found and found[0] is not (best := without_imitated(parent, found[0], options)):
         found = ranked([best, *found[1:]], options)
     return parent, found
 

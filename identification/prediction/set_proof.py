@@ -15,11 +15,11 @@ from identification.discovery.passes import uses
 from identification.prediction.crossing import at_all_lengths, at_their_best
 from identification.prediction.exchange import exchanged, is_contradicted
 from identification.prediction.extension import refitted, with_fitting_steps
-from identification.prediction.free_states import without_free_states
 from identification.prediction.model import WindowModel
 from identification.prediction.selection import judged
 from identification.prediction.set_choice import find_members
 from identification.prediction.set_members import Key
+from identification.prediction.smooth_rivals import without_imitated
 from identification.prediction.task import WindowSearch
 from identification.prediction.trial import Contender, compared, find_doubt
 from identification.progress import Progress
@@ -77,7 +77,7 @@ def _beside(state: WindowSearch, model: WindowModel, key: Key, refits: int) -> C
     if uses(task.options, "states_of_others"):
         without, (best,) = at_their_best(without, [best], task.horizon, task.confirm)
     found = judged(without, best, max(1, refits), task.options)
-    return without_free_states(without, found, task.options)
+    return without_imitated(without, found, task.options)
 
 
 def _is_contradicted(state: WindowSearch, parent: WindowModel, whole: WindowModel) -> bool:

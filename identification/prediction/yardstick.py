@@ -31,7 +31,7 @@ from identification.effects.surfaces import surface_effects
 from identification.effects.variables import variables
 from identification.prediction.forced import acts_on_joints
 from identification.prediction.model import WindowModel
-from identification.prediction.scores import WindowScore, condensed, window_scores
+from identification.prediction.scores import Condensed, WindowScore, condensed, window_scores
 from identification.prediction.screening import MAX_SCORED, places_of, some_windows
 from identification.windows.fit import WindowFit
 
@@ -90,6 +90,78 @@ def may_draw(curve: Effect, law: Effect) -> bool:
     return not of_law or bool(variables(curve) & of_law)
 
 
+@dataclass(frozen=True)
+class Forces:
+    """Curves and surfaces of joints, and perhaps a law, beside a model: what windows tell of them.
+
+    A law stands last.
+    """
+
+    candidates: tuple[Candidate, ...]
+    count: int  # of curves and surfaces
+    scores: tuple[WindowScore, ...]  # of each curve by itself
+    known: Condensed
+
+    @property
+    def joints(self) -> tuple[str, ...]:
+        """The places of curves and surfaces, in words."""
+        return tuple(dict.fromkeys(c.where for c in self.candidates[: self.count]))
+
+    def at(self, joint: str) -> list[int]:
+        """Returns the indices of curves and surfaces at a joint."""
+        return [k for k in range(self.count) if self.candidates[k].where == joint]
+
+    def force(self, some: Sequence[int]) -> SmoothForce:
+        """Returns the best force of some candidates, by their indices."""
+        ends = np.cumsum([len(c.sizes) for c in self.candidates])
+        nodes = [len(self.candidates[k].sizes) for k in some]
+        here = np.concatenate(
+            [np.arange(ends[k] - n, ends[k]) for k, n in zip(some, nodes, strict=True)]
+        )
+        G, a = self.known.G, self.known.a
+        return find_smooth_force(G[:, here][:, :, here], a[:, here], nodes)
+
+    def share(self, some: Sequence[int]) -> float:
+        """Returns the share of what the model leaves that this force takes away."""
+        return self.share_of(self.force(some))
+
+    def share_of(self, force: SmoothForce) -> float:
+        """Returns the share of what the model leaves that a force takes away."""
+        return min(1.0, force.gain / float(self.known.squares.sum()))
+
+
+def list_forces(
+    model: WindowModel, effects: Sequence[Effect], is_left: bool = False,
+    joints: Sequence[str] = (), law: Candidate | None = None,
+) -> Forces | None:  # fmt: skip
+    """Returns the smooth forces beside a model; None where there are none.
+
+    Args:
+        model: fitted.
+        effects: of the catalogue, of which the curves of a joint make the smooth forces.
+        is_left: whether the model leaves something, so that forces of two variables are asked too.
+        joints: the only ones that are asked, in words; all of them when empty.
+        law: which the model lacks.
+
+    Raises:
+        DivergenceError: the model cannot be simulated beside its values.
+    """
+    has = {c.key for c in model.candidates}
+    curves = [e for e in effects if e.is_curve and e.name.endswith(OF_JOINT)]
+    each = [c for c in list_common(curves) if c.key not in has and c.effect.places[c.where]]
+    each = [c for c in each if c.where in joints or not joints]
+    if not each:
+        return None
+    # What laws took away was measured in these units too.
+    fit = model.fit.weighed(model.scale)
+    scores = window_scores(fit, each)
+    surfaces, fit = _with_surfaces(model, fit, joints) if is_left else ([], fit)
+    smooth = (*each, *surfaces)
+    every = (*smooth, law) if law else smooth
+    fit = some_windows(fit) if sum(len(c.sizes) for c in smooth) > MAX_SCORED else fit
+    return Forces(every, len(smooth), scores, condensed(fit, every))
+
+
 def measure(
     model: WindowModel, effects: Sequence[Effect], is_left: bool = False,
     joints: Sequence[str] = (),
@@ -105,42 +177,21 @@ def measure(
     Raises:
         DivergenceError: the model cannot be simulated beside its values.
     """
-    has = {c.key for c in model.candidates}
-    curves = [e for e in effects if e.is_curve and e.name.endswith(OF_JOINT)]
-    each = [c for c in list_common(curves) if c.key not in has and c.effect.places[c.where]]
-    each = [c for c in each if c.where in joints or not joints]
-    if not each:
+    smooth = list_forces(model, effects, is_left, joints)
+    if smooth is None:
         return None
-    # What laws took away was measured in these units too.
-    fit = model.fit.weighed(model.scale)
-    scores = window_scores(fit, each)
-    surfaces, fit = _with_surfaces(model, fit, joints) if is_left else ([], fit)
-    each = [*each, *surfaces]
-    columns = [len(c.sizes) for c in each]
-    fit = some_windows(fit) if sum(columns) > MAX_SCORED else fit
-    known = condensed(fit, each)
-    G, a, squares = known.G, known.a, known.squares
-    ends = np.cumsum(columns)
-    of_curves = [np.arange(end - k, end) for end, k in zip(ends, columns, strict=True)]
-
-    def force(some: Sequence[int]) -> SmoothForce:
-        here = np.concatenate([of_curves[k] for k in some])
-        nodes = [len(of_curves[k]) for k in some]
-        return find_smooth_force(G[:, here][:, :, here], a[:, here], nodes)
-
-    def left(force: SmoothForce) -> float:
-        return min(1.0, force.gain / float(squares.sum()))
-
-    asked = dict.fromkeys(c.where for c in each)
-    forces = {j: force([k for k, c in enumerate(each) if c.where == j]) for j in asked}
-    of_joint = {j: left(f) for j, f in forces.items()}
-    every = of_joint[next(iter(asked))] if len(asked) == 1 else left(force(range(len(each))))
+    forces = {j: smooth.force(smooth.at(j)) for j in smooth.joints}
+    of_joint = {j: smooth.share_of(f) for j, f in forces.items()}
+    every = next(iter(of_joint.values()))
+    if len(forces) > 1:
+        every = smooth.share(range(smooth.count))
 
     def beyond(law: Candidate, joint: str) -> Beyond:
-        others = [k for k, c in enumerate(each)
-                  if c.where == joint and not may_draw(c.effect, law.effect)]  # fmt: skip
-        gains = forces[joint].gains - (force(others).gains if others else 0.0)
-        share = float(gains.sum() / squares.sum())
+        others = [
+            k for k in smooth.at(joint) if not may_draw(smooth.candidates[k].effect, law.effect)
+        ]
+        gains = forces[joint].gains - (smooth.force(others).gains if others else 0.0)
+        share = float(gains.sum() / smooth.known.squares.sum())
         return Beyond(joint, min(1.0, share), mean_above_zero(gains)[1] if share > 0 else 1.0)
 
     found = {}
@@ -148,7 +199,7 @@ def measure(
         at = [j for j in places_of(law.where) if j in forces]
         if at and acts_on_joints(law.effect) and not law.effect.is_curve:
             found[law.key] = max((beyond(law, j) for j in at), key=lambda b: b.share)
-    return Yardstick(every, of_joint, found, scores)
+    return Yardstick(every, of_joint, found, smooth.scores)
 
 
 def _with_surfaces(

@@ -21,6 +21,7 @@ from identification.prediction.model import WindowModel
 from identification.prediction.moves.add_set import with_one
 from identification.prediction.odds import find_odds
 from identification.prediction.selection import judged
+from identification.prediction.smooth_rivals import without_imitated
 from identification.prediction.task import Change, WindowSearch
 from identification.prediction.trial import Contender, evidences, is_rival
 from identification.progress import Progress
@@ -79,7 +80,8 @@ def _judged_together(
     task, options = state.task, state.task.options
     crosses = uses(options, "states_of_others")
     parent, whole = at_all_lengths(without, models, task.horizon, task.confirm, crosses)
-    return [judged(parent, c, len(models), options) for c in whole if c is not None]
+    found = (judged(parent, c, len(models), options) for c in whole if c is not None)
+    return [without_imitated(parent, c, options) for c in found]
 
 
 def _label(c: Contender) -> str:

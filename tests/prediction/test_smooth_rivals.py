@@ -1,23 +1,29 @@
-"""A law whose states are free in each window is none where a smooth force gains as much.
+"""A law that draws what a smooth force does is no name, wherever the law acts.
 
 The records are integrated in plain numpy (`servo_cases`).
 """
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cache
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from servo_cases import DAMPING, WEIGHT, Servo, servo_log, setpoints
+from servo_cases import DAMPING, WEIGHT, J, Servo, servo_log, setpoints
 
 from identification import Parameter
+from identification.discovery.candidates import list_common
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.joint_plant import candidates, joint_plant
-from identification.prediction import free_states
-from identification.prediction.free_states import is_smooth_force, without_free_states
+from identification.prediction import smooth_rivals
+from identification.prediction.scores import window_scores
 from identification.prediction.selection import refit_contenders
+from identification.prediction.smooth_rivals import (
+    does_as_much,
+    is_smooth_force,
+    without_imitated,
+)
 from identification.prediction.state import first_state
 from identification.prediction.task import RecordsTask
 from identification.windows.records import as_records
@@ -98,7 +104,80 @@ def test_what_a_servo_does_sum_up_is_proven(without):
 
 def test_the_search_refuses_what_a_smooth_force_explains(monkeypatch):
     model, (law,) = searched(SUMMED)
-    monkeypatch.setattr(free_states, "is_smooth_force", lambda *_: True)
-    assert without_free_states(model, law, DiscoveryOptions()).doubt == "drawn"
+    monkeypatch.setattr(smooth_rivals, "is_smooth_force", lambda *_: True)
+    assert without_imitated(model, law, DiscoveryOptions()).doubt == "drawn"
     without = DiscoveryOptions(without=("free_states",))
-    assert without_free_states(model, law, without) is law
+    assert without_imitated(model, law, without) is law
+
+
+LATE = 4  # samples by which a setpoint comes late
+CUBE = 20.0  # of a spring that hardens [N m/rad^3]
+
+
+class Hardening(Servo):
+    """A servo at rest with a spring that hardens."""
+
+    def rate(self, s, x):
+        """Of q, v and z."""
+        return super().rate(s, x) - np.array([0.0, CUBE * s[0] ** 3 / J, 0.0])
+
+
+@cache
+def beside(kind, name):
+    """The model of a record in which a kind of thing is hidden, and the model with one law more."""
+    logs = []
+    for seed in (1, 2):
+        u = setpoints(seed, 900)
+        if kind == "late":
+            moved = AT_REST.moved(np.concatenate([np.full(LATE, u[0]), u[:-LATE]]), q=u[0])
+        else:
+            moved = Hardening(weight=0.0).moved(u, q=u[0])
+        noise = 2e-4 * np.random.default_rng(seed).standard_normal(moved.shape)
+        logs.append(replace(servo_log(u, moved + noise), name=f"{kind} {seed}"))
+    base = NominalModel(plant(), FREE, np.full(2, 0.2), 0.3)
+    every = candidates(plant(), FREE)
+    task = RecordsTask(
+        nominal_model=base, records=as_records(logs[:1], logs[1:]),
+        effects=tuple(e for e in every if e.name == name), options=DiscoveryOptions(),
+    )  # fmt: skip
+    state = first_state(task, print)
+    model, (law, *_) = refit_contenders(
+        state.model, state.scores, 0.3, task.confirm, task.options, print
+    )
+    return model, law
+
+
+def scored(model, name):
+    """A law and what it explains of what a model leaves, as if it had been refitted."""
+    law = next(c for c in list_common(candidates(plant(), FREE)) if c.effect.name == name)
+    (score,) = window_scores(model.fit, [law])
+    new = SimpleNamespace(candidates=(law,), fitted_power=(1 - score.fall) * model.fitted_power)
+    return Proven(new)
+
+
+@dataclass(frozen=True)
+class Proven:
+    """What is asked of a contender that is proven."""
+
+    model: SimpleNamespace
+    doubt: str | None = None
+
+    @property
+    def is_proven(self):
+        """Whether nothing speaks against it."""
+        return self.doubt is None
+
+
+def test_a_force_of_the_angle_speaks_against_a_lag_of_the_setpoint_that_gains_less():
+    model, law = beside("force", "hardening")
+    assert not does_as_much(model, law.model)  # the force of one joint is asked in another way
+    lag = scored(model, "lag")
+    assert does_as_much(model, lag.model)
+    assert without_imitated(model, lag, DiscoveryOptions()).doubt == "drawn"
+    assert without_imitated(model, lag, DiscoveryOptions(without=("smooth_rivals",))) is lag
+
+
+def test_a_setpoint_that_does_come_late_is_no_smooth_force():
+    model, law = beside("late", "delay")
+    assert law.is_proven
+    assert not does_as_much(model, law.model)
