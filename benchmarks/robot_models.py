@@ -48,9 +48,9 @@ that its model lacks, each at a joint that is driven. No law is exact on a real 
 also has at each driven joint 5 to 20 % of a force of position and rate that is in no catalogue. A
 log of 8 s at 100 Hz is fitted and searched, another one confirms. The search tries all candidates.
 An answer is right if each name is that of a hidden effect at its joint, and no effect is left
-without one; what makes a robot rough must have no name. For the four-bar and the gripper, whose
-joints are coupled, a name may also stand at another
-joint or at all of them, because the motion cannot tell these apart.
+without one; what makes a robot rough must have no name, but a curve of the data may draw it. For
+the four-bar and the gripper, whose joints are coupled, a name may also stand at another joint or at
+all of them, because the motion cannot tell these apart.
 """
 
 
@@ -99,8 +99,9 @@ def is_right(row: Row) -> bool:
 
     A force of no catalogue must be drawn or unknown, and so may what is hidden beside it.
     """
-    named = row.get("named") or []
-    hidden = _hidden(row)
+    named, hidden = row.get("named") or [], _hidden(row)
+    if hidden and _is_rough(row) and not _has_unlisted(row):
+        named = [n for n in named if not n["name"].startswith(CURVE)]
     if not hidden:
         return row.get("verdict") in (("nothing missing",) if not _is_rough(row) else NO_LAW)
     if _has_unlisted(row):

@@ -45,12 +45,12 @@ NAMES: Mapping[str, tuple[str, ...]] = {
     "rotor": ("rotor_inertia", "inertia_mismatch"),
     "bump": (),
     "stop": (),
-    "voltage": (),
+    "voltage": ("voltage_limit",),
     "lever": (),
     "guide": (),
 }
 LISTED = tuple(name for name, right in NAMES.items() if right)
-OF_TWO = ("voltage", "lever", "guide")  # forces that depend on two variables at once
+OF_TWO = ("lever", "guide")  # forces that depend on two variables at once
 UNLISTED = ("bump", "stop", *OF_TWO)
 ROUGH = (0.05, 0.2)  # ρ, the least and the most
 WITH_LINKS = ("arm", "finger", "leg")  # bodies on which a load has a place

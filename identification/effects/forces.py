@@ -5,6 +5,7 @@
         - k q                                   spring
         - k_3 q³                                its hardening
         - c f_u³                                a drive that weakens where it pushes hard
+        + c (clip(f_u, -f_m (1 + v/v_0), f_m (1 - v/v_0)) - f_u)        the limit of its voltage
         + a cos n q + b sin n q                 cogging
         + f_t t                                 a force that drifts
         - d_t t v                               viscous friction that drifts
@@ -18,23 +19,29 @@
 
 The letters are those of `identification.effects.friction`. A drive that compensates gravity has α =
 1, a robot that is mounted upside down α = 2, one that stands where g is less, or on a slope, some α
-between. Time is that of the record, from its
+between. A motor that turns makes a voltage of its own, so that what its supply can still drive
+through it falls with its speed: f_m is its force at a standstill and v_0 the speed at which none is
+left. c is 1 where there is such a limit. Time is that of the record, from its
 first sample on, also in its parts and in windows of it. A jump takes a short time w so that the
 outputs follow its time smoothly, and its time can be searched.
 """
 
 from __future__ import annotations
 
-from math import cos, sin
+from collections.abc import Sequence
+from math import ceil, cos, log, sin
 
 from numba import njit
 
 from identification.effects.effect import Effect
 from identification.effects.joint_group import Group, wave_sizes, waves
-from identification.effects.sizes import Shape
+from identification.effects.sizes import Shape, Size
 from identification.quantities import per
 
 MOMENTS = 8  # times of a record at which a jump or a push is tried
+# Of forces and top speeds of joints, the least and the most that are tried, and the ratio of
+# neighbours: a limit acts where f_u/f_m + v/v_0 > 1.
+STANDSTILL, NO_LOAD = (0.15, 1.4, 1.7), (1.1, 4.0, 2.0)
 EDGE = 0.02  # of the record: how long a jump takes, so that its time can be searched
 
 
@@ -61,6 +68,13 @@ def hardening(s, p):
 @njit
 def torque_saturation(s, p):
     return -p[0] * s.f_u * s.f_u * s.f_u
+
+
+@njit
+def voltage_limit(s, p):
+    c, f_m, v_0 = p
+    most, least = f_m * (1.0 - s.v / v_0), -f_m * (1.0 + s.v / v_0)
+    return c * (max(least, min(most, s.f_u)) - s.f_u)
 
 
 @njit
@@ -111,6 +125,7 @@ def push(s, p):
 def force_effects(g: Group) -> list[Effect]:
     """Returns forces of position and drive; those without a place are left out by the caller."""
     F, A = g.F, g.A
+    single = {where: at for where, at in g.plain.items() if at}
     return [
         g.force(offset, "f_0", "force: constant", g.size("f_0", 0.2 * F, g.f, "constant force"),
                 of_records="force: constant, and differs between the records"),
@@ -128,6 +143,15 @@ def force_effects(g: Group) -> list[Effect]:
                 "motor: weaker at high current",
                 g.size("c", 0.5 / F**2, per("1", g.f, 2), "relative loss per square of force", 1),
                 places=g.plain, reference="Krishnan 2010"),
+        g.force(voltage_limit, "f_u clipped at -f_m (1 + v/v_0) and f_m (1 - v/v_0)",
+                "motor: weaker the faster it turns, at the limit of its voltage",
+                Size("c", "", 1.0, 0.02, 1, "share of the clipping, 1 when there is a limit", 1.0),
+                shapes=(
+                    _spread("f_m", g.f, [a.force for a in g.axes], STANDSTILL,
+                            "force at a standstill"),
+                    _spread("v_0", f"{g.x}/s", [a.speed for a in g.axes], NO_LOAD,
+                            "speed at which no force is left"),
+                ), places=single, reference="Krishnan 2010"),
         *(g.force(cogging, "a cos nq + b sin nq", "motor: cogging", *wave_sizes(g), shapes=(n,),
                   reference="Krishnan 2010") for n in waves(g)),
     ]  # fmt: skip
@@ -158,6 +182,25 @@ def time_effects(g: Group) -> list[Effect]:
                 g.size("f_p", 0.5 * F, g.f, "the push"), places=g.each,
                 shapes=(_moment("t_0", T, "when it begins", 0.0), lasting, edge)),
     ]  # fmt: skip
+
+
+def _spread(
+    name: str, unit: str, each: Sequence[float], of: tuple[float, float, float], about: str
+) -> Shape:
+    """Returns a shape that is tried from the least to the largest of some joints' magnitudes.
+
+    Args:
+        name: of the shape.
+        unit: of the magnitudes.
+        each: the magnitude of each joint.
+        of: what is tried of the least and of the largest, and the ratio of neighbours.
+        about: the shape in words.
+    """
+    low, high, ratio = of
+    least, most = low * min(each), high * max(each)
+    count = 1 + ceil(log(most / least) / log(ratio))
+    grid = tuple(least * (most / least) ** (k / (count - 1)) for k in range(count))
+    return Shape(name, unit, grid, 0.1 * least, 5 * most, about=about)
 
 
 def _moment(name: str, T: float, about: str, first: float = 0.5) -> Shape:

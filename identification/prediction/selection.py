@@ -155,10 +155,22 @@ def refit_contenders(
     for c in out:
         change, t = fall_words(c.prediction.fall), c.prediction.t
         progress(f"{_label(c.candidate)}: mean square error on unseen records {change}, t {t:z.1f}")
-    found = ranked(out, options)
+    return parent, first_not_imitated(parent, ranked(out, options), options)
+
+
+def first_not_imitated(
+    parent: WindowModel, found: tuple[Contender, ...], options: DiscoveryOptions
+) -> tuple[Contender, ...]:
+    """Returns contenders, those unproven and behind others whose law a smooth force does as well.
+
+    Args:
+        parent: the model without them.
+        found: in their order.
+        options: the switches of `without_imitated`.
+    """
     while found and found[0] is not (best := without_imitated(parent, found[0], options)):
         found = ranked([best, *found[1:]], options)
-    return parent, found
+    return found
 
 
 def _simpler_laws(

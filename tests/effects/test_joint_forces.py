@@ -111,6 +111,12 @@ LAWS = [
     ("stiffness", (4.0,), S, -1.2),
     ("hardening", (-5.0,), S, 5 * 0.3**3),
     ("torque_saturation", (0.01,), S, 3.43),
+    # f_m (1 + v/v_0) = 6 against the motion, f_m (1 - v/v_0) = 2 with it
+    ("voltage_limit", (1.0, 4.0, 1.0), S, 1.0),
+    ("voltage_limit", (0.5, 4.0, 1.0), S, 0.5),
+    ("voltage_limit", (1.0, 4.0, 1.0), S._replace(f_u=7.0), -5.0),
+    ("voltage_limit", (1.0, 4.0, 1.0), S._replace(f_u=1.9), 0.0),
+    ("voltage_limit", (1.0, 4.0, 0.25), S._replace(f_u=1.9), -5.9),
     ("two_load_friction", (0.2, 0.5), S, 1.7),
     ("two_load_friction", (0.1, 3.0), S._replace(f_u=7.0), 0.2),
     ("quadratic_load_friction", (0.1, 0.2, 0.25), S, 0.9 * np.exp(-2)),

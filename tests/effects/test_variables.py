@@ -24,6 +24,7 @@ EFFECTS = {e.name: e for e in joint_effects(_AXES)}
     ("position_dependent_damping", {"q", "v"}),
     ("hardening", {"q"}),
     ("torque_saturation", {"f_u"}),
+    ("voltage_limit", {"f_u", "v"}),
     ("force_drift", {"time"}),
     ("offset", set()),
     ("gravity_force", {"f_g", "q", "x_before", "x_behind"}),

@@ -29,7 +29,7 @@ from identification.prediction.finer_steps import (
 )
 from identification.prediction.model import WindowModel
 from identification.prediction.screening import score_all
-from identification.prediction.selection import refit_contenders
+from identification.prediction.selection import first_not_imitated, refit_contenders
 from identification.prediction.task import WindowSearch
 from identification.prediction.trial import Contender, find_rivals
 from identification.progress import Progress
@@ -95,7 +95,7 @@ def _proven_by_both(
     if without is None:
         return state, tried
     found = with_both_roles(tried, without, task.records, task.horizon, task.options)
-    return replace(state, exchanged=without), found
+    return replace(state, exchanged=without), first_not_imitated(state.model, found, task.options)
 
 
 def _may_exchange(state: WindowSearch) -> bool:
