@@ -139,18 +139,18 @@ def _is_beside(curve: Candidate, law: Candidate) -> bool:
 def share_a_joint(a: Candidate, b: Candidate) -> bool:
     """Returns whether two effects may act at one joint.
 
-    An effect at all joints acts at any, and so may one of a sensor, an input or a body.
+    An effect at all joints acts at those where it has a place: gravity acts on no vertical axis.
+    One of a sensor, an input or a body may act at any.
     """
-    of_a, of_b = (
-        [] if _is_everywhere(c) or not acts_on_joints(c.effect) else places_of(c.where)
-        for c in (a, b)
-    )
+    of_a, of_b = (_joints_of(c) if acts_on_joints(c.effect) else [] for c in (a, b))
     return not of_a or not of_b or bool({*of_a} & {*of_b})
 
 
-def _is_everywhere(c: Candidate) -> bool:
-    """Returns whether an effect acts at all joints with one size."""
-    return not c.effect.places.get(c.where) and len(places_of(c.where)) == 1
+def _joints_of(c: Candidate) -> list[str]:
+    """Returns the joints on which an effect of joints acts, in words."""
+    is_everywhere = not c.effect.places.get(c.where) and len(places_of(c.where)) == 1
+    single = [where for where, suffix in c.effect.places.items() if suffix]
+    return single if is_everywhere else places_of(c.where)
 
 
 def find_neighbour(

@@ -12,7 +12,7 @@ states     What a servo has summed up, or where a spring in a gear stands, is fo
 elsewhere  A sensor's error, a mass or a fault of all inputs is no force of one joint, but it acts
            on the joints, and on a robot for which no law is exact one of many draws a part of what
            a joint has. A joint refutes it whose smooth force gains more, and beside which it does
-           little:
+           little; a law at k places is asked beside the forces of the k joints that gain most, too:
 
                g_l < 0.85 g_j    and    g_jl - g_j < 1/2 g_l     g_l: gain of the law, g_jl: of both
 
@@ -31,6 +31,7 @@ import numpy as np
 from identification.discovery.attempts import attempt
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.passes import uses
+from identification.effects.effect import Candidate
 from identification.effects.jointed import JointPlant
 from identification.prediction.forced import acts_on_joints
 from identification.prediction.model import WindowModel
@@ -57,7 +58,7 @@ def without_imitated(model: WindowModel, found: Contender, options: DiscoveryOpt
         return found
     of_states = uses(options, "free_states") and is_smooth_force(model, found.model)
     if of_states or (uses(options, "smooth_rivals") and does_as_much(model, found.model)):
-        return replace(found, doubt="drawn")
+        return replace(found, doubt="smooth")
     return found
 
 
@@ -94,20 +95,37 @@ def does_as_much(model: WindowModel, new: WindowModel) -> bool:
         return False
     if acts_on_joints(effect) and len(places_of(law.where)) == 1 and effect.places.get(law.where):
         return False
-    joints = [f"joint {axis.joint}" for axis in plant.axes]
-    forces = attempt(None, partial(list_forces, model, plant.effects, True, joints, law))
+    where = [f"joint {axis.joint}" for axis in plant.axes]
+    forces = attempt(None, partial(list_forces, model, plant.effects, True, where, law))
     if forces is None:
         return False
     refitted = 1 - new.fitted_power / model.fitted_power  # a law may be far from linear
     of_law = _gain(max(refitted, forces.share([forces.count])))
-    for joint in forces.joints:
-        alone, both = (
-            _gain(forces.share(some))
-            for some in (forces.at(joint), [*forces.at(joint), forces.count])
-        )
-        if of_law < (1 - MOST_OF_BOTH) * alone and both - alone < MOST_OF_GAIN * of_law:
+    at = {joint: forces.at(joint) for joint in forces.joints}
+    alone = {joint: _gain(forces.share(some)) for joint, some in at.items()}
+    groups = [[joint] for joint in at if _has_more(alone[joint], of_law)]
+    most = sorted(at, key=lambda joint: -alone[joint])[: _count_places(law)]
+    if len(most) > 1:
+        groups.append(most)
+    for joints in groups:
+        some = [k for joint in joints for k in at[joint]]
+        force = alone[joints[0]] if len(joints) == 1 else _gain(forces.share(some))
+        both = _gain(forces.share([*some, forces.count])) if _has_more(force, of_law) else np.inf
+        if both - force < MOST_OF_GAIN * of_law:
             return True
     return False
+
+
+def _has_more(force: float, law: float) -> bool:
+    """Returns whether a law has less than most of what a smooth force gains."""
+    return law < (1 - MOST_OF_BOTH) * force
+
+
+def _count_places(law: Candidate) -> int:
+    """Returns at how many joints, sensors or inputs a law acts."""
+    places = law.effect.places
+    is_everywhere = not places.get(law.where, law.where)
+    return sum(map(bool, places.values())) if is_everywhere else len(places_of(law.where))
 
 
 def _gain(share: float) -> float:

@@ -40,7 +40,7 @@ from identification.windows.unseen import Unseen
 Doubt = (
     Literal[
         "numbers", "chance", "lengths", "record", "little", "size", "bound", "exchange", "curve",
-        "drawn", "differ", "steps", "neighbour", "gap", "odds", "beside",
+        "drawn", "smooth", "differ", "steps", "neighbour", "gap", "odds", "beside",
     ]
     | Impossible
 )  # fmt: skip
@@ -49,8 +49,8 @@ OWN_SHARE = 0.5
 # Two tests of the gains of blocks, by their mean and by their ranks, pass by luck 1.1 to 1.3 times
 # as often as one (normal gains of 8 to 40 blocks): most that pass one pass the other.
 TESTS = 1.3
-# By what was measured, or by what is believed of its size.
-CONTRADICTED: tuple[Doubt, ...] = ("lengths", "record", "bound", "exchange", "differ")
+# By what was measured, by what is believed of its size, or by a smooth force that does more.
+CONTRADICTED: tuple[Doubt, ...] = ("lengths", "record", "bound", "exchange", "differ", "smooth")
 TWINS = {"offset": "asymmetric_friction", "asymmetric_friction": "offset"}
 LEVEL = "coulomb_friction.f_c"
 

@@ -43,6 +43,7 @@ DOUBTS = {
     "exchange": "if the other records are fitted instead, it predicts a record worse, or all of"
     " them on average",
     "drawn": "a curve from the data at the same joint explains the same, and more",
+    "smooth": "a smooth force of a joint explains as much, and it adds little to that",
     "neighbour": "beside it a force drawn from the data explains much of what the two explain",
     "gap": "it removes less than half of the power above the noise, and something is left",
     "odds": "other effects in its place are together likelier than it",

@@ -11,6 +11,9 @@ from records_cases import with_law as fitted_with
 from identification.discovery.candidates import list_common
 from identification.discovery.effect_results import Neighbour
 from identification.discovery.options import DiscoveryOptions
+from identification.effects.axes import Axis
+from identification.effects.catalogue import joint_effects
+from identification.effects.effect import Candidate
 from identification.effects.joint_plant import candidates
 from identification.prediction.moves.curve_for_laws import curve_for_laws
 from identification.prediction.neighbours import (
@@ -20,6 +23,7 @@ from identification.prediction.neighbours import (
     explained_by,
     find_neighbour,
     has_neighbours_name,
+    share_a_joint,
 )
 from identification.prediction.nominal_fit import fit_nominal
 from identification.prediction.screening import score_all
@@ -45,6 +49,18 @@ def with_law(name):
     """The fit without effects, and with one law."""
     bare = fit_nominal(nominal_model(), logs())
     return bare, fitted_with(bare, name, logs())
+
+
+def test_gravity_at_all_joints_shares_none_with_a_vertical_axis():
+    axes = [Axis(joint=j, kind="hinge", force=1.0, speed=1.0, travel=1.0, plain=True,
+                 heavy=j != "pan", duration=1.0) for j in ("pan", "lift", "flex")]  # fmt: skip
+    of = {(e.name, at): Candidate(e, at, {}) for e in joint_effects(axes) for at in e.places}
+    gravity, drag = of["gravity_force", "all joints"], of["quadratic_friction", "all joints"]
+    for joint, is_shared in (("pan", False), ("lift", True), ("flex", True)):
+        stiff = of["hardening", f"joint {joint}"]
+        assert share_a_joint(gravity, stiff) == share_a_joint(stiff, gravity) == is_shared
+        assert share_a_joint(drag, stiff)
+    assert share_a_joint(gravity, drag)
 
 
 @cache

@@ -105,7 +105,7 @@ def test_what_a_servo_does_sum_up_is_proven(without):
 def test_the_search_refuses_what_a_smooth_force_explains(monkeypatch):
     model, (law,) = searched(SUMMED)
     monkeypatch.setattr(smooth_rivals, "is_smooth_force", lambda *_: True)
-    assert without_imitated(model, law, DiscoveryOptions()).doubt == "drawn"
+    assert without_imitated(model, law, DiscoveryOptions()).doubt == "smooth"
     without = DiscoveryOptions(without=("free_states",))
     assert without_imitated(model, law, without) is law
 
@@ -173,7 +173,7 @@ def test_a_force_of_the_angle_speaks_against_a_lag_of_the_setpoint_that_gains_le
     assert not does_as_much(model, law.model)  # the force of one joint is asked in another way
     lag = scored(model, "lag")
     assert does_as_much(model, lag.model)
-    assert without_imitated(model, lag, DiscoveryOptions()).doubt == "drawn"
+    assert without_imitated(model, lag, DiscoveryOptions()).doubt == "smooth"
     assert without_imitated(model, lag, DiscoveryOptions(without=("smooth_rivals",))) is lag
 
 
