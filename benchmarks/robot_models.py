@@ -31,6 +31,7 @@ ROWS = ROOT / "benchmarks" / "results" / "robot_models.jsonl"
 PAGE = ROOT / "docs" / "robot" / "models.md"
 NO_NAME = ("unlisted effect", "unknown effect")
 NO_LAW = (*NO_NAME, "nothing missing")
+BINS = ((0.0, 0.5), (0.5, 0.8), (0.8, 0.9), (0.9, 1.1))  # of confidences
 WORDS = {
     "arm": "an arm with position servos",
     "finger": "a finger whose joints a tendon drives together",
@@ -160,6 +161,16 @@ def _is_meant(row: Row, hidden: tuple[str, str], name: str, where: str) -> bool:
     return is_name and is_place
 
 
+def _names_of(rows: Sequence[Row]) -> list[tuple[float, bool]]:
+    """Returns of each law that is named its confidence, and whether it is one of what is hidden."""
+    return [
+        (n["confidence"], any(_is_meant(row, h, n["name"], n["where"]) for h in _hidden(row)))
+        for row in rows
+        for n in row.get("named") or []
+        if row.get("verdict") == "named" and not n["name"].startswith(CURVE)
+    ]
+
+
 def page(rows: Sequence[Row]) -> str:
     """Returns the page of the rows of one search."""
     kinds = [[r for r in rows if not _is_rough(r)], [r for r in rows if _is_rough(r)]]
@@ -167,6 +178,10 @@ def page(rows: Sequence[Row]) -> str:
     for what, chosen, is_hit in MEASURES:
         rates = (said(rate([r for r in kind if chosen(r)], is_hit)) for kind in kinds)
         lines.append(f"| {what} | {' | '.join(rates)} |")
+    lines += ["", "| confidence of a name | right, of all names |", "|---|---|"]
+    for low, high in BINS:
+        some = [right for c, right in _names_of(rows) if low <= c < high]
+        lines.append(f"| {low:g} to {min(1, high):g} | {said(rate(some, bool))} |")
     lines += ["", "| robot | right | search, median [s] | what was not right |",
               "|---|---|---|---|"]  # fmt: skip
     for robot, words in WORDS.items():
