@@ -42,6 +42,20 @@ def test_answers(answer, right, wrong):
     assert (is_right(answer), is_wrong(answer)) == (right, wrong)
 
 
+@pytest.mark.parametrize(("rough", "right"), [({}, False), ({"hip": 0.1}, True)])
+def test_a_curve_may_draw_what_makes_a_robot_rough(rough, right):
+    drawn = ("curve_position", "joint knee")
+    answer = row("coulomb_friction", "hip", "named", RUB, drawn) | {"rough": rough}
+    assert is_right(answer) == right
+    assert not is_right(answer | {"named": answer["named"][1:]})
+
+
+def test_the_page_tells_how_often_names_of_each_confidence_are_right():
+    rows = [row("coulomb_friction", "hip", "named", RUB, STIFF, CURVE)]
+    lines = [line for line in page(rows).splitlines() if line.startswith("| 0.8 to 0.9")]
+    assert [line.split("|")[2].split("[")[0].strip() for line in lines] == ["1 of 2"]
+
+
 def test_the_page_counts_rough_robots_by_themselves():
     rows = [
         row("coulomb_friction", "hip", "named", RUB),
