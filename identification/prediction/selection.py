@@ -144,8 +144,9 @@ def refit_contenders(
         more = refit(_near_best(_begun(model, curves, scores, options), options))
         parent, out = judge(parent, [*(c.model for c in out), *more])
         proven = [c for c in out if c.is_proven]
-    if proven and not is_late and uses(options, "simpler_laws"):
-        best = max(proven, key=lambda c: c.criterion)
+    better = [c for c in out if c.is_proven or _is_dear(c, refits, options)]
+    if better and not is_late and uses(options, "simpler_laws"):
+        best = max(better, key=lambda c: (c.is_proven, c.criterion))
         there, simpler = _simpler_laws(parent, best, scores, options, is_left)
         known = {c.candidate.key for c in proven}
         rest = [s for s in simpler if s.candidate.key not in known]
@@ -186,6 +187,11 @@ def _simpler_laws(
     there = attempt(None, partial(at_values_of, parent, best.model)) or parent
     simpler = window_scores(there.fit, simpler_than(best.candidate, scores))
     return there, list_simpler(simpler, scores, options, is_left)
+
+
+def _is_dear(c: Contender, refits: int, options: DiscoveryOptions) -> bool:
+    """Returns whether only the price of its numbers is against an effect: a curve has many."""
+    return c.doubt == "numbers" and find_doubt(c.prediction, refits, options) is None
 
 
 def _likelier(models: Sequence[WindowModel]) -> list[WindowModel]:
