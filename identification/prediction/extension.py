@@ -70,9 +70,9 @@ def with_effect(
 
 
 def at_values_of(parent: WindowModel, child: WindowModel) -> WindowModel:
-    """Returns a model at the values and states that it has in another one, without a fit.
+    """Returns a model at the values that it has in another one, without a fit of these.
 
-    Where an effect is missing, a fit moves other values to make up for it, and what a score says
+    Its windows begin at the states that are best there. Where an effect is missing, a fit moves other values to make up for it, and what a score says
     about these is far from the truth. Those of a model in which something acts as the effect does
     are near it.
 
@@ -86,8 +86,9 @@ def at_values_of(parent: WindowModel, child: WindowModel) -> WindowModel:
     task, at = parent.fit.problem, dict(zip(child.fit.problem.names, child.fit.q, strict=True))
     q = np.array([at[name] for name in task.names])
     pairs = zip(child.fit.moves, parent.fit.moves, strict=True)
-    moves = [new[:, : old.shape[1]] for new, old in pairs]  # states of joints stand last
-    return replace(parent, fit=solve(task, q, moves, most=1))
+    begun = [new[:, : old.shape[1]] for new, old in pairs]  # states of joints stand last
+    moves, r = task.settled(q, begun, parent.fit.tangents)
+    return replace(parent, fit=solve(task, q, moves, most=1, known=r))
 
 
 def with_fitting_steps(
