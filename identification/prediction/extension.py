@@ -72,9 +72,9 @@ def with_effect(
 def at_values_of(parent: WindowModel, child: WindowModel) -> WindowModel:
     """Returns a model at the values that it has in another one, without a fit of these.
 
-    Its windows begin at the states that are best there. Where an effect is missing, a fit moves other values to make up for it, and what a score says
-    about these is far from the truth. Those of a model in which something acts as the effect does
-    are near it.
+    Its windows begin at the states that are best there. Where an effect is missing, a fit moves
+    other values to make up for it, and what a score says about these is far from the truth. Those
+    of a model in which something acts as the effect does are near it.
 
     Args:
         parent: the model, which says what is fitted.
