@@ -2,12 +2,16 @@
 
     d(t) = ŷ_Δ(t) - ŷ_Δ/2(t)         Δ the model's timestep, the first `SECONDS` of a free run
     e = rms d(t)                     or, where predictions are judged over a horizon H,
-    e = rms (d(t) - d(t - H))        the difference that grows in that time
+    e = rms d_w(H)                   of windows that begin at the motion that was measured
 
 Half the step has 2⁻ᵖ of the error of an integrator of order p. So e is half of Euler's error, and
 nearly all of RK4's. An error that is larger than the noise would be taken for an effect, unless the
 model as it is written predicts the log much worse than that over the horizon: what is missing is
 then larger than what the steps make.
+
+A free run of a model that lacks something goes where the robot never was: it hits an end stop at
+another speed and at another time, and the steps then differ by much that no window of the data
+shows.
 
 It is the error of one law. The time in which a joint with dry friction stops goes with the step,
 and is held here; `identification.prediction.std` tells what it does to a fit.
@@ -25,9 +29,10 @@ from identification.logs.noise import noise_floor
 from identification.model.predictor import Predictor
 from identification.robot.blame import blamed
 from identification.robot.robot import Robot
-from identification.windows.window_error import window_error
+from identification.windows.window_error import first_error, window_error
 
 SECONDS = 2.0  # of a free run; a longer one of an unstable robot would diverge
+WINDOWS = 40  # of a horizon, spread over the log
 HALVINGS = 6  # of the timestep that are tried, to find one that is small enough
 SMALL = (
     0.3  # of the error of prediction; its square is less than a tenth of what is to be explained
@@ -84,19 +89,43 @@ def _is_small(robot: Robot, worst: StepError | None) -> bool:
 
 
 def step_error(robot: Robot) -> StepError:
-    """Returns the error of the output with the largest ratio of error to noise."""
-    log, h = robot.log, robot.log.sampling_time
-    samples = max(2, 1 + int(min(SECONDS, log.duration) / h))
-    coarse, fine = (
-        Predictor(r.plant, log, (), dict(log.values)).predict(np.empty((1, 0)), samples)[0]
-        for r in (robot, _stepped(robot, 0.5))
-    )
-    d, lag = coarse - fine, round((robot.file.horizon or 0.0) / h)
-    if 0 < lag < samples:
-        d = d[lag:] - d[:-lag]
+    """Returns the error of the output with the largest ratio of error to noise.
+
+    Raises:
+        DivergenceError: the model cannot be simulated.
+    """
+    log, pair = robot.log, (robot, _stepped(robot, 0.5))
+    d = _of_windows(*pair) if robot.file.horizon is not None else None
+    d = _of_free_run(*pair) if d is None else d
     e, noise = np.sqrt(np.mean(d**2, axis=0)), _noise(log.outputs)
     k = int(np.argmax(e / noise))
     return StepError(log.output_names[k], float(e[k]), float(noise[k]))
+
+
+def _of_windows(coarse: Robot, fine: Robot) -> np.ndarray | None:
+    """Returns d at the ends of windows, shape (W, ny); None where no window fits the log."""
+    horizon = float(coarse.file.horizon or 0.0)
+    try:
+        each = [
+            first_error(r.plant, r.log, horizon, WINDOWS, values=dict(r.log.values))
+            for r in (coarse, fine)
+        ]
+    except DivergenceError:
+        raise
+    except InputError:
+        return None
+    return np.asarray((each[1] - each[0])[:, -1])
+
+
+def _of_free_run(coarse: Robot, fine: Robot) -> np.ndarray:
+    """Returns d at the samples of the beginning of a free run, shape (N, ny)."""
+    log = coarse.log
+    samples = max(2, 1 + int(min(SECONDS, log.duration) / log.sampling_time))
+    each = (
+        Predictor(r.plant, log, (), dict(log.values)).predict(np.empty((1, 0)), samples)[0]
+        for r in (coarse, fine)
+    )
+    return np.asarray(np.subtract(*each))
 
 
 def _error_of_prediction(robot: Robot, worst: StepError) -> float:

@@ -54,7 +54,10 @@ def window_error(
     return shooting.error(settled[0].r)
 
 
-def first_error(plant: Plant, log: Log, length: float, most: int, part: float = 1.0) -> np.ndarray:
+def first_error(
+    plant: Plant, log: Log, length: float, most: int, part: float = 1.0,
+    values: Mapping[str, float] | None = None,
+) -> np.ndarray:  # fmt: skip
     """Returns errors (W, L, ny) of windows, each from the mean of the prior of its initial state.
 
     Args:
@@ -63,9 +66,14 @@ def first_error(plant: Plant, log: Log, length: float, most: int, part: float = 
         length: of a window [s].
         most: windows, spread over the log.
         part: of these, that is simulated: some of the windows, or the beginning of the only one.
+        values: parameters that are not the plant's own.
+
+    Raises:
+        InputError: the windows do not fit the log, or a name is unknown.
+        DivergenceError: the model cannot be simulated.
     """
     cut = some(spread(windows(log, length), most), part)
-    shooting, d = _fixed(plant, log, cut, None)
+    shooting, d = _fixed(plant, log, cut, values)
     return shooting.error(shooting.residual(np.zeros(0), d))
 
 

@@ -65,11 +65,29 @@ def test_the_error_is_that_of_the_half_step(tmp_path, log):
 
 
 def test_over_a_short_horizon_less_is_lost(tmp_path, log):
-    whole, short = (step_error(robot(tmp_path, log, 'timestep="0.01"', horizon=h)).error
-                    for h in (None, 0.1))  # fmt: skip
-    assert short < whole
-    longer = step_error(robot(tmp_path, log, 'timestep="0.01"', horizon=3.0)).error
-    assert longer == whole
+    whole, short, longer = (
+        step_error(robot(tmp_path, log, 'timestep="0.01"', horizon=h)).error
+        for h in (None, 0.1, 0.4)
+    )
+    assert short < min(longer, whole)
+
+
+def test_over_a_horizon_steps_are_asked_where_the_robot_was(tmp_path):
+    """A model that is too light runs into its end stop, where the robot never was."""
+    stop = '<joint name="slide" type="slide" range="-0.3 0.35" limited="true" '
+    hard = SLIDER.replace('<joint name="slide" type="slide" ', stop).replace('mass="2"', 'mass="1"')
+    assert hard.count(stop) == hard.count('mass="1"') == 1
+    model = tmp_path / "slider.xml"
+    model.write_text(hard)
+    y = run(slider(), slider_log(steps(400)))
+    noisy = y + NOISE * np.random.default_rng(3).standard_normal(y.shape)
+    known = {"free": (), "records": {}}
+    free, windows = (
+        step_error(robot_of(RobotFile(path=tmp_path / "r.toml", model=model, horizon=h, **known),
+                            slider_log(steps(400), noisy))).error
+        for h in (None, 0.1)
+    )  # fmt: skip
+    assert windows < 0.1 * free
 
 
 def test_a_log_without_noise_or_of_a_coarse_encoder_refuses_no_good_step(tmp_path, log):
