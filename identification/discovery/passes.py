@@ -134,7 +134,6 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
     ),
     "closed_gap": (HORIZON, "names no law that closes less than half of the gap"),
     "drop_beside_curves": (HORIZON, "drops laws that were found only beside a curve of the data"),
-    "drop_drawn_laws": (HORIZON, "drops a law whose work a later curve of the data does"),
     "priors_of_last_fit": (
         HORIZON, "weighs outputs and priors of the last fit by its own errors, which are smaller",
     ),

@@ -20,7 +20,6 @@ from identification.prediction.moves.add_yielding_friction import add_yielding_f
 from identification.prediction.moves.curve_for_laws import curve_for_laws
 from identification.prediction.moves.drop_beside_curves import drop_beside_curves
 from identification.prediction.moves.drop_doubtful import drop_doubtful
-from identification.prediction.moves.drop_drawn_laws import drop_drawn_laws
 from identification.prediction.moves.drop_effects import drop_effects
 from identification.prediction.moves.drop_places import drop_places
 from identification.prediction.moves.likeliest_of_set import likeliest_of_set
@@ -45,7 +44,7 @@ MOVES = (
     *(
         Move(change.__name__, finishing(change))
         for change in (
-            drop_effects, drop_places, curve_for_laws, drop_beside_curves, drop_drawn_laws,
+            drop_effects, drop_places, curve_for_laws, drop_beside_curves,
         )
     ),
     Move("drop_doubtful", drop_doubtful),
