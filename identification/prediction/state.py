@@ -43,9 +43,7 @@ MOVES = (
     Move("set_for_effects", set_for_effects, takes_long=True),
     *(
         Move(change.__name__, finishing(change))
-        for change in (
-            drop_effects, drop_places, curve_for_laws, drop_beside_curves,
-        )
+        for change in (drop_effects, drop_places, curve_for_laws, drop_beside_curves)
     ),
     Move("drop_doubtful", drop_doubtful),
 )  # fmt: skip
