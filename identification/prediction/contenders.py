@@ -136,9 +136,14 @@ def simpler_than(winner: Candidate, scores: Sequence[WindowScore]) -> list[Candi
         winner: which promised most.
         scores: of all candidates.
     """
-    hooks, numbers = {*winner.effect.hooks}, count_numbers(winner)
+    numbers, way = count_numbers(winner), _way_of(winner)
     each = (s.candidate for s in scores if s.candidate.where == winner.where)
-    return [c for c in each if {*c.effect.hooks} == hooks and count_numbers(c) < numbers]
+    return [c for c in each if _way_of(c) == way and count_numbers(c) < numbers]
+
+
+def _way_of(c: Candidate) -> frozenset[str]:
+    """Returns how an effect acts; a friction is a force, whether it is counted with the motion."""
+    return frozenset("force" if hook == "friction" else hook for hook in c.effect.hooks)
 
 
 def list_simpler(
