@@ -55,7 +55,7 @@ UNLISTED = ("bump", "stop", *OF_TWO)
 ROUGH = (0.05, 0.2)  # ρ, the least and the most
 WITH_LINKS = ("arm", "finger", "leg")  # bodies on which a load has a place
 MASS_IS_FREE = ("cart", "crane")  # of the body that would have more: nothing would be missing
-AS_THEY_ARE = ("voltage", "lever")  # forces whose size is no choice
+AS_THEY_ARE = ("voltage", "lever")  # forces whose size is no choice; they would hide others
 # Worlds that hide several effects: how many of the catalogue, and how many of none.
 SEVERAL: Mapping[str, tuple[int, int]] = {"two": (2, 0), "three": (3, 0), "two_unlisted": (1, 1)}
 
@@ -78,7 +78,8 @@ def make(robot: str, effect: str, seed: int, is_rough: bool = False) -> tuple[Wo
     chosen = [effect] if effect != "nothing" else []
     if effect in SEVERAL:
         listed, unlisted = SEVERAL[effect]
-        of = [e for e in LISTED if is_asked(robot, e)], [e for e in UNLISTED if e not in OF_TWO]
+        some = [e for e in LISTED if is_asked(robot, e) and e not in AS_THEY_ARE]
+        of = some, [e for e in UNLISTED if e not in OF_TWO]
         chosen = [*map(str, chance.choice(of[0], listed, replace=False)),
                   *map(str, chance.choice(of[1], unlisted, replace=False))]  # fmt: skip
     forces: dict[str, Law] = {}
