@@ -21,9 +21,9 @@ The letters are those of `identification.effects.friction`. A drive that compens
 1, a robot that is mounted upside down α = 2, one that stands where g is less, or on a slope, some α
 between. A motor that turns makes a voltage of its own, so that what its supply can still drive
 through it falls with its speed: f_m is its force at a standstill and v_0 the speed at which none is
-left. c is 1 where there is such a limit. Time is that of the record, from its
-first sample on, also in its parts and in windows of it. A jump takes a short time w so that the
-outputs follow its time smoothly, and its time can be searched.
+left. c is 1 where there is such a limit. Time is that of the record, from its first sample on, also
+in its parts and in windows of it. A jump takes a short time w so that the outputs follow its time
+smoothly, and its time can be searched.
 """
 
 from __future__ import annotations
@@ -40,7 +40,8 @@ from identification.quantities import per
 
 MOMENTS = 8  # times of a record at which a jump or a push is tried
 # Of forces and top speeds of joints, the least and the most that are tried, and the ratio of
-# neighbours: a limit acts where f_u/f_m + v/v_0 > 1.
+# neighbours: a limit acts where f_u/f_m + v/v_0 > 1. No joint is faster than v_0, and a servo asks
+# for many times f_m as its setpoint steps.
 STANDSTILL, NO_LOAD = (0.15, 1.4, 1.7), (1.1, 4.0, 2.0)
 EDGE = 0.02  # of the record: how long a jump takes, so that its time can be searched
 

@@ -38,7 +38,7 @@ from identification.effects.effect import Candidate
 from identification.effects.variables import POSITIONS, variables
 from identification.prediction.forced import acts_on_joints
 from identification.prediction.model import WindowModel
-from identification.prediction.screening import places_of
+from identification.prediction.screening import single_places
 from identification.prediction.task import WindowSearch
 from identification.prediction.trial import Contender
 from identification.prediction.yardstick import Yardstick, may_draw
@@ -142,15 +142,8 @@ def share_a_joint(a: Candidate, b: Candidate) -> bool:
     An effect at all joints acts at those where it has a place: gravity acts on no vertical axis.
     One of a sensor, an input or a body may act at any.
     """
-    of_a, of_b = (_joints_of(c) if acts_on_joints(c.effect) else [] for c in (a, b))
+    of_a, of_b = (single_places(c) if acts_on_joints(c.effect) else [] for c in (a, b))
     return not of_a or not of_b or bool({*of_a} & {*of_b})
-
-
-def _joints_of(c: Candidate) -> list[str]:
-    """Returns the joints on which an effect of joints acts, in words."""
-    is_everywhere = not c.effect.places.get(c.where) and len(places_of(c.where)) == 1
-    single = [where for where, suffix in c.effect.places.items() if suffix]
-    return single if is_everywhere else places_of(c.where)
 
 
 def find_neighbour(

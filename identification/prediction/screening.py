@@ -168,6 +168,14 @@ def places_of(where: str) -> list[str]:
     return where.split(AND)
 
 
+def single_places(c: Candidate) -> list[str]:
+    """Returns the single places at which a candidate acts, in words: all, several or one."""
+    several = places_of(c.where)
+    if len(several) > 1 or c.effect.places.get(c.where):
+        return several
+    return [where for where, suffix in c.effect.places.items() if suffix]
+
+
 def contains(more: Candidate, less: Candidate) -> bool:
     """Returns whether a candidate is the same effect as another, at its places and at others."""
     is_same = more.effect.name == less.effect.name

@@ -146,6 +146,7 @@ def refit_contenders(
         proven = [c for c in out if c.is_proven]
     better = [c for c in out if c.is_proven or _is_dear(c, refits, options)]
     if better and not is_late and uses(options, "simpler_laws"):
+        # Chance is not paid for these laws: they are asked only where a richer one has passed.
         best = max(better, key=lambda c: (c.is_proven, c.criterion))
         there, simpler = _simpler_laws(parent, best, scores, options, is_left)
         known = {c.candidate.key for c in proven}

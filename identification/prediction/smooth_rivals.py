@@ -7,7 +7,7 @@ states     What a servo has summed up, or where a spring in a gear stands, is fo
            window, unseen ones too. So proof on unseen records is not enough, and such a law must
            gain far more than the smooth force of its joints gains without it:
 
-               g_j > -1/2 ln(1 - share of the law),      g_j = -ln(1 - share of the force)
+               g_j < -1/2 ln(1 - share of the law),      g_j = -ln(1 - share of the force)
 
 elsewhere  A sensor's error, a mass or a fault of all inputs is no force of one joint, but it acts
            on the joints, and on a robot for which no law is exact one of many draws a part of what
@@ -31,12 +31,11 @@ import numpy as np
 from identification.discovery.attempts import attempt
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.passes import uses
-from identification.effects.effect import Candidate
 from identification.effects.jointed import JointPlant
 from identification.prediction.forced import acts_on_joints
 from identification.prediction.model import WindowModel
 from identification.prediction.neighbours import MOST_OF_BOTH
-from identification.prediction.screening import places_of
+from identification.prediction.screening import single_places
 from identification.prediction.trial import Contender
 from identification.prediction.yardstick import list_forces, measure
 
@@ -72,8 +71,7 @@ def is_smooth_force(model: WindowModel, new: WindowModel) -> bool:
     plant, law = model.plant, new.candidates[-1]
     if not law.effect.state or not isinstance(plant, JointPlant):
         return False
-    single = [where for where, suffix in law.effect.places.items() if suffix]
-    at = places_of(law.where) if law.effect.places.get(law.where) else single
+    at = single_places(law)
     stick = attempt(None, partial(measure, model, plant.effects, is_left=True, joints=at))
     if stick is None:
         return False
@@ -93,7 +91,7 @@ def does_as_much(model: WindowModel, new: WindowModel) -> bool:
     is_asked = not (effect.is_curve or effect.state or effect.is_of_records or effect.own)
     if not is_asked or not isinstance(plant, JointPlant):
         return False
-    if acts_on_joints(effect) and len(places_of(law.where)) == 1 and effect.places.get(law.where):
+    if acts_on_joints(effect) and single_places(law) == [law.where]:
         return False
     where = [f"joint {axis.joint}" for axis in plant.axes]
     forces = attempt(None, partial(list_forces, model, plant.effects, True, where, law))
@@ -104,7 +102,7 @@ def does_as_much(model: WindowModel, new: WindowModel) -> bool:
     at = {joint: forces.at(joint) for joint in forces.joints}
     alone = {joint: _gain(forces.share(some)) for joint, some in at.items()}
     groups = [[joint] for joint in at if _has_more(alone[joint], of_law)]
-    most = sorted(at, key=lambda joint: -alone[joint])[: _count_places(law)]
+    most = sorted(at, key=lambda joint: -alone[joint])[: len(single_places(law))]
     if len(most) > 1:
         groups.append(most)
     for joints in groups:
@@ -119,13 +117,6 @@ def does_as_much(model: WindowModel, new: WindowModel) -> bool:
 def _has_more(force: float, law: float) -> bool:
     """Returns whether a law has less than most of what a smooth force gains."""
     return law < (1 - MOST_OF_BOTH) * force
-
-
-def _count_places(law: Candidate) -> int:
-    """Returns at how many joints, sensors or inputs a law acts."""
-    places = law.effect.places
-    is_everywhere = not places.get(law.where, law.where)
-    return sum(map(bool, places.values())) if is_everywhere else len(places_of(law.where))
 
 
 def _gain(share: float) -> float:

@@ -15,9 +15,11 @@ from identification import Parameter
 from identification.discovery.candidates import list_common
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
+from identification.effects.effect import Candidate, places
 from identification.effects.joint_plant import candidates, joint_plant
 from identification.prediction import smooth_rivals
 from identification.prediction.scores import window_scores
+from identification.prediction.screening import at_several, single_places
 from identification.prediction.selection import refit_contenders
 from identification.prediction.smooth_rivals import (
     does_as_much,
@@ -181,3 +183,13 @@ def test_a_setpoint_that_does_come_late_is_no_smooth_force():
     model, law = beside("late", "delay")
     assert law.is_proven
     assert not does_as_much(model, law.model)
+
+
+@pytest.mark.parametrize(("where", "at"), [
+    ("all joints", ["joint a", "joint b", "joint c"]), ("joint b", ["joint b"]),
+    ("joint a and joint c", ["joint a", "joint c"]),
+])  # fmt: skip
+def test_a_law_acts_at_single_places(where, at):
+    every = replace(summing(), places=places("joint", ("a", "b", "c")))
+    effect = every if where in every.places else at_several(every, at)
+    assert single_places(Candidate(effect, where, {})) == at
