@@ -15,7 +15,6 @@ from identification.prediction.scores import WindowScore
 MAX_CONTENDERS = 6
 MAX_CURVES = 3  # of the data, fitted in a round: of speed, of position, and of one thing more
 MAX_CHANCE = 0.05  # of a score, above which its effect is not refitted however few there are
-MAX_SIMPLER_LAWS = 2  # with fewer numbers, refitted beside the best one
 
 
 def list_contenders(
@@ -127,43 +126,6 @@ def is_plausible(s: WindowScore, options: DiscoveryOptions) -> bool:
     most = np.inf if uses(options, "large_scores") else options.size_factor
     pairs = zip(s.size, sizes * (len(s.size) // len(sizes)), strict=True)
     return all(z.sign * v >= 0 and abs(v) <= most * z.largest for v, z in pairs)
-
-
-def simpler_than(winner: Candidate, scores: Sequence[WindowScore]) -> list[Candidate]:
-    """Returns laws with fewer numbers that act as the winner does, at its place.
-
-    Args:
-        winner: which promised most.
-        scores: of all candidates.
-    """
-    numbers, way = count_numbers(winner), _way_of(winner)
-    each = (s.candidate for s in scores if s.candidate.where == winner.where)
-    return [c for c in each if _way_of(c) == way and count_numbers(c) < numbers]
-
-
-def _way_of(c: Candidate) -> frozenset[str]:
-    """Returns how an effect acts; a friction is a force, whether it is counted with the motion."""
-    return frozenset("force" if hook == "friction" else hook for hook in c.effect.hooks)
-
-
-def list_simpler(
-    simpler: Sequence[WindowScore], scores: Sequence[WindowScore], options: DiscoveryOptions,
-    is_left: bool = False,
-) -> list[WindowScore]:  # fmt: skip
-    """Returns the best scores of laws that are simpler than the winner.
-
-    Args:
-        simpler: scores of the laws, the best first.
-        scores: of all candidates.
-        options: what is beyond chance.
-        is_left: as `refit_level`.
-    """
-    each: dict[str, WindowScore] = {}
-    level = refit_level(scores, options, is_left)
-    for s in simpler:
-        if is_significant(s, level, options) and is_plausible(s, options):
-            each.setdefault(s.candidate.effect.name, s)
-    return [*each.values()][:MAX_SIMPLER_LAWS]
 
 
 def count_numbers(c: Candidate) -> int:

@@ -13,34 +13,24 @@ from functools import partial
 
 import numpy as np
 
-from identification.discovery.attempts import (
-    attempt,
-    attempt_each,
-    refuse_infinite,
-    tell_dropped,
-)
+from identification.discovery.attempts import attempt_each, refuse_infinite, tell_dropped
 from identification.discovery.impossible import find_impossible
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.passes import uses
 from identification.effects.effect import Candidate
 from identification.pool import OutOfTime, lift_limit, run_parts
 from identification.prediction.contenders import (
-    count_numbers,
-    list_contenders,
-    list_curves,
-    list_simpler,
-    list_starts,
-    refit_level,
-    simpler_than,
-)
+    count_numbers, list_contenders, list_curves, list_starts, refit_level,
+)  # fmt: skip
 from identification.prediction.crossing import at_all_lengths, at_their_best
 from identification.prediction.evidence import all_gains, count_windows, evidence
-from identification.prediction.extension import at_values_of, weighed, with_effect
+from identification.prediction.extension import weighed, with_effect
 from identification.prediction.first_fit import Begun, begin
 from identification.prediction.model import WindowModel
 from identification.prediction.remaining import is_much_left
 from identification.prediction.scores import WindowScore, window_scores
 from identification.prediction.screening import has_what_it_needs
+from identification.prediction.simpler_laws import is_dear, likelier, simpler_laws
 from identification.prediction.smooth_rivals import without_imitated
 from identification.prediction.trial import (
     Contender,
@@ -144,16 +134,16 @@ def refit_contenders(
         more = refit(_near_best(_begun(model, curves, scores, options), options))
         parent, out = judge(parent, [*(c.model for c in out), *more])
         proven = [c for c in out if c.is_proven]
-    better = [c for c in out if c.is_proven or _is_dear(c, refits, options)]
+    better = [c for c in out if c.is_proven or is_dear(c, refits, options)]
     if better and not is_late and uses(options, "simpler_laws"):
         # Chance is not paid for these laws: they are asked only where a richer one has passed.
         best = max(better, key=lambda c: (c.is_proven, c.criterion))
-        there, simpler = _simpler_laws(parent, best, scores, options, is_left)
+        there, simpler = simpler_laws(parent, best, scores, options, is_left)
         known = {c.candidate.key for c in proven}
         rest = [s for s in simpler if s.candidate.key not in known]
         more = refit(_begun(there, rest, simpler, options))
         if more:
-            parent, out = judge(parent, _likelier([*(c.model for c in out), *more]))
+            parent, out = judge(parent, likelier([*(c.model for c in out), *more]))
     for c in out:
         change, t = fall_words(c.prediction.fall), c.prediction.t
         progress(f"{_label(c.candidate)}: mean square error on unseen records {change}, t {t:z.1f}")
@@ -173,34 +163,6 @@ def first_not_imitated(
     while found and found[0] is not (best := without_imitated(parent, found[0], options)):
         found = ranked([best, *found[1:]], options)
     return found
-
-
-def _simpler_laws(
-    parent: WindowModel, best: Contender, scores: Sequence[WindowScore],
-    options: DiscoveryOptions, is_left: bool,
-) -> tuple[WindowModel, list[WindowScore]]:  # fmt: skip
-    """Returns laws with fewer numbers that act as the best one does, and the model to begin at.
-
-    They are scored and begin where the best one ended: about the fit without any effect, whose
-    values make up for what is missing, the right law may have a weak score, and its refit may end
-    elsewhere.
-    """
-    there = attempt(None, partial(at_values_of, parent, best.model)) or parent
-    simpler = window_scores(there.fit, simpler_than(best.candidate, scores))
-    return there, list_simpler(simpler, scores, options, is_left)
-
-
-def _is_dear(c: Contender, refits: int, options: DiscoveryOptions) -> bool:
-    """Returns whether only the price of its numbers is against an effect: a curve has many."""
-    return c.doubt == "numbers" and find_doubt(c.prediction, refits, options) is None
-
-
-def _likelier(models: Sequence[WindowModel]) -> list[WindowModel]:
-    """Returns models without those that a fit of the same effect from elsewhere explains better."""
-    each: dict[tuple[str, str], WindowModel] = {}
-    for m in sorted(models, key=lambda m: m.fitted_power):
-        each.setdefault(m.candidates[-1].key, m)
-    return [m for m in models if each[m.candidates[-1].key] is m]
 
 
 def _begun(

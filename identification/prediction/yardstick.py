@@ -170,9 +170,9 @@ def measure(
 
     Args:
         model: fitted.
-        effects: of the catalogue, of which the curves of a joint make the smooth forces.
-        is_left: whether the model leaves something, so that forces of two variables are asked too.
-        joints: the only ones that are asked, in words; all of them when empty.
+        effects: as in `list_forces`, and so are the others.
+        is_left: likewise.
+        joints: likewise.
 
     Raises:
         DivergenceError: the model cannot be simulated beside its values.

@@ -22,13 +22,12 @@ from identification.prediction.contenders import (
     count_numbers,
     list_contenders,
     list_curves,
-    list_simpler,
     refit_level,
-    simpler_than,
 )
 from identification.prediction.evidence import compute_confidence, evidence
 from identification.prediction.scores import WindowScore
 from identification.prediction.selection import STRONG_BIC, _near_best, ranked
+from identification.prediction.simpler_laws import list_simpler, simpler_than
 from identification.prediction.trial import (
     LEVEL,
     TWINS,

@@ -9,11 +9,11 @@ from records_cases import FREE, listed, nominal_model, records, roles, with_law
 
 from identification.discovery.candidates import list_common
 from identification.discovery.options import DiscoveryOptions
-from identification.prediction import selection
+from identification.prediction import simpler_laws as module
 from identification.prediction.extension import at_values_of
 from identification.prediction.nominal_fit import fit_nominal
 from identification.prediction.scores import window_scores
-from identification.prediction.selection import _is_dear, _likelier, _simpler_laws
+from identification.prediction.simpler_laws import is_dear, likelier, simpler_laws
 
 SIZE = "hardening.k_3@hinge"
 STIFF = 0.2  # of a spring that hardens [N m/rad³], for which the fit without it makes up
@@ -55,7 +55,7 @@ def test_the_simpler_laws_of_a_curve_are_those_of_its_joint_and_begin_where_it_e
     effects = listed("hardening", "offset", "curve_position", "delay")
     scores = window_scores(bare.fit, list_common(effects))
     best = SimpleNamespace(model=curved, candidate=curved.candidates[-1])
-    there, simpler = _simpler_laws(bare, best, scores, DiscoveryOptions(), False)
+    there, simpler = simpler_laws(bare, best, scores, DiscoveryOptions(), False)
     assert simpler[0].candidate.effect.name == "hardening"
     assert {s.candidate.effect.name for s in simpler} <= {"hardening", "offset"}
     assert there.values["J"] == pytest.approx(curved.values["J"], rel=1e-9)
@@ -65,16 +65,16 @@ def test_of_two_fits_of_an_effect_the_one_that_explains_more_stays():
     _bare, curved = models()
     worse = replace(curved, scale=0.5 * curved.scale)  # twice the error in these units
     spring = replace(curved, candidates=tuple(list_common(listed("hardening"))))
-    assert _likelier([worse, spring, curved]) == [spring, curved]
+    assert likelier([worse, spring, curved]) == [spring, curved]
 
 
-@pytest.mark.parametrize(("doubt", "against", "is_dear"), [
+@pytest.mark.parametrize(("doubt", "against", "dear"), [
     ("numbers", None, True), ("numbers", "chance", False), ("record", None, False),
     (None, None, False),
 ])  # fmt: skip
 def test_only_the_price_of_its_numbers_may_be_against_an_effect_that_counts_as_a_winner(
-    monkeypatch, doubt, against, is_dear
+    monkeypatch, doubt, against, dear
 ):
-    monkeypatch.setattr(selection, "find_doubt", lambda *_: against)
+    monkeypatch.setattr(module, "find_doubt", lambda *_: against)
     c = SimpleNamespace(doubt=doubt, prediction=None)
-    assert _is_dear(c, 3, DiscoveryOptions()) == is_dear
+    assert is_dear(c, 3, DiscoveryOptions()) == dear
