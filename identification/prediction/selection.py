@@ -20,7 +20,11 @@ from identification.discovery.passes import uses
 from identification.effects.effect import Candidate
 from identification.pool import OutOfTime, lift_limit, run_parts
 from identification.prediction.contenders import (
-    count_numbers, list_contenders, list_curves, list_starts, refit_level,
+    count_numbers,
+    list_contenders,
+    list_curves,
+    list_starts,
+    refit_level,
 )  # fmt: skip
 from identification.prediction.crossing import at_all_lengths, at_their_best
 from identification.prediction.evidence import all_gains, count_windows, evidence
