@@ -37,6 +37,8 @@ class Effect:
         shapes: see `Shape`.
         places: where it may act, in words, each with its parameters' suffix: {"all drives": "",
             "drive 1": "@1"}; parameters are called `effect.size` + suffix.
+        joints: of places that are sensors, the joint that each measures: {"sensor tip": "joint
+            elbow"}; empty for other places.
         phrase: "{where}: " follows; e.g. "friction: Stribeck peak".
         reference: table, paper or book of the law.
         probes: multiples of the sizes' probes at which its sensitivity is taken, where the outputs
@@ -66,6 +68,7 @@ class Effect:
     shapes: tuple[Shape, ...] = ()
     _: KW_ONLY
     places: Mapping[str, str] = field(default_factory=dict, hash=False)
+    joints: Mapping[str, str] = field(default_factory=dict, hash=False)
     phrase: str = ""
     reference: str = ""
     probes: tuple[float, ...] = (1.0,)

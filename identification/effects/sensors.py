@@ -128,5 +128,6 @@ def _size(name: str, unit: str, largest: float, about: str, sign: Sign = 0) -> S
 def _effect(
     law: Function, said: str, phrase: str, sensors: dict[str, Axis], *sizes: Size, **more: Any
 ) -> Effect:
+    joints = {f"sensor {name}": f"joint {axis.joint}" for name, axis in sensors.items()}
     return Effect(law.__name__, said, sizes, places=places("sensor", (*sensors,)), phrase=phrase,
-                  hooks={"reading": law}, **more)  # fmt: skip
+                  joints=joints, hooks={"reading": law}, **more)  # fmt: skip

@@ -51,6 +51,12 @@ class WindowModel:
         return squares / sum(e.size for e in self.fit.errors)
 
     @property
+    def powers_of_outputs(self) -> np.ndarray:
+        """Mean square of the errors of the fitted windows by output, (ny,), in units of s²."""
+        each = [(e / self.scale).reshape(-1, len(self.scale)) for e in self.fit.errors]
+        return np.asarray(np.mean(np.concatenate(each) ** 2, axis=0))
+
+    @property
     def told_values(self) -> dict[str, float]:
         """`values`, and what each fitted record has for itself as `name [record]`."""
         return {**self.values, **self.fit.values}

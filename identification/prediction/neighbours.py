@@ -15,7 +15,8 @@ record that moves less, a law that grows with the cube of the position explains 
 is beside it. It must also be more likely than
 not that this is no luck: what acts in few windows, as a stop does, has a large chance whatever it
 explains. No law is exact on a real robot, so that less than this speaks against none. A law of a
-sensor, an input or a body has no joint of its own, and curves at all joints count. A curve counts,
+sensor is of the joint that this measures; one of an input or a body has no joint of its own, and
+curves at all joints count. A curve counts,
 in the model or beside it, where it may draw what the law misses: it depends on a variable of the
 law. A force of the position that is left beside a friction is another thing that is missing.
 
@@ -29,6 +30,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+
+import numpy as np
 
 from identification.discovery.effect_results import Neighbour
 from identification.discovery.neighbour import MORE_LIKELY_THAN_NOT
@@ -80,19 +83,30 @@ def explained_by(
         doubtful: those among them that have no sure name, and may be what the law misses.
     """
     left, unsure = model.fitted_power, {d.candidate.key for d in doubtful}
-    curves = [
-        a
-        for a in accepted
-        if a is not law
-        and (
-            _is_beside(a.candidate, law.candidate)
-            or (a.candidate.key in unsure and _may_be_of(a.candidate, law.candidate))
-        )
-    ]
+    others = [a for a in accepted if a is not law]
+    curves = [a for a in others if _is_beside(a.candidate, law.candidate)]
+    known = {c.candidate.key for c in curves}
+    parts = [
+        a for a in others
+        if a.candidate.key in unsure - known and _may_be_of(a.candidate, law.candidate)
+    ]  # fmt: skip
+    taken = [c.explained for c in curves] + [a.explained * _share_for(law, a) for a in parts]
     return Explained(
-        law.explained / left, sum(c.explained for c in curves) / left,
-        min((c.prediction.chance for c in curves), default=1.0),
+        law.explained / left, sum(taken) / left,
+        min((c.prediction.chance for c in (*curves, *parts)), default=1.0),
     )  # fmt: skip
+
+
+def _share_for(law: Contender, other: Contender) -> float:
+    """Returns the share of what another effect explains that a law may have missed.
+
+    It is of outputs that the law moves; of one at which the law explains less than at another, the
+    same part counts less.
+    """
+    if not law.outputs or not other.outputs:
+        return 1.0
+    weight = np.array(law.outputs) / max(law.outputs)
+    return float(weight @ np.array(other.outputs))
 
 
 def neighbour_of(
@@ -140,10 +154,17 @@ def share_a_joint(a: Candidate, b: Candidate) -> bool:
     """Returns whether two effects may act at one joint.
 
     An effect at all joints acts at those where it has a place: gravity acts on no vertical axis.
-    One of a sensor, an input or a body may act at any.
+    One of a sensor acts at the joint that it measures; one of an input or a body may act at any.
     """
-    of_a, of_b = (single_places(c) if acts_on_joints(c.effect) else [] for c in (a, b))
-    return not of_a or not of_b or bool({*of_a} & {*of_b})
+    of_a, of_b = _joints_of(a), _joints_of(b)
+    return not of_a or not of_b or bool(of_a & of_b)
+
+
+def _joints_of(c: Candidate) -> set[str]:
+    """Returns the joints at which an effect acts, in words; none where it may act at any."""
+    if acts_on_joints(c.effect):
+        return {*single_places(c)}
+    return {c.effect.joints[where] for where in single_places(c) if where in c.effect.joints}
 
 
 def find_neighbour(

@@ -242,9 +242,15 @@ def judged(
         doubt = "differ"
     return Contender(
         model=new, prediction=found, gains=gains, numbers=numbers, criterion=gain,
-        explained=model.fitted_power - new.fitted_power,
+        explained=model.fitted_power - new.fitted_power, outputs=_shares_of_outputs(model, new),
         doubt=doubt, luck=luck_of(found, refits, options), refits=refits,
     )  # fmt: skip
+
+
+def _shares_of_outputs(model: WindowModel, new: WindowModel) -> tuple[float, ...]:
+    """Returns how what a model explains beyond another one is shared by outputs that gain."""
+    falls = np.maximum(model.powers_of_outputs - new.powers_of_outputs, 0.0)
+    return tuple((falls / falls.sum()).tolist()) if falls.any() else ()
 
 
 def doubt_of_size(model: WindowModel, options: DiscoveryOptions) -> Doubt | None:

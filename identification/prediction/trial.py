@@ -41,6 +41,7 @@ Doubt = (
     Literal[
         "numbers", "chance", "lengths", "record", "little", "size", "bound", "exchange", "curve",
         "drawn", "smooth", "differ", "steps", "neighbour", "gap", "odds", "beside",
+        "further",
     ]
     | Impossible
 )  # fmt: skip
@@ -70,6 +71,8 @@ class Contender:
     refits: int = 1  # how many effects were refitted, which chance has to pay for
     # what else was refitted in its place and may be meant, once it is accepted
     alternatives: tuple[Contender, ...] = ()
+    # its share of `explained` by output; empty where it is not known
+    outputs: tuple[float, ...] = ()
     # what is beside it, where it was judged beside effects that have left the model since
     neighbour: Neighbour | None = None
 
