@@ -8,7 +8,7 @@ from identification.discovery.effect_results import Neighbour
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import CURVE, Candidate, Effect
 from identification.effects.sizes import Size
-from identification.prediction.moves import drop_doubtful
+from identification.prediction.moves import add_set, drop_doubtful
 from identification.prediction.task import RecordsTask, WindowSearch
 from identification.prediction.trial import Contender
 
@@ -33,15 +33,15 @@ def accepted(name):
     )
 
 
-def state(*names):
+def state(*names, without=(), made=()):
     every = tuple(accepted(CURVE * name.isupper() + name) for name in names)
     task = RecordsTask(
-        nominal_model=None, effects=(), options=DiscoveryOptions(), records=()
+        nominal_model=None, effects=(), options=DiscoveryOptions(without=without), records=()
     )  # fmt: skip
     whole = model(*(a.candidate for a in every))
     return WindowSearch(
         task=task, moves=(), nominal=model(), nominal_scores=(), model=whole, accepted=every,
-        scores=(), rejected=(), seconds={}, begun=None,
+        scores=(), rejected=(), seconds={}, begun=None, made=made,
     )  # fmt: skip
 
 
@@ -49,28 +49,34 @@ def letter(a):
     return a.candidate.effect.name[-1]
 
 
-def after(monkeypatch, doubts, parts=""):
+def after(monkeypatch, doubts, parts="", shares=(), begun=None):
     """The names that stay, and those that are lost with their doubts.
 
     Args:
         monkeypatch: of pytest.
         doubts: of each effect, None for a sure one; a curve has a capital letter.
         parts: pairs "ab": while b is in doubt, it may be a part of what a misses.
+        shares: of what smooth forces could, by effect, and what speaks for each.
+        begun: the state; one of these effects when None.
     """
+    begun = begun or state(*doubts)
+    named = [
+        SimpleNamespace(candidate=a.candidate, smooth_share=share, evidence=evidence)
+        for a, (share, evidence) in zip(begun.accepted, shares, strict=False)
+    ]
     pairs = parts.split()
 
     def beside(law, state, stick, doubtful=()):
         is_part = any(letter(law) + letter(d) in pairs for d in doubtful)
         return Neighbour("curve", "joint", 0.5, 0.0, 0.5 if is_part else 0.01)
 
-    monkeypatch.setattr(drop_doubtful, "names_of", lambda *given: ((), None))
+    monkeypatch.setattr(drop_doubtful, "names_of", lambda *given: (named, None))
     monkeypatch.setattr(drop_doubtful, "forbidden_of", lambda state: ())
     monkeypatch.setattr(drop_doubtful, "is_off", lambda *given: True)
     monkeypatch.setattr(drop_doubtful, "doubts_of_names", lambda *given: tuple(doubts.values()))
     monkeypatch.setattr(drop_doubtful, "neighbour_of", beside)
     monkeypatch.setattr(drop_doubtful, "refitted", lambda old, rest, base, confirm: model(*rest))
     monkeypatch.setattr(drop_doubtful, "score_all", lambda *given: ("again",))
-    begun = state(*doubts)
     new = drop_doubtful.drop_doubtful(begun, lambda line: None)
     assert (new is begun) == (new.scores == ())
     assert [*map(letter, new.accepted)] == [c.effect.name[-1] for c in new.model.candidates]
@@ -94,6 +100,40 @@ def after(monkeypatch, doubts, parts=""):
 ])  # fmt: skip
 def test_what_is_sure_stays_without_what_is_in_doubt(monkeypatch, doubts, parts, kept, lost):
     assert after(monkeypatch, doubts, parts) == (kept, lost)
+
+
+@pytest.mark.parametrize(("shares", "kept", "lost"), [
+    ([(0.99, 9.0), (0.95, 5.0)], "ab", []),
+    ([(0.99, 9.0), (0.90, 5.0)], "a", [("b", "further")]),
+    # the one with the most evidence need not be exact, wherever it stands
+    ([(0.90, 5.0), (0.99, 9.0)], "b", [("a", "further")]),
+    ([(0.88, 9.0), (0.99, 5.0)], "ab", []),
+    ([(0.88, 9.0), (0.91, 5.0), (0.90, 7.0)], "a", [("b", "further"), ("c", "further")]),
+    # one of a body or an input has no smooth force of its own
+    ([(0.99, 9.0), (None, 5.0)], "ab", []),
+])  # fmt: skip
+def test_a_further_law_explains_nearly_all_that_smooth_forces_could(
+    monkeypatch, shares, kept, lost
+):
+    sure = dict.fromkeys("abc"[: len(shares)])
+    assert after(monkeypatch, sure, shares=shares) == (kept, lost)
+    begun = state(*sure, without=("further_laws",))
+    assert after(monkeypatch, sure, shares=shares, begun=begun) == ("abc"[: len(shares)], [])
+
+
+@pytest.mark.parametrize(("made", "much", "without", "kept"), [
+    (("add_set",), True, (), "a"),
+    (("add_set",), False, (), "ab"),
+    (("add_effect",), True, (), "ab"),
+    (("add_set",), True, ("whole_sets",), "ab"),
+])  # fmt: skip
+def test_of_a_set_that_leaves_much_only_the_surest_is_a_name(
+    monkeypatch, made, much, without, kept
+):
+    monkeypatch.setattr(add_set, "is_much_left", lambda model, options: much)
+    begun = state("a", "b", made=made, without=without)
+    sure, shares = {"a": None, "b": None}, [(0.99, 9.0), (0.99, 5.0)]
+    assert after(monkeypatch, sure, shares=shares, begun=begun)[0] == kept
 
 
 def test_one_effect_is_not_asked_because_nothing_would_stay(monkeypatch):

@@ -5,6 +5,7 @@ from functools import cache
 from types import SimpleNamespace
 
 import pytest
+from joint_cases import arm
 from records_cases import FREE, listed, nominal_model, pendulum, records, roles
 from records_cases import with_law as fitted_with
 
@@ -154,6 +155,35 @@ def test_a_curve_of_the_model_counts_where_it_may_draw_what_the_law_misses(law, 
     explained = explained_by(both[0], both, model)
     assert explained.law == 3.0
     assert (explained.curves, explained.chance) == ((3.0, 1e-6) if counts else (0.0, 1.0))
+
+
+@pytest.mark.parametrize(("law", "other", "counted"), [
+    ((1.0, 0.0), (1.0, 0.0), 3.0),
+    ((1.0, 0.0), (0.0, 1.0), 0.0),  # of an output that the law does not move
+    ((1.0, 0.0), (0.5, 0.5), 1.5),
+    ((0.5, 0.5), (0.0, 1.0), 3.0),
+    ((0.8, 0.2), (0.0, 1.0), 0.75),
+    ((), (0.0, 1.0), 3.0),  # not known
+])  # fmt: skip
+def test_what_is_beside_a_law_counts_at_the_outputs_that_the_law_moves(law, other, counted):
+    known = {e.name: e for e in candidates(pendulum(), FREE)}
+
+    def found(name, outputs):
+        (c, *_) = list_common([known[name]])
+        return SimpleNamespace(
+            candidate=c, explained=3.0, prediction=SimpleNamespace(chance=1e-6), outputs=outputs
+        )  # fmt: skip
+
+    both = [found("encoder_scale", law), found("hardening", other)]
+    explained = explained_by(both[0], both, SimpleNamespace(fitted_power=1.0), both[1:])
+    assert explained.curves == pytest.approx(counted)
+
+
+def test_a_law_of_a_sensor_is_one_of_the_joint_that_it_measures():
+    every = {e.name: e for e in candidates(arm(), ())}
+    zero = Candidate(every["encoder_offset"], "sensor b", {})
+    stiff = [Candidate(every["hardening"], f"joint {j}", {}) for j in ("shoulder", "elbow")]
+    assert [share_a_joint(zero, c) for c in stiff] == [False, True]
 
 
 @pytest.mark.parametrize(("law", "doubtful", "counts"), [
