@@ -132,10 +132,12 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
     "smooth_neighbours": (
         HORIZON, "names no law beside which a smooth force of two variables explains much",
     ),
-    "whole_sets": (HORIZON, "lets a set of effects take the place of others only where little is left with it"),
+    "whole_sets": (
+        HORIZON, "lets a set of effects take the place of others only where little is left with it",
+    ),
     "further_laws": (
-        HORIZON, "names no law beside a surer one that explains less than 92 % of what smooth forces"
-        " of its joint could",
+        HORIZON, "names no law beside a surer one that explains less than 92 % of what smooth"
+        " forces of its joint could",
     ),
     "closed_gap": (HORIZON, "names no law that closes less than half of the gap"),
     "drop_beside_curves": (HORIZON, "drops laws that were found only beside a curve of the data"),

@@ -14,45 +14,33 @@ from functools import partial
 import numpy as np
 
 from identification.discovery.attempts import attempt_each, refuse_infinite, tell_dropped
-from identification.discovery.impossible import find_impossible
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.passes import uses
 from identification.effects.effect import Candidate
 from identification.pool import OutOfTime, lift_limit, run_parts
 from identification.prediction.contenders import (
-    count_numbers,
     list_contenders,
     list_curves,
     list_starts,
     refit_level,
 )  # fmt: skip
 from identification.prediction.crossing import at_all_lengths, at_their_best
-from identification.prediction.evidence import all_gains, count_windows, evidence
 from identification.prediction.extension import weighed, with_effect
 from identification.prediction.first_fit import Begun, begin
+from identification.prediction.judging import REFUTED, judged
 from identification.prediction.model import WindowModel
 from identification.prediction.remaining import is_much_left
 from identification.prediction.scores import WindowScore, window_scores
 from identification.prediction.screening import has_what_it_needs
 from identification.prediction.simpler_laws import is_dear, likelier, simpler_laws
 from identification.prediction.smooth_rivals import without_imitated
-from identification.prediction.trial import (
-    Contender,
-    Doubt,
-    compared,
-    evidences,
-    find_doubt,
-    has_size,
-    is_at_bound,
-    luck_of,
-)
+from identification.prediction.trial import Contender, evidences
 from identification.progress import Progress, counted
 from identification.shares import fall_words
 from identification.windows.records import Record
 from identification.windows.unseen import Unseen
 
 STRONG_BIC = 10.0  # "very strong evidence" of one law against another (Kass and Raftery 1995)
-REFUTED: tuple[Doubt, ...] = ("numbers", "chance", "differ")  # by windows of the horizon alone
 
 
 def refit_contenders(
@@ -131,6 +119,8 @@ def refit_contenders(
 
     children = refit(_near_best(_begun(model, chosen, scores, options), options))
     parent, out = judge(model, children)
+    # of laws that a smooth force of a joint does as well, none is left: a curve may draw that force
+    out = [*first_not_imitated(parent, ranked(out, options), options)]
     proven = [c for c in out if c.is_proven]
     curves = list_curves(scores, {s.candidate.key for s in chosen}, options, is_left)
     if curves and not proven and not is_late:
@@ -213,80 +203,9 @@ def _refit(
     return new
 
 
-def judged(
-    model: WindowModel, new: WindowModel, refits: int, options: DiscoveryOptions,
-    worse_fit: Unseen | None = None,
-) -> Contender:  # fmt: skip
-    """Returns the contender of a model with one more effect: what speaks for it, and against it.
-
-    Args:
-        model: without the effect.
-        new: with it, as the last of its candidates.
-        refits: how many effects were refitted, which chance has to pay for.
-        options: what matters.
-        worse_fit: errors of the fitted values, where those with which the fit began were better.
-    """
-    c = new.candidates[-1]
-    found = compared(worse_fit or model.unseen, new.unseen, options)
-    gains = all_gains(model, new, options)
-    records = len(model.unseen.at_horizon) + len(model.fit.problem.parts)
-    numbers = count_numbers(c) * (records if c.effect.own else 1)
-    windows, outputs = count_windows(model), len(model.scale)
-    gain = float(evidence([gains], [numbers], windows, outputs)[0, 0])
-    doubt: Doubt | None = "numbers" if gain <= 0 else find_doubt(found, refits, options)
-    if doubt is None and worse_fit and _is_worse(new.unseen, model.unseen, options):
-        doubt = "record"
-    if doubt is None:
-        doubt = doubt_of_size(new, options)
-    if doubt in REFUTED and _explains_fitted(model, new, options):
-        doubt = "differ"
-    return Contender(
-        model=new, prediction=found, gains=gains, numbers=numbers, criterion=gain,
-        explained=model.fitted_power - new.fitted_power, outputs=_shares_of_outputs(model, new),
-        doubt=doubt, luck=luck_of(found, refits, options), refits=refits,
-    )  # fmt: skip
-
-
-def _shares_of_outputs(model: WindowModel, new: WindowModel) -> tuple[float, ...]:
-    """Returns how what a model explains beyond another one is shared by outputs that gain."""
-    falls = np.maximum(model.powers_of_outputs - new.powers_of_outputs, 0.0)
-    return tuple((falls / falls.sum()).tolist()) if falls.any() else ()
-
-
-def doubt_of_size(model: WindowModel, options: DiscoveryOptions) -> Doubt | None:
-    """Returns what is against the size of the last effect of a model; None where nothing is.
-
-    Args:
-        model: with the effect.
-        options: what is beyond chance.
-    """
-    if not has_size(model, options):
-        return "size"
-    if is_at_bound(model):
-        return "bound"
-    if not uses(options, "impossible_sizes"):
-        return None
-    logs = [p.predictor.log for p in model.fit.problem.parts]
-    return find_impossible(model.candidates[-1], model, logs)
-
-
 def _against(c: Contender) -> float:
     """Returns what a difference between records must have more of evidence than a law."""
     return STRONG_BIC if c.candidate.effect.is_of_records else 0.0
-
-
-def _explains_fitted(model: WindowModel, new: WindowModel, options: DiscoveryOptions) -> bool:
-    """Returns whether a model explains fitted records that unseen ones contradict.
-
-    Then the records differ in something that the effect stands for, and its gain is no luck.
-    """
-    falls = 1 - new.fitted_power / model.fitted_power
-    return falls > options.min_gap_share and _is_worse(new.unseen, model.unseen, options)
-
-
-def _is_worse(new: Unseen, old: Unseen, options: DiscoveryOptions) -> bool:
-    """Returns whether unseen records prove that a model predicts worse than another."""
-    return find_doubt(compared(new, old, options), 1, options) is None
 
 
 def ranked(found: Sequence[Contender], options: DiscoveryOptions) -> tuple[Contender, ...]:

@@ -5,7 +5,8 @@ in which its members compete with all other laws: their sizes make no room, and 
 
     r + Σ_j S_j η_j         j: members, η_j: their sizes
 
-as it would be without them. A curve of the data among the members may be what several laws do: it
+as it would be without them. What the model expects of the set is of blocks of windows to which its
+sizes were not fitted. A curve of the data among the members may be what several laws do: it
 gives way to them, and does not compete.
 """
 
@@ -13,7 +14,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -31,10 +32,18 @@ MAX_LISTED = 120  # laws, the best by themselves, of which a set is chosen
 MAX_SHAPES = 4  # of a law at a place among them
 
 
+@dataclass(frozen=True)
+class Choice:
+    """A set of laws, and what the linear model expects of it."""
+
+    laws: tuple[Candidate, ...]
+    left: float  # sum of squares that it leaves, over what the present model leaves
+
+
 def choose(
     model: WindowModel, members: Sequence[Candidate], scores: Sequence[WindowScore],
     options: DiscoveryOptions, most: int,
-) -> tuple[Candidate, ...]:  # fmt: skip
+) -> Choice:  # fmt: skip
     """Returns the laws that explain most of the fitted windows together.
 
     Args:
@@ -54,7 +63,7 @@ def choose(
     held = {n for c in members for n in (*c.free, *shapes_of(c))}
     known = attempt(None, partial(condensed, fit, every, held)) if listed else None
     if known is None:
-        return tuple(members)
+        return Choice(tuple(members), 1.0)
     values = {**model.plant.parameters.values(), **model.fit.of_record(0)}
     is_member = [any(c is m for m in members) for c in every]
     present = np.concatenate([
@@ -71,7 +80,11 @@ def choose(
         np.array([s.sign for s in sizes]),
         np.array([options.size_factor * s.largest for s in sizes]),
     )  # fmt: skip
-    return tuple(listed[j] for j in select_set(columns, most, first))
+    chosen = select_set(columns, most, first)
+    bare = known.squares.sum() + present @ (2 * known.a.sum(axis=0) + known.G.sum(axis=0) @ present)
+    explained = columns.gains([chosen]).sum() if chosen else 0.0
+    left = float((bare - explained) / known.squares.sum())
+    return Choice(tuple(listed[j] for j in chosen), left)
 
 
 def find_members(model: WindowModel, parent: WindowModel) -> list[Candidate]:

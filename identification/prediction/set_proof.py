@@ -15,8 +15,8 @@ from identification.discovery.passes import uses
 from identification.prediction.crossing import at_all_lengths, at_their_best
 from identification.prediction.exchange import exchanged, is_contradicted
 from identification.prediction.extension import refitted, with_fitting_steps
+from identification.prediction.judging import judged
 from identification.prediction.model import WindowModel
-from identification.prediction.selection import judged
 from identification.prediction.set_choice import find_members
 from identification.prediction.set_members import Key
 from identification.prediction.smooth_rivals import without_imitated

@@ -47,7 +47,7 @@ DOUBTS = {
     "neighbour": "beside it a force drawn from the data explains much of what the two explain",
     "gap": "it removes less than half of the power above the noise, and something is left",
     "odds": "other effects in its place are together likelier than it",
-    "further": "another law is surer, and smooth forces of its joint explain more than this one does",
+    "further": "another law is surer, and smooth forces of the joint explain more than this one",
     "beside": "it was found beside an effect that has no sure name",
     "curve": "it was found together with a curve from the data, and may be what the nodes of the"
     " curve cannot draw",

@@ -13,7 +13,7 @@ from identification.prediction.discovery import WINDOWS
 from identification.prediction.moves import add_set
 from identification.prediction.nominal_fit import fit_nominal
 from identification.prediction.scores import condensed, window_scores
-from identification.prediction.set_choice import choose, find_members
+from identification.prediction.set_choice import Choice, choose, find_members
 from identification.prediction.task import RecordsTask
 
 NAMES = ("quadratic_friction", "hardening", "gravity_force", "offset", "stiffness", "encoder_scale")
@@ -69,7 +69,7 @@ def test_a_curve_gives_way_to_the_laws_that_it_draws():
     scores = window_scores(nominal.fit, list_common(listed(*laws)))
     members = find_members(drawn, nominal)
     assert [m.effect.name for m in members] == ["curve_position"]
-    found = choose(drawn, members, scores, DiscoveryOptions(), 3)
+    found = choose(drawn, members, scores, DiscoveryOptions(), 3).laws
     assert {c.effect.name for c in found} >= {"hardening", "offset"}
     assert not any(c.effect.is_curve for c in found)
 
@@ -84,7 +84,7 @@ def test_members_of_a_set_with_which_unseen_records_are_predicted_no_better_are_
     )  # fmt: skip
     state = WINDOWS.begin(task, lambda line: None)
     monkeypatch.setattr(add_set, "is_much_left", lambda model, options: True)
-    monkeypatch.setattr(add_set, "_with_set", lambda state, model, progress: state.model)
+    monkeypatch.setattr(add_set, "_with_set", lambda state, *given, **more: state.model)
     monkeypatch.setattr(add_set, "each_at_its_best", None)
     assert add_set.add_set(state, lambda line: None).accepted == ()
 
@@ -112,7 +112,7 @@ def test_sets_are_chosen_among_laws_without_states(monkeypatch, without, names):
 
     def choose(model, members, scores, options, room):
         asked.append({s.candidate.effect.name for s in scores})
-        return ()
+        return Choice((), 1.0)
 
     monkeypatch.setattr(add_set, "find_members", lambda model, parent: [])
     monkeypatch.setattr(add_set, "choose", choose)
@@ -122,3 +122,26 @@ def test_sets_are_chosen_among_laws_without_states(monkeypatch, without, names):
     )  # fmt: skip
     add_set._with_set(state, None, print)
     assert asked == [names]
+
+
+@pytest.mark.parametrize(("left", "without", "much"), [
+    (1.0, (), True), (0.04, (), False), (-0.1, (), False), (1.0, ("whole_sets",), False),
+])  # fmt: skip
+def test_a_set_of_which_a_linear_choice_expects_little_is_not_refitted(left, without, much):
+    """Five times the noise is left, and a set counts as whole at 1.5 times the noise."""
+    squares = SimpleNamespace(of_outputs=[np.full((4, 1), 25.0)], noise=np.array([1.0]))
+    model = SimpleNamespace(unseen=SimpleNamespace(select=squares))
+    options = DiscoveryOptions(without=without)
+    assert add_set.expects_much(model, Choice((), left), options) == much
+
+
+def test_a_linear_model_expects_what_the_refit_with_its_set_leaves():
+    logs = records(3, {"offset.f_0@hinge": 0.06, "hardening.k_3@hinge": 0.05}, samples=300)
+    every = roles(logs)
+    nominal = fit_nominal(nominal_model(), every)
+    scores = window_scores(nominal.fit, list_common(listed("hardening", "offset", "stiffness")))
+    found = choose(nominal, (), scores, DiscoveryOptions(), 2)
+    model = nominal
+    for c in found.laws:
+        model = with_law(model, c.effect.name, every)
+    assert found.left == pytest.approx(model.fitted_power / nominal.fitted_power, abs=0.02)

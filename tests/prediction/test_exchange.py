@@ -32,11 +32,12 @@ from identification.prediction.exchange import (
     with_both_roles,
     without_contradicted,
 )
+from identification.prediction.judging import REFUTED
 from identification.prediction.model import predict_fitted
 from identification.prediction.nominal_fit import fit_nominal
 from identification.prediction.remaining import needed_input_error
 from identification.prediction.screening import score_all
-from identification.prediction.selection import REFUTED, refit_contenders
+from identification.prediction.selection import refit_contenders
 from identification.prediction.trial import Contender, find_doubt
 from identification.windows.comparison import compare
 from identification.windows.fit import solve

@@ -16,6 +16,7 @@ from identification.effects.axes import Axis
 from identification.effects.catalogue import joint_effects
 from identification.effects.effect import Candidate
 from identification.effects.joint_plant import candidates
+from identification.prediction.judging import judged
 from identification.prediction.moves.curve_for_laws import curve_for_laws
 from identification.prediction.neighbours import (
     MOST_OF_BOTH,
@@ -28,7 +29,6 @@ from identification.prediction.neighbours import (
 )
 from identification.prediction.nominal_fit import fit_nominal
 from identification.prediction.screening import score_all
-from identification.prediction.selection import judged
 from identification.prediction.state import first_state
 from identification.prediction.task import RecordsTask
 from identification.prediction.yardstick import measure

@@ -17,7 +17,7 @@ from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate, places
 from identification.effects.joint_plant import candidates, joint_plant
-from identification.prediction import smooth_rivals
+from identification.prediction import selection, smooth_rivals
 from identification.prediction.scores import window_scores
 from identification.prediction.screening import at_several, single_places
 from identification.prediction.selection import refit_contenders
@@ -110,6 +110,32 @@ def test_the_search_refuses_what_a_smooth_force_explains(monkeypatch):
     assert without_imitated(model, law, DiscoveryOptions()).doubt == "smooth"
     without = DiscoveryOptions(without=("free_states",))
     assert without_imitated(model, law, without) is law
+
+
+def test_where_a_smooth_force_refutes_all_laws_the_force_is_drawn(monkeypatch):
+    """Curves are else refitted only where no law is proven."""
+    base = NominalModel(plant(), FREE, np.full(2, 0.2), 0.3)
+    every = {e.name: e for e in candidates(plant(), FREE)}
+    logs = [record(SMOOTH, seed) for seed in (1, 2)]
+    task = RecordsTask(
+        nominal_model=base, records=as_records(logs[:1], logs[1:]),
+        effects=(every["gravity_force"], every["curve_position"]), options=DiscoveryOptions(),
+    )  # fmt: skip
+    state = first_state(task, print)
+    scores = [replace(s, p_value=0.0) for s in state.scores]  # of a record as long as is needed
+
+    def names():
+        asked = (state.model, scores, 0.3, task.confirm, task.options, print)
+        return [(c.candidate.effect.name, c.doubt) for c in refit_contenders(*asked)[1]]
+
+    assert names() == [("gravity_force", None)]
+
+    def refuted(model, c, options):
+        is_law = c.is_proven and not c.candidate.effect.is_curve
+        return replace(c, doubt="smooth") if is_law else c
+
+    monkeypatch.setattr(selection, "without_imitated", refuted)
+    assert names() == [("curve_position", None), ("gravity_force", "smooth")]
 
 
 LATE = 4  # samples by which a setpoint comes late

@@ -28,10 +28,10 @@ from identification.prediction.evidence import all_gains, count_windows, evidenc
 from identification.prediction.extension import refitted, weighed, with_effect
 from identification.prediction.first_fit import begin
 from identification.prediction.model import WindowModel
-from identification.prediction.remaining import is_much_left
+from identification.prediction.remaining import MAX_OUTPUT_RATIO, is_much_left, output_ratios
 from identification.prediction.scores import window_scores
 from identification.prediction.screening import score_all
-from identification.prediction.set_choice import choose, find_members
+from identification.prediction.set_choice import Choice, choose, find_members
 from identification.prediction.set_members import Key, Place, each_at_its_best, with_rivals
 from identification.prediction.set_proof import proven_members
 from identification.prediction.task import WindowSearch
@@ -39,6 +39,8 @@ from identification.prediction.trial import compared, find_doubt
 from identification.progress import Progress
 
 MAX_CHOICES = 3  # of a set, each about the model with the one before
+# A linear choice errs: of a true set it expected 1.7 times the error that the refit left.
+FAR_ABOVE = 2.0
 MAX_ROUNDS = 2  # of a choice, and of asking each of its members in its place
 
 
@@ -61,7 +63,7 @@ def add_set(
     if begin_at is not None and not is_much_left(begin_at, task.options):
         asked.append(_keys(begin_at))  # its effects are left in their places
     for _ in range(MAX_ROUNDS):
-        chosen = _with_set(state, model, progress)
+        chosen = _with_set(state, model, progress, is_begun=begin_at is not None)
         if _keys(chosen) in asked or _is_worse(chosen, begin_at or state.model, task.options):
             break
         asked.append(_keys(chosen))
@@ -146,26 +148,46 @@ def leaves_much(model: WindowModel, options: DiscoveryOptions) -> bool:
     return uses(options, "whole_sets") and is_much_left(model, options)
 
 
+def expects_much(model: WindowModel, found: Choice, options: DiscoveryOptions) -> bool:
+    """Returns whether a set is expected to leave far more than what counts as little.
+
+    Args:
+        model: about which it was chosen.
+        found: the set.
+        options: the switch `whole_sets`.
+    """
+    now = float(output_ratios(model.unseen.select).max())
+    expected = now * np.sqrt(max(0.0, found.left))
+    return uses(options, "whole_sets") and bool(expected > FAR_ABOVE * MAX_OUTPUT_RATIO)
+
+
 def _keys(model: WindowModel) -> set[Key]:
     return {c.key for c in model.candidates}
 
 
-def _with_set(state: WindowSearch, model: WindowModel, progress: Progress) -> WindowModel:
+def _with_set(
+    state: WindowSearch, model: WindowModel, progress: Progress, is_begun: bool = False
+) -> WindowModel:
     """Returns the model refitted with the set that is chosen about itself.
 
     Args:
         state: without the set.
         model: where the choice begins.
         progress: is told each set.
+        is_begun: whether the model has effects that were found, so that a set is not refitted of
+            which the linear choice expects that it leaves much.
     """
     task, best = state.task, model
     for _ in range(MAX_CHOICES):
         members = find_members(model, state.model)
         is_plain = uses(task.options, "plain_sets")
         scores = [s for s in state.scores if not (is_plain and s.candidate.effect.state)]
-        chosen = choose(model, members, scores, task.options, state.room)
+        found = choose(model, members, scores, task.options, state.room)
+        chosen = found.laws
         keys = {c.key for c in chosen}
         if keys == {c.key for c in members} or len(keys) < 2:
+            break
+        if is_begun and expects_much(model, found, task.options):
             break
         progress("tried together: " + " + ".join(f"{c.effect.name}, {c.where}" for c in chosen))
         out = {c.key for c in members} - keys

@@ -17,10 +17,10 @@ from identification.discovery.passes import uses
 from identification.prediction.crossing import at_all_lengths
 from identification.prediction.evidence import compute_confidence
 from identification.prediction.extension import refitted
+from identification.prediction.judging import judged
 from identification.prediction.model import WindowModel
 from identification.prediction.moves.add_set import with_one
 from identification.prediction.odds import find_odds
-from identification.prediction.selection import judged
 from identification.prediction.smooth_rivals import without_imitated
 from identification.prediction.task import Change, WindowSearch
 from identification.prediction.trial import Contender, evidences, is_rival
