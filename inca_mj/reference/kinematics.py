@@ -31,13 +31,7 @@ def rotation(euler: np.ndarray) -> np.ndarray:
 
 
 def geometric(p: np.ndarray, R_AB: np.ndarray, geometry: Geometry) -> CablePose:
-    """Returns arms, lengths and directions of the cables (2.6 - 2.8).
-
-    Args:
-        p: position of P in O, shape (3,) [m].
-        R_AB: rotation of the platform, shape (3, 3).
-        geometry: exit points and connectors.
-    """
+    """Returns the cables of a platform at p in O (3,) [m], turned by R_AB (2.6 - 2.8)."""
     b = geometry.B @ R_AB.T
     ds = p + b - geometry.A
     d = np.linalg.norm(ds, axis=1)

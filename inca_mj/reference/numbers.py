@@ -39,19 +39,9 @@ def pack(
 ) -> np.ndarray:
     """Returns the numbers q of `derivative(x, i, q)`, shape (147,).
 
-    The drum springs balance the pretension of the parameters' start pose; `force` is not part
-    of that balance, it acts from the first instant on.
-
-    Args:
-        parameters: values of the robot, and its start pose; deviations of its drives and
-            displacements of its points count where they are among them.
-        geometry: nominal exit points and connectors.
-        force: constant external force G on the platform, in O [N].
-        force_at: the point b_G where it acts, in the platform frame [m].
-
-    Raises:
-        InputError: `force` or `force_at` is not 3 finite numbers, or no rest exists at the
-            start pose.
+    The drum springs balance the pretension of the parameters' start pose. A constant `force` G, in
+    O [N], at the point b_G of the platform [m] is no part of that balance: it acts from the first
+    instant on. Raises InputError if either is not 3 finite numbers, or no rest exists.
     """
     value = parameters.values()
     q = np.empty(at.NUMBERS)
@@ -83,14 +73,8 @@ def wrench_matrix(pose: kinematics.CablePose) -> np.ndarray:
 def rest(parameters: ParameterSet, geometry: Geometry) -> Rest:
     """Returns the rest at the start pose (x, y, z, roll, pitch, yaw) of a parameter set.
 
-    Args:
-        parameters: needs `m`, `lambda` and the start pose; takes the deviations of λ and the
-            displacements of points that it has.
-        geometry: nominal exit points and connectors.
-
-    Raises:
-        InputError: a cable has no length, the cables cannot carry the weight at this pose, or
-            one of them would have to push.
+    Raises InputError if a cable has no length, the cables cannot carry the weight at this pose, or
+    one of them would have to push.
     """
     value = parameters.values()
     position = np.array([value[name] for name in ("x", "y", "z")])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 from identification.errors import InputError
@@ -158,7 +158,7 @@ class CrossCheck:
             "order": self.order,
             "orders": self.orders,
             "tension_orders": self.tension_orders,
-            "derivatives": self.derivatives.to_json(),
+            "derivatives": asdict(self.derivatives),
             "passed": self.passed,
             "sentences": list(self.sentences),
         }

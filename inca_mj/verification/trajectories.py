@@ -96,17 +96,10 @@ def compare_runs(
     geometry: Geometry,
     timestep: float,
 ) -> tuple[Row, str]:
-    """Returns the largest differences of the twin at one step from the reference.
+    """Returns the largest differences of the twin at a step [s] from the reference.
 
-    Args:
-        case: start and currents.
-        reference: gives the reference's run; asked for it only when the twin's is there.
-        parameters: values of both models.
-        geometry: anchors of the cables.
-        timestep: of the twin [s]; divides 10 ms.
-
-    Returns:
-        The row, its errors None when a model diverged, and then a sentence that says so.
+    The reference's run is asked for only when the twin's is there. The errors of the row are None
+    when a model diverged, and a sentence then says so.
     """
     row: Row = {"case": case.name, "step": timestep, **dict.fromkeys(ERRORS)}
     robot = build_twin(parameters, geometry, timestep=timestep)
