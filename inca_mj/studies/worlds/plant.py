@@ -44,16 +44,9 @@ class HiddenPlant:
 def make_plant(
     parameters: ParameterSet, geometry: Geometry, effects: Sequence[HiddenEffect] = ()
 ) -> HiddenPlant:
-    """Returns a robot at rest at the start pose of its parameters.
+    """Returns a robot with effects at rest at the start pose of its true parameters.
 
-    Args:
-        parameters: true values; deviations of its drives and displacements of its points count
-            where they are among them.
-        geometry: nominal exit points and connectors.
-        effects: what else it has.
-
-    Raises:
-        InputError: no tensions that pull hold the platform there.
+    Raises InputError if no tensions that pull hold the platform there.
     """
     value = parameters.values()
     placed, λ = displaced(geometry, value), at_drives("lambda", value)
@@ -86,14 +79,10 @@ def make_plant(
 def simulate_world(
     plant: HiddenPlant, currents: np.ndarray, sampling_time: float = 0.01, step: float | None = None
 ) -> np.ndarray:
-    """Returns states of a plant at the samples, shape (n, 60).
+    """Returns states at the samples (n, 60), under commanded currents (n, 8) [A] that are held.
 
-    Args:
-        plant: from `make_plant`.
-        currents: commanded, held from sample to sample, shape (n, 8) [A].
-        sampling_time: between samples [s].
-        step: largest step of the integrator [s]; when not given, one that leaves 1e-8 rad of error
-            in 20 s, or 5e-5 rad where a drum plays.
+    The largest step of the integrator [s], where none is given, leaves 1e-8 rad of error in 20 s,
+    or 5e-5 rad where a drum plays.
 
     Raises:
         InputError: the currents have another shape.

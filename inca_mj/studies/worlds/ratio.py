@@ -56,15 +56,10 @@ class HiddenAbsorbed:
         tolerances: Tolerances = EXACT,
         noise: float = 1.0,
     ) -> None:
-        """Take the sensitivities.
+        """Take the sensitivities at true parameters, under currents (n, 8) [A].
 
-        Args:
-            parameters: true values.
-            currents: the input, shape (n, 8) [A].
-            sampling_time: [s].
-            names: the base parameters; the start pose is always among them.
-            tolerances: how much drives, points and platform may differ.
-            noise: σ, rms of the measurement noise [rad]; it counts where parts may differ.
+        `names` are the base parameters, beside the start pose. The noise σ [rad] counts where parts
+        may differ by the tolerances.
         """
         self._robot = (parameters, currents, sampling_time)
         self._without = self._angles(parameters, ())
