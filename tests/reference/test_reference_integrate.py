@@ -70,15 +70,6 @@ def test_in_free_flight_momentum_is_conserved():
     np.testing.assert_allclose(L, np.broadcast_to(L[0], L.shape), atol=1e-10 * np.abs(L).max())
 
 
-def test_a_slack_cable_is_no_trouble():
-    t = samples(0.3)
-    u = np.zeros((len(t), 8))
-    u[:, 4] = -3.0  # pays out faster than the platform follows
-    run = simulate_reference(parameter_set(), INCA, t, u)
-    assert run.tension.min() == 0
-    assert np.isfinite(run.state).all()
-
-
 def test_a_start_beyond_all_numbers_diverges_and_says_when():
     t, x = samples(1.0), rest(parameter_set(), INCA).state.copy()
     x[at.SPEEDS] = 1e300

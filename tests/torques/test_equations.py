@@ -141,11 +141,6 @@ def test_what_the_fit_has_is_no_candidate(robot, equations, candidates):
     names = {s.missing.name for s in rank(equations, base, candidates)}
     assert {"coulomb_friction", "offset"} <= {c.name for c in candidates}
     assert not {"coulomb_friction", "offset"} & names
-    whole = base_fit(
-        robot.plant.model,
-        equations,
-        find_base(robot.plant.model),
-        _force(equations),
-        others(equations),
-    ).base
+    model = robot.plant.model
+    whole = base_fit(model, equations, find_base(model), _force(equations), others(equations)).base
     assert "payload" not in {s.missing.name for s in rank(equations, whole, candidates)}

@@ -53,8 +53,7 @@ def bench(tmp_path_factory):
         y = first.predicted() + left * rng.standard_normal(still.shape)
         y = y + size * missing.columns().values[:, :, 0]
         y = y + equations.stacked("y") - first.base.y
-        ends = np.cumsum([len(r.time) for r in equations.rows])[:-1]
-        parts = zip(equations.rows, np.split(y, ends), strict=True)
+        parts = zip(equations.rows, equations.divided(y), strict=True)
         there = replace(equations, rows=tuple(replace(r, y=part) for r, part in parts))
         return there, fitted(there)
 
