@@ -20,7 +20,7 @@ import numpy as np
 
 from identification.errors import InputError
 from identification.model.parameter import ParameterSet
-from inca_mj.reference import kinematics
+from inca_mj.reference import equations
 from inca_mj.reference import layout as at
 from inca_mj.robot.geometry import Geometry
 from inca_mj.robot.parameters import GRAVITY, PRETENSION
@@ -65,9 +65,9 @@ class Rest:
     state: np.ndarray  # the 36 states of that rest
 
 
-def wrench_matrix(pose: kinematics.CablePose) -> np.ndarray:
-    """Returns W: wrench on the platform (force, torque about P, in O) per tension, shape (6, 8)."""
-    return -np.vstack([pose.directions.T, np.cross(pose.arms, pose.directions).T])
+def rotation_matrix(euler: np.ndarray) -> np.ndarray:
+    """Returns R_AB from roll, pitch, yaw [rad], shape (3, 3) (2.1)."""
+    return np.array(list(equations.rotation(equations.vector(np.asarray(euler, float)))))
 
 
 def rest(parameters: ParameterSet, geometry: Geometry) -> Rest:
@@ -79,17 +79,17 @@ def rest(parameters: ParameterSet, geometry: Geometry) -> Rest:
     value = parameters.values()
     position = np.array([value[name] for name in ("x", "y", "z")])
     euler = np.array([value[name] for name in ("roll", "pitch", "yaw")])
-    R_AB = kinematics.rotation(euler)
     placed = displaced(geometry, value)
-    lengths = np.linalg.norm(position + placed.B @ R_AB.T - placed.A, axis=1)
-    if lengths.min() < 1e-6:
+    b = placed.B @ rotation_matrix(euler).T
+    ds = position + b - placed.A  # along the cables, from A_i to B_i (2.6 - 2.8)
+    d = np.linalg.norm(ds, axis=1)
+    if d.min() < 1e-6:
         raise InputError(
-            f"start pose: cable {int(lengths.argmin()) + 1} has no length, its connector sits on"
+            f"start pose: cable {int(d.argmin()) + 1} has no length, its connector sits on"
             " its exit point; change x, y, z or the geometry"
         )
-    pose = kinematics.geometric(position, R_AB, placed)
-
-    W = wrench_matrix(pose)
+    s = ds / d[:, None]
+    W = -np.vstack([s.T, np.cross(b, s).T])
     w = np.array([0.0, 0.0, value["m"] * GRAVITY, 0.0, 0.0, 0.0])
     t_0 = np.full(at.DRIVES, PRETENSION)
     T = t_0 + np.linalg.pinv(W) @ (w - W @ t_0)
@@ -105,7 +105,7 @@ def rest(parameters: ParameterSet, geometry: Geometry) -> Rest:
             " lower m"
         )
 
-    λ, d = at_drives("lambda", value), pose.lengths
+    λ = at_drives("lambda", value)
     d_0 = λ * d / (λ + T)
     state = np.zeros(at.STATES)
     state[at.POSITION], state[at.EULER], state[at.NO_LOAD] = position, euler, d_0

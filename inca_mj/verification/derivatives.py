@@ -25,8 +25,7 @@ from identification.model.parameter import ParameterSet
 from identification.model.rollout import State, threads
 from inca_mj.kinematics.cables import cables_at
 from inca_mj.kinematics.rotations import quaternion, rotation
-from inca_mj.reference import derivative, pack
-from inca_mj.reference import kinematics as reference
+from inca_mj.reference import derivative, pack, rotation_matrix
 from inca_mj.reference import layout as at
 from inca_mj.reference.equations import cables
 from inca_mj.robot.geometry import DRIVES, INCA, Geometry
@@ -109,7 +108,7 @@ def _compare(robot: Twin, n: int, rng: np.random.Generator) -> tuple[list[float]
     rate = np.array([derivative(*row, q) for row in zip(x, i, strict=True)])
     tension = np.array([cables(row, q)[0] for row in x])
     body = rate[:, at.VELOCITY] + np.cross(x[:, at.RATES], x[:, at.VELOCITY])  # along body axes
-    turns = (reference.rotation(euler) for euler in x[:, at.EULER])
+    turns = (rotation_matrix(euler) for euler in x[:, at.EULER])
     linear = np.array([R_AB @ a for R_AB, a in zip(turns, body, strict=True)])
     qacc, act_dot, pulls = _twin_outputs(robot, x, i)
     of_linear, of_angular, of_motor = _magnitudes(robot, x, i, tension)

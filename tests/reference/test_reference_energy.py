@@ -31,10 +31,9 @@ import pytest
 from hypothesis import given, settings
 from reference_cases import FORCE, FORCE_AT, currents, sets, states
 
-from inca_mj.reference import derivative, pack, rest
+from inca_mj.reference import derivative, pack, rest, rotation_matrix
 from inca_mj.reference import layout as at
 from inca_mj.reference.equations import cables
-from inca_mj.reference.kinematics import rotation
 from inca_mj.robot.geometry import INCA
 from inca_mj.robot.parameters import parameter_set
 
@@ -67,7 +66,7 @@ def energy(x, q):
     v, ω, ω_m, d_0 = x[at.VELOCITY], x[at.RATES], x[at.SPEEDS], x[at.NO_LOAD]
     d = cables(x, q)[1]
     ε = np.maximum(0.0, (d - d_0) / d_0)
-    b_G = rotation(x[at.EULER]) @ q[at.FORCE_AT]
+    b_G = rotation_matrix(x[at.EULER]) @ q[at.FORCE_AT]
 
     # E_spring = −∫ F_s ds over s = R_s φ_m, with F_s = F_0 − k_s s until it reaches zero.
     F_0, s = R / R_s * q[at.PRETENSION], R_s * x[at.ANGLES]

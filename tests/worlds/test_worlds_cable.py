@@ -59,10 +59,10 @@ def test_the_maxwell_branch_relaxes():
     p = plant(hidden("cable_creep", fraction=0.5, tau=0.2))
     X = simulate(p, u)
     A, B = (p.q[part].reshape(8, 3) for part in (base.EXITS, base.CONNECTORS))
-    from inca_mj.reference import kinematics
+    from inca_mj.reference import rotation_matrix
 
     d = np.array(
-        [np.linalg.norm(x[:3] + B @ kinematics.rotation(x[base.EULER]).T - A, axis=1) for x in X]
+        [np.linalg.norm(x[:3] + B @ rotation_matrix(x[base.EULER]).T - A, axis=1) for x in X]
     )
     ε = d / X[:, base.NO_LOAD] - 1
     branch = abs(ε - X[:, at.VISCOUS])

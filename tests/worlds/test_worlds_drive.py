@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from worlds_cases import FINE, angles, fine, plant, prbs, simulate
 
-from inca_mj.reference import kinematics
 from inca_mj.reference import layout as base
+from inca_mj.reference import rotation_matrix
 from inca_mj.studies.worlds import effect as hidden
 from inca_mj.studies.worlds import layout as at
 from inca_mj.studies.worlds.equations import friction, spring
@@ -121,7 +121,7 @@ def test_the_drum_plays_behind_the_rotor(h):
     # R dψ is what leaves the free cable, whatever the rotor did inside the gap
     p = X[:, base.POSITION]
     A, B = plant().q[base.EXITS].reshape(8, 3), plant().q[base.CONNECTORS].reshape(8, 3)
-    R_AB = [kinematics.rotation(e) for e in X[:, base.EULER]]
+    R_AB = [rotation_matrix(e) for e in X[:, base.EULER]]
     d = np.array([np.linalg.norm(x + B @ R.T - A, axis=1) for x, R in zip(p, R_AB, strict=True)])
     share = X[:, base.NO_LOAD] / d
     wound = np.diff(ψ, axis=0) * 0.0175 * (share[1:] + share[:-1]) / 2

@@ -16,8 +16,8 @@ import numpy as np
 
 from identification.errors import DivergenceError, InputError
 from identification.model.parameter import ParameterSet
-from inca_mj.reference import kinematics, pack
 from inca_mj.reference import layout as base
+from inca_mj.reference import pack, rotation_matrix
 from inca_mj.robot.geometry import DRIVES, Geometry
 from inca_mj.robot.parameters import GRAVITY, PRETENSION
 from inca_mj.robot.spread import at_drives, displaced
@@ -57,7 +57,7 @@ def make_plant(
     q[base.EXITS], q[base.CONNECTORS] = n.A.ravel(), n.B.ravel()
     q[base.FORCE], q[base.FORCE_AT] = n.force, -n.centre
     euler = np.array([value[name] for name in ("roll", "pitch", "yaw")])
-    R_AB = kinematics.rotation(euler)
+    R_AB = rotation_matrix(euler)
     p = np.array([value[name] for name in ("x", "y", "z")]) + R_AB @ n.centre
 
     arms = n.B @ R_AB.T
