@@ -28,7 +28,7 @@ from scipy.optimize import nnls
 
 from identification.errors import DivergenceError, unknown_name
 from identification.model.parameter import ParameterSet
-from inca_mj.reference import ReferenceRun, rest, simulate_reference
+from inca_mj.reference import ReferenceRun, rest
 from inca_mj.reference import layout as at
 from inca_mj.robot.geometry import DRIVES, Geometry
 from inca_mj.robot.inputs import prbs, step
@@ -78,15 +78,6 @@ def make_case(name: str, parameters: ParameterSet, geometry: Geometry, duration:
     else:
         start[at.RATES] = _SPIN
     return Case(name, start, np.arange(n) * SAMPLING_TIME, currents)
-
-
-def run_reference(case: Case, parameters: ParameterSet, geometry: Geometry) -> ReferenceRun:
-    """Returns a run of the reference, by its adaptive method.
-
-    Raises:
-        DivergenceError: its pitch came to 90°, where Euler angles are singular.
-    """
-    return simulate_reference(parameters, geometry, case.time, case.currents, start=case.start)
 
 
 def compare_runs(

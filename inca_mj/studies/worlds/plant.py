@@ -71,7 +71,8 @@ def make_plant(
     ε = np.array([_strain(*each) for each in zip(T, λ, n.D, strict=True)])
     x = np.zeros(at.STATES)
     x[base.POSITION], x[base.EULER] = p, euler
-    x[base.NO_LOAD] = (d + _sag(n.D, d, ds, T)) / (1 + ε)
+    w = n.D[:, at.SAG] * n.D[:, at.LINE_WEIGHT] * GRAVITY * np.hypot(ds[:, 0], ds[:, 1])
+    x[base.NO_LOAD] = (d + d * w**2 / (24 * T**2)) / (1 + ε)
     x[at.VISCOUS] = d / x[base.NO_LOAD] - 1
     return HiddenPlant(q, n.D, n.P, x)
 
@@ -137,8 +138,3 @@ def _strain(T: float, λ: float, D: np.ndarray) -> float:
     if not (ε > 0 and abs(λ * ε * (1 + κ * ε**n) - T) < 1e-9 * T):
         raise InputError(f"cable_hardening: kappa = {κ:g} leaves no strain that carries {T:.3g} N")
     return ε
-
-
-def _sag(D: np.ndarray, d: np.ndarray, ds: np.ndarray, T: np.ndarray) -> np.ndarray:
-    w = D[:, at.SAG] * D[:, at.LINE_WEIGHT] * GRAVITY * np.hypot(ds[:, 0], ds[:, 1])
-    return d * w**2 / (24 * T**2)

@@ -135,7 +135,13 @@ def _solved(effect: HiddenEffect, absorbed: HiddenAbsorbed, goal: float) -> Hidd
             return effect.scaled(s)
         if r < goal:
             if s == most:
-                raise UnreachedError(_too_small(effect.scaled(s), r, goal))
+                largest = effect.scaled(s)
+                sizes = ", ".join(f"{n} = {getattr(largest, n):.3g}" for n in largest.sizes)
+                raise UnreachedError(
+                    f"{effect.name}: of the largest size that a robot may have ({sizes}) {r:.3g}"
+                    f" rad cannot be absorbed, and {goal:.3g} rad are asked for; ask for another"
+                    " ratio, or another effect"
+                )
             below = (s, r)
         else:
             above = (s, r)
@@ -143,15 +149,6 @@ def _solved(effect: HiddenEffect, absorbed: HiddenAbsorbed, goal: float) -> Hidd
     raise UnreachedError(
         f"{effect.name}: no size was found that the base parameters leave {goal:.3g} rad of (the"
         f" last left {r:.3g} rad); start from another size, or ask for another ratio"
-    )
-
-
-def _too_small(effect: HiddenEffect, r: float, goal: float) -> str:
-    """Returns why an effect of the largest size is not enough."""
-    sizes = ", ".join(f"{name} = {getattr(effect, name):.3g}" for name in effect.sizes)
-    return (
-        f"{effect.name}: of the largest size that a robot may have ({sizes}) {r:.3g} rad cannot be"
-        f" absorbed, and {goal:.3g} rad are asked for; ask for another ratio, or another effect"
     )
 
 
