@@ -52,17 +52,9 @@ def differences(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Returns derivatives of the results of `points` with respect to the state and the inputs.
 
-    Args:
-        at: the states.
-        points: evaluates the model there.
-        scheme: how differences are taken.
-        intervals: over which forward differences are averaged; each point for itself when None.
-        moved: how far each velocity moves in the time that a point stands for, shape (M, nv), where
-            secants are taken in place of forward differences [the velocities' units].
-
-    Returns:
-        With respect to the state, shape (L, results, nx), nx = 2 nv + na, and to the inputs, shape
-        (L, results, nu), for L intervals or points.
+    Their shapes are (L, results, nx), nx = 2 nv + na, and (L, results, nu), for L intervals over
+    which forward differences are averaged, or points. Secants are taken where `moved` (M, nv) says
+    how far each velocity moves in the time that a point stands for.
     """
     h, nx = scheme.step, 2 * at.model.nv + at.model.na
     if scheme.is_central:
@@ -110,12 +102,7 @@ def _secants(at: AtPoints, by: float, moved: np.ndarray) -> Iterator[Change]:
 
 
 def position_rows(model: mujoco.MjModel, qvel: np.ndarray) -> np.ndarray:
-    """Returns the rows of ∂ẋ/∂x that belong to positions, shape (M, nv, nx).
-
-    Args:
-        model: the model.
-        qvel: velocities, shape (M, nv).
-    """
+    """Returns the rows of ∂ẋ/∂x that belong to positions, (M, nv, nx), at velocities (M, nv)."""
     nv = model.nv
     rows = np.zeros((len(qvel), nv, 2 * nv + model.na))
     rows[:, np.arange(nv), nv + np.arange(nv)] = 1
@@ -128,14 +115,7 @@ def position_rows(model: mujoco.MjModel, qvel: np.ndarray) -> np.ndarray:
 
 
 def shift_position(model: mujoco.MjModel, qpos: np.ndarray, dof: int, by: float) -> np.ndarray:
-    """Returns positions after a small shift of one degree of freedom.
-
-    Args:
-        model: whose degrees of freedom these are.
-        qpos: shape (M, nq).
-        dof: index of the degree of freedom.
-        by: how far [m or rad].
-    """
+    """Returns positions (M, nq) after a small shift [m or rad] of one degree of freedom."""
     joint = int(model.dof_jntid[dof])
     kind, place = model.jnt_type[joint], dof - int(model.jnt_dofadr[joint])
     at = int(model.jnt_qposadr[joint])

@@ -193,13 +193,8 @@ class GriddedSystem:
 def spline(axes: Sequence[np.ndarray], values: np.ndarray, method: str) -> Any:
     """Returns the tensor-product spline through values on a grid, as a function of points (M, k).
 
-    It is solved axis by axis, exactly; `RegularGridInterpolator` solves cubic splines by an
-    iteration that leaves a relative error of 1e-6.
-
-    Args:
-        axes: points of each axis, each of shape (n_j,), in its unit.
-        values: shape (n₁, …, n_k, numbers), in their units.
-        method: "linear" or "cubic".
+    The values have shape (n₁, …, n_k, numbers). It is solved axis by axis, exactly:
+    `RegularGridInterpolator` solves cubic splines by an iteration that leaves an error of 1e-6.
     """
     from scipy.interpolate import NdBSpline, make_interp_spline
 
@@ -212,13 +207,7 @@ def spline(axes: Sequence[np.ndarray], values: np.ndarray, method: str) -> Any:
 
 
 def check_axis(name: str, points: np.ndarray, fewest: int) -> None:
-    """Refuse points of an axis that do not rise or are too few.
-
-    Args:
-        name: of the scheduling variable.
-        points: shape (n,), in its unit.
-        fewest: points that are needed.
-    """
+    """Refuse points of a scheduling variable that do not rise or are too few."""
     points = np.asarray(points, float)
     if points.ndim != 1 or not np.isfinite(points).all() or not (np.diff(points) > 0).all():
         raise InputError(f"the points of {name} must be finite numbers that rise; got {points}")
@@ -233,16 +222,10 @@ def gridded(
     axes: Mapping[str, np.ndarray], systems: Sequence[LinearSystem],
     method: Literal["linear", "cubic"] = "linear",
 ) -> GriddedSystem:  # fmt: skip
-    """Put continuous systems on a grid.
+    """Put continuous systems on a grid, one for each point, the last axis running fastest.
 
-    Args:
-        axes: points of each scheduling variable by its name, each shape (n,), in its unit.
-        systems: one for each point of the grid, the last axis running fastest.
-        method: "linear" or "cubic".
-
-    Raises:
-        InputError: the number of systems is not that of the points, one is discrete, or their names
-            differ; or for the reasons of `GriddedSystem`.
+    Raises InputError if the number of systems is not that of the points, one is discrete, or their
+    names differ; or for the reasons of `GriddedSystem`.
     """
     shape = tuple(len(points) for points in axes.values())
     if len(systems) != np.prod(shape):
@@ -283,9 +266,5 @@ def load_grid(path: str | Path) -> GriddedSystem:
             f"{path} is damaged: its arrays are no finite numbers over the grid of"
             f" {', '.join(map(str, scheduling))}; write it again"
         )
-    return GriddedSystem(
-        axes=axes,
-        **arrays,
-        **names,
-        method=str(content["method"]),  # type: ignore[arg-type]
-    )
+    method: Any = str(content["method"])
+    return GriddedSystem(axes=axes, **arrays, **names, method=method)

@@ -108,11 +108,7 @@ def _of_activations(model: mujoco.MjModel) -> Iterator[str]:
 def output_places(
     model: mujoco.MjModel, outputs: Sequence[str]
 ) -> tuple[tuple[str, ...], np.ndarray]:
-    """Returns names of single outputs, and where each stands among the numbers of the sensors.
-
-    Returns:
-        ny names, and places of shape (ny,), whole numbers.
-    """
+    """Returns names of single outputs, and where each stands among the numbers of the sensors."""
     sensors = {model.sensor(i).name or f"sensor {i}": i for i in range(model.nsensor)}
     if not sensors:
         raise InputError("the model has no sensors, so it has no outputs; give it a jointpos")

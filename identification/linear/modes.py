@@ -75,13 +75,7 @@ def minimal(system: LinearSystem, tolerance: float = TOLERANCE) -> Minimal:
 
 
 def stairs(A: np.ndarray, B: np.ndarray, tolerance: float) -> np.ndarray:
-    """Returns an orthonormal basis of the states that inputs reach, shape (nx, reached), no unit.
-
-    Args:
-        A: shape (nx, nx), in alike units.
-        B: shape (nx, nu), in alike units.
-        tolerance: see the module.
-    """
+    """Returns an orthonormal basis of the states that inputs reach, shape (nx, reached)."""
     Q, done = np.eye(len(A)), 0
     size = float(np.linalg.norm(A, 2))
     below, limit = B, tolerance * max(float(np.linalg.norm(B, 2)), np.finfo(float).tiny)

@@ -122,12 +122,7 @@ def along_log(predictor: Predictor, times: Sequence[float]) -> OperatingPoints:
 
 
 def samples_at(time: np.ndarray, wanted: Sequence[float]) -> np.ndarray:
-    """Returns the samples nearest to some times, shape (n,) of whole numbers.
-
-    Args:
-        time: of the samples, shape (N,) [s].
-        wanted: times [s].
-    """
+    """Returns the samples nearest to wanted times [s], or refuses a time outside of them."""
     first, last = float(time[0]), float(time[-1])
     half = (last - first) / (len(time) - 1) / 2
     for t in wanted:

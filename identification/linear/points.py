@@ -75,31 +75,22 @@ class Points:
         self._results = results
         is_shared = tuple(results) == RATES and not self._begins(at.act)
         self._owners = owners_of(at.model) if is_shared else {}
-        self._actuator_of = np.repeat(  # of each activation; none where its law gives no share
-            np.where(
-                np.isin(np.arange(at.model.nactuator), [*self._owners.values()]),
-                np.arange(at.model.nactuator),
-                -1,
-            ),
-            at.model.actuator_actnum,
-        )
+        every = np.arange(at.model.nactuator)
+        owned = np.where(np.isin(every, [*self._owners.values()]), every, -1)
+        # of each activation; none where its law gives no share
+        self._actuator_of = np.repeat(owned, at.model.actuator_actnum)
 
     def rates(self, **changed: np.ndarray) -> np.ndarray:
-        """Returns the results, by default accelerations and rates of activations.
-
-        Returns:
-            Shape (M, nv + na).
-        """
+        """Returns the results, by default accelerations and rates of activations (M, nv + na)."""
         (one,) = self.each([Change(changed)])
         return one
 
     def each(
         self, changes: Iterable[Change], intervals: Intervals | None = None
     ) -> Iterator[np.ndarray]:
-        """Yields the results of changes, in their order.
+        """Yields the results of changes, in their order; of each course of a change one.
 
-        Yields:
-            Shape (M, nv + na), or (L, nv + na), of each course of a change one.
+        They have a row for each point, or for each interval.
         """
         changes = iter(changes)
         together = max(1, min(TOGETHER, MEMORY // int(self._base.models[0].nbuffer)))
@@ -129,11 +120,11 @@ class Points:
             keeps = "nothing"
         else:
             keeps = "positions" if "qvel" in change.fields else "velocities"
-        if not change.is_derived:
-            numbers = [_entry(*number) for number in change.numbers]
-            return Case(states, numbers, None, keeps, change.courses)
-        other = with_entries(self._base.models[0], change.numbers)
-        return Case(states, (), other, keeps, change.courses)
+        if change.is_derived:
+            other = with_entries(self._base.models[0], change.numbers)
+            return Case(states, (), other, keeps, change.courses)
+        entries = [_entry(*number) for number in change.numbers]
+        return Case(states, entries, None, keeps, change.courses)
 
     def _begins(self, act: np.ndarray) -> bool:
         """Returns whether an actuator's first activation is zero, where its law begins anew."""

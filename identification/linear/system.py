@@ -167,13 +167,7 @@ class LinearSystem:
 
 
 def held_for(A: np.ndarray, B: np.ndarray, h: float) -> tuple[np.ndarray, np.ndarray]:
-    """Returns A_h (nx, nx) and B_h (nx, nu) of a continuous system, by one exponential.
-
-    Args:
-        A: shape (nx, nx), in the units of the states per second.
-        B: shape (nx, nu), likewise per unit of the inputs.
-        h: for which inputs are held [s].
-    """
+    """Returns A_h and B_h of a continuous system whose inputs are held for h [s]."""
     from scipy.signal import cont2discrete
 
     A_h, B_h, *_ = cont2discrete((A, B, np.eye(len(A)), np.zeros_like(B)), h, method="zoh")
@@ -181,11 +175,7 @@ def held_for(A: np.ndarray, B: np.ndarray, h: float) -> tuple[np.ndarray, np.nda
 
 
 def sampling_time_of(rate: float) -> float:
-    """Returns the time between samples of a rate [s].
-
-    Args:
-        rate: [Hz].
-    """
+    """Returns the time between samples [s] of a rate [Hz], or refuses the rate."""
     if not 0 < rate <= FASTEST:
         raise InputError(
             f"a rate of {rate:g} Hz is not between 0 and {FASTEST:g} Hz; give the rate at which the"
@@ -195,11 +185,7 @@ def sampling_time_of(rate: float) -> float:
 
 
 def balancing(A: np.ndarray) -> np.ndarray:
-    """Scales of the states with which rows and columns of A are of alike size, shape (nx,).
-
-    Args:
-        A: shape (nx, nx), in any units.
-    """
+    """Returns scales of the states that make rows and columns of A of alike size, shape (nx,)."""
     from scipy.linalg import matrix_balance
 
     _, (scale, _) = matrix_balance(A, permute=False, separate=True)

@@ -87,6 +87,11 @@ class BaseParameters:
         return all_columns(bodies, a)[:, :, self.inertia.place[self.independent]]
 
 
+def known_numbers(model: mujoco.MjModel) -> np.ndarray:
+    """Returns a model's numbers of bodies and armatures, as `all_columns` has them."""
+    return np.concatenate([read_numbers(model).ravel(), model.dof_armature])
+
+
 def all_columns(bodies: np.ndarray, a: np.ndarray) -> np.ndarray:
     """Returns columns of all inertial numbers by place, shape (N, nv, bodies · 10 + nv)."""
     N, nv = a.shape
@@ -101,44 +106,27 @@ def read_inertia(model: mujoco.MjModel) -> Inertia:
     bodies, numbers = list_bodies(model), read_numbers(model)
     mass, length = max(float(numbers[:, 0].sum()), 1e-12), reach_of(model)
     power = np.array([0, 1, 1, 1, 2, 2, 2, 2, 2, 2])
-    names, units, values, scales, own, place = [], [], [], [], [], []
     lengths = _lengths(model, bodies, length)
+    rows: list[tuple[str, str, float, float, float, int]] = []
     for i, b in enumerate(bodies):
-        for k in ORDER[:6]:
-            names.append(f"{NUMBERS[k]} of {label_of(model, b)}")
-            place.append(10 * i + k)
-        joints = range(int(model.body_jntadr[b]), int(model.body_jntadr[b] + model.body_jntnum[b]))
-        for j in joints:
-            names.append(f"armature of {model.joint(j).name}")
-            place.append(10 * len(bodies) + int(model.jnt_dofadr[j]))
-        for k in ORDER[6:]:
-            names.append(f"{NUMBERS[k]} of {label_of(model, b)}")
-            place.append(10 * i + k)
-    slide = int(mujoco.mjtJoint.mjJNT_SLIDE)
-    for p in place:
-        d = p - 10 * len(bodies)
-        if d < 0:
-            units.append(UNITS[p % 10])
-            values.append(numbers[p // 10, p % 10])
-            scales.append(mass * length ** power[p % 10])
-            own.append(max(numbers[p // 10, 0], LIGHT * mass) * lengths[p // 10] ** power[p % 10])
-        else:
-            is_slide = int(model.jnt_type[model.dof_jntid[d]]) == slide
-            units.append("kg" if is_slide else "kg m^2")
-            values.append(model.dof_armature[d])
-            scales.append(mass if is_slide else mass * length**2)
-            body = bodies.index(int(model.body_weldid[model.dof_bodyid[d]]))
-            m = max(numbers[body, 0], LIGHT * mass)
-            own.append(m if is_slide else m * lengths[body] ** 2)
-    return Inertia(
-        tuple(names),
-        tuple(units),
-        np.array(values),
-        np.array(scales),
-        np.array(own),
-        np.array(place),
-        len(bodies),
-    )
+        m, own_length = max(numbers[i, 0], LIGHT * mass), lengths[i]
+        of_body = [
+            (f"{NUMBERS[k]} of {label_of(model, b)}", UNITS[k], numbers[i, k],
+             mass * length ** power[k], m * own_length ** power[k], 10 * i + k)
+            for k in ORDER
+        ]  # fmt: skip
+        rows += of_body[:6]
+        for j in range(model.body_jntadr[b], model.body_jntadr[b] + model.body_jntnum[b]):
+            n = 0 if int(model.jnt_type[j]) == int(mujoco.mjtJoint.mjJNT_SLIDE) else 2
+            d = int(model.jnt_dofadr[j])
+            rows.append(
+                (f"armature of {model.joint(j).name}", "kg m^2" if n else "kg",
+                 model.dof_armature[d], mass * length**n, m * own_length**n, 10 * len(bodies) + d)
+            )  # fmt: skip
+        rows += of_body[6:]
+    names, units, *arrays = zip(*rows, strict=True)
+    values, scales, own, place = map(np.array, arrays)
+    return Inertia(names, units, values, scales, own, place, len(bodies))
 
 
 def _lengths(model: mujoco.MjModel, bodies: Sequence[int], length: float) -> list[float]:
@@ -173,10 +161,8 @@ def find_base(model: mujoco.MjModel) -> BaseParameters:
 def independent_columns(X: np.ndarray, least: np.ndarray | float, unlike: float) -> np.ndarray:
     """Returns the columns of X (m, n), in their order, that are no sums of those before them.
 
-    Args:
-        X: the columns.
-        least: norm of a column that counts, of each or of all.
-        unlike: share of its norm that is left of a column without those before it.
+    A column counts if its norm exceeds `least`, of each or of all, and if more than the share
+    `unlike` of it is left without those before it.
     """
     size, Q = np.linalg.norm(X, axis=0), np.empty((len(X), 0))
     out = []

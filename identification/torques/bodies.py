@@ -23,6 +23,8 @@ from identification.effects.body_numbers import about, frame_inertia
 
 NUMBERS = ("m", "h_x", "h_y", "h_z", "I_xx", "I_yy", "I_zz", "I_xy", "I_xz", "I_yz")
 UNITS = ("kg", *["kg m"] * 3, *["kg m^2"] * 6)
+SIX = ([0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2])  # rows and columns of the six of an inertia matrix
+SIX = ([0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2])  # rows and columns of the six of an inertia matrix
 
 
 @dataclass(frozen=True)
@@ -92,18 +94,16 @@ def read_numbers(model: mujoco.MjModel) -> np.ndarray:
             R = R_0.T @ data.xmat[b].reshape(3, 3)
             I_c = R @ frame_inertia(model.body_inertia[b], model.body_iquat[b]) @ R.T
             I_O = I_c + about(m, c)
-            out[i] += [m, *(m * c), *I_O[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]]
+            out[i] += [m, *(m * c), *I_O[SIX]]
     return out
 
 
 def regressor(
     model: mujoco.MjModel, q: np.ndarray, v: np.ndarray, a: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Computes Y and the forces of gravity on the joints, along a motion of shape (n, nv).
+    """Returns Y (n, nv, bodies, 10) along a motion (n, nv), and gravity's forces on the joints.
 
-    Returns:
-        Y, shape (n, nv, bodies, 10), and f_g, shape (n, nv) [N m or N]: the force of gravity on
-        each joint, with the model's own masses.
+    The forces, shape (n, nv) [N m or N], are those of the model's own masses.
     """
     bodies = list_bodies(model)
     gravity, numbers = np.array(model.opt.gravity), read_numbers(model)
@@ -114,8 +114,9 @@ def regressor(
         a_o = moved.a_c + np.cross(moved.α, r) + np.cross(moved.ω, np.cross(moved.ω, r))
         turn = np.swapaxes(moved.R, 1, 2)
         J_v, J_w = turn @ J_o, turn @ moved.J_ω
-        ω, α, g = (np.einsum("kij,kj->ki", turn, x) for x in (moved.ω, moved.α, _every(q, gravity)))
-        Y[:, :, i] = _columns(J_v, J_w, np.einsum("kij,kj->ki", turn, a_o) - g, ω, α)
+        ω, α, a = (np.einsum("kij,kj->ki", turn, x) for x in (moved.ω, moved.α, a_o))
+        g = np.einsum("kij,j->ki", turn, gravity)
+        Y[:, :, i] = _columns(J_v, J_w, a - g, ω, α)
         none = np.zeros_like(ω)
         weight -= _columns(J_v, J_w, -g, none, none) @ numbers[i]
     return Y, weight
@@ -133,21 +134,12 @@ def _columns(
 
 def _cross(x: np.ndarray) -> np.ndarray:
     """Returns [x]×, shape (n, 3, 3)."""
-    out = np.zeros((len(x), 3, 3))
-    out[:, 0, 1], out[:, 0, 2], out[:, 1, 2] = -x[:, 2], x[:, 1], -x[:, 0]
-    return out - np.swapaxes(out, 1, 2)
+    return np.swapaxes(np.cross(x[:, None], np.eye(3)), 1, 2)
 
 
 def _spread(x: np.ndarray) -> np.ndarray:
     """Returns L(x) with L(x) (I_xx, I_yy, I_zz, I_xy, I_xz, I_yz) = I x, shape (n, 3, 6)."""
     out = np.zeros((len(x), 3, 6))
-    for row, (column, k) in (
-        (0, (0, 0)), (0, (3, 1)), (0, (4, 2)), (1, (1, 1)), (1, (3, 0)), (1, (5, 2)),
-        (2, (2, 2)), (2, (4, 0)), (2, (5, 1)),
-    ):  # fmt: skip
-        out[:, row, column] = x[:, k]
+    for row, places in enumerate(((0, 3, 4), (3, 1, 5), (4, 5, 2))):  # of I's rows in the six
+        out[:, row, places] = x
     return out
-
-
-def _every(q: np.ndarray, g: np.ndarray) -> np.ndarray:
-    return np.broadcast_to(g, (len(q), 3))

@@ -22,6 +22,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import mujoco
@@ -36,7 +37,7 @@ from identification.effects.variables import variables
 from identification.torques.base import independent_columns, reach_of
 from identification.torques.bodies import NUMBERS, UNITS, label_of, list_bodies, read_numbers
 from identification.torques.equations import Columns, Equations
-from identification.torques.laws import CURVES, Laws, Missing, later, listed
+from identification.torques.laws import CURVES, Laws, Missing, listed
 
 GAIN = 0.5  # largest change of a gain, also of one that drifts
 ROUNDING = 1e-9  # of the largest column
@@ -50,13 +51,8 @@ def list_missing(
 ) -> tuple[Missing, ...]:  # fmt: skip
     """Returns all candidates.
 
-    Args:
-        model: of the robot.
-        equations: of its records.
-        expected: τ̂_u, shape (N, nv) [N m or N].
-        effects: of the catalogue, which the user asks for.
-        bodies: of the model.
-        free: paths of numbers that are fitted already.
+    `expected` is τ̂_u, shape (N, nv) [N m or N], `effects` those of the catalogue that the user asks
+    for, and `free` paths of numbers that are fitted already.
     """
     laws = Laws(model, equations, expected)
     out: list[Missing] = []
@@ -90,7 +86,7 @@ def _of_bodies(
         body = next(b for b in bodies if b.label == suffix[1:])
         if body.index in roots:
             i = roots.index(body.index)
-            make = later(_body_columns, model, equations, effect, body, i)
+            make = partial(_body_columns, model, equations, effect, body, i)
             yield listed(effect, where, {}, make)
 
 
@@ -127,7 +123,7 @@ def _loads(model: mujoco.MjModel, equations: Equations) -> Iterator[Missing]:
                 name="load", where=f"body {label_of(model, b)}",
                 phrase="body: a load at any place", sizes=tuple(NUMBERS[k] for k in felt),
                 units=tuple(UNITS[k] for k in felt), signs=tuple(int(k == 0) for k in felt),
-                columns=later(_load_columns, bodies[:, :, i], felt),
+                columns=partial(_load_columns, bodies[:, :, i], felt),
                 most=tuple(scale[felt].tolist()), of_body=(K, scale),
             )  # fmt: skip
 
@@ -145,14 +141,14 @@ def _rotors(model: mujoco.MjModel, equations: Equations) -> Iterator[Missing]:
         yield Missing(
             name="rotor_inertia", where=f"joint {name}", phrase="motor: another rotor inertia",
             sizes=(f"joint/{name}.armature",), units=(unit,), signs=(0,),
-            columns=later(_at_joints, equations.stacked("a"), [j]), most=(np.inf,),
+            columns=partial(_at_joints, equations.stacked("a"), [j]), most=(np.inf,),
         )  # fmt: skip
 
 
 def _at_joints(x: np.ndarray, joints: Sequence[int]) -> Columns:
     out = np.zeros((*x.shape, 1))
     out[:, joints, 0] = x[:, joints]
-    return Columns(out, tuple(map(int, joints)))
+    return Columns(out, tuple(joints))
 
 
 def _of_drives(
@@ -175,17 +171,16 @@ def _of_drives(
         ("gain_drift", "input: gain drifts", "alpha", "1/s", GAIN / lasts, late, groups + together),
     ):
         for place, some in where:
-            joints = np.flatnonzero(acts[:, some].any(axis=1))
+            joints = np.flatnonzero(acts[:, some].any(axis=1)).tolist()
             yield Missing(
                 name=name, where=place, phrase=phrase, sizes=(size,), units=(unit,), signs=(0,),
-                columns=later(_at_joints, of, joints), most=(most,),
+                columns=partial(_at_joints, of, joints), most=(most,),
             )  # fmt: skip
 
 
 def rate_of(equations: Equations, x: np.ndarray) -> np.ndarray:
     """Returns the rates of signals (N, nv) of all records, shape (N, nv)."""
-    ends = np.cumsum([len(r.time) for r in equations.rows])[:-1]
-    parts = zip(equations.rows, np.split(x, ends), strict=True)
+    parts = zip(equations.rows, equations.divided(x), strict=True)
     return np.concatenate([np.gradient(part, r.time, axis=0) for r, part in parts])
 
 

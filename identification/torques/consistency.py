@@ -13,6 +13,7 @@ from __future__ import annotations
 import numpy as np
 
 from identification.torques.base import BaseParameters
+from identification.torques.bodies import SIX
 
 STEPS = 2000
 LEFT = 3.0  # std of a base parameter that no bodies have
@@ -24,14 +25,11 @@ _TWICE = np.where(_ROWS == _COLUMNS, 1.0, np.sqrt(2.0))  # so that norms of vect
 def find_inconsistent(base: BaseParameters, β: np.ndarray, std: np.ndarray) -> tuple[int, ...]:
     """Returns places of the base parameters that no bodies have, within 3 std.
 
-    Args:
-        base: the combinations.
-        β: their fitted values, shape (r,).
-        std: of these, shape (r,).
+    β are their fitted values, with `std`, each of shape (r,).
     """
     inertia, n = base.inertia, base.inertia.bodies
     at = np.argsort(inertia.place)  # the numbers of each body in turn, then the armatures
-    to_numbers = np.kron(np.eye(n), np.array([_numbers(e) for e in np.eye(10)]).T)
+    to_numbers = np.kron(np.eye(n), _TO_NUMBERS)
     scale, first = inertia.own[at], 10 * n
     A = base.K[:, at] * scale / std[:, None]
     A[:, :first] = A[:, :first] @ to_numbers
@@ -42,16 +40,11 @@ def find_inconsistent(base: BaseParameters, β: np.ndarray, std: np.ndarray) -> 
 
 
 def nearest_body(K: np.ndarray, β: np.ndarray, std: np.ndarray, scale: np.ndarray) -> np.ndarray:
-    """Returns the combinations K x of the ten numbers of a body that are nearest to some values.
+    """Returns the combinations K x of a body's ten numbers that are nearest to values β (r,).
 
-    Args:
-        K: the combinations, shape (r, 10).
-        β: their values, shape (r,).
-        std: of these, shape (r,).
-        scale: how large the numbers are, roughly, shape (10,).
+    `std` are those of the values, and `scale` is how large the numbers are, roughly, shape (10,).
     """
-    to_numbers = np.array([_numbers(e) for e in np.eye(10)]).T
-    A = (K * scale) @ to_numbers / std[:, None]
+    A = (K * scale) @ _TO_NUMBERS / std[:, None]
     return np.asarray(A @ _nearest(A, β / std, np.zeros(10), 1) * std)
 
 
@@ -72,7 +65,10 @@ def _numbers(y: np.ndarray) -> np.ndarray:
     P = np.zeros((4, 4))
     P[_ROWS, _COLUMNS] = P[_COLUMNS, _ROWS] = y / _TWICE
     I_O = np.trace(P[:3, :3]) * np.eye(3) - P[:3, :3]
-    return np.array([P[3, 3], *P[:3, 3], *I_O[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]])
+    return np.array([P[3, 3], *P[:3, 3], *I_O[SIX]])
+
+
+_TO_NUMBERS = np.array([_numbers(e) for e in np.eye(10)]).T
 
 
 def _cut(y: np.ndarray, bodies: int) -> np.ndarray:

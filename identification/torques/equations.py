@@ -19,9 +19,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import mujoco
 import numpy as np
 
+from identification.torques.base import all_columns, known_numbers
 from identification.torques.rows import Rows
+from identification.torques.smoothing import ATTENUATION
 
 BLOCKS = 60  # at most, over all records
 LASTS = 0.5  # shortest block [s]
@@ -53,9 +56,7 @@ class Equations:
     def of(cls, rows: Sequence[Rows], confirm: int = 0) -> Equations:
         """Returns the equations of records, cut into blocks of about one length.
 
-        Args:
-            rows: of each record.
-            confirm: how many of them, the last ones, nothing is fitted to.
+        Nothing is fitted to the last records, `confirm` of them.
         """
         spans = [float(r.time[-1] - r.time[0]) for r in rows]
         lasts = max(LASTS, sum(spans) / BLOCKS)
@@ -72,39 +73,56 @@ class Equations:
         """Returns an array of all records, by the name of a field of `Rows`."""
         return np.concatenate([getattr(r, name) for r in self.rows])
 
+    def divided(self, x: np.ndarray) -> list[np.ndarray]:
+        """Returns the part of each record of an array (N, ...) of all records."""
+        return np.split(x, np.cumsum([len(r.time) for r in self.rows])[:-1])
+
+    @property
+    def judges(self) -> np.ndarray:
+        """Which blocks judge: those that confirm, or all where none does, shape (B,)."""
+        return self.confirms if self.confirms.any() else ~self.confirms
+
     @property
     def joints(self) -> int:
         """Number of joints."""
         return self.rows[0].y.shape[1]
 
-    def moments(self, left: np.ndarray, right: np.ndarray | None = None) -> np.ndarray:
-        """Returns Σ leftᵀ right by joint and block, shape (nv, B, k, l).
-
-        Args:
-            left: shape (N, nv, k).
-            right: shape (N, nv, l); `left` itself when None.
-        """
+    def moments(self, x: np.ndarray) -> np.ndarray:
+        """Returns Σ xᵀ x of x (N, nv, k) by joint and block, shape (nv, B, k, k)."""
         used, B = self.stacked("used"), len(self.record)
         edges = np.searchsorted(self.block, np.arange(B + 1))
-        right = left if right is None else right
-        out = np.zeros((self.joints, B, left.shape[2], right.shape[2]))
+        out = np.zeros((self.joints, B, x.shape[2], x.shape[2]))
         for j in range(self.joints):
-            a = np.where(used[:, j, None], left[:, j], 0.0)
+            a = np.where(used[:, j, None], x[:, j], 0.0)
             if not a.any():
                 continue
             for b in range(B):
                 some = slice(edges[b], edges[b + 1])
-                out[j, b] = a[some].T @ right[some, j]
+                out[j, b] = a[some].T @ x[some, j]
         return out
-
-    def squares(self, y: np.ndarray) -> np.ndarray:
-        """Returns Σ y² by joint and block, shape (nv, B), of y (N, nv)."""
-        return self.moments(y[:, :, None])[:, :, 0, 0]
 
     @property
     def counts(self) -> np.ndarray:
         """Number of equations by joint and block, shape (nv, B)."""
-        return self.squares(np.ones_like(self.stacked("y")))
+        return self.moments(np.ones((*self.stacked("y").shape, 1)))[:, :, 0, 0]
+
+
+def model_forces(model: mujoco.MjModel, equations: Equations) -> np.ndarray:
+    """Returns the forces that the model's masses alone need for the motion, shape (N, nv)."""
+    X = all_columns(equations.stacked("bodies"), equations.stacked("a"))
+    return np.asarray(X @ known_numbers(model))
+
+
+def list_passive(model: mujoco.MjModel, equations: Equations) -> np.ndarray:
+    """Returns which joints have no drive, or none that gives more than noise, shape (nv,).
+
+    As much noise as a band leaves in accelerations hides a force of this share of the inertia's.
+    """
+    used = equations.stacked("used")
+    force = np.where(used, equations.stacked("drives").sum(axis=2), 0.0)
+    needed = np.where(used, model_forces(model, equations), 0.0)
+    given, felt = ((x**2).sum(axis=0) for x in (force, needed))
+    return np.asarray(used.any(axis=0) & (given <= ATTENUATION * felt))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -134,6 +152,12 @@ def solve(G: np.ndarray, P: np.ndarray, θ_0: np.ndarray) -> tuple[np.ndarray, n
     return scale * x, H
 
 
+def unit_inverse(H: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Returns H⁻¹ in units in which H has a diagonal of ones, and these units s: H⁻¹ s sᵀ."""
+    scale = 1 / np.sqrt(np.maximum(np.diag(H), 1e-300))
+    return np.linalg.pinv(H * np.outer(scale, scale), rcond=1e-14, hermitian=True), scale
+
+
 def left_over(G: np.ndarray, θ: np.ndarray) -> np.ndarray:
     """Returns ‖y - X θ‖² of moments G (..., p + 1, p + 1)."""
     t = np.concatenate([-θ, np.ones((*θ.shape[:-1], 1))], axis=-1)
@@ -146,14 +170,9 @@ def unseen_squares(
     """Returns ‖y - X θ‖² by joint and block, with fits that did not see the block, shape (nv, B).
 
     The blocks of fitted records are cut into folds of neighbours, each predicted by a fit to all
-    other folds; those that confirm are predicted by a fit to all of these.
-
-    Args:
-        M: moments of columns and right side, shape (nv, B, p + 1, p + 1).
-        weights: of the joints, shape (nv,).
-        P: precision of the priors, shape (p,).
-        θ_0: their means, shape (p,).
-        confirms: blocks to which nothing is fitted, shape (B,).
+    other folds; those that confirm are predicted by a fit to all of these. M (nv, B, p + 1, p + 1)
+    are moments of columns and right side, `weights` (nv,) are of the joints, and P (p,) and θ_0
+    (p,) are precision and means of the priors.
     """
     G, seen = np.einsum("j,jbpq->bpq", weights, M), ~confirms
     fold, n = np.zeros(len(G), int), int(seen.sum())
@@ -164,32 +183,19 @@ def unseen_squares(
     return np.maximum(left, NO_NOISE**2 * M[:, :, -1, -1])
 
 
-def estimate(
-    M: np.ndarray, counts: np.ndarray, P: np.ndarray, θ_0: np.ndarray,
-    weights: np.ndarray | None = None,
-) -> Estimate:  # fmt: skip
-    """Fit sizes to equations, each joint weighted by its residual.
-
-    Args:
-        M: moments of columns and right side, shape (nv, B, p + 1, p + 1).
-        counts: of the equations, shape (nv, B).
-        P: precision of the priors, shape (p,).
-        θ_0: their means, shape (p,).
-        weights: of the joints, shape (nv,); their own when None.
-    """
+def estimate(M: np.ndarray, counts: np.ndarray, P: np.ndarray, θ_0: np.ndarray) -> Estimate:
+    """Fit sizes to equations, each joint weighted by its residual; see `unseen_squares`."""
     n, own, κ = counts.sum(axis=1), M.sum(axis=1), 1.0
     floor = NO_NOISE**2 * np.maximum(own[:, -1, -1], 1e-300)
     has = n > 0
     left = own[:, -1, -1]
-    w = np.zeros(len(n)) if weights is None else weights
     for _ in range(ROUNDS):
-        if weights is None:
-            w = np.where(has, n / np.maximum(left, floor), 0.0) / κ
+        w = np.where(has, n / np.maximum(left, floor), 0.0) / κ
         G = np.einsum("j,jbpq->bpq", w, M)
         θ, H = solve(G.sum(axis=0), P, θ_0)
         left = left_over(own, θ)
         meat, inverse, κ_now = _scatter(G, θ, H)
-        κ = κ if weights is not None else max(1.0, κ * κ_now)
+        κ = max(1.0, κ * κ_now)
     bread = inverse @ (meat + np.diag(P)) @ inverse
     σ = np.sqrt(np.where(has, left / np.maximum(n, 1), np.nan))
     return Estimate(θ=θ, covariance=bread, σ=σ, κ=κ, weights=w, H=H)
@@ -198,9 +204,8 @@ def estimate(
 def _scatter(G: np.ndarray, θ: np.ndarray, H: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
     """Returns Σ g gᵀ, H⁻¹ and the factor by which κ must grow."""
     A, a = G[:, :-1, :-1], G[:, :-1, -1]
-    scale = 1 / np.sqrt(np.maximum(np.diag(H), 1e-300))
-    inverse = np.linalg.pinv(H * np.outer(scale, scale), rcond=1e-14, hermitian=True)
-    inverse = inverse * np.outer(scale, scale)
+    unit, scale = unit_inverse(H)
+    inverse = unit * np.outer(scale, scale)
     g = a - A @ θ
     eye = np.eye(len(θ))
     lever = eye - A @ inverse

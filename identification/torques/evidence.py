@@ -21,7 +21,7 @@ from identification.logs.log import Log
 from identification.torques.base import BaseParameters, find_base
 from identification.torques.candidates import in_record, list_missing
 from identification.torques.consistency import find_inconsistent
-from identification.torques.equations import Equations, unseen_squares
+from identification.torques.equations import Equations
 from identification.torques.fits import (
     Fitted,
     FreeNumber,
@@ -158,7 +158,6 @@ def find_evidence(
 
 def _unseen_residual(equations: Equations, base: Base) -> np.ndarray:
     """Returns the residual of each joint by fits that did not see it, shape (nv,)."""
-    of = equations.confirms if equations.confirms.any() else ~equations.confirms
-    squares = unseen_squares(base.M, base.fit.weights, base.P, base.θ_0, equations.confirms)
-    n = equations.counts[:, of].sum(axis=1)
-    return np.sqrt(np.where(n > 0, squares[:, of].sum(axis=1) / np.maximum(n, 1), np.nan))
+    squares = base.unseen(equations.confirms)[:, equations.judges].sum(axis=1)
+    n = equations.counts[:, equations.judges].sum(axis=1)
+    return np.sqrt(np.where(n > 0, squares / np.maximum(n, 1), np.nan))

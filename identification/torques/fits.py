@@ -24,10 +24,15 @@ import numpy as np
 
 from identification.effects.inputs import SHIFT
 from identification.logs.log import Log
-from identification.torques.base import BaseParameters, all_columns
+from identification.torques.base import BaseParameters, all_columns, known_numbers
 from identification.torques.candidates import rate_of
-from identification.torques.drives import known_numbers, list_passive, model_forces
-from identification.torques.equations import Equations, Estimate, estimate
+from identification.torques.equations import (
+    Equations,
+    Estimate,
+    estimate,
+    list_passive,
+    model_forces,
+)
 from identification.torques.laws import Missing
 from identification.torques.moments import Base, Weighted, held_by
 from identification.torques.rows import Rows, make_rows
@@ -69,13 +74,9 @@ class Others:
         cls, free: Sequence[FreeNumber], equations: Equations, logs: Sequence[Log],
         wider: float = 1.0,
     ) -> Others:  # fmt: skip
-        """Returns those of some free parameters, by the equations of models that have them moved.
+        """Returns those of all free parameters, by the equations of models that have them moved.
 
-        Args:
-            free: all free parameters.
-            equations: of the records.
-            logs: these records.
-            wider: factor of the bands with which the equations were made.
+        The equations of these logs were made with bands that were `wider` by this factor.
         """
         y, drives = equations.stacked("y"), equations.stacked("drives")
         some, columns = list[FreeNumber](), [np.zeros((*y.shape, 0))]
@@ -180,12 +181,8 @@ def _nuisances(
     late = rate_of(equations, expected)[:, :, None]
     names, units = friction_names(model)
     columns = np.concatenate([friction_columns(equations.rows), late], axis=2)
-    return (
-        columns,
-        np.append(_friction_scales(model, equations), SHIFT),
-        [*names, CLOCK],
-        [*units, "s"],
-    )
+    scales = np.append(_friction_scales(model, equations), SHIFT)
+    return columns, scales, [*names, CLOCK], [*units, "s"]
 
 
 def expect_drives(
@@ -243,12 +240,7 @@ def model_fit(
 
 
 def with_gains_held(fitted: Fitted, others: Others) -> Fitted:
-    """Returns a model fit in which later fits hold the gains of drives at what it found.
-
-    Args:
-        fitted: the model fit.
-        others: its numbers beside inertial ones, the last ones of those that are free.
-    """
+    """Returns a model fit in which later fits hold the gains of drives at what it found."""
     base, gains = fitted.base, np.zeros(len(fitted.names), bool)
     gains[fitted.inertial - len(others.gains) : fitted.inertial] = others.gains
     P = np.where(gains, FIXED / np.maximum(np.diag(base.fit.covariance), 1e-300), base.P)
@@ -267,8 +259,7 @@ def with_std_of_gains(final: Fitted, nominal: Fitted, others: Others) -> Fitted:
 
 def extended(equations: Equations, fitted: Fitted, missing: Missing) -> Fitted:
     """Returns a fit with one effect more, of which nothing was known."""
-    S, old, m = missing.columns().values, fitted.base, len(missing.sizes)
-    none, held = np.zeros(m), np.zeros(m)
+    S, old, held = missing.columns().values, fitted.base, np.zeros(len(missing.sizes))
     if missing.ridges:
         moments = Weighted(equations, old).moments(missing.columns())
         held = held_by(missing, moments[1][~equations.confirms]) if moments else held
@@ -277,7 +268,7 @@ def extended(equations: Equations, fitted: Fitted, missing: Missing) -> Fitted:
         units=(*fitted.units, *missing.units),
         base=_fitted(
             equations, np.concatenate([old.Φ, S], axis=2), old.y,
-            np.concatenate([old.P, held]), np.concatenate([old.θ_0, none]), old.known,
+            np.append(old.P, held), np.append(old.θ_0, 0 * held), old.known,
         ),
         inertial=fitted.inertial,
         added=(*fitted.added, missing),

@@ -124,7 +124,7 @@ class Laws:
     ) -> Missing:
         """Returns an effect at a place with values of its shapes."""
         shape = dict(zip((s.name for s in effect.shapes), values, strict=True))
-        made = listed(effect, where, shape, later(self.columns, effect, joints, shape))
+        made = listed(effect, where, shape, partial(self.columns, effect, joints, shape))
         again = partial(self._listed, effect, where, joints)
         return replace(
             made, shapes=effect.shapes, reshaped=again if shape else None,
@@ -208,7 +208,10 @@ def _on_arrays(law: Any) -> Any:
 def listed(
     effect: Effect, where: str, shape: dict[str, float], columns: Callable[[], Columns]
 ) -> Missing:
-    """Returns an effect of the catalogue at a place as a candidate."""
+    """Returns an effect of the catalogue at a place as a candidate.
+
+    Its columns are made when they are asked for: all of them at once fill the memory.
+    """
     return Missing(
         name=effect.name, where=where, phrase=effect.phrase,
         sizes=tuple(s.name for s in effect.sizes), units=tuple(s.unit for s in effect.sizes),
@@ -216,8 +219,3 @@ def listed(
         shape=tuple((s.name, shape[s.name], s.unit) for s in effect.shapes if shape),
         most=tuple(s.farthest for s in effect.sizes),
     )  # fmt: skip
-
-
-def later(make: Callable[..., Columns], *given: object) -> Callable[[], Columns]:
-    """Returns what makes columns when they are asked for: all of them at once fill the memory."""
-    return lambda: make(*given)

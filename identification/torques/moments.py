@@ -12,7 +12,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from identification.torques.equations import Columns, Equations, Estimate
+from identification.torques.equations import Columns, Equations, Estimate, unseen_squares
 from identification.torques.laws import Missing
 
 
@@ -33,6 +33,10 @@ class Base:
         """Free sizes less what was known of them, in its std, shape (known,)."""
         off = (self.fit.θ - self.θ_0) * np.sqrt(self.P)
         return np.asarray(off[: self.known])
+
+    def unseen(self, confirms: np.ndarray) -> np.ndarray:
+        """Returns `unseen_squares` of the fit; nothing is fitted to blocks that confirm."""
+        return unseen_squares(self.M, self.fit.weights, self.P, self.θ_0, confirms)
 
 
 class Weighted:
@@ -77,15 +81,8 @@ def joined(G: np.ndarray, cross: np.ndarray, own: np.ndarray) -> np.ndarray:
 
 
 def held_by(missing: Missing, own: np.ndarray) -> np.ndarray:
-    """Returns the precisions with which sizes are held at zero, shape (m,).
-
-    Args:
-        missing: a candidate.
-        own: moments of its columns by blocks, shape (B, m, m).
-    """
+    """Returns the precisions that hold sizes with the moments `own` (B, m, m) at zero, (m,)."""
     ridges = np.array(missing.ridges or [0.0] * len(missing.sizes))
-    return (
-        ridges * np.einsum("bmm->bm", own).sum(axis=0)[ridges > 0].mean()
-        if ridges.any()
-        else ridges
-    )
+    if not ridges.any():
+        return ridges
+    return np.asarray(ridges * np.einsum("bmm->bm", own).sum(axis=0)[ridges > 0].mean())

@@ -51,11 +51,7 @@ def curves_beside(
 ) -> Beside | None:
     """Returns what the curves of a law's variables explain beside it; None where there are none.
 
-    Args:
-        equations: of the records.
-        bare: the fit without the law.
-        law: of one joint.
-        curves: all of them.
+    `bare` is the fit without the law, which is of one joint, and `curves` are all of them.
     """
     mine = [c for c in curves if c.where == law.where and c.variables & law.variables]
     if law.is_curve or not mine or "f_u" in law.variables:
@@ -72,12 +68,7 @@ def _unseen(equations: Equations, base: Base, missing: Missing | None) -> np.nda
     """Returns the weighted squares of each block of all records, by fits that did not see it.
 
     Blocks of records that confirm are in the folds too: a curve is then asked nowhere where no fit
-    has seen the motion.
-
-    Args:
-        equations: of the records.
-        base: the fit.
-        missing: a candidate that is added; None where none is.
+    has seen the motion. `missing` is a candidate that is added, if any.
     """
     whole = np.einsum("j,jbpq->bpq", base.fit.weights, base.M)
     held, of = np.zeros(0), None

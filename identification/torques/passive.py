@@ -23,10 +23,9 @@ from dataclasses import replace
 import mujoco
 import numpy as np
 
-from identification.torques.base import BaseParameters, all_columns
+from identification.torques.base import BaseParameters, all_columns, known_numbers
 from identification.torques.bodies import regressor
-from identification.torques.drives import known_numbers, list_passive
-from identification.torques.equations import Equations
+from identification.torques.equations import Equations, list_passive
 from identification.torques.fits import Others, base_fit, model_fit
 
 ROUNDS = 4  # of δ: each leaves an error of second order
@@ -36,20 +35,12 @@ LIGHT = 1e-2  # of the model's inertia: a fit with less has lost the scale, and 
 def with_expected_motion(
     model: mujoco.MjModel, equations: Equations, base: BaseParameters, others: Others
 ) -> Equations:
-    """Returns equations that are solved for the accelerations of joints without a drive.
-
-    Args:
-        model: of the robot.
-        equations: as they are measured.
-        base: combinations of its inertial numbers.
-        others: free numbers that are no inertial ones, without gains.
-    """
+    """Returns measured equations solved for the accelerations of joints without a drive."""
     p = np.flatnonzero(list_passive(model, equations))
     if not len(p):
         return equations
     unit = _unit_forces(model, equations, p)
-    known = known_numbers(model)
-    M_0 = _inertia([all_columns(*u) for u in unit], known, p)
+    M_0 = _inertia([all_columns(*u) for u in unit], known_numbers(model), p)
     none = np.zeros(equations.stacked("y").shape)
     held = model_fit(model, equations, (), none, others)
     δ = np.linalg.solve(M_0, (held.base.y - held.predicted())[:, p, None])[..., 0]
@@ -94,6 +85,5 @@ def _moved(
         bodies[:, p] += Y[:, p] * δ[:, i, None, None, None]
     a[:, p] += δ
     y[:, p] += np.einsum("nij,nj->ni", M, δ)
-    ends = np.cumsum([len(r.time) for r in equations.rows])[:-1]
-    parts = zip(equations.rows, *(np.split(x, ends) for x in (bodies, a, y)), strict=True)
+    parts = zip(equations.rows, *map(equations.divided, (bodies, a, y)), strict=True)
     return replace(equations, rows=tuple(replace(r, bodies=b, a=c, y=d) for r, b, c, d in parts))

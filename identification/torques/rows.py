@@ -15,7 +15,7 @@ the filter mixes both directions.
 from __future__ import annotations
 
 import copy
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 
@@ -97,13 +97,9 @@ def make_rows(
     model: mujoco.MjModel, logs: Sequence[Log], own: Sequence[mujoco.MjModel] = (),
     wider: float = 1.0,
 ) -> tuple[Rows, ...]:  # fmt: skip
-    """Returns the equations of records.
+    """Returns the equations of records, smooth in bands that are `wider` by this factor.
 
-    Args:
-        model: with the logs' actuators and sensors.
-        logs: of the robot.
-        own: the model of each log, where some of its values hold in that log alone.
-        wider: factor of the bands of the smooth motion.
+    `own` is the model of each log, where some of its values hold in that log alone.
 
     Raises:
         InputError: the model has other joints than hinges and slides, closed loops or drives with
@@ -112,8 +108,7 @@ def make_rows(
     """
     motions = [_motion(model, log, wider) for log in logs]
     top = np.max([np.abs(m.v).max(axis=0) for m in motions], axis=0)
-    total = sum(len(log) for log in logs)
-    least = -(-total // MOST)
+    least = -(-sum(map(len, logs)) // MOST)
     if not any(log.inputs.any() for log in logs):
         raise InputError(
             "no input moves in these logs, and without a drive's torque the masses of everything"
@@ -183,7 +178,9 @@ def _rows(
     resting = (np.abs(v) < limit) | (np.abs(np.abs(sign) - 1) > TURNING)
     used = mean(resting.astype(float)) == 0
     time = log.time[keep] - log.time[0] + log.begun
-    used &= _measured(log, time, mean, count)[:, None]
+    for begin, end in log.gaps:
+        at = time + log.time[0] - log.begun
+        used &= (mean(((at >= begin) & (at <= end)).astype(float)) == 0)[:, None]
     return Rows(
         name=log.name, time=mean(time), q=mean(q), v=mean(v), a=mean(a), sign=mean(sign),
         bodies=Y, gravity=gravity, drives=drives,
@@ -231,25 +228,14 @@ def _means(x: np.ndarray, count: int, width: int) -> np.ndarray:
     return np.asarray(x[: count * width].reshape(count, width, *x.shape[1:]).mean(axis=1))
 
 
-def _measured(
-    log: Log, time: np.ndarray, mean: Callable[[np.ndarray], np.ndarray], count: int
-) -> np.ndarray:
-    """Returns which of the short times are not in a gap of the log, shape (count,)."""
-    out = np.ones(count, bool)
-    for begin, end in log.gaps:
-        inside = (time + log.time[0] - log.begun >= begin) & (time + log.time[0] - log.begun <= end)
-        out &= mean(inside.astype(float)) == 0
-    return out
-
-
 @quiet()
 def _forces(
     model: mujoco.MjModel, q: np.ndarray, v: np.ndarray, a: np.ndarray, u: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Returns the forces of inverse dynamics (n, nv), and those of each actuator (n, nv, nu)."""
     bare = copy.copy(model)  # without contacts, limits and dry friction, which no equation has
-    bare.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_CONSTRAINT)
-    bare.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
+    off = mujoco.mjtDisableBit
+    bare.opt.disableflags |= int(off.mjDSBL_CONSTRAINT) | int(off.mjDSBL_CONTACT)
     data, n = mujoco.MjData(bare), len(q)
     inverse, drives = np.empty((n, model.nv)), np.zeros((n, model.nv, model.nu))
     moment, logged = np.zeros((model.nu, model.nv)), logged_inputs(model)

@@ -35,7 +35,7 @@ from identification.estimation.block_test import (
     scatter_of,
 )
 from identification.torques.consistency import nearest_body
-from identification.torques.equations import Equations, unseen_squares
+from identification.torques.equations import Equations, unit_inverse, unseen_squares
 from identification.torques.laws import Missing
 from identification.torques.moments import Base, Weighted, held_by, joined
 
@@ -116,20 +116,15 @@ def rank(
 ) -> tuple[Score, ...]:
     """Returns the score of each candidate with its best shape, the best on unseen blocks first.
 
-    Args:
-        equations: of the records.
-        base: the fit without them.
-        candidates: which.
-        asked: number of candidates of which these are the best ones.
+    `base` is the fit without them, and `asked` the number of candidates of which they are the best.
     """
-    scale = 1 / np.sqrt(np.maximum(np.diag(base.fit.H), 1e-300))
-    inverse = np.linalg.pinv(base.fit.H * np.outer(scale, scale), rcond=1e-14, hermitian=True)
-    values, vectors = np.linalg.eigh(inverse)
+    unit, scale = unit_inverse(base.fit.H)
+    values, vectors = np.linalg.eigh(unit)
     root = (vectors * np.sqrt(np.maximum(values, 0.0))).T * scale  # Λ^½: rootᵀ root = H⁻¹
-    inverse = inverse * np.outer(scale, scale)
+    inverse = unit * np.outer(scale, scale)
     whole, seen = np.einsum("j,jbpq->bpq", base.fit.weights, base.M), ~equations.confirms
     has = equations.counts.sum(axis=0) > 0  # a block in which all joints rest has none
-    judged = (equations.confirms if equations.confirms.any() else seen) & has
+    judged = equations.judges & has
     told = judged[has]
     G = whole[seen]
 
@@ -138,15 +133,12 @@ def rank(
         priors.append(np.where(np.arange(len(base.P)) < base.known, HELD * base.P, base.P))
 
     def squares_of(M: np.ndarray, held: np.ndarray) -> list[np.ndarray]:
-        given = np.ones(1), np.append(base.θ_0, 0 * held), equations.confirms
-        return [
-            np.log(unseen_squares(M[None], given[0], np.append(P, held), *given[1:])[0, has])
-            for P in priors
-        ]
+        one, θ_0, confirms = np.ones(1), np.append(base.θ_0, 0 * held), equations.confirms
+        left = (unseen_squares(M[None], one, np.append(P, held), θ_0, confirms) for P in priors)
+        return [np.log(x[0, has]) for x in left]
 
     unseen = squares_of(whole, np.zeros(0))
-    of_joints = unseen_squares(base.M, base.fit.weights, base.P, base.θ_0, equations.confirms)
-    of_joints = base.fit.weights * of_joints[:, judged].sum(axis=1)
+    of_joints = base.fit.weights * base.unseen(equations.confirms)[:, judged].sum(axis=1)
     weighted = Weighted(equations, base)
     found: list[tuple[Missing, np.ndarray, Scatter, list[np.ndarray], float]] = []
     left_out: list[Missing] = []
@@ -207,12 +199,8 @@ def rises(equations: Equations, before: Base, after: Base) -> bool:
     A fit is of all joints together, so that it may pay for one joint with another: then it is no
     law of the robot. What luck may do, or a small share, is no rise.
     """
-    judged = equations.confirms if equations.confirms.any() else ~equations.confirms
-    judged = judged & (equations.counts.sum(axis=0) > 0)
-    left = [
-        unseen_squares(b.M, b.fit.weights, b.P, b.θ_0, equations.confirms)[:, judged]
-        for b in (before, after)
-    ]
+    judged = equations.judges & (equations.counts.sum(axis=0) > 0)
+    left = (b.unseen(equations.confirms)[:, judged] for b in (before, after))
     for old, new in zip(*left, strict=True):
         has = old > 0
         if new.sum() > (1 + RISE) * old.sum() and t_of(np.log(new[has] / old[has])) > PROOF:

@@ -43,12 +43,9 @@ class Search:
 def add_proven(
     search: Search, found: Sequence[Score], scores: Sequence[Score]
 ) -> tuple[list[Score], Fitted]:
-    """Returns effects with the best proven ones more, as long as there are any, and the fit.
+    """Returns the effects that were found with the best proven ones more, and the fit.
 
-    Args:
-        search: whose records tell.
-        found: effects that are there.
-        scores: of those that may be added, beside all that are there, the best first.
+    `scores` are of those that may be added, beside all that are there, the best first.
     """
     equations, rest = search.equations, scores
     out, final = [*found], search.extended([s.missing for s in found])

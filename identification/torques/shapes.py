@@ -11,7 +11,7 @@ better than the law.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from scipy import optimize
@@ -27,27 +27,26 @@ PRECISION = 1e-3  # of a shape, in units of its bounds
 MOST_TRIES = 60  # of shapes of one law
 
 
-class Explained:
-    """What laws explain of the fitted blocks beside a fit."""
+def explained_by(equations: Equations, base: Base) -> Callable[[Missing], float]:
+    """Returns what tells how much a law explains of the fitted blocks beside a fit."""
+    weighted, seen, H, θ = Weighted(equations, base), ~equations.confirms, base.fit.H, base.fit.θ
 
-    def __init__(self, equations: Equations, base: Base) -> None:
-        self.weighted, self.seen = Weighted(equations, base), ~equations.confirms
-        self.H, self.θ = base.fit.H, base.fit.θ
-
-    def __call__(self, missing: Missing) -> float:
+    def explained(missing: Missing) -> float:
         """Returns the fall of the weighted sum of squares by a law with its best sizes."""
-        if (of := self.weighted.moments(missing.columns())) is None:
+        if (of := weighted.moments(missing.columns())) is None:
             return 0.0
-        cross, own = (m[self.seen].sum(axis=0) for m in of)
-        G = own - cross[:-1].T @ np.linalg.solve(self.H, cross[:-1])
-        a = cross[-1] - cross[:-1].T @ self.θ
+        cross, own = (m[seen].sum(axis=0) for m in of)
+        G = own - cross[:-1].T @ np.linalg.solve(H, cross[:-1])
+        a = cross[-1] - cross[:-1].T @ θ
         η = np.linalg.lstsq(G, a, rcond=1e-9)[0]
         if any(s * sign < 0 for s, sign in zip(η, missing.signs, strict=True)):
             return 0.0
         return float(a @ η)
 
+    return explained
 
-def refined(explained: Explained, missing: Missing) -> Missing:
+
+def refined(explained: Callable[[Missing], float], missing: Missing) -> Missing:
     """Returns a law with the shapes that explain most."""
     if missing.reshaped is None:
         return missing
@@ -84,13 +83,9 @@ def with_shapes(
 ) -> tuple[Score, ...]:
     """Returns scores in which the best laws have the shapes that explain most, the best first.
 
-    Args:
-        equations: of the records.
-        base: the fit beside which they were scored.
-        scores: with the best shapes of the grids, the best first.
-        asked: number of candidates, each shape of the grids counted.
+    `scores` have the best shapes of the grids, and `asked` counts each of these shapes.
     """
-    explained = Explained(equations, base)
+    explained = explained_by(equations, base)
     likely = [s for s in scores if s.chance < CHANCE and s.is_plausible]
     some = [s.missing for s in likely if s.missing.reshaped][:MOST_REFINED]
     if not some:

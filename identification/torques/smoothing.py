@@ -45,13 +45,9 @@ class Motion:
 
 
 def smooth(q: np.ndarray, h: float, band: float, noise: np.ndarray) -> Motion:
-    """Returns the smooth motion of positions.
+    """Returns the smooth motion, in a band [Hz], of positions (n, nv) measured every h [s].
 
-    Args:
-        q: shape (n, nv), measured every h.
-        h: step [s].
-        band: f_c [Hz].
-        noise: std of the white noise of the positions, shape (nv,).
+    `noise` is the std of the white noise of the positions, shape (nv,).
     """
     omega = np.pi * np.arange(len(q)) / ((len(q) - 1) * h)
     gain = float(np.sqrt(np.mean((omega * _pass(omega, band)) ** 2)))
@@ -61,10 +57,7 @@ def smooth(q: np.ndarray, h: float, band: float, noise: np.ndarray) -> Motion:
 def noise_gains(band: float, h: float, width: int) -> tuple[float, float]:
     """Returns the std of means of accelerations, and of signals, that white noise of one makes.
 
-    Args:
-        band: f_c [Hz].
-        h: step [s].
-        width: number of samples of a mean.
+    Means are of `width` samples, measured every h [s]; the band is in Hz.
     """
     omega = np.pi * np.arange(1, FREQUENCIES + 1) / (FREQUENCIES * h)
     mean = np.sin(omega * h * width / 2) / (width * np.sin(omega * h / 2))
@@ -79,14 +72,9 @@ def low_pass(x: np.ndarray, h: float, band: float) -> np.ndarray:
 
 
 def choose_band(q: np.ndarray, h: float) -> tuple[float, float]:
-    """Computes the band whose accelerations have the least expected error.
+    """Returns the band [Hz] whose accelerations have the least expected error, and the noise's std.
 
-    Args:
-        q: positions of one joint, shape (n,), measured every h.
-        h: step [s].
-
-    Returns:
-        f_c [Hz], and the std of the positions' white noise.
+    The positions q of one joint, shape (n,), are measured every h [s]; their noise is white.
     """
     bends = np.diff(q, 2) / h**2
     window = np.hanning(len(bends) + 2)[1:-1]

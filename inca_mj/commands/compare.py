@@ -31,7 +31,7 @@ from inca_mj.commands.common import (
 
 if TYPE_CHECKING:
     from identification import Log
-    from inca_mj.verification import CrossCheck
+    from inca_mj.verification.check import CrossCheck
 
 
 @dataclass(frozen=True)
@@ -128,7 +128,7 @@ class Crosscheck:
     def run(self) -> int:
         """Check, say, keep; 0 when they agree, 1 when not."""
         do_not_draw()
-        from inca_mj.verification import crosscheck
+        from inca_mj.verification.check import crosscheck
 
         result = crosscheck(
             self.robot.parameters(),

@@ -12,7 +12,6 @@ from typing import Any
 import gymnasium
 import numpy as np
 from dm_control.rl import control
-from dm_env import specs
 
 from inca_mj.control.environment import load_environment
 
@@ -36,7 +35,10 @@ class GymnasiumEnv(gymnasium.Env[Any, np.ndarray]):
         self.action_space = gymnasium.spaces.Box(action.minimum, action.maximum, dtype=np.float64)
         self.wrapped.reset()  # dm_control knows the observations' shapes after a reset only
         self.observation_space = gymnasium.spaces.Dict(
-            {name: _box(spec) for name, spec in self.wrapped.observation_spec().items()}
+            {
+                name: gymnasium.spaces.Box(-np.inf, np.inf, spec.shape, spec.dtype)
+                for name, spec in self.wrapped.observation_spec().items()
+            }
         )
         self.wrapped.task.random = np.random.default_rng(seed)
 
@@ -85,7 +87,3 @@ def load_gymnasium(
         InputError: for the reasons of `load_environment`.
     """
     return GymnasiumEnv(task, seed, render_mode, **options)
-
-
-def _box(spec: specs.Array) -> gymnasium.spaces.Box:
-    return gymnasium.spaces.Box(-np.inf, np.inf, spec.shape, spec.dtype)

@@ -214,10 +214,6 @@ class Physics(dm_mujoco.Physics):
         """Returns the motor angles φ, shape (8,) [rad]."""
         return self._drives("angle")
 
-    def motor_rate(self) -> np.ndarray:
-        """Returns the true motor rates ω, shape (8,) [rad/s]."""
-        return self._drives("rate")
-
     def tension(self) -> np.ndarray:
         """Returns the cable tensions T, shape (8,) [N]."""
         return self._drives("tension")

@@ -10,5 +10,4 @@ from inca_mj.reference.integrate import simulate_reference as simulate_reference
 from inca_mj.reference.numbers import Rest as Rest
 from inca_mj.reference.numbers import pack as pack
 from inca_mj.reference.numbers import rest as rest
-from inca_mj.reference.outputs import Outputs as Outputs
-from inca_mj.reference.outputs import outputs as outputs
+from inca_mj.reference.numbers import rotation_matrix as rotation_matrix

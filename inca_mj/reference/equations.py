@@ -33,11 +33,7 @@ import numpy as np
 from identification.kept_code import kept_code
 from inca_mj.reference import layout as at
 
-FOLDERS = (
-    "reference",
-    "robot",
-    "studies/worlds",
-)  # of the package, from which the equations import
+FOLDERS = ("reference", "robot", "studies/worlds")  # from which the equations import
 
 compiled = kept_code(*(Path(__file__).parents[1] / name for name in FOLDERS))
 
@@ -107,15 +103,10 @@ def euler_rate_matrix(euler: Vector) -> tuple[Vector, Vector, Vector]:
 
 @compiled
 def cables(x: np.ndarray, q: np.ndarray) -> tuple[np.ndarray, ...]:
-    """Returns the cables at a state: tension T, length d, rate ḋ, no-load rate ḋ₀, direction sᴮ.
+    """Returns the cables at a state x (36,), with numbers q (147,).
 
-    Args:
-        x: state, shape (36,).
-        q: packed numbers, shape (147,).
-
-    Returns:
-        T [N], d [m], ḋ [m/s], ḋ₀ [m/s], each of shape (8,), and sᴮ of shape (8, 3), the unit
-        vector from A_i to B_i along the body axes.
+    These are T [N], d [m], ḋ [m/s] and ḋ₀ [m/s], each of shape (8,), and sᴮ of shape (8, 3), the
+    unit vector from A_i to B_i along the body axes.
     """
     p, v, ω = vector(x[at.POSITION]), vector(x[at.VELOCITY]), vector(x[at.RATES])
     ω_m, d_0 = x[at.SPEEDS], x[at.NO_LOAD]
@@ -152,15 +143,9 @@ def spring_force(φ_m: float, T_0: float, own: np.ndarray) -> float:
 
 @compiled
 def derivative(x: np.ndarray, i: np.ndarray, q: np.ndarray) -> np.ndarray:
-    """Returns ẋ = f(x, i).
+    """Returns ẋ = f(x, i), shape (36,), in the order of `inca_mj.reference.layout`.
 
-    Args:
-        x: state, shape (36,), in the order of `inca_mj.reference.layout`.
-        i: motor currents, positive winds in, shape (8,) [A].
-        q: packed numbers, shape (147,).
-
-    Returns:
-        The rate of the state, shape (36,).
+    The currents i (8,) [A] are positive where they wind in; q are the packed numbers, (147,).
     """
     m, I_P, g = q[at.M], vector(q[at.INERTIA]), q[at.G_EARTH]
     G, b_G = vector(q[at.FORCE]), vector(q[at.FORCE_AT])

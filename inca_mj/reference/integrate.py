@@ -66,17 +66,10 @@ def simulate_reference(
     force: Sequence[float] = NO_FORCE,
     force_at: Sequence[float] = NO_FORCE,
 ) -> ReferenceRun:
-    """Simulate the 36 states of the thesis.
+    """Simulate the 36 states of the thesis at increasing times (n,) [s], under currents (n, 8) [A].
 
-    Args:
-        parameters: values of the robot, and its start pose.
-        geometry: exit points and connectors.
-        time: sample times, increasing, shape (n,) [s].
-        currents: motor currents, positive winds in, shape (n, 8) [A].
-        start: first state, shape (36,); the rest at the start pose when not given. The drum
-            springs balance the pretension of the parameters' start pose in both cases.
-        force: constant external force on the platform, in O [N].
-        force_at: the point where it acts, in the platform frame [m].
+    The first state is the rest at the start pose if `start` (36,) gives no other; the drum springs
+    balance the pretension of that pose in both cases. `pack` says what the force is.
 
     Raises:
         InputError: shapes or times are not as above, or no rest exists.
@@ -84,10 +77,9 @@ def simulate_reference(
     """
     q = pack(parameters, geometry, force=force, force_at=force_at)
     t, u = _samples(time, currents)
-    x_0 = rest(parameters, geometry).state if start is None else _start(start)
     x = np.empty((len(t), at.STATES))
-    x[0] = x_0
-    _refuse_bad_state(t[0], x_0)
+    x[0] = rest(parameters, geometry).state if start is None else _start(start)
+    _refuse_bad_state(t[0], x[0])
     _fill(t, u, q, x)
     return ReferenceRun(t, x, np.array([cables(row, q)[0] for row in x]))
 

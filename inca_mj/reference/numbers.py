@@ -20,7 +20,7 @@ import numpy as np
 
 from identification.errors import InputError
 from identification.model.parameter import ParameterSet
-from inca_mj.reference import kinematics
+from inca_mj.reference import equations
 from inca_mj.reference import layout as at
 from inca_mj.robot.geometry import Geometry
 from inca_mj.robot.parameters import GRAVITY, PRETENSION
@@ -39,19 +39,9 @@ def pack(
 ) -> np.ndarray:
     """Returns the numbers q of `derivative(x, i, q)`, shape (147,).
 
-    The drum springs balance the pretension of the parameters' start pose; `force` is not part
-    of that balance, it acts from the first instant on.
-
-    Args:
-        parameters: values of the robot, and its start pose; deviations of its drives and
-            displacements of its points count where they are among them.
-        geometry: nominal exit points and connectors.
-        force: constant external force G on the platform, in O [N].
-        force_at: the point b_G where it acts, in the platform frame [m].
-
-    Raises:
-        InputError: `force` or `force_at` is not 3 finite numbers, or no rest exists at the
-            start pose.
+    The drum springs balance the pretension of the parameters' start pose. A constant `force` G, in
+    O [N], at the point b_G of the platform [m] is no part of that balance: it acts from the first
+    instant on. Raises InputError if either is not 3 finite numbers, or no rest exists.
     """
     value = parameters.values()
     q = np.empty(at.NUMBERS)
@@ -75,37 +65,31 @@ class Rest:
     state: np.ndarray  # the 36 states of that rest
 
 
-def wrench_matrix(pose: kinematics.CablePose) -> np.ndarray:
-    """Returns W: wrench on the platform (force, torque about P, in O) per tension, shape (6, 8)."""
-    return -np.vstack([pose.directions.T, np.cross(pose.arms, pose.directions).T])
+def rotation_matrix(euler: np.ndarray) -> np.ndarray:
+    """Returns R_AB from roll, pitch, yaw [rad], shape (3, 3) (2.1)."""
+    return np.array(list(equations.rotation(equations.vector(np.asarray(euler, float)))))
 
 
 def rest(parameters: ParameterSet, geometry: Geometry) -> Rest:
     """Returns the rest at the start pose (x, y, z, roll, pitch, yaw) of a parameter set.
 
-    Args:
-        parameters: needs `m`, `lambda` and the start pose; takes the deviations of λ and the
-            displacements of points that it has.
-        geometry: nominal exit points and connectors.
-
-    Raises:
-        InputError: a cable has no length, the cables cannot carry the weight at this pose, or
-            one of them would have to push.
+    Raises InputError if a cable has no length, the cables cannot carry the weight at this pose, or
+    one of them would have to push.
     """
     value = parameters.values()
     position = np.array([value[name] for name in ("x", "y", "z")])
     euler = np.array([value[name] for name in ("roll", "pitch", "yaw")])
-    R_AB = kinematics.rotation(euler)
     placed = displaced(geometry, value)
-    lengths = np.linalg.norm(position + placed.B @ R_AB.T - placed.A, axis=1)
-    if lengths.min() < 1e-6:
+    b = placed.B @ rotation_matrix(euler).T
+    ds = position + b - placed.A  # along the cables, from A_i to B_i (2.6 - 2.8)
+    d = np.linalg.norm(ds, axis=1)
+    if d.min() < 1e-6:
         raise InputError(
-            f"start pose: cable {int(lengths.argmin()) + 1} has no length, its connector sits on"
+            f"start pose: cable {int(d.argmin()) + 1} has no length, its connector sits on"
             " its exit point; change x, y, z or the geometry"
         )
-    pose = kinematics.geometric(position, R_AB, placed)
-
-    W = wrench_matrix(pose)
+    s = ds / d[:, None]
+    W = -np.vstack([s.T, np.cross(b, s).T])
     w = np.array([0.0, 0.0, value["m"] * GRAVITY, 0.0, 0.0, 0.0])
     t_0 = np.full(at.DRIVES, PRETENSION)
     T = t_0 + np.linalg.pinv(W) @ (w - W @ t_0)
@@ -121,7 +105,7 @@ def rest(parameters: ParameterSet, geometry: Geometry) -> Rest:
             " lower m"
         )
 
-    λ, d = at_drives("lambda", value), pose.lengths
+    λ = at_drives("lambda", value)
     d_0 = λ * d / (λ + T)
     state = np.zeros(at.STATES)
     state[at.POSITION], state[at.EULER], state[at.NO_LOAD] = position, euler, d_0

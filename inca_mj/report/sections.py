@@ -14,7 +14,7 @@ from inca_mj.report.figures import crosscheck_figure, simulation_figures, tracki
 
 if TYPE_CHECKING:
     from inca_mj.twin.run import Run
-    from inca_mj.verification import CrossCheck
+    from inca_mj.verification.check import CrossCheck
     from inca_mj.workflows.comparison import Comparison
     from inca_mj.workflows.tracking import Tracking
 

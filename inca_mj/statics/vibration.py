@@ -58,10 +58,10 @@ def in_plane_frequency(d: float, span: float, tension: float, rho: float, lambda
     Λ2 = irvine_parameter(span, tension, rho, lambda_)
     if Λ2 < STRAIGHT:
         return float(string_frequencies(d, tension, rho, 1)[0])
-    # x = ω̄/2, tan written as sin/cos, so that the function has no pole between π/2 and 3π/2
-    equation = (  # noqa: E731
-        lambda x: Λ2 * (np.sin(x) - x * np.cos(x)) + 4 * x**3 * np.cos(x)
-    )
+
+    def equation(x: float) -> float:  # x = ω̄/2, tan as sin/cos: no pole between π/2 and 3π/2
+        return float(Λ2 * (np.sin(x) - x * np.cos(x)) + 4 * x**3 * np.cos(x))
+
     x = brentq(equation, np.pi / 2, 3 * np.pi / 2, xtol=1e-13)
     return float(2 * x * np.sqrt(tension / rho) / d / (2 * np.pi))
 
@@ -106,20 +106,15 @@ def coupled_modes(
     ω2, x = eigh(stiff, whole)
     share = np.clip(np.einsum("ai,ab,bi->i", x[:6], M, x[:6]), 0.0, 1.0)
     most = np.sort(np.argsort(-share)[:6])
-    rows = list(zip(at.lengths, tension, strict=True))
     span = np.hypot(at.directions[:, 0], at.directions[:, 1]) * at.lengths
+    each = list(zip(at.lengths, span, tension, robot.lambda_, strict=True))
     return Coupled(
         massless=hertz(eigh(K, M, eigvals_only=True)),
         added=hertz(eigh(K, heavier, eigvals_only=True)),
         coupled=hertz(ω2[most]),
         share=share[most],
-        cables=np.array([string_frequencies(d, T, rho, 1)[0] for d, T in rows]),
-        in_plane=np.array(
-            [
-                in_plane_frequency(d, x, T, rho, λ)
-                for (d, T), x, λ in zip(rows, span, robot.lambda_, strict=True)
-            ]
-        ),
+        cables=np.array([string_frequencies(d, T, rho, 1)[0] for d, _, T, _ in each]),
+        in_plane=np.array([in_plane_frequency(d, x, T, rho, λ) for d, x, T, λ in each]),
     )
 
 

@@ -41,12 +41,8 @@ def nominal_plant(sampling_time: float, spread: str, settled: bool) -> Any:
 def fit_nominal(log: Log, spread: str, *, settled: bool) -> tuple[Any, Any, Sequence[Any]]:
     """Returns the nominal model fitted to a log, the sensitivities of candidates, and their scores.
 
-    Candidates of one drive are scored at those places only where the effect scores best on all.
-
-    Args:
-        log: whole; its first half is fitted.
-        spread: as of a discovery.
-        settled: whether the robot stood by itself before the log began.
+    The first half of the log is fitted. Candidates of one drive are scored at those places only
+    where the effect scores best on all. `settled` says whether the robot stood by itself before.
 
     Raises:
         InputError: the log is too short.

@@ -46,11 +46,7 @@ FIGURES = {
 
 
 def figure_settings(number: str) -> FigureSettings:
-    """Returns the settings of a figure by its number in the thesis.
-
-    Raises:
-        InputError: no run of the model gives a figure of that number.
-    """
+    """Returns the settings of a figure, or refuses a number of which no run gives a figure."""
     if number not in FIGURES:
         raise unknown_name("figure", number, FIGURES)
     return FIGURES[number]
@@ -87,14 +83,10 @@ class ThesisResults:
         return compare_twin(self.stand_in, fitted, trust=UNJUDGED)  # the fit has judged it
 
 
-def stand_in_log(seed: int = 0) -> Log:
+def stand_in_log(seed: int) -> Log:
     """Returns a log of a simulated robot with Table 3.2: 10 s of PRBS at 100 Hz, noisy encoders.
 
-    Args:
-        seed: of the PRBS' phases and of the noise.
-
-    Raises:
-        InputError: the seed is negative.
+    The seed is that of the PRBS' phases and of the noise.
     """
     currents = make_input("prbs", STAND_IN, seed=seed)
     log = run_to_log(simulate(build_twin(parameter_set("trial")), currents), "stand-in")

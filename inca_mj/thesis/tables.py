@@ -59,13 +59,7 @@ def trial_table(number: str, result: TrialResult) -> Table:
 
 
 def step_table(number: str, fit: Fit, true: Mapping[str, float]) -> Table:
-    """Returns Table 3.7 or 3.8: the real robot as printed, the simulated one with its true values.
-
-    Args:
-        number: of the table.
-        fit: of the step on the simulated robot.
-        true: its values by name.
-    """
+    """Returns Table 3.7 or 3.8: the real robot as printed, a simulated one with its true values."""
     values = fit.estimate.values
     std = dict(zip(values, fit.std, strict=True))
 
@@ -83,10 +77,7 @@ def step_table(number: str, fit: Fit, true: Mapping[str, float]) -> Table:
 def fits_table(number: str, fit: np.ndarray, loss: float) -> Table:
     """Returns the table beside Figures 3.4 to 3.7 and 3.10 to 3.13: fit of each motor, and loss.
 
-    Args:
-        number: of the figure.
-        fit: ours, shape (8,) [%].
-        loss: ours, by equation 3.5.
+    Ours are the fits (8,) [%] and the loss by equation 3.5.
     """
     printed = FITS[number]
     rows = [

@@ -53,9 +53,9 @@ def _trial(n: int) -> Trial:
 TRIALS = tuple(map(_trial, (1, 2, 3, 4)))
 
 
-def trial_data(robot: Twin, seed: int = 0) -> Log:
+def trial_data(robot: Twin) -> Log:
     """Returns the data of the trials, without noise: 5 s of the thesis' PRBS."""
-    return run_to_log(simulate(robot, make_input("prbs", DURATION, seed=seed)), "trial data")
+    return run_to_log(simulate(robot, make_input("prbs", DURATION)), "trial data")
 
 
 def with_noise(log: Log, seed: int) -> Log:
@@ -117,14 +117,7 @@ def run_trial(
     options: Options | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> TrialResult:
-    """Run a trial from the thesis' starts.
-
-    Args:
-        trial: the trial.
-        seed: seed of the noise.
-        options: how to search; `Options(horizons=(1.0,))` is the thesis' single free-run fit.
-        progress: is told one line per accepted step.
-    """
+    """Run a trial from the thesis' starts, with noise of a seed; see `trials`."""
     options = options or Options()
     if trial.noisy:
         options = replace(options, relative_noise=NOISE / np.sqrt(3))  # std of the uniform error

@@ -28,12 +28,8 @@ def overruled_by(*words: str) -> str:
 CURRENTS, ANGLES = each_drive("current"), each_drive("angle")
 VELOCITY = ("vx", "vy", "vz", "wx", "wy", "wz")  # v in O, body rates
 OPTIONAL = (
-    *POSE,
-    *each_drive("tension"),
-    *VELOCITY,
-    *each_drive("rate"),
-    *each_drive("no_load_length"),
-)
+    *POSE, *each_drive("tension"), *VELOCITY, *each_drive("rate"), *each_drive("no_load_length"),
+)  # fmt: skip
 
 UNITS = {
     "current": "A", "angle": "rad", "rate": "rad/s", "tension": "N", "no_load_length": "m",
@@ -123,13 +119,6 @@ def run_to_log(run: Run, name: str = "run", notes: str = "") -> Log:
     columns = (*CURRENTS, *ANGLES, *extras)
     units = {column: UNITS[column.rstrip("_12345678")] for column in columns}
     return Log(
-        time=run.time,
-        inputs=run.currents,
-        outputs=run.motor_angle,
-        input_names=CURRENTS,
-        output_names=ANGLES,
-        extras=extras,
-        units=units,
-        name=name,
-        notes=notes,
-    )
+        time=run.time, inputs=run.currents, outputs=run.motor_angle, input_names=CURRENTS,
+        output_names=ANGLES, extras=extras, units=units, name=name, notes=notes,
+    )  # fmt: skip

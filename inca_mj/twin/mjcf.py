@@ -124,6 +124,15 @@ def _platform(
     )
 
 
+def add_cable(spec: mujoco.MjSpec, k: int, exit_point: Any) -> Any:
+    """Adds cable k from its exit point (3,) [m], whose site it adds too, to its connector."""
+    spec.worldbody.add_site(name=f"exit_{k}", pos=exit_point, size=[0.012, 0.012, 0.012])
+    cable = spec.add_tendon(name=f"cable_{k}", width=0.0025, rgba=[0.2, 0.2, 0.22, 1])
+    cable.wrap_site(f"exit_{k}")
+    cable.wrap_site(f"connector_{k}")
+    return cable
+
+
 def check_inertia(values: Mapping[str, float]) -> None:
     """Refuses principal inertias of which one exceeds the sum of the other two."""
     I = {name: values[name] for name in ("I_x", "I_y", "I_z")}
@@ -149,8 +158,10 @@ def _drive(
     p = parameters.values()
     numbers = {name: float(at_drives(name, p)[k - 1]) for name in EACH_DRIVE}
     exit_point = np.array(geometry.exits[k - 1])
-    placed = displaced(geometry, p).exits[k - 1]
-    spec.worldbody.add_site(name=f"exit_{k}", pos=placed, size=[0.012, 0.012, 0.012])
+    cable = add_cable(spec, k, displaced(geometry, p).exits[k - 1])
+    cable_row = np.zeros(law.TENDON_COLUMNS)
+    cable_row[[law.TENDON_TAG, law.LAMBDA, law.B]] = law.TAG, numbers["lambda"], numbers["b"]
+    cable.userdata = cable_row
 
     # The roller turns beside the nominal exit point, where it is only drawn; its inertia is J.
     outward = np.array([exit_point[0], exit_point[1], 0.0])
@@ -166,13 +177,6 @@ def _drive(
         damping=numbers["b_v"],
     )
     dress_drum(drum, axis)
-
-    cable = spec.add_tendon(name=f"cable_{k}", width=0.0025, rgba=[0.2, 0.2, 0.22, 1])
-    cable.wrap_site(f"exit_{k}")
-    cable.wrap_site(f"connector_{k}")
-    cable_row = np.zeros(law.TENDON_COLUMNS)
-    cable_row[[law.TENDON_TAG, law.LAMBDA, law.B]] = law.TAG, numbers["lambda"], numbers["b"]
-    cable.userdata = cable_row
 
     row = np.zeros(layout.actuator_columns)
     row[KEY:][:1] = layout.key

@@ -30,7 +30,7 @@ from inca_mj.robot.geometry import DRIVES, INCA, Geometry
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.robot.spread import EACH_DRIVE, at_drives, displaced
 from inca_mj.twin.appearance import MOTOR, PLAIN, PLAIN_NOTE, SHORT_PLAIN_NOTE, filled
-from inca_mj.twin.mjcf import add_platform, add_pose_sensors, empty_model, weigh
+from inca_mj.twin.mjcf import add_cable, add_platform, add_pose_sensors, empty_model, weigh
 from inca_mj.twin.statics import Start, start
 
 IMPEDANCE = 1e-4  # δ, the least that MuJoCo admits: the inertia errs by as much
@@ -66,7 +66,7 @@ def _drive(
     numbers = {name: float(at_drives(name, p)[k - 1]) for name in EACH_DRIVE}
     R, T_0 = numbers["R"], float(begin.tension[k - 1])
     placed = np.array(displaced(geometry, p).exits[k - 1])
-    spec.worldbody.add_site(name=f"exit_{k}", pos=placed, size=[0.012, 0.012, 0.012])
+    cable = add_cable(spec, k, placed)
     up = 1.0 if placed[2] < geometry.A[:, 2].mean() else -1.0  # the wound part lies along the post
     away = np.array([0.0, 0.0, up])
     spec.worldbody.add_site(name=f"end_{k}", pos=placed, size=[0.004, 0.004, 0.004])
@@ -98,9 +98,6 @@ def _drive(
     d_0 = float(begin.no_load_length[k - 1])
     k_cable = numbers["lambda"] / d_0
     length = d_0 * (1 + begin.strain[k - 1]) + SPOOL
-    cable = spec.add_tendon(name=f"cable_{k}", width=0.0025, rgba=[0.2, 0.2, 0.22, 1])
-    cable.wrap_site(f"exit_{k}")
-    cable.wrap_site(f"connector_{k}")
     cable.wrap_pulley(1.0)
     cable.wrap_site(f"end_{k}")
     cable.wrap_site(f"spool_{k}")

@@ -136,18 +136,11 @@ def simulate(
     )
     at = State(*(states[name][0] for name in ("qpos", "qvel", "act")))
     tension, length = readings(robot, at)
-    time = np.arange(len(currents)) * sampling_time
-    no_load = at.act[:, :: robot.layout.states]
     return Run(
-        twin=robot,
-        time=time,
-        currents=currents,
-        qpos=at.qpos,
-        qvel=at.qvel,
-        act=no_load,
-        tension=tension,
+        twin=robot, time=np.arange(len(currents)) * sampling_time, currents=currents,
+        qpos=at.qpos, qvel=at.qvel, act=at.act[:, :: robot.layout.states], tension=tension,
         length=length,
-    )
+    )  # fmt: skip
 
 
 def readings(robot: Twin, at: State) -> tuple[np.ndarray, np.ndarray]:

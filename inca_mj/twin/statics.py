@@ -101,14 +101,8 @@ def start_from(
         strain = change.strain(T)
         d_0 = (d + change.longer) / (1 + strain)
         balance = T * (1 + change.wider / at_drives("R", values))
-    return Start(
-        pose=pose,
-        tension=T,
-        no_load_length=d_0,
-        strain=strain,
-        balance=balance,
-        own=own_states(values, strain, layout),
-    )
+    own = own_states(values, strain, layout)
+    return Start(pose=pose, tension=T, no_load_length=d_0, strain=strain, balance=balance, own=own)
 
 
 def starts_from(

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 from identification.errors import InputError
 from identification.model.parameter import ParameterSet
 from identification.model.rollout import substeps
+from inca_mj.reference import simulate_reference
 from inca_mj.robot.geometry import INCA, Geometry
 from inca_mj.robot.inputs import refuse_duration
 from inca_mj.robot.parameters import parameter_set
@@ -22,7 +23,6 @@ from inca_mj.verification.trajectories import (
     crossing,
     leading_slope,
     make_case,
-    run_reference,
     slope,
 )
 
@@ -85,7 +85,12 @@ def crosscheck(
 
     # The references need Python and its lock, the twin's runs do without: they overlap.
     with ThreadPoolExecutor(1) as worker:
-        references = [worker.submit(run_reference, case, parameters, geometry) for case in made]
+        references = [
+            worker.submit(
+                simulate_reference, parameters, geometry, c.time, c.currents, start=c.start
+            )
+            for c in made
+        ]
         say(f"accelerations at {states} random states")
         derivatives = compare_derivatives(states, seed, parameters, geometry)
         found = []
@@ -158,7 +163,7 @@ class CrossCheck:
             "order": self.order,
             "orders": self.orders,
             "tension_orders": self.tension_orders,
-            "derivatives": self.derivatives.to_json(),
+            "derivatives": asdict(self.derivatives),
             "passed": self.passed,
             "sentences": list(self.sentences),
         }

@@ -15,7 +15,7 @@ pulls with 10⁻⁸ N, which is equal to none.
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 
 import mujoco
 import numpy as np
@@ -25,8 +25,9 @@ from identification.model.parameter import ParameterSet
 from identification.model.rollout import State, threads
 from inca_mj.kinematics.cables import cables_at
 from inca_mj.kinematics.rotations import quaternion, rotation
+from inca_mj.reference import derivative, pack, rotation_matrix
 from inca_mj.reference import layout as at
-from inca_mj.reference import outputs, pack
+from inca_mj.reference.equations import cables
 from inca_mj.robot.geometry import DRIVES, INCA, Geometry
 from inca_mj.robot.parameters import GRAVITY, PRETENSION, SETS, parameter_set
 from inca_mj.robot.spread import at_drives, displaced
@@ -38,6 +39,8 @@ _SPREAD = 1.5  # random values lie within this factor of the nominal ones
 # All but the start pose, which is a state and no law.
 _VARIED = ("R", "R_s", "k_s", "lambda", "b", "J", "b_v", "b_c", "beta", "K_t", "m",
            "I_x", "I_y", "I_z")  # fmt: skip
+
+QUANTITIES = ("linear", "angular", "motor", "no_load", "tension")  # of which errors are taken
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,11 +60,7 @@ class DerivativeErrors:
     @property
     def largest(self) -> float:
         """The largest of the errors; NaN when one is."""
-        return float(np.max([self.linear, self.angular, self.motor, self.no_load, self.tension]))
-
-    def to_json(self) -> dict[str, float]:
-        """Returns the errors by name."""
-        return asdict(self)
+        return float(np.max([getattr(self, name) for name in QUANTITIES]))
 
 
 def compare_derivatives(
@@ -70,13 +69,9 @@ def compare_derivatives(
     base: ParameterSet | None = None,
     geometry: Geometry = INCA,
 ) -> DerivativeErrors:
-    """Compare the two models at random states, under both parameter sets and random values.
+    """Compare the two models at n random states, under both parameter sets and random values.
 
-    Args:
-        n: number of states, shared out over the parameter sets.
-        seed: of the states and the values.
-        base: a further parameter set to compare under, and the one that random values vary.
-        geometry: anchors of the cables.
+    `base` is a further parameter set to compare under, and the one that random values vary.
     """
     rng = np.random.default_rng(seed)
     base = base or parameter_set()
@@ -90,16 +85,9 @@ def compare_derivatives(
         *(_compare(robot, count, rng) for robot, count in zip(robots, counts, strict=True)),
         strict=True,
     )
-    linear, angular, motor, no_load, tension = np.max(errors, axis=0).tolist()
-    share = float(np.average(slack, weights=counts))
+    largest = dict(zip(QUANTITIES, np.max(errors, axis=0).tolist(), strict=True))
     return DerivativeErrors(
-        linear=linear,
-        angular=angular,
-        motor=motor,
-        no_load=no_load,
-        tension=tension,
-        states=sum(counts),
-        slack=share,
+        **largest, states=sum(counts), slack=float(np.average(slack, weights=counts))
     )
 
 
@@ -113,28 +101,22 @@ def _random_values(base: ParameterSet, rng: np.random.Generator) -> dict[str, fl
 
 
 def _compare(robot: Twin, n: int, rng: np.random.Generator) -> tuple[list[float], float]:
-    """Returns largest relative errors (linear, angular, motor, no-load, tension), slack share."""
+    """Returns the largest relative errors of `QUANTITIES`, and the share of slack cables."""
     x = random_states(n, displaced(robot.geometry, robot.parameters.values()), rng)
     i = rng.normal(0, 2, (n, DRIVES))
     q = pack(robot.parameters, robot.geometry)
-    exact = [outputs(*row, q) for row in zip(x, i, strict=True)]
-    linear, angular, motor, no_load, tension = (
-        np.array([getattr(one, name) for one in exact])
-        for name in (
-            "acceleration",
-            "angular_acceleration",
-            "motor_acceleration",
-            "no_load_rate",
-            "tension",
-        )
-    )
+    rate = np.array([derivative(*row, q) for row in zip(x, i, strict=True)])
+    tension = np.array([cables(row, q)[0] for row in x])
+    body = rate[:, at.VELOCITY] + np.cross(x[:, at.RATES], x[:, at.VELOCITY])  # along body axes
+    turns = (rotation_matrix(euler) for euler in x[:, at.EULER])
+    linear = np.array([R_AB @ a for R_AB, a in zip(turns, body, strict=True)])
     qacc, act_dot, pulls = _twin_outputs(robot, x, i)
     of_linear, of_angular, of_motor = _magnitudes(robot, x, i, tension)
     errors = [
         (qacc[:, :3] - linear) / of_linear[:, None],
-        (qacc[:, 3:6] - angular) / of_angular,
-        (qacc[:, 6:] - motor) / of_motor,
-        (act_dot - no_load) / np.abs(no_load),
+        (qacc[:, 3:6] - rate[:, at.RATES]) / of_angular,
+        (qacc[:, 6:] - rate[:, at.SPEEDS]) / of_motor,
+        (act_dot - rate[:, at.NO_LOAD]) / np.abs(rate[:, at.NO_LOAD]),
         (pulls - tension) / np.maximum(tension, PRETENSION),
     ]
     return [float(np.abs(e).max()) for e in errors], float(np.mean(tension == 0))

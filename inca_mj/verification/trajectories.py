@@ -28,7 +28,7 @@ from scipy.optimize import nnls
 
 from identification.errors import DivergenceError, unknown_name
 from identification.model.parameter import ParameterSet
-from inca_mj.reference import ReferenceRun, rest, simulate_reference
+from inca_mj.reference import ReferenceRun, rest
 from inca_mj.reference import layout as at
 from inca_mj.robot.geometry import DRIVES, Geometry
 from inca_mj.robot.inputs import prbs, step
@@ -80,15 +80,6 @@ def make_case(name: str, parameters: ParameterSet, geometry: Geometry, duration:
     return Case(name, start, np.arange(n) * SAMPLING_TIME, currents)
 
 
-def run_reference(case: Case, parameters: ParameterSet, geometry: Geometry) -> ReferenceRun:
-    """Returns a run of the reference, by its adaptive method.
-
-    Raises:
-        DivergenceError: its pitch came to 90°, where Euler angles are singular.
-    """
-    return simulate_reference(parameters, geometry, case.time, case.currents, start=case.start)
-
-
 def compare_runs(
     case: Case,
     reference: Callable[[], ReferenceRun],
@@ -96,17 +87,10 @@ def compare_runs(
     geometry: Geometry,
     timestep: float,
 ) -> tuple[Row, str]:
-    """Returns the largest differences of the twin at one step from the reference.
+    """Returns the largest differences of the twin at a step [s] from the reference.
 
-    Args:
-        case: start and currents.
-        reference: gives the reference's run; asked for it only when the twin's is there.
-        parameters: values of both models.
-        geometry: anchors of the cables.
-        timestep: of the twin [s]; divides 10 ms.
-
-    Returns:
-        The row, its errors None when a model diverged, and then a sentence that says so.
+    The reference's run is asked for only when the twin's is there. The errors of the row are None
+    when a model diverged, and a sentence then says so.
     """
     row: Row = {"case": case.name, "step": timestep, **dict.fromkeys(ERRORS)}
     robot = build_twin(parameters, geometry, timestep=timestep)

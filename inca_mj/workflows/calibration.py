@@ -13,6 +13,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -172,7 +173,7 @@ def calibrate(
         robot=robots[1],
         unseen=(
             *(_gap(log, robots, [alike, end], k) for k, log in enumerate(logs, 1) if not confirm),
-            *(_confirmed(log, robots) for log in confirm),
+            *(_gap(log, robots) for log in confirm),
         ),
         seconds=time.perf_counter() - began,
     )
@@ -223,25 +224,21 @@ def _robot_of(plant: Twin, values: Mapping[str, float]) -> Twin:
     )
 
 
-def _gap(log: Log, robots: Sequence[Twin], fits: Sequence[Refit], number: int) -> RecordGap:
-    """Returns the gap on the second half of a record, of which the first half was fitted."""
-    starts = [values_of_record(fit.point.values, number) for fit in fits]
-    before, after = (
-        _rms(log, robot, {name: start[name] for name in POSE})
-        for robot, start in zip(robots, starts, strict=True)
-    )
-    return RecordGap(log.name, "fit", before, after)
+def _gap(
+    log: Log, robots: Sequence[Twin], fits: Sequence[Refit] = (), number: int = 0
+) -> RecordGap:
+    """Returns the gap on the second half of a record, of which the first half was fitted.
 
-
-def _confirmed(log: Log, robots: Sequence[Twin]) -> RecordGap:
-    """Returns the gap on the second half of a record; its first half only tells the start."""
+    The first half of a record without fits tells the start alone.
+    """
     from identification.kalman.estimate import estimate_innovations
 
-    before, after = (
-        _rms(log, robot, estimate_innovations(robot, log, POSE).fit.estimate.values)
-        for robot in robots
-    )
-    return RecordGap(log.name, "confirm", before, after)
+    values = [values_of_record(fit.point.values, number) for fit in fits] or [
+        estimate_innovations(robot, log, POSE).fit.estimate.values for robot in robots
+    ]
+    starts = ({name: each[name] for name in POSE} for each in values)
+    before, after = map(partial(_rms, log), robots, starts)
+    return RecordGap(log.name, "fit" if fits else "confirm", before, after)
 
 
 def _rms(log: Log, robot: Twin, start: Mapping[str, float]) -> float:

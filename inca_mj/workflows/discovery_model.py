@@ -10,7 +10,7 @@ input and for standard inputs, over the fitted duration.
 from __future__ import annotations
 
 from collections.abc import Mapping, Set
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -89,19 +89,18 @@ def rerun(robot: Twin, log: Log) -> Run:
     return simulate(robot, log.inputs, log.sampling_time, hold_kind=log.hold)
 
 
-@dataclass(frozen=True)
-class Contrast:
-    """An input, and the distance of two look-alikes under it."""
+def told(found: Discovery) -> Discovery:
+    """Returns the discovery, with advice on the input that would tell its look-alikes apart."""
+    named = tuple(
+        replace(n, advice=_advice(found, n)) if n.one_of and n.rivals else n for n in found.named
+    )
+    return replace(found, named=named)
 
-    name: str  # of the input, in words
-    distance: float  # d [std of the noise]
-    own: float  # the distance under the log's own input
 
-
-def tell_apart(found: Discovery, named: NamedEffect) -> Contrast | None:
-    """Returns the input that tells a named effect best from its first rival; None if none can."""
+def _advice(found: Discovery, named: NamedEffect) -> str:
+    """Returns what tells a named effect from its first rival; what it says already if nothing."""
     fit, rival = run_of(found).final, named.rivals[0].candidate
-    here = _distance(fit.point, fit.point.log, named.candidate, rival, fit.level.sigma)
+    own = _distance(fit.point, fit.point.log, named.candidate, rival, fit.level.sigma)
     tried = {}
     for name, currents in standard_inputs(len(fit.point.log)):
         log = replace(fit.point.log, inputs=currents, extras={})
@@ -110,33 +109,16 @@ def tell_apart(found: Discovery, named: NamedEffect) -> Contrast | None:
         except DivergenceError:  # a cable becomes slack under this input
             continue
     if not tried:
-        return None
+        return named.advice
     best = max(tried, key=tried.__getitem__)
-    return Contrast(best, tried[best], here)
-
-
-def told(found: Discovery) -> Discovery:
-    """Returns the discovery, with advice on the input that would tell its look-alikes apart."""
-    named = tuple(
-        replace(n, advice=sentence(contrast))
-        if n.one_of and n.rivals and (contrast := tell_apart(found, n)) is not None
-        else n
-        for n in found.named
-    )
-    return replace(found, named=named)
-
-
-def sentence(contrast: Contrast) -> str:
-    """Returns the advice: what to do next."""
-    if contrast.distance < max(TELLS, 1.5 * contrast.own):
+    if tried[best] < max(TELLS, 1.5 * own):
         return (
             "No input that was tried would tell them apart better"
-            f" ({contrast.distance:.1f} std against {contrast.own:.1f} here): measure tension or"
-            " pose too."
+            f" ({tried[best]:.1f} std against {own:.1f} here): measure tension or pose too."
         )
     return (
-        f"A record under {contrast.name} would tell them apart: they would lie"
-        f" {contrast.distance:.0f} std of the noise from each other, here {contrast.own:.1f}."
+        f"A record under {best} would tell them apart: they would lie"
+        f" {tried[best]:.0f} std of the noise from each other, here {own:.1f}."
     )
 
 

@@ -74,12 +74,8 @@ class Recipe:
             )  # fmt: skip
         fastest = min(s["highest tone [Hz]"], 0.45 / sampling_time)
         f = np.geomspace(s["lowest tone [Hz]"], fastest, TONES)
-        angle = (
-            2
-            * np.pi
-            * (f * np.arange(n)[:, None, None] * sampling_time + phases.reshape(DRIVES, TONES))
-        )
-        waves = (f ** s["tilt"] * np.sin(angle)).sum(axis=-1)
+        turns = f * np.arange(n)[:, None, None] * sampling_time + phases.reshape(DRIVES, TONES)
+        waves = (f ** s["tilt"] * np.sin(2 * np.pi * turns)).sum(axis=-1)
         return s["mean [A]"] + s["amplitude [A]"] * waves / np.abs(waves).max(axis=0)
 
 
@@ -95,10 +91,8 @@ def draw(
 
 def changed(recipe: Recipe, rng: np.random.Generator, size: float, share: float = 0.3) -> Recipe:
     """Returns a neighbour: a share of the numbers moves by about `size`; phases wrap around."""
-    moves = (
-        size * rng.standard_normal(len(recipe.numbers)) * (rng.random(len(recipe.numbers)) < share)
-    )
-    numbers = recipe.numbers + moves
+    n = len(recipe.numbers)
+    numbers = recipe.numbers + size * rng.standard_normal(n) * (rng.random(n) < share)
     count = _OWN[recipe.kind]
     numbers[:count] = numbers[:count].clip(0.0, 1.0)
     numbers[count:] %= 1.0

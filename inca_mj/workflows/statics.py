@@ -145,9 +145,11 @@ def analyse_statics(
     found = None
     if kind is not None:
         found = workspace(kind, robot, pose[3:], limits=limits, cells=cells, seed=seed)
-    along = _poses_along(log, robot) if log is not None else None
-    if along is None and found is not None and found.inside.any():
-        along = found.poses
+    along = found.poses if found is not None and found.inside.any() else None
+    if log is not None:
+        along = pose_of(log)
+        if along is None:
+            along = poses_with_stiff_cables(log.outputs, robot.R, robot.start, robot.geometry)
     return StaticAnalysis(
         robot=robot,
         pose=pose,
@@ -216,11 +218,3 @@ def _reachable(pose: np.ndarray, geometry: Geometry) -> np.ndarray:
                 f" outside the frame, whose exit points span {a:g} to {b:g} m"
             )
     return pose
-
-
-def _poses_along(log: Log, robot: Robot) -> np.ndarray:
-    """Returns poses of a log, shape (N, 6): measured, else from the angles, with stiff cables."""
-    measured = pose_of(log)
-    if measured is not None:
-        return measured
-    return poses_with_stiff_cables(log.outputs, robot.R, robot.start, robot.geometry)

@@ -13,8 +13,8 @@ from inca_mj.robot.spread import DRIVE, POINT, with_spread
 FORCE, FORCE_AT = (0.3, -0.2, 0.5), (0.01, 0.02, -0.03)
 
 
-def random_state(seed: int, *, stretch: float = 1e-3) -> np.ndarray:
-    """A state far from rest; about half of its cables are slack, unless `stretch` is shifted."""
+def random_state(seed: int) -> np.ndarray:
+    """A state far from rest; about half of its cables are slack."""
     rng = np.random.default_rng(seed)
     x = np.empty(at.STATES)
     x[at.POSITION] = rng.uniform([-1, -1, 0.4], [1, 1, 2.6])
@@ -25,7 +25,7 @@ def random_state(seed: int, *, stretch: float = 1e-3) -> np.ndarray:
     x[at.SPEEDS] = rng.normal(0, 20, 8)
     R_AB = plain_rotation(x[at.EULER])
     d = np.linalg.norm(x[at.POSITION] + INCA.B @ R_AB.T - INCA.A, axis=1)
-    x[at.NO_LOAD] = d / (1 + rng.uniform(-stretch, stretch, 8))
+    x[at.NO_LOAD] = d / (1 + rng.uniform(-1e-3, 1e-3, 8))
     return x
 
 
@@ -43,10 +43,6 @@ def taut(seed: int) -> np.ndarray:
     x[at.RATES] = rng.normal(0, 0.2, 3)
     x[at.SPEEDS] = rng.normal(0, 0.5, 8)
     return x
-
-
-def without_losses() -> ParameterSet:
-    return parameter_set("trial", {"b": 0.0, "b_v": 0.0, "b_c": 0.0})
 
 
 def differing(seed: int, drives: float = 0.2, points: float = 0.01) -> ParameterSet:

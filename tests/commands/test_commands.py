@@ -95,9 +95,11 @@ def test_crosscheck_disagrees_aloud(monkeypatch, capsys):
     """A reference of another robot must fail the check, with exit code 1."""
     from inca_mj.verification import check
 
-    right = check.run_reference
+    right = check.simulate_reference
     monkeypatch.setattr(
-        check, "run_reference", lambda c, p, g: right(c, p.with_values({"b_c": 0.0051}), g)
+        check,
+        "simulate_reference",
+        lambda p, *rest, start: right(p.with_values({"b_c": 0.0051}), *rest, start=start),
     )
     assert run("crosscheck", "--duration", 0.3, "--states", 10, "--json") == 1
     assert last_json(capsys)["passed"] is False

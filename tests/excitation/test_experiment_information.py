@@ -37,16 +37,6 @@ def test_a_nuisance_costs_what_the_inverse_says():
     assert found.std == pytest.approx(information(pushed(), NAMES).std[:1], rel=1e-6)
 
 
-def test_more_data_never_lowers_E():
-    short = information(pushed(rough(7)[:60]), NAMES)
-    assert information(pushed(rough(7)), NAMES).e_value >= short.e_value * (1 - 1e-9)
-
-
-def test_twice_the_noise_is_twice_the_std():
-    quiet, loud = (information(pushed(sigma=s), NAMES) for s in (SIGMA, 2 * SIGMA))
-    assert loud.std == pytest.approx(2 * quiet.std, rel=1e-9)
-
-
 def test_the_scatter_of_fits_is_the_bound():
     trial = pushed(rough(3))
     found = information(trial, NAMES)

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from hypothesis import given, settings
+from hypothesis import strategies as st
 from kinematics_cases import FLAT, INSIDE
 
 from identification.errors import InputError
@@ -12,21 +13,13 @@ from inca_mj.robot.geometry import INCA
 START = np.array([0, 0, 1.43, 0, 0, 0])
 
 
-@settings(max_examples=25, deadline=None)
-@given(INSIDE)
-def test_lengths_give_their_pose_back(pose):
-    found = pose_from_lengths(inverse(pose, INCA).lengths, INCA, START)
+@settings(max_examples=40, deadline=None)
+@given(INSIDE, st.sampled_from([None, Pulleys(0.03)]))
+def test_lengths_give_their_pose_back(pose, pulleys):
+    found = pose_from_lengths(inverse(pose, INCA, pulleys).lengths, INCA, START, pulleys=pulleys)
     np.testing.assert_allclose(found.pose, pose, atol=1e-8)
     np.testing.assert_allclose(found.residual, 0, atol=1e-10)
     assert found.rank == 6
-
-
-@settings(max_examples=20, deadline=None)
-@given(INSIDE)
-def test_lengths_over_pulleys_give_their_pose_back(pose):
-    pulleys = Pulleys(0.03)
-    found = pose_from_lengths(inverse(pose, INCA, pulleys).lengths, INCA, START, pulleys=pulleys)
-    np.testing.assert_allclose(found.pose, pose, atol=1e-8)
 
 
 def test_the_covariance_is_the_scatter_of_poses_from_noisy_lengths():
@@ -52,12 +45,11 @@ def test_where_a_motion_changes_no_length_its_std_is_infinite():
 
 
 @pytest.mark.parametrize(
-    ("lengths", "options", "words"),
-    [(np.full(8, 0.5), {}, "misses cable"), (np.full(8, -2.0), {}, "8 numbers above zero")],
+    ("length", "words"), [(0.5, "misses cable"), (-2.0, "8 numbers above zero")]
 )
-def test_lengths_of_no_pose_are_refused(lengths, options, words):
+def test_lengths_of_no_pose_are_refused(length, words):
     with pytest.raises(InputError, match=words):
-        pose_from_lengths(lengths, INCA, **{"start": START, **options})
+        pose_from_lengths(np.full(8, length), INCA, START)
 
 
 def test_a_length_that_does_not_fit_the_others_is_refused_unless_it_is_in_reach():

@@ -63,8 +63,11 @@ def assert_equal(model, robot):
 @pytest.mark.parametrize("pose", POSES.values(), ids=POSES)
 def test_at_a_pose_it_is_the_derivative_of_the_thesis_equations(pose):
     model = linearize(twin(), pose)
-    assert model.system.states == STATES
+    s = model.system
+    assert s.states == STATES
     assert_equal(model, twin())
+    at_rest = derivative(s.x, s.u, pack(twin().parameters, twin().geometry))
+    np.testing.assert_allclose(at_rest, 0, atol=1e-6)
 
 
 def test_so_it_is_for_a_robot_whose_drives_and_points_differ():
@@ -82,13 +85,6 @@ def test_along_a_log_it_is_too_where_the_robot_moves_and_turns():
     assert all(np.abs(m.system.x[at.RATES]).max() > 1e-2 for m in models)
     for model in models:
         assert_equal(model, twin())
-
-
-@pytest.mark.parametrize("pose", POSES.values(), ids=POSES)
-def test_a_held_robot_rests_in_the_thesis_equations(pose):
-    s = linearize(twin(), pose).system
-    q = pack(twin().parameters, twin().geometry)
-    np.testing.assert_allclose(derivative(s.x, s.u, q), 0, atol=1e-6)
 
 
 def test_the_friction_has_the_slope_that_is_told():
@@ -113,13 +109,6 @@ def test_eight_states_are_not_reached_and_the_rest_has_the_same_transfer_functio
     error = np.linalg.norm(G - small.system.response(F), axis=(1, 2))
     assert (error < 1e-6 * np.linalg.norm(G, axis=(1, 2))).all()
     assert sum(m.eigenvalue == 0 for m in modes(s)) == 8
-
-
-def test_the_modes_are_those_of_the_mirrored_pose():
-    ours, theirs = (modes(linearize(twin(), [x, 0.1, 1.3, 0, 0, 0]).system) for x in (0.25, -0.25))
-    np.testing.assert_allclose(
-        [m.frequency for m in ours], [m.frequency for m in theirs], rtol=1e-6, atol=1e-6
-    )
 
 
 def test_tensions_are_other_coordinates_of_the_same_system():

@@ -12,16 +12,9 @@ from inca_mj.robot.geometry import INCA
 from inca_mj.robot.parameters import SETS, parameter_set
 from inca_mj.robot.spread import deviations, displacements, with_spread
 from inca_mj.twin.twin import build_twin
-from inca_mj.verification import (
-    CASES,
-    CrossCheck,
-    DerivativeErrors,
-    compare_derivatives,
-    crosscheck,
-)
-from inca_mj.verification.check import STEPS
-from inca_mj.verification.derivatives import _compare
-from inca_mj.verification.trajectories import crossing, leading_slope, slope
+from inca_mj.verification.check import STEPS, CrossCheck, crosscheck
+from inca_mj.verification.derivatives import DerivativeErrors, _compare, compare_derivatives
+from inca_mj.verification.trajectories import CASES, crossing, leading_slope, slope
 
 
 def derivative_errors(**some):

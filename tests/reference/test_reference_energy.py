@@ -1,4 +1,4 @@
-"""Energy: at every state, and over a trajectory, what goes in is what is stored and lost.
+"""Energy: at every state what goes in is what is stored and lost, and so over every trajectory.
 
 One cable, taut. Stretched from d₀ to d it stores E_c = ½ λ ε² d₀, with ε = (d − d₀)/d₀, so
 
@@ -29,13 +29,11 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 from hypothesis import given, settings
-from reference_cases import FORCE, FORCE_AT, currents, sets, states, taut, without_losses
-from scipy.integrate import solve_ivp
+from reference_cases import FORCE, FORCE_AT, currents, sets, states
 
-from inca_mj.reference import derivative, pack, rest
+from inca_mj.reference import derivative, pack, rest, rotation_matrix
 from inca_mj.reference import layout as at
 from inca_mj.reference.equations import cables
-from inca_mj.reference.kinematics import rotation
 from inca_mj.robot.geometry import INCA
 from inca_mj.robot.parameters import parameter_set
 
@@ -61,19 +59,14 @@ class Power(NamedTuple):
 
 
 def energy(x, q):
-    """Returns the energy stored at a state.
-
-    Args:
-        x: state, shape (36,).
-        q: packed numbers, from `pack`.
-    """
+    """The energy stored at a state."""
     own = q[at.ROWS].reshape(at.DRIVES, at.ROW).T
     R, R_s, k_s, λ, J = own[[at.R, at.R_S, at.K_S, at.LAMBDA, at.J]]
     m, I_P = q[at.M], q[at.INERTIA]
     v, ω, ω_m, d_0 = x[at.VELOCITY], x[at.RATES], x[at.SPEEDS], x[at.NO_LOAD]
     d = cables(x, q)[1]
     ε = np.maximum(0.0, (d - d_0) / d_0)
-    b_G = rotation(x[at.EULER]) @ q[at.FORCE_AT]
+    b_G = rotation_matrix(x[at.EULER]) @ q[at.FORCE_AT]
 
     # E_spring = −∫ F_s ds over s = R_s φ_m, with F_s = F_0 − k_s s until it reaches zero.
     F_0, s = R / R_s * q[at.PRETENSION], R_s * x[at.ANGLES]
@@ -88,13 +81,7 @@ def energy(x, q):
 
 
 def power(x, i, q):
-    """Returns the power into the robot at a state.
-
-    Args:
-        x: state, shape (36,).
-        i: currents, shape (8,) [A].
-        q: packed numbers, from `pack`.
-    """
+    """The power into the robot at a state."""
     own = q[at.ROWS].reshape(at.DRIVES, at.ROW).T
     λ, b_v, b_c, β, K_t = own[[at.LAMBDA, at.B_V, at.B_C, at.BETA, at.K_T]]
     ω_m, d_0 = x[at.SPEEDS], x[at.NO_LOAD]
@@ -113,59 +100,13 @@ def power(x, i, q):
 @settings(deadline=None)
 @given(states, currents, sets)
 def test_energy_changes_at_the_power_at_any_state(x, i, name):
-    check_power(parameter_set(name), x, i)
-
-
-def check_power(p, x, i):
-    q = pack(p, INCA, force=FORCE, force_at=FORCE_AT)
+    q = pack(parameter_set(name), INCA, force=FORCE, force_at=FORCE_AT)
     rate = derivative(x, i, q)
     # Rounding of E limits short steps and curvature long ones; E is smooth through slackness.
     h = 1e-5 / np.abs(rate[at.SPEEDS]).max()
     change = sum(energy(x + h * rate, q)) - sum(energy(x - h * rate, q))
     flow = np.abs(power(x, i, q)).sum()
     assert change / (2 * h) == pytest.approx(sum(power(x, i, q)), abs=1e-5 * flow)
-
-
-def balance(p, x, i, seconds):
-    """Stored energy and the integral of the powers over an adaptive trajectory."""
-    q = pack(p, INCA, force=FORCE, force_at=FORCE_AT)
-
-    def augmented(_, y):
-        terms = power(y[:36], i, q)
-        return np.concatenate([derivative(y[:36], i, q), terms, [np.abs(terms).sum()]])
-
-    y = np.concatenate([x, np.zeros(6)])
-    end = solve_ivp(augmented, (0, seconds), y, method="DOP853", rtol=1e-12, atol=1e-13)
-    stored = sum(energy(end.y[:36, -1], q)) - sum(energy(x, q))
-    tension = np.array([cables(state, q)[0] for state in end.y[:36].T])
-    return stored, end.y[36:41, -1], end.y[41, -1], tension
-
-
-CURRENT = np.array([1.0, 0.5, 1.0, 0.5, 0.5, 1.0, 1.0, 0.5])
-
-
-@pytest.mark.parametrize("losses", [False, True])
-def test_the_balance_closes_over_a_taut_trajectory(losses):
-    p = parameter_set() if losses else without_losses()
-    stored, terms, exchanged, tension = balance(p, taut(4), CURRENT, 0.2)
-    assert tension.min() > 0
-    motor, viscous, coulomb, damper, wound = terms
-    assert stored == pytest.approx(terms.sum(), abs=1e-9 * exchanged)
-    assert motor > 0
-    # The wound term is small and yet seen: without it the balance is off by far more.
-    assert abs(wound) > 1e-6 * exchanged
-    if losses:
-        assert max(viscous, coulomb, damper) < 0
-    else:
-        assert [viscous, coulomb, damper] == [0, 0, 0]
-
-
-def test_the_balance_closes_while_cables_turn_slack_and_taut():
-    x = rest(parameter_set(), INCA).state.copy()
-    x[at.VELOCITY] = 0.5, 0.3, 0.4
-    stored, terms, exchanged, tension = balance(parameter_set(), x, CURRENT, 0.1)
-    assert (tension == 0).any(axis=0).sum() >= 2
-    assert stored == pytest.approx(terms.sum(), abs=1e-9 * exchanged)
 
 
 def test_a_spring_without_stiffness_pulls_with_a_constant_force():

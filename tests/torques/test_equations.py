@@ -29,17 +29,17 @@ PRIOR, MEAN = np.array([0.1, 5.0, 0.0]), np.array([1.0, 0.0, 3.0])
 NONE = np.zeros(12, bool)
 
 
-def ridge(X, y, keep):
-    rows = (W[:, None, None, None] ** 0.5 * X)[:, keep].reshape(-1, P)
-    right = (W[:, None, None] ** 0.5 * y)[:, keep].ravel()
+def ridge(X, y, keep, w=W):
+    rows = (w[:, None, None, None] ** 0.5 * X)[:, keep].reshape(-1, P)
+    right = (w[:, None, None] ** 0.5 * y)[:, keep].ravel()
     rows = np.vstack([rows, np.diag(np.sqrt(PRIOR))])
     return np.linalg.lstsq(rows, np.append(right, np.sqrt(PRIOR) * MEAN), rcond=None)[0]
 
 
 def test_a_fit_is_least_squares_of_equations_and_priors(some):
     X, y, M = some
-    found = estimate(M, np.full((NV, 12), 30.0), PRIOR, MEAN, weights=W)
-    np.testing.assert_allclose(found.θ, ridge(X, y, ~NONE), rtol=1e-9)
+    found = estimate(M, np.full((NV, 12), 30.0), PRIOR, MEAN)
+    np.testing.assert_allclose(found.θ, ridge(X, y, ~NONE, found.weights), rtol=1e-9)
 
 
 @pytest.mark.parametrize("confirm", [0, 4])
@@ -141,11 +141,6 @@ def test_what_the_fit_has_is_no_candidate(robot, equations, candidates):
     names = {s.missing.name for s in rank(equations, base, candidates)}
     assert {"coulomb_friction", "offset"} <= {c.name for c in candidates}
     assert not {"coulomb_friction", "offset"} & names
-    whole = base_fit(
-        robot.plant.model,
-        equations,
-        find_base(robot.plant.model),
-        _force(equations),
-        others(equations),
-    ).base
+    model = robot.plant.model
+    whole = base_fit(model, equations, find_base(model), _force(equations), others(equations)).base
     assert "payload" not in {s.missing.name for s in rank(equations, whole, candidates)}

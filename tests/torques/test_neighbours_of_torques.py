@@ -14,7 +14,7 @@ from identification.torques.laws import Missing
 from identification.torques.neighbours import curves_beside
 from identification.torques.rows import make_rows
 from identification.torques.scores import rank
-from identification.torques.shapes import Explained, refined
+from identification.torques.shapes import explained_by, refined
 
 ELBOW, DRAWS = 1, 12
 SPEED, POWER = 0.17, 1.4  # of the peak of friction, between values of the grids
@@ -53,8 +53,7 @@ def bench(tmp_path_factory):
         y = first.predicted() + left * rng.standard_normal(still.shape)
         y = y + size * missing.columns().values[:, :, 0]
         y = y + equations.stacked("y") - first.base.y
-        ends = np.cumsum([len(r.time) for r in equations.rows])[:-1]
-        parts = zip(equations.rows, np.split(y, ends), strict=True)
+        parts = zip(equations.rows, equations.divided(y), strict=True)
         there = replace(equations, rows=tuple(replace(r, y=part) for r, part in parts))
         return there, fitted(there)
 
@@ -90,7 +89,7 @@ def test_the_shapes_of_a_law_are_fitted_between_the_values_of_the_grids(bench):
     there, fit = drawn(np.random.default_rng(1), truth, 10 * left)
     grid = [c for c in every if c.key == truth.key]
     (best,) = rank(there, fit.base, grid)
-    explained = Explained(there, fit.base)
+    explained = explained_by(there, fit.base)
     found = refined(explained, best.missing)
     (_, v_s, _), (_, n, _) = found.shape
     assert v_s == pytest.approx(SPEED, rel=0.1)

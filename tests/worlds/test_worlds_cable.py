@@ -1,4 +1,7 @@
-"""Laws of the cables, the geometry and the platform."""
+"""Laws of the cables, the geometry and the platform, beside those that the twin has too.
+
+`test_worlds_base.py` compares what both have; `tests/kinematics/test_pulleys.py` has the pulleys.
+"""
 
 import numpy as np
 import pytest
@@ -9,36 +12,7 @@ from worlds_cases import FINE, plant, prbs, rate, simulate
 from inca_mj.reference import layout as base
 from inca_mj.studies.worlds import effect as hidden
 from inca_mj.studies.worlds import layout as at
-from inca_mj.studies.worlds.equations import drag, elastic, path, sagging, shake
-
-points = st.tuples(
-    st.floats(0.3, 2.0), st.floats(-2.0, 2.0), st.floats(-2.0, 2.0)
-)  # from A to a connector [m]
-
-
-@given(ds=points, r=st.floats(1e-3, 0.1), side=st.sampled_from([-1.0, 1.0]))
-def test_the_gradient_of_the_path_is_the_unit_tangent(ds, r, side):
-    d, t = path(ds, r, side)
-    assert np.linalg.norm(t) == pytest.approx(1, abs=1e-12)
-    assert d >= np.linalg.norm(ds) - 1e-12  # no path is shorter than the straight one
-    for k in range(3):
-        up, down = (tuple(np.array(ds) + h * np.eye(3)[k]) for h in (1e-6, -1e-6))
-        slope = (path(up, r, side)[0] - path(down, r, side)[0]) / 2e-6
-        assert slope == pytest.approx(t[k], abs=1e-8)
-
-
-@given(ds=points, side=st.sampled_from([-1.0, 1.0]))
-def test_a_small_pulley_is_none(ds, side):
-    d, t = path(ds, 1e-9, side)
-    d_0, t_0 = path(ds, 0.0, side)
-    assert d == pytest.approx(d_0, abs=1e-8)
-    assert t == pytest.approx(t_0, abs=1e-7)
-
-
-def test_a_quarter_turn_over_a_pulley():
-    d, t = path((1.0, 0.0, 0.1), 0.1, 1.0)  # level with the top: the tangent is horizontal
-    assert d == pytest.approx(0.1 * np.pi / 2 + 0.9)
-    assert t == pytest.approx((1.0, 0.0, 0.0), abs=1e-12)
+from inca_mj.studies.worlds.equations import sagging, shake
 
 
 @pytest.mark.parametrize(
@@ -85,10 +59,10 @@ def test_the_maxwell_branch_relaxes():
     p = plant(hidden("cable_creep", fraction=0.5, tau=0.2))
     X = simulate(p, u)
     A, B = (p.q[part].reshape(8, 3) for part in (base.EXITS, base.CONNECTORS))
-    from inca_mj.reference import kinematics
+    from inca_mj.reference import rotation_matrix
 
     d = np.array(
-        [np.linalg.norm(x[:3] + B @ kinematics.rotation(x[base.EULER]).T - A, axis=1) for x in X]
+        [np.linalg.norm(x[:3] + B @ rotation_matrix(x[base.EULER]).T - A, axis=1) for x in X]
     )
     ε = d / X[:, base.NO_LOAD] - 1
     branch = abs(ε - X[:, at.VISCOUS])
@@ -99,30 +73,11 @@ def test_the_maxwell_branch_relaxes():
     assert abs(lag[100:-1]).max() < 0.02 * branch.max()
 
 
-def test_elastic_laws_by_their_letters():
-    ε, λ = 3e-4, 25000.0
-    for effect, expected in (
-        (hidden("cable_hardening", kappa=500.0), λ * ε * (1 + 500 * ε)),
-        (hidden("cable_hardening", kappa=1e6, exponent=2.0), λ * ε * (1 + 1e6 * ε**2)),
-        (hidden("cable_creep", fraction=0.2), λ * ε + 0.2 * λ * (ε - 1e-4)),
-    ):
-        assert elastic(ε, 1e-4, λ, plant(effect).D[0]) == pytest.approx(expected, rel=1e-12)
-
-
 @given(T=st.floats(-20.0, 50.0), K=st.floats(1e-9, 10.0))
 def test_sag_solves_its_equation_and_holds_a_slack_cable(T, K):
     root = sagging(T, K)
     assert root > max(0.0, T)
     assert root - T - K / root**2 == pytest.approx(0, abs=1e-9 * max(1.0, abs(T), K / root**2))
-
-
-def test_the_air_takes_energy():
-    for n in (2.0, 1.5):
-        p = plant(hidden("air_drag", c=0.2, exponent=n))
-        v = np.array([1.0, -2.0, 2.0])
-        F = np.array(drag(tuple(v), p.P))
-        assert pytest.approx(-0.2 * 3.0 ** (n - 1) * v) == F
-        assert drag((0.0, 0.0, 0.0), p.P) == (0.0, 0.0, 0.0)
 
 
 def test_the_frame_shakes_one_exit_point_at_one_frequency():

@@ -15,17 +15,6 @@ from inca_mj.studies.worlds.sensor import coloured, encode, noise_rms
 SHORT = HiddenSetting(duration=1.0)
 
 
-def test_seeds_reproduce_and_an_effect_leaves_robot_input_and_noise_alone():
-    one, same, other = (world(s, setting=SHORT) for s in (3, 3, 4))
-    assert np.array_equal(one.log.outputs, same.log.outputs)
-    assert not np.array_equal(one.log.outputs, other.log.outputs)
-    assert not np.array_equal(one.log.inputs, other.log.inputs)
-    more = world(3, [hidden("stribeck_friction")], setting=SHORT)
-    assert more.truth.parameters == one.truth.parameters
-    assert np.array_equal(more.log.inputs, one.log.inputs)
-    assert not np.array_equal(more.log.outputs, one.log.outputs)
-
-
 def test_the_log_holds_nothing_of_the_truth():
     log, truth = world(5, [hidden("anchor_offset", drive=4)], setting=SHORT)
     assert log.inputs.shape == log.outputs.shape == (100, 8)

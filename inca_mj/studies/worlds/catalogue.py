@@ -45,16 +45,10 @@ SHAPES: dict[str, dict[str, float | bool]] = {
 def effect(
     name: str, *, drive: int | None = None, other_shape: bool = False, **values: Any
 ) -> HiddenEffect:
-    """Returns an effect, of its default size where `values` give no other.
+    """Returns an effect of `ALL_EFFECTS`, of its default size where `values` give no other.
 
-    Args:
-        name: canonical name, of `ALL_EFFECTS`.
-        drive: 1 to 8, for an effect that has one; all drives (or drive 1) when not given.
-        other_shape: take the law of `SHAPES` instead of the usual one.
-        values: of its sizes and shapes.
-
-    Raises:
-        InputError: the name is unknown, or has no other shape.
+    It is on all drives, or on drive 1, where no drive is given; `other_shape` takes the law of
+    `SHAPES`. Raises InputError if the name is unknown, or has no other shape.
     """
     if name not in ALL_EFFECTS:
         raise unknown_name("effect", name, ALL_EFFECTS)

@@ -151,20 +151,12 @@ class HiddenOneDriveEffect(HiddenDriveEffect):
             raise InputError(f"{self.name}: name its drive, 1 to {DRIVES}")
 
 
-def kind(
-    name: str, of: type[HiddenEffect], largest: float, **parts: Any
-) -> type[HiddenEffect]:  # fmt: skip
+def kind(name: str, of: type[HiddenEffect], largest: float, **parts: Any) -> type[HiddenEffect]:
     """Returns an effect that needs no code: its sizes and shapes are written to their columns.
 
-    Args:
-        name: canonical name.
-        of: `HiddenDriveEffect`, another class here, or one with a law of its own.
-        largest: as of `HiddenEffect`.
-        parts: fields by `size` and `shape`; anything else is an attribute of the class.
+    `parts` are fields by `size` and `shape`; anything else is an attribute of the class.
     """
     made = [(n, type(f.default), f) for n, f in parts.items() if isinstance(f, Field)]
     other = {n: part for n, part in parts.items() if not isinstance(part, Field)}
     namespace = {"name": name, "largest": largest, "__module__": of.__module__, **other}
-    return make_dataclass(
-        name, made, bases=(of,), namespace=namespace, frozen=True, kw_only=True
-    )  # fmt: skip
+    return make_dataclass(name, made, bases=(of,), namespace=namespace, frozen=True, kw_only=True)

@@ -49,10 +49,8 @@ def path(ds: Vector, r: float, side: float) -> tuple[float, Vector]:
         α = atan2(z, ρ − r) + atan2(l, r)                        w = r n(α) + l t(α)
         d = r (π − α) + l,  ∂d/∂B = t = (sin α, −cos α)          arc and tangent
 
-    Args:
-        ds: from A to the connector, in O [m].
-        r: radius of the pulley [m]; 0 is a straight cable.
-        side: +1 for a cable over the top of its pulley, −1 for one under it.
+    `ds` leads from A to the connector, in O [m]. r = 0 is a straight cable. `side` is +1 for a
+    cable over the top of its pulley, −1 for one under it.
     """
     if r == 0.0:
         d = sqrt(ds[0] * ds[0] + ds[1] * ds[1] + ds[2] * ds[2])
@@ -201,16 +199,9 @@ def drag(v: Vector, P: np.ndarray) -> Vector:
 @compiled
 def world_rate(t: float, x: np.ndarray, i: np.ndarray, q: np.ndarray, D: np.ndarray,
                P: np.ndarray, rate: np.ndarray) -> None:  # fmt: skip
-    """Fill ẋ of the 60 states.
+    """Fill ẋ of the 60 states x at t [s], under currents i (8,) [A] that flow.
 
-    Args:
-        t: since the first sample [s].
-        x: state, shape (60,), in the order of `layout`.
-        i: currents that flow, shape (8,) [A].
-        q: packed numbers of the reference, shape (147,).
-        D: numbers of the drives, shape (8, 49).
-        P: numbers of the platform, shape (3,).
-        rate: where ẋ is written, shape (60,).
+    q (147,), D (8, 49) and P (3,) are the numbers of a `HiddenPlant`.
     """
     m, g, I_P = q[base.M], q[base.G_EARTH], vector(q[base.INERTIA])
     G, b_G = vector(q[base.FORCE]), vector(q[base.FORCE_AT])

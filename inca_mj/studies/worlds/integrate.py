@@ -106,14 +106,7 @@ def trajectory(x_0: np.ndarray, currents: np.ndarray, T_s: float, q: np.ndarray,
                P: np.ndarray, step: float) -> np.ndarray:  # fmt: skip
     """Returns states at the samples, shape (n, 60); NaN from the sample on where it diverges.
 
-    Args:
-        x_0: first state, shape (60,).
-        currents: commanded, row k from t_k to t_k+1, shape (n, 8) [A].
-        T_s: sampling time [s].
-        q: packed numbers of the reference.
-        D: numbers of the drives.
-        P: numbers of the platform.
-        step: largest step [s].
+    Row k of the currents (n, 8) [A] is commanded from t_k to t_k+1; `step` is the largest one [s].
     """
     n = len(currents)
     X = np.full((n, at.STATES), np.nan)

@@ -16,8 +16,8 @@ import numpy as np
 
 from identification.errors import DivergenceError, InputError
 from identification.model.parameter import ParameterSet
-from inca_mj.reference import kinematics, pack
 from inca_mj.reference import layout as base
+from inca_mj.reference import pack, rotation_matrix
 from inca_mj.robot.geometry import DRIVES, Geometry
 from inca_mj.robot.parameters import GRAVITY, PRETENSION
 from inca_mj.robot.spread import at_drives, displaced
@@ -44,16 +44,9 @@ class HiddenPlant:
 def make_plant(
     parameters: ParameterSet, geometry: Geometry, effects: Sequence[HiddenEffect] = ()
 ) -> HiddenPlant:
-    """Returns a robot at rest at the start pose of its parameters.
+    """Returns a robot with effects at rest at the start pose of its true parameters.
 
-    Args:
-        parameters: true values; deviations of its drives and displacements of its points count
-            where they are among them.
-        geometry: nominal exit points and connectors.
-        effects: what else it has.
-
-    Raises:
-        InputError: no tensions that pull hold the platform there.
+    Raises InputError if no tensions that pull hold the platform there.
     """
     value = parameters.values()
     placed, λ = displaced(geometry, value), at_drives("lambda", value)
@@ -64,7 +57,7 @@ def make_plant(
     q[base.EXITS], q[base.CONNECTORS] = n.A.ravel(), n.B.ravel()
     q[base.FORCE], q[base.FORCE_AT] = n.force, -n.centre
     euler = np.array([value[name] for name in ("roll", "pitch", "yaw")])
-    R_AB = kinematics.rotation(euler)
+    R_AB = rotation_matrix(euler)
     p = np.array([value[name] for name in ("x", "y", "z")]) + R_AB @ n.centre
 
     arms = n.B @ R_AB.T
@@ -78,7 +71,8 @@ def make_plant(
     ε = np.array([_strain(*each) for each in zip(T, λ, n.D, strict=True)])
     x = np.zeros(at.STATES)
     x[base.POSITION], x[base.EULER] = p, euler
-    x[base.NO_LOAD] = (d + _sag(n.D, d, ds, T)) / (1 + ε)
+    w = n.D[:, at.SAG] * n.D[:, at.LINE_WEIGHT] * GRAVITY * np.hypot(ds[:, 0], ds[:, 1])
+    x[base.NO_LOAD] = (d + d * w**2 / (24 * T**2)) / (1 + ε)
     x[at.VISCOUS] = d / x[base.NO_LOAD] - 1
     return HiddenPlant(q, n.D, n.P, x)
 
@@ -86,14 +80,10 @@ def make_plant(
 def simulate_world(
     plant: HiddenPlant, currents: np.ndarray, sampling_time: float = 0.01, step: float | None = None
 ) -> np.ndarray:
-    """Returns states of a plant at the samples, shape (n, 60).
+    """Returns states at the samples (n, 60), under commanded currents (n, 8) [A] that are held.
 
-    Args:
-        plant: from `make_plant`.
-        currents: commanded, held from sample to sample, shape (n, 8) [A].
-        sampling_time: between samples [s].
-        step: largest step of the integrator [s]; when not given, one that leaves 1e-8 rad of error
-            in 20 s, or 5e-5 rad where a drum plays.
+    The largest step of the integrator [s], where none is given, leaves 1e-8 rad of error in 20 s,
+    or 5e-5 rad where a drum plays.
 
     Raises:
         InputError: the currents have another shape.
@@ -148,8 +138,3 @@ def _strain(T: float, λ: float, D: np.ndarray) -> float:
     if not (ε > 0 and abs(λ * ε * (1 + κ * ε**n) - T) < 1e-9 * T):
         raise InputError(f"cable_hardening: kappa = {κ:g} leaves no strain that carries {T:.3g} N")
     return ε
-
-
-def _sag(D: np.ndarray, d: np.ndarray, ds: np.ndarray, T: np.ndarray) -> np.ndarray:
-    w = D[:, at.SAG] * D[:, at.LINE_WEIGHT] * GRAVITY * np.hypot(ds[:, 0], ds[:, 1])
-    return d * w**2 / (24 * T**2)

@@ -56,15 +56,10 @@ class HiddenAbsorbed:
         tolerances: Tolerances = EXACT,
         noise: float = 1.0,
     ) -> None:
-        """Take the sensitivities.
+        """Take the sensitivities at true parameters, under currents (n, 8) [A].
 
-        Args:
-            parameters: true values.
-            currents: the input, shape (n, 8) [A].
-            sampling_time: [s].
-            names: the base parameters; the start pose is always among them.
-            tolerances: how much drives, points and platform may differ.
-            noise: σ, rms of the measurement noise [rad]; it counts where parts may differ.
+        `names` are the base parameters, beside the start pose. The noise σ [rad] counts where parts
+        may differ by the tolerances.
         """
         self._robot = (parameters, currents, sampling_time)
         self._without = self._angles(parameters, ())
@@ -140,7 +135,13 @@ def _solved(effect: HiddenEffect, absorbed: HiddenAbsorbed, goal: float) -> Hidd
             return effect.scaled(s)
         if r < goal:
             if s == most:
-                raise UnreachedError(_too_small(effect.scaled(s), r, goal))
+                largest = effect.scaled(s)
+                sizes = ", ".join(f"{n} = {getattr(largest, n):.3g}" for n in largest.sizes)
+                raise UnreachedError(
+                    f"{effect.name}: of the largest size that a robot may have ({sizes}) {r:.3g}"
+                    f" rad cannot be absorbed, and {goal:.3g} rad are asked for; ask for another"
+                    " ratio, or another effect"
+                )
             below = (s, r)
         else:
             above = (s, r)
@@ -148,15 +149,6 @@ def _solved(effect: HiddenEffect, absorbed: HiddenAbsorbed, goal: float) -> Hidd
     raise UnreachedError(
         f"{effect.name}: no size was found that the base parameters leave {goal:.3g} rad of (the"
         f" last left {r:.3g} rad); start from another size, or ask for another ratio"
-    )
-
-
-def _too_small(effect: HiddenEffect, r: float, goal: float) -> str:
-    """Returns why an effect of the largest size is not enough."""
-    sizes = ", ".join(f"{name} = {getattr(effect, name):.3g}" for name in effect.sizes)
-    return (
-        f"{effect.name}: of the largest size that a robot may have ({sizes}) {r:.3g} rad cannot be"
-        f" absorbed, and {goal:.3g} rad are asked for; ask for another ratio, or another effect"
     )
 
 

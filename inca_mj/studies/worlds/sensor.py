@@ -33,13 +33,9 @@ from inca_mj.studies.worlds.plant import HiddenPlant, simulate_world
 
 
 def encode(angles: np.ndarray, counts: int, noise: float, rng: np.random.Generator) -> np.ndarray:
-    """Returns angles as encoders give them [rad], same shape.
+    """Returns true angles [rad] as encoders of some counts a turn give them; 0 has no steps.
 
-    Args:
-        angles: true angles [rad].
-        counts: of an encoder a turn; 0 for one without steps.
-        noise: rms of the white noise before the rounding [rad].
-        rng: of the noise.
+    The noise is white before the rounding; it is given by its rms [rad].
     """
     y = angles + noise * rng.normal(size=angles.shape)
     if counts == 0:
@@ -57,14 +53,9 @@ def noise_rms(counts: int, noise: float) -> float:
 def coloured(
     shape: tuple[int, int], sampling_time: float, rms: float, time: float, rng: np.random.Generator
 ) -> np.ndarray:
-    """Returns an error of the currents, low-passed white noise, independent by column [A].
+    """Returns an error of the currents [A] of a shape (n, 8), independent by column.
 
-    Args:
-        shape: samples and drives (n, 8).
-        sampling_time: T_s [s].
-        rms: e_rms [A].
-        time: τ [s]; 0 for white noise.
-        rng: of the noise.
+    It is white noise of some rms [A] behind a low-pass of the time constant τ [s], 0 for none.
     """
     w = rms * rng.normal(size=shape)
     a = float(np.exp(-sampling_time / time)) if time > 0 else 0.0
@@ -164,16 +155,8 @@ def simulate_angles(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Returns angles of the motors, and what their encoders read without noise, each (n, 8) [rad].
 
-    Args:
-        plant: from `make_plant`, with the same effects.
-        effects: all, of which those of encoders count here.
-        currents: held from sample to sample, shape (n, 8) [A].
-        sampling_time: between samples [s].
-        step: as of `simulate_world`.
-
-    Raises:
-        InputError: as `simulate_world`.
-        DivergenceError: as `simulate_world`.
+    The plant was made with the same effects, of which those of encoders count here. Arguments and
+    refusals are otherwise those of `simulate_world`.
     """
     faults = [e for e in effects if isinstance(e, HiddenEncoderFault)]
     every = BETWEEN if any(isinstance(e, HiddenEncoderLag) for e in faults) else 1

@@ -22,30 +22,21 @@ POSITION, ANGLES = ("x", "y", "z"), ("roll", "pitch", "yaw")
 
 
 def true_robot(seed: int, setting: HiddenSetting) -> ParameterSet:
-    """Returns the robot of a seed, at the start of its first record.
-
-    Raises:
-        InputError: a value is out of its bounds.
-    """
+    """Returns the robot of a seed, at the start of its first record."""
     rng = np.random.default_rng([seed, 1])
     nominal = parameter_set("trial")
     # Every parameter is drawn, so that what varies does not change what another seed gives.
     factor = dict(zip(EVERY, 1 + setting.spread * rng.uniform(-1, 1, len(EVERY)), strict=True))
     values = {name: factor[name] * nominal[name].value for name in VARIED}
     values |= _start(nominal, setting.offset, setting.tilt, rng)
-    return as_built(
-        nominal.with_values(values), setting.tolerances, np.random.default_rng([seed, 4])
-    )
+    robot = nominal.with_values(values)
+    return as_built(robot, setting.tolerances, np.random.default_rng([seed, 4]))
 
 
 def elsewhere(
     robot: ParameterSet, offset: float, tilt: float, rng: np.random.Generator
 ) -> ParameterSet:
-    """Returns the same robot at another start, as `HiddenSetting.offset` and `tilt` say it.
-
-    Raises:
-        InputError: a value is out of its bounds.
-    """
+    """Returns the same robot at another start, as `HiddenSetting.offset` and `tilt` say it."""
     return robot.with_values(_start(parameter_set("trial"), offset, tilt, rng))
 
 
@@ -76,9 +67,7 @@ class HiddenSetting:
     input: str = "prbs"  # "prbs" or "multisine"
     duration: float = 20.0  # of the log [s]; its samples are those of [0, duration)
     sampling_time: float = 0.01  # [s]
-    spread: float = (
-        0.1  # the `VARIED` differ from the `trial` set, uniformly within ± this, relative
-    )
+    spread: float = 0.1  # the `VARIED` lie within ± this of the `trial` set, relative
     offset: float = 0.01  # largest error of the start position, by axis [m]
     tilt: float = 0.0  # largest error of the start angles, by axis [rad]
     counts: int = 4000  # of an encoder a turn; 0 for one without steps

@@ -12,7 +12,7 @@ import numpy as np
 from identification.errors import InputError
 from identification.logs.log import Log
 from identification.model.parameter import ParameterSet
-from inca_mj.robot.geometry import DRIVES, INCA
+from inca_mj.robot.geometry import INCA, each_drive
 from inca_mj.studies.worlds.effect import HiddenEffect
 from inca_mj.studies.worlds.plant import make_plant
 from inca_mj.studies.worlds.ratio import HiddenAbsorbed, UnreachedError, sized
@@ -56,21 +56,7 @@ def world(
 ) -> HiddenWorld:
     """Returns a log of a robot with these effects, and the truth about it.
 
-    One seed gives one robot, input and noise, whatever the effects are.
-
-    Args:
-        seed: 0 or more.
-        effects: frozen records, sizes in physical units.
-        ratio: of each effect, or one for all: sizes are changed so that the rms of what the varied
-            parameters, the start pose and parts within the tolerances cannot absorb is `ratio`
-            times that of the measurement noise, each effect alone; the sizes given are where the
-            search starts.
-        setting: of the experiment.
-
-    Raises:
-        InputError: a number is bad, an effect is there twice in one place, or a ratio cannot be
-            reached.
-        DivergenceError: the effects are so large that the robot breaks.
+    One seed gives one robot, input and noise, whatever the effects are; see `records`.
     """
     setting = setting or HiddenSetting()
     (only,) = records(seed, effects, n=1, ratio=ratio, setting=setting, inputs=(setting.input,))
@@ -95,7 +81,10 @@ def records(
         seed: 0 or more.
         effects: frozen records, sizes in physical units.
         n: how many logs.
-        ratio: as of `world`; sizes are found on the first log.
+        ratio: of each effect, or one for all: sizes are changed so that the rms of what the varied
+            parameters, the start pose and parts within the tolerances cannot absorb of the first
+            log is `ratio` times that of the measurement noise, each effect alone; the sizes given
+            are where the search starts.
         setting: of the experiment; its input does not count.
         inputs: "prbs" or "multisine" of each log, taken in turn where there are fewer.
         others: effects that take, in this order, the place of those whose ratio no size that a
@@ -173,14 +162,17 @@ def _record(
     noise = np.random.default_rng([seed, 3, *number])
     y = encode(read, setting.counts, setting.noise, noise)
     truth = HiddenTruth(
-        effects=effects,
-        parameters=robot.values(),
+        effects=effects, parameters=robot.values(), angles=angles, error=error,
         noise_rms=noise_rms(setting.counts, setting.noise),
-        angles=angles,
-        error=error,
-    )
-    name = "world" if not number else f"world, record {number[0] + 1}"
-    return HiddenWorld(_log(u, y, setting, name), truth)
+    )  # fmt: skip
+    currents, motors = each_drive("current"), each_drive("angle")
+    log = Log(
+        time=setting.sampling_time * np.arange(len(u), dtype=np.float64), inputs=u, outputs=y,
+        input_names=currents, output_names=motors,
+        units={**dict.fromkeys(currents, "A"), **dict.fromkeys(motors, "rad")},
+        name="world" if not number else f"world, record {number[0] + 1}",
+    )  # fmt: skip
+    return HiddenWorld(log, truth)
 
 
 def _ratios(ratio: float | Sequence[float] | None, n: int) -> tuple[float, ...]:
@@ -190,18 +182,3 @@ def _ratios(ratio: float | Sequence[float] | None, n: int) -> tuple[float, ...]:
     if len(ratios) != n or not all(r > 0 for r in ratios):
         raise InputError(f"give {n} positive ratios, one for each effect, got {ratio}")
     return ratios
-
-
-def _log(u: np.ndarray, y: np.ndarray, setting: HiddenSetting, name: str) -> Log:
-    names = [tuple(f"{kind}_{k}" for k in range(1, DRIVES + 1)) for kind in ("current", "angle")]
-    units = {**dict.fromkeys(names[0], "A"), **dict.fromkeys(names[1], "rad")}
-    time = setting.sampling_time * np.arange(len(u), dtype=np.float64)
-    return Log(
-        time=time,
-        inputs=u,
-        outputs=y,
-        input_names=names[0],
-        output_names=names[1],
-        units=units,
-        name=name,
-    )
