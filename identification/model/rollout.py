@@ -46,8 +46,8 @@ class State:
     qvel: np.ndarray  # velocities, shape (n, nv) or (nv,) [m/s, rad/s]
     act: np.ndarray  # activations, shape (n, na) or (na,), in the units of their actuators
 
-    def rows(self, keep: np.ndarray) -> State:
-        """Returns some of the rows, by mask or by index."""
+    def rows(self, keep: np.ndarray | int) -> State:
+        """Returns some of the rows, by mask or by index; one row by its number."""
         return State(self.qpos[keep], self.qvel[keep], self.act[keep])
 
     @classmethod
