@@ -52,9 +52,8 @@ def robot_fit_to_json(result: RobotFit, confirmed: Sequence[Confirmation] = ()) 
     repeated = find_repetitions(result.robot)
     said = (*(confirmed or result.unseen), *repeated)
     far = _far(record["parameters"])
-    first = int(
-        result.is_worse or result.stopped
-    )  # then nothing else of the verdict matters as much
+    # Then nothing else of the verdict matters as much.
+    first = int(result.is_worse or result.stopped)
     far = [*doubtful(result.robot), *no_better(result, confirmed or result.unseen), *far]
     if not first:
         departures = departure_sentences(found.model) if isinstance(found, RecordsFit) else []
@@ -76,7 +75,7 @@ def no_better(result: RobotFit, confirmed: Sequence[Confirmation]) -> list[str]:
     if result.found.horizon is not None:
         before, after = result.found.unseen_rms
     else:
-        before, after = (_over_all([getattr(c, k) for c in confirmed]) for k in ("before", "after"))
+        before, after = np.sqrt(np.mean([(c.before**2, c.after**2) for c in confirmed], axis=0))
     rise = (after / before) ** 2 - 1 if before > 0 else 0.0
     if not rise > LEAST:
         return worse_unit(confirmed)
@@ -101,11 +100,6 @@ def worse_unit(confirmed: Sequence[Confirmation]) -> list[str]:
         " one at the cost of the other: fit a longer log, or more logs, before you rely on"
         f" what it predicts of {listed([kind(unit) for unit in worse])}."
     ]
-
-
-def _over_all(rms: Sequence[float]) -> float:
-    """Returns the rms over records, each of which counts alike."""
-    return float(np.sqrt(np.mean(np.square(rms))))
 
 
 def _rises(confirmed: Sequence[Confirmation]) -> dict[str, float]:
