@@ -83,24 +83,14 @@ def fits(time: FloatArray, width: FloatArray, step: float) -> bool:
     return bool(np.max(off - width) <= np.min(off + width) + float_resolution(time))
 
 
-@dataclass(frozen=True)
-class Missing:
-    """Rows that are missing where a declared step fits the rows before and behind."""
-
-    row: int  # the first row behind them
-    count: int  # how many there are, give or take what a quantum hides
-
-
-def missing_rows(time: FloatArray, width: FloatArray, step: float) -> list[Missing]:
+def missing_rows(time: FloatArray, width: FloatArray, step: float) -> list[tuple[int, int]]:
     """Finds the places where missing rows explain that a step does not fit all stamps.
 
-    Args:
-        time: stamps, shape (n,) [s].
-        width: how far each may be off the grid, shape (n,) [s].
-        step: of the grid [s].
+    Stamps (n,) may each be off a grid of this step by a width (n,), all in [s].
 
     Returns:
-        The places in their order; none where missing rows do not explain it.
+        The first row behind each place, and how many rows are missing there, give or take what a
+        quantum hides; nothing where missing rows do not explain it.
     """
     off = off_grid(time, step)
     low, high, least = off - width, off + width, float_resolution(time)
@@ -122,7 +112,7 @@ def missing_rows(time: FloatArray, width: FloatArray, step: float) -> list[Missi
         return []
     if len(counts) > FEW_PLACES and sum(counts) > MOST_MISSING * len(time):
         return []
-    return [Missing(row, count) for row, count in zip(begins[1:], counts, strict=True)]
+    return [*zip(begins[1:], counts, strict=True)]
 
 
 def quanta_of(time: FloatArray) -> FloatArray:

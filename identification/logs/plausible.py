@@ -198,7 +198,8 @@ def refuse_frozen(
         return
     step = np.abs(np.diff(y))[moved].min()
     abrupt = np.ptp(y[max(0, first - FEWEST) : first]) > STEPS * step
-    driven, seen = _goes_on(inputs, first), _goes_on(others, first)
+    behind = np.arange(len(y)) >= first
+    driven, seen = _varies(inputs, behind), _varies(others, behind)
     if abrupt and ((driven.size and driven.all()) or seen.any()):
         raise InputError(
             f"{log.output_names[output]} of log {log.name!r} repeats {y[first]:g} from"
@@ -246,11 +247,6 @@ def _stops(y: np.ndarray) -> list[tuple[int, int]]:
     moves = np.flatnonzero(np.abs(np.diff(y)) > ROUNDED * np.ptp(y)) + 1
     pairs = zip(moves[:-1].tolist(), moves[1:].tolist(), strict=True)
     return [(a, b) for a, b in pairs if b - a >= FEWEST and b + SPAN < len(y)]
-
-
-def _goes_on(signals: np.ndarray, first: int) -> np.ndarray:
-    """Returns which signals vary after a sample as much as before it, shape (k,)."""
-    return _varies(signals, np.arange(len(signals)) >= first)
 
 
 def _varies(signals: np.ndarray, part: np.ndarray) -> np.ndarray:

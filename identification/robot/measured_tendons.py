@@ -182,7 +182,7 @@ def _positions(model: mujoco.MjModel) -> dict[str, str]:
 def _moved_joints(model: mujoco.MjModel, sensors: Sequence[str]) -> tuple[str, ...]:
     """Returns the hinges and slides with names that move measured tendons."""
     ids = [int(model.sensor(name).objid[0]) for name in sensors]
-    moving = _moved_by(model)[0][ids].any(axis=0)
+    moving = np.asarray(_moved_by(model)[0][ids].any(axis=0))
     return tuple(
         model.joint(j).name
         for j in range(model.njnt)
@@ -215,8 +215,8 @@ def _moved_by(model: mujoco.MjModel) -> tuple[np.ndarray, np.ndarray]:
         mujoco.mj_fwdPosition(model, data)
         equalities = data.efc_J.reshape(-1, model.nv)[: data.ne]
         rows.append((_tendon_rows(model, data), equalities.copy()))
-    tendons, ties = zip(*rows, strict=True)
-    return np.max(np.abs(tendons), axis=0) > 1e-9, np.max(np.abs(ties), axis=0) > 1e-9
+    tendons, ties = (np.asarray(each) for each in zip(*rows, strict=True))
+    return (np.abs(tendons) > 1e-9).any(axis=0), (np.abs(ties) > 1e-9).any(axis=0)
 
 
 def _tendon_rows(model: mujoco.MjModel, data: mujoco.MjData) -> np.ndarray:
