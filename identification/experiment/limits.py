@@ -76,14 +76,10 @@ def limits_of(
     model: mujoco.MjModel, known: Sequence[Axis], logs: Sequence[Log], start: np.ndarray,
     widen: float = 0.0,
 ) -> Limits:  # fmt: skip
-    """Returns the limits of a robot.
+    """Returns the limits of a robot whose experiment begins at some positions (nq,).
 
-    Args:
-        model: of the robot.
-        known: joints whose motion the logs show.
-        logs: of the robot.
-        start: positions where the experiment begins, shape (nq,).
-        widen: share of itself by which the range of the logs is widened, on each side.
+    The logs show the motion of the known axes. Their range is widened by a share of itself on each
+    side.
 
     Raises:
         InputError: the share is not one of 0 to 10.
@@ -121,15 +117,8 @@ def margins(
 ) -> tuple[tuple[Margin, ...], str]:
     """Returns the margins of a simulated experiment, the nearest first, and what touches.
 
-    Args:
-        model: of the robot.
-        limits: of the experiment.
-        inputs: shape (N, nu).
-        qpos: simulated, shape (N, nq).
-        qvel: likewise, shape (N, nv).
-
-    Returns:
-        The margins, and two bodies that touch and may not, in words; "" where none do.
+    It has inputs (N, nu), positions (N, nq) and rates (N, nv). Of what touches and may not, two
+    bodies are told in words; "" where none do.
     """
     out = []
     for k, j in enumerate(limits.joints):

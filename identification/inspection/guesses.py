@@ -60,9 +60,7 @@ def family(name: str) -> str:
 def unit_of(name: str, farthest: float) -> tuple[str, str]:
     """Returns the unit of a column as a word of `UNITS`, and why it is believed; "" for unknown.
 
-    Args:
-        name: of the column.
-        farthest: the largest number of its family.
+    `farthest` is the largest number of its family.
     """
     brackets = _BRACKETS.search(name)
     last = re.split(r"[_.\s]", name)[-1]

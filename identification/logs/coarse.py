@@ -43,8 +43,7 @@ def evened_stamps(
 ) -> Table:
     """Returns a table with even stamps where digits were all that they lost, which it tells.
 
-    Returns:
-        The table as it is where its stamps are even already, or uneven for another reason.
+    The table stays as it is where its stamps are even already, or uneven for another reason.
     """
     stamps, declared = _stamps(table), sidecar.sampling_time
     if stamps is None:

@@ -27,18 +27,11 @@ def parse_csv(
     wanted: Callable[[Sequence[str]], Collection[str]] | None = None,
     stamps: Collection[str] = ("time",),
 ) -> Table:
-    """Reads the table in a CSV file.
+    """Reads the table in the bytes of a CSV file; see `formats.log_table`.
 
-    Comment lines above the header, a byte order mark, CRLF and blank lines are accepted.
-
-    Args:
-        raw: the bytes of the file.
-        path: where it is, for messages.
-        header: names of the columns of a file that has none, in their order; where it has one,
-            they replace it.
-        wanted: says which of the columns of a file to read; their empty cells are NaN, and the
-            others are left out. All columns, and no empty cells, when None.
-        stamps: columns whose numbers count less the first one, where a float cannot hold them.
+    Comment lines above the header, a byte order mark, CRLF and blank lines are accepted. A given
+    header replaces that of the file, where it has one. The empty cells of wanted columns are NaN;
+    where nothing says which are wanted, all columns are read, and none may have an empty cell.
     """
     text = _decoded(raw, path).replace("\r\n", "\n").replace("\r", "\n")
     lines = text.split("\n")

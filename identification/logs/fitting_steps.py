@@ -61,24 +61,14 @@ class Stamps:
 
 
 def judged(time: FloatArray) -> Stamps:
-    """Returns stamps with their quanta and the sampling times that fit them.
-
-    Args:
-        time: stamps, shape (n,) [s], none smaller than the one before.
-    """
+    """Returns stamps (n,) [s], none smaller than the one before, with what tells their grid."""
     quanta = quanta_of(time)
     mean = float(time[-1] - time[0]) / (len(time) - 1)
     return Stamps(time, quanta, _fitting_steps(time, quanta / 2 + JITTER * mean))
 
 
 def fits(time: FloatArray, width: FloatArray, step: float) -> bool:
-    """Returns whether some grid of a step comes as near to all stamps as they allow.
-
-    Args:
-        time: stamps, shape (n,) [s].
-        width: how far each may be off the grid, shape (n,) [s].
-        step: of the grid [s].
-    """
+    """Returns whether a grid of a step [s] is as near to stamps (n,) [s] as a width (n,) allows."""
     off = off_grid(time, step)
     return bool(np.max(off - width) <= np.min(off + width) + float_resolution(time))
 
@@ -116,15 +106,12 @@ def missing_rows(time: FloatArray, width: FloatArray, step: float) -> list[tuple
 
 
 def quanta_of(time: FloatArray) -> FloatArray:
-    """Returns the quantum of each stamp, shape (n,) [s].
+    """Returns the quantum of each stamp (n,) [s], none of them smaller than the one before.
 
-    "%g" prints larger stamps with fewer decimals, so that each decade has a quantum of its own,
-    and none a larger one than the decade above it. Where rows share stamps, a clock ticks slower
-    than they come, and all steps are multiples of its tick; without such rows even sampling itself
-    makes all steps multiples of one.
-
-    Args:
-        time: stamps, shape (n,) [s], none smaller than the one before.
+    "%g" prints larger stamps with fewer decimals, so that each decade has a quantum of its own, and
+    none a larger one than the decade above it. Where rows share stamps, a clock ticks slower than
+    they come, and all steps are multiples of its tick; without such rows even sampling itself makes
+    all steps multiples of one.
     """
     size = np.abs(time)
     decade = np.floor(np.log10(np.where(size > 0, size, np.inf), where=size > 0,
@@ -144,14 +131,10 @@ def quanta_of(time: FloatArray) -> FloatArray:
 
 
 def _printed_tick(steps: FloatArray, digit: float) -> float:
-    """Returns a tick with what digits it lost [s]; zero where the stamps show none.
+    """Returns a tick with what digits it lost [s]; zero where the steps [s] show none.
 
-    Ticks differ by one digit at most. Rounding alone puts stamps that rows share one digit apart,
-    so that a tick must be two digits at least.
-
-    Args:
-        steps: of the stamps [s], some of them zero.
-        digit: the last one that is printed [s].
+    Ticks differ by one printed digit at most. Rounding alone puts stamps that rows share one digit
+    apart, so that a tick must be two digits at least.
     """
     apart = steps[steps > 0]
     if not apart.size:

@@ -114,16 +114,12 @@ def stands_still(y: np.ndarray) -> bool:
 
 
 def is_noise(y: np.ndarray, inputs: np.ndarray) -> bool:
-    """Returns whether neither its own past nor any input tells anything of a channel.
+    """Returns whether neither its own past nor any input (n, nu) tells anything of a channel (n,).
 
         y_k = c + Σ a_i y_k-i + Σ b_i u_k-i + e_k       i = 1 to `PAST`, with and without a and b
 
     A joint that moves keeps on moving for a while, and does so after its inputs; white noise of a
     sensor does neither. The F test of the two sums of squares decides.
-
-    Args:
-        y: shape (n,).
-        inputs: shape (n, nu).
     """
     if not np.ptp(y) or not _is_untold(y, y[:, None]):  # most channels are told by their own past
         return False
@@ -182,10 +178,8 @@ def refuse_frozen(
     Args:
         log: what was measured.
         output: column of the output.
-        inputs: everything that drives its joint, shape (n, k); the joint counts as driven where all
-            of these vary as before.
-        others: other outputs of its joint, shape (n, m); the joint counts as moving where one of
-            these varies as before.
+        inputs: what drives its joint, shape (n, k); it counts as driven where all vary as before.
+        others: other outputs of its joint, (n, m); it counts as moving where one varies as before.
         overrule: how a user may overrule this, for the message.
         is_rate: whether the output is a rate, which may jump: it is judged at the end only.
     """

@@ -62,11 +62,7 @@ def measured_columns(outputs: Sequence[str], poses: Sequence[Pose]) -> tuple[str
 
 
 def with_angles(table: Table, poses: Sequence[Pose]) -> Table:
-    """Returns a table with positions and angles in the place of the poses.
-
-    Args:
-        table: with the columns of the poses [m]; rows may have empty cells.
-        poses: what is measured.
+    """Returns a table with positions [m] and angles [rad] in the place of measured poses.
 
     Raises:
         InputError: four numbers are no quaternion, or a pitch comes near 90 degrees.

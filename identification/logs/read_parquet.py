@@ -51,12 +51,7 @@ def read_parquet(
     wanted: Callable[[Sequence[str]], Collection[str]] | None,
     stamps: Collection[str] = ("time",),
 ) -> Table:
-    """Reads the table in a file of Parquet, or in an episode of a LeRobot data set.
-
-    Args:
-        path: of the file, or of an episode as `SET/episode_3`.
-        wanted: says which of its columns to read; all when None.
-        stamps: columns of time.
+    """Reads the table in a file of Parquet, or in an episode `SET/episode_3` of a LeRobot data set.
 
     Raises:
         InputError: pyarrow is not installed, the file is damaged, or it holds several episodes.

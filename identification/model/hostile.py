@@ -80,15 +80,10 @@ class Amount:
 
 
 def refuse_hostile(raw: str | bytes, where: str, folder: Path | None = None) -> Amount:
-    """Refuses a model by its text, and by that of the files that it includes.
+    """Refuses a model by its text and that of the files it includes; returns what it asks for.
 
-    Args:
-        raw: the MJCF.
-        where: the model in messages, such as "the model slider.xml".
-        folder: of its file; None of a model that is in no file.
-
-    Returns:
-        What it asks for.
+    `where` is the model in messages, such as "the model slider.xml"; without a folder it is in no
+    file.
     """
     amount = _amount(raw, where, folder, 0)
     if amount.elements > MOST:
@@ -146,13 +141,7 @@ def refuse_endless(source: str | Path, where: str, amount: Amount) -> None:
 
 
 def refuse_size(size: int, where: str, amount: Amount | None = None) -> None:
-    """Refuses a compiled model of which a search cannot hold its copies.
-
-    Args:
-        size: of the compiled model [bytes].
-        where: the model in messages, such as "the model slider.xml".
-        amount: what its text asks for, where that is known.
-    """
+    """Refuses a compiled model of so many bytes of which a search cannot hold its copies."""
     if size > LARGEST:
         raise InputError(
             f"{where} has {size / 2**20:.0f} MB when it is compiled, more than the"

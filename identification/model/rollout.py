@@ -224,13 +224,10 @@ def simulations(
     model: mujoco.MjModel, n: int, numbers: Sequence[tuple[Slot, np.ndarray]] = (),
     nthread: int | None = None,
 ) -> Simulations:  # fmt: skip
-    """Prepares n simulations of a model, to be run as often as one likes.
+    """Prepares n simulations of a model, which may not change, to be run as often as one likes.
 
-    Args:
-        model: the model, which may not change.
-        n: how many.
-        numbers: model entries that differ between simulations: slot and its values, shape (n,).
-        nthread: native threads; all processors when None.
+    Entries of the model that differ between them are given as `rollout` takes them. All processors
+    serve them if `nthread` is None.
     """
     model = lean(model, numbers)
     batch = Batch(model, n, nthread or min(threads(), n))

@@ -86,9 +86,8 @@ def unbalanced(
         wider: times as long a ψ, for motion that is rougher than its noise says.
 
     Returns:
-        None where it cannot be had: a joint is not measured, is neither hinge nor slide, drives
-        have states, bodies are tied to each other, or noise hides the accelerations, or the forces
-        that they need.
+        None where a joint is not measured or is neither hinge nor slide, drives have states, bodies
+        are tied, or noise hides the accelerations or the forces that they need.
     """
     columns = output_columns(model, log.output_names)
     at = {i: k for k, (field, i) in enumerate(columns) if field == "qpos"}

@@ -31,11 +31,7 @@ OFF = int(mujoco.mjtDisableBit.mjDSBL_LIMIT) | int(mujoco.mjtDisableBit.mjDSBL_C
 def refuse_limits(file: RobotFile, model: mujoco.MjModel, is_degree: bool, log: Log) -> None:
     """Refuse a log that has a joint far outside the limits of the model, if nobody trusts it.
 
-    Args:
-        file: the robot's.
-        model: with the log's sensors.
-        is_degree: whether the model's file gives angles in degrees.
-        log: what was measured.
+    The file of the model gives angles in degrees where `is_degree`.
     """
     if "limits" in file.trust:
         return
@@ -57,11 +53,8 @@ def limit_sentence(
 ) -> str:
     """Returns what is wrong with the limits of a joint and how to mend it; "" where nothing is.
 
-    Args:
-        model: compiled.
-        is_degree: whether its file gives angles in degrees.
-        positions: measured, by joint, shape (n,) [rad or m].
-        path: of the model's file.
+    Positions are given as measured, by joint, shape (n,) [rad or m], with the path of the model's
+    file.
     """
     if model.opt.disableflags & OFF:
         return ""

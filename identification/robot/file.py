@@ -191,9 +191,6 @@ def refuse_nothing_free(file: RobotFile) -> None:
     """Refuses a robot whose file frees nothing, where something is to be fitted.
 
     Torques are compared without: what they fit always is friction (`fit_torques`).
-
-    Raises:
-        InputError: it frees nothing.
     """
     if not file.free:
         raise InputError(

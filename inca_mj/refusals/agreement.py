@@ -48,12 +48,9 @@ SMALL = 1e-6  # added to JᵀJ, where poses without a unique motion must not sto
 
 
 def angles_under(plant: Twin, log: Log, currents: np.ndarray) -> np.ndarray:
-    """Returns the twin's angles from its start, shape (m, n, k) [rad]; NaN where not finite.
+    """Returns the twin's angles along a log under m other sequences of currents (m, n, 8) [A].
 
-    Args:
-        plant: the twin.
-        log: n samples of k angles; its own currents are not used.
-        currents: m sequences, shape (m, n, 8) [A].
+    They have the shape (m, n, k) [rad], and are NaN where they are not finite.
     """
     predictor, none = Predictor(plant, log, (), {}), np.zeros((len(currents), 0))
     start, numbers = predictor.settings(none)
@@ -74,10 +71,7 @@ def follow(
 ) -> tuple[np.ndarray, np.ndarray] | None:
     """Simulate the twin with feedback of some drives; the others have their logged currents.
 
-    Args:
-        plant: the twin.
-        log: n samples of all eight angles [rad].
-        drives: that follow the log.
+    The log has all eight angles [rad].
 
     Returns:
         Currents between samples, shape (n - 1, 8) [A], and angles, shape (n, 8) [rad]; None where

@@ -76,12 +76,9 @@ def other_currents(
 def renamed_drives(plant: Twin, part: Log, predicted: np.ndarray) -> tuple[Reading, str] | None:
     """Returns another order of the drives under which the twin moves as the log, with words.
 
-    Of orders that are about as near, it is the one that changes fewest drives.
-
-    Args:
-        plant: the twin.
-        part: the first motion, n samples of all eight angles.
-        predicted: the twin's angles under the currents as they are read, shape (n, 8) [rad].
+    Of orders that are about as near, it is the one that changes fewest drives. The part is the
+    first motion, with all eight angles; the twin's are predicted under its currents, shape (n, 8)
+    [rad].
     """
     as_read, y = apart(part, predicted), some(part.outputs)
     share = float(unreached_share(plant, y[None])[0])

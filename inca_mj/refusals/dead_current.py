@@ -38,13 +38,8 @@ def dead_current(
 ) -> tuple[str, tuple[str, ...]] | None:
     """Returns which logged current stands still, what tells it, and the cure; None if none does.
 
-    Args:
-        plant: the twin.
-        part: the first motion, n samples of all eight angles, which all move.
-        predicted: the twin's angles under the logged currents, shape (n, 8) [rad].
-
-    Returns:
-        The sentence, and what it judges, words of `JUDGED`.
+    All eight angles move in the first motion; the twin's are predicted, shape (n, 8) [rad]. With
+    the sentence come words of `JUDGED`, which it judges.
     """
     ranges = np.ptp(part.inputs, axis=0)
     still = np.flatnonzero(ranges <= bounds.CONSTANT * np.median(ranges)).tolist()
