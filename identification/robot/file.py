@@ -59,9 +59,11 @@ from identification.robot.file_checks import (
     PARAMETER_KEYS,
     check_table,
     numbers,
+    numbers_of,
     read_own,
     read_own_values,
     texts,
+    words_of,
 )
 
 LONGEST = 1e6  # [s] of a horizon
@@ -140,15 +142,11 @@ def read_robot_file(path: str | Path) -> RobotFile:
     held = texts(content.get("held", []), "held", path)
     if twice := [name for name in held if name in free]:
         raise InputError(f"{path} has {twice[0]} under free and under held; keep one of both")
-    every, fixed = content.get("columns", {}), content.get("fixed", {})
-    columns = {name: each for name, each in every.items() if not isinstance(each, list)}
-    poses = {n: texts(every[n], f"columns.{n}", path) for n in every if n not in columns}
-    check_table(columns, dict.fromkeys(columns, (str, "text in quotes")), f"columns in {path}")
-    start = content.get("start", {})
-    for key, table in (("fixed", fixed), ("start", start)):
-        check_table(table, dict.fromkeys(table, ((int, float), "a number")), f"{key} in {path}")
-    twice = [name for name in start if name in content["free"]]
-    if twice:
+    every = content.get("columns", {})
+    poses = {n: texts(x, f"columns.{n}", path) for n, x in every.items() if isinstance(x, list)}
+    columns = {name: each for name, each in every.items() if name not in poses}
+    start = numbers_of(content.get("start", {}), f"start in {path}")
+    if twice := [name for name in start if name in content["free"]]:
         raise InputError(f"{path} gives {twice[0]} under [start] and frees it; keep one of both")
     effects = content.get("effects", {})
     check_table(effects, EFFECTS_KEYS, f"effects in {path}")
@@ -165,26 +163,19 @@ def read_robot_file(path: str | Path) -> RobotFile:
         horizon=horizon,
         every=content.get("every", 1),
         trust=trusted(content.get("trust", []), f"under trust in {path}"),
-        start={name: float(value) for name, value in start.items()},
+        start=start,
         log=content.get("log", {}),
-        columns=columns,
+        columns=words_of(columns, f"columns in {path}"),
         poses=poses,
-        fixed={name: float(value) for name, value in fixed.items()},
+        fixed=numbers_of(content.get("fixed", {}), f"fixed in {path}"),
         records=records,
         own_values=read_own_values(content, path),
         joints=texts(effects.get("joints", []), "effects.joints", path),
         only=texts(effects.get("only", []), "effects.only", path),
         turns=numbers(effects.get("turns", []), "effects.turns", path),
         spread=alike,
-        fitted=_fitted(content, path),
+        fitted=words_of(content.get("fitted", {}), f"fitted in {path}"),
     )
-
-
-def _fitted(content: Mapping[str, Any], path: Path) -> dict[str, str]:
-    """Returns the digests of the logs to which the values were fitted, by name."""
-    logs = content.get("fitted", {})
-    check_table(logs, dict.fromkeys(logs, (str, "text in quotes")), f"fitted in {path}")
-    return dict(logs)
 
 
 def refuse_nothing_free(file: RobotFile) -> None:
