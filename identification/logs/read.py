@@ -63,7 +63,7 @@ def read_log(
     Args:
         path: `.csv` with the header `time,<inputs>,<outputs>[,<optional>]`, `.mat` with `u`, `y`,
             `Ts`, or a path of another kind (see `identification.logs.formats`); a `.toml` of the
-            same stem may say more (see `identification.logs.sidecar`).
+            same stem may say more (see `docs/robot/keys.md`).
         inputs: names of the actuators (nu).
         outputs: names of the sensors (ny).
         optional: columns that may be there; they become `Log.extras`.

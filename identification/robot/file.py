@@ -1,45 +1,7 @@
 """A TOML that says what a robot is: its model, its log's columns, what is free or missing.
 
-model = "emps.xml"                   # MJCF, beside this file
-outputs = ["position"]               # sensors that the log has; all joint positions if not given
-free = ["M", "joint/slide.damping", "coulomb_friction.f_c@slide"]
-held = ["k"]                         # parameters that keep their value
-own = ["coulomb_friction.f_c@slide"] # of the free ones, those that differ from log to log
-horizon = 0.2                        # [s] to judge predictions over; a free run if not given
-every = 10                           # keep every n-th sample
-trust = ["wiring"]                   # judgements that are not to refuse a log: refusals/trust.py
-[fixed]                              # values of effects' parameters that are not free
-"stribeck_friction.v_s" = 0.05
-[start]                              # entries of the initial state; else the log's, or the model's
-"qvel[0]" = 0.0
-[log]                                # what the TOML beside a log says, for every log
-columns = ["time", "vir", "skip"]    # of files without a header, in their order
-[columns]                            # actuator or sensor = column of the log, where they differ
-drive = "vir"
-base = ["x", "y", "z", "qw", "qx", "qy", "qz"]  # a free joint whose pose is measured
-[parameters.M]                       # of a free parameter; every key may be left out
-path = "body/carriage.mass"          # into the model; the name itself if not given
-value = 95.11                        # where the search begins; the model's own if not given
-std = 0.6                            # of value by a fit, known for logs that it has not seen
-prior = 95.11                        # what is believed before the log speaks; value if not given
-known = 0.3                          # its std: relative where it must be positive, else in its unit
-unit = "kg"                          # a label; refused where it is not that of the numbers, in SI
-lower = 0.0
-upper = 500.0
-scale = 1.0                          # a magnitude that matters, where it may be zero
-[own_values.log_1]                   # where the search begins in one log, of what is under own
-"coulomb_friction.f_c@slide" = 20.4
-[spread.damping]                     # values that are alike but for their spread: robot/alike.py
-of = ["joint/shoulder.damping", "joint/elbow.damping"]
-std = 0.1
-[effects]
-joints = ["slide"]                   # where they may act; the measured joints if not given
-turns = [1, 7, 14]                   # periods of a turn to try, where a motor's are known
-only = ["stribeck_friction"]         # candidates; all if not given; slide_… where hinges are too
-[fitted]                             # the logs to which the values were fitted: robot/carried.py
-first = "5f0c3a9e21d4b7f8"
-
-A free name is a key under `parameters`, a path into the model or its start, or a size of an effect.
+`docs/robot/keys.md` has every key with its type, unit, default and meaning. A free name is a key
+under `parameters`, a path into the model or its start, or a size of an effect.
 """
 
 from __future__ import annotations
@@ -72,7 +34,7 @@ MODELS = (".xml", ".mjcf", ".urdf")  # endings of models, which are given by mis
 
 @dataclass(frozen=True, kw_only=True)
 class RobotFile:
-    """The content of a robot's TOML; the docstring of the module shows every key."""
+    """The content of a robot's TOML."""
 
     path: Path
     model: Path  # the MJCF
