@@ -11,7 +11,6 @@ from plain_logs import plain_log
 
 from identification import Log
 from identification.logs.joined import JoinedLog, join_logs, records_of
-from identification.logs.log import halves
 
 
 @pytest.mark.parametrize("rate", [50, 100, 187, 333])
@@ -51,14 +50,6 @@ def test_slices_join_to_the_whole(n, cut, step):
     assert np.array_equal(np.concatenate([first.inputs, second.inputs]), log.inputs)
     assert np.array_equal(np.concatenate([first.outputs, second.outputs]), log.outputs)
     assert np.array_equal(np.concatenate([first.extras["x"], second.extras["x"]]), log.extras["x"])
-
-
-@given(n=st.integers(6, 300))
-def test_halves_join_to_the_whole(n):
-    log = wave(n)
-    first, second = (log.part(name) for name in halves(log))
-    assert np.array_equal(np.concatenate([first.time, second.time]), log.time)
-    assert abs(len(first) - len(second)) <= 1
 
 
 def _with(**changes):
