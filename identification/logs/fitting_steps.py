@@ -31,9 +31,8 @@ GAP = 1.5  # times the usual step of the stamps: from there a tick is missing be
 COARSE = 0.5  # of a step: from there the rounding of stamps merges rows and makes gaps
 EXACT = 1e-3  # relative, to which the step must be known: values follow its square
 FEW_PLACES = 2  # places where rows are missing, of any length
-MOST_MISSING = (
-    0.05  # of the rows, that may be missing in more places: a wrong step looks like these, too
-)
+# Of the rows, that may be missing in more places: a wrong step looks like these, too.
+MOST_MISSING = 0.05
 
 
 @dataclass(frozen=True)
