@@ -7,19 +7,9 @@ import pytest
 from example_logs import wave
 from hypothesis import given
 from hypothesis import strategies as st
-from plain_logs import plain_log
 
 from identification import Log
 from identification.logs.joined import JoinedLog, join_logs, records_of
-
-
-@pytest.mark.parametrize("rate", [50, 100, 187, 333])
-def test_printed_digits_do_not_spoil_the_sampling_time(rate):
-    digits = 6
-    time = np.arange(20 * rate) / rate
-    printed = np.array([float(f"{t:.{digits}g}") for t in time])
-    log = plain_log(np.zeros((len(time), 0)), np.zeros((len(time), 1)), "", "q", time=printed)
-    assert log.sampling_time == pytest.approx(1 / rate, rel=1e-5)
 
 
 def test_nothing_in_it_can_be_changed():
