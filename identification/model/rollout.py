@@ -81,8 +81,6 @@ def hold(inputs: np.ndarray, n: int, kind: str = "zoh") -> np.ndarray:
     """Returns controls of the steps between the samples: (..., N, nu) -> (..., (N-1) n, nu)."""
     if kind == "zoh":
         return np.repeat(inputs[..., :-1, :], n, axis=-2)
-    if kind != "foh":
-        raise InputError(f"unknown hold {kind!r}; known: foh, zoh")
     weight = ((np.arange(n) + 0.5) / n)[:, None]
     before, after = inputs[..., :-1, None, :], inputs[..., 1:, None, :]
     held = (1 - weight) * before + weight * after
