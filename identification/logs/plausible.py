@@ -65,14 +65,10 @@ def check_plausible(
 ) -> None:
     """Refuse a column that is too large, or moves too fast, and name the unit that would fit.
 
-    Args:
-        table: columns in SI, with a time column.
-        factors: by column, the factor by which its numbers in the file were multiplied.
-        units: SI unit by column, where known.
-        limits: largest plausible size by column or group [SI].
-        rates: largest plausible speed by column or group [SI/s].
-        sidecar: the TOML file that may give the unit.
-        overrule: how a user may overrule this, for the message.
+    The table is in SI with a time column; the factors are those by which numbers of the file were
+    multiplied, by column. The largest plausible sizes [SI] and speeds [SI/s] are given by column or
+    group. The sidecar is the TOML that may give the unit, and `overrule` says how a user may
+    overrule this.
     """
     for name in table.names:
         size, rate = lookup(limits, name), lookup(rates, name)

@@ -144,17 +144,12 @@ class Predictor:
     def outputs(
         self, values: np.ndarray, states: Mapping[str, np.ndarray], begun: np.ndarray | None = None
     ) -> np.ndarray:
-        """Returns what the sensors say of simulated states, for n value sets (n, p).
+        """Returns what the sensors say of simulated states, for n value sets (n, p), shape (m,
+        samples, ny).
 
-        Args:
-            values: shape (n, p), in the parameters' units.
-            states: what `recorded` names, of m simulations, shape (m, samples, size); each value
-                set has m/n neighbouring ones.
-            begun: time of the record at which each begins, shape (m,) [s]; where the log begins
-                when None.
-
-        Returns:
-            Shape (m, samples, ny).
+        The states are what `recorded` names of m simulations, (m, samples, size); each value set
+        has m/n neighbouring ones. They begin at times of the record (m,) [s], or where the log
+        begins.
         """
         plant = with_states(self.plant)
         if plant is not None:
@@ -164,14 +159,9 @@ class Predictor:
     def readings(
         self, states: Mapping[str, np.ndarray], begun: np.ndarray | None = None
     ) -> np.ndarray:
-        """Returns what perfect sensors would say of simulated states; see `Plant.outputs`.
+        """Returns what perfect sensors would say of simulated states, shape (4, m, samples, ny).
 
-        Args:
-            states: of m simulations, each field (m, samples, size).
-            begun: as above.
-
-        Returns:
-            Shape (4, m, samples, ny).
+        See `Plant.outputs`, and `outputs` for the arguments.
         """
         model, sensors = self.plant.model, self.log.output_names
         joints = [int(model.sensor(name).objid[0]) for name in sensors]

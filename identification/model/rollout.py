@@ -164,20 +164,17 @@ class Simulations:
         self, start: State, controls: np.ndarray, every: int, record: Sequence[str],
         time: float | np.ndarray = 0.0, at: np.ndarray | None = None, keeps_diverged: bool = False,
     ) -> Mapping[str, np.ndarray]:  # fmt: skip
-        """Runs k of the simulations.
+        """Runs k of the simulations; see `rollout`.
 
         Args:
             start: initial states, one row for all or k.
             controls: at each step, shape (1, steps, nu) for all or (k, steps, nu), without those of
                 actuators that have none.
             every: steps of a sample.
-            record: MjData fields of the state to return (qpos, qvel, act).
+            record: MjData fields of the state to return (qpos, qvel, act), each (k, N, size).
             time: at the start, one for all or one for each [s].
             at: which simulations, shape (k,); all when None.
             keeps_diverged: whether simulations that leave the finite numbers are NaN, and no error.
-
-        Returns:
-            For each recorded field an array (k, N, size); sample 0 is the start.
         """
         end_if_given_up()
         batch, model = self.batch, self.model
