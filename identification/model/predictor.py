@@ -144,8 +144,7 @@ class Predictor:
     def outputs(
         self, values: np.ndarray, states: Mapping[str, np.ndarray], begun: np.ndarray | None = None
     ) -> np.ndarray:
-        """Returns what the sensors say of simulated states, for n value sets (n, p), shape (m,
-        samples, ny).
+        """Returns what sensors say, (m, samples, ny), of simulated states, for n value sets (n, p).
 
         The states are what `recorded` names of m simulations, (m, samples, size); each value set
         has m/n neighbouring ones. They begin at times of the record (m,) [s], or where the log
@@ -203,3 +202,9 @@ def output_columns(model: mujoco.MjModel, names: Sequence[str]) -> list[tuple[st
             )
         columns.append((field, int(address[model.sensor_objid[sensors[name]]])))
     return columns
+
+
+def output_dofs(model: mujoco.MjModel, names: Sequence[str]) -> list[int]:
+    """Returns the degree of freedom whose position or rate each output is."""
+    return [i if field == "qvel" else int(model.jnt_dofadr[model.jnt_qposadr == i][0])
+            for field, i in output_columns(model, names)]  # fmt: skip

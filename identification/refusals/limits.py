@@ -15,7 +15,7 @@ import numpy as np
 
 from identification.errors import InputError
 from identification.logs.log import Log
-from identification.model.predictor import output_columns
+from identification.model.predictor import output_columns, output_dofs
 from identification.quantities import alike
 from identification.refusals.trust import RobotFile
 
@@ -35,10 +35,11 @@ def refuse_limits(file: RobotFile, model: mujoco.MjModel, is_degree: bool, log: 
     """
     if "limits" in file.trust:
         return
-    columns = zip(output_columns(model, log.output_names), log.outputs.T, strict=True)
+    names = log.output_names
+    each = zip(output_columns(model, names), output_dofs(model, names), log.outputs.T, strict=True)
     positions = {
-        model.joint(int(np.flatnonzero(model.jnt_qposadr == i)[0])).name: y
-        for (field, i), y in columns
+        model.joint(int(model.dof_jntid[dof])).name: y
+        for (field, _), dof, y in each
         if field == "qpos"
     }
     if said := limit_sentence(model, is_degree, positions, file.model):
