@@ -74,6 +74,7 @@ def places(at, back):
     [
         ((RIGHT, (2,)), (RIGHT, NONE), 1.0, "turn the sign of angle_3"),
         (((1, 2, 0, 3, 4, 5, 6, 7), (1, 6)), (RIGHT, NONE), 1.0, "exchanged and turned"),
+        (((3, 1, 2, 7, 4, 0, 6, 5), (2,)), (RIGHT, NONE), 1.0, "exchanged and turned"),
         ((RIGHT, (1, 4, 6)), (RIGHT, NONE), UNIT, 'angle = "deg"'),
         ((RIGHT, (3,)), (RIGHT, (3,)), 1.0, "turn the sign of angle_4, current_4: write"),
         ((CYCLED, NONE), (CYCLED, NONE), 1.0, "drives 2, 5, 7 numbered in another order"),

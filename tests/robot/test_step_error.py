@@ -61,14 +61,6 @@ def test_the_error_is_that_of_the_half_step(tmp_path, log):
     assert found.noise == pytest.approx(NOISE, rel=0.1)
 
 
-def test_over_a_short_horizon_less_is_lost(tmp_path, log):
-    whole, short, longer = (
-        step_error(robot(tmp_path, log, 'timestep="0.01"', horizon=h)).error
-        for h in (None, 0.1, 0.4)
-    )
-    assert short < min(longer, whole)
-
-
 def test_over_a_horizon_steps_are_asked_where_the_robot_was(tmp_path):
     """A model that is too light runs into its end stop, where the robot never was."""
     stop = '<joint name="slide" type="slide" range="-0.3 0.35" limited="true" '
