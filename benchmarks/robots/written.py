@@ -52,7 +52,7 @@ def write_model(robot: MeasuredRobot, folder: Path) -> Path:
 
 
 def robot_toml(robot: MeasuredRobot) -> str:
-    """The content of the robot's TOML (`identification.robot.file` lists every key)."""
+    """The content of the robot's TOML (`docs/robot/keys.md` lists every key)."""
     outputs, free = (json.dumps(list(n)) for n in (robot.fit[0].output_names,
                                                    [p.name for p in robot.free]))  # fmt: skip
     lines = [

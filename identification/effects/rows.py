@@ -153,11 +153,11 @@ def read_told_model(source: str | Path) -> tuple[mujoco.MjSpec, str]:
         amount = refuse_hostile(text, where)
     else:
         amount = refuse_hostile(read_bytes(Path(text), what=MODEL), where, Path(text).parent)
-    if amount.may_be_large:
+    if amount.much:
         refuse_endless(text if given else Path(text), where, amount)
     try:
         spec = mujoco.MjSpec.from_string(text) if given else mujoco.MjSpec.from_file(text)
-        model, left_out = compile_without_missing(spec, where, is_asked=not amount.may_be_large)
+        model, left_out = compile_without_missing(spec, where, is_asked=not amount.much)
     except InputError:
         raise
     except (ValueError, OSError, mujoco.FatalError, Warning) as error:

@@ -51,23 +51,14 @@ class Tried:
 
 @dataclass(frozen=True, kw_only=True)
 class Design:
-    """The next experiment.
+    """The next experiment."""
 
-    Attributes:
-        stage: the robot, its limits, and how the experiment is played.
-        hypotheses: the model that is believed, then its rivals.
-        best: the designed experiment.
-        random: a random one within the same limits, the median of those that were tried.
-        evaluations: how many were evaluated.
-        seed: of the search.
-    """
-
-    stage: Stage
-    hypotheses: tuple[Hypothesis, ...]
-    best: Tried
-    random: Tried
-    evaluations: int
-    seed: int
+    stage: Stage  # the robot, its limits, and how the experiment is played
+    hypotheses: tuple[Hypothesis, ...]  # the model that is believed, then its rivals
+    best: Tried  # the designed experiment
+    random: Tried  # a random one within the same limits, the median of those that were tried
+    evaluations: int  # how many were evaluated
+    seed: int  # of the search
 
     @property
     def before(self) -> np.ndarray:

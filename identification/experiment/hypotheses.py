@@ -83,11 +83,9 @@ class Hypothesis:
         return np.asarray(np.sqrt(np.maximum(np.diag(covariance), 0.0)) * slope)
 
     def task(self, log: Log, plant: JointPlant) -> Problem:
-        """Returns the windows of an experiment.
+        """Returns the windows of an experiment, whose log has its inputs and expected outputs.
 
-        Args:
-            log: its inputs and expected outputs.
-            plant: at the fitted values, with the start of the experiment.
+        The plant is at the fitted values, with the start of the experiment.
         """
         unknowns = self.fit.problem.unknowns
         length = min(self.horizon, log.duration)
@@ -164,15 +162,9 @@ def fitted(
     name: str, share: float, model: NominalModel, logs: Sequence[Log],
     scale: np.ndarray | None = None, progress: Progress | None = None,
 ) -> Hypothesis:  # fmt: skip
-    """Returns a model, fitted to logs.
+    """Returns a model, fitted to logs, with a name and the probability that it is right.
 
-    Args:
-        name: of the hypothesis, in words.
-        share: probability that it is right.
-        model: its free values, what is known of them, and where the search begins.
-        logs: of the robot.
-        scale: s of another hypothesis, against which its errors count too; its own when None.
-        progress: is told one line per linearisation.
+    Its errors count against the scale s of another hypothesis, or else its own.
 
     Raises:
         InputError: windows do not fit the logs, or a free value has no effect.

@@ -76,14 +76,10 @@ def limits_of(
     model: mujoco.MjModel, known: Sequence[Axis], logs: Sequence[Log], start: np.ndarray,
     widen: float = 0.0,
 ) -> Limits:  # fmt: skip
-    """Returns the limits of a robot.
+    """Returns the limits of a robot whose experiment begins at some positions (nq,).
 
-    Args:
-        model: of the robot.
-        known: joints whose motion the logs show.
-        logs: of the robot.
-        start: positions where the experiment begins, shape (nq,).
-        widen: share of itself by which the range of the logs is widened, on each side.
+    The logs show the motion of the known axes. Their range is widened by a share of itself on each
+    side.
 
     Raises:
         InputError: the share is not one of 0 to 10.
@@ -121,29 +117,17 @@ def margins(
 ) -> tuple[tuple[Margin, ...], str]:
     """Returns the margins of a simulated experiment, the nearest first, and what touches.
 
-    Args:
-        model: of the robot.
-        limits: of the experiment.
-        inputs: shape (N, nu).
-        qpos: simulated, shape (N, nq).
-        qvel: likewise, shape (N, nv).
-
-    Returns:
-        The margins, and two bodies that touch and may not, in words; "" where none do.
+    It has inputs (N, nu), positions (N, nq) and rates (N, nv). Of what touches and may not, two
+    bodies are told in words; "" where none do.
     """
-    out = []
-    for k, j in enumerate(limits.joints):
-        for limit, column in ((limits.positions[k], qpos[:, model.jnt_qposadr[j]]),
-                              (limits.speeds[k], qvel[:, model.jnt_dofadr[j]])):  # fmt: skip
-            if limit is not None:
-                out.append(Margin(limit, float(column.min()), float(column.max())))
-    for limit, column in zip(limits.inputs, inputs.T, strict=True):
-        out.append(Margin(limit, float(column.min()), float(column.max())))
     force, touch = _looked(model, limits, qpos, qvel, inputs)
-    for limit, column in zip(limits.forces, force.T, strict=False):
-        if limit is not None:
-            out.append(Margin(limit, float(column.min()), float(column.max())))
-    return tuple(sorted(out, key=lambda m: m.share)), touch
+    pairs: list[tuple[Limit | None, np.ndarray]] = []
+    for k, j in enumerate(limits.joints):
+        pairs.append((limits.positions[k], qpos[:, model.jnt_qposadr[j]]))
+        pairs.append((limits.speeds[k], qvel[:, model.jnt_dofadr[j]]))
+    pairs += [*zip(limits.inputs, inputs.T, strict=True), *zip(limits.forces, force.T, strict=True)]
+    found = [Margin(limit, float(x.min()), float(x.max())) for limit, x in pairs if limit]
+    return tuple(sorted(found, key=lambda m: m.share)), touch
 
 
 def keeps(found: Sequence[Margin]) -> bool:
@@ -162,15 +146,12 @@ def _looked(
     if not needs_force and not limits.looks:
         return force, ""
     for k, (q, v, u) in enumerate(zip(qpos, qvel, inputs, strict=True)):
-        data.qpos[:] = q
+        data.qpos[:], data.qvel[:], data.ctrl[:nu] = q, v, u
+        mujoco.mj_fwdPosition(model, data)
         if needs_force:
-            data.qvel[:], data.ctrl[:nu] = v, u
-            mujoco.mj_fwdPosition(model, data)
             mujoco.mj_fwdVelocity(model, data)
             mujoco.mj_fwdActuation(model, data)
             force[k] = data.actuator_force[:nu]
-        else:
-            mujoco.mj_fwdPosition(model, data)
         new = _pairs(model, data) - limits.touching if limits.looks else frozenset()
         if new:
             a, b = min(new)

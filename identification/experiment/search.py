@@ -25,13 +25,12 @@ def search(
     budget: int,
     rng: np.random.Generator,
 ) -> Iterator[tuple[R, C]]:
-    """Yields recipes that keep the limits, with what they give.
+    """Yields recipes that keep the limits, with what they give, until the budget of these is spent.
 
     Args:
         draw: returns a random recipe; it is told how many were tried before.
         change: returns a recipe that is near to another one.
-        attempt: returns a recipe, made smaller until it keeps the limits, with what it gives; None
-            where none does.
+        attempt: returns a recipe, made smaller until it keeps the limits, with what it gives.
         value: says how good that is; more is better.
         budget: how many are evaluated.
         rng: of random numbers.

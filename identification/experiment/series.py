@@ -32,12 +32,9 @@ class Series:
     def at(
         self, time: np.ndarray, center: np.ndarray, room: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Returns values and their first two derivatives, each of shape (N, n).
+        """Returns values and two derivatives, each (N, n), at even times (N,) from zero [s].
 
-        Args:
-            time: even, from zero, shape (N,) [s].
-            center: c, shape (n,).
-            room: s, shape (n,).
+        The center is c, (n,), the room to either side s, (n,).
         """
         ω = 2 * np.pi * self.waves / time[-1]
         sin, cos = np.sin(np.outer(time, ω)), np.cos(np.outer(time, ω))

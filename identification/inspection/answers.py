@@ -49,10 +49,7 @@ def find_answers(
 ) -> tuple[Answer, ...]:
     """Returns for each output the input that it answers best; none where nothing is clear.
 
-    Args:
-        step: of the samples [s].
-        inputs: by name, shape (n,), finite.
-        outputs: by name, shape (n,), finite.
+    Inputs and outputs are given by name, shape (n,), finite, every `step` [s].
     """
     seen = {name: _centred(u[:MOST]) for name, u in inputs.items()}
     found = []

@@ -32,21 +32,14 @@ _DRIVES = {"position": "a position servo: its input is a setpoint",
 
 @dataclass(frozen=True)
 class Beginning:
-    """A robot's file to begin with, and sentences on what stands in it.
+    """A robot's file to begin with, and sentences on what stands in it."""
 
-    Attributes:
-        path: of the file.
-        found: what the model and the log say.
-        guessed: what is for the user to judge.
-        needs: what a fit will ask for.
-        torques: whether `identification torques` has what it needs: all joints measured, and forces
-            as inputs, often enough that positions tell accelerations.
-    """
-
-    path: Path
-    found: tuple[str, ...]
-    guessed: tuple[str, ...]
-    needs: tuple[str, ...]
+    path: Path  # of the file
+    found: tuple[str, ...]  # what the model and the log say
+    guessed: tuple[str, ...]  # what is for the user to judge
+    needs: tuple[str, ...]  # what a fit will ask for
+    # Whether `identification torques` has what it needs: all joints measured, and forces as inputs,
+    # often enough that positions tell accelerations.
     torques: bool = False
 
 

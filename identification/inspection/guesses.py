@@ -12,7 +12,7 @@ import numpy as np
 
 from identification.logs.names import group
 from identification.logs.sampling import FloatArray
-from identification.logs.units import UNITS, to_si
+from identification.logs.units import UNITS
 
 Role = Literal["input", "output", ""]
 # Words of a name, the role of such a column, and its SI unit ("" where the word does not tell it).
@@ -60,9 +60,7 @@ def family(name: str) -> str:
 def unit_of(name: str, farthest: float) -> tuple[str, str]:
     """Returns the unit of a column as a word of `UNITS`, and why it is believed; "" for unknown.
 
-    Args:
-        name: of the column.
-        farthest: the largest number of its family.
+    `farthest` is the largest number of its family.
     """
     brackets = _BRACKETS.search(name)
     last = re.split(r"[_.\s]", name)[-1]
@@ -92,8 +90,3 @@ def time_unit(time: FloatArray) -> str:
     steps = np.diff(time)
     usual = float(np.median(steps[steps > 0])) if (steps > 0).any() else 1.0
     return next(unit for most, unit in _STEPS if usual < most)
-
-
-def seconds(time: FloatArray, unit: str) -> FloatArray:
-    """Returns stamps in seconds from the first one."""
-    return (time - time[0]) * to_si(unit)[1]

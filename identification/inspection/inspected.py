@@ -17,7 +17,6 @@ from identification.inspection.guesses import (
     family,
     is_time,
     role_of,
-    seconds,
     time_unit,
     unit_of,
 )
@@ -26,7 +25,8 @@ from identification.logs.names import listed, lookup
 from identification.logs.sampling import MIN_ROWS, FloatArray, grid
 from identification.logs.sidecar import read_sidecar
 from identification.logs.stamps import with_time
-from identification.logs.table import Table, renamed
+from identification.logs.table import renamed
+from identification.logs.units import to_si
 
 GAP = 1.5  # of the usual interval, from which samples are missing
 EVEN = 1e-2  # of the usual interval, by which stamps of an even log differ
@@ -82,7 +82,7 @@ class Inspection:
     @property
     def step(self) -> float:
         """The usual interval of its rows [s]."""
-        return usual(self.time)
+        return float(np.median(np.diff(np.unique(self.time))))
 
 
 def inspect_log(path: str | os.PathLike[str]) -> Inspection:
@@ -110,7 +110,8 @@ def inspect_log(path: str | os.PathLike[str]) -> Inspection:
     table = with_time(renamed(table, sidecar), sidecar)
     if len(table.data) < MIN_ROWS:
         raise InputError(f"{path} has fewer than {MIN_ROWS} rows; record the log again")
-    name = _time_of(table)
+    times = (n for n in table.names if is_time(n, table[n]))
+    name = "time" if "time" in table.names else next(times, "")
     if not name and not sidecar.sampling_time:
         raise InputError(
             f"{path} has no column that looks like time; it has {listed(table.names)}; write the"
@@ -119,10 +120,14 @@ def inspect_log(path: str | os.PathLike[str]) -> Inspection:
         )
     unit = sidecar.units.get("time") or (time_unit(table[name]) if name else "s")
     declared = grid(0.0, sidecar.sampling_time or 1.0, len(table.data))
-    time: FloatArray = seconds(table[name], unit) if name else declared
+    time: FloatArray = declared
+    if name:
+        time = (table[name] - table[name][0]) * to_si(unit)[1]
     values = {n: table[n] for n in table.names if n != name}
     full = {n: x for n, x in values.items() if np.isfinite(x).sum() >= MIN_ROWS}
-    farthest = _farthest(full)
+    farthest: dict[str, float] = {}  # columns of a family have one unit
+    for n, x in full.items():
+        farthest[family(n)] = max(farthest.get(family(n), 0.0), float(np.nanmax(np.abs(x))))
     columns = tuple(
         _column(n, time, x, lookup(sidecar.units, n) or "", farthest[family(n)])
         for n, x in full.items()
@@ -136,19 +141,6 @@ def inspect_log(path: str | os.PathLike[str]) -> Inspection:
         answers=_answers(time, full, columns), left_out=texts,
         remarks=table.remarks,
     )  # fmt: skip
-
-
-def usual(time: FloatArray) -> float:
-    """Returns the median interval of stamps that differ [s]."""
-    return float(np.median(np.diff(np.unique(time))))
-
-
-def _farthest(values: Mapping[str, FloatArray]) -> dict[str, float]:
-    """Returns the largest number of all columns of a family, by its name: they have one unit."""
-    out: dict[str, float] = {}
-    for name, x in values.items():
-        out[family(name)] = max(out.get(family(name), 0.0), float(np.nanmax(np.abs(x))))
-    return out
 
 
 def _column(name: str, time: FloatArray, values: FloatArray, said: str, farthest: float) -> Column:
@@ -184,13 +176,6 @@ def _answers(
     if len(t) < MIN_ROWS:
         return ()
     return find_answers(step, {n: even[n] for n in inputs}, {n: even[n] for n in outputs})
-
-
-def _time_of(table: Table) -> str:
-    """Returns the name of the column of time, "" where none looks like it."""
-    if "time" in table.names:
-        return "time"
-    return next((n for n in table.names if is_time(n, table[n])), "")
 
 
 def _texts(path: Path) -> tuple[str, ...]:

@@ -26,12 +26,9 @@ KINDS = "biufm M".replace(" ", "")  # numbers, truths and times of numpy
 
 
 def names_of(name: str, width: int, labels: Sequence[str] = ()) -> tuple[str, ...]:
-    """Returns the names of the columns of vectors.
+    """Returns the names of the columns of vectors of some width, 0 for plain numbers.
 
-    Args:
-        name: of the vectors.
-        width: of each, 0 for plain numbers.
-        labels: of their entries; these are counted from 1 where there are not as many labels.
+    Their entries are called by their labels, or counted from 1 where there are not as many labels.
     """
     if not width:
         return (name,)
@@ -41,12 +38,7 @@ def names_of(name: str, width: int, labels: Sequence[str] = ()) -> tuple[str, ..
 
 
 def as_numbers(values: np.ndarray, is_stamp: bool) -> FloatArray:
-    """Returns numbers as floats; stamps that no float holds, and dates, count from the first.
-
-    Args:
-        values: shape (n,); dates become seconds.
-        is_stamp: whether they are stamps of time.
-    """
+    """Returns numbers (n,) as floats; dates [s] and stamps beyond a float count from the first."""
     if values.dtype.kind in "mM":
         ns = values.astype(f"{values.dtype.kind}8[ns]").astype(np.int64)
         return np.asarray((ns - ns[:1]) * 1e-9, np.float64)
@@ -62,14 +54,10 @@ def table_of(
     stamps: Collection[str],
     place: Callable[[int], str],
 ) -> Table:
-    """Returns the wanted columns of a file as a table.
+    """Returns the wanted columns of a file as a table; all where nothing says which are wanted.
 
-    Args:
-        path: of the file.
-        columns: by name, what reads each: shape (n,), the same n for all.
-        wanted: says which of them to read; all when None.
-        stamps: those that are stamps of time.
-        place: says in words where a row stands.
+    Each column is given by what reads it, shape (n,) with the same n for all, `stamps` are those of
+    time, and `place` says in words where a row stands.
     """
     asked = columns if wanted is None else wanted([*columns])
     names = tuple(name for name in columns if name in asked)
@@ -91,15 +79,10 @@ def read_npz(
     wanted: Callable[[Sequence[str]], Collection[str]] | None,
     stamps: Collection[str] = ("time",),
 ) -> Table:
-    """Reads the table in an `.npz` file.
+    """Reads the table in an `.npz` file; see `formats.log_table`.
 
     Arrays of shape (n,) and (n, m) are columns, where n is the length that most of them have; a
     single number Ts is the sampling time [s]. Other arrays are left out.
-
-    Args:
-        path: of the file.
-        wanted: says which of its columns to read; all when None.
-        stamps: columns of time.
 
     Raises:
         InputError: it is damaged, or has no arrays of numbers of one length.

@@ -19,7 +19,7 @@ from dataclasses import replace
 import numpy as np
 
 from identification.errors import InputError
-from identification.logs.fitting_steps import EXACT, Missing, Stamps, fits, judged, missing_rows
+from identification.logs.fitting_steps import EXACT, Stamps, fits, judged, missing_rows
 from identification.logs.sampling import (
     JITTER,
     MIN_ROWS,
@@ -43,8 +43,7 @@ def evened_stamps(
 ) -> Table:
     """Returns a table with even stamps where digits were all that they lost, which it tells.
 
-    Returns:
-        The table as it is where its stamps are even already, or uneven for another reason.
+    The table stays as it is where its stamps are even already, or uneven for another reason.
     """
     stamps, declared = _stamps(table), sidecar.sampling_time
     if stamps is None:
@@ -215,20 +214,15 @@ def _refuse_missing(table: Table, stamps: Stamps, sidecar: Sidecar, declared: fl
     loose = _width(stamps, declared)
     for width in (loose - stamps.quanta / 2, loose):
         if places := missing_rows(stamps.time, width, declared):
+            (row, count), time = places[0], table["time"]
             is_sure = stamps.steps is None and len(places) <= FEW
-            cure = "save the rows before and behind as two logs"
-            cure += "" if is_sure else ", or correct sampling_time if no rows are missing"
-            raise InputError(f"{_missing_sentence(table, places, sidecar)}; {cure}")
-
-
-def _missing_sentence(table: Table, places: Sequence[Missing], sidecar: Sidecar) -> str:
-    """Returns words that tell where rows are missing, and how many."""
-    row, time = places[0].row, table["time"]
-    rest = len(places) - 1
-    more = f", and in {rest} more place{'s' * (rest > 1)}" if rest else ""
-    rows = "1 row is" if places[0].count == 1 else f"{places[0].count} rows are"
-    return (
-        f"{table.place(row - 1)}: about {rows} missing behind it: sampling_time ="
-        f" {sidecar.sampling_time:.6g} in {sidecar.file_of('sampling_time')} fits the rows up to"
-        f" {time[row - 1]:.9g} s and those from {time[row]:.9g} s on, but not both at once{more}"
-    )
+            rest = len(places) - 1
+            more = f", and in {rest} more place{'s' * (rest > 1)}" if rest else ""
+            rows = "1 row is" if count == 1 else f"{count} rows are"
+            cure = "" if is_sure else ", or correct sampling_time if no rows are missing"
+            raise InputError(
+                f"{table.place(row - 1)}: about {rows} missing behind it: sampling_time ="
+                f" {declared:.6g} in {sidecar.file_of('sampling_time')} fits the rows up to"
+                f" {time[row - 1]:.9g} s and those from {time[row]:.9g} s on, but not both at once"
+                f"{more}; save the rows before and behind as two logs{cure}"
+            )

@@ -12,7 +12,6 @@ from identification.errors import InputError, repeated
 from identification.files import toml_table, toml_value, write_text
 from identification.logs.log import Log
 from identification.logs.names import group, listed, quoted
-from identification.logs.sampling import FloatArray
 from identification.logs.stamps import WHOLE, exact_stamps
 from identification.logs.table import Table
 
@@ -27,18 +26,11 @@ def parse_csv(
     wanted: Callable[[Sequence[str]], Collection[str]] | None = None,
     stamps: Collection[str] = ("time",),
 ) -> Table:
-    """Reads the table in a CSV file.
+    """Reads the table in the bytes of a CSV file; see `formats.log_table`.
 
-    Comment lines above the header, a byte order mark, CRLF and blank lines are accepted.
-
-    Args:
-        raw: the bytes of the file.
-        path: where it is, for messages.
-        header: names of the columns of a file that has none, in their order; where it has one,
-            they replace it.
-        wanted: says which of the columns of a file to read; their empty cells are NaN, and the
-            others are left out. All columns, and no empty cells, when None.
-        stamps: columns whose numbers count less the first one, where a float cannot hold them.
+    Comment lines above the header, a byte order mark, CRLF and blank lines are accepted. A given
+    header replaces that of the file, where it has one. The empty cells of wanted columns are NaN;
+    where nothing says which are wanted, all columns are read, and none may have an empty cell.
     """
     text = _decoded(raw, path).replace("\r\n", "\n").replace("\r", "\n")
     lines = text.split("\n")
@@ -62,7 +54,16 @@ def parse_csv(
         raise InputError(
             f"{path} has a header and no rows under it; record the log again, or export its samples"
         )
-    data = _numbers([lines[k] for k in rows], rows, names, path, keep, wanted is not None)
+    body, gaps = [lines[k] for k in rows], wanted is not None
+    try:
+        data = np.loadtxt(body, delimiter=",", comments=None, ndmin=2)
+    except ValueError:
+        data = np.empty(0)
+    if data.shape == (len(body), len(names)):
+        data = data[:, keep]
+    else:  # a cell is empty or is no number, or a row has too many of them
+        each = zip(body, rows, strict=True)
+        data = np.array([_row(line, k, names, path, keep, gaps) for line, k in each])
     unread = tuple(n for k, n in enumerate(names) if k not in keep)
     kept = tuple(names[k] for k in keep)
     for k, column in enumerate(keep):
@@ -113,24 +114,6 @@ def _header(line: str, number: int, path: Path) -> tuple[str, ...]:
             f" in {path.with_suffix('.toml')}"
         )
     return names
-
-
-def _numbers(
-    body: list[str],
-    rows: list[int],
-    names: tuple[str, ...],
-    path: Path,
-    keep: list[int],
-    gaps: bool,
-) -> FloatArray:
-    try:
-        data = np.loadtxt(body, delimiter=",", comments=None, ndmin=2)
-    except ValueError:
-        data = None
-    if data is not None and data.shape == (len(body), len(names)):
-        return np.asarray(data[:, keep])
-    each = zip(body, rows, strict=True)
-    return np.array([_row(line, k, names, path, keep, gaps) for line, k in each], dtype=np.float64)
 
 
 def _row(

@@ -15,12 +15,11 @@ def how_to_turn(
     instead: str = "",
     renamed: bool = False,
 ) -> str:
-    """Says how to turn the sign of some columns of a log.
+    """Says how to turn the sign of some columns of a log's file.
 
     Args:
-        columns: of the log's file.
-        factors: those that the log's TOML gives, by column; -1 is not written where one stands.
-            None where it is not known which it gives.
+        columns: of the file.
+        factors: those that the log's TOML gives, by column; None where they are not known.
         instead: other columns that may be turned as well, such as ", or of force".
         renamed: whether these are the new names of columns.
     """

@@ -61,10 +61,8 @@ def decimate(log: Log, every: int, hold: Literal["zoh", "foh"] = "foh") -> Log:
 def _lines(first: np.ndarray, last: np.ndarray) -> np.ndarray:
     """Computes the corners of the straight lines nearest to inputs, shape (n + 1, nu).
 
-    Args:
-        first: inputs where each of the `every` short steps of a long one begins, shape
-            (n, every, nu).
-        last: inputs where it ends; between both they are a straight line.
+    The inputs are given where each of the `every` short steps of a long one begins and where it
+    ends, each of shape (n, every, nu); between both they are a straight line.
     """
     n, every, nu = first.shape
     middle = (np.arange(every) + 0.5) / every  # of each short step, on the rising half of a hat

@@ -31,9 +31,8 @@ GAP = 1.5  # times the usual step of the stamps: from there a tick is missing be
 COARSE = 0.5  # of a step: from there the rounding of stamps merges rows and makes gaps
 EXACT = 1e-3  # relative, to which the step must be known: values follow its square
 FEW_PLACES = 2  # places where rows are missing, of any length
-MOST_MISSING = (
-    0.05  # of the rows, that may be missing in more places: a wrong step looks like these, too
-)
+# Of the rows, that may be missing in more places: a wrong step looks like these, too.
+MOST_MISSING = 0.05
 
 
 @dataclass(frozen=True)
@@ -61,46 +60,26 @@ class Stamps:
 
 
 def judged(time: FloatArray) -> Stamps:
-    """Returns stamps with their quanta and the sampling times that fit them.
-
-    Args:
-        time: stamps, shape (n,) [s], none smaller than the one before.
-    """
+    """Returns stamps (n,) [s], none smaller than the one before, with what tells their grid."""
     quanta = quanta_of(time)
     mean = float(time[-1] - time[0]) / (len(time) - 1)
     return Stamps(time, quanta, _fitting_steps(time, quanta / 2 + JITTER * mean))
 
 
 def fits(time: FloatArray, width: FloatArray, step: float) -> bool:
-    """Returns whether some grid of a step comes as near to all stamps as they allow.
-
-    Args:
-        time: stamps, shape (n,) [s].
-        width: how far each may be off the grid, shape (n,) [s].
-        step: of the grid [s].
-    """
+    """Returns whether a grid of a step [s] is as near to stamps (n,) [s] as a width (n,) allows."""
     off = off_grid(time, step)
     return bool(np.max(off - width) <= np.min(off + width) + float_resolution(time))
 
 
-@dataclass(frozen=True)
-class Missing:
-    """Rows that are missing where a declared step fits the rows before and behind."""
-
-    row: int  # the first row behind them
-    count: int  # how many there are, give or take what a quantum hides
-
-
-def missing_rows(time: FloatArray, width: FloatArray, step: float) -> list[Missing]:
+def missing_rows(time: FloatArray, width: FloatArray, step: float) -> list[tuple[int, int]]:
     """Finds the places where missing rows explain that a step does not fit all stamps.
 
-    Args:
-        time: stamps, shape (n,) [s].
-        width: how far each may be off the grid, shape (n,) [s].
-        step: of the grid [s].
+    Stamps (n,) may each be off a grid of this step by a width (n,), all in [s].
 
     Returns:
-        The places in their order; none where missing rows do not explain it.
+        The first row behind each place, and how many rows are missing there, give or take what a
+        quantum hides; nothing where missing rows do not explain it.
     """
     off = off_grid(time, step)
     low, high, least = off - width, off + width, float_resolution(time)
@@ -122,19 +101,16 @@ def missing_rows(time: FloatArray, width: FloatArray, step: float) -> list[Missi
         return []
     if len(counts) > FEW_PLACES and sum(counts) > MOST_MISSING * len(time):
         return []
-    return [Missing(row, count) for row, count in zip(begins[1:], counts, strict=True)]
+    return [*zip(begins[1:], counts, strict=True)]
 
 
 def quanta_of(time: FloatArray) -> FloatArray:
-    """Returns the quantum of each stamp, shape (n,) [s].
+    """Returns the quantum of each stamp (n,) [s], none of them smaller than the one before.
 
-    "%g" prints larger stamps with fewer decimals, so that each decade has a quantum of its own,
-    and none a larger one than the decade above it. Where rows share stamps, a clock ticks slower
-    than they come, and all steps are multiples of its tick; without such rows even sampling itself
-    makes all steps multiples of one.
-
-    Args:
-        time: stamps, shape (n,) [s], none smaller than the one before.
+    "%g" prints larger stamps with fewer decimals, so that each decade has a quantum of its own, and
+    none a larger one than the decade above it. Where rows share stamps, a clock ticks slower than
+    they come, and all steps are multiples of its tick; without such rows even sampling itself makes
+    all steps multiples of one.
     """
     size = np.abs(time)
     decade = np.floor(np.log10(np.where(size > 0, size, np.inf), where=size > 0,
@@ -154,14 +130,10 @@ def quanta_of(time: FloatArray) -> FloatArray:
 
 
 def _printed_tick(steps: FloatArray, digit: float) -> float:
-    """Returns a tick with what digits it lost [s]; zero where the stamps show none.
+    """Returns a tick with what digits it lost [s]; zero where the steps [s] show none.
 
-    Ticks differ by one digit at most. Rounding alone puts stamps that rows share one digit apart,
-    so that a tick must be two digits at least.
-
-    Args:
-        steps: of the stamps [s], some of them zero.
-        digit: the last one that is printed [s].
+    Ticks differ by one printed digit at most. Rounding alone puts stamps that rows share one digit
+    apart, so that a tick must be two digits at least.
     """
     apart = steps[steps > 0]
     if not apart.size:

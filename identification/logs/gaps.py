@@ -54,11 +54,8 @@ class Gap:
 def find_gaps(log: str, c: Channel, y: FloatArray, h: float) -> Iterator[Gap]:
     """Finds the gaps that a straight line would bridge badly, by what it does elsewhere in the log.
 
-    Args:
-        log: name of the log.
-        c: a channel that comes with every sample.
-        y: the channel on the grid, shape (n,).
-        h: step of the grid [s].
+    The channel comes with every sample of the grid, whose step is h [s]; y is the channel on it,
+    (n,).
     """
     intervals = np.rint(np.diff(c.time) / h).astype(int)
     wide = np.flatnonzero(intervals > 1)
@@ -81,11 +78,7 @@ def find_gaps(log: str, c: Channel, y: FloatArray, h: float) -> Iterator[Gap]:
 def find_pauses(log: str, c: Channel, n: int, h: float) -> Iterator[Gap]:
     """Finds where a held input stays away for long though it usually comes with every sample.
 
-    Args:
-        log: name of the log.
-        c: the input.
-        n: samples of the grid.
-        h: its step [s].
+    The grid has n samples and the step h [s].
     """
     for k in np.flatnonzero(np.diff(c.time) > HELD * h).tolist():
         _refuse_longest(log, c, n, h)
@@ -97,14 +90,9 @@ def find_lost_rows(c: Channel, time: FloatArray) -> list[Gap]:
     """Finds the rows that an even log has lost while a held input may have changed.
 
     What the input was in such a row is not known, and acts on all that follows. It is known where
-    the input is the same on both sides and seldom changes from row to row.
-
-    Args:
-        c: the input.
-        time: stamps of the rows, shape (n,) [s], none smaller than the one before.
-
-    Returns:
-        No gap where the rows are not even, or so few are lost that a fit does not feel it.
+    the input is the same on both sides and seldom changes from row to row. The stamps of the rows,
+    shape (n,) [s], are none smaller than the one before. There is no gap where the rows are not
+    even, or so few are lost that a fit does not feel it.
     """
     rows = np.unique(time)
     apart = np.diff(rows) / np.median(np.diff(rows))

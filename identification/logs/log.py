@@ -192,14 +192,7 @@ def halves(log: Log) -> Splits:
 
 
 def check_array(log: str, what: str, array: FloatArray, shape: tuple[int, ...]) -> None:
-    """Refuse an array of another shape, or with a number that is not finite.
-
-    Args:
-        log: name of the log.
-        what: name of the array.
-        array: the numbers, in any shape.
-        shape: the shape that it should have.
-    """
+    """Refuse an array of a log of another shape than it should have, or with infinite numbers."""
     if array.shape != shape:
         raise InputError(
             f"log {log!r}: {what} has shape {array.shape} and should have {shape}; "
@@ -214,13 +207,7 @@ def check_array(log: str, what: str, array: FloatArray, shape: tuple[int, ...]) 
 
 
 def check_splits(log: str, time: FloatArray, splits: Mapping[str, tuple[float, float]]) -> None:
-    """Refuse a named part that is empty, and parts for estimation and validation that overlap.
-
-    Args:
-        log: name of the log.
-        time: its time stamps, shape (n,) [s].
-        splits: its named parts [start, end) [s].
-    """
+    """Refuse an empty part [start, end) [s], and overlapping ones to estimate and to validate."""
     span = f"[{time[0]:g}, {time[-1]:g}] s"
     for name, (start, end) in splits.items():
         first, last = rows_between(time, start, end)

@@ -68,10 +68,8 @@ class Parts:
 def inside(parts: Parts | None, part: Part, places: np.ndarray) -> np.ndarray:
     """Returns which windows lie wholly inside a part of their record, shape (W,).
 
-    Args:
-        parts: of the record; None where all of it is in each part.
-        part: which.
-        places: first sample of each window, and the one behind its last, shape (W, 2).
+    Their places are the first sample of each and the one behind its last, shape (W, 2). Without
+    parts all of the record is in each.
     """
     if parts is None:
         return np.ones(len(places), bool)
@@ -124,11 +122,7 @@ def is_told(count: int) -> np.ndarray:
 
 
 def autocorrelation_time(series: Sequence[np.ndarray]) -> float:
-    """Returns τ of some records of one process, in their steps, at least 1.
-
-    Args:
-        series: x of each record, shape (n,).
-    """
+    """Returns τ of x (n,) of some records of one process, in their steps, at least 1."""
     length = max(map(len, series))
     cov = np.zeros(length)
     for x in series:

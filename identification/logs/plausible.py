@@ -65,14 +65,10 @@ def check_plausible(
 ) -> None:
     """Refuse a column that is too large, or moves too fast, and name the unit that would fit.
 
-    Args:
-        table: columns in SI, with a time column.
-        factors: by column, the factor by which its numbers in the file were multiplied.
-        units: SI unit by column, where known.
-        limits: largest plausible size by column or group [SI].
-        rates: largest plausible speed by column or group [SI/s].
-        sidecar: the TOML file that may give the unit.
-        overrule: how a user may overrule this, for the message.
+    The table is in SI with a time column; the factors are those by which numbers of the file were
+    multiplied, by column. The largest plausible sizes [SI] and speeds [SI/s] are given by column or
+    group. The sidecar is the TOML that may give the unit, and `overrule` says how a user may
+    overrule this.
     """
     for name in table.names:
         size, rate = lookup(limits, name), lookup(rates, name)
@@ -114,16 +110,12 @@ def stands_still(y: np.ndarray) -> bool:
 
 
 def is_noise(y: np.ndarray, inputs: np.ndarray) -> bool:
-    """Returns whether neither its own past nor any input tells anything of a channel.
+    """Returns whether neither its own past nor any input (n, nu) tells anything of a channel (n,).
 
         y_k = c + Σ a_i y_k-i + Σ b_i u_k-i + e_k       i = 1 to `PAST`, with and without a and b
 
     A joint that moves keeps on moving for a while, and does so after its inputs; white noise of a
     sensor does neither. The F test of the two sums of squares decides.
-
-    Args:
-        y: shape (n,).
-        inputs: shape (n, nu).
     """
     if not np.ptp(y) or not _is_untold(y, y[:, None]):  # most channels are told by their own past
         return False
@@ -182,10 +174,8 @@ def refuse_frozen(
     Args:
         log: what was measured.
         output: column of the output.
-        inputs: everything that drives its joint, shape (n, k); the joint counts as driven where all
-            of these vary as before.
-        others: other outputs of its joint, shape (n, m); the joint counts as moving where one of
-            these varies as before.
+        inputs: what drives its joint, shape (n, k); it counts as driven where all vary as before.
+        others: other outputs of its joint, (n, m); it counts as moving where one varies as before.
         overrule: how a user may overrule this, for the message.
         is_rate: whether the output is a rate, which may jump: it is judged at the end only.
     """
@@ -198,7 +188,8 @@ def refuse_frozen(
         return
     step = np.abs(np.diff(y))[moved].min()
     abrupt = np.ptp(y[max(0, first - FEWEST) : first]) > STEPS * step
-    driven, seen = _goes_on(inputs, first), _goes_on(others, first)
+    behind = np.arange(len(y)) >= first
+    driven, seen = _varies(inputs, behind), _varies(others, behind)
     if abrupt and ((driven.size and driven.all()) or seen.any()):
         raise InputError(
             f"{log.output_names[output]} of log {log.name!r} repeats {y[first]:g} from"
@@ -246,11 +237,6 @@ def _stops(y: np.ndarray) -> list[tuple[int, int]]:
     moves = np.flatnonzero(np.abs(np.diff(y)) > ROUNDED * np.ptp(y)) + 1
     pairs = zip(moves[:-1].tolist(), moves[1:].tolist(), strict=True)
     return [(a, b) for a, b in pairs if b - a >= FEWEST and b + SPAN < len(y)]
-
-
-def _goes_on(signals: np.ndarray, first: int) -> np.ndarray:
-    """Returns which signals vary after a sample as much as before it, shape (k,)."""
-    return _varies(signals, np.arange(len(signals)) >= first)
 
 
 def _varies(signals: np.ndarray, part: np.ndarray) -> np.ndarray:

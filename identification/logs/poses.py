@@ -28,17 +28,11 @@ _ORDER = "wxyz"
 
 @dataclass(frozen=True)
 class Pose:
-    """Columns of a log that hold the pose of a body.
+    """Columns of a log that hold the pose of a body."""
 
-    Attributes:
-        name: of what is measured; its positions are NAME_x, ..., NAME_roll.
-        columns: of position x, y, z and of the quaternion w, x, y, z, seven names.
-        position: of the measured frame in the body, p_s, shape (3,) [m].
-        quaternion: of the measured frame in the body, R_s as w, x, y, z, shape (4,).
-    """
-
-    name: str
-    columns: tuple[str, ...]
+    name: str  # of what is measured; its positions are NAME_x, ..., NAME_roll
+    columns: tuple[str, ...]  # of position x, y, z and of the quaternion w, x, y, z, seven names
+    # of the measured frame in the body: p_s [m], and R_s as w, x, y, z
     position: tuple[float, ...] = (0.0, 0.0, 0.0)
     quaternion: tuple[float, ...] = (1.0, 0.0, 0.0, 0.0)
 
@@ -62,11 +56,7 @@ def measured_columns(outputs: Sequence[str], poses: Sequence[Pose]) -> tuple[str
 
 
 def with_angles(table: Table, poses: Sequence[Pose]) -> Table:
-    """Returns a table with positions and angles in the place of the poses.
-
-    Args:
-        table: with the columns of the poses [m]; rows may have empty cells.
-        poses: what is measured.
+    """Returns a table with positions [m] and angles [rad] in the place of measured poses.
 
     Raises:
         InputError: four numbers are no quaternion, or a pitch comes near 90 degrees.

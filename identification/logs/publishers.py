@@ -209,12 +209,8 @@ def _there_and_back(x: FloatArray, is_same: np.ndarray, least: float) -> tuple[n
 
     Such a pair stands among rows with stamps of their own, and without one of its two rows the
     output moves there as it does in the rest of the log. So much is known of how it moves only
-    where most stamps have one row.
-
-    Args:
-        x: the output, shape (n,).
-        is_same: whether each row but the first has the stamp of the row before it, shape (n - 1,).
-        least: what a distance has to exceed to be judged.
+    where most stamps have one row. A distance is judged where it exceeds `least`; `is_same` says of
+    each row but the first whether it has the stamp of the row before it, shape (n - 1,).
 
     Returns:
         The first row of each such pair, and how far the output moves at most between other rows.

@@ -63,7 +63,7 @@ def read_log(
     Args:
         path: `.csv` with the header `time,<inputs>,<outputs>[,<optional>]`, `.mat` with `u`, `y`,
             `Ts`, or a path of another kind (see `identification.logs.formats`); a `.toml` of the
-            same stem may say more (see `identification.logs.sidecar`).
+            same stem may say more (see `docs/robot/keys.md`).
         inputs: names of the actuators (nu).
         outputs: names of the sensors (ny).
         optional: columns that may be there; they become `Log.extras`.
@@ -103,7 +103,15 @@ def read_log(
             f"{sidecar.file_of('values')} gives values of a robot under [values], which only the"
             " robots of read_robot have; leave them out"
         )
-    table = _read_table(path, inputs, measured, optional, sidecar, lenient)
+    olds = {new: old for old, new in sidecar.columns.items()}
+    table = log_table(
+        path,
+        wanted_columns({"time", *columns}, sidecar) if lenient else None,
+        header=sidecar.header,
+        stamps={"time", *(old for old, new in sidecar.columns.items() if new == "time")},
+        asked=[olds.get(name, name) for name in (*inputs, *measured)],
+        of_matlab=(inputs, measured, optional),
+    )
     for key in ("units", "factors"):
         check_keys(
             f"column under {key!r} in {sidecar.file_of(key)}:",
@@ -140,7 +148,7 @@ def read_log(
     if lenient and not _is_even(table, sidecar):
         refuse_contradicted(table, outputs, sidecar, trust_rows)
         refuse_two_inputs(table, inputs, cure, trust_rows)
-        table, gaps = _evened(table, inputs, sidecar)
+        table, gaps = even_out(table, inputs, sidecar.hold, sidecar.sampling_time)
     check_finite(table)
     time = table["time"]
     check_time(time, table.place, sidecar.sampling_time)
@@ -177,43 +185,6 @@ def _is_even(table: Table, sidecar: Sidecar) -> bool:
     except InputError:
         return False
     return True
-
-
-def _evened(
-    table: Table, inputs: Sequence[str], sidecar: Sidecar
-) -> tuple[Table, tuple[tuple[float, float], ...]]:
-    """Returns a table on an even grid, which tells what was done, and where it may be wrong [s]."""
-    names = [n for n in table.names if n != "time"]
-    even = even_out(
-        table.path.stem, table["time"], {n: table[n] for n in names}, inputs, sidecar.hold,
-        sidecar.sampling_time,
-    )  # fmt: skip
-    data = np.column_stack([even.time, *(even.channels[n] for n in names)])
-    return Table(
-        table.path, ("time", *names), data,
-        lambda row: f"sample {row + 1} of the grid of {table.path}",
-        remarks=(*table.remarks, even.sentence),
-    ), even.gaps  # fmt: skip
-
-
-def _read_table(
-    path: Path,
-    inputs: Sequence[str],
-    outputs: Sequence[str],
-    optional: Sequence[str],
-    sidecar: Sidecar,
-    lenient: bool,
-) -> Table:
-    """Reads the table in a log; columns that nobody asks for are left out where lenient."""
-    olds = {new: old for old, new in sidecar.columns.items()}
-    return log_table(
-        path,
-        wanted_columns({"time", *inputs, *outputs, *optional}, sidecar) if lenient else None,
-        header=sidecar.header,
-        stamps={"time", *(old for old, new in sidecar.columns.items() if new == "time")},
-        asked=[olds.get(name, name) for name in (*inputs, *outputs)],
-        of_matlab=(inputs, outputs, optional),
-    )
 
 
 def _stacked(table: Table, names: Sequence[str]) -> FloatArray:

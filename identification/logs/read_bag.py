@@ -52,16 +52,11 @@ def read_bag(
     wanted: Callable[[Sequence[str]], Collection[str]] | None,
     asked: Collection[str] = (),
 ) -> Table:
-    """Reads the table in a recording of ROS.
-
-    Args:
-        path: of its file, or of the folder that `ros2 bag record` made.
-        wanted: says which of its columns to read; all when None.
-        asked: columns that it should have; a topic that is missing is told by its name.
+    """Reads the table in a recording of ROS; see `formats.log_table`.
 
     Raises:
-        InputError: rosbags is not installed, the recording is damaged, lacks an asked topic, or
-            has no numbers.
+        InputError: rosbags is not installed, the recording is damaged, lacks the topic of an asked
+            column, or has no numbers.
     """
     with _open(path) as reader:
         topics = _columns(reader)

@@ -26,7 +26,7 @@ from identification.lazy import needed
 from identification.logs.arrays import KINDS, names_of, table_of
 from identification.logs.table import Table
 
-EXTRA = "parquet"
+EXTRA, READING = "parquet", "reading Parquet and LeRobot data sets"
 WIDEST = 256  # entries of a list: more is a picture, and no signal
 UNPACKED = 8  # times as large the numbers of a file may be as the largest file
 EPISODE, FRAME, STAMP = "episode_index", "frame_index", "timestamp"  # columns of LeRobot
@@ -51,12 +51,7 @@ def read_parquet(
     wanted: Callable[[Sequence[str]], Collection[str]] | None,
     stamps: Collection[str] = ("time",),
 ) -> Table:
-    """Reads the table in a file of Parquet, or in an episode of a LeRobot data set.
-
-    Args:
-        path: of the file, or of an episode as `SET/episode_3`.
-        wanted: says which of its columns to read; all when None.
-        stamps: columns of time.
+    """Reads the table in a file of Parquet, or in an episode `SET/episode_3` of a LeRobot data set.
 
     Raises:
         InputError: pyarrow is not installed, the file is damaged, or it holds several episodes.
@@ -84,7 +79,7 @@ def _columns(
         chunked = content.column(name)
         width = _width(chunked)
         for k, column in enumerate(names_of(name, width, _labels(info, name))):
-            if width or _is_plain(chunked):
+            if width or _is_number(chunked.type) or str(chunked.type).startswith("timestamp"):
                 out[column] = partial(_numbers, chunked, width, k)
     fps = info.get("fps")
     if STAMP in out and STAMP not in stamps and "time" not in out and EPISODE in out:
@@ -106,28 +101,18 @@ def _frames(
 
 def _width(chunked: Any) -> int:
     """Returns the length of the lists in a column; 0 where it has none, or not of one length."""
-    import pyarrow as pa
     import pyarrow.compute as pc
 
-    kind = chunked.type
-    if not (pa.types.is_list(kind) or pa.types.is_large_list(kind)
-            or pa.types.is_fixed_size_list(kind)):  # fmt: skip
+    kind, types = chunked.type, needed("pyarrow", EXTRA, READING).types
+    if not (types.is_list(kind) or types.is_large_list(kind) or types.is_fixed_size_list(kind)):
         return 0
     lengths = pc.unique(pc.list_value_length(chunked)).to_pylist()
     is_one = len(lengths) == 1 and lengths[0] and lengths[0] <= WIDEST and not chunked.null_count
     return int(lengths[0]) if is_one and _is_number(kind.value_type) else 0
 
 
-def _is_plain(chunked: Any) -> bool:
-    import pyarrow as pa
-
-    return _is_number(chunked.type) or pa.types.is_timestamp(chunked.type)
-
-
 def _is_number(kind: Any) -> bool:
-    import pyarrow as pa
-
-    types = pa.types
+    types = needed("pyarrow", EXTRA, READING).types
     return bool(types.is_integer(kind) or types.is_floating(kind) or types.is_boolean(kind))
 
 
@@ -186,7 +171,7 @@ def _refuse_several(content: Any, path: Path, home: Path | None) -> None:
 
 def _episode(home: Path, number: int) -> Any:
     """Returns the rows of an episode as a table of pyarrow."""
-    needed("pyarrow.parquet", EXTRA, "reading Parquet and LeRobot data sets")
+    needed("pyarrow.parquet", EXTRA, READING)
     import pyarrow as pa
     import pyarrow.compute as pc
 
@@ -205,7 +190,7 @@ def _episode(home: Path, number: int) -> Any:
 
 def _opened(path: Path, columns: list[str] | None = None) -> Any:
     """Returns a file of Parquet, or some of its columns, as a table of pyarrow."""
-    parquet = needed("pyarrow.parquet", EXTRA, "reading Parquet and LeRobot data sets")
+    parquet = needed("pyarrow.parquet", EXTRA, READING)
     raw = read_bytes(path, what="file of Parquet")
     try:
         file = parquet.ParquetFile(io.BytesIO(raw))

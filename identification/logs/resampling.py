@@ -13,7 +13,6 @@ draws a straight line between the samples of a channel, and refuses a gap that i
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -21,40 +20,30 @@ from identification.errors import InputError
 from identification.logs.gaps import Channel, Gap, find_gaps, find_lost_rows, find_pauses
 from identification.logs.names import quoted
 from identification.logs.sampling import MIN_ROWS, FloatArray, grid
+from identification.logs.table import Table
 
 EVEN = 1e-3  # of an interval, by which even stamps may differ
 MOST_PER_ROW = 100  # samples of a grid: of more all but a hundredth would be made up
 ROUND = 0.02  # of the rate, by which it may be rounded: any rate near the samples' own would do
 
 
-@dataclass(frozen=True)
-class Even:
-    """Channels on an even grid."""
-
-    time: FloatArray  # stamps of the grid, shape (n,) [s]
-    channels: Mapping[str, FloatArray]  # by name, shape (n,), each in a unit of its own
-    sentence: str  # what was done
-    gaps: tuple[tuple[float, float], ...]  # begin and end of where samples may be wrong [s]
-
-
 def even_out(
-    name: str,
-    time: FloatArray,
-    channels: Mapping[str, FloatArray],
-    inputs: Sequence[str],
-    hold: str,
-    step: float | None = None,
-) -> Even:
-    """Put channels on an even grid.
+    table: Table, inputs: Sequence[str], hold: str, step: float | None = None
+) -> tuple[Table, tuple[tuple[float, float], ...]]:
+    """Put the columns of a table on an even grid.
 
     Args:
-        name: of the log.
-        time: stamps of the rows, shape (n,) [s], finite, none smaller than the one before.
-        channels: by name, shape (n,); NaN where nothing arrived.
-        inputs: which of them are inputs.
+        table: its stamps are finite, none smaller than the one before; NaN where nothing arrived.
+        inputs: which of its columns are inputs.
         hold: of the inputs, "zoh" or "foh".
         step: of the grid [s]; the median interval when None.
+
+    Returns:
+        The table on the grid, which tells what was done, and begin and end of each gap over which
+        samples may be wrong [s].
     """
+    name, time = table.path.stem, table["time"]
+    channels = {n: table[n] for n in table.names if n != "time"}
     back = np.flatnonzero(np.diff(time) < 0)
     if back.size:
         at = time[back[0]]
@@ -92,7 +81,11 @@ def even_out(
     why = _why(time, channels)
     text = _sentence(name, why, [*timed, *steady], t, h) + _shared_sentence(time, channels)
     text += _gaps_sentence(gaps)
-    return Even(t, out, text, tuple(dict.fromkeys((gap.begin, gap.end) for gap in gaps)))
+    even = Table(
+        table.path, ("time", *out), np.column_stack([t, *out.values()]),
+        lambda row: f"sample {row + 1} of the grid of {table.path}", remarks=table.remarks,
+    )  # fmt: skip
+    return even.told(text), tuple(dict.fromkeys((gap.begin, gap.end) for gap in gaps))
 
 
 def on_a_grid(

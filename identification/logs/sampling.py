@@ -71,23 +71,16 @@ def snapped(time: FloatArray) -> FloatArray:
 
 
 def float_resolution(time: FloatArray) -> float:
-    """Returns how far floats leave a grid [s]: a stamp, the step, k h and their sum are rounded.
-
-    Args:
-        time: stamps, shape (n,) [s].
-    """
+    """Returns how far floats leave a grid [s]: stamp, step, k h and their sum are rounded."""
     return 4.0 * float(np.spacing(np.abs(time).max()))
 
 
 def check_time(
     time: FloatArray, place: Callable[[int], str], declared: float | None = None
 ) -> None:
-    """Refuse time stamps that are not a regular grid.
+    """Refuse time stamps (n,) [s] that are no regular grid, of a declared sampling time if given.
 
-    Args:
-        time: stamps (n,) [s], finite.
-        place: says in words where a row stands, for messages.
-        declared: the sampling time the user gave [s]; None to find it from the stamps.
+    `place` says in words where a row stands.
     """
     if len(time) < MIN_ROWS:
         raise InputError(

@@ -1,22 +1,7 @@
 """The TOML file beside a log, with the same stem; it says what the columns cannot say.
 
-sampling_time = 0.01                # [s]
-hold = "zoh"                        # or "foh"
-notes = "third run, warm motors"
-ignore = ["temperature"]            # columns of the file to leave out
-[units]                             # by column or by group; SI where not given
-current = "mA"
-time = "ns"                         # stamps beyond 2^53 count less the first one
-[columns]                           # column of the file = name it should have
-q1 = "angle_1"                      # or, of a file without a header, columns = ["time", "skip", …]
-stamp_s = "time.sec"                # two columns that make the time, with "time.nanosec"
-[factors]                           # by column or by group: what its numbers are multiplied with
-angle_2 = -1                        # turns a sign; a factor comes on top of the unit
-[splits]                            # [start, end) [s]
-estimation = [0, 10]
-validation = [10, 20]
-[values]                            # of the robot, in this log alone
-"body/weight.mass" = 1.0
+`docs/robot/keys.md` has every key with its type, unit, default and meaning. Units and factors are
+given by column or by group; a factor comes on top of the unit.
 """
 
 from __future__ import annotations

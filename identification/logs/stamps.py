@@ -42,11 +42,7 @@ def exact_stamps(cells: Sequence[str]) -> FloatArray:
 
 
 def stamps_apart(names: Sequence[str], sidecar: Sidecar) -> tuple[str, str] | None:
-    """Returns the columns of seconds and of nanoseconds that make the time of a log.
-
-    Returns:
-        None where there is a column of time, or no such two columns.
-    """
+    """Returns the columns of seconds and of nanoseconds that make the time of a log, or None."""
     if TIME in names or sidecar.sampling_time:
         return None
     if set(APART) <= set(names):
@@ -108,20 +104,15 @@ def wanted_columns(asked: set[str], sidecar: Sidecar) -> Callable[[Sequence[str]
 
 
 def shared(time: FloatArray) -> np.ndarray:
-    """Returns which rows but the first have the stamp of the row before them, shape (n - 1,).
-
-    Args:
-        time: stamps, shape (n,) [s].
-    """
+    """Returns which stamps (n,) but the first are those of the row before them, shape (n - 1,)."""
     return np.asarray(time[1:] == time[:-1])
 
 
 def without_repeated(table: Table) -> Table:
     """Returns a table without rows that were written twice, which it tells.
 
-    Returns:
-        The table as it is where no row shares its stamp with the row before it, or where one
-        that does has another cell: then rows may have been sampled in one tick of a clock.
+    Where a row that shares its stamp with the row before it has another cell, the table stays as it
+    is; rows may then have been sampled in one tick of a clock.
     """
     before, after = table.data[:-1], table.data[1:]
     equal = ((before == after) | (np.isnan(before) & np.isnan(after))).all(axis=1)
@@ -138,20 +129,14 @@ def without_repeated(table: Table) -> Table:
 
 
 def moves_on(time: FloatArray, x: FloatArray) -> bool | None:
-    """Returns whether a channel goes on between rows of one stamp as it does between stamps.
+    """Returns whether a channel (n,) goes on between rows of one stamp as it does between stamps.
 
         β = ⟨d s⟩,  d_k = x_{k+1} - x_k,  s_k = x_{k+2} - x_{k-1}
 
     d and s have no sample in common, so that noise adds nothing to the mean of their products. It
     is as large within stamps as between them where all rows are one step apart, and zero within
-    them where a stamp was read twice.
-
-    Args:
-        time: stamps, shape (n,) [s].
-        x: a channel, shape (n,); NaN where nothing stands.
-
-    Returns:
-        None where noise hides it, or where the motion within stamps is another one.
+    them where a stamp was read twice. None is returned where noise hides it, or where the motion
+    within stamps is another one. Cells where nothing stands are NaN.
     """
     seen = np.isfinite(x)
     t, x = time[seen], x[seen]

@@ -83,14 +83,9 @@ def check_columns(
     sidecar: Sidecar,
     named_in: Path | None = None,
 ) -> None:
-    """Refuse a table that lacks a needed column, or has an unknown one.
+    """Refuse a table that lacks a needed column, or has one that is neither needed nor optional.
 
-    Args:
-        table: the table of the file.
-        needed: columns that it must have.
-        optional: columns that it may have.
-        sidecar: the TOML beside the file.
-        named_in: another file whose [columns] say what is needed; the sidecar when None.
+    `named_in` is another file than the sidecar whose [columns] say what is needed.
     """
     good = [*needed, *optional]
     unknown = [n for n in table.names if n not in good]

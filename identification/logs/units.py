@@ -63,13 +63,7 @@ def check_si(word: str) -> None:
 
 
 def units_that_fit(si: str, raw: float, limit: float) -> list[str]:
-    """Returns the smaller units of a quantity in which a raw number would stay within a limit.
-
-    Args:
-        si: the SI unit of the quantity.
-        raw: the number as the file has it.
-        limit: largest plausible size [si].
-    """
+    """Returns the smaller units of a quantity in which a raw number is within a limit [si]."""
     return [
         word
         for word, (unit, factor) in UNITS.items()
@@ -99,10 +93,9 @@ class Dimension:
 
 @lru_cache(maxsize=1024)  # each of thousands of parameters has one of a few units
 def dimension(unit: str) -> Dimension | None:
-    """Returns the dimension of a unit; None where it has a symbol that is not known.
+    """Returns the dimension of a unit such as "N m s/rad", "kg m²" or "1/(N m)^2"; "" has none.
 
-    Args:
-        unit: such as "N m s/rad", "kg m²" or "1/(N m)^2"; "" has no dimension.
+    None is returned where it has a symbol that is not known.
     """
     tokens: list[str] = []
     text = re.sub(r"[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+", lambda m: "^" + m[0].translate(_RAISED), unit).strip()

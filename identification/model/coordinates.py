@@ -72,11 +72,8 @@ def coordinates(
 ) -> Coordinates:
     """Returns coordinates of some parameters of a set, fit for a search from `start`.
 
-    Args:
-        parameters: the set.
-        names: which are free.
-        start: their values, shape (p,), in their units.
-        linear: those of them that are not logarithmic though they are positive.
+    It has the shape (p,), in the parameters' units. Those that are `linear` are not logarithmic
+    though they are positive.
 
     Raises:
         InputError: nothing is free, a name occurs twice, or a start lies outside its bounds.

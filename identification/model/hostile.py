@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import subprocess
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -73,22 +73,12 @@ class Amount:
         )  # fmt: skip
         return tuple(clause for is_large, clause in each if is_large)
 
-    @property
-    def may_be_large(self) -> bool:
-        """Returns whether the model is compiled by another process first."""
-        return bool(self.much)
-
 
 def refuse_hostile(raw: str | bytes, where: str, folder: Path | None = None) -> Amount:
-    """Refuses a model by its text, and by that of the files that it includes.
+    """Refuses a model by its text and that of the files it includes; returns what it asks for.
 
-    Args:
-        raw: the MJCF.
-        where: the model in messages, such as "the model slider.xml".
-        folder: of its file; None of a model that is in no file.
-
-    Returns:
-        What it asks for.
+    `where` is the model in messages, such as "the model slider.xml"; without a folder it is in no
+    file.
     """
     amount = _amount(raw, where, folder, 0)
     if amount.elements > MOST:
@@ -146,13 +136,7 @@ def refuse_endless(source: str | Path, where: str, amount: Amount) -> None:
 
 
 def refuse_size(size: int, where: str, amount: Amount | None = None) -> None:
-    """Refuses a compiled model of which a search cannot hold its copies.
-
-    Args:
-        size: of the compiled model [bytes].
-        where: the model in messages, such as "the model slider.xml".
-        amount: what its text asks for, where that is known.
-    """
+    """Refuses a compiled model of so many bytes of which a search cannot hold its copies."""
     if size > LARGEST:
         raise InputError(
             f"{where} has {size / 2**20:.0f} MB when it is compiled, more than the"
@@ -184,18 +168,16 @@ def _amount(raw: str | bytes, where: str, folder: Path | None, depth: int) -> Am
     users = [(_product(number), name) for e in root.iter("size") for name, number in e.items()
              if name.startswith("nuser_")]  # fmt: skip
     numbers, user_data = max(users, default=(0.0, ""))
-    here = Amount(elements, sum(grids), numbers, len(raw), user_data)
-    included = () if folder is None else _included(root, folder)
-    parts = [_amount(read_bytes(file, what=MODEL), f"the model {file}", folder, depth + 1)
-             for file in included]  # fmt: skip
-    size = 0 if folder is None else sum(_sizes(root, folder))
-    most = max((here, *parts), key=lambda part: part.numbers)
-    return Amount(
-        elements=sum(part.elements for part in (here, *parts)),
-        cells=sum(part.cells for part in (here, *parts)),
-        numbers=most.numbers,
-        size=size + sum(part.size for part in (here, *parts)),
-        user_data=most.user_data,
+    size = len(raw) + (0 if folder is None else sum(_sizes(root, folder)))
+    parts = [Amount(elements, sum(grids), numbers, size, user_data)]
+    parts += [_amount(read_bytes(file, what=MODEL), f"the model {file}", folder, depth + 1)
+              for file in (() if folder is None else _included(root, folder))]  # fmt: skip
+    most = max(parts, key=lambda part: part.numbers)
+    return replace(
+        most,
+        elements=sum(part.elements for part in parts),
+        cells=sum(part.cells for part in parts),
+        size=sum(part.size for part in parts),
     )
 
 

@@ -34,17 +34,11 @@ _NEVER = mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_FALSE
 def compile_without_missing(
     spec: mujoco.MjSpec, where: str, is_asked: bool = True
 ) -> tuple[mujoco.MjModel, str]:
-    """Returns a compiled model, and one sentence on what was left out of it.
+    """Returns a compiled model, and one sentence on what was left out of it, "" where nothing was.
 
-    Args:
-        spec: the model. Meshes, textures, heightfields and skins whose files are missing are taken
-            out of it, with the geoms that are made of them.
-        where: the model in messages, such as "the model slider.xml".
-        is_asked: whether anything may be left out. What is left out of a very large model would
-            hide from the other process, which compiles it first, how large the rest is.
-
-    Returns:
-        The compiled model and the sentence, which is "" where no file is missing.
+    Meshes, textures, heightfields and skins whose files are missing are taken out of the spec, with
+    the geoms that are made of them. Nothing is unless it is asked: what is left out of a very large
+    model would hide from the other process, which compiles it first, how large the rest is.
 
     Raises:
         InputError: a file is missing on which inertia, contacts, tendons or a fluid depend.

@@ -71,8 +71,7 @@ class ModelPlant:
         return replace(self, model=model)
 
     def __post_init__(self) -> None:
-        model, state = copy.copy(self.model), self.start or own_start(self.model)
-        start = {f: np.array(getattr(state, f), float).ravel() for f in ("qpos", "qvel", "act")}
+        model, every = copy.copy(self.model), self.parameters.values()
         written = [(p.name, part) for p in self.parameters for path, _ in p.places
                    for part, _ in parts(model, path)]  # fmt: skip
         paths = [path for _, path in written]
@@ -84,25 +83,15 @@ class ModelPlant:
             )
         refuse_both(paths, model)
         refuse_half(model, written)
-        spread: dict[tuple[int, int], np.ndarray] = {}
-        for parameter in self.parameters:
-            for path, factor in parameter.places:
-                place, of_body = start_place(path, model), spread_place(path, model)
-                value = factor * parameter.value * (1 + self._deviation(path))
-                if of_body is not None:
-                    spread[of_body] = np.array([value])
-                elif place is None:
-                    for part, sign in parts(self.model, path):
-                        slot = resolve(model, part)
-                        refuse_unread(self.model, parameter.name, slot, path)
-                        write(model, slot, sign * value)
-                else:
-                    start[place[0]][place[1]] = value
-        for slot, inertia in with_spreads(model, spread, 1):
-            write(model, slot, float(inertia[0]))
+        for name, path in written:
+            if start_place(path, model) is None and spread_place(path, model) is None:
+                refuse_unread(model, name, resolve(model, path), path)
+        start, numbers = self.settings(tuple(every), np.array([[*every.values()]]))
+        for slot, values in numbers:
+            write(model, slot, float(values[0]))
         derive(model)
         object.__setattr__(self, "model", model)
-        object.__setattr__(self, "start", State(**start))
+        object.__setattr__(self, "start", start.rows(0))
 
     def settings(self, names: Sequence[str], values: np.ndarray) -> tuple[State, Numbers]:
         """Returns initial states (n rows) and model numbers of n value sets; see `Plant`.
@@ -153,9 +142,8 @@ class ModelPlant:
         """Returns what some parameters write, once each: the parameter, the path and its factor."""
         out = []
         for name in names:
-            parameter = self.parameters[name]
-            each = [(name, path, factor) for path, factor in parameter.places]
-            out += [self._owners[name]] if parameter.where == DEVIATION else each
+            each = [(name, *place) for place in self.parameters[name].places]
+            out += [self._owners[name]] if name in self._owners else each
         return list(dict.fromkeys(out))
 
     def _deviation(self, path: str) -> float:

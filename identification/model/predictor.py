@@ -144,17 +144,11 @@ class Predictor:
     def outputs(
         self, values: np.ndarray, states: Mapping[str, np.ndarray], begun: np.ndarray | None = None
     ) -> np.ndarray:
-        """Returns what the sensors say of simulated states, for n value sets (n, p).
+        """Returns what sensors say, (m, samples, ny), of simulated states, for n value sets (n, p).
 
-        Args:
-            values: shape (n, p), in the parameters' units.
-            states: what `recorded` names, of m simulations, shape (m, samples, size); each value
-                set has m/n neighbouring ones.
-            begun: time of the record at which each begins, shape (m,) [s]; where the log begins
-                when None.
-
-        Returns:
-            Shape (m, samples, ny).
+        The states are what `recorded` names of m simulations, (m, samples, size); each value set
+        has m/n neighbouring ones. They begin at times of the record (m,) [s], or where the log
+        begins.
         """
         plant = with_states(self.plant)
         if plant is not None:
@@ -164,14 +158,9 @@ class Predictor:
     def readings(
         self, states: Mapping[str, np.ndarray], begun: np.ndarray | None = None
     ) -> np.ndarray:
-        """Returns what perfect sensors would say of simulated states; see `Plant.outputs`.
+        """Returns what perfect sensors would say of simulated states, shape (4, m, samples, ny).
 
-        Args:
-            states: of m simulations, each field (m, samples, size).
-            begun: as above.
-
-        Returns:
-            Shape (4, m, samples, ny).
+        See `Plant.outputs`, and `outputs` for the arguments.
         """
         model, sensors = self.plant.model, self.log.output_names
         joints = [int(model.sensor(name).objid[0]) for name in sensors]
@@ -213,3 +202,9 @@ def output_columns(model: mujoco.MjModel, names: Sequence[str]) -> list[tuple[st
             )
         columns.append((field, int(address[model.sensor_objid[sensors[name]]])))
     return columns
+
+
+def output_dofs(model: mujoco.MjModel, names: Sequence[str]) -> list[int]:
+    """Returns the degree of freedom whose position or rate each output is."""
+    return [i if field == "qvel" else int(model.jnt_dofadr[model.jnt_qposadr == i][0])
+            for field, i in output_columns(model, names)]  # fmt: skip

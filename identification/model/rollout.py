@@ -46,8 +46,8 @@ class State:
     qvel: np.ndarray  # velocities, shape (n, nv) or (nv,) [m/s, rad/s]
     act: np.ndarray  # activations, shape (n, na) or (na,), in the units of their actuators
 
-    def rows(self, keep: np.ndarray) -> State:
-        """Returns some of the rows, by mask or by index."""
+    def rows(self, keep: np.ndarray | int) -> State:
+        """Returns some of the rows, by mask or by index; one row by its number."""
         return State(self.qpos[keep], self.qvel[keep], self.act[keep])
 
     @classmethod
@@ -81,8 +81,6 @@ def hold(inputs: np.ndarray, n: int, kind: str = "zoh") -> np.ndarray:
     """Returns controls of the steps between the samples: (..., N, nu) -> (..., (N-1) n, nu)."""
     if kind == "zoh":
         return np.repeat(inputs[..., :-1, :], n, axis=-2)
-    if kind != "foh":
-        raise InputError(f"unknown hold {kind!r}; known: foh, zoh")
     weight = ((np.arange(n) + 0.5) / n)[:, None]
     before, after = inputs[..., :-1, None, :], inputs[..., 1:, None, :]
     held = (1 - weight) * before + weight * after
@@ -166,20 +164,17 @@ class Simulations:
         self, start: State, controls: np.ndarray, every: int, record: Sequence[str],
         time: float | np.ndarray = 0.0, at: np.ndarray | None = None, keeps_diverged: bool = False,
     ) -> Mapping[str, np.ndarray]:  # fmt: skip
-        """Runs k of the simulations.
+        """Runs k of the simulations; see `rollout`.
 
         Args:
             start: initial states, one row for all or k.
             controls: at each step, shape (1, steps, nu) for all or (k, steps, nu), without those of
                 actuators that have none.
             every: steps of a sample.
-            record: MjData fields of the state to return (qpos, qvel, act).
+            record: MjData fields of the state to return (qpos, qvel, act), each (k, N, size).
             time: at the start, one for all or one for each [s].
             at: which simulations, shape (k,); all when None.
             keeps_diverged: whether simulations that leave the finite numbers are NaN, and no error.
-
-        Returns:
-            For each recorded field an array (k, N, size); sample 0 is the start.
         """
         end_if_given_up()
         batch, model = self.batch, self.model
@@ -224,13 +219,10 @@ def simulations(
     model: mujoco.MjModel, n: int, numbers: Sequence[tuple[Slot, np.ndarray]] = (),
     nthread: int | None = None,
 ) -> Simulations:  # fmt: skip
-    """Prepares n simulations of a model, to be run as often as one likes.
+    """Prepares n simulations of a model, which may not change, to be run as often as one likes.
 
-    Args:
-        model: the model, which may not change.
-        n: how many.
-        numbers: model entries that differ between simulations: slot and its values, shape (n,).
-        nthread: native threads; all processors when None.
+    Entries of the model that differ between them are given as `rollout` takes them. All processors
+    serve them if `nthread` is None.
     """
     model = lean(model, numbers)
     batch = Batch(model, n, nthread or min(threads(), n))

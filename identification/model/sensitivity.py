@@ -91,14 +91,7 @@ def forward_sensitivity(
     q: np.ndarray,
     predicted: np.ndarray,
 ) -> np.ndarray:
-    """Returns ∂ŷ/∂q (samples, ny, p), from p simulations, where ŷ(q) is known already.
-
-    Args:
-        predictor: predicts the outputs.
-        space: coordinates of the parameters.
-        q: the point, shape (p,).
-        predicted: ŷ(q), shape (samples, ny).
-    """
+    """Returns ∂ŷ/∂q (samples, ny, p) at q (p,), from p simulations and ŷ(q), (samples, ny)."""
     values = space.decode(q + FORWARD_STEP * np.eye(len(q)))
     ahead = predictor.predict(values, len(predicted))
     return np.moveaxis((ahead - predicted) / FORWARD_STEP, 0, -1)
@@ -111,12 +104,9 @@ def without_effect(J: np.ndarray, outputs: np.ndarray) -> np.ndarray:
 
 
 def refuse_without_effect(J: np.ndarray, names: tuple[str, ...], log: Log) -> None:
-    """Refuse parameters that no output feels: a fit would stop at once and report convergence.
+    """Refuse parameters whose sensitivities J (samples, ny, p) say that no output feels them.
 
-    Args:
-        J: sensitivities, shape (samples, ny, p).
-        names: the parameters.
-        log: what was measured.
+    A fit of them would stop at once and report convergence.
     """
     dead = [n for n, idle in zip(names, without_effect(J, log.outputs), strict=True) if idle]
     first, *others = log.output_names

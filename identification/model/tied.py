@@ -187,15 +187,9 @@ def spreads(model: mujoco.MjModel, body: int) -> np.ndarray:
 def with_spreads(
     model: mujoco.MjModel, values: Mapping[Place, np.ndarray], count: int
 ) -> list[tuple[Slot, np.ndarray]]:
-    """Returns the entries of a model that some spreads change.
+    """Returns the entries of a model that spreads change, with principal inertias (count,) [kg m²].
 
-    Args:
-        model: gives the spreads that are not among the values.
-        values: by body and axis, shape (count,) [kg m²].
-        count: how many value sets there are.
-
-    Returns:
-        Slots of principal inertias, and their values, shape (count,) [kg m²].
+    The spreads are given by body and axis, shape (count,) [kg m²]; others are those of the model.
     """
     found: list[tuple[Slot, np.ndarray]] = []
     for body in dict.fromkeys(body for body, _ in values):

@@ -33,7 +33,7 @@ import numpy as np
 
 from identification.engine import quiet
 from identification.logs.log import Log
-from identification.model.predictor import output_columns
+from identification.model.predictor import output_columns, output_dofs
 from identification.refusals.forces import (
     Smooth,
     inertial_force,
@@ -86,9 +86,8 @@ def unbalanced(
         wider: times as long a ψ, for motion that is rougher than its noise says.
 
     Returns:
-        None where it cannot be had: a joint is not measured, is neither hinge nor slide, drives
-        have states, bodies are tied to each other, or noise hides the accelerations, or the forces
-        that they need.
+        None where a joint is not measured or is neither hinge nor slide, drives have states, bodies
+        are tied, or noise hides the accelerations or the forces that they need.
     """
     columns = output_columns(model, log.output_names)
     at = {i: k for k, (field, i) in enumerate(columns) if field == "qpos"}
@@ -112,11 +111,11 @@ def unbalanced(
     x = solve_bounded(flat, b, low[used] * norm[used], high[used] * norm[used])
     rest = (b - flat @ x).reshape(force.shape)
     eta = np.mean(rest**2, axis=0)
-    joint = [i if field == "qvel" else int(model.jnt_dofadr[model.jnt_qposadr == i][0])
-             for field, i in columns]  # fmt: skip
     weight = 1 / np.maximum(model.dof_M0, np.finfo(float).tiny)
     left, felt = (float(np.sum(x * weight)) for x in (eta * size**2, given**2))
-    return Unbalanced(np.asarray(eta[joint]), left / felt if felt > 0 else 0.0)
+    return Unbalanced(
+        np.asarray(eta[output_dofs(model, log.output_names)]), left / felt if felt > 0 else 0.0
+    )
 
 
 def _shortest(

@@ -94,13 +94,9 @@ def rescaled(
 ) -> tuple[Reading, str] | None:
     """Returns the unit in which the forces of the drives explain a motion that they else cannot.
 
-    A unit with a sign that is turned counts where it leaves less than a fifth of the unit alone.
-
-    Args:
-        model: with the log's actuators and sensors.
-        doubt: the log, all of whose outputs are in doubt.
-        signs: whether a sign may be turned besides.
-        alone: whether one column of several of a kind may be in another unit.
+    All outputs are in doubt. A sign may be turned besides where `signs`; such a unit counts where
+    it leaves less than a fifth of the unit alone. Where `alone`, one column of several of a kind
+    may be in another unit.
 
     Returns:
         Of the units that explain it the one that changes least, if none leaves a fifth of it, and
@@ -134,20 +130,12 @@ def rescaled(
 def balanced_otherwise(
     model: mujoco.MjModel, doubt: Doubt, readings: Iterable[Reading]
 ) -> tuple[Reading, str] | None:
-    """Returns the reading with which forces balance, where they do not as the log is read.
+    """Returns the reading with which forces balance, where they do not as read, in words too.
 
     Nothing is simulated, so that forces alone must tell: η of all outputs must fall below what is
     unexplained, and to less than a fifth in all. With another unit it need only fall to a fifth of
-    the largest one, because a robot may lack a force besides.
-
-    Args:
-        model: with the log's actuators and sensors.
-        doubt: the log.
-        readings: other ones.
-
-    Returns:
-        The reading that leaves least, and in words what it explains; None where the log may be as
-        it is read, or where no reading explains it.
+    the largest one, because a robot may lack a force besides. Of several readings, it is the one
+    that leaves least.
     """
     balance = Balance(model, doubt.log)
     as_read = balance.as_read

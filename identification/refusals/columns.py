@@ -92,10 +92,8 @@ def unit_readings(
 ) -> Iterator[Reading]:
     """Yields other units of unexplained outputs, and of inputs that are wanted positions.
 
-    Args:
-        doubt: the log.
-        wanted: SI unit by name of the inputs that a drive compares with its joint's own motion.
-        alone: whether one column of several of a kind may be in another unit.
+    The latter have SI units by name. One column of several of a kind may be in another unit if
+    `alone`.
     """
     log, wanted, ny = doubt.log, wanted or {}, len(doubt.bad)
     names = [*log.output_names, *(n for n in log.input_names if n in wanted)]

@@ -143,11 +143,9 @@ def weights(body: MovedBody, p: np.ndarray) -> tuple[np.ndarray, ...]:
 def tendon_forces(
     model: mujoco.MjModel, q: np.ndarray, v: np.ndarray
 ) -> tuple[list[np.ndarray], list[np.ndarray]]:
-    """Computes the forces of tendons on the joints of a robot at q, v of shape (n, nv).
+    """Computes the forces of tendons on the joints of a robot at q and v, all of shape (n, nv).
 
-    Returns:
-        Forces of each tendon's damping and friction of one, and those of its spring where it has
-        one, each of shape (n, nv).
+    These are those of each tendon's damping and friction of one, then those of springs.
     """
     alone, data = copy.copy(model), mujoco.MjData(model)
     alone.opt.disableflags &= ~sum(int(bit) for bit in PASSIVE)

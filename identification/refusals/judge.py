@@ -90,12 +90,8 @@ def unexplained(
 ) -> np.ndarray | None:
     """Returns ε (ny,) of a model over windows of a length [s]; None where none can be simulated.
 
-    Args:
-        plant: the model, as it begins in the log.
-        length: of the windows [s].
-        log: what was measured.
-        most: windows, spread over the log.
-        part: of these, that is simulated; what the rest leaves unexplained is not counted.
+    At most so many windows are spread over the log. Of these a part is simulated; what the rest
+    leaves unexplained is not counted.
     """
     if not MIN_ROWS * log.sampling_time <= length <= log.duration:
         return None  # too short to tell, and whoever fits it will say so

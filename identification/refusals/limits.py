@@ -15,7 +15,7 @@ import numpy as np
 
 from identification.errors import InputError
 from identification.logs.log import Log
-from identification.model.predictor import output_columns
+from identification.model.predictor import output_columns, output_dofs
 from identification.quantities import alike
 from identification.refusals.trust import RobotFile
 
@@ -31,18 +31,15 @@ OFF = int(mujoco.mjtDisableBit.mjDSBL_LIMIT) | int(mujoco.mjtDisableBit.mjDSBL_C
 def refuse_limits(file: RobotFile, model: mujoco.MjModel, is_degree: bool, log: Log) -> None:
     """Refuse a log that has a joint far outside the limits of the model, if nobody trusts it.
 
-    Args:
-        file: the robot's.
-        model: with the log's sensors.
-        is_degree: whether the model's file gives angles in degrees.
-        log: what was measured.
+    The file of the model gives angles in degrees where `is_degree`.
     """
     if "limits" in file.trust:
         return
-    columns = zip(output_columns(model, log.output_names), log.outputs.T, strict=True)
+    names = log.output_names
+    each = zip(output_columns(model, names), output_dofs(model, names), log.outputs.T, strict=True)
     positions = {
-        model.joint(int(np.flatnonzero(model.jnt_qposadr == i)[0])).name: y
-        for (field, i), y in columns
+        model.joint(int(model.dof_jntid[dof])).name: y
+        for (field, _), dof, y in each
         if field == "qpos"
     }
     if said := limit_sentence(model, is_degree, positions, file.model):
@@ -57,11 +54,8 @@ def limit_sentence(
 ) -> str:
     """Returns what is wrong with the limits of a joint and how to mend it; "" where nothing is.
 
-    Args:
-        model: compiled.
-        is_degree: whether its file gives angles in degrees.
-        positions: measured, by joint, shape (n,) [rad or m].
-        path: of the model's file.
+    Positions are given as measured, by joint, shape (n,) [rad or m], with the path of the model's
+    file.
     """
     if model.opt.disableflags & OFF:
         return ""

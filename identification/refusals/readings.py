@@ -56,18 +56,12 @@ def misread(
 ) -> tuple[Reading, str] | None:
     """Returns the reading that explains a log far better than the present one, and that in words.
 
-    Of several, the one that leaves least in all; of those that leave the same, the first.
-
     Args:
         log: as it is read.
         as_read: its ε, shape (ny,), without unit.
-        readings: other ones.
+        readings: other ones; of several, that which leaves least in all, or else the first, counts.
         unexplained: ε of a reading.
         believed: whether a reading with its ε is what no better model could be.
-
-    Returns:
-        The reading, and how much is explained of which outputs, how much would be, and the cure;
-        None where no reading is far better.
     """
     best, least = None, np.inf
     for reading in counted(readings, "other readings of the log"):
@@ -91,9 +85,8 @@ def misread(
 def unexplained_share(y: np.ndarray, error: np.ndarray) -> np.ndarray:
     """Returns ε of each output over W windows, shape (ny,), no unit; 0 where it does not move.
 
-    Args:
-        y: what was measured, shape (W, L, ny), in the outputs' units.
-        error: of the model, the same shape and units; of a part of it, which leaves less.
+    The measured outputs, (W, L, ny), and the model's error, which may be of a part of these, have
+    the same units.
     """
     moved = np.sum((y - y[:, :1]) ** 2, axis=(0, 1))
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -19,7 +19,7 @@ from identification.engine import quiet
 from identification.errors import InputError
 from identification.files import MODEL, read_bytes, toml_key
 from identification.logs.log import Log
-from identification.model.predictor import output_columns
+from identification.model.predictor import output_dofs
 from identification.refusals.trust import RobotFile
 
 _SLIDE = int(mujoco.mjtJoint.mjJNT_SLIDE)
@@ -51,8 +51,7 @@ def refuse_unmeasured(file: RobotFile, model: mujoco.MjModel, log: Log) -> None:
 
 def _falling_slides(model: mujoco.MjModel, log: Log) -> set[int]:
     """Returns the numbers of the slides that fall as the model begins."""
-    measured = {int(i if field == "qvel" else model.jnt_dofadr[model.jnt_qposadr == i][0])
-                for field, i in output_columns(model, log.output_names)}  # fmt: skip
+    measured = output_dofs(model, log.output_names)
     free = ~model.jnt_limited.astype(bool) & (np.ravel(model.jnt_stiffness) == 0)
     slides = [int(j) for j in np.flatnonzero((model.jnt_type == _SLIDE) & free)
               if int(model.jnt_dofadr[j]) not in measured]  # fmt: skip
@@ -105,10 +104,7 @@ def felt_trees(model: mujoco.MjModel, log: Log) -> set[int]:
 
     These are the trees of the measured joints, and those that equalities or tendons tie to them.
     """
-    felt = set()
-    for field, i in output_columns(model, log.output_names):
-        dof = i if field == "qvel" else int(model.jnt_dofadr[model.jnt_qposadr == i][0])
-        felt.add(int(model.dof_treeid[dof]))
+    felt = {int(model.dof_treeid[dof]) for dof in output_dofs(model, log.output_names)}
     ties = [{*map(int, trees)} - {-1} for trees in model.tendon_treeid]
     ties += [{int(model.body_treeid[b]) for b in _bodies(model, e)} - {-1}
              for e in np.flatnonzero(np.isin(model.eq_type, _TIED))]  # fmt: skip

@@ -49,11 +49,7 @@ MOST_COLUMNS = 32
 
 
 def refuse_miswired(robot: Robot, log: Log) -> None:
-    """Refuse a log that other units, signs or places of its columns would explain far better.
-
-    Raises:
-        InputError: there is such a reading.
-    """
+    """Refuse a log that other units, signs or places of its columns would explain far better."""
     file, plant = robot.file, robot.plant_of(log)
     wanted = wanted_units(plant.model, log)
     column = {n: file.columns.get(n, n) for n in (*log.output_names, *log.input_names)}
@@ -112,9 +108,6 @@ def refuse_unbalanced(robot: Robot, log: Log) -> None:
     Nothing is simulated: a simulation of an arm in a closed loop says little of its log, because
     what the model lacks grows over a window. Where a drive wants a position, its gain is a guess,
     and nothing is told.
-
-    Raises:
-        InputError: there is such a reading.
     """
     file, model = robot.file, robot.plant_of(log).model
     column = {n: file.columns.get(n, n) for n in (*log.output_names, *log.input_names)}

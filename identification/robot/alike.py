@@ -2,13 +2,9 @@
 
     value at place i = nominal_i · common · (1 + δ_i),    δ_i ~ N(0, std²)
 
-[spread.damping]                     # name of the common value
-of = ["joint/shoulder.damping", "joint/elbow.damping"]       # paths into the model
-std = 0.1                            # of each place's deviation, relative
-known = 0.3                          # of the common value, relative; 0.3 if not given
-
-The parameters are the common value, `damping`, which is the value at the first place with the
-others in proportion, and a relative deviation of each place, `damping@shoulder`.
+The parameters of a table [spread.damping] are the common value, `damping`, which is the value at
+the first place with the others in proportion, and a relative deviation of each place, such as
+`damping@shoulder`.
 """
 
 from __future__ import annotations

@@ -148,9 +148,7 @@ def with_judged_gaps(file: RobotFile, log: Log) -> Log:
 
 def refuse_every(file: RobotFile, log: Log) -> None:
     """Refuse to thin a log whose parts would become too short."""
-    if file.every == 1:
-        return
-    if not _left(log, file.every):
+    if file.every > 1 and not _left(log, file.every):
         largest = max((n for n in range(1, len(log)) if _left(log, n)), default=1)
         raise InputError(
             f"every in {file.path} is {file.every}, which leaves too few of the {len(log)} samples"

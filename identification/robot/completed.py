@@ -25,15 +25,7 @@ _JOINT = (mujoco.mjtTrn.mjTRN_JOINT, mujoco.mjtTrn.mjTRN_JOINTINPARENT)
 
 
 def with_missing(spec: mujoco.MjSpec, file: RobotFile) -> tuple[str, ...]:
-    """Add sensors and motors that a model lacks; say so.
-
-    Args:
-        spec: of the model, which is changed.
-        file: of the robot; its outputs and columns name what is wanted.
-
-    Returns:
-        A sentence, or nothing where nothing is lacking.
-    """
+    """Add sensors and motors that a model lacks and the robot's file asks for; say so."""
     asked = {*file.outputs, *file.columns}
     actuators = {actuator.name for actuator in spec.actuators}
     known = {sensor.name for sensor in spec.sensors} | actuators

@@ -96,9 +96,7 @@ def _over_free_run(
 
 def _over_windows(robot: Robot, fit: RobotFit, found: RecordsFit) -> tuple[Confirmation, ...]:
     """Returns the comparison that the fit has made already, or that of other records."""
-    if not robot.records:
-        return fit.unseen
-    if [*map(id, robot.records)] == [*map(id, fit.robot.records)]:
+    if not robot.records or [*map(id, robot.records)] == [*map(id, fit.robot.records)]:
         return fit.unseen
     model, plant = found.model, robot.plant
     records = [Record(log, "confirm", robot.values_of(log)) for log in robot.records]

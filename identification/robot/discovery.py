@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import overload
 
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
@@ -24,21 +23,6 @@ from identification.robot.second_opinion import ask_torques, suggest, with_torqu
 from identification.written import Files
 
 
-@overload
-def discover(
-    model: Robot,
-    *,
-    progress: Callable[[str], None] | None = None,
-    options: DiscoveryOptions | None = None,
-) -> Discovery: ...
-@overload
-def discover(
-    model: NominalModel,
-    log: Log,
-    effects: Sequence[Effect],
-    progress: Callable[[str], None] | None = None,
-    options: DiscoveryOptions | None = None,
-) -> Discovery: ...
 def discover(
     model: Robot | NominalModel,
     log: Log | None = None,

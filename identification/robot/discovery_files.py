@@ -78,8 +78,7 @@ class RobotDiscoveryFiles(DiscoveryFiles):
     def _stub(self, folder: Path | None = None) -> str:
         """Returns an effect of the user's own where a force is missing; "" where none is known.
 
-        Args:
-            folder: in which the file will lie; that of the program when None.
+        Paths in it begin in the folder in which the file will lie, if given.
         """
         at = find_place(self.found)
         if at is None:

@@ -68,10 +68,8 @@ def design_experiment(
         models.append(fitted(model.name, model.share, model.nominal, logs, scale, progress))
     plant = models[0].plant
     plant = replace(plant, bare=replace(plant.bare, start=robot.plant.bare.start))
-    limits = partial(limits_of, plant.model, plant.axes, logs)
-    stage = stage_of(
-        plant, robot.log, lambda q: limits(q, widen), seconds or robot.log.duration, form
-    )
+    limits = partial(limits_of, plant.model, plant.axes, logs, widen=widen)
+    stage = stage_of(plant, robot.log, limits, seconds or robot.log.duration, form)
     return NextExperiment(robot, design(stage, models, budget, seed, progress), _files)
 
 

@@ -1,45 +1,7 @@
 """A TOML that says what a robot is: its model, its log's columns, what is free or missing.
 
-model = "emps.xml"                   # MJCF, beside this file
-outputs = ["position"]               # sensors that the log has; all joint positions if not given
-free = ["M", "joint/slide.damping", "coulomb_friction.f_c@slide"]
-held = ["k"]                         # parameters that keep their value
-own = ["coulomb_friction.f_c@slide"] # of the free ones, those that differ from log to log
-horizon = 0.2                        # [s] to judge predictions over; a free run if not given
-every = 10                           # keep every n-th sample
-trust = ["wiring"]                   # judgements that are not to refuse a log: refusals/trust.py
-[fixed]                              # values of effects' parameters that are not free
-"stribeck_friction.v_s" = 0.05
-[start]                              # entries of the initial state; else the log's, or the model's
-"qvel[0]" = 0.0
-[log]                                # what the TOML beside a log says, for every log
-columns = ["time", "vir", "skip"]    # of files without a header, in their order
-[columns]                            # actuator or sensor = column of the log, where they differ
-drive = "vir"
-base = ["x", "y", "z", "qw", "qx", "qy", "qz"]  # a free joint whose pose is measured
-[parameters.M]                       # of a free parameter; every key may be left out
-path = "body/carriage.mass"          # into the model; the name itself if not given
-value = 95.11                        # where the search begins; the model's own if not given
-std = 0.6                            # of value by a fit, known for logs that it has not seen
-prior = 95.11                        # what is believed before the log speaks; value if not given
-known = 0.3                          # its std: relative where it must be positive, else in its unit
-unit = "kg"                          # a label; refused where it is not that of the numbers, in SI
-lower = 0.0
-upper = 500.0
-scale = 1.0                          # a magnitude that matters, where it may be zero
-[own_values.log_1]                   # where the search begins in one log, of what is under own
-"coulomb_friction.f_c@slide" = 20.4
-[spread.damping]                     # values that are alike but for their spread: robot/alike.py
-of = ["joint/shoulder.damping", "joint/elbow.damping"]
-std = 0.1
-[effects]
-joints = ["slide"]                   # where they may act; the measured joints if not given
-turns = [1, 7, 14]                   # periods of a turn to try, where a motor's are known
-only = ["stribeck_friction"]         # candidates; all if not given; slide_… where hinges are too
-[fitted]                             # the logs to which the values were fitted: robot/carried.py
-first = "5f0c3a9e21d4b7f8"
-
-A free name is a key under `parameters`, a path into the model or its start, or a size of an effect.
+`docs/robot/keys.md` has every key with its type, unit, default and meaning. A free name is a key
+under `parameters`, a path into the model or its start, or a size of an effect.
 """
 
 from __future__ import annotations
@@ -59,9 +21,11 @@ from identification.robot.file_checks import (
     PARAMETER_KEYS,
     check_table,
     numbers,
+    numbers_of,
     read_own,
     read_own_values,
     texts,
+    words_of,
 )
 
 LONGEST = 1e6  # [s] of a horizon
@@ -70,7 +34,7 @@ MODELS = (".xml", ".mjcf", ".urdf")  # endings of models, which are given by mis
 
 @dataclass(frozen=True, kw_only=True)
 class RobotFile:
-    """The content of a robot's TOML; the docstring of the module shows every key."""
+    """The content of a robot's TOML."""
 
     path: Path
     model: Path  # the MJCF
@@ -140,15 +104,11 @@ def read_robot_file(path: str | Path) -> RobotFile:
     held = texts(content.get("held", []), "held", path)
     if twice := [name for name in held if name in free]:
         raise InputError(f"{path} has {twice[0]} under free and under held; keep one of both")
-    every, fixed = content.get("columns", {}), content.get("fixed", {})
-    columns = {name: each for name, each in every.items() if not isinstance(each, list)}
-    poses = {n: texts(every[n], f"columns.{n}", path) for n in every if n not in columns}
-    check_table(columns, dict.fromkeys(columns, (str, "text in quotes")), f"columns in {path}")
-    start = content.get("start", {})
-    for key, table in (("fixed", fixed), ("start", start)):
-        check_table(table, dict.fromkeys(table, ((int, float), "a number")), f"{key} in {path}")
-    twice = [name for name in start if name in content["free"]]
-    if twice:
+    every = content.get("columns", {})
+    poses = {n: texts(x, f"columns.{n}", path) for n, x in every.items() if isinstance(x, list)}
+    columns = {name: each for name, each in every.items() if name not in poses}
+    start = numbers_of(content.get("start", {}), f"start in {path}")
+    if twice := [name for name in start if name in content["free"]]:
         raise InputError(f"{path} gives {twice[0]} under [start] and frees it; keep one of both")
     effects = content.get("effects", {})
     check_table(effects, EFFECTS_KEYS, f"effects in {path}")
@@ -165,35 +125,25 @@ def read_robot_file(path: str | Path) -> RobotFile:
         horizon=horizon,
         every=content.get("every", 1),
         trust=trusted(content.get("trust", []), f"under trust in {path}"),
-        start={name: float(value) for name, value in start.items()},
+        start=start,
         log=content.get("log", {}),
-        columns=columns,
+        columns=words_of(columns, f"columns in {path}"),
         poses=poses,
-        fixed={name: float(value) for name, value in fixed.items()},
+        fixed=numbers_of(content.get("fixed", {}), f"fixed in {path}"),
         records=records,
         own_values=read_own_values(content, path),
         joints=texts(effects.get("joints", []), "effects.joints", path),
         only=texts(effects.get("only", []), "effects.only", path),
         turns=numbers(effects.get("turns", []), "effects.turns", path),
         spread=alike,
-        fitted=_fitted(content, path),
+        fitted=words_of(content.get("fitted", {}), f"fitted in {path}"),
     )
-
-
-def _fitted(content: Mapping[str, Any], path: Path) -> dict[str, str]:
-    """Returns the digests of the logs to which the values were fitted, by name."""
-    logs = content.get("fitted", {})
-    check_table(logs, dict.fromkeys(logs, (str, "text in quotes")), f"fitted in {path}")
-    return dict(logs)
 
 
 def refuse_nothing_free(file: RobotFile) -> None:
     """Refuses a robot whose file frees nothing, where something is to be fitted.
 
     Torques are compared without: what they fit always is friction (`fit_torques`).
-
-    Raises:
-        InputError: it frees nothing.
     """
     if not file.free:
         raise InputError(

@@ -10,6 +10,7 @@ from typing import Any
 from identification.errors import InputError, unknown_name
 
 Kinds = Mapping[str, tuple[type | tuple[type, ...], str]]  # by key: the types, and what they are
+TEXT, NUMBER = (str, "text in quotes"), ((int, float), "a number")
 KEYS: Kinds = {
     "model": (str, "a path in quotes"),
     "outputs": (list, "a list of sensors"),
@@ -30,10 +31,8 @@ KEYS: Kinds = {
     "fitted": (dict, "a table of text in quotes"),
 }
 PARAMETER_KEYS: Kinds = {  # of [parameters.NAME]
-    **dict.fromkeys(("path", "unit", "about"), (str, "text in quotes")),
-    **dict.fromkeys(
-        ("value", "std", "prior", "known", "lower", "upper", "scale"), ((int, float), "a number")
-    ),
+    **dict.fromkeys(("path", "unit", "about"), TEXT),
+    **dict.fromkeys(("value", "std", "prior", "known", "lower", "upper", "scale"), NUMBER),
 }
 EFFECTS_KEYS: Kinds = {  # of [effects]
     **dict.fromkeys(("joints", "only"), (list, "a list of names")),
@@ -83,10 +82,20 @@ def read_own_values(content: Mapping[str, Any], path: Path) -> dict[str, dict[st
         where = f"own_values.{log} in {path}"
         if not isinstance(values, dict):
             raise InputError(f"{where} must be a table of numbers")
-        check_table(
-            values, dict.fromkeys(content.get("own", []), ((int, float), "a number")), where
-        )
+        check_table(values, dict.fromkeys(content.get("own", []), NUMBER), where)
     return {log: {n: float(v) for n, v in values.items()} for log, values in found.items()}
+
+
+def numbers_of(table: Mapping[str, Any], where: str) -> dict[str, float]:
+    """Returns a table of numbers; refuses one that has anything else."""
+    check_table(table, dict.fromkeys(table, NUMBER), where)
+    return {name: float(value) for name, value in table.items()}
+
+
+def words_of(table: Mapping[str, Any], where: str) -> dict[str, str]:
+    """Returns a table of text; refuses one that has anything else."""
+    check_table(table, dict.fromkeys(table, TEXT), where)
+    return dict(table)
 
 
 def texts(values: list[Any], key: str, path: Path) -> tuple[str, ...]:

@@ -1,5 +1,7 @@
 """The files of a fit of a robot: result.json with its verdict in sentences, robot.toml, the report.
 
+Those of a comparison of torques, whose values are a start of a fit and no model, lack robot.toml.
+
 A fit that is proven to predict unseen records worse is told otherwise, and its values are not to be
 used. One that is worse and not proven to be is still no better, and a reader should not have to
 find that out from two numbers. So is one that predicts the outputs of one unit worse: a fit may
@@ -28,12 +30,14 @@ from identification.report.fit_json import fit_to_json
 from identification.report.fit_verdict import answer_sentence
 from identification.report.page import Section, Table, write_report
 from identification.report.page_files import PageFiles
+from identification.report.torque_report import evidence_to_json, torque_headline, torque_sections
+from identification.report.torque_words import torque_verdict
 from identification.report.value_words import departure_sentences, value_words
 from identification.robot.confirmation import confirm, plant_with
 from identification.robot.free_swing import impossible_sentence
 from identification.robot.reading import doubtful
 from identification.robot.record_error import AS_WRITTEN, FITTED, Confirmation, find_repetitions
-from identification.robot.results import RobotFit
+from identification.robot.results import RobotFit, TorqueFit
 from identification.robot.write import write_robot
 from identification.shares import change
 
@@ -52,9 +56,8 @@ def robot_fit_to_json(result: RobotFit, confirmed: Sequence[Confirmation] = ()) 
     repeated = find_repetitions(result.robot)
     said = (*(confirmed or result.unseen), *repeated)
     far = _far(record["parameters"])
-    first = int(
-        result.is_worse or result.stopped
-    )  # then nothing else of the verdict matters as much
+    # Then nothing else of the verdict matters as much.
+    first = int(result.is_worse or result.stopped)
     far = [*doubtful(result.robot), *no_better(result, confirmed or result.unseen), *far]
     if not first:
         departures = departure_sentences(found.model) if isinstance(found, RecordsFit) else []
@@ -76,7 +79,7 @@ def no_better(result: RobotFit, confirmed: Sequence[Confirmation]) -> list[str]:
     if result.found.horizon is not None:
         before, after = result.found.unseen_rms
     else:
-        before, after = (_over_all([getattr(c, k) for c in confirmed]) for k in ("before", "after"))
+        before, after = np.sqrt(np.mean([(c.before**2, c.after**2) for c in confirmed], axis=0))
     rise = (after / before) ** 2 - 1 if before > 0 else 0.0
     if not rise > LEAST:
         return worse_unit(confirmed)
@@ -101,11 +104,6 @@ def worse_unit(confirmed: Sequence[Confirmation]) -> list[str]:
         " one at the cost of the other: fit a longer log, or more logs, before you rely on"
         f" what it predicts of {listed([kind(unit) for unit in worse])}."
     ]
-
-
-def _over_all(rms: Sequence[float]) -> float:
-    """Returns the rms over records, each of which counts alike."""
-    return float(np.sqrt(np.mean(np.square(rms))))
 
 
 def _rises(confirmed: Sequence[Confirmation]) -> dict[str, float]:
@@ -177,6 +175,35 @@ class RobotFitFiles(PageFiles):
             good=False if found.is_worse else None,
             data=[*logs, *(log.name for log in robot.records)],
             headline=fit_headline(found.found, units),
+        )
+
+
+@dataclass(frozen=True)
+class TorqueFiles(PageFiles):
+    """The files of a comparison of torques."""
+
+    fitted: TorqueFit  # the result
+
+    @cached_property
+    def record(self) -> dict[str, Any]:
+        """The comparison as plain values."""
+        robot = self.fitted.robot
+        record = evidence_to_json(self.fitted.found, robot.plant.model)
+        return {"verdict": torque_verdict(self.fitted.found, robot.plant.model), **record,
+                "remarks": list(robot.remarks)}  # fmt: skip
+
+    @cached_property
+    def sections(self) -> list[Section]:
+        """The sections of the report, whose figures are drawn once."""
+        return torque_sections(self.fitted.found, self.fitted.robot.plant.model)
+
+    def write_page(self, path: Path) -> Path:
+        """Write the report; returns its path."""
+        names = [rows.name for rows in self.fitted.found.equations.rows]
+        title = f"{', '.join(names)}: torques"
+        headline = torque_headline(self.fitted.found, self.fitted.robot.plant.model)
+        return write_report(
+            path, title, self.record["verdict"], self.sections, data=names, headline=headline
         )
 
 

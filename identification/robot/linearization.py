@@ -17,13 +17,14 @@ from identification.linear.linearization import input_names
 from identification.linear.operating_points import OperatingPoints, along_log, at_rest
 from identification.logs.log import Log
 from identification.model.parameter import Parameter, ParameterSet
-from identification.model.plant import ModelPlant, own_start, start_place
+from identification.model.plant import ModelPlant, own_start
 from identification.model.predictor import Predictor
 from identification.model.protocol import with_numbers
 from identification.model.rollout import State
 from identification.robot.file import RobotFile, read_robot_file
 from identification.robot.model_file import robot_spec
 from identification.robot.reading import read_robot
+from identification.robot.start import start_of
 
 
 def operating_points(
@@ -98,9 +99,5 @@ def _bare(file: RobotFile) -> ModelPlant:
             f"{file.path} gives {effects[0]}, a number of an effect, which needs a log; write LOG"
             " behind the robot"
         )
-    start = own_start(model)
-    fields = {f: np.array(getattr(start, f)) for f in ("qpos", "qvel", "act")}
-    for path, value in file.start.items():
-        if (place := start_place(path, model)) is not None:
-            fields[place[0]][place[1]] = value
-    return ModelPlant(model, ParameterSet(file.path.stem, tuple(given)), State(**fields))
+    start = start_of(file, model, None)
+    return ModelPlant(model, ParameterSet(file.path.stem, tuple(given)), start)

@@ -107,10 +107,7 @@ def pose_names(model: mujoco.MjModel, sensor: str) -> tuple[str, ...]:
 
 
 def with_measured_base(spec: mujoco.MjSpec, file: RobotFile) -> tuple[str, ...]:
-    """Put slides and hinges with sensors in the place of measured free joints; say so.
-
-    Returns:
-        A sentence on each base.
+    """Put slides and hinges with sensors in the place of measured free joints; say so of each base.
 
     Raises:
         InputError: an actuator acts on the free joint itself.

@@ -182,7 +182,7 @@ def _positions(model: mujoco.MjModel) -> dict[str, str]:
 def _moved_joints(model: mujoco.MjModel, sensors: Sequence[str]) -> tuple[str, ...]:
     """Returns the hinges and slides with names that move measured tendons."""
     ids = [int(model.sensor(name).objid[0]) for name in sensors]
-    moving = _moving(model, ids)
+    moving = np.asarray(_moved_by(model)[0][ids].any(axis=0))
     return tuple(
         model.joint(j).name
         for j in range(model.njnt)
@@ -192,41 +192,31 @@ def _moved_joints(model: mujoco.MjModel, sensors: Sequence[str]) -> tuple[str, .
 
 def _felt(model: mujoco.MjModel, ids: Sequence[int], fixed: set[int]) -> list[int]:
     """Returns the dofs that move tendons, and those that equalities tie to them, but the known."""
-    ties = [set(np.flatnonzero(row)) for row in _equality_rows(model)]
-    felt = set(np.flatnonzero(_moving(model, ids)))
+    tendons, rows = _moved_by(model)
+    ties = [set(np.flatnonzero(row)) for row in rows]
+    felt = set(np.flatnonzero(tendons[ids].any(axis=0)))
     while more := [tie for tie in ties if tie & felt and tie - felt]:
         felt |= more[0]
     return sorted(int(i) for i in felt - fixed)
 
 
-def _poses(model: mujoco.MjModel) -> list[np.ndarray]:
-    rng = np.random.default_rng(0)
-    poses = [np.array(model.qpos0) for _ in range(POSES)]
-    for q in poses[1:]:
-        mujoco.mj_integratePos(model, q, SPREAD * rng.standard_normal(model.nv), 1.0)
-    return poses
+def _moved_by(model: mujoco.MjModel) -> tuple[np.ndarray, np.ndarray]:
+    """Returns which dofs move each tendon, (ntendon, nv), and each row of the equalities, (_, nv).
 
-
-def _moving(model: mujoco.MjModel, ids: Sequence[int]) -> np.ndarray:
-    """Returns which dofs move one of some tendons, shape (nv,)."""
-    data, moving = mujoco.MjData(model), np.zeros(model.nv, bool)
-    for q in _poses(model):
-        data.qpos[:] = q
-        mujoco.mj_fwdPosition(model, data)
-        moving |= (np.abs(_tendon_rows(model, data)[ids]) > 1e-9).any(axis=0)
-    return moving
-
-
-def _equality_rows(model: mujoco.MjModel) -> np.ndarray:
-    """Returns which dofs each row of the equalities moves, shape (rows, nv)."""
-    model, rows = copy.copy(model), []
+    The model is put into its own pose and into some poses about it.
+    """
+    model, rng, rows = copy.copy(model), np.random.default_rng(0), []
     model.opt.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
     data = mujoco.MjData(model)
-    for q in _poses(model):
-        data.qpos[:] = q
+    for k in range(POSES):
+        data.qpos[:] = model.qpos0
+        if k:
+            mujoco.mj_integratePos(model, data.qpos, SPREAD * rng.standard_normal(model.nv), 1.0)
         mujoco.mj_fwdPosition(model, data)
-        rows.append(np.abs(data.efc_J.reshape(-1, model.nv)[: data.ne]) > 1e-9)
-    return np.any(rows, axis=0) if rows else np.zeros((0, model.nv), bool)
+        equalities = data.efc_J.reshape(-1, model.nv)[: data.ne]
+        rows.append((_tendon_rows(model, data), equalities.copy()))
+    tendons, ties = (np.asarray(each) for each in zip(*rows, strict=True))
+    return (np.abs(tendons) > 1e-9).any(axis=0), (np.abs(ties) > 1e-9).any(axis=0)
 
 
 def _tendon_rows(model: mujoco.MjModel, data: mujoco.MjData) -> np.ndarray:

@@ -77,11 +77,7 @@ def measured_poses(file: RobotFile) -> tuple[Pose, ...]:
 
 
 def with_step(spec: mujoco.MjSpec, logs: Sequence[Log]) -> tuple[str, ...]:
-    """Give a model the largest step up to its own that divides the sampling of logs; say so.
-
-    Returns:
-        A sentence, or nothing where its own step divides them.
-    """
+    """Give a model the largest step up to its own that divides the sampling of logs; say so."""
     given, h = float(spec.option.timestep), logs[0].sampling_time
     if _divides(given, logs):
         return ()
@@ -131,13 +127,7 @@ def unit_of(model: mujoco.MjModel, path: str) -> str:
 
 
 def refuse_unit(said: Mapping[str, Any], expected: str, whose: str) -> None:
-    """Refuse a unit in which the model does not read numbers.
-
-    Args:
-        said: the table of a parameter.
-        expected: the unit of the model's numbers; "" where none is known.
-        whose: unit it is, for messages.
-    """
+    """Refuse a parameter's unit in which the model reads no numbers; any where "" is expected."""
     unit = said.get("unit", expected)
     if expected:
         refuse_other_unit(unit, expected, whose)

@@ -52,7 +52,7 @@ def read_robot(
     """Read a robot and the logs that it is to explain; refuse files that do not belong together.
 
     Args:
-        path: path of its TOML, which names the model (`identification.robot.file` lists every key).
+        path: path of its TOML, which names the model (`docs/robot/keys.md` lists every key).
         log: what was measured: a CSV (with a TOML beside it), a MATLAB file with u, y and Ts, or a
             `Log` whose columns bear the names of the model's actuators and sensors. Several of
             them are fitted together.

@@ -35,11 +35,10 @@ class Model:
 def read_rivals(robot: Robot, result: str | Path) -> tuple[Model, ...]:
     """Returns the models among which a discovery could not decide, the named one first.
 
-    Returns:
-        None where every name is sure, or nothing is named.
+    There are none where every name is sure, or nothing is named.
 
     Raises:
-        InputError: the result is of no discovery, or was saved by an older version.
+        InputError: the result was saved by an older version, or names an unknown effect.
     """
     record = read_result(result)
     if "effects" not in record:

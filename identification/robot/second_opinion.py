@@ -46,13 +46,9 @@ def ask_torques(robot: Robot, progress: Callable[[str], None] | None = None) -> 
 
 
 def with_torques(found: Discovery, evidence: Evidence | None) -> Discovery:
-    """Returns a discovery with what the joints' torques say of its names.
+    """Returns a discovery with what the joints' torques say of its names, if they tell anything.
 
     A discovery in which nothing is missing is returned as it is.
-
-    Args:
-        found: over a horizon.
-        evidence: of the torques of the same records; None where they tell nothing.
     """
     if evidence is None or found.verdict == "nothing missing":
         return found
@@ -125,11 +121,8 @@ def suggest(evidence: Evidence, robot: Robot) -> tuple[Candidate, ...]:
 def _believed(effect: Effect, told: Mapping[str, float]) -> dict[str, float]:
     """Returns shapes that torques tell, moved to the nearest that the search believes.
 
-    Torques see a jump within one sample, which a simulation cannot: it takes some time there.
-
-    Args:
-        effect: the candidate of the search.
-        told: values by name; the first ones to try where there are none.
+    Torques see a jump within one sample, which a simulation cannot: it takes some time there. Where
+    they tell nothing, these are the first ones to try.
     """
     first = next(iterate_shapes(effect))
     return {
@@ -143,12 +136,8 @@ def _frictions(
 ) -> list[Candidate]:
     """Returns the frictions and offsets that joints have and the model has not.
 
-    Args:
-        evidence: of the torques.
-        robot: whose model may lack them.
-        known: the candidates of the search, by name.
-        changed: effects and places that what torques name only changes, such as a level of
-            friction that grows along the way; where it does so, the level itself is hard to tell.
+    Besides those that torques prove, these are the levels that are `changed` by what torques name,
+    such as a friction that grows along the way: the level itself is then hard to tell.
     """
     if len(robot.plant.joints) < 2:
         return []

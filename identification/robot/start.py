@@ -68,18 +68,15 @@ def refuse_start(file: RobotFile, model: mujoco.MjModel) -> None:
                 )
 
 
-def start_of(file: RobotFile, model: mujoco.MjModel, log: Log) -> State:
-    """Returns the initial state of a simulation of a log.
+def start_of(file: RobotFile, model: mujoco.MjModel, log: Log | None) -> State:
+    """Returns the initial state of a simulation of a log, or of the model alone without one.
 
-    Args:
-        file: the robot's; what it gives under [start] stands, and with trust in the start all of
-            the model's own stands.
-        model: with the log's sensors.
-        log: what was measured.
+    What the robot's file gives under [start] stands, and with trust in the start all of the
+    model's own stands.
     """
     reset = own_start(model)
     start = {f: np.array(getattr(reset, f)) for f in ("qpos", "qvel", "act")}
-    for (field, i), begin in moved_begin(file, model, log).items():
+    for (field, i), begin in moved_begin(file, model, log).items() if log else ():
         start[field][i] = begin.value
     for path, value in file.start.items():
         place = start_place(path, model)

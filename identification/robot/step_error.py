@@ -34,9 +34,8 @@ from identification.windows.window_error import first_error, window_error
 SECONDS = 2.0  # of a free run; a longer one of an unstable robot would diverge
 WINDOWS = 40  # of a horizon, spread over the log
 HALVINGS = 6  # of the timestep that are tried, to find one that is small enough
-SMALL = (
-    0.3  # of the error of prediction; its square is less than a tenth of what is to be explained
-)
+# Of the error of prediction; its square is less than a tenth of what is to be explained.
+SMALL = 0.3
 NONE = 1e-6  # of an output's motion: so small an error does not matter even without noise
 INTEGRATORS = ("Euler", "RK4", "implicit", "implicitfast")  # as MuJoCo counts them
 RK4 = INTEGRATORS.index("RK4")

@@ -125,6 +125,6 @@ def _plain(model: mujoco.MjModel) -> mujoco.MjModel:
 
 
 def _files(found: TorqueFit) -> Files:
-    from identification.robot.torque_files import TorqueFiles  # what draws is slow to import
+    from identification.robot.fit_files import TorqueFiles  # what draws is slow to import
 
     return TorqueFiles(found)

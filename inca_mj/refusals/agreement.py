@@ -19,8 +19,7 @@ motion is of use.
 
 Eight cables hold a platform that has six degrees of freedom, so that two statements are left which
 every sample of a right log fulfils, but for the strain of the cables. Neither currents nor masses
-nor friction have a say. In 90 robots as built (worlds 33000 to 33089, 4 s, most with an effect) κ
-was 1e-4 in the middle and 0.0012 at most. The same angles in reverse order had 0.003 to 0.016.
+nor friction have a say. `inca_mj.refusals.bounds` says how large κ is in right logs.
 """
 
 from __future__ import annotations
@@ -48,12 +47,9 @@ SMALL = 1e-6  # added to JᵀJ, where poses without a unique motion must not sto
 
 
 def angles_under(plant: Twin, log: Log, currents: np.ndarray) -> np.ndarray:
-    """Returns the twin's angles from its start, shape (m, n, k) [rad]; NaN where not finite.
+    """Returns the twin's angles along a log under m other sequences of currents (m, n, 8) [A].
 
-    Args:
-        plant: the twin.
-        log: n samples of k angles; its own currents are not used.
-        currents: m sequences, shape (m, n, 8) [A].
+    They have the shape (m, n, k) [rad], and are NaN where they are not finite.
     """
     predictor, none = Predictor(plant, log, (), {}), np.zeros((len(currents), 0))
     start, numbers = predictor.settings(none)
@@ -74,10 +70,7 @@ def follow(
 ) -> tuple[np.ndarray, np.ndarray] | None:
     """Simulate the twin with feedback of some drives; the others have their logged currents.
 
-    Args:
-        plant: the twin.
-        log: n samples of all eight angles [rad].
-        drives: that follow the log.
+    The log has all eight angles [rad].
 
     Returns:
         Currents between samples, shape (n - 1, 8) [A], and angles, shape (n, 8) [rad]; None where

@@ -28,9 +28,7 @@ from inca_mj.refusals.agreement import assigned
 def other_angles(part: Log, predicted: np.ndarray) -> tuple[Reading, str] | None:
     """Returns another wiring of the angles that explains the first motion as a right log's.
 
-    Args:
-        part: the first motion, n samples of angles that all move.
-        predicted: the twin's angles, shape (n, angles) [rad].
+    All of its angles move; those of the twin are predicted, shape (n, angles) [rad].
     """
     doubt = Doubt.of(part, {n: n for n in (*part.output_names, *part.input_names)})
     # A cable pulls and does not push: other signs of all currents are no mirror of all angles.

@@ -3,9 +3,7 @@
 One current moves all angles, so that all of them judge it together, by γ (`angles.apart`): an angle
 that hardly moves may be anywhere in a right log, and then another current may bring it nearer by
 chance. Another reading must leave a tenth of γ, and every angle as near to the twin as that of a
-right log. In 58 robots as built (worlds 31000 to 31057, 4 s of PRBS or multisine) γ was 0.040 at
-most, and no other reading left less than 0.63 of it. Of 210 right logs of worlds 32000 to 32289,
-none was refused.
+right log (`bounds`).
 
 Readings are proposed in two ways. Where the angles are right, feedback tells the places and signs
 of all currents at once (`inca_mj.refusals.agreement`). Where an angle is wrong too, as in a drive
@@ -17,9 +15,7 @@ tell the places and signs of all angles.
 that signs and cosines tell nothing. What tells is where the cables are: only in the right order do
 eight angles belong to poses of the platform (κ of `agreement`). The frame is symmetric, and eight
 orders are alike in that; a free run of the twin under each decides between them, as far as the
-start and the load are not symmetric too. A log is refused only if both say the same. 90 right logs
-of robots as built (worlds 33000 to 33089) are not; of 14 in reverse or cycled order (worlds 33007
-to 33087) all are.
+start and the load are not symmetric too. A log is refused only if both say the same.
 
     κ' <= κ/10,    γ' <= γ/3,    ε_k <= 0.2 for every angle
 """
@@ -76,12 +72,9 @@ def other_currents(
 def renamed_drives(plant: Twin, part: Log, predicted: np.ndarray) -> tuple[Reading, str] | None:
     """Returns another order of the drives under which the twin moves as the log, with words.
 
-    Of orders that are about as near, it is the one that changes fewest drives.
-
-    Args:
-        plant: the twin.
-        part: the first motion, n samples of all eight angles.
-        predicted: the twin's angles under the currents as they are read, shape (n, 8) [rad].
+    Of orders that are about as near, it is the one that changes fewest drives. The part is the
+    first motion, with all eight angles; the twin's are predicted under its currents, shape (n, 8)
+    [rad].
     """
     as_read, y = apart(part, predicted), some(part.outputs)
     share = float(unreached_share(plant, y[None])[0])

@@ -6,10 +6,8 @@ wrong, the other seven angles are as those of a right log now:
 
     γ_others <= γ/10,    ε_j <= 0.2 for every other angle j
 
-A current that a user keeps constant is right, and then the feedback brings the others no nearer: in
-90 robots as built with effects (worlds 32200 to 32289, 4 s, one current constant at 0 to 2 A) it
-left 0.36 of γ or more; where a current was logged as zero, it left 0.026 in the middle of 30. Two
-currents may stand still, and others may have the other sign: feedback of all motors tells which.
+A current that a user keeps constant is right, and then the feedback brings the others no nearer.
+Two currents may stand still, and others may have the other sign: feedback of all motors tells it.
 
 One angle may be turned or scaled beside them. The cables tell so without a current
 (`inca_mj.refusals.scales`), and the currents are judged with the angle mended.
@@ -38,13 +36,8 @@ def dead_current(
 ) -> tuple[str, tuple[str, ...]] | None:
     """Returns which logged current stands still, what tells it, and the cure; None if none does.
 
-    Args:
-        plant: the twin.
-        part: the first motion, n samples of all eight angles, which all move.
-        predicted: the twin's angles under the logged currents, shape (n, 8) [rad].
-
-    Returns:
-        The sentence, and what it judges, words of `JUDGED`.
+    All eight angles move in the first motion; the twin's are predicted, shape (n, 8) [rad]. With
+    the sentence come words of `JUDGED`, which it judges.
     """
     ranges = np.ptp(part.inputs, axis=0)
     still = np.flatnonzero(ranges <= bounds.CONSTANT * np.median(ranges)).tolist()

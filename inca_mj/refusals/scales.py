@@ -52,13 +52,8 @@ def other_unit(
 ) -> tuple[str, tuple[str, ...]] | None:
     """Returns what tells that angles are not in radians, and the cure; None if nothing does.
 
-    Args:
-        part: the first motion, n samples of angles that all move.
-        predicted: the twin's angles, shape (n, angles) [rad].
-        wiring_is_right: whether the user says so.
-
-    Returns:
-        The sentence, and the words of what it judges.
+    All angles of the first motion move; the twin's are predicted, shape (n, angles) [rad]. With the
+    sentence come the words of what it judges.
     """
     y = part.outputs - part.outputs[0]
     scales = np.abs((y * predicted).sum(0) / (predicted**2).sum(0))
@@ -92,10 +87,7 @@ def other_unit(
 def scaled_angle(plant: Twin, part: Log, predicted: np.ndarray) -> str | None:
     """Returns which angle is far too small or large beside the others, and the cure, or None.
 
-    Args:
-        plant: the twin.
-        part: the first motion, n samples of all eight angles.
-        predicted: the twin's angles, shape (n, 8) [rad].
+    The part is the first motion of all eight angles; the twin's are predicted, (n, 8) [rad].
     """
     found = odd_angle(plant, some(part.outputs), (1.0,))
     if found is None:
@@ -112,11 +104,8 @@ def scaled_angle(plant: Twin, part: Log, predicted: np.ndarray) -> str | None:
 def scaled_current(plant: Twin, part: Log, longer: Log, predicted: np.ndarray) -> str | None:
     """Returns which current is far too small or large beside the others, and the cure, or None.
 
-    Args:
-        plant: the twin.
-        part: the first motion, n samples of all eight angles.
-        longer: the log a little longer, of which feedback tells more.
-        predicted: the twin's angles under the logged currents, shape (n, 8) [rad].
+    Feedback tells more of the longer log; the twin's angles in the part are predicted, (n, 8)
+    [rad].
     """
     as_read = apart(part, predicted)
     if as_read <= bounds.ASTRAY:
@@ -143,16 +132,11 @@ def scaled_current(plant: Twin, part: Log, longer: Log, predicted: np.ndarray) -
 def odd_angle(
     plant: Twin, y: np.ndarray, signs: tuple[float, ...] = BOTH
 ) -> tuple[int, float] | None:
-    """Returns the angle that belongs to no pose with the others, and the factor with which it does.
+    """Returns the angle that fits no pose with the others, and the factor f with which it does.
 
-    Args:
-        plant: the twin.
-        y: angles from the first sample on, shape (n, 8) [rad].
-        signs: of the factors that are tried.
-
-    Returns:
-        The number of the drive from zero, and f, without unit; None where no factor brings the
-        angles near enough to poses of the platform.
+    Angles count from the first sample on, (n, 8) [rad]; factors of the given signs are tried. The
+    angle is the number of its drive from zero. None is returned where no factor brings the angles
+    near enough to poses of the platform.
     """
     tried = np.concatenate([sign * FACTORS for sign in signs])
     shares = np.stack([_shares(plant, y, k, tried) for k in range(DRIVES)])

@@ -1,5 +1,6 @@
 """A log by its columns alone."""
 
+import mujoco
 import numpy as np
 
 from identification import Log
@@ -17,3 +18,18 @@ def model_log(model, u, y, step=0.01, **more):
     inputs = [model.actuator(i).name for i in range(model.nu)]
     outputs = [model.sensor(i).name for i in range(model.nsensor)]
     return plain_log(u, y, inputs, outputs, step, **more)
+
+
+def stepped(model, u, start=0.0, step=0.01):
+    """Positions (n, nq) of a model under inputs (n, nu) that are held, by MuJoCo's own steps."""
+    data, y = mujoco.MjData(model), np.zeros((len(u), model.nq))
+    data.qpos[:] = start
+    for k in range(len(u)):
+        y[k], data.ctrl[:] = data.qpos, u[k]
+        mujoco.mj_step(model, data, round(step / model.opt.timestep))
+    return y
+
+
+def noise(shape, size, seed=0):
+    """White noise of a std."""
+    return size * np.random.default_rng(seed).standard_normal(shape)

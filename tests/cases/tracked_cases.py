@@ -2,9 +2,11 @@
 
 import mujoco
 import numpy as np
+import pytest
 from plain_logs import model_log
 
-from identification import write_log
+from identification import InputError, write_log
+from identification.refusals.wiring import refuse_miswired
 from identification.robot.file import read_robot_file
 from identification.robot.robot import read_robot_log, robot_of
 
@@ -90,7 +92,7 @@ def _mass(model, data):
     return full
 
 
-def robot(folder, xml, log, horizon):
+def robot(folder, xml, log, horizon=""):
     """The robot of a model, and a log as it is read for it."""
     (folder / "robot.xml").write_text(xml)
     joint = mujoco.MjModel.from_xml_string(xml).joint(0).name
@@ -101,3 +103,10 @@ def robot(folder, xml, log, horizon):
     file = read_robot_file(folder / "robot.toml")
     read = read_robot_log(file, folder / "log.csv")
     return robot_of(file, read), read
+
+
+def refused(own, log):
+    """What is said of a log that is refused for its wiring."""
+    with pytest.raises(InputError) as caught:
+        refuse_miswired(own, log)
+    return str(caught.value)

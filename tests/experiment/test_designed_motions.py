@@ -4,7 +4,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from identification.experiment.limits import Limit, Margin, keeps, limits_of, margins
+from identification.experiment.limits import keeps, limits_of, margins
 from identification.experiment.search import search
 from identification.experiment.series import changed, draw
 
@@ -106,9 +106,3 @@ def test_ranges_of_logs_are_widened_where_the_model_has_none():
     seen = np.ptp(log.outputs)
     assert limits.positions[0].high - limits.positions[0].low == pytest.approx(2 * seen)
     assert limits.inputs[0].high - limits.inputs[0].low == pytest.approx(2 * np.ptp(log.inputs))
-
-
-def test_a_margin_is_the_nearest_end():
-    m = Margin(Limit("position", "q", -1.0, 3.0, "model"), -0.5, 2.8)
-    assert m.left == pytest.approx(0.2)
-    assert m.share == pytest.approx(0.1)

@@ -6,7 +6,7 @@ from plain_logs import plain_log
 
 from identification import InputError, Parameter
 from identification.logs.decimation import decimate
-from identification.logs.units import UNITS, dimension, refuse_not_si, refuse_other_unit
+from identification.logs.units import dimension, refuse_not_si, refuse_other_unit
 
 T = 0.001
 U = np.sin(np.arange(1001) * 0.01)[:, None] * [1.0, 2.0]
@@ -19,32 +19,6 @@ def test_outputs_are_every_nth_and_means_are_kept():
     assert few.sampling_time == pytest.approx(0.01)
     np.testing.assert_array_equal(few.outputs, LOG.outputs[::10])
     np.testing.assert_allclose(few.inputs[:-1], U[:-1].reshape(100, 10, 2).mean(axis=1))
-
-
-def test_straight_lines_are_kept_and_are_the_nearest_ones():
-    few = decimate(LOG, 10)
-    assert few.hold == "foh"
-    weight = (np.arange(10) + 0.5) / 10
-    fine = (1 - weight)[:, None] * few.inputs[:-1, None] + weight[:, None] * few.inputs[1:, None]
-    error = U[:-1].reshape(100, 10, 2) - fine
-    # nearest: what is left is at right angles to every hat
-    hats = (
-        np.einsum("i,kiu->ku", 1 - weight, error)[1:] + np.einsum("i,kiu->ku", weight, error)[:-1]
-    )
-    np.testing.assert_allclose(hats, 0, atol=0.01 * np.abs(U).max())
-    assert np.abs(error).max() < 0.01
-
-
-def test_both_moments_of_a_pulse_between_samples_are_kept():
-    pulse = np.zeros((401, 1))
-    pulse[203:207] = 1.0
-    log = plain_log(pulse, pulse, "u", "y", T)
-    few = decimate(log, 10)
-    weight = (np.arange(2000) + 0.5) / 2000
-    u = (1 - weight) * few.inputs[:-1] + weight * few.inputs[1:]
-    t = (np.arange(40)[:, None] + weight) * 0.01
-    assert u.mean() * 0.4 == pytest.approx(0.004, rel=1e-6)
-    assert (u * t).mean() * 0.4 / 0.004 == pytest.approx(0.205, abs=1e-6)
 
 
 def test_what_makes_no_log_is_refused():
@@ -105,13 +79,6 @@ def test_two_words_for_one_unit(one, other):
 @pytest.mark.parametrize(("unit", "factor"), FACTORS.items())
 def test_the_factor_to_si(unit, factor):
     assert dimension(unit).factor == pytest.approx(factor, rel=1e-8)
-
-
-@pytest.mark.parametrize("word", UNITS)
-def test_the_units_of_logs_are_those_of_parameters(word):
-    si, factor = UNITS[word]
-    assert dimension(word).factor == pytest.approx(factor, rel=1e-12)
-    assert dimension(word).powers == dimension(si).powers
 
 
 @pytest.mark.parametrize(

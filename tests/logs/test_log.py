@@ -7,20 +7,9 @@ import pytest
 from example_logs import wave
 from hypothesis import given
 from hypothesis import strategies as st
-from plain_logs import plain_log
 
 from identification import Log
 from identification.logs.joined import JoinedLog, join_logs, records_of
-from identification.logs.log import halves
-
-
-@pytest.mark.parametrize("rate", [50, 100, 187, 333])
-def test_printed_digits_do_not_spoil_the_sampling_time(rate):
-    digits = 6
-    time = np.arange(20 * rate) / rate
-    printed = np.array([float(f"{t:.{digits}g}") for t in time])
-    log = plain_log(np.zeros((len(time), 0)), np.zeros((len(time), 1)), "", "q", time=printed)
-    assert log.sampling_time == pytest.approx(1 / rate, rel=1e-5)
 
 
 def test_nothing_in_it_can_be_changed():
@@ -51,14 +40,6 @@ def test_slices_join_to_the_whole(n, cut, step):
     assert np.array_equal(np.concatenate([first.inputs, second.inputs]), log.inputs)
     assert np.array_equal(np.concatenate([first.outputs, second.outputs]), log.outputs)
     assert np.array_equal(np.concatenate([first.extras["x"], second.extras["x"]]), log.extras["x"])
-
-
-@given(n=st.integers(6, 300))
-def test_halves_join_to_the_whole(n):
-    log = wave(n)
-    first, second = (log.part(name) for name in halves(log))
-    assert np.array_equal(np.concatenate([first.time, second.time]), log.time)
-    assert abs(len(first) - len(second)) <= 1
 
 
 def _with(**changes):

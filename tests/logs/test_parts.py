@@ -12,9 +12,7 @@ from hypothesis import strategies as st
 from identification.innovations.proof import Validation, prove
 from identification.logs.parts import (
     FEWEST_BLOCKS,
-    LEAST_BLOCKS,
     MEMORIES,
-    MOST_BLOCKS,
     REPORT_EVERY,
     autocorrelation_time,
     divide,
@@ -45,12 +43,6 @@ def test_every_unseen_sample_is_in_one_part_and_each_part_in_whole_blocks(n, uni
     blocks = n // parts.block
     assert blocks >= FEWEST_BLOCKS
     assert abs(parts.report.sum() - n / REPORT_EVERY) < 2 * parts.block
-
-
-@pytest.mark.parametrize("memory", [1.0, 30.0, 60.0, 1e6])
-def test_blocks_are_as_long_as_the_memory_asks_and_the_record_allows(memory):
-    block = divide(np.ones(1800, bool), 1, memory).block
-    assert block == np.clip(MEMORIES * memory, 1800 / MOST_BLOCKS, 1800 / LEAST_BLOCKS)
 
 
 def test_neighbouring_blocks_of_a_process_with_memory_hardly_correlate():

@@ -1,5 +1,8 @@
 """Uneven logs are put on an even grid, and say so; a hole is not papered over."""
 
+from pathlib import Path
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -8,6 +11,7 @@ from hypothesis import strategies as st
 from identification import InputError, read_log
 from identification.logs.gaps import Channel, find_lost_rows
 from identification.logs.resampling import even_out, on_a_grid
+from identification.logs.table import Table
 
 RNG = np.random.default_rng(4)
 
@@ -16,8 +20,13 @@ def signals(t):
     return {"u": np.where(np.sin(9 * t) > 0, 1.0, -1.0), "y": np.sin(2 * t)}
 
 
-def even(t, channels, **options):
-    return even_out("log", t, channels, ["u"], **{"hold": "zoh", **options})
+def even(t, channels, step=None):
+    columns = np.column_stack([t, *channels.values()])
+    table = Table(Path("log.csv"), ("time", *channels), columns, str)
+    found, gaps = even_out(table, ["u"], "zoh", step)
+    on_grid = {name: found[name] for name in channels}
+    (said,) = found.remarks
+    return SimpleNamespace(time=found["time"], channels=on_grid, sentence=said, gaps=gaps)
 
 
 def test_jitter_is_taken_out_and_the_rate_is_that_of_the_median_interval():

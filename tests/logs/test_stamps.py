@@ -131,12 +131,3 @@ def test_a_wrong_unit_of_time_is_told_the_one_that_repairs_it(tmp_path, right, w
     assert f'write time = "{right}" under [units] in {place}' in said
     say(right)
     assert read_robot(robot, path).log.sampling_time == pytest.approx(log.sampling_time)
-
-
-@pytest.mark.parametrize("times", [1, 3])
-def test_rows_that_were_written_twice_are_counted_in_words(csv, times):
-    rows = [f"{0.02 * k:.2f},{k % 7},{k % 5}\n" for k in range(60)]
-    path = csv("time,u,y\n" + "".join(r * (1 + (k < times)) for k, r in enumerate(rows)))
-    (said,) = read(path).remarks
-    told = "1 row of log 'log' repeats" if times == 1 else "3 rows of log 'log' repeat the row"
-    assert said.startswith(told)

@@ -4,6 +4,7 @@ import mujoco
 import numpy as np
 import pytest
 from estimation_plants import record, steps
+from plain_logs import noise, stepped
 
 from identification import Parameter, ParameterSet, fit, read_robot
 from identification.estimation.estimation import estimate
@@ -105,12 +106,8 @@ def test_a_servo_with_a_filter_and_a_limit_is_fitted_over_a_horizon(tmp_path):
     model = mujoco.MjModel.from_xml_string(
         ARM.format(actuator=xml.format(kp=9, timeconst=0.08, f=1.6))
     )
-    u, data, rows = 0.7 * steps(500, seed=1), mujoco.MjData(model), []
-    rng = np.random.default_rng(0)
-    for k in range(500):
-        rows.append((0.01 * k, u[k, 0], data.qpos[0] + 2e-4 * rng.standard_normal()))
-        data.ctrl[:] = u[k]
-        mujoco.mj_step(model, data, 5)
+    u = 0.7 * steps(500, seed=1)
+    rows = np.hstack([0.01 * np.arange(500)[:, None], u, stepped(model, u) + noise(u.shape, 2e-4)])
     np.savetxt(tmp_path / "log.csv", rows, "%.9g", ",", header="time,a,q", comments="")
     drawn = ARM.format(actuator=xml.format(kp=12, timeconst=0.05, f=2))
     (tmp_path / "arm.xml").write_text(drawn)

@@ -8,7 +8,6 @@ from estimation_plants import SLIDER_PARAMETERS, slider
 
 from identification import Log
 from identification.kalman.linear import linearise
-from identification.kalman.noise_fit import compute_unit_ratio
 from identification.kalman.noise_model import Noise, build_whitener
 from identification.logs.joined import join_logs
 from identification.model.parameter import with_own
@@ -64,9 +63,3 @@ def test_a_predictor_begins_anew_with_each_record(plants):
     alone = np.concatenate([each[0](e[:60]), each[1](e[60:])])
     np.testing.assert_allclose(both(e), alone, atol=1e-12)
     assert both.log_determinant == pytest.approx(sum(w.log_determinant for w in each), rel=1e-12)
-
-
-def test_the_scale_of_the_noise_is_that_of_both_records(plants):
-    joined, own = plants
-    both, *each = (compute_unit_ratio(plant, H, 0.1) for plant in (joined, *own))
-    assert min(each) < both < max(each)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from advice import advised
 from plain_logs import plain_log
-from tracked_cases import ARM, MOTION, payload, robot, tracked
+from tracked_cases import ARM, MOTION, payload, refused, robot, tracked
 
 from identification import InputError
 from identification.logs.units import UNITS
@@ -69,12 +69,6 @@ def hung(mass, speed=1.0, gears=(1.0, 1.0), samples=500, seed=2):
         mujoco.mj_step(model, data, 4)
     y += 3e-4 * np.random.default_rng(seed).standard_normal(y.shape)
     return plain_log(u / gears, y, "T1 T2", "x z")
-
-
-def refused(own, log):
-    with pytest.raises(InputError) as caught:
-        refuse_miswired(own, log)
-    return str(caught.value)
 
 
 def test_winches_that_push_are_refused_whatever_hangs_from_them(tmp_path):

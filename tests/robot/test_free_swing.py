@@ -7,7 +7,7 @@ import mujoco
 import numpy as np
 import pytest
 from joint_cases import SLIDER, run, slider_log, steps
-from plain_logs import model_log
+from plain_logs import model_log, noise, stepped
 from records_cases import MJCF, pendulum, record
 
 from identification import fit, joint_plant, read_robot, write_log
@@ -31,17 +31,12 @@ MOTOR = '<actuator><motor name="push" joint="x" gear="{gear}"/></actuator>'
 TRUE = {"damping": 0.6, "stiffness": 30.0, "friction": 0.0, "mass": 2.0, "motor": ""}
 
 
-def swing(xml, start, samples, h=0.02, noise=3e-4, force=0.0):
+def swing(xml, start, samples, h=0.02, force=0.0):
     """A log of a motion from a start, with no input or with a constant one."""
     model = mujoco.MjModel.from_xml_string(xml)
-    data = mujoco.MjData(model)
-    data.qpos[:], data.ctrl[:] = start, force
-    y = np.empty((samples, model.nq))
-    for k in range(samples):
-        y[k] = data.qpos
-        mujoco.mj_step(model, data, round(h / model.opt.timestep))
-    y += noise * np.random.default_rng(4).standard_normal(y.shape)
-    return model_log(model, np.full((samples, model.nu), force), y, h)
+    u = np.full((samples, model.nu), force)
+    y = stepped(model, u, start, h)
+    return model_log(model, u, y + noise(y.shape, 3e-4, seed=4), h)
 
 
 def robot(folder, xml, log, free, more=""):

@@ -67,7 +67,7 @@ def test_what_a_model_includes_and_names_counts_too(tmp_path, compiled_by_anothe
     with (tmp_path / "box.stl").open("wb") as file:
         file.truncate(hostile.BYTES + 1)
     mesh = '<compiler meshdir="."/><asset><mesh name="m" file="box.stl"/></asset><worldbody>'
-    assert refuse_hostile(with_part(mesh), "the model", tmp_path).may_be_large
+    assert refuse_hostile(with_part(mesh), "the model", tmp_path).much
 
 
 @pytest.mark.skipif(os.name != "posix", reason="pipes of POSIX")

@@ -9,7 +9,6 @@ from dataclasses import replace
 from pathlib import Path
 
 import emps
-import mujoco
 import numpy as np
 import pytest
 import winch
@@ -18,7 +17,6 @@ import xl330
 from plain_logs import plain_log
 
 from identification import Log, Predictor, estimate_windows, read_robot, window_error
-from identification.effects.rows import read_model
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 SHARED = EXAMPLES.parents[1] / "shared" / "data"
@@ -79,23 +77,6 @@ def test_a_record_is_read_on_an_even_grid_with_signs_and_without_what_the_motor_
     assert time[-1] - time[0] - xl330.STEP < log.duration <= time[-1] - time[0]
     assert [one.name for one in xl330.read_all(tmp_path, (100,))] == ["ramp, k_p 100"]
     assert xl330.read_all(tmp_path, (200,)) == []
-
-
-def test_left_alone_it_swings_with_the_period_of_its_mass_and_armature():
-    model = read_model(MODEL).compile()
-    model.dof_damping[0] = 0
-    data = mujoco.MjData(model)
-    data.qpos[0] = 0.01
-    angles = []
-    while data.time < 3:
-        mujoco.mj_step(model, data)
-        angles.append(data.qpos[0])
-    a = np.array(angles)
-    k = np.flatnonzero(a[1:] * a[:-1] < 0)
-    crossings = (k + a[k] / (a[k] - a[k + 1])) * model.opt.timestep
-    inertia = 0.49 * 0.1**2 + 1e-7 + model.dof_armature[0]
-    period = 2 * np.pi * np.sqrt(inertia / (0.49 * 9.80665 * 0.1))
-    assert 2 * np.mean(np.diff(crossings)) == pytest.approx(period, rel=1e-4)
 
 
 def test_known_values_are_recovered_from_the_noisy_angle_of_the_model():
@@ -196,28 +177,6 @@ def test_the_current_m_g_r_over_k_t_holds_the_load_and_a_motor_within_friction_s
         assert end(hold + share * friction) == pytest.approx(0.0, abs=1e-6)
     assert end(hold + 1.5 * friction) > 0.01
     assert end(hold - 1.5 * friction) < -0.01
-
-
-def simulated(f_c, f_0):
-    """Two seconds up, two down, near balance, with a current that hunts for the speed."""
-    log = record(0.0, seconds=4.2)
-    t = log.time
-    hunt = 0.3 * np.sin(5 * t) + 0.2 * np.sin(11 * t)
-    current = (LOAD - f_0 + np.where(t < 2.1, 1, -1) * 1.15 * f_c) / 2.755 + hunt
-    log = replace(log, inputs=current[:, None])
-    plant = read_robot(winch.ROBOT, log, trust=TRUST).plant
-    y = Predictor(plant, log, (), {F_C: f_c, F_0: f_0}).predict(np.empty((1, 0)))[0]
-    return replace(log, outputs=y + np.random.default_rng(2).normal(0, 2e-5, y.shape))
-
-
-def test_friction_and_load_come_back_from_a_simulated_record():
-    log = simulated(3.9, 1.5)
-    assert log.outputs.max() > 0.05  # it went up, and came down
-    assert log.outputs[-1] < log.outputs.max() - 0.05
-    plant = read_robot(winch.ROBOT, log, trust=TRUST).plant
-    fit = estimate_windows(plant, log, (F_C, F_0), 0.3)
-    assert fit.values[F_C] == pytest.approx(3.9, rel=0.03)
-    assert fit.values[F_0] == pytest.approx(1.5, rel=0.03)
 
 
 @pytest.mark.long

@@ -6,13 +6,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from pendulum_robot import MASS, OFFSET, OWN, TOML, assert_true, make_folder, measured, written
-from records_cases import MJCF, records
+from records_cases import MJCF
 from robot_cases import refused
 from state_cases import ELASTIC, Truth, elastic
 from state_cases import measured as measured_states
 
-from identification import confirm, fit, read_robot, window_error, write_log, write_robot
-from identification.robot.confirmation import compare_values
+from identification import confirm, fit, read_robot, write_log, write_robot
 from identification.robot.file import read_robot_file
 from identification.robot.fit_files import robot_fit_to_json
 
@@ -168,25 +167,3 @@ def test_an_elastic_gear_is_written_read_and_fitted(tmp_path):
     (told,) = confirm(again, fitted)
     assert np.isfinite(told.after)
     assert told.after < 0.5 * told.before
-
-
-LOAD = {"presliding.c@hinge": 0.05}
-
-
-@pytest.fixture(scope="module")
-def robot(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("robot")
-    make_folder(folder)
-    (folder / "robot.toml").write_text(TOML)
-    written(folder, *records(2))
-    return read_robot(folder / "robot.toml", folder / "log_0.csv", confirm=[folder / "log_1.csv"])
-
-
-def test_an_effect_with_states_of_its_own_is_compared_in_a_plant_that_has_them(robot):
-    (log,) = robot.records
-    told = compare_values(robot, log, {}, {**LOAD, "coulomb_friction.f_c@hinge": 0.05})
-    plant = robot.plant.with_states_of(LOAD)
-    values = {**LOAD, "coulomb_friction.f_c@hinge": 0.05}
-    error = window_error(plant, log, robot.file.horizon, values)
-    assert told.after == pytest.approx(float(np.sqrt(np.mean(error**2))), rel=1e-12)
-    assert told.after != told.before

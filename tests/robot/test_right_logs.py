@@ -6,7 +6,7 @@ from functools import cache
 import mujoco
 import numpy as np
 import pytest
-from plain_logs import model_log, plain_log
+from plain_logs import model_log, plain_log, stepped
 from tracked_cases import (
     ARM,
     MOTION,
@@ -85,13 +85,10 @@ def test_a_right_log_of_a_coarse_encoder_or_a_late_torque_passes(world, late, st
 
 def swung(model, idle, seed=0):
     """A log of an arm whose last drive swings it, while the others give `idle` [N m] rms."""
-    rng, data = np.random.default_rng(seed), mujoco.MjData(model)
+    rng = np.random.default_rng(seed)
     size = np.where(np.arange(model.nu) == model.nu - 1, 1.0, idle)
     u = np.repeat(size * rng.standard_normal((30, model.nu)), 20, axis=0)
-    y = np.empty((len(u), model.nv))
-    for k in range(len(u)):
-        y[k], data.ctrl[:] = data.qpos, u[k]
-        mujoco.mj_step(model, data, 4)
+    y = stepped(model, u)
     return model_log(model, u, y + 2e-4 * rng.standard_normal(y.shape))
 
 
@@ -146,13 +143,8 @@ def test_a_position_that_follows_the_wanted_one_late_or_in_part_has_its_unit(sha
 
 def test_a_wanted_position_in_degrees_is_refused_by_the_robot(tmp_path):
     model = mujoco.MjModel.from_xml_string(HOLDING)
-    data, q, _ = mujoco.MjData(model), *moved()[:2]
-    y = np.zeros((len(q), 1))
-    for k in range(len(q)):
-        y[k] = data.qpos
-        data.ctrl[0] = q[k]
-        mujoco.mj_step(model, data, 4)
-    log = plain_log(q[:, None], y, "u1", "q1")
+    q = moved()[0][:, None]
+    log = plain_log(q, stepped(model, q), "u1", "q1")
     own, read = robot(tmp_path, HOLDING, log, "horizon = 0.2")
     refuse_miswired(own, read)
     with pytest.raises(InputError, match='write u1 = "deg" under'):

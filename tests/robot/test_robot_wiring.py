@@ -6,7 +6,8 @@ import mujoco
 import numpy as np
 import pytest
 from joint_cases import ARM, SLIDER, arm, arm_log, run, slider, slider_log, steps
-from plain_logs import plain_log
+from plain_logs import plain_log, stepped
+from tracked_cases import refused, robot
 
 from identification import Log, write_log
 from identification.__main__ import main
@@ -17,8 +18,6 @@ from identification.refusals.balance import unbalanced_share
 from identification.refusals.by_forces import NEEDED, rescaled
 from identification.refusals.columns import Doubt
 from identification.refusals.wiring import refuse_miswired
-from identification.robot.file import read_robot_file
-from identification.robot.robot import read_robot_log, robot_of
 
 pytestmark = pytest.mark.usefixtures("few_effects")
 
@@ -35,22 +34,12 @@ CRANE = """<mujoco model="crane"><option timestep="0.0025" integrator="RK4"/>
 <sensor><jointpos name="pos" joint="x"/><jointpos name="ang" joint="swing"/></sensor></mujoco>"""
 
 
-def robot(folder, model, log, free, horizon=""):
-    """A robot whose file gives its true values, and a log as it is read for it."""
-    (folder / "robot.xml").write_text(model)
-    (folder / "robot.toml").write_text(f'{horizon}\nmodel = "robot.xml"\nfree = ["{free}"]\n')
-    write_log(log, folder / "log.csv")
-    file = read_robot_file(folder / "robot.toml")
-    read = read_robot_log(file, folder / "log.csv")
-    return robot_of(file, read), read
-
-
 @pytest.fixture(scope="module")
 def cart(tmp_path_factory):
     log = slider_log(steps(400))
     y = run(slider(), log)
     log = replace(log, outputs=y + 1e-3 * RNG.standard_normal(y.shape), units={})
-    return robot(tmp_path_factory.mktemp("cart"), SLIDER, log, "joint/slide.damping")
+    return robot(tmp_path_factory.mktemp("cart"), SLIDER, log)
 
 
 @pytest.fixture(scope="module")
@@ -59,7 +48,7 @@ def two_joints(tmp_path_factory):
     log = arm_log(u)
     y = run(arm(), log)
     log = replace(log, outputs=y + 1e-3 * RNG.standard_normal(y.shape))
-    return robot(tmp_path_factory.mktemp("arm"), ARM, log, "joint/elbow.damping")
+    return robot(tmp_path_factory.mktemp("arm"), ARM, log)
 
 
 def crane(z, feedback, samples=600):
@@ -80,13 +69,7 @@ def crane(z, feedback, samples=600):
 @pytest.fixture(scope="module")
 def hanging(tmp_path_factory):
     return robot(tmp_path_factory.mktemp("crane"), CRANE.format(z=-0.3),
-                 crane(-0.3, np.zeros(4), samples=240), "joint/x.damping")  # fmt: skip
-
-
-def refused(robot, log):
-    with pytest.raises(InputError) as caught:
-        refuse_miswired(robot, log)
-    return str(caught.value)
+                 crane(-0.3, np.zeros(4), samples=240))  # fmt: skip
 
 
 @pytest.mark.parametrize("values", [{}, {"mass": 0.6}, {"damping": 12.0}])
@@ -134,7 +117,7 @@ def test_inputs_that_are_turned_or_exchanged_are_told(hanging, two_joints):
 def test_a_pendulum_that_feedback_balances_is_not_refused(tmp_path):
     log = crane(0.3, np.array([40.0, 250.0, 30.0, 50.0]))
     assert np.abs(log.outputs[:, 1]).max() < 0.5
-    refuse_miswired(*robot(tmp_path, CRANE.format(z=0.3), log, "joint/x.damping"))
+    refuse_miswired(*robot(tmp_path, CRANE.format(z=0.3), log))
 
 
 def test_the_commands_refuse_it_for_the_log_and_for_its_records(cart, tmp_path, capsys):
@@ -170,14 +153,10 @@ def chain_of(joints, mass, stiffness):
 
 def measured(model, samples, torque, noise, still=0):
     """A right log of a chain: torques by chance, after some samples without, and noise."""
-    rng, data, joints = np.random.default_rng(7), mujoco.MjData(model), model.nv
+    rng, joints = np.random.default_rng(7), model.nv
     u = np.repeat(torque * rng.standard_normal((samples // HELD + 1, joints)), HELD, axis=0)
     u[:still] = 0.0
-    y = np.empty((samples, joints))
-    for k in range(samples):
-        y[k] = data.qpos + noise * rng.standard_normal(joints)
-        data.ctrl[:] = u[k]
-        mujoco.mj_step(model, data, 2)
+    y = stepped(model, u[:samples]) + noise * rng.standard_normal((samples, joints))
     return Log(
         time=STEP * np.arange(samples), inputs=u[:samples], outputs=y,
         input_names=[f"u{k}" for k in range(joints)],
@@ -215,7 +194,7 @@ def test_of_a_long_log_a_beginning_that_moves_is_judged(tmp_path, monkeypatch, s
     monkeypatch.setattr(judge, "first_error", counted)
     text = chain_of(2, 0.3, 2.0)
     right = measured(mujoco.MjModel.from_xml_string(text), 1000, 0.5, 1e-3, still)
-    own, log = robot(tmp_path, text, right, "joint/j0.damping")
+    own, log = robot(tmp_path, text, right)
     refuse_miswired(own, log)
     assert max(seen) < len(log) if not still else min(seen) > still
     with pytest.raises(InputError, match="exchange"):

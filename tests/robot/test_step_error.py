@@ -2,16 +2,13 @@
 
 import re
 import shutil
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from joint_cases import SLIDER, STEP, run, slider, slider_log, steps
 
-from identification import InputError, fit, read_robot
-from identification.errors import DivergenceError
-from identification.robot import fitting
+from identification import InputError, read_robot
 from identification.robot.file import RobotFile
 from identification.robot.robot import robot_of
 from identification.robot.step_error import refuse_coarse_steps, step_error
@@ -62,14 +59,6 @@ def test_the_error_is_that_of_the_half_step(tmp_path, log):
     found = step_error(robot(tmp_path, log, 'timestep="0.002"'))
     assert found.output == "position"
     assert found.noise == pytest.approx(NOISE, rel=0.1)
-
-
-def test_over_a_short_horizon_less_is_lost(tmp_path, log):
-    whole, short, longer = (
-        step_error(robot(tmp_path, log, 'timestep="0.01"', horizon=h)).error
-        for h in (None, 0.1, 0.4)
-    )
-    assert short < min(longer, whole)
 
 
 def test_over_a_horizon_steps_are_asked_where_the_robot_was(tmp_path):
@@ -156,21 +145,3 @@ def test_a_start_beyond_all_that_the_log_shows_is_refused(folder):
     assert said.startswith(f"start in {folder / 'robot.toml'}: it gives qvel[0] = ")
     assert "correct qvel[0], or delete it to begin where the log does" in said
     assert robot_in(folder, own + FREE_RUN, start='[start]\n"qpos[0]" = 500.0\n').remarks
-
-
-@pytest.fixture
-def said(monkeypatch):
-    """What a fit says that diverges, by the factors of its log."""
-
-    def diverge(*_):
-        raise DivergenceError("it diverged; use a smaller step")
-
-    monkeypatch.setattr(fitting, "fit_records", diverge)
-    robot = read_robot(ELBOW / "elbow.toml", ELBOW / "first.csv")
-
-    def of(factors):
-        with pytest.raises(DivergenceError) as caught:
-            fit(replace(robot, log=replace(robot.log, factors=factors)))
-        return str(caught.value)
-
-    return of

@@ -18,7 +18,7 @@ from identification import (
     write_log,
 )
 
-FREE, PATH, MASS = '"joint/slide.damping"', '"body/cart.mass"', 'unit = "kg"'
+FREE, MASS = '"joint/slide.damping"', 'unit = "kg"'
 
 
 @pytest.fixture
