@@ -32,6 +32,10 @@ PAGE = ROOT / "docs" / "robot" / "models.md"
 NO_NAME = ("unlisted effect", "unknown effect")
 NO_LAW = (*NO_NAME, "nothing missing")
 BINS = ((0.0, 0.5), (0.5, 0.8), (0.8, 0.9), (0.9, 1.1))  # of confidences
+REFUSED = (
+    ("it explains less than 92 % of what smooth forces could", "further"),
+    ("a smooth force of a joint does as much", "smooth"),
+)
 WORDS = {
     "arm": "an arm with position servos",
     "finger": "a finger whose joints a tendon drives together",
@@ -171,6 +175,16 @@ def _names_of(rows: Sequence[Row]) -> list[tuple[float, bool]]:
     ]
 
 
+def _refused(rows: Sequence[Row], doubt: str) -> list[bool]:
+    """Returns of each law that a doubt refused whether it is one of what is hidden."""
+    return [
+        any(_is_meant(row, h, name, where) for h in _hidden(row))
+        for row in rows
+        for name, where, why in row.get("rejected") or []
+        if why == doubt and not name.startswith(CURVE)
+    ]
+
+
 def page(rows: Sequence[Row]) -> str:
     """Returns the page of the rows of one search."""
     kinds = [[r for r in rows if not _is_rough(r)], [r for r in rows if _is_rough(r)]]
@@ -182,6 +196,10 @@ def page(rows: Sequence[Row]) -> str:
     for low, high in BINS:
         some = [right for c, right in _names_of(rows) if low <= c < high]
         lines.append(f"| {low:g} to {min(1, high):g} | {said(rate(some, bool))} |")
+    lines += ["", "| refused beside a surer law | was hidden there, of all refused |", "|---|---|"]
+    for words, doubt in REFUSED:
+        some = _refused(rows, doubt)
+        lines.append(f"| {words} | {said(rate(some, bool))} |")
     lines += ["", "| robot | right | search, median [s] | what was not right |",
               "|---|---|---|---|"]  # fmt: skip
     for robot, words in WORDS.items():
