@@ -58,7 +58,7 @@ def parsed(
         with redirect_stderr(parser_words):
             return tyro.cli(
                 commands, prog=name, description=description, args=gathered(commands, arguments),
-                config=(tyro.conf.AvoidSubcommands,),
+                config=(tyro.conf.AvoidSubcommands, tyro.conf.OmitArgPrefixes),
             )  # fmt: skip
     except SystemExit as end:
         at_hand = dict(_commands(commands))

@@ -7,7 +7,7 @@ import os
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, TypeVar
@@ -51,9 +51,6 @@ class Output:
         """Writes one line about progress to stderr, unless it shall be quiet."""
         if not self.quiet:
             note(text)
-
-
-output_field: Any = field(default_factory=Output)
 
 
 def say(text: str) -> None:

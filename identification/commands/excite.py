@@ -14,7 +14,6 @@ from identification.commands.common import (
     Output,
     flat,
     note,
-    output_field,
 )
 from identification.commands.robots import conclude_files
 from identification.errors import InputError
@@ -51,7 +50,7 @@ class Excite:
     ] = ()
     """What you know better than a check: contacts, gaps, joints, rows, sensors, start, steps, time,
     units, wiring."""
-    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
+    output: Output = Output()
 
     def run(self) -> int:
         """Read, design, say, keep."""

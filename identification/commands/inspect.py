@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from identification.commands.common import OneLog, Output, conclude, output_field, table
+from identification.commands.common import OneLog, Output, conclude, table
 from identification.quantities import plain_fields
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ class Inspect:
     """
 
     log: OneLog
-    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
+    output: Output = Output()
 
     def run(self) -> int:
         """Inspect, say, draw."""
@@ -61,7 +61,7 @@ class New:
     log: OneLog
     robot: Annotated[Path, tyro.conf.arg(metavar="FILE")] = Path("robot.toml")
     """Where the file goes; one that exists is never replaced."""
-    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
+    output: Output = Output()
 
     def run(self) -> int:
         """Inspect, write, say."""

@@ -14,7 +14,6 @@ from identification.commands.common import (
     assignments,
     conclude,
     draw_report,
-    output_field,
     table,
 )
 
@@ -46,7 +45,7 @@ class Linearize:
     trust: Annotated[tuple[str, ...], tyro.conf.arg(metavar="WORD")] = ()
     """What you know better than a check of the log: contacts, gaps, joints, rows, sensors, start,
     steps, time, units, wiring."""
-    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
+    output: Output = Output()
 
     def run(self) -> int:
         """Linearise, say, keep."""

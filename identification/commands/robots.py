@@ -16,7 +16,6 @@ from identification.commands.common import (
     conclude,
     flat,
     note,
-    output_field,
     parameter_table,
 )
 from identification.commands.stopping import NO_ANSWER, STOPPED, leaving_out
@@ -52,7 +51,7 @@ class OnRobot:
     units, wiring."""
     spread: str = "usual"
     """How much values that are alike differ: usual (the robot's TOML), none, or a TOML file."""
-    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
+    output: Output = Output()
 
     def read(self, but: tuple[str, ...] = (), *, fits: bool = True) -> Robot:
         """Returns the robot, compiled for its log, with the records that confirm.

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from identification.commands.common import Output, conclude, draw_report, note, output_field
+from identification.commands.common import Output, conclude, draw_report, note
 from identification.commands.places import refuse_place
 from identification.errors import InputError
 
@@ -47,7 +47,7 @@ class SweepCommand:
     """Run tasks once more that met an error; goes with --resume."""
     summary: bool = False
     """Run nothing; make report and result.json anew from the records."""
-    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
+    output: Output = Output()
 
     def run(self) -> int:
         """Run, keep, say; 1 where every task met an error."""

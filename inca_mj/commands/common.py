@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import tyro
 
@@ -156,8 +156,3 @@ def do_not_draw() -> None:
             del os.environ["MUJOCO_GL"]
         else:
             os.environ["MUJOCO_GL"] = before
-
-
-values_field: Any = field(default_factory=Values)
-robot_field: Any = field(default_factory=Robot)
-saved_robot_field: Any = field(default_factory=SavedRobot)

@@ -17,7 +17,6 @@ from identification.commands.common import (
     draw_report,
     flat,
     note,
-    output_field,
     table,
 )
 from inca_mj.commands.common import (
@@ -25,8 +24,6 @@ from inca_mj.commands.common import (
     Trust,
     Values,
     do_not_draw,
-    saved_robot_field,
-    values_field,
 )
 
 if TYPE_CHECKING:
@@ -50,8 +47,8 @@ class Compare:
     """Log to explain: CSV (with a TOML beside it) or MATLAB .mat with u, y, Ts."""
     trust: Trust = ()
     """Checks of the log that you overrule: sensors, units, wiring."""
-    robot: Annotated[SavedRobot, tyro.conf.OmitArgPrefixes] = saved_robot_field
-    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
+    robot: SavedRobot = SavedRobot()
+    output: Output = Output()
 
     def run(self) -> int:
         """Compare, say and keep the result; 0 unless the input is bad."""
@@ -122,8 +119,8 @@ class Crosscheck:
     """Length of each run [s]."""
     states: int = 10_000
     """Random states at which accelerations are compared."""
-    robot: Annotated[Values, tyro.conf.OmitArgPrefixes] = values_field
-    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
+    robot: Values = Values()
+    output: Output = Output()
 
     def run(self) -> int:
         """Check, say, keep; 0 when they agree, 1 when not."""

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import time
 from contextlib import ExitStack
-from dataclasses import dataclass, field
-from functools import partial
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -18,7 +17,6 @@ from identification.commands.common import (
     add_drawings,
     flat,
     note,
-    output_field,
     say,
     say_json,
 )
@@ -33,7 +31,6 @@ from inca_mj.commands.common import (
     cannot_draw,
     do_not_draw,
     read_logs,
-    values_field,
 )
 from inca_mj.files import example_path
 
@@ -71,8 +68,8 @@ class Discover:
     """Time after which no further effect is sought (10 if not given); then it answers."""
     trust: Trust = ()
     """Checks of the log that you overrule: sensors, units, wiring."""
-    robot: Annotated[Values, tyro.conf.OmitArgPrefixes] = values_field
-    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
+    robot: Values = Values()
+    output: Output = Output()
 
     def run(self) -> int:
         """Discover, say, keep."""
@@ -175,10 +172,8 @@ class Demo:
     """The log; the one that comes with the program when none is given."""
     film: bool = True
     """Film the model before and after against unseen seconds of the log."""
-    robot: Annotated[Values, tyro.conf.OmitArgPrefixes] = values_field
-    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = field(
-        default_factory=partial(Output, out=Path("out/demo"))
-    )
+    robot: Values = Values()
+    output: Output = Output(out=Path("out/demo"))
 
     def run(self) -> int:
         """Do all of it, say the verdict first and where the report lies last."""

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Annotated
 import tyro
 
 import inca_mj as inca
-from identification.commands.common import Output, conclude, draw_report, output_field, table
-from inca_mj.commands.common import Robot, do_not_draw, robot_field
+from identification.commands.common import Output, conclude, draw_report, table
+from inca_mj.commands.common import Robot, do_not_draw
 
 if TYPE_CHECKING:
     from identification.estimation.information import Information
@@ -38,8 +38,8 @@ class Sensitivity:
     """Std of the noise on each motor angle [rad]; seen in the log, or 6.7e-4 without one."""
     duration: float = 5.0
     """Length of the PRBS [s]; a log has its own."""
-    robot: Annotated[Robot, tyro.conf.OmitArgPrefixes] = robot_field
-    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
+    robot: Robot = Robot()
+    output: Output = Output()
 
     def run(self) -> int:
         """Analyse, say, keep."""
@@ -106,8 +106,8 @@ class Excite:
     """The platform stays so near its start along x, y, z [m]."""
     turn: float = 60.0
     """And turns no further from its start [deg]."""
-    robot: Annotated[Robot, tyro.conf.OmitArgPrefixes] = robot_field
-    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
+    robot: Robot = Robot()
+    output: Output = Output()
 
     def run(self) -> int:
         """Design, say, keep."""

@@ -14,11 +14,10 @@ from identification.commands.common import (
     assignments,
     conclude,
     draw_report,
-    output_field,
     table,
 )
 from identification.errors import InputError
-from inca_mj.commands.common import Values, do_not_draw, values_field
+from inca_mj.commands.common import Values, do_not_draw
 
 if TYPE_CHECKING:
     import numpy as np
@@ -43,8 +42,8 @@ class Kinematics:
     """Of a log: std of each angle [rad]; seen in the log when not given."""
     std: Annotated[tuple[str, ...], tyro.conf.arg(metavar="NAME=STD")] = ()
     """Of a log: how well parameters are known, such as R=1e-4 x=0.002; exact when not given."""
-    robot: Annotated[Values, tyro.conf.OmitArgPrefixes] = values_field
-    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
+    robot: Values = Values()
+    output: Output = Output()
 
     def run(self) -> int:
         """Compute, say, keep."""

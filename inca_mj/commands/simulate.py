@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import tyro
 
 import inca_mj as inca
-from identification.commands.common import Output, conclude, draw_report, output_field, table
+from identification.commands.common import Output, conclude, draw_report, table
 from identification.commands.places import refuse_place
 from identification.errors import InputError
 from inca_mj.commands.common import SavedRobot, do_not_draw, keep_run
@@ -57,8 +57,8 @@ class Simulate:
     """Constant external force G on the platform, in the fixed frame [N]."""
     force_at: Annotated[tuple[float, float, float], tyro.conf.arg(metavar="X Y Z")] = (0, 0, 0)
     """The point b_G where the force acts, in the platform's frame [m]."""
-    robot: Annotated[FigureRobot, tyro.conf.OmitArgPrefixes] = field(default_factory=FigureRobot)
-    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
+    robot: FigureRobot = FigureRobot()
+    output: Output = Output()
 
     def run(self) -> int:
         """Simulate, write, say."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
@@ -13,7 +13,7 @@ import tyro
 import inca_mj as inca
 from identification.commands.common import Output, assignments, conclude, draw_report
 from identification.errors import InputError, unknown_name
-from inca_mj.commands.common import Robot, do_not_draw, keep_run, robot_field
+from inca_mj.commands.common import Robot, do_not_draw, keep_run
 
 if TYPE_CHECKING:
     from identification.effects.effect import Effect
@@ -48,10 +48,8 @@ class Track:
     """Seed of the noise."""
     knows_pose: bool = False
     """Tell the controller the true pose, which the real robot cannot measure."""
-    robot: Annotated[Robot, tyro.conf.OmitArgPrefixes] = robot_field
-    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = field(
-        default_factory=partial(Output, out=Path("out/track"))
-    )
+    robot: Robot = Robot()
+    output: Output = Output(out=Path("out/track"))
 
     def run(self) -> int:
         """Track, write, say."""
