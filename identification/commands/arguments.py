@@ -33,16 +33,10 @@ def parsed(
     arguments: Sequence[str],
     examples: tuple[str, ...] = (),
 ) -> Any:
-    """Returns the command that some arguments name.
+    """Returns the command that some arguments name; see `run_program`.
 
-    Args:
-        commands: a union of dataclasses, as tyro takes it.
-        name: of the program.
-        description: what it does.
-        arguments: those of the command line. `--completion SHELL` prints a script that completes
-            them in bash, zsh or fish.
-        examples: command lines that the help of the program shows; those of a command stand in its
-            docstring.
+    `--completion SHELL` prints a script that completes commands in bash, zsh or fish. `examples`
+    are of the program; those of a command stand in its docstring.
 
     Raises:
         InputError: they name no command, or one that cannot be had with them.

@@ -34,6 +34,15 @@ OneLog = Annotated[Path, tyro.conf.Positional, tyro.conf.arg(metavar="LOG", help
 LogLists = Annotated[  # an option that takes logs and may be given again; see `flat`
     tuple[tuple[Path, ...], ...], tyro.conf.UseAppendAction, tyro.conf.arg(metavar="LOG")
 ]
+Trust = Annotated[
+    tuple[tuple[str, ...], ...],
+    tyro.conf.UseAppendAction,
+    tyro.conf.arg(
+        metavar="WORD",
+        help="What you know better than a check: contacts, gaps, joints, rows, sensors, start,"
+        " steps, time, units, wiring.",
+    ),
+]
 
 
 @dataclass(frozen=True)

@@ -9,12 +9,7 @@ from typing import Annotated, Any, Literal
 
 import tyro
 
-from identification.commands.common import (
-    LogLists,
-    Output,
-    flat,
-    note,
-)
+from identification.commands.common import LogLists, Output, Trust, flat, note
 from identification.commands.robots import conclude_files
 from identification.errors import InputError
 
@@ -45,11 +40,7 @@ class Excite:
     """Experiments that the search evaluates."""
     seed: int = 0
     """Of the search."""
-    trust: Annotated[
-        tuple[tuple[str, ...], ...], tyro.conf.UseAppendAction, tyro.conf.arg(metavar="WORD")
-    ] = ()
-    """What you know better than a check: contacts, gaps, joints, rows, sensors, start, steps, time,
-    units, wiring."""
+    trust: Trust = ()
     output: Output = Output()
 
     def run(self) -> int:

@@ -18,7 +18,7 @@ from identification.commands.common import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
     from identification.linear.system import LinearSystem
 
@@ -72,8 +72,16 @@ class Linearize:
         }
         units = {} if log is None else log.units
         text = "\n".join(said(s, label) for s, label in zip(systems, labels, strict=True))
-        keep = partial(save_systems, systems, rate)
-        conclude(self, record, text, keep, partial(draw, systems, labels, rate, units))
+
+        def draw(out: Path) -> None:
+            from identification.linear.modes import modes
+            from identification.report.linear import linear_sections, slowest_and_fastest
+
+            verdict = [slowest_and_fastest(modes(systems[0]))]
+            sections = linear_sections(systems, labels, rate, units)
+            draw_report(out, "The linear model", verdict, sections)
+
+        conclude(self, record, text, partial(save_systems, systems, rate), draw)
         return 0
 
 
@@ -87,21 +95,6 @@ def said(system: LinearSystem, label: str) -> str:
         [f"{label}: {sizes} outputs", table(HEAD, mode_rows(system)),
          minimal_sentence(minimal(system), len(system.A))]
     )  # fmt: skip
-
-
-def draw(
-    systems: Sequence[LinearSystem],
-    labels: Sequence[str],
-    rate: float | None,
-    units: Mapping[str, str],
-    out: Path,
-) -> None:
-    """Write figures and the one-file report of the systems into a folder."""
-    from identification.linear.modes import modes
-    from identification.report.linear import linear_sections, slowest_and_fastest
-
-    verdict = [slowest_and_fastest(modes(systems[0]))]
-    draw_report(out, "The linear model", verdict, linear_sections(systems, labels, rate, units))
 
 
 def save_systems(systems: Sequence[LinearSystem], rate: float | None, out: Path) -> None:

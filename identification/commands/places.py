@@ -6,9 +6,8 @@ Nothing that a user made is replaced: neither an input of the command nor anothe
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import fields, is_dataclass
-from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -16,12 +15,6 @@ from identification.commands.common import Output
 from identification.errors import InputError
 from identification.files import exists, is_file
 from identification.folders import try_folder
-
-
-def refuse_empty(arguments: Sequence[str]) -> None:
-    """Refuses `--out ""`, which would be the folder in which the user stands."""
-    if "--out=" in arguments or ("--out", "") in pairwise(arguments):
-        raise InputError('--out is given as ""; name a folder, such as --out out/run')
 
 
 def refuse_place(command: Any) -> None:

@@ -13,6 +13,7 @@ from identification.commands.common import (
     LOG_KINDS,
     LogLists,
     Output,
+    Trust,
     conclude,
     flat,
     note,
@@ -44,11 +45,7 @@ class OnRobot:
     ]  # fmt: skip
     confirm: LogLists = ()
     """Records to which nothing is fitted."""
-    trust: Annotated[
-        tuple[tuple[str, ...], ...], tyro.conf.UseAppendAction, tyro.conf.arg(metavar="WORD")
-    ] = ()
-    """What you know better than a check: contacts, gaps, joints, rows, sensors, start, steps, time,
-    units, wiring."""
+    trust: Trust = ()
     spread: str = "usual"
     """How much values that are alike differ: usual (the robot's TOML), none, or a TOML file."""
     output: Output = Output()

@@ -11,12 +11,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from identification.commands.common import Output, conclude, draw_report, note
+from identification.commands.common import Output, conclude, draw_report, flat, note
 from identification.commands.places import refuse_place
 from identification.errors import InputError
 
 if TYPE_CHECKING:
-    from identification.sweep.method import Findings
     from identification.sweep.store import Store
     from identification.sweep.task import Sweep
 
@@ -80,7 +79,7 @@ class SweepCommand:
     def _compute(self, sweep: Sweep, store: Store) -> None:
         from identification.sweep.run import backend_of, run_sweep
 
-        options = _options([text for some in self.job for text in some])
+        options = _options(flat(self.job))
         backend = backend_of(self.backend, self.jobs, store.folder, options)
         tell = self.output.tell if not sys.stderr.isatty() else None  # there a bar says it
         ran = run_sweep(store, backend, resume=self.resume, progress=tell)
@@ -93,7 +92,10 @@ class SweepCommand:
         found = summarise(sweep, store.rows())
         record = {**found.record, "path": str(path)}
         text = "\n".join([*found.sentences, f"The records are in {path}."])
-        conclude(kept, record, text, draw=partial(_draw, sweep, found))
+        footer = f"seed {sweep.seed}, digest of the records {found.record['digest'][:16]}"
+        title, said, sections = sweep.about, found.sentences, found.sections
+        draw = partial(draw_report, title=title, verdict=said, sections=sections, footer=footer)
+        conclude(kept, record, text, draw=draw)
         if found.record["failed"] == found.record["records"]:
             (most, *others) = found.record["errors"]
             note(f"every task met an error: {most}" + (", and others" if others else ""))
@@ -107,8 +109,3 @@ def _options(words: Sequence[str]) -> dict[str, str]:
         if not word.partition("=")[2]:
             raise InputError(f"{word!r} is not NAME=VALUE; write e.g. --job slurm_partition=long")
     return dict(word.split("=", 1) for word in words)
-
-
-def _draw(sweep: Sweep, found: Findings, out: Path) -> None:
-    footer = f"seed {sweep.seed}, digest of the records {found.record['digest'][:16]}"
-    draw_report(out, sweep.about, found.sentences, found.sections, footer=footer)
