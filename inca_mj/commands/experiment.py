@@ -6,16 +6,13 @@ from dataclasses import dataclass
 from functools import partial
 from math import radians
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import tyro
 
 import inca_mj as inca
 from identification.commands.common import Output, conclude, draw_report, table
 from inca_mj.commands.common import Robot, do_not_draw
-
-if TYPE_CHECKING:
-    from identification.estimation.information import Information
 
 Names = Annotated[tuple[str, ...], tyro.conf.arg(metavar="NAME")]
 UNKNOWN = ("lambda", "b", "J", "b_v", "b_c", "beta")
@@ -62,21 +59,17 @@ class Sensitivity:
             what = f"The currents of {log.name}, {log.duration:g} s"
         about = f"{what}, noise {trial.sigma:.3g} rad."
         record = {"noise": trial.sigma, **information_json(found)}
+        std = dict(zip(found.names, zip(found.std, found.conditional, strict=True), strict=False))
+        rows = [(name, *(f"{x:.3g}" for x in std[name])) for name in found.ranking]
+        said = table(("parameter", "std", "others known"), rows)
         verdict, title = information_verdict(found), "What an experiment can say"
         conclude(
-            self, record, "\n".join([summary_of_information(found), about, *verdict]),
+            self, record, "\n".join([said, about, *verdict]),
             draw=lambda out: draw_report(
                 out, title, verdict, [information_section(found, about)]
             ),
         )  # fmt: skip
         return 0
-
-
-def summary_of_information(found: Information) -> str:
-    """Returns the ranking with the least std of every parameter."""
-    std = dict(zip(found.names, zip(found.std, found.conditional, strict=True), strict=False))
-    rows = [(name, *(f"{x:.3g}" for x in std[name])) for name in found.ranking]
-    return table(("parameter", "std", "others known"), rows)
 
 
 @dataclass(frozen=True, kw_only=True)

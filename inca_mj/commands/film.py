@@ -149,28 +149,26 @@ class View:
     def run(self) -> int:
         """Show it until the window is closed."""
         do_not_draw()  # the viewer has an OpenGL of its own
+        from inca_mj.commands.compare import compare_with
         from inca_mj.rendering.interactive import refuse_speed, require_screen, view_model, view_run
+        from inca_mj.twin.logs import UNJUDGED
 
         if self.plain and self.source is not None:
             raise InputError("--plain shows a model and no run; leave out --plain, or the file")
         refuse_speed(self.speed)
         require_screen()  # before anything is simulated
         if self.source is not None:
-            view_run(self._run(self.source), speed=self.speed)
+            if self.source.suffix == ".npz":
+                run = inca.load_run(self.source)
+            else:
+                log = inca.read_inca_log(self.source, UNJUDGED)
+                run = compare_with(self.robot, log, UNJUDGED).run
+            view_run(run, speed=self.speed)
         elif self.plain:
             view_model(inca.build_plain(self.robot.parameters(), self.robot.place()).compile())
         else:
             view_model(self.robot.twin(1e-2).model)
         return 0
-
-    def _run(self, source: Path) -> inca.Run:
-        """Returns the run to play."""
-        from inca_mj.commands.compare import compare_with
-        from inca_mj.twin.logs import UNJUDGED, read_inca_log
-
-        if source.suffix == ".npz":
-            return inca.load_run(source)
-        return compare_with(self.robot, read_inca_log(source, UNJUDGED), UNJUDGED).run
 
 
 @dataclass

@@ -66,7 +66,11 @@ class Simulate:
         now = self._resolved()
         refuse_place(now)
         currents, sampling_time, hold = now._currents()
-        robot = now._twin(sampling_time)
+        if now.force is None and any(now.force_at):
+            raise InputError("--force-at says where a force acts; give the force with --force")
+        robot = now.robot.twin(sampling_time)
+        if now.force is not None:
+            robot = inca.with_force(robot, now.force, now.force_at)
         result = inca.simulate(robot, currents, sampling_time, hold_kind=hold)
         summary = {
             "samples": len(result.time),
@@ -113,13 +117,6 @@ class Simulate:
             raise InputError("--figure is of the thesis' robot; leave out --model, or --figure")
         robot = replace(self.robot, set=needs.set)
         return replace(self, input=needs.input, duration=needs.duration, robot=robot, output=output)
-
-    def _twin(self, sampling_time: float) -> inca.Twin:
-        """Returns the robot, with the force on it."""
-        if self.force is None and any(self.force_at):
-            raise InputError("--force-at says where a force acts; give the force with --force")
-        robot = self.robot.twin(sampling_time)
-        return robot if self.force is None else inca.with_force(robot, self.force, self.force_at)
 
     def _notes(self) -> str:
         text = f"input {self.input}, seed {self.seed}"
