@@ -190,9 +190,6 @@ class Heads:
         return f"{in_words(name)}: {about}" if about else in_words(name)
 
 
-NAMES = Heads({})  # names alone, without units
-
-
 def in_words(name: str) -> str:
     """Returns the name of a setting or a column without the underscores of code."""
     return name.replace("_", " ")

@@ -7,6 +7,7 @@ calibration:   ECE = Σ_b n_b |mean confidence_b - share right_b| / n;   Brier =
 from __future__ import annotations
 
 import math
+import statistics
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, TypeVar
 
@@ -49,9 +50,7 @@ def said(share: Mapping[str, Any]) -> str:
 
 def median(values: Sequence[float]) -> float | None:
     """Returns the median of some values; None where there are none."""
-    ordered = sorted(values)
-    n = len(ordered)
-    return (ordered[(n - 1) // 2] + ordered[n // 2]) / 2 if n else None
+    return statistics.median(values) if values else None
 
 
 def calibration_of(pairs: Sequence[tuple[float, bool]]) -> dict[str, Any]:

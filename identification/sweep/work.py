@@ -79,6 +79,8 @@ def work(task: Task) -> Outcome:
     Raises:
         MemoryError: the machine has too little memory, which says nothing about the task.
     """
+    import resource
+
     from threadpoolctl import threadpool_limits
 
     with _ONE, one_thread():
@@ -94,11 +96,13 @@ def work(task: Task) -> Outcome:
             except (Exception, SystemExit) as caught:
                 error = error_line(caught, task.reference)
                 trace = traceback.format_exc(limit=-4)
+        unit = 1 if sys.platform == "darwin" else 1024  # of the memory, in bytes
         run = {
             "seconds": time.perf_counter() - begin,
             "processor_seconds": time.process_time() - processor,
             "ended": time.time(), "host": socket.gethostname(), "process": os.getpid(),
-            "memory": peak_memory(), "code": code(), "trace": trace,
+            "memory": unit * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss, "code": code(),
+            "trace": trace,
         }  # fmt: skip
         return Outcome(task.number, record, error, run)
 
@@ -139,11 +143,3 @@ def _value(name: str, value: Any, kind: Any) -> Any:
     if not isinstance(plain, _PLAIN[kind]) or (isinstance(plain, bool) and kind is not bool):
         raise TypeError(f"{name} is {plain!r}, where its method declares {kind.__name__}")
     return kind(plain)
-
-
-def peak_memory() -> int:
-    """Returns the most memory that this process has held [bytes]."""
-    import resource
-
-    unit = 1 if sys.platform == "darwin" else 1024
-    return unit * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
