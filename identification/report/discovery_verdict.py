@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import hypot, inf, isfinite
 
 from identification.discovery.effect_results import RejectedEffect
-from identification.discovery.findings.finding import Finding, FindingKind
+from identification.discovery.findings.finding import FindingKind
 from identification.discovery.findings.records_evidence import UnprovenEffect
 from identification.discovery.result import Discovery
 from identification.progress import duration
@@ -122,10 +122,15 @@ def _findings(found: Discovery) -> list[str]:
     What effects that are not named would leave is no error of a model that is told of.
     """
     unnamed, likeliest = found.verdict == "unknown effect", _likeliest(found)
-    told = [f for f in found.findings
-            if not (unnamed and f.kind is FindingKind.REMAINING_ERROR)
-            and not (likeliest and _is_of(f, likeliest))]  # fmt: skip
-    return [sentence(describe_finding(finding)) for finding in told]
+    key = likeliest.candidate.key if likeliest else None  # which has a sentence of its own
+    told = []
+    for finding in found.findings:
+        e = finding.evidence
+        if isinstance(e, UnprovenEffect) and (e.name, e.where) == key:
+            continue
+        if not (unnamed and finding.kind is FindingKind.REMAINING_ERROR):
+            told.append(sentence(describe_finding(finding)))
+    return told
 
 
 def _likeliest(found: Discovery) -> RejectedEffect | None:
@@ -135,12 +140,6 @@ def _likeliest(found: Discovery) -> RejectedEffect | None:
         if isfinite(r.evidence) and r.proof.told.fall > 0 and not r.candidate.effect.is_curve
     ]  # fmt: skip
     return max(tried, key=lambda r: r.evidence, default=None)
-
-
-def _is_of(finding: Finding, tried: RejectedEffect) -> bool:
-    """Returns whether a finding tells of an effect that was tried."""
-    e = finding.evidence
-    return isinstance(e, UnprovenEffect) and (e.name, e.where) == tried.candidate.key
 
 
 def _likeliest_sentences(found: Discovery) -> list[str]:

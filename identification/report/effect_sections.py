@@ -102,7 +102,11 @@ def _numbers(named: NamedEffect) -> list[tuple[str, str]]:
 
 def rivals_section(found: Discovery) -> Section:
     """Returns the section on all candidates: what each would explain, and rivals of the named."""
-    (text, axis, caption), best = MEASURES[found.scored_by], best_scores(found)
+    text, axis, caption = MEASURES[found.scored_by]
+    each: dict[str, Scored] = {}  # the best of each effect: its best place and shape
+    for score in found.scores:
+        each.setdefault(score.candidate.effect.name, score)
+    best = [score for score in each.values() if score.p_value < LUCK]
     rows = tuple(
         (describe_effect(r.candidate), percent(r.confidence),
          describe_effect(n.candidate), r.alike)
@@ -133,7 +137,7 @@ def tried_section(found: Discovery) -> list[Section]:
     rows = [
         (describe_there(r.candidate, plant), describe_sizes(r, plant),
          fall_words(r.proof.told.fall, 3),
-         chance_words(r.proof.told), describe_doubt(r, found.options))
+         chance_words(r.proof.told.chance), describe_doubt(r, found.options))
         for r in tried
     ]  # fmt: skip
     rows += [(name, *BLANK, why) for name, why in failed_rows(failed, words)]
@@ -155,14 +159,6 @@ def tried_section(found: Discovery) -> list[Section]:
             plain="\n\n".join(filter(None, plain)),
         )
     ]
-
-
-def best_scores(found: Discovery) -> list[Scored]:
-    """Returns the best score of each effect that is more than luck: its best place and shape."""
-    each: dict[str, Scored] = {}
-    for score in found.scores:
-        each.setdefault(score.candidate.effect.name, score)
-    return [score for score in each.values() if score.p_value < LUCK]
 
 
 def describe_score(found: Discovery, score: Scored) -> str:

@@ -207,7 +207,7 @@ def describe_rejected(rejected: RejectedEffect, found: Discovery) -> str:
     return (
         f"{describe_there(rejected.candidate, plant)}: {describe_sizes(rejected, plant)};"
         f" {_where_told(proof)} the mean square {fall_words(proof.told.fall, 3)}"
-        f" (t = {proof.told.t:z.1f}, chance {chance_words(proof.told)}){why and f'; {why}'}"
+        f" (t = {proof.told.t:z.1f}, chance {chance_words(proof.told.chance)}){why and f'; {why}'}"
     )
 
 
@@ -232,21 +232,17 @@ def doubt_words(doubt: str | None, luck: float) -> str:
     """Returns what a word of doubt says, with the chance of luck; "" without a word."""
     said = DOUBTS.get(doubt or "", "")
     if doubt == "chance" and isfinite(luck):
-        said += f" (chance {_probability(luck)}, all effects that were tried counted)"
+        said += f" (chance {chance_words(luck)}, all effects that were tried counted)"
     return said
 
 
 def describe_chance(proof: Proof) -> str:
     """Returns in words how far unseen samples are from chance, and by which test."""
-    return f"t = {proof.t:z.1f}, chance {chance_words(proof)} by {proof.test}"
+    return f"t = {proof.t:z.1f}, chance {chance_words(proof.chance)} by {proof.test}"
 
 
-def chance_words(proof: Proof) -> str:
+def chance_words(chance: float) -> str:
     """Returns the chance of a gain as large as this by luck."""
-    return _probability(proof.chance)
-
-
-def _probability(chance: float) -> str:
     return f"{chance:.2g}" if chance > FEW else probability(chance)
 
 

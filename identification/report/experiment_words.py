@@ -107,10 +107,11 @@ def _values(found: Design, at: ParameterSet) -> list[str]:
     better = [k for k in order if before[k] > BETTER * after[k]]
     out = []
     if better:
-        told = [
-            f"{first.names[k]} {' instead of '.join(_std(after[k], before[k], first, at, k))}"
-            for k in better[:SAID]
-        ]
+        told = []
+        for k in better[:SAID]:
+            name = first.names[k]
+            stds = alike([after[k], before[k]], plain_unit(at[name].unit), 2)
+            told.append(f"{name} {' instead of '.join(stds)}")
         more = f" ({len(better) - SAID} more in the report)" if len(better) > SAID else ""
         gain = _mean(before[order] / after[order])
         random = _mean(found.random.std[order] / after[order])
@@ -132,10 +133,6 @@ def _values(found: Design, at: ParameterSet) -> list[str]:
 def _mean(ratio: np.ndarray) -> float:
     """Returns the geometric mean of ratios."""
     return float(np.exp(np.mean(np.log(np.maximum(ratio, 1e-12)))))
-
-
-def _std(after: float, before: float, first: Any, at: ParameterSet, k: int) -> list[str]:
-    return alike([after, before], plain_unit(at[first.names[k]].unit), 2)
 
 
 def _margins(found: Design) -> list[str]:

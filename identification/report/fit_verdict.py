@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from functools import singledispatch
 from math import isnan, nan
 from typing import TYPE_CHECKING
 
@@ -70,14 +69,10 @@ def answer_sentence(fit: Fit | RecordsFit) -> str:
     return f"The model with the fitted values explains the log: {of_what}."
 
 
-@singledispatch
 def fit_verdict(fit: Fit | RecordsFit) -> list[str]:
     """Returns sentences: did the search converge, what is known, is it enough, is it confirmed."""
-    return _of_records(fit)  # type: ignore[arg-type]
-
-
-@fit_verdict.register
-def _of_free_run(fit: Fit) -> list[str]:
+    if not isinstance(fit, Fit):
+        return _of_records(fit)
     if fit.stopped:  # a search that was stopped says nothing of the model
         return search_sentences(fit)
     return [

@@ -9,11 +9,11 @@ the worst known of many.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from math import isfinite
 from typing import TYPE_CHECKING
 
-from identification.discovery.fitted import Fitted, StepShift
+from identification.discovery.fitted import Fitted
 from identification.model.parameter import Parameter
 from identification.model.protocol import FINER
 from identification.quantities import alike, held, quantity
@@ -170,23 +170,19 @@ def _changed(model: Fitted, words: Mapping[str, str]) -> list[str]:
     if finer is None:
         return []
     if far := _far(model):
-        value = _at_finer_steps(model, finer, far)
-        told = first_few([f"{words.get(n, n)} to {value[n]}" for n in far])
-        said.append(f"move {told}, which the std include")
+        parameters = {p.name: p for p in model.plant.parameters}
+        moved = dict(zip(model.told_std, finer.values.tolist(), strict=True))
+        told = []
+        for n in far:  # the values of a fit with finer steps, to first order
+            value, unit = model.told_values[n] + moved[n], _of(n, parameters).unit
+            told.append(f"{words.get(n, n)} to {alike([value], unit, TOLD_DIGITS)[0]}")
+        said.append(f"move {first_few(told)}, which the std include")
     if finer.is_lower():
         said.append(
             f"lower the error of the fitted windows to {held(finer.error)} of what it is: that part"
             " comes from the steps, and not from something that is missing"
         )
     return said
-
-
-def _at_finer_steps(model: Fitted, shift: StepShift, names: Iterable[str]) -> dict[str, str]:
-    """Returns the values that a fit with finer steps would have, to first order, in words."""
-    parameters = {p.name: p for p in model.plant.parameters}
-    moved, values = dict(zip(model.told_std, shift.values.tolist(), strict=True)), model.told_values
-    units = {n: _of(n, parameters).unit for n in names}
-    return {n: alike([values[n] + moved[n]], u, TOLD_DIGITS)[0] for n, u in units.items()}
 
 
 def _far(model: Fitted) -> list[str]:

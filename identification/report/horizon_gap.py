@@ -161,11 +161,8 @@ def _ratios(
 ) -> np.ndarray:
     """Returns e_w of windows, shape (W,); of a sensor without noise, its rms error in s.
 
-    Args:
-        squares: mean squares of each output in units of s², shape (W, ny).
-        units: of the outputs.
-        scale: s of each output, shape (ny,), in its unit.
-        noise: ν²/s² of each output, shape (ny,).
+    The outputs have units, scales s (ny,) in these, and noise ν²/s² (ny,); `squares` are mean
+    squares in units of s², shape (W, ny).
     """
     groups = [np.array([u == unit for u in units]) for unit in dict.fromkeys(units)]
     each = []
@@ -180,10 +177,7 @@ def _lengths(
 ) -> tuple[LengthError, ...]:
     """Returns the errors over each length that both models were judged by.
 
-    Args:
-        horizon: [s].
-        told: errors of the model before and after.
-        of_all: e of both over the horizon.
+    The horizon is in [s]; `of_all` is e over it, of the model before and after.
     """
     before, after = told
 
@@ -224,11 +218,8 @@ def _worst(
 ) -> tuple[FailedWindow, ...]:
     """Returns the fitted windows in which a model fails most, none of them near another.
 
-    Args:
-        final: the model.
-        ratios: how many times the noise each window errs, one array a record.
-        scale: s of each output, shape (ny,), in its unit.
-        outputs: the unit of each output by name.
+    By record, `ratios` are how many times the noise each window errs; s (ny,) is each output's
+    scale in its unit, which `outputs` names.
     """
     every = [(float(e), k, w) for k, each in enumerate(ratios) for w, e in enumerate(each)]
     errors, names = final.fit.errors, [*outputs]

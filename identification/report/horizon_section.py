@@ -16,6 +16,7 @@ from identification.quantities import alike, held
 from identification.report.effect_sections import listed_below
 from identification.report.finding_words import sentence
 from identification.report.horizon_gap import (
+    SURE,
     FailedWindow,
     NeededForce,
     OutputError,
@@ -118,7 +119,6 @@ def _table(outputs: Sequence[OutputError], is_named: bool) -> Table:
     return Table(head, tuple(rows))
 
 
-SURE = 1.96  # std on each side of 95 %
 WIDTH, PANEL = 7.0, 1.7  # [in] of a figure, and the height of a panel
 FAR = 10.0  # errors that differ by more are drawn on a logarithmic axis
 
@@ -184,7 +184,15 @@ def needed_forces(forces: Sequence[NeededForce]) -> Figure:
     """Returns a figure of the force that each joint would need, over what it follows."""
     figure, axes = _panels(len(forces))
     for ax, needed in zip(axes, forces, strict=True):
-        _draw(ax, needed)
+        at, order = needed.nodes.at, np.argsort(needed.nodes.at)
+        told = order[needed.known[order]]
+        ax.plot(at[told], needed.force[told], color=SERIES[0], lw=1.0)
+        ax.errorbar(at[told], needed.force[told], SURE * needed.std[told], color=INK, fmt="o",
+                    ms=3.5, lw=1, capsize=2)  # fmt: skip
+        ax.axhline(0, color=GREY, lw=0.6)
+        ax.set_title(literal(f"joint {needed.nodes.joint}"), loc="left", color=INK)
+        ax.set_xlabel(literal(f"{needed.nodes.reads} [{needed.nodes.unit}]"))
+        ax.set_ylabel(literal(f"force [{needed.unit}]"))
     return figure
 
 
@@ -196,15 +204,3 @@ def _panels(count: int) -> tuple[Figure, list[Axes]]:
     for ax in axes[count:]:
         ax.set_axis_off()
     return figure, axes[:count]
-
-
-def _draw(ax: Axes, needed: NeededForce) -> None:
-    at, order = needed.nodes.at, np.argsort(needed.nodes.at)
-    told = order[needed.known[order]]
-    ax.plot(at[told], needed.force[told], color=SERIES[0], lw=1.0)
-    ax.errorbar(at[told], needed.force[told], SURE * needed.std[told], color=INK, fmt="o", ms=3.5,
-                lw=1, capsize=2)  # fmt: skip
-    ax.axhline(0, color=GREY, lw=0.6)
-    ax.set_title(literal(f"joint {needed.nodes.joint}"), loc="left", color=INK)
-    ax.set_xlabel(literal(f"{needed.nodes.reads} [{needed.nodes.unit}]"))
-    ax.set_ylabel(literal(f"force [{needed.unit}]"))

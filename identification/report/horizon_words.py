@@ -53,7 +53,9 @@ def length_lines(lengths: Sequence[LengthError]) -> list[str]:
 
 def force_line(needed: NeededForce) -> str:
     """Returns what a force at a joint would explain, and where it would be largest."""
-    size, at = largest_force(needed)
+    k, nodes = needed.largest, needed.nodes
+    size = quantity(float(needed.force[k]), float(needed.std[k]), needed.unit)
+    at = quantity(float(nodes.at[k]), unit=nodes.unit)
     return (
         f"a force on {needed.nodes.joint} that depends on the {needed.nodes.reads} would remove"
         f" {percent(needed.fall)} of the fitted error; it would be largest at {at}: {size}"
@@ -61,12 +63,7 @@ def force_line(needed: NeededForce) -> str:
 
 
 def doubtful_sentences(needed: NeededForce, tried: int) -> str:
-    """Returns which force at a joint would explain most, where it is not told to be missing.
-
-    Args:
-        needed: the force.
-        tried: how many forces at one joint were tried.
-    """
+    """Returns which of the forces that were tried would explain most, where none is missing."""
     which = f"one on {needed.nodes.joint} that depends on the {needed.nodes.reads}"
     chance = percent(needed.chance, 2)
     doubt = f"This may be luck (chance {chance}, {tried} such forces were tried)."
@@ -76,13 +73,6 @@ def doubtful_sentences(needed: NeededForce, tried: int) -> str:
         f"The force that would explain most is {which}: {percent(needed.fall)} of the fitted"
         f" error. {doubt}"
     )
-
-
-def largest_force(needed: NeededForce) -> tuple[str, str]:
-    """Returns the largest force with its std, and where it is, both with their units."""
-    k, nodes = needed.largest, needed.nodes
-    size = quantity(float(needed.force[k]), float(needed.std[k]), needed.unit)
-    return size, quantity(float(nodes.at[k]), unit=nodes.unit)
 
 
 def needed_sentences(found: Discovery) -> list[str]:

@@ -38,18 +38,15 @@ def system_to_json(system: LinearSystem, rate: float | None = None) -> dict[str,
             "order": len(small.system.A),
             **plain_fields(small, "unreached", "unfelt", "tolerance"),
         },
-        "modes": [mode_to_json(mode, system.states) for mode in modes(system)],
-    }
-
-
-def mode_to_json(mode: Mode, states: tuple[str, ...]) -> dict[str, Any]:
-    """Returns a mode as plain values: its eigenvalue, and the states that take part most."""
-    return {
-        "frequency": mode.frequency,
-        "damping": mode.damping,
-        "eigenvalue": [mode.eigenvalue.real, mode.eigenvalue.imag],
-        "leading": leading(mode, states),
-    }
+        "modes": [
+            {
+                "frequency": m.frequency, "damping": m.damping,
+                "eigenvalue": [m.eigenvalue.real, m.eigenvalue.imag],
+                "leading": leading(m, system.states),
+            }
+            for m in modes(system)
+        ],
+    }  # fmt: skip
 
 
 def leading(mode: Mode, states: tuple[str, ...]) -> list[str]:

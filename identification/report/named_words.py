@@ -91,22 +91,12 @@ def node_lines(named: NamedEffect, plant: Plant) -> list[str]:
         most = max((abs(v) for v, std, _ in each if 0 < std < np.inf), default=0.0)
         told = sorted(zip(n.at, each, strict=True), key=lambda pair: pair[0])
         lines.append(f"force on {n.joint} at these values of the {n.reads}:")
-        lines += [f"  {quantity(float(at), unit=n.unit)}: {_force_there(*known, most)}"
-                  for at, known in told]  # fmt: skip
+        for at, (value, std, unit) in told:  # one that no data hold has no std, or ends on a bound
+            force = "not known, too few data"
+            if 0 < std < np.inf:
+                force = quantity(value, std, unit, like=most)
+            lines.append(f"  {quantity(float(at), unit=n.unit)}: {force}")
     return lines
-
-
-def _force_there(value: float, std: float, unit: str, most: float) -> str:
-    """Returns the force at a node in words; one that no data hold has no std, or ends on a bound.
-
-    Args:
-        value: of the force.
-        std: its standard deviation, in the same unit.
-        unit: of both.
-        most: the largest force of the curve, whose digits decide how this one is rounded.
-    """
-    is_known = 0 < std < np.inf
-    return quantity(value, std, unit, like=most) if is_known else "not known, too few data"
 
 
 RETUNED = 0.05  # the explanation without an effect gets a sentence above this confidence
