@@ -14,7 +14,7 @@ from inca_mj.report.statics_figures import (
 )
 from inca_mj.statics.interference import Interference
 from inca_mj.statics.stiffness import Axes, Modes
-from inca_mj.statics.workspace import NAMES, Kind, Workspace
+from inca_mj.statics.workspace import NAMES, Kind
 from inca_mj.workflows.statics import StaticAnalysis
 
 MASS_COLUMNS = (
@@ -83,6 +83,21 @@ def _near_words(begin: str, found: Interference) -> list[str]:
 def statics_sections(found: StaticAnalysis) -> list[Section]:
     """Returns the sections, with their figures."""
     held = found.held
+    stiffness = tuple(
+        (f"{what}{words}", float(value), unit)
+        for what, values, each, unit in (
+            ("stiffness ", found.push.values, found.push.words, "N/m"),
+            ("stiffness ", found.twist.values, found.twist.words, "N m/rad"),
+            ("drums locked: ", found.modes.frequency, found.modes.words, "Hz"),
+            ("drums free: ", found.modes_free.frequency, found.modes_free.words, "Hz"),
+        )
+        for value, words in zip(values, each, strict=True)
+    )
+    errors = tuple(
+        (1e3 * e.rho, e.tension, 1e6 * e.length, 1e3 * e.angle, 1e3 * e.force, 1e3 * e.force_half,
+         1e2 * e.stiffness_lost, 1e3 * e.moved, "yes" if e.line_is_enough else "no")
+        for e in found.line_errors
+    )  # fmt: skip
     sections = [
         Section(
             "Tensions at the pose",
@@ -103,7 +118,7 @@ def statics_sections(found: StaticAnalysis) -> list[Section]:
             "Stiffness against a force while the platform may turn, against a torque while it may"
             " move; drums locked. Modes have no damping here.",
             figures=(("Frequencies of platform and cables", frequency_figure(found)),),
-            table=Table(("what", "value", "unit"), _stiffness_rows(found)),
+            table=Table(("what", "value", "unit"), stiffness),
         ),
     ]  # fmt: skip
     if found.workspace is not None:
@@ -121,35 +136,18 @@ def statics_sections(found: StaticAnalysis) -> list[Section]:
             "Mass of the cables",
             "What a massless straight cable gets wrong at this pose, the worst of the eight.",
             figures=(("Error of the length of a straight line", cable_mass_figure(found)),),
-            table=Table(MASS_COLUMNS, mass_rows(found)),
+            table=Table(MASS_COLUMNS, errors),
         )
     )
     return sections
 
 
-def mass_rows(found: StaticAnalysis) -> tuple[tuple[object, ...], ...]:
-    """Returns the table of the mass of the cables, with the columns `MASS_COLUMNS`."""
-    return tuple(
-        (1e3 * e.rho, e.tension, 1e6 * e.length, 1e3 * e.angle, 1e3 * e.force, 1e3 * e.force_half,
-         1e2 * e.stiffness_lost, 1e3 * e.moved, "yes" if e.line_is_enough else "no")
-        for e in found.line_errors
-    )  # fmt: skip
-
-
-def _stiffness_rows(found: StaticAnalysis) -> tuple[tuple[object, ...], ...]:
-    rows: list[tuple[object, ...]] = []
-    for axes, unit in ((found.push, "N/m"), (found.twist, "N m/rad")):
-        for value, words in zip(axes.values, axes.words, strict=True):
-            rows.append((f"stiffness {words}", float(value), unit))
-    for modes, what in ((found.modes, "drums locked"), (found.modes_free, "drums free")):
-        for value, words in zip(modes.frequency, modes.words, strict=True):
-            rows.append((f"{what}: {words}", float(value), "Hz"))
-    return tuple(rows)
-
-
 def statics_json(found: StaticAnalysis) -> dict[str, Any]:
     """Returns the record; `docs/json.md` explains its keys."""
-    along = found.nearness_along
+    along, inside = found.nearness_along, None
+    if (w := found.workspace) is not None:
+        inside = plain_fields(w, "kind", "orientation", "volume", "std")
+        inside |= {"points": int(w.margin.size), "inside": int(w.inside.sum())}
     return {
         **plain_fields(found, "pose", "load"),
         "closure": plain_fields(found.closure, "rank", "condition", "closed", "margin"),
@@ -163,7 +161,7 @@ def statics_json(found: StaticAnalysis) -> dict[str, Any]:
             "against_torques": _axes(found.twist),
         },
         "modes": {"drums_locked": _modes(found.modes), "drums_free": _modes(found.modes_free)},
-        "workspace": None if found.workspace is None else _workspace(found.workspace),
+        "workspace": inside,
         "interference": {
             "at_pose": _nearness(found.nearness),
             "along": None if along is None else _nearness(along),
@@ -191,14 +189,6 @@ def _axes(axes: Axes) -> list[dict[str, Any]]:
 def _modes(modes: Modes) -> list[dict[str, Any]]:
     rows = zip(modes.frequency, modes.words, strict=True)
     return [plain({"frequency": f, "words": words}) for f, words in rows]
-
-
-def _workspace(found: Workspace) -> dict[str, Any]:
-    return {
-        **plain_fields(found, "kind", "orientation", "volume", "std"),
-        "points": int(found.margin.size),
-        "inside": int(found.inside.sum()),
-    }
 
 
 def _nearness(found: Interference) -> dict[str, Any]:
