@@ -8,7 +8,7 @@ from PIL import Image
 from identification.errors import InputError
 from identification.report.style import MEASURED
 from inca_mj.rendering.film import film, stills
-from inca_mj.rendering.ghost import ghost_difference, ghost_errors, ghost_positions
+from inca_mj.rendering.ghost import ghost_difference, ghost_positions
 from inca_mj.rendering.legend import tension_scale
 from inca_mj.rendering.view import view
 
@@ -96,11 +96,11 @@ def test_the_readout_is_the_distance_of_the_two_robots(short_run):
     moved = short_run.qpos.copy()
     moved[:, 0] += 3e-3
     moved[:, 7:] += 0.01
-    distance, turned = ghost_errors(ghost_difference(short_run.twin, short_run.qpos, moved, True))
+    distance, turned = ghost_difference(short_run.twin, short_run.qpos, moved, True).errors.T
     np.testing.assert_allclose(distance, 3e-3, atol=1e-12)
     np.testing.assert_allclose(turned, 0.01, atol=1e-12)
     ghost = ghost_positions(short_run.twin, short_run.motor_angle, None)
-    distance, turned = ghost_errors(ghost_difference(short_run.twin, short_run.qpos, ghost, False))
+    distance, turned = ghost_difference(short_run.twin, short_run.qpos, ghost, False).errors.T
     np.testing.assert_allclose(distance, 0, atol=1e-12)  # the same angles: the same pose
     np.testing.assert_allclose(turned, 0, atol=1e-12)
 
