@@ -9,13 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from identification.commands.common import (
-    Output,
-    assignments,
-    conclude,
-    draw_report,
-    table,
-)
+from identification.commands.common import Output, assignments, conclude, draw_report, table
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

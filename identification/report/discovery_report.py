@@ -23,10 +23,7 @@ from identification.report.discovery_sections import (
     unseen_section,
     where_section,
 )
-from identification.report.discovery_verdict import (
-    discovery_verdict,
-    further_sentences,
-)
+from identification.report.discovery_verdict import discovery_verdict, further_sentences
 from identification.report.effect_sections import added_section, rivals_section, tried_section
 from identification.report.effect_words import (
     describe_there,

@@ -12,12 +12,7 @@ from identification.report.value_words import in_record, phrase, without_colon
 from identification.shares import fall_words, percent
 
 if TYPE_CHECKING:  # a search is slow to import, and a page may tell of a model alone
-    from identification.discovery.effect_results import (
-        NamedEffect,
-        Outside,
-        Proof,
-        RejectedEffect,
-    )
+    from identification.discovery.effect_results import NamedEffect, Outside, Proof, RejectedEffect
     from identification.discovery.options import DiscoveryOptions
     from identification.discovery.result import Discovery
     from identification.effects.effect import Candidate
@@ -129,9 +124,7 @@ def _already(candidate: Candidate, plant: Plant) -> str:
     return quantity(value, unit=size.unit) if value else ""
 
 
-def shown_parameters(
-    found: NamedEffect | RejectedEffect,
-) -> dict[str, tuple[float, float, str]]:
+def shown_parameters(found: NamedEffect | RejectedEffect) -> dict[str, tuple[float, float, str]]:
     """Returns the sizes and shapes of a fitted effect that tell something of the robot.
 
     Shapes that no data tell, and those of one log alone, are left out.

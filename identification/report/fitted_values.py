@@ -97,9 +97,7 @@ def shown_values(
 
 
 def step_sentences(
-    model: Fitted,
-    words: Mapping[str, str] | None = None,
-    steps: tuple[float, float] | None = None,
+    model: Fitted, words: Mapping[str, str] | None = None, steps: tuple[float, float] | None = None
 ) -> list[str]:
     """Returns a paragraph on the steps; none where they are the model's and finer change little.
 

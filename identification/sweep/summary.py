@@ -13,15 +13,7 @@ from identification.progress import duration
 from identification.quantities import finite_or_none
 from identification.report.page import Section, Table
 from identification.sweep.method import Findings, Record, told_in_method
-from identification.sweep.power import (
-    IN_WORDS,
-    axes,
-    curves,
-    grouped,
-    numeric,
-    thresholds,
-    word,
-)
+from identification.sweep.power import IN_WORDS, axes, curves, grouped, numeric, thresholds, word
 from identification.sweep.rows import RUN, digest
 from identification.sweep.settings import Heads, about_of, in_words
 from identification.sweep.statistics import rate, said

@@ -10,20 +10,8 @@ from typing import TYPE_CHECKING, Annotated
 import tyro
 
 import inca_mj as inca
-from identification.commands.common import (
-    Output,
-    conclude,
-    draw_report,
-    flat,
-    note,
-    table,
-)
-from inca_mj.commands.common import (
-    SavedRobot,
-    Trust,
-    Values,
-    do_not_draw,
-)
+from identification.commands.common import Output, conclude, draw_report, flat, note, table
+from inca_mj.commands.common import SavedRobot, Trust, Values, do_not_draw
 
 if TYPE_CHECKING:
     from identification import Log

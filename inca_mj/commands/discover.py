@@ -11,27 +11,13 @@ from typing import TYPE_CHECKING, Annotated
 import tyro
 
 import inca_mj as inca
-from identification.commands.common import (
-    LogLists,
-    Output,
-    add_drawings,
-    flat,
-    note,
-    say,
-    say_json,
-)
+from identification.commands.common import LogLists, Output, add_drawings, flat, note, say, say_json
 from identification.commands.stopping import NO_ANSWER, leaving_out
 from identification.errors import InputError
 from identification.folders import draft_of
 from identification.progress import duration
 from identification.results import RESULT, write_result
-from inca_mj.commands.common import (
-    Trust,
-    Values,
-    cannot_draw,
-    do_not_draw,
-    read_logs,
-)
+from inca_mj.commands.common import Trust, Values, cannot_draw, do_not_draw, read_logs
 from inca_mj.files import example_path
 
 if TYPE_CHECKING:

@@ -11,13 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import tyro
 
 import inca_mj as inca
-from identification.commands.common import (
-    Output,
-    conclude,
-    draw_report,
-    flat,
-    parameter_table,
-)
+from identification.commands.common import Output, conclude, draw_report, flat, parameter_table
 from identification.commands.stopping import STOPPED
 from identification.errors import InputError
 from inca_mj.commands.common import Robot, Trust, do_not_draw

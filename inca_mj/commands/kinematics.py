@@ -9,13 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import tyro
 
 import inca_mj as inca
-from identification.commands.common import (
-    Output,
-    assignments,
-    conclude,
-    draw_report,
-    table,
-)
+from identification.commands.common import Output, assignments, conclude, draw_report, table
 from identification.errors import InputError
 from inca_mj.commands.common import Values, do_not_draw
 
@@ -79,12 +73,7 @@ class Kinematics:
 
     def _at(self, pose: np.ndarray) -> None:
         from inca_mj.kinematics.cables import Pulleys, inverse
-        from inca_mj.report.poses import (
-            cables_json,
-            cables_rows,
-            cables_section,
-            cables_verdict,
-        )
+        from inca_mj.report.poses import cables_json, cables_rows, cables_section, cables_verdict
         from inca_mj.robot.spread import displaced
 
         if self.noise is not None or self.std:

@@ -11,12 +11,7 @@ import numpy as np
 
 from identification.errors import InputError
 from inca_mj.rendering.checks import refuse_magnify, refuse_titles
-from inca_mj.rendering.ghost import (
-    Difference,
-    common_factor,
-    ghost_difference,
-    ghost_positions,
-)
+from inca_mj.rendering.ghost import Difference, common_factor, ghost_difference, ghost_positions
 from inca_mj.rendering.legend import TensionScale, tension_scale
 from inca_mj.rendering.overlay import between, trace_of
 from inca_mj.rendering.picture import BACKGROUND, Box, Lettering, Panel, layout, paste

@@ -8,15 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from identification.report.style import (
-    GREY,
-    INK,
-    MEASURED,
-    SERIES,
-    SIMULATED,
-    literal,
-    styled,
-)
+from identification.report.style import GREY, INK, MEASURED, SERIES, SIMULATED, literal, styled
 from identification.report.value_words import describe_parameter
 from inca_mj.control.paths import PLANES, Circle
 from inca_mj.robot.geometry import DRIVES
@@ -119,9 +111,7 @@ def crosscheck_figure(rows: Sequence[Mapping[str, Any]], order: float | None) ->
     cases = list(dict.fromkeys(str(row["case"]) for row in rows))
     figure = Figure((9.5, 3.6), layout="constrained")
     for ax, (kind, unit) in zip(
-        figure.subplots(1, 3),
-        (("angle", "rad"), ("position", "m"), ("tension", "N")),
-        strict=True,
+        figure.subplots(1, 3), (("angle", "rad"), ("position", "m"), ("tension", "N")), strict=True
     ):
         error = f"max_{kind}_error"
         for number, case in enumerate(cases):

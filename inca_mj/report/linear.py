@@ -11,11 +11,7 @@ from matplotlib.figure import Figure
 from identification.linear.gridded import GriddedSystem
 from identification.linear.modes import Mode, modes
 from identification.quantities import plain, plain_fields
-from identification.report.linear import (
-    linear_sections,
-    slowest_and_fastest,
-    system_to_json,
-)
+from identification.report.linear import linear_sections, slowest_and_fastest, system_to_json
 from identification.report.page import Section, Table
 from identification.report.style import GREY, INK, MEASURED, SIMULATED, styled
 from identification.shares import HELD, percent

@@ -14,8 +14,7 @@ from identification.report.value_words import FAR, departure_sentences
 from identification.windows.records import as_records
 
 moved = st.dictionaries(
-    st.sampled_from(["body/arm.mass", "joint/hinge.damping", "J", "K@3"]),
-    st.floats(-9.0, 9.0),
+    st.sampled_from(["body/arm.mass", "joint/hinge.damping", "J", "K@3"]), st.floats(-9.0, 9.0)
 )
 
 
