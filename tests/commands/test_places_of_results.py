@@ -9,7 +9,6 @@ from folder_cases import content, made
 
 from identification import write_log
 from identification.errors import InputError
-from identification.folders import draft_of, refuse_foreign
 from inca_mj.cli import main
 from inca_mj.twin.logs import read_inca_log
 
@@ -71,30 +70,6 @@ def test_a_file_system_without_the_step_is_filled_file_by_file(tmp_path, monkeyp
     assert content(out) == {"a": "new"}
     names = sorted(p.name for p in (*out.iterdir(), *tmp_path.iterdir()))
     assert names == [".made.json", "a", "out"]
-
-
-def test_two_at_once_leave_the_results_of_one(tmp_path):
-    out = tmp_path / "out"
-    with draft_of(out) as first, draft_of(out) as second:
-        for draft, name in ((first, "first"), (second, "second")):
-            (draft.folder / "result.json").write_text(name)
-            draft.save()
-        for draft, name in ((second, "second"), (first, "first")):
-            (draft.folder / f"{name}.png").write_text(name)
-            draft.save()
-            assert content(out) == {"result.json": name, f"{name}.png": name}
-    refuse_foreign(out)
-
-
-def test_a_new_folder_is_there_once_it_has_results(tmp_path):
-    """A program that is ended before leaves no empty folder, whatever ends it."""
-    out = tmp_path / "new" / "out"
-    with draft_of(out) as draft:
-        assert not out.exists()
-        (draft.folder / "a").write_text("new")
-        draft.save()
-        assert content(out) == {"a": "new"}
-    assert content(out) == {"a": "new"}
 
 
 def deep_long_name(folder):

@@ -1,6 +1,5 @@
 """What the messages of a log's checks tell to write makes the log a right one."""
 
-import json
 from dataclasses import replace
 from pathlib import Path
 
@@ -9,14 +8,12 @@ import pytest
 from advice import advised
 
 from identification import InputError, write_log
-from inca_mj.cli import main
 from inca_mj.refusals.agreement import follow, places_of, some, unreached_share
 from inca_mj.refusals.wiring import refuse_miswired
 from inca_mj.robot.inputs import make_input
 from inca_mj.twin.logs import read_inca_log, run_to_log
 from inca_mj.twin.run import simulate
 from inca_mj.twin.twin import build_twin
-from inca_mj.workflows.comparison import compare, compare_twin
 
 LOG = read_inca_log(Path(__file__).parents[2] / "examples" / "log.csv").between(0.0, 3.0)
 UNIT = {"deg": np.pi / 180, "mrad": 1e-3, "rev": 2 * np.pi, "rad": 1.0}
@@ -64,23 +61,6 @@ def test_what_is_told_mends_the_log(plant, tmp_path, at, back, word):
     mended = read_inca_log(path)
     np.testing.assert_allclose(mended.outputs, LOG.outputs, rtol=1e-9, atol=1e-12)
     refuse_miswired(mended, plant)
-
-
-def test_compare_judges_a_log_as_the_searches_do(plant, tmp_path, capsys):
-    wrong = mistaken(back=(2,))
-    path = str(written(wrong, tmp_path))
-    assert main(["compare", path, "--json"]) == 2
-    said = capsys.readouterr()
-    assert "turn the sign of angle_3" in said.err
-    assert said.err.count("\n") == 1
-    assert said.out == ""
-    assert main(["compare", path, "--trust", "wiring", "--json"]) == 0
-    shown = json.loads(capsys.readouterr().out)
-    assert shown["samples"] == len(wrong)
-    for judged in (compare, lambda log, **trust: compare_twin(log, plant, **trust)):
-        with pytest.raises(InputError, match="write --trust wiring, with which `inca compare`"):
-            judged(wrong)
-        np.testing.assert_allclose(judged(wrong, trust=["wiring"]).rms, shown["rms"], rtol=1e-9)
 
 
 RIGHT, NONE = (0, 1, 2, 3, 4, 5, 6, 7), ()

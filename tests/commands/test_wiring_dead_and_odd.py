@@ -36,20 +36,6 @@ def wrong(dead, angle, factor):
     )
 
 
-@pytest.mark.parametrize(
-    ("dead", "angle", "factor", "told"),
-    [
-        (4, 5, -1.0, "turn the sign of angle_5: write angle_5 = -1 under"),
-        (2, 2, 180 / np.pi, 'write angle_2 = "deg" under'),
-    ],
-)
-def test_both_are_told(plant, dead, angle, factor, told):
-    with pytest.raises(InputError, match=f"current_{dead} stands still at 0 A") as refused:
-        refuse_miswired(wrong(dead, angle, factor), plant)
-    assert told in str(refused.value)
-    assert "; beside it, angle_" in str(refused.value)
-
-
 def test_what_is_told_of_the_angle_mends_it(plant, tmp_path):
     with pytest.raises(InputError) as refused:
         refuse_miswired(wrong(7, 3, -1.0), plant)

@@ -18,7 +18,3 @@ def test_the_joint_with_the_largest_share_comes_first(shares, told):
     places = [sentence.index(words) for words in told]
     assert places == sorted(places)
     assert ("joint a" in sentence) == (shares.get("joint a", 0) > 0)
-
-
-def test_nothing_is_told_where_no_force_was_asked():
-    assert _any_forces(SimpleNamespace(smooth_by_joint={})) == []

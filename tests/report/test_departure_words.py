@@ -25,12 +25,6 @@ def test_a_value_is_told_where_it_left_what_was_known(departures):
         assert (f" {name} by" in said) == (abs(by) > FAR and name != "K@3")
 
 
-def test_the_farthest_comes_first():
-    model = SimpleNamespace(departures={"a": 4.0, "b": -8.0, "c": 5.0})
-    (said,) = departure_sentences(model, {"b": "mass of the arm"})
-    assert "mass of the arm by 8 std, c by 5 std and a by 4 std" in said
-
-
 @pytest.mark.parametrize("wrong", [1.0, 5.0])
 def test_it_is_the_logarithm_of_the_change_over_the_std_of_what_was_known(wrong):
     plant = pendulum().with_values({"J": 2e-3 / wrong})

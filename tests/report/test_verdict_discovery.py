@@ -4,14 +4,13 @@ from dataclasses import replace
 from math import hypot
 
 import pytest
-from fake_discovery import NOISE, REJECTED, SLOW, found
+from fake_discovery import NOISE, REJECTED, found
 
 from identification.discovery.findings.finding import Finding, FindingKind
 from identification.discovery.findings.records_evidence import UnprovenEffect
 from identification.report.discovery_report import discovery_text
 from identification.report.discovery_verdict import discovery_verdict
 from identification.report.effect_words import describe_effect, describe_rejected, describe_sizes
-from identification.report.finding_words import describe_finding, sentence
 from identification.report.named_words import nearest_law
 
 
@@ -35,13 +34,6 @@ def test_a_sensor_is_called_noisy_beside_those_of_its_unit_only():
     assert "2.4 times that of the other outputs of its unit" in loud[-1]
     missing = replace(found("unknown effect"), noise_by_output={**alike, names[1]: 2.4 * NOISE})
     assert "The noise of" not in " ".join(discovery_verdict(missing))
-
-
-def test_an_unknown_effect_is_not_named():
-    (said,) = discovery_verdict(found("unknown effect"))
-    assert said.startswith("Something is missing that none of the 3 known effects surely explains")
-    assert sentence(describe_finding(SLOW)) in said
-    assert "Stribeck" not in said
 
 
 @pytest.mark.parametrize("verdict", ["named", "nothing missing", "unknown effect"])
