@@ -33,14 +33,11 @@ def parsed(
     arguments: Sequence[str],
     examples: tuple[str, ...] = (),
 ) -> Any:
-    """Returns the command that some arguments name; see `run_program`.
+    """Returns the command that some arguments name, or refuses them; see `run_program`.
 
-    `--completion SHELL` prints a script that completes commands in bash, zsh or fish. `examples`
-    are of the program; those of a command stand in its docstring.
-
-    Raises:
-        InputError: they name no command, or one that cannot be had with them.
-        SystemExit: they ask for help, which is then printed.
+    `--completion SHELL` prints a script that completes commands in bash, zsh or fish; after that,
+    and after a help, it ends by SystemExit. `examples` are of the program; those of a command stand
+    in its docstring.
     """
     if arguments[:1] == [COMPLETION]:
         shell = " ".join(arguments[1:])

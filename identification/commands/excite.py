@@ -63,11 +63,7 @@ class Excite:
         return 0
 
     def logs(self) -> Sequence[Path]:
-        """Returns the logs that were given, or else those of the result.
-
-        Raises:
-            InputError: there are none, or they are not there any more.
-        """
+        """Returns the logs that were given, or else those of the result; refuses to have none."""
         from identification.results import read_result
 
         given = flat(self.log)

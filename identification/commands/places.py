@@ -20,10 +20,9 @@ from identification.folders import try_folder
 def refuse_place(command: Any) -> None:
     """Refuse a folder for the results that cannot be written, or that holds files of others.
 
-    Raises:
-        InputError: the folder, or what is above it, is a file or cannot be read or written; an
-            input of the command is it or lies in it; or another file lies there that the program
-            did not make.
+    It is refused where it, or what is above it, is a file or cannot be read or written; where an
+    input of the command is it or lies in it; and where the program did not make a file that lies
+    there.
     """
     output = getattr(command, "output", None)
     out = output.out if isinstance(output, Output) else None

@@ -53,9 +53,7 @@ class OnRobot:
     def read(self, but: tuple[str, ...] = (), *, fits: bool = True) -> Robot:
         """Returns the robot, compiled for its log, with the records that confirm.
 
-        Args:
-            but: checks that are left out.
-            fits: whether free parameters are fitted, so that some must be.
+        The checks `but` are left out. Where something `fits`, some parameters must be free.
         """
         from identification.robot.file import read_robot_file, refuse_nothing_free
 

@@ -95,11 +95,7 @@ def write_page(
     sentences: Sequence[str] = (),
     drawings: dict[Figure, str] | None = None,
 ) -> Path:
-    """Write the report of a discovery, one HTML file of some sections; returns its path.
-
-    Raises:
-        InputError: the file cannot be written.
-    """
+    """Write the report of a discovery, one HTML file of some sections; returns its path."""
     is_open = found.verdict == "nothing missing" and is_above_noise(found)
     fitted = [record.log.name for record in found.records if record.role == "fit"]
     return write_report(

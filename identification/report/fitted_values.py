@@ -82,9 +82,8 @@ def shown_values(
 ) -> tuple[list[Sequence[str]], str]:
     """Returns the rows but those of well known single parts, and a sentence on those left out.
 
-    Args:
-        rows: of a table of parameters; each begins with what the parameter is called.
-        shares: see `unknown_shares`, by what the table calls them.
+    The rows are of a table of parameters, and begin with what each is called; so are `shares`
+    called, which are those of `unknown_shares`.
     """
     if len(shares) <= MANY:
         return list(rows), ""
@@ -101,10 +100,8 @@ def step_sentences(
 ) -> list[str]:
     """Returns a paragraph on the steps; none where they are the model's and finer change little.
 
-    Args:
-        model: fitted.
-        words: what to call the values by name; their names when None.
-        steps: of the simulations and of the user's model [s]; those of `model` when None.
+    `words` call the values by name, else by their names; `steps` are those of the simulations and
+    of the user's model [s], else those of the fitted model.
     """
     from identification.windows.coarse import OUTPUT_ERROR, steps_of  # slow to import
 

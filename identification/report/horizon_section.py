@@ -127,9 +127,7 @@ FAR = 10.0  # errors that differ by more are drawn on a logarithmic axis
 def windows_over_time(records: Sequence[RecordWindows], is_named: bool) -> Figure:
     """Returns a figure of the error of each window over time, one panel a record.
 
-    Args:
-        records: in the order of the panels.
-        is_named: whether the final model has effects, so that both models are drawn.
+    Both models are drawn where the final one has named effects.
     """
     columns = 2 if len(records) > 2 else 1
     rows = -(-len(records) // columns)

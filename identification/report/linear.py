@@ -21,12 +21,7 @@ MATRICES = ("A", "B", "C", "D")
 def system_to_json(system: LinearSystem, rate: float | None = None) -> dict[str, Any]:
     """Returns a continuous system as plain values: minimal realisation, modes, discrete form.
 
-    Args:
-        system: continuous.
-        rate: of the samples of the discrete form [Hz]; none when None.
-
-    Raises:
-        InputError: the rate is not above zero.
+    The discrete form has the rate of the samples [Hz]; there is none without a rate.
     """
     small = minimal(system)
     discrete = None if rate is None else system.discrete(rate)
@@ -86,10 +81,8 @@ def response_figure(
 ) -> Figure:
     """Returns a figure of the responses of outputs to inputs of the same number, over frequency.
 
-    Args:
-        system: continuous.
-        discrete: the same for inputs that are held, shown up to half its rate.
-        units: of inputs and outputs by name, as far as they are known.
+    A discrete system, for inputs that are held, is shown up to half its rate. Units are of inputs
+    and outputs by name, as far as they are known.
     """
     rates = [m.frequency for m in modes(system) if m.frequency > 0] or [1.0]
     top = max(rates) * BEYOND
@@ -156,11 +149,8 @@ def linear_sections(
 ) -> list[Section]:
     """Returns the sections of a report on linear systems at some operating points.
 
-    Args:
-        systems: continuous.
-        labels: what each operating point is called.
-        rate: of the samples of the discrete form of the first one [Hz]; none when None.
-        units: of inputs and outputs by name, as far as they are known.
+    Labels call the points; a discrete form of the first one has the rate [Hz], if there is one.
+    Units are of inputs and outputs by name, as far as they are known.
     """
     first = systems[0]
     held = None if rate is None else first.discrete(rate)

@@ -40,11 +40,7 @@ class Nodes:
 
 
 def curve_nodes(candidate: Candidate, plant: Plant) -> tuple[Nodes, ...]:
-    """Returns the nodes of a curve, once for each joint on which it acts.
-
-    Raises:
-        TypeError: the robot is none with effects on its joints, which alone have curves.
-    """
+    """Returns the nodes of a curve, once for each joint on which it acts."""
     if not isinstance(plant, JointPlant):
         raise TypeError(f"a {type(plant).__name__} has no curves on joints")
     word = next(w for w in READS if candidate.effect.name.endswith(f"_{w}"))

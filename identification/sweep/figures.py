@@ -136,8 +136,7 @@ def reliability_figure(pairs: Sequence[tuple[float, bool]]) -> Figure:
 def _scale(ax: Any, values: Sequence[float]) -> bool:
     """Makes an axis logarithmic where values are positive and far apart; a tick at each of a few.
 
-    Returns:
-        Whether it is logarithmic, which its label must say.
+    Returns whether it is logarithmic, which its label must say.
     """
     different = sorted(set(values))
     far_apart = different[0] > 0 and different[-1] > WIDE_RANGE * different[0]

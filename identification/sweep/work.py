@@ -76,8 +76,7 @@ class Outcome:
 def work(task: Task) -> Outcome:
     """Run a task; an error of its method is an outcome too.
 
-    Raises:
-        MemoryError: the machine has too little memory, which says nothing about the task.
+    A MemoryError is none: it says nothing about the task.
     """
     import resource
 
@@ -122,8 +121,7 @@ def one_thread() -> Iterator[None]:
 def checked(record: Mapping[str, Any], columns: Mapping[str, Column]) -> dict[str, Any]:
     """Returns a record with plain values of the kinds that its method declares.
 
-    Raises:
-        TypeError: an entry is missing, too many, or of another kind: a fault of the method.
+    A TypeError tells a fault of the method: an entry that is missing, too many, or of another kind.
     """
     if set(record) != set(columns):
         raise TypeError(

@@ -55,11 +55,7 @@ class Robot(Values):
     """Largest step of the integrator [s]; stiff cables and light motors need a smaller one."""
 
     def check(self) -> None:
-        """Refuse what describes no robot, before anything heavy is imported.
-
-        Raises:
-            InputError: a value or the step is malformed or out of bounds, or a file is no geometry.
-        """
+        """Refuse what describes no robot, before anything heavy is imported."""
         from inca_mj.robot.parameters import refuse_step
 
         self.parameters()
@@ -67,11 +63,7 @@ class Robot(Values):
         refuse_step(self.step)
 
     def twin(self, sampling_time: float, effects: Sequence[Effect] = ()) -> inca.Twin:
-        """Returns the robot, with a step that divides the sampling time [s].
-
-        Raises:
-            InputError: as `check`, or the robot has no pretension.
-        """
+        """Returns the robot, with a step that divides the sampling time [s]."""
         from inca_mj.workflows.comparison import timestep_for
 
         step = timestep_for(sampling_time, self.step)

@@ -148,11 +148,7 @@ def keep(
 
 
 def grid_axes(words: Sequence[str]) -> dict[str, np.ndarray]:
-    """Returns the axes [m, rad] of a grid from words NAME=LOW:HIGH:POINTS, such as `x=-0.4:0.4:5`.
-
-    Raises:
-        InputError: a word is malformed, names no scheduling variable, or names one twice.
-    """
+    """Returns the axes [m, rad] of a grid from words NAME=LOW:HIGH:POINTS, or refuses a word."""
     import numpy as np
 
     from inca_mj.robot.parameters import POSE

@@ -82,9 +82,6 @@ def effects_of(words: Sequence[str]) -> tuple[tuple[Effect, ...], dict[str, floa
     """Returns the effects of the catalogue that NAME.SIZE=VALUE words name, and their values.
 
     NAME alone stands for its first size, NAME.SIZE@3 for drive 3.
-
-    Raises:
-        InputError: a word is malformed, given twice, or names no effect or parameter of one.
     """
     from inca_mj.effects.values import records
 

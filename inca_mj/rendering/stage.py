@@ -25,11 +25,7 @@ _THIN = 480  # height of a picture in which the path is one pixel thick
 
 @dataclass(frozen=True, kw_only=True)
 class Look:
-    """The look of films.
-
-    Raises:
-        InputError: the size is odd or too small, or `magnify` is not positive.
-    """
+    """The look of films; a size that is odd or too small is refused."""
 
     camera: str  # "front", "side" or "handle"
     size: tuple[int, int]  # width and height of the whole frame, even numbers [px]

@@ -109,11 +109,7 @@ HANDLE_HEAD = ("frequency [Hz]", "damping", "the platform moves along", "share o
 
 
 def model_to_json(model: LinearModel, rate: float) -> dict[str, Any]:
-    """Returns a linear model of the robot as plain values; its discrete form has the rate [Hz].
-
-    Raises:
-        InputError: the rate is not above zero.
-    """
+    """Returns a linear model of the robot as plain values; its discrete form has the rate [Hz]."""
     return {
         **plain_fields(model, "time", "tension", "friction_slope"),
         **system_to_json(model.system, rate),
