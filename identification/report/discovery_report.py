@@ -124,7 +124,12 @@ def discovery_headline(found: Discovery) -> Headline:
         answers = [_named(found, named) for named in found.named]
         first = answers[0]
         answers[0] = Answer(first.name, first.place, (*first.tiles, error))
-        return Headline(_lead(found), tuple(answers))
+        lead = "Missing from the model" + (", together" if len(found.named) > 1 else "")
+        if found.verdict == "unlisted effect":
+            lead = "Missing from the model, in no catalogue and drawn from the data"
+        elif found.named[0].one_of and found.named[0].rivals:
+            lead = "Missing from the model is one of these"
+        return Headline(lead, tuple(answers))
     left = error_tile(
         found.errors_of(found.before), None, found.floor, f"{UNSEEN}{found.over}"
     )  # fmt: skip
@@ -147,15 +152,6 @@ def discovery_headline(found: Discovery) -> Headline:
     if is_above_noise(found):
         name, place = "No effect is named", "No candidate lowers the error beyond chance."
     return Headline("", (Answer(name, place, _three([left, shown if told else None, known])),))
-
-
-def _lead(found: Discovery) -> str:
-    """Returns the words above the first name."""
-    if found.verdict == "unlisted effect":
-        return "Missing from the model, in no catalogue and drawn from the data"
-    if found.named[0].one_of and found.named[0].rivals:
-        return "Missing from the model is one of these"
-    return "Missing from the model" if len(found.named) == 1 else "Missing from the model, together"
 
 
 def _named(found: Discovery, named: NamedEffect) -> Answer:

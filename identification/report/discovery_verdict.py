@@ -19,8 +19,7 @@ from identification.report.effect_words import (
 )
 from identification.report.error_words import change_words, describe_scale, error_words, listed
 from identification.report.finding_words import describe_finding, sentence
-from identification.report.horizon_gap import MUCH
-from identification.report.horizon_words import needed_sentences
+from identification.report.horizon_gap import MUCH, needed_sentences
 from identification.report.missing_place import find_place
 from identification.report.named_words import basis_sentence, named_sentences
 from identification.report.nothing_words import NOISIER, errors_left, nothing_sentence
@@ -158,6 +157,10 @@ def _unknown(found: Discovery) -> str:
     if found.unlogged is None and 0 < found.input_error < inf:
         size = ratio_of(found.input_error, "their rms")
         needed = f"; the inputs would have to err by {size} to cause this"
+    place = []
+    if (at := find_place(found)) is not None:
+        figure = "" if found.horizon is None else "; see the figure"  # a free run has none of it
+        place.append(f"{sentence(str(at)).removesuffix('.')}{figure}.")
     return " ".join(
         [
             f"Something is missing that {none_explains(tried)}: the error of the fitted model on"
@@ -165,7 +168,7 @@ def _unknown(found: Discovery) -> str:
             *_likeliest_sentences(found),
             "The program gives no name rather than a wrong one.",
             *_doubtful(found),
-            *_place(found),
+            *place,
             *needed_sentences(found),
             *_any_forces(found),
             *_findings(found),
@@ -199,15 +202,6 @@ def _doubtful(found: Discovery) -> list[str]:
         f"Effects that were proven, but whose names are not sure, together take this error {moved}:"
         " they stand among those that are not believed."
     ]
-
-
-def _place(found: Discovery) -> list[str]:
-    """Returns the sentence that says where the largest force is missing; none where none is."""
-    place = find_place(found)
-    if place is None:
-        return []
-    figure = "" if found.horizon is None else "; see the figure"  # of a free run none has places
-    return [f"{sentence(str(place)).removesuffix('.')}{figure}."]
 
 
 def _unexplained(found: Discovery) -> str:

@@ -117,14 +117,20 @@ def rivals_section(found: Discovery) -> Section:
     if not rows and found.named:
         parts.append("No other explanation comes near those that are named.")
     explained = "what each effect would explain at its best place, before it is fitted"
-    scores = [describe_score(found, score) for score in best[:LISTED]]
+    lines = []
+    for s in best[:LISTED]:
+        value = f"gain {s.explains:z.3g}"
+        if found.scored_by == "fall":
+            value = f"{percent(s.explains)} of the fitted error"
+        effect = describe_there(s.candidate, found.final.plant)
+        lines.append(f"{effect}: {value}, chance {s.p_value:.2g}")
     after = describe_next(found)
     return Section(
         "Who could explain it",
         "\n\n".join(filter(None, [*parts, after])),
         figures=cache(partial(score_figures, found, best[:BEST], axis, caption)) if best else (),
         table=Table(("rival", "confidence", "named", "alike"), rows) if rows else None,
-        plain="\n\n".join(filter(None, [after, listed_below(explained, scores)])),
+        plain="\n\n".join(filter(None, [after, listed_below(explained, lines)])),
     )
 
 
@@ -159,15 +165,6 @@ def tried_section(found: Discovery) -> list[Section]:
             plain="\n\n".join(filter(None, plain)),
         )
     ]
-
-
-def describe_score(found: Discovery, score: Scored) -> str:
-    """Returns in words what a candidate would explain, before it is fitted."""
-    value = f"gain {score.explains:z.3g}"
-    if found.scored_by == "fall":
-        value = f"{percent(score.explains)} of the fitted error"
-    effect = describe_there(score.candidate, found.final.plant)
-    return f"{effect}: {value}, chance {score.p_value:.2g}"
 
 
 def failed_rows(failed: Sequence[Failed], words: Mapping[str, str]) -> list[tuple[str, str]]:

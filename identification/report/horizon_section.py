@@ -21,10 +21,8 @@ from identification.report.horizon_gap import (
     NeededForce,
     OutputError,
     RecordWindows,
-    find_gap,
-)
-from identification.report.horizon_words import (
     doubtful_sentences,
+    find_gap,
     force_line,
     length_lines,
     output_line,

@@ -84,6 +84,11 @@ def law_figure(of: RecoveredForce) -> Figure:
     A law that changes in a small part of the range has a second panel of that part.
     """
     x_unit, unit = of.units
+    if "reading" in of.candidate.effect.hooks:
+        what = "error of the sensor"
+    else:
+        what = f"missing {'torque' if unit == 'N m' else 'force'}"
+        what += ", against the motion" if of.resists else ""
     top = max(np.abs(of.law.force).max(), np.abs(of.points.force).max(initial=0.0))
     factor, said = (1e3, f"m{unit}") if top < SMALL and unit else (1.0, unit)
     near, follows = _bends(of), FOLLOWS.get(of.along)
@@ -93,7 +98,7 @@ def law_figure(of: RecoveredForce) -> Figure:
     for ax in panels:
         _draw(ax, of, factor)
         ax.set_xlabel(literal(follows + (f" [{x_unit}]" if x_unit else "")))
-        ax.set_ylabel(literal(_force(of) + (f" [{said}]" if said else "")))
+        ax.set_ylabel(literal(what + (f" [{said}]" if said else "")))
     if near:
         panels[0].set_title("all of it", loc="left", color=INK)
         panels[1].set_title("where it bends", loc="left", color=INK)
@@ -140,10 +145,3 @@ def _drawn(line: LawLine, of: RecoveredForce) -> tuple[np.ndarray, np.ndarray, n
     if of.along != "rate" or not 0 < cut < len(line.x):
         return parts
     return tuple(np.insert(part, cut, np.nan) for part in parts)  # type: ignore[return-value]
-
-
-def _force(of: RecoveredForce) -> str:
-    if "reading" in of.candidate.effect.hooks:
-        return "error of the sensor"
-    kind = "torque" if of.units[1] == "N m" else "force"
-    return f"missing {kind}, against the motion" if of.resists else f"missing {kind}"

@@ -100,21 +100,16 @@ def response_figure(
             magnitude.loglog(at, np.abs(G[:, k, k]), style, color=color, lw=1, label=label)
             turned = np.degrees(np.unwrap(np.angle(G[:, k, k])))
             phase.semilogx(at, turned, style, color=color, lw=1)
-    magnitude.set_ylabel(literal(f"magnitude [{_unit_of(pairs, units or {})}]"))
+    known = units or {}
+    told = {(known.get(output, ""), known.get(driven, "")) for output, driven, _ in pairs}
+    over, under = told.pop() if len(told) == 1 else ("", "")
+    unit = per(over, under) if over and under else "unit of the output / unit of the input"
+    magnitude.set_ylabel(literal(f"magnitude [{unit}]"))
     phase.set(xlabel="frequency [Hz]", ylabel="phase [°]")
     title = "dashed: inputs held between samples" if discrete is not None else ""
     magnitude.set_title(title, loc="left", color=INK)
     figure.legend(loc="outside lower center", ncols=4, fontsize=7)
     return figure
-
-
-def _unit_of(pairs: Sequence[tuple[str, str, str]], units: Mapping[str, str]) -> str:
-    """Returns the unit that all pairs of output and input share, else what it is made of."""
-    told = {(units.get(output, ""), units.get(driven, "")) for output, driven, _ in pairs}
-    over, under = told.pop() if len(told) == 1 else ("", "")
-    if not (over and under):
-        return "unit of the output / unit of the input"
-    return per(over, under)
 
 
 HEAD = ("mode", "frequency [Hz]", "damping", "states that take part most")

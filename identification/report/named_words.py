@@ -102,9 +102,12 @@ NEAR = 0.1  # of the confidence of the first one: a less likely member of a set 
 
 def named_sentences(found: Discovery, named: NamedEffect) -> str:
     """Returns what a verdict says of a named effect; `basis_sentence` has the rest."""
+    outside = ""  # a law that no catalogue lists may explain the same
+    if named.outside is not None and named.outside.confidence >= RETUNED:
+        outside = f" Or it is {describe_outside(named.outside)}."
     return (
-        f"{_named(found, named)}{nearest_law(found, named)}{_retuned(found, named)}"
-        f"{_outside(named)}{_agreement(found, named)}"
+        f"{_named(found, named)}{nearest_law(found, named)}{_retuned(found, named)}{outside}"
+        f"{_agreement(found, named)}"
     )
 
 
@@ -114,7 +117,12 @@ def _named(found: Discovery, named: NamedEffect) -> str:
     first = "Missing from the model" if named is found.named[0] else "Missing too"
     if named.candidate.effect.is_curve:
         first += " (in no catalogue, drawn from the data)"
-    mine = f"{describe_there(named.candidate, plant)}{_twin(named)}"
+    mine = describe_there(named.candidate, plant)
+    if named.same_as is not None:  # another name of the same force
+        mine += (
+            f' (or "{phrase(named.same_as)}": below the Coulomb friction it is the same force, and'
+            " no record tells the two apart)"
+        )
     is_set = named.one_of and bool(named.rivals)
     rivals = likely_rivals(named)
     others = [
@@ -174,16 +182,6 @@ def nearest_law(found: Discovery, named: NamedEffect) -> str:
     )
 
 
-def _twin(named: NamedEffect) -> str:
-    """Returns the other name of the same force in words; "" where there is none."""
-    if named.same_as is None:
-        return ""
-    return (
-        f' (or "{phrase(named.same_as)}": below the Coulomb friction it is the same force, and no'
-        " record tells the two apart)"
-    )
-
-
 def _retuned(found: Discovery, named: NamedEffect) -> str:
     """Returns a sentence where a parameter far from what was known would explain the same."""
     other = named.retuned
@@ -195,13 +193,6 @@ def _retuned(found: Discovery, named: NamedEffect) -> str:
         f" Or no effect is missing ({percent(other.confidence)}): the model explains the same if"
         f" {what} is {far} what was given as known. Measure it, or record another motion."
     )
-
-
-def _outside(named: NamedEffect) -> str:
-    """Returns a sentence where a law that no catalogue lists may explain the same."""
-    if named.outside is None or named.outside.confidence < RETUNED:
-        return ""
-    return f" Or it is {describe_outside(named.outside)}."
 
 
 def _agreement(found: Discovery, named: NamedEffect) -> str:

@@ -128,17 +128,16 @@ def hiding(hidden: Sequence[Hidden]) -> str:
     """Returns a sentence on how large effects may be that fitted noise hides; "" without any."""
     if not hidden:
         return ""
-    listed = "; ".join(map(_describe, hidden[:SHOWN]))
+    told = []
+    for h in hidden[:SHOWN]:
+        sizes = (f"{n} {quantity(most, unit=unit)}" for n, (_, most, unit) in h.sizes.items())
+        taken = f" (it would be {percent(h.taken)} of what counts as errors of the inputs)"
+        effect = f"{describe_effect(h.candidate)}, {', '.join(sizes)}"
+        told.append(effect + (taken if h.taken >= SHARE else ""))
     return (
         "The fitted noise may still hide effects up to these sizes (the size that the log seems to"
-        f" show, possibly by luck, plus 1.96 std): {listed}."
+        f" show, possibly by luck, plus 1.96 std): {'; '.join(told)}."
     )
-
-
-def _describe(h: Hidden) -> str:
-    sizes = ", ".join(f"{n} {quantity(most, unit=unit)}" for n, (_, most, unit) in h.sizes.items())
-    taken = f" (it would be {percent(h.taken)} of what counts as errors of the inputs)"
-    return f"{describe_effect(h.candidate)}, {sizes}{taken if h.taken >= SHARE else ''}"
 
 
 def smallest(d: Detectable) -> str:

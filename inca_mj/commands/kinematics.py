@@ -16,8 +16,6 @@ from inca_mj.commands.common import Values, do_not_draw
 if TYPE_CHECKING:
     import numpy as np
 
-    from inca_mj.kinematics.cables import Cables
-
 
 @dataclass(frozen=True, kw_only=True)
 class Kinematics:
@@ -73,6 +71,7 @@ class Kinematics:
 
     def _at(self, pose: np.ndarray) -> None:
         from inca_mj.kinematics.cables import Pulleys, inverse
+        from inca_mj.kinematics.jacobians import jacobian
         from inca_mj.report.poses import cables_json, cables_rows, cables_section, cables_verdict
         from inca_mj.robot.spread import displaced
 
@@ -81,7 +80,10 @@ class Kinematics:
         place = displaced(self.robot.place(), self.robot.parameters().values())
         cables = inverse(pose, place, Pulleys(self.pulley) if self.pulley else None)
         lines = cables_verdict(cables, place)
-        text = "\n".join([table(*cables_rows(cables)), jacobian_text(cables), *lines])
+        names = ("cable", "∂/∂x", "∂/∂y", "∂/∂z", "∂/∂ω_x [m]", "∂/∂ω_y [m]", "∂/∂ω_z [m]")
+        rows = [(str(k), *(f"{x:+z.4f}" for x in row)) for k, row in enumerate(jacobian(cables), 1)]
+        slopes = "Jacobian of the lengths by twist, along O:\n" + table(names, rows)
+        text = "\n".join([table(*cables_rows(cables)), slopes, *lines])
         conclude(
             self, cables_json(pose, cables), text,
             draw=lambda out: draw_report(
@@ -105,15 +107,6 @@ class Kinematics:
             keep=lambda out: write_poses(found, out / "poses.csv"),
             draw=lambda out: draw_report(out, title, verdict, [poses_section(found)]),
         )  # fmt: skip
-
-
-def jacobian_text(cables: Cables) -> str:
-    """Returns the Jacobian as a text table."""
-    from inca_mj.kinematics.jacobians import jacobian
-
-    names = ("cable", "∂/∂x", "∂/∂y", "∂/∂z", "∂/∂ω_x [m]", "∂/∂ω_y [m]", "∂/∂ω_z [m]")
-    rows = [(str(k + 1), *(f"{x:+z.4f}" for x in row)) for k, row in enumerate(jacobian(cables))]
-    return "Jacobian of the lengths by twist, along O:\n" + table(names, rows)
 
 
 def log_text(found: inca.LogPoses) -> str:

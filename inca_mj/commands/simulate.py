@@ -85,7 +85,11 @@ class Simulate:
             "figures and report.html follow" if is_drawn else "--out DIR adds figures and a report"
         )
         saved = f"log.csv, run.npz and model.xml are in {now.output.out}; {more}"
-        notes = now._notes()
+        notes = f"input {now.input}, seed {now.seed}"
+        if now.figure is not None:
+            notes = f"Figure {now.figure} of the thesis: {notes}, parameter set {now.robot.set}"
+        if now.force is not None:
+            notes += f", force {now.force} N at {now.force_at} m"
         drawn = partial(draw, result, notes) if is_drawn else None
         keep = partial(keep_run, result, f"simulated by inca simulate: {notes}")
         conclude(now, summary, _text(result), keep, drawn, saved)
@@ -117,14 +121,6 @@ class Simulate:
             raise InputError("--figure is of the thesis' robot; leave out --model, or --figure")
         robot = replace(self.robot, set=needs.set)
         return replace(self, input=needs.input, duration=needs.duration, robot=robot, output=output)
-
-    def _notes(self) -> str:
-        text = f"input {self.input}, seed {self.seed}"
-        if self.figure is not None:
-            text = f"Figure {self.figure} of the thesis: {text}, parameter set {self.robot.set}"
-        if self.force is not None:
-            text += f", force {self.force} N at {self.force_at} m"
-        return text
 
     def _currents(self) -> tuple[np.ndarray, float, str]:
         from inca_mj.robot.inputs import INPUTS, make_input, sampling_time_of
