@@ -105,21 +105,12 @@ def records_section(found: Discovery) -> list[Section]:
         is_told = bool(found.named) and before != FITTED
         worse = "; it is predicted worse" if is_told and error.after > error.before else ""
         lines.append(f"  {name} ({role}): {before}{f' -> {after}' if is_told else ''}{worse}")
-    return [
-        Section(
-            "Error by record",
-            " ".join([said, *steps_taken(found)]),
-            table=Table(
-                (
-                    "record",
-                    *(("nominal model", "final model") if found.named else ("error",)),
-                    "role",
-                ),
-                tuple(rows if found.named else ((n, before, r) for n, before, _, r in rows)),
-            ),
-            plain="\n".join(lines),
-        )
-    ]
+    table = Table(("record", "nominal model", "final model", "role"), tuple(rows))
+    if not found.named:
+        alone = tuple((name, before, role) for name, before, _, role in rows)
+        table = Table(("record", "error", "role"), alone)
+    text = " ".join([said, *steps_taken(found)])
+    return [Section("Error by record", text, table=table, plain="\n".join(lines))]
 
 
 def steps_taken(found: Discovery) -> list[str]:
@@ -139,14 +130,9 @@ def where_section(found: Discovery) -> list[Section]:
     if found.findings:
         title = "With what is named" if found.named else "What is left"
         parts.append(f"{title}: {'; '.join(map(describe_finding, found.findings))}.")
-    return [
-        Section(
-            "Where it disagrees",
-            "\n\n".join(parts),
-            figures=cache(partial(where_figures, found, run)),
-            plain=listed_below("where the nominal model fails", located),
-        )
-    ]
+    plain = listed_below("where the nominal model fails", located)
+    drawn = cache(partial(where_figures, found, run))
+    return [Section("Where it disagrees", "\n\n".join(parts), drawn, plain=plain)]
 
 
 def parameters_section(found: Discovery) -> Section:
@@ -176,14 +162,9 @@ def shifts_section(found: Discovery) -> list[Section]:
         return []
     rows = tuple((s.record, describe_shift(s), fall_words(s.fall)) for s in shifts)
     lines = [f"  {name}: {shift}; with this shift its mean square {f}" for name, shift, f in rows]
-    return [
-        Section(
-            "Shifts in time",
-            f"{sentence(SHIFTS)} {LATER}",
-            table=Table(("record", "its inputs act", "with this shift its mean square"), rows),
-            plain="\n".join([f"{SHIFTS}:", *lines]),
-        )
-    ]
+    table = Table(("record", "its inputs act", "with this shift its mean square"), rows)
+    plain = "\n".join([f"{SHIFTS}:", *lines])
+    return [Section("Shifts in time", f"{sentence(SHIFTS)} {LATER}", table=table, plain=plain)]
 
 
 def unseen_section(found: Discovery) -> list[Section]:

@@ -157,14 +157,8 @@ def tried_section(found: Discovery) -> list[Section]:
         listed_below(FAILED, [f"{n}: {why}" for n, why in failed_rows(failed, words)]),
         listed_below(DROPPED, [f"{sentence(why)[:-1]}: {n}" for n, why in left_rows(left, words)]),
     ]
-    return [
-        Section(
-            "Tried, and not believed",
-            TRIED,
-            table=Table(TRIED_HEAD, tuple(rows)),
-            plain="\n\n".join(filter(None, plain)),
-        )
-    ]
+    table, said = Table(TRIED_HEAD, tuple(rows)), "\n\n".join(filter(None, plain))
+    return [Section("Tried, and not believed", TRIED, table=table, plain=said)]
 
 
 def failed_rows(failed: Sequence[Failed], words: Mapping[str, str]) -> list[tuple[str, str]]:

@@ -78,15 +78,9 @@ def horizon_sections(found: Discovery) -> list[Section]:
         text.append(said)
         plain.append(said)
     is_drawn = is_far and bool(gap.windows)
-    sections = [
-        Section(
-            TITLE,
-            "\n\n".join(text),
-            figures=cache(lambda: ((WORST, worst_windows(gap.windows)),)) if is_drawn else (),
-            table=_table(gap.outputs, bool(found.named)),
-            plain="\n".join(plain),
-        )
-    ]
+    figures = cache(lambda: ((WORST, worst_windows(gap.windows)),)) if is_drawn else ()
+    table = _table(gap.outputs, bool(found.named))
+    sections = [Section(TITLE, "\n\n".join(text), figures, table, plain="\n".join(plain))]
     if forces:
         is_answer = found.verdict == "unknown effect"
         needed = [f"{' '.join(sentence(force_line(f)) for f in forces)} {FORCES}"]

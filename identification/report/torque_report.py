@@ -196,12 +196,14 @@ def evidence_to_json(evidence: Evidence, model: mujoco.MjModel) -> dict[str, Any
             for k, fit in enumerate(FITS)
         }
         joints[name] = {"unit": units[j], **of}
+    base, models = _values(evidence.whole), [*evidence.base.values, *evidence.friction]
+    for k, one in enumerate(base.values()):
+        one |= {"model": models[k]} if k < len(models) else {}
+        one["narrower"] = evidence.other[k]
     return plain({
         "joints": joints,
-        "base_parameters": _values(
-            evidence.whole, np.append(evidence.base.values, evidence.friction), evidence.other
-        ),
-        "values": _values(evidence.final, None, None),
+        "base_parameters": base,
+        "values": _values(evidence.final),
         "named": [_score(s) for s in evidence.named],
         "scores": [_score(s) for s in evidence.scores[:SHOWN]],
         "rest": [_score(s) for s in evidence.rest[:SHOWN]],
@@ -212,18 +214,9 @@ def evidence_to_json(evidence: Evidence, model: mujoco.MjModel) -> dict[str, Any
     })  # fmt: skip
 
 
-def _values(
-    fit: Fitted, model: np.ndarray | None, other: np.ndarray | None
-) -> dict[str, dict[str, Any]]:
-    out = {}
-    for k, name in enumerate(fit.names):
-        one: dict[str, Any] = {"value": fit.fit.θ[k], "std": fit.fit.std[k], "unit": fit.units[k]}
-        if model is not None and k < len(model):
-            one["model"] = model[k]
-        if other is not None:
-            one["narrower"] = other[k]
-        out[name] = one
-    return out
+def _values(fit: Fitted) -> dict[str, dict[str, Any]]:
+    rows = zip(fit.names, fit.fit.θ, fit.fit.std, fit.units, strict=False)
+    return {name: {"value": value, "std": std, "unit": unit} for name, value, std, unit in rows}
 
 
 def _score(score: Score) -> dict[str, Any]:

@@ -9,13 +9,15 @@ from advice import advised
 
 from identification import InputError, write_log
 from inca_mj.refusals.agreement import follow, places_of, some, unreached_share
+from inca_mj.refusals.scales import odd_angle
 from inca_mj.refusals.wiring import refuse_miswired
 from inca_mj.robot.inputs import make_input
 from inca_mj.twin.logs import read_inca_log, run_to_log
 from inca_mj.twin.run import simulate
 from inca_mj.twin.twin import build_twin
 
-LOG = read_inca_log(Path(__file__).parents[2] / "examples" / "log.csv").between(0.0, 3.0)
+WHOLE = read_inca_log(Path(__file__).parents[2] / "examples" / "log.csv")
+LOG, LONGER = WHOLE.between(0.0, 3.0), WHOLE.between(0.0, 4.0)
 UNIT = {"deg": np.pi / 180, "mrad": 1e-3, "rev": 2 * np.pi, "rad": 1.0}
 pytestmark = pytest.mark.usefixtures("each_run_once")
 
@@ -167,3 +169,28 @@ def test_currents_that_make_the_twin_follow_tell_every_place_and_sign(plant, see
     mixed = replace(LOG, inputs=LOG.inputs @ wrong)
     np.testing.assert_array_equal(places_of(mixed, followed[0]), wrong)
     assert np.abs(followed[1] - LOG.outputs).max() < 0.2 * np.ptp(LOG.outputs)
+
+
+def test_beside_a_current_that_was_not_logged_what_is_told_of_an_angle_mends_it(plant, tmp_path):
+    """Together the two hid each other."""
+    every = np.arange(1, 9)
+    inputs = LONGER.inputs * (every != 7)
+    outputs = LONGER.outputs * np.where(every == 3, -1.0, 1.0)
+    wrong = replace(LONGER, inputs=inputs, outputs=outputs, units={})
+    said = said_of(wrong, plant)
+    assert "current_7 stands still at 0 A" in said
+    assert "; beside it, angle_" in said
+    path = written(wrong, tmp_path)
+    path.with_suffix(".toml").write_text(advised(said))
+    mended = read_inca_log(path)
+    np.testing.assert_allclose(mended.outputs, LONGER.outputs, rtol=1e-9, atol=1e-12)
+    refuse_miswired(replace(mended, inputs=LONGER.inputs), plant)
+
+
+@pytest.mark.parametrize("factor", [-1.0, 180 / np.pi])
+def test_the_cables_tell_an_odd_angle_without_a_current(plant, factor):
+    y = some(LONGER.outputs)
+    assert odd_angle(plant, y) is None
+    at, by = odd_angle(plant, y * np.where(np.arange(8) == 7, factor, 1.0))
+    assert at == 7
+    assert by * factor == pytest.approx(1.0, rel=0.1)
