@@ -25,7 +25,9 @@ if TYPE_CHECKING:
     from identification.folders import Draft
     from inca_mj.workflows.discovery_files import TwinDiscoveryFiles
 
-ORDER = ("report", "model", "effects", "film")  # in which files are named
+FILES = {  # by what they are called, in the order in which they are named
+    "report": "report.html", "model": "model.xml", "effects": "effects.json", "film": "film.mp4",
+}  # fmt: skip
 LEAVE_OUT = "Ctrl-C leaves it out, and so does --no-film"
 
 
@@ -86,7 +88,7 @@ class Discover:
         files = TwinDiscoveryFiles(found)
         if not self.output.json:
             say(discovery_text(found))
-        names: dict[str, Path] = {}
+        model: dict[str, str] = {}
         with ExitStack() as stack:
             draft = None
             try:  # what was found is said even where it cannot be saved
@@ -94,42 +96,34 @@ class Discover:
                     draft = stack.enter_context(draft_of(self.output.out))
                     saved = files.keep(draft.folder, draft.place)
                     write_result(draft.folder / RESULT, self, {**files.record, **saved})
-                    names = {"model": Path(saved["model"]), "effects": Path("effects.json")}
+                    model = {"model": str(draft.place / saved["model"])}
                     draft.save()
             finally:
                 if self.output.json:
-                    model = {"model": str(draft.place / names["model"])} if draft and names else {}
                     say_json({**files.record, **model})
             if draft is not None:
-                self._draw(found, files, draft, names, blind)
+                self._draw(found, files, draft, blind)
                 if not self.output.json:
-                    lines = [f"{w + ':':<8} {draft.place / names[w]}" for w in ORDER if w in names]
+                    places = {what: draft.place / name for what, name in FILES.items()}
+                    lines = [f"{what + ':':<8} {at}" for what, at in places.items() if at.exists()]
                     say("\n" + "\n".join(lines))
         return 0
 
-    def _draw(
-        self,
-        found: Discovery,
-        files: TwinDiscoveryFiles,
-        draft: Draft,
-        names: dict[str, Path],
-        blind: str,
-    ) -> None:
-        """Add figures and the report to the saved results, and then the film; adds their names."""
+    def _draw(self, found: Discovery, files: TwinDiscoveryFiles, draft: Draft, blind: str) -> None:
+        """Add figures and the report to the saved results, and then the film."""
         begun, tell = time.monotonic(), self.output.tell
-        page = draft.folder / "report.html"
+        page = draft.folder / FILES["report"]
 
-        def write() -> None:
+        def write() -> bool:
             tell("drawing the report")
             if not add_drawings(draft, "figures and report", lambda: files.draw(draft.folder)):
-                return
-            names["report"] = Path("report.html")
+                return False
             drawn = duration(time.monotonic() - begun)
-            tell(f"report: {draft.place / names['report']} (drawn in {drawn}, beside the search)")
+            tell(f"report: {draft.place / page.name} (drawn in {drawn}, beside the search)")
+            return True
 
         if blind or not self.film:
-            write()
-            if blind and "report" in names:
+            if write() and blind:
                 note(f"no film: {blind}")
             return
         from inca_mj.commands.film import FilmProgress
@@ -137,11 +131,7 @@ class Discover:
 
         progress = FilmProgress(tell, FPS, hint=LEAVE_OUT)
         with film_beside(found, draft.folder, progress) as film:
-            write()
-            if "report" not in names:
-                return
-            if add_drawings(draft, "film", lambda: files.write_filmed(page, film())):
-                names["film"] = Path("film.mp4")
+            if write() and add_drawings(draft, "film", lambda: files.write_filmed(page, film())):
                 tell(f"the film took {duration(time.monotonic() - begun)}")
 
 

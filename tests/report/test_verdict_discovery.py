@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from math import hypot
+from types import SimpleNamespace
 
 import pytest
 from fake_discovery import NOISE, REJECTED, found
@@ -9,7 +10,7 @@ from fake_discovery import NOISE, REJECTED, found
 from identification.discovery.findings.finding import Finding, FindingKind
 from identification.discovery.findings.records_evidence import UnprovenEffect
 from identification.report.discovery_report import discovery_text
-from identification.report.discovery_verdict import discovery_verdict
+from identification.report.discovery_verdict import _any_forces, discovery_verdict
 from identification.report.effect_words import describe_effect, describe_rejected, describe_sizes
 from identification.report.named_words import nearest_law
 
@@ -79,3 +80,16 @@ def test_of_an_unknown_effect_the_likeliest_that_was_tried_is_told_once_with_its
     assert f"The likeliest is {describe_rejected(best, answer)}." in said
     assert said.count(describe_effect(c)) + said.count(describe_effect(c).capitalize()) == 1
     assert "chance 0.2, all effects that were tried counted" in said
+
+
+@pytest.mark.parametrize(("shares", "told"), [
+    ({"joint b": 0.18, "joint a": 0.03}, ["18 % at joint b", "3 % at joint a"]),
+    ({"joint b": 0.18, "joint a": 0.0}, ["18 % at joint b"]),
+    ({"joint b": 0.04}, ["No smooth force", "4 %"]),
+    ({"joint b": 0.0}, ["No smooth force"]),
+])  # fmt: skip
+def test_the_joint_with_the_largest_share_comes_first(shares, told):
+    (sentence,) = _any_forces(SimpleNamespace(smooth_by_joint=shares))
+    places = [sentence.index(words) for words in told]
+    assert places == sorted(places)
+    assert ("joint a" in sentence) == (shares.get("joint a", 0) > 0)
