@@ -20,7 +20,6 @@ from identification.report.discovery_sections import (
     records_section,
     shifts_section,
     steps_taken,
-    unseen_section,
     where_section,
 )
 from identification.report.discovery_verdict import discovery_verdict, further_sentences
@@ -40,6 +39,7 @@ from identification.report.named_words import curve_top, likely_rivals
 from identification.report.nothing_words import is_above_noise
 from identification.report.page import Section, write_report
 from identification.report.page_files import PageFiles
+from identification.report.shown_words import unseen_section
 from identification.report.value_words import without_colon
 from identification.shares import percent
 

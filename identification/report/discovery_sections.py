@@ -26,7 +26,6 @@ from identification.report.fitted_values import (
 from identification.report.horizon_section import error_figures
 from identification.report.page import Section, Table
 from identification.report.parts_words import parts_sentence
-from identification.report.shown_words import shown_lines, shown_rows, shown_sentences
 from identification.report.value_words import departures_found, gathered, words_of
 from identification.shares import decimal, fall_words
 from identification.windows.coarse import steps_of
@@ -165,17 +164,3 @@ def shifts_section(found: Discovery) -> list[Section]:
     table = Table(("record", "its inputs act", "with this shift its mean square"), rows)
     plain = "\n".join([f"{SHIFTS}:", *lines])
     return [Section("Shifts in time", f"{sentence(SHIFTS)} {LATER}", table=table, plain=plain)]
-
-
-def unseen_section(found: Discovery) -> list[Section]:
-    """Returns the section on what this log would have shown, and what not; none where unknown."""
-    if not found.detectable:
-        return []
-    said = (
-        "The smallest size of each effect that is found in 9 of 10 logs like this one, beside the"
-        " largest plausible size, the hardest to see first. A smaller effect stays hidden."
-        f"\n\n{shown_sentences(found.detectable)}"
-    )
-    head = ("effect", "smallest seen", "largest plausible")
-    table, plain = Table(head, tuple(shown_rows(found.detectable))), shown_lines(found.detectable)
-    return [Section("What it could have seen", said, table=table, plain="\n".join(plain))]

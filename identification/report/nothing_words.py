@@ -8,7 +8,7 @@ from identification.discovery.result import Discovery
 from identification.quantities import held, quantity
 from identification.report.effect_words import describe_effect
 from identification.report.error_words import error_words
-from identification.report.shown_words import SHOWN, smallest
+from identification.report.shown_words import SHOWN
 from identification.report.value_words import phrase
 from identification.shares import HELD, decimal, ratio_of, times
 
@@ -65,7 +65,10 @@ def nothing_sentence(found: Discovery) -> str:
         )
         said += _rest(found, alone)
     if seen:
-        listed = "; ".join(f"{describe_effect(d.candidate)}, {smallest(d)}" for d in seen[:SHOWN])
+        listed = "; ".join(
+            f"{describe_effect(d.candidate)}, {d.size} {quantity(d.smallest, unit=d.unit)}"
+            for d in seen[:SHOWN]
+        )
         said += f" In 9 cases of 10 this log would have shown effects as small as: {listed}."
     if unseen:
         names = dict.fromkeys(phrase(d.candidate.effect) for d in unseen)
