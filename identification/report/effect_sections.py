@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from functools import cache, partial
 
 from identification.discovery.attempts import Failed
-from identification.discovery.effect_results import NamedEffect
+from identification.discovery.effect_results import NamedEffect, RejectedEffect
 from identification.discovery.result import Discovery, Scored
 from identification.report.discovery_figures import GAIN, score_figures
 from identification.report.effect_words import (
@@ -18,7 +18,6 @@ from identification.report.effect_words import (
     describe_rejected,
     describe_sizes,
     describe_there,
-    rejected_once,
     say_choice,
     shown_parameters,
     value_with_std,
@@ -138,7 +137,10 @@ def tried_section(found: Discovery) -> list[Section]:
     """Returns the section on effects that were tried and not accepted; none where none was."""
     words = {s.candidate.effect.name: phrase(s.candidate.effect) for s in found.scores}
     failed, left = ([f for f in found.failed if f.dropped == d] for d in (False, True))
-    tried, plant = rejected_once(found), found.final.plant
+    each: dict[tuple[str, str], RejectedEffect] = {}  # at each place as it did best
+    for rejected in found.rejected:
+        each.setdefault(rejected.candidate.key, rejected)
+    tried, plant = [*each.values()], found.final.plant
     beside = " beside what is named" if found.named else ""
     rows = [
         (describe_there(r.candidate, plant), describe_sizes(r, plant),

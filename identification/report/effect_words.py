@@ -170,14 +170,6 @@ def difference_sentences(found: Discovery) -> list[str]:
     return said
 
 
-def rejected_once(found: Discovery) -> list[RejectedEffect]:
-    """Returns the effects that were refitted and not accepted, at each place as they did best."""
-    each: dict[tuple[str, str], RejectedEffect] = {}
-    for rejected in found.rejected:
-        each.setdefault(rejected.candidate.key, rejected)
-    return [*each.values()]
-
-
 def describe_next(found: Discovery) -> str:
     """Returns the best candidate that was not refitted, where none was refused; "" without one."""
     if found.rejected or found.next_best is None:

@@ -23,7 +23,7 @@ from identification.discovery.result import Discovery
 from identification.effects.curves import NODES
 from identification.prediction.model import WindowModel
 from identification.prediction.scores import WindowScore
-from identification.quantities import alike, held, quantity
+from identification.quantities import held, quantity
 from identification.report.error_words import listed
 from identification.report.named_words import Nodes, curve_nodes
 from identification.shares import percent
@@ -243,15 +243,6 @@ def _worst(
     return tuple(out)
 
 
-def output_line(o: OutputError) -> str:
-    """Returns the error of an output, beside its sensor's noise."""
-    size, noise = alike([o.after, o.noise], o.unit, 3)
-    times = (
-        f", {held(o.after / o.noise)} times its sensor's noise of {noise}" if o.noise > 0 else ""
-    )
-    return f"the error of {o.name} on unseen data is {size} rms{times}"
-
-
 def worst_lines(gap: HorizonGap) -> list[str]:
     """Returns which window errs most, in which record; none where no window is known."""
     most = max(gap.records, key=lambda r: float(r.after.max(initial=0.0)))
@@ -264,15 +255,6 @@ def worst_lines(gap: HorizonGap) -> list[str]:
         f" {held(ratio)} times the noise; the median of all windows is"
         f" {held(float(np.median(every)))} times the noise"
     ]
-
-
-def length_lines(lengths: Sequence[LengthError]) -> list[str]:
-    """Returns how errors grow with the length of the windows."""
-    if len(lengths) < 2:
-        return []
-    over = listed([f"{n.length:g} s" for n in lengths])
-    ratios = listed([held(n.after) for n in lengths])
-    return [f"over {over} the error on unseen data is {ratios} times the noise"]
 
 
 def force_line(needed: NeededForce) -> str:

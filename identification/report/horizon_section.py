@@ -14,6 +14,7 @@ from matplotlib.ticker import LogLocator, NullFormatter
 from identification.discovery.result import Discovery
 from identification.quantities import alike, held
 from identification.report.effect_sections import listed_below
+from identification.report.error_words import listed
 from identification.report.finding_words import sentence
 from identification.report.horizon_gap import (
     SURE,
@@ -24,8 +25,6 @@ from identification.report.horizon_gap import (
     doubtful_sentences,
     find_gap,
     force_line,
-    length_lines,
-    output_line,
     worst_lines,
 )
 from identification.report.page import Section, Table
@@ -66,17 +65,27 @@ def horizon_sections(found: Discovery) -> list[Section]:
     if gap is None:
         return []
     model = "the model with what is named" if found.named else "the fitted model"
-    lines = [output_line(o) for o in gap.outputs]
+    lines = []
+    for o in gap.outputs:
+        size, noise = alike([o.after, o.noise], o.unit, 3)
+        said = f"the error of {o.name} on unseen data is {size} rms"
+        if o.noise > 0:
+            said += f", {held(o.after / o.noise)} times its sensor's noise of {noise}"
+        lines.append(said)
     is_far = max((r.after.max() for r in gap.records), default=0.0) > NEAR_NOISE
-    rest = [*(worst_lines(gap) if is_far else ()), *length_lines(gap.lengths)]
+    rest = worst_lines(gap) if is_far else []
+    if len(gap.lengths) > 1:
+        over = listed([f"{n.length:g} s" for n in gap.lengths])
+        ratios = listed([held(n.after) for n in gap.lengths])
+        rest.append(f"over {over} the error on unseen data is {ratios} times the noise")
     forces = gap.forces if is_far else ()
     text = [f"{' '.join(map(sentence, rest))} {GROWTH}"]
     plain = [listed_below(f"where {model} fails", [*lines, *rest, *map(force_line, forces)])]
     if is_far and not forces:
         most = gap.doubtful
-        said = NO_FORCE if most is None else doubtful_sentences(most, gap.curves)
-        text.append(said)
-        plain.append(said)
+        doubt = NO_FORCE if most is None else doubtful_sentences(most, gap.curves)
+        text.append(doubt)
+        plain.append(doubt)
     is_drawn = is_far and bool(gap.windows)
     figures = cache(lambda: ((WORST, worst_windows(gap.windows)),)) if is_drawn else ()
     table = _table(gap.outputs, bool(found.named))

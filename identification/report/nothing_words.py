@@ -39,11 +39,15 @@ def nothing_sentence(found: Discovery) -> str:
     """Returns the paragraph: nothing is missing, or no effect is named as no candidate helps."""
     left, noise, alone = errors_left(found)
     if _is_above_sensors(found):
-        ratio = found.before.rms / found.noise_rms
+        ratio, no_input = found.before.rms / found.noise_rms, not isfinite(found.input_error)
+        either = "No input that moves is a force, which might err. Something is"
+        if not no_input:
+            size = ratio_of(found.input_error, "their rms")
+            either = f"Either the inputs err by {size}, or something is"
         return (
             "No effect is named: no candidate lowers the error of prediction on unseen data beyond"
             f" chance. This error is {left}{found.over}, {held(ratio)} times the sensors' noise of"
-            f" {alone}. {_either(found)}"
+            f" {alone}. {either} missing that no candidate explains."
         )
     unseen = [d for d in found.detectable if not d.is_plausible]
     seen = [d for d in found.detectable if d.is_plausible]
@@ -74,19 +78,6 @@ def nothing_sentence(found: Discovery) -> str:
         names = dict.fromkeys(phrase(d.candidate.effect) for d in unseen)
         said += f" It would not show these effects at any plausible size: {'; '.join(names)}."
     return said
-
-
-def _either(found: Discovery) -> str:
-    """Says what else than an effect may make the error: the inputs, where any input moves."""
-    if not isfinite(found.input_error):
-        return (
-            "No input that moves is a force, which might err. Something is missing that no"
-            " candidate explains."
-        )
-    return (
-        f"Either the inputs err by {ratio_of(found.input_error, 'their rms')}, or something is"
-        " missing that no candidate explains."
-    )
 
 
 def _rest(found: Discovery, alone: str) -> str:
