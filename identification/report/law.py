@@ -6,9 +6,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from identification.discovery.effect_results import NamedEffect
 from identification.discovery.recovered_force import LawLine, RecoveredForce
 from identification.discovery.result import Discovery
+from identification.effects.effect import Candidate
 from identification.errors import DivergenceError
 from identification.quantities import quantity
 from identification.report.effect_words import describe_effect
@@ -37,9 +37,14 @@ NONE = (
 
 def law_sections(found: Discovery) -> list[Section]:
     """Returns the section on the recovered forces; none where nothing is named."""
-    each = [(n.candidate, _recovered(found, n)) for n in found.named]
-    if not each:
+    if not found.named:
         return []
+    each: list[tuple[Candidate, RecoveredForce | None]] = []
+    for n in found.named:
+        try:
+            each.append((n.candidate, found.recover(n.candidate, n.rivals)))
+        except DivergenceError:  # of the changed law, or of a rival's
+            each.append((n.candidate, None))
     figures: list[tuple[str, Figure]] = []
     drawn = any(of is not None for _, of in each)
     said = [HOW + RECOVERED[found.judged_by]] if drawn else []
@@ -56,14 +61,6 @@ def law_sections(found: Discovery) -> list[Section]:
             f" {most} at most, which need not be the value of one of its parameters."
         )
     return [Section(LAWS, "\n\n".join(said), figures=tuple(figures), first=1)]
-
-
-def _recovered(found: Discovery, named: NamedEffect) -> RecoveredForce | None:
-    """Returns a recovered force; None where the changed law, or a rival's, diverges."""
-    try:
-        return found.recover(named.candidate, named.rivals)
-    except DivergenceError:
-        return None
 
 
 SURE = 1.96  # std on each side of 95 %

@@ -75,8 +75,11 @@ def _draw_mode(axis: Any, model: LinearModel, mode: Mode, placed: Geometry) -> N
     small = 1e-3 / np.abs(shape).max()
     size = REACH * small / np.linalg.norm(connectors(small) - still, axis=1).max()
     for end, colour, width in ((-size, SIMULATED, 1.4), (size, MEASURED, 1.4), (0.0, GREY, 2.4)):
-        at = connectors(end)
-        _draw_handle(axis, at, p + end * shape[:3], placed.A, colour, width)
+        centre = p + end * shape[:3]
+        for point, far in zip(connectors(end), placed.A, strict=True):  # an arm, and its cable
+            axis.plot(*np.stack([centre, point], axis=1), color=colour, lw=width)
+            way = (far - point) / np.linalg.norm(far - point)
+            axis.plot(*np.stack([point, point + STUB * way], axis=1), color=colour, lw=0.5)
     moved = connectors(size) - still
     for point, way in zip(still, moved, strict=True):
         axis.quiver(*point, *way, color=INK, lw=0.8, arrow_length_ratio=0.3)
@@ -92,16 +95,6 @@ def _draw_mode(axis: Any, model: LinearModel, mode: Mode, placed: Geometry) -> N
         getattr(axis, f"set_{name}label")(f"{name} [m]", fontsize=7, labelpad=-8)
     axis.tick_params(labelsize=6, pad=-3)
     axis.set_box_aspect((1, 1, 1))
-
-
-def _draw_handle(
-    axis: Any, at: np.ndarray, centre: np.ndarray, exits: np.ndarray, colour: str, width: float
-) -> None:
-    """Draws the arms of the platform, and the first part of each cable."""
-    for point, far in zip(at, exits, strict=True):
-        axis.plot(*np.stack([centre, point], axis=1), color=colour, lw=width)
-        way = (far - point) / np.linalg.norm(far - point)
-        axis.plot(*np.stack([point, point + STUB * way], axis=1), color=colour, lw=0.5)
 
 
 ERRORS = ("matrix", "response", "eigenvalue")
