@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -79,7 +79,12 @@ class SweepCommand:
     def _compute(self, sweep: Sweep, store: Store) -> None:
         from identification.sweep.run import backend_of, run_sweep
 
-        options = _options(flat(self.job))
+        for word in flat(self.job):
+            if not word.partition("=")[2]:
+                raise InputError(
+                    f"{word!r} is not NAME=VALUE; write e.g. --job slurm_partition=long"
+                )
+        options = dict(word.split("=", 1) for word in flat(self.job))
         backend = backend_of(self.backend, self.jobs, store.folder, options)
         tell = self.output.tell if not sys.stderr.isatty() else None  # there a bar says it
         ran = run_sweep(store, backend, resume=self.resume, progress=tell)
@@ -101,11 +106,3 @@ class SweepCommand:
             note(f"every task met an error: {most}" + (", and others" if others else ""))
             return 1
         return 0
-
-
-def _options(words: Sequence[str]) -> dict[str, str]:
-    """Returns the options of jobs, or refuses a word that is not NAME=VALUE."""
-    for word in words:
-        if not word.partition("=")[2]:
-            raise InputError(f"{word!r} is not NAME=VALUE; write e.g. --job slurm_partition=long")
-    return dict(word.split("=", 1) for word in words)

@@ -15,7 +15,7 @@ from identification.prediction.clocks import shown_shifts
 from identification.quantities import held
 from identification.report.discovery_figures import gap_figures, where_figures
 from identification.report.effect_sections import listed_below
-from identification.report.error_words import error_words, pair_words
+from identification.report.error_words import error_words
 from identification.report.finding_words import describe_finding, describe_shift, sentence
 from identification.report.fitted_values import (
     std_sentence,
@@ -95,8 +95,9 @@ def records_section(found: Discovery) -> list[Section]:
     if not found.is_told_by_record:
         return []
     seen = [e for e in found.errors if not isnan(e.before)]
-    pairs = pair_words([(e.before_by_unit, e.after_by_unit) for e in seen], DIGITS)
-    words = dict(zip(map(id, seen), pairs, strict=True))
+    each = [errors for e in seen for errors in (e.before_by_unit, e.after_by_unit)]
+    told = error_words(each, "", DIGITS) if seen else []
+    words = dict(zip(map(id, seen), zip(told[::2], told[1::2], strict=True), strict=True))
     rows = [(e.name, *words.get(id(e), (FITTED, "")), e.role) for e in found.errors]
     said, over = (text.format(found.horizon) for text in RECORDS[found.judged_by])
     lines = [f"{over}, {'without and with what is named' if found.named else 'nothing is named'}:"]

@@ -62,16 +62,6 @@ def error_words(
     ]
 
 
-def pair_words(
-    pairs: Sequence[tuple[Mapping[str, float], Mapping[str, float]]], digits: int = HELD
-) -> list[tuple[str, str]]:
-    """Returns errors of two models on several records in words, with one prefix for all."""
-    if not pairs:
-        return []
-    each = error_words([errors for pair in pairs for errors in pair], "", digits)
-    return [*zip(each[::2], each[1::2], strict=True)]
-
-
 def change_words(
     before: Mapping[str, float],
     after: Mapping[str, float],
