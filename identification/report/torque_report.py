@@ -36,8 +36,19 @@ def torque_sections(evidence: Evidence, model: mujoco.MjModel) -> list[Section]:
     figures = tuple(
         (f"Torques, {r.name}", torque_figure(evidence, model, k)) for k, r in enumerate(rows)
     )
+    drawn = tuple(
+        (s.missing.title, force_figure(evidence, s, model))
+        for s in evidence.named
+        if s.missing.is_curve
+    )
+    forces = Section(
+        "Forces that no law explains",
+        "The force that the torques need at a joint, as a curve with a band of two std, and what"
+        " each sample leaves to it. Its mean is left out, because a constant force is friction.",
+        figures=drawn,
+    )
     return [
-        *_forces(evidence, model),
+        *([forces] if drawn else []),
         Section(
             "Torques, joint by joint",
             "The torque that the drives gave, without the part that is known of the model; the same"
@@ -69,18 +80,6 @@ def torque_sections(evidence: Evidence, model: mujoco.MjModel) -> list[Section]:
                         tuple(friction_rows(evidence))),
         ),
     ]  # fmt: skip
-
-
-def _forces(evidence: Evidence, model: mujoco.MjModel) -> list[Section]:
-    """Returns the section on forces that no law explains; none where there is none."""
-    drawn = [s for s in evidence.named if s.missing.is_curve]
-    figures = tuple((s.missing.title, force_figure(evidence, s, model)) for s in drawn)
-    return [Section(
-        "Forces that no law explains",
-        "The force that the torques need at a joint, as a curve with a band of two std, and what"
-        " each sample leaves to it. Its mean is left out, because a constant force is friction.",
-        figures=figures,
-    )] if figures else []  # fmt: skip
 
 
 @styled

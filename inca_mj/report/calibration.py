@@ -52,8 +52,17 @@ def calibration_verdict(found: Calibration) -> list[str]:
         )
     far = unusual(found)
     if far:
+        told = []
+        for group, name, times in far[:MOST]:
+            column, _, number = name.partition("@")
+            if group in found.spread.points:
+                size = f"{POINTS[group]} {number}, {column[-1]} {_scaled(found, name, 1e3)} mm"
+            else:
+                kind = _kind(found, group)
+                size = f"drive {number}, {kind} {_scaled(found, name, 100)} %"
+            told.append(f"{size} ({times:.2g} times)")
         lines.append(
-            f"Far from what is usual: {'; '.join(_far(found, *one) for one in far[:MOST])}"
+            f"Far from what is usual: {'; '.join(told)}"
             + (f"; and {len(far) - MOST} more" if len(far) > MOST else "")
             + ". So large a difference is a fault of this part or of a sensor, or it stands for an"
             " effect that the twin lacks: run inca discover on the same logs."
@@ -95,16 +104,6 @@ def unusual(found: Calibration) -> tuple[tuple[str, str, float], ...]:
 def _kind(found: Calibration, group: str) -> str:
     """Returns the kind of a group's deviations, in words."""
     return f"{POINTS[group]}s" if group in POINTS else found.robot.parameters[group].short
-
-
-def _far(found: Calibration, group: str, name: str, times: float) -> str:
-    """Returns one value in words: where it is, how large, and how many times what is usual."""
-    number = name.partition("@")[2]
-    if group in found.spread.points:
-        what, size = f"{POINTS[group]} {number}, {name.partition('@')[0][-1]}", "mm"
-    else:
-        what, size = f"drive {number}, {_kind(found, group)}", "%"
-    return f"{what} {_scaled(found, name, 1e3 if size == 'mm' else 100)} {size} ({times:.2g} times)"
 
 
 def exit_std(found: Calibration) -> tuple[float, float]:

@@ -82,8 +82,15 @@ def identification_verdict(result: Identification) -> list[str]:
             f" estimate it too: --free ... {' '.join(held)}."
         )
     if result.starts:
-        unit = result.fit.estimate.predictor.log.output_unit
-        lines.append(starts_sentence(result.starts[result.best], unit))
+        unit, errors = result.fit.estimate.predictor.log.output_unit, result.starts[result.best]
+        best, worst = float(errors.min()), float(errors.max())
+        said = "The first start ended near the noise floor; no other was needed."
+        if len(errors) > 1:
+            said = (
+                f"{len(errors)} starts were tried; {int((errors < 1.01 * best).sum())} ended within"
+                f" 1 % of the best, {error(best, unit)} rms, the worst at {error(worst, unit)}."
+            )
+        lines.append(said)
     return lines
 
 
@@ -155,18 +162,6 @@ def innovations_verdict(found: InnovationsFit) -> list[str]:
         " something; `inca discover` looks for it."
     )
     return lines
-
-
-def starts_sentence(errors: np.ndarray, unit: str) -> str:
-    """Says how many starts were needed, and how well the rms errors [unit] of their ends agree."""
-    best = float(errors.min())
-    same = int((errors < 1.01 * best).sum())
-    if len(errors) == 1:
-        return "The first start ended near the noise floor; no other was needed."
-    return (
-        f"{len(errors)} starts were tried; {same} ended within 1 % of the best,"
-        f" {error(best, unit)} rms, the worst at {error(float(errors.max()), unit)}."
-    )
 
 
 def profile_sentence(known: Profile) -> str:
