@@ -77,7 +77,7 @@ def figures(folder: Path) -> None:
 
     choose_backend()
     from inca_mj.rendering.workspace_picture import workspace_picture
-    from inca_mj.report.statics_figures import cable_mass_figure, frequency_figure, slices_figure
+    from inca_mj.report.statics import cable_mass_figure, frequency_figure, slices_figure
     from inca_mj.workflows.statics import analyse_statics
 
     found = analyse_statics()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Annotated
 
 import tyro
@@ -66,8 +66,7 @@ class Cite:
         from inca_mj.report.citation import to_bibtex, to_text, works
 
         if self.json:
-            record = {"works": [asdict(work) for work in works()]}
-            say_json({**record, "text": to_text(), "bibtex": to_bibtex()})
+            say_json({"works": works(), "text": to_text(), "bibtex": to_bibtex()})
         else:
             say(to_bibtex() if self.bibtex else to_text())
         return 0

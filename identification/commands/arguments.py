@@ -33,20 +33,11 @@ def parsed(
     arguments: Sequence[str],
     examples: tuple[str, ...] = (),
 ) -> Any:
-    """Returns the command that some arguments name.
+    """Returns the command that some arguments name, or refuses them; see `run_program`.
 
-    Args:
-        commands: a union of dataclasses, as tyro takes it.
-        name: of the program.
-        description: what it does.
-        arguments: those of the command line. `--completion SHELL` prints a script that completes
-            them in bash, zsh or fish.
-        examples: command lines that the help of the program shows; those of a command stand in its
-            docstring.
-
-    Raises:
-        InputError: they name no command, or one that cannot be had with them.
-        SystemExit: they ask for help, which is then printed.
+    `--completion SHELL` prints a script that completes commands in bash, zsh or fish; after that,
+    and after a help, it ends by SystemExit. `examples` are of the program; those of a command stand
+    in its docstring.
     """
     if arguments[:1] == [COMPLETION]:
         shell = " ".join(arguments[1:])
@@ -58,7 +49,7 @@ def parsed(
         with redirect_stderr(parser_words):
             return tyro.cli(
                 commands, prog=name, description=description, args=gathered(commands, arguments),
-                config=(tyro.conf.AvoidSubcommands,),
+                config=(tyro.conf.AvoidSubcommands, tyro.conf.OmitArgPrefixes),
             )  # fmt: skip
     except SystemExit as end:
         at_hand = dict(_commands(commands))
@@ -86,7 +77,13 @@ def examples_of(command: type) -> tuple[str, ...]:
 
 def gathered(commands: Any, arguments: Sequence[str]) -> list[str]:
     """Returns arguments in which each option of several values stands once, with all its values."""
-    several = {f"--{name}" for name in _several(commands)}
+    several = {
+        f"--{name}"
+        for _, command in _commands(commands)
+        for name, kind in _options(command)
+        for each in (kind, *get_args(kind))
+        if get_origin(each) is tuple and get_args(each)[1:] == (...,)
+    }
     groups: list[list[str]] = [[]]
     first: dict[str, list[str]] = {}
     current = groups[0]
@@ -109,21 +106,6 @@ def gathered(commands: Any, arguments: Sequence[str]) -> list[str]:
     return [*chain(*groups)]
 
 
-def _several(kind: Any) -> Iterator[str]:
-    """Yields names of the options of several values, as written on the command line."""
-    if isinstance(kind, type) and dataclasses.is_dataclass(kind):
-        for name, hint in get_type_hints(kind).items():
-            if dataclasses.is_dataclass(hint):
-                yield from _several(hint)
-            elif any(get_origin(each) is tuple and get_args(each)[1:] == (...,)
-                     for each in (hint, *get_args(hint))):  # fmt: skip
-                yield name.replace("_", "-")
-    else:
-        is_annotated = get_origin(kind) is Annotated
-        for each in get_args(kind)[: 1 if is_annotated else None]:
-            yield from _several(each)
-
-
 def _sentence(text: str, name: str, arguments: Sequence[str], commands: dict[str, type]) -> str:
     """Returns one sentence on what the parser wrote."""
     command = arguments[0] if arguments else ""
@@ -132,7 +114,7 @@ def _sentence(text: str, name: str, arguments: Sequence[str], commands: dict[str
     if command not in commands:
         return str(unknown_name("command", command, commands))
     see = f"; {name} {command} --help tells more"
-    options, places = [*_options(commands[command])], _positional(commands[command])
+    options, places = dict(_options(commands[command])), _positional(commands[command])
     whole = " ".join([name, command, *places.values()])
     if found := re.search(r"Unrecognized (?:or misplaced )?options: ([^\s,]+)", text):
         if not found[1].startswith("-"):
@@ -195,11 +177,11 @@ def _positional(command: type) -> dict[str, str]:
     }
 
 
-def _options(command: type) -> Iterator[str]:
-    """Yields the names of a command's options, those of its parts among them."""
+def _options(command: type) -> Iterator[tuple[str, Any]]:
+    """Yields the options of a command with their kinds, those of its parts among them."""
     positional = _positional(command)
-    for name, hint in get_type_hints(command).items():
-        if dataclasses.is_dataclass(hint):
-            yield from _options(hint)  # type: ignore[arg-type]
+    for name, kind in get_type_hints(command).items():
+        if dataclasses.is_dataclass(kind):
+            yield from _options(kind)  # type: ignore[arg-type]
         elif name not in positional:
-            yield name.replace("_", "-")
+            yield name.replace("_", "-"), kind

@@ -21,19 +21,12 @@ EVERY = 10.0  # [s] after which a line is said
 
 @dataclass
 class Stage:
-    """A stage that is at work.
+    """A stage that is at work."""
 
-    Attributes:
-        what: its steps are.
-        steps: how many; None where that is not known beforehand.
-        begun: when [s].
-        done: steps that were done.
-    """
-
-    what: str
-    steps: int | None
-    begun: float
-    done: int = 0
+    what: str  # its steps are
+    steps: int | None  # how many; None where that is not known beforehand
+    begun: float  # when [s]
+    done: int = 0  # steps that were done
 
     def line(self, now: float) -> str:
         """Returns how far it is, and how long it will still take where that can be told."""
@@ -49,34 +42,21 @@ class Stage:
 
 @dataclass
 class Beat:
-    """Says where a computation is when nothing was said for a while.
+    """Says where a computation is when nothing was said for a while."""
 
-    Attributes:
-        say: writes a line; it may call `told`.
-        clock: the time [s].
-        begun: when the program began [s].
-        last: when the last line was said [s].
-        stages: that are at work, the innermost one last.
-        count: stages that have begun.
-        whole: the computation of several stages that is at work; None without one.
-        lines: that were said by others; before the first one, and without stages, it is silent.
-    """
-
-    say: Callable[[str], None]
-    clock: Callable[[], float] = time.monotonic
-    begun: float = field(default=0.0, init=False)
-    last: float = field(default=0.0, init=False)
-    stages: list[Stage] = field(default_factory=list, init=False)
-    count: int = field(default=0, init=False)
-    whole: Whole | None = field(default=None, init=False)
-    lines: int = field(default=0, init=False)
+    say: Callable[[str], None]  # writes a line; it may call `told`
+    clock: Callable[[], float] = time.monotonic  # the time [s]
+    stages: list[Stage] = field(default_factory=list, init=False)  # at work, the innermost one last
+    whole: Whole | None = field(default=None, init=False)  # computation of several stages, if any
+    # whether a stage has begun or a line was said elsewhere; before that it is silent
+    is_heard: bool = field(default=False, init=False)
 
     def __post_init__(self) -> None:
-        self.begun = self.last = self.clock()
+        self.begun = self.last = self.clock()  # of the program, and of the last line [s]
 
     def told(self) -> None:
-        """Counts a line that was said elsewhere."""
-        self.last, self.lines = self.clock(), self.lines + 1
+        """Notes that a line was said elsewhere."""
+        self.last, self.is_heard = self.clock(), True
 
     def follow(self, whole: Whole | None) -> None:
         """Begins or ends a computation of several stages."""
@@ -85,10 +65,10 @@ class Beat:
     @contextmanager
     def stage(self, what: str, steps: int | None, show: Watch | None = None) -> Iterator[Advance]:
         """Begins a stage, shown by a bar too where there is one."""
-        self.count += 1
+        self.is_heard = True
         mine = Stage(what, steps, self.clock())
         self.stages.append(mine)
-        with nullcontext(_nothing) if show is None else show(what, steps) as shown:
+        with nullcontext(lambda: None) if show is None else show(what, steps) as shown:
 
             def advance() -> None:
                 mine.done += 1
@@ -102,17 +82,13 @@ class Beat:
     def check(self) -> None:
         """Says a line where none was said for a while."""
         now, stages = self.clock(), [*self.stages]
-        if now - self.last < EVERY or not (self.count or self.lines):
+        if now - self.last < EVERY or not self.is_heard:
             return
         each = [str(self.whole)] if self.whole is not None else []
         each += [stages[-1].line(now)] if stages else []
         where = "; ".join(each) or "still at work"
         self.last = now
         self.say(f"{duration(now - self.begun)}: {where}")
-
-
-def _nothing() -> None:
-    """Shows nothing."""
 
 
 BEATS: list[Beat] = []  # of the running program

@@ -7,7 +7,7 @@ import os
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, TypeVar
@@ -34,6 +34,15 @@ OneLog = Annotated[Path, tyro.conf.Positional, tyro.conf.arg(metavar="LOG", help
 LogLists = Annotated[  # an option that takes logs and may be given again; see `flat`
     tuple[tuple[Path, ...], ...], tyro.conf.UseAppendAction, tyro.conf.arg(metavar="LOG")
 ]
+Trust = Annotated[
+    tuple[tuple[str, ...], ...],
+    tyro.conf.UseAppendAction,
+    tyro.conf.arg(
+        metavar="WORD",
+        help="What you know better than a check: contacts, gaps, joints, rows, sensors, start,"
+        " steps, time, units, wiring.",
+    ),
+]
 
 
 @dataclass(frozen=True)
@@ -51,9 +60,6 @@ class Output:
         """Writes one line about progress to stderr, unless it shall be quiet."""
         if not self.quiet:
             note(text)
-
-
-output_field: Any = field(default_factory=Output)
 
 
 def say(text: str) -> None:

@@ -9,13 +9,7 @@ from typing import Annotated, Any, Literal
 
 import tyro
 
-from identification.commands.common import (
-    LogLists,
-    Output,
-    flat,
-    note,
-    output_field,
-)
+from identification.commands.common import LogLists, Output, Trust, flat, note
 from identification.commands.robots import conclude_files
 from identification.errors import InputError
 
@@ -46,12 +40,8 @@ class Excite:
     """Experiments that the search evaluates."""
     seed: int = 0
     """Of the search."""
-    trust: Annotated[
-        tuple[tuple[str, ...], ...], tyro.conf.UseAppendAction, tyro.conf.arg(metavar="WORD")
-    ] = ()
-    """What you know better than a check: contacts, gaps, joints, rows, sensors, start, steps, time,
-    units, wiring."""
-    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
+    trust: Trust = ()
+    output: Output = Output()
 
     def run(self) -> int:
         """Read, design, say, keep."""
@@ -73,11 +63,7 @@ class Excite:
         return 0
 
     def logs(self) -> Sequence[Path]:
-        """Returns the logs that were given, or else those of the result.
-
-        Raises:
-            InputError: there are none, or they are not there any more.
-        """
+        """Returns the logs that were given, or else those of the result; refuses to have none."""
         from identification.results import read_result
 
         given = flat(self.log)

@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import tyro
 
-from identification.commands.common import OneLog, Output, conclude, output_field, table
+from identification.commands.common import OneLog, Output, conclude, table
 from identification.quantities import plain_fields
-
-if TYPE_CHECKING:
-    from identification.inspection.inspected import Inspection
 
 
 @dataclass(frozen=True)
@@ -26,7 +22,7 @@ class Inspect:
     """
 
     log: OneLog
-    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
+    output: Output = Output()
 
     def run(self) -> int:
         """Inspect, say, draw."""
@@ -36,15 +32,15 @@ class Inspect:
         found = inspect_log(self.log)
         lines = [table(HEAD, rows(found)), *sentences(found)]
         lines.append(f"Next, with your model: identification new MODEL.xml {self.log}")
-        conclude(self, inspection_to_json(found), "\n".join(lines), draw=partial(_draw, found))
+
+        def draw(out: Path) -> None:
+            from identification.inspection.picture import log_figure
+            from identification.report.style import save_png
+
+            save_png(log_figure(found), out / "log.png")
+
+        conclude(self, inspection_to_json(found), "\n".join(lines), draw=draw)
         return 0
-
-
-def _draw(found: Inspection, out: Path) -> None:
-    from identification.inspection.picture import log_figure
-    from identification.report.style import save_png
-
-    save_png(log_figure(found), out / "log.png")
 
 
 @dataclass(frozen=True)
@@ -61,7 +57,7 @@ class New:
     log: OneLog
     robot: Annotated[Path, tyro.conf.arg(metavar="FILE")] = Path("robot.toml")
     """Where the file goes; one that exists is never replaced."""
-    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
+    output: Output = Output()
 
     def run(self) -> int:
         """Inspect, write, say."""
@@ -77,8 +73,7 @@ class New:
             ("needed before a fit", begun.needs),
         ):
             lines += [f"{title}:", *(f"  {each}" for each in said)] if said else []
-        ready = f"Next: {next_step}"
-        lines.append(f"When that is done: {next_step}" if begun.needs else ready)
+        lines.append(f"{'When that is done' if begun.needs else 'Next'}: {next_step}")
         if begun.torques:
             lines.append(
                 "Its inputs are forces and all joints are measured, so that this answers too, in"

@@ -9,17 +9,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from identification.commands.common import (
-    Output,
-    assignments,
-    conclude,
-    draw_report,
-    output_field,
-    table,
-)
+from identification.commands.common import Output, assignments, conclude, draw_report, table
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
     from identification.linear.system import LinearSystem
 
@@ -46,7 +39,7 @@ class Linearize:
     trust: Annotated[tuple[str, ...], tyro.conf.arg(metavar="WORD")] = ()
     """What you know better than a check of the log: contacts, gaps, joints, rows, sensors, start,
     steps, time, units, wiring."""
-    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
+    output: Output = Output()
 
     def run(self) -> int:
         """Linearise, say, keep."""
@@ -73,8 +66,16 @@ class Linearize:
         }
         units = {} if log is None else log.units
         text = "\n".join(said(s, label) for s, label in zip(systems, labels, strict=True))
-        keep = partial(save_systems, systems, rate)
-        conclude(self, record, text, keep, partial(draw, systems, labels, rate, units))
+
+        def draw(out: Path) -> None:
+            from identification.linear.modes import modes
+            from identification.report.linear import linear_sections, slowest_and_fastest
+
+            verdict = [slowest_and_fastest(modes(systems[0]))]
+            sections = linear_sections(systems, labels, rate, units)
+            draw_report(out, "The linear model", verdict, sections)
+
+        conclude(self, record, text, partial(save_systems, systems, rate), draw)
         return 0
 
 
@@ -88,21 +89,6 @@ def said(system: LinearSystem, label: str) -> str:
         [f"{label}: {sizes} outputs", table(HEAD, mode_rows(system)),
          minimal_sentence(minimal(system), len(system.A))]
     )  # fmt: skip
-
-
-def draw(
-    systems: Sequence[LinearSystem],
-    labels: Sequence[str],
-    rate: float | None,
-    units: Mapping[str, str],
-    out: Path,
-) -> None:
-    """Write figures and the one-file report of the systems into a folder."""
-    from identification.linear.modes import modes
-    from identification.report.linear import linear_sections, slowest_and_fastest
-
-    verdict = [slowest_and_fastest(modes(systems[0]))]
-    draw_report(out, "The linear model", verdict, linear_sections(systems, labels, rate, units))
 
 
 def save_systems(systems: Sequence[LinearSystem], rate: float | None, out: Path) -> None:

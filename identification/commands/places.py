@@ -6,9 +6,8 @@ Nothing that a user made is replaced: neither an input of the command nor anothe
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import fields, is_dataclass
-from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -18,19 +17,12 @@ from identification.files import exists, is_file
 from identification.folders import try_folder
 
 
-def refuse_empty(arguments: Sequence[str]) -> None:
-    """Refuses `--out ""`, which would be the folder in which the user stands."""
-    if "--out=" in arguments or ("--out", "") in pairwise(arguments):
-        raise InputError('--out is given as ""; name a folder, such as --out out/run')
-
-
 def refuse_place(command: Any) -> None:
     """Refuse a folder for the results that cannot be written, or that holds files of others.
 
-    Raises:
-        InputError: the folder, or what is above it, is a file or cannot be read or written; an
-            input of the command is it or lies in it; or another file lies there that the program
-            did not make.
+    It is refused where it, or what is above it, is a file or cannot be read or written; where an
+    input of the command is it or lies in it; and where the program did not make a file that lies
+    there.
     """
     output = getattr(command, "output", None)
     out = output.out if isinstance(output, Output) else None

@@ -10,12 +10,13 @@ import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import partial
+from itertools import pairwise
 from typing import Any
 
 from identification.commands.arguments import parsed
 from identification.commands.beat import Beat, beating
 from identification.commands.common import note
-from identification.commands.places import refuse_empty, refuse_place
+from identification.commands.places import refuse_place
 from identification.commands.stopping import STOPPED, stoppable
 from identification.errors import InputError
 from identification.progress import USUAL, watched
@@ -73,7 +74,17 @@ def run_program(
     try:
         with stoppable(name):
             try:
-                return _run(commands, name, description, given, examples)
+                if [*given] == ["--version"]:
+                    sys.stdout.write(f"{name} {versions()}\n")
+                    return 0
+                if "--out=" in given or ("--out", "") in pairwise(given):
+                    # it would be the folder in which the user stands
+                    raise InputError('--out is given as ""; name a folder, such as --out out/run')
+                command = parsed(commands, name, description, given, examples)
+                refuse_place(command)
+                output = getattr(command, "output", None)
+                with metered(getattr(output, "quiet", False)):
+                    return int(command.run())
             finally:
                 sys.stdout.flush()  # the help too may not find room
     except ValueError as error:
@@ -91,20 +102,6 @@ def run_program(
         return 2
     except KeyboardInterrupt:
         return STOPPED
-
-
-def _run(
-    commands: Any, name: str, description: str, arguments: Sequence[str], examples: tuple[str, ...]
-) -> int:
-    if [*arguments] == ["--version"]:
-        sys.stdout.write(f"{name} {versions()}\n")
-        return 0
-    refuse_empty(arguments)
-    command = parsed(commands, name, description, arguments, examples)
-    refuse_place(command)
-    output = getattr(command, "output", None)
-    with metered(getattr(output, "quiet", False)):
-        return int(command.run())
 
 
 def versions() -> str:

@@ -13,10 +13,10 @@ from identification.commands.common import (
     LOG_KINDS,
     LogLists,
     Output,
+    Trust,
     conclude,
     flat,
     note,
-    output_field,
     parameter_table,
 )
 from identification.commands.stopping import NO_ANSWER, STOPPED, leaving_out
@@ -45,21 +45,15 @@ class OnRobot:
     ]  # fmt: skip
     confirm: LogLists = ()
     """Records to which nothing is fitted."""
-    trust: Annotated[
-        tuple[tuple[str, ...], ...], tyro.conf.UseAppendAction, tyro.conf.arg(metavar="WORD")
-    ] = ()
-    """What you know better than a check: contacts, gaps, joints, rows, sensors, start, steps, time,
-    units, wiring."""
+    trust: Trust = ()
     spread: str = "usual"
     """How much values that are alike differ: usual (the robot's TOML), none, or a TOML file."""
-    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
+    output: Output = Output()
 
     def read(self, but: tuple[str, ...] = (), *, fits: bool = True) -> Robot:
         """Returns the robot, compiled for its log, with the records that confirm.
 
-        Args:
-            but: checks that are left out.
-            fits: whether free parameters are fitted, so that some must be.
+        The checks `but` are left out. Where something `fits`, some parameters must be free.
         """
         from identification.robot.file import read_robot_file, refuse_nothing_free
 

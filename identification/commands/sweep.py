@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -11,12 +11,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from identification.commands.common import Output, conclude, draw_report, note, output_field
+from identification.commands.common import Output, conclude, draw_report, flat, note
 from identification.commands.places import refuse_place
 from identification.errors import InputError
 
 if TYPE_CHECKING:
-    from identification.sweep.method import Findings
     from identification.sweep.store import Store
     from identification.sweep.task import Sweep
 
@@ -47,7 +46,7 @@ class SweepCommand:
     """Run tasks once more that met an error; goes with --resume."""
     summary: bool = False
     """Run nothing; make report and result.json anew from the records."""
-    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
+    output: Output = Output()
 
     def run(self) -> int:
         """Run, keep, say; 1 where every task met an error."""
@@ -80,7 +79,12 @@ class SweepCommand:
     def _compute(self, sweep: Sweep, store: Store) -> None:
         from identification.sweep.run import backend_of, run_sweep
 
-        options = _options([text for some in self.job for text in some])
+        for word in flat(self.job):
+            if not word.partition("=")[2]:
+                raise InputError(
+                    f"{word!r} is not NAME=VALUE; write e.g. --job slurm_partition=long"
+                )
+        options = dict(word.split("=", 1) for word in flat(self.job))
         backend = backend_of(self.backend, self.jobs, store.folder, options)
         tell = self.output.tell if not sys.stderr.isatty() else None  # there a bar says it
         ran = run_sweep(store, backend, resume=self.resume, progress=tell)
@@ -93,22 +97,12 @@ class SweepCommand:
         found = summarise(sweep, store.rows())
         record = {**found.record, "path": str(path)}
         text = "\n".join([*found.sentences, f"The records are in {path}."])
-        conclude(kept, record, text, draw=partial(_draw, sweep, found))
+        footer = f"seed {sweep.seed}, digest of the records {found.record['digest'][:16]}"
+        title, said, sections = sweep.about, found.sentences, found.sections
+        draw = partial(draw_report, title=title, verdict=said, sections=sections, footer=footer)
+        conclude(kept, record, text, draw=draw)
         if found.record["failed"] == found.record["records"]:
             (most, *others) = found.record["errors"]
             note(f"every task met an error: {most}" + (", and others" if others else ""))
             return 1
         return 0
-
-
-def _options(words: Sequence[str]) -> dict[str, str]:
-    """Returns the options of jobs, or refuses a word that is not NAME=VALUE."""
-    for word in words:
-        if not word.partition("=")[2]:
-            raise InputError(f"{word!r} is not NAME=VALUE; write e.g. --job slurm_partition=long")
-    return dict(word.split("=", 1) for word in words)
-
-
-def _draw(sweep: Sweep, found: Findings, out: Path) -> None:
-    footer = f"seed {sweep.seed}, digest of the records {found.record['digest'][:16]}"
-    draw_report(out, sweep.about, found.sentences, found.sections, footer=footer)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from textwrap import wrap
 from typing import TYPE_CHECKING
 
@@ -63,23 +63,16 @@ def score_figures(found: Discovery, best: Sequence[Scored], axis: str, caption: 
     # What the data cannot tell from a named effect is named with it.
     named += [r.candidate for n in found.named if n.one_of for r in n.rivals[:1]]
     places = {c.effect.name: c.where for c in reversed(named)}
-    shown = sorted((_at_place(found, s, places) for s in best), key=lambda s: -s.explains)
+    at = {s.candidate.key: s for s in reversed(found.scores)}  # the best score there
+    names = [s.candidate.effect.name for s in best]
+    there = [at.get((n, places.get(n, "")), s) for n, s in zip(names, best, strict=True)]
+    shown = sorted(there, key=lambda s: -s.explains)
     figure = gains_figure(
         [describe_there(s.candidate, found.final.plant) for s in shown],
         np.array([s.explains for s in shown]),
         [s.candidate.effect.name in places for s in shown], axis,
     )  # fmt: skip
     return ((caption, figure),)
-
-
-def _at_place(found: Discovery, score: Scored, places: Mapping[str, str]) -> Scored:
-    """Returns the score of the same effect at a place of `places`; the score if there is none."""
-    wanted = places.get(score.candidate.effect.name)
-    return next(
-        (s for s in found.scores
-         if s.candidate.where == wanted and s.candidate.effect.name == score.candidate.effect.name),
-        score,
-    )  # fmt: skip
 
 
 @styled
@@ -93,13 +86,10 @@ def gap_figure(
 ) -> Figure:
     """Returns a figure of the free run's errors, one panel an output, over the band of the noise.
 
-    Args:
-        time: of the unseen samples, shape (N,) [s]; a gap in it is a gap in the lines.
-        before: measured minus predicted by the fitted nominal model, shape (N, ny), in the units.
-        after: the same with the named effects; None when there are none.
-        band: half its width, two std of the noise of each output, shape (ny,), in the units.
-        names: of the outputs, ny of them.
-        units: of the outputs, ny of them; where they differ, each panel has an axis of its own.
+    Times of the unseen samples have shape (N,) [s], and a gap in them is one in the lines. Errors
+    of the fitted nominal model and, where effects are named, of that with them, have shape (N, ny),
+    in the outputs' units; where these differ, each panel has an axis of its own. Half the band's
+    width is two std of the noise of each output.
     """
     alike = len(set(units)) == 1
     step = float(np.median(np.diff(time)))

@@ -106,9 +106,7 @@ def _fails_to_json(found: Discovery) -> dict[str, Any] | None:
     if gap is None:
         return None
     return {
-        "outputs": [plain_fields(o, "name", "unit", "before", "after", "noise")
-                    for o in gap.outputs],
-        "lengths": [plain_fields(n, "length", "before", "after") for n in gap.lengths],
+        "outputs": plain(gap.outputs), "lengths": plain(gap.lengths),
         "windows": [
             {**plain_fields(w, "record", "output", "ratio"), "begin": float(w.time[0])}
             for w in gap.windows
@@ -128,7 +126,15 @@ def finding_to_json(finding: Finding) -> dict[str, Any]:
     if isinstance(evidence, DoubtfulEffect):
         numbers = _rejected_to_json(evidence.rejected)
     elif isinstance(evidence, OversizedEffect):
-        numbers = _oversized_to_json(evidence)
+        score, c = evidence.score, evidence.score.candidate
+        sizes = {
+            s.name: {"value": value, "std": std, "unit": s.unit,
+                     "limit": evidence.limits.get(s.name)}
+            for s, value, std in zip(c.effect.sizes, score.size, score.std, strict=True)
+        }  # fmt: skip
+        numbers = plain(
+            {"name": c.effect.name, "where": c.where, "gain": score.explains, "parameters": sizes}
+        )
     else:
         numbers = plain(evidence)
     return {"kind": finding.kind.value, **numbers}
@@ -171,19 +177,6 @@ def _rejected_to_json(rejected: RejectedEffect) -> dict[str, Any]:
 def _proofs_to_json(proof: Proof) -> dict[str, Any]:
     """Returns the proof on samples that are told of, and that by which the search decided."""
     return {"proof": plain_fields(proof.told, *PROOF), "decided": plain_fields(proof, *PROOF)}
-
-
-def _oversized_to_json(evidence: OversizedEffect) -> dict[str, Any]:
-    score = evidence.score
-    sizes = zip(score.candidate.effect.sizes, score.size, score.std, strict=True)
-    return plain({
-        "name": score.candidate.effect.name, "where": score.candidate.where, "gain": score.explains,
-        "parameters": {
-            s.name: {"value": value, "std": std, "unit": s.unit,
-                     "limit": evidence.limits.get(s.name)}
-            for s, value, std in sizes
-        },
-    })  # fmt: skip
 
 
 def _parameters_to_json(parameters: Mapping[str, tuple[float, float, str]]) -> dict[str, Any]:

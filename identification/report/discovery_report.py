@@ -20,13 +20,9 @@ from identification.report.discovery_sections import (
     records_section,
     shifts_section,
     steps_taken,
-    unseen_section,
     where_section,
 )
-from identification.report.discovery_verdict import (
-    discovery_verdict,
-    further_sentences,
-)
+from identification.report.discovery_verdict import discovery_verdict, further_sentences
 from identification.report.effect_sections import added_section, rivals_section, tried_section
 from identification.report.effect_words import (
     describe_there,
@@ -43,6 +39,7 @@ from identification.report.named_words import curve_top, likely_rivals
 from identification.report.nothing_words import is_above_noise
 from identification.report.page import Section, write_report
 from identification.report.page_files import PageFiles
+from identification.report.shown_words import unseen_section
 from identification.report.value_words import without_colon
 from identification.shares import percent
 
@@ -98,11 +95,7 @@ def write_page(
     sentences: Sequence[str] = (),
     drawings: dict[Figure, str] | None = None,
 ) -> Path:
-    """Write the report of a discovery, one HTML file of some sections; returns its path.
-
-    Raises:
-        InputError: the file cannot be written.
-    """
+    """Write the report of a discovery, one HTML file of some sections; returns its path."""
     is_open = found.verdict == "nothing missing" and is_above_noise(found)
     fitted = [record.log.name for record in found.records if record.role == "fit"]
     return write_report(
@@ -131,7 +124,12 @@ def discovery_headline(found: Discovery) -> Headline:
         answers = [_named(found, named) for named in found.named]
         first = answers[0]
         answers[0] = Answer(first.name, first.place, (*first.tiles, error))
-        return Headline(_lead(found), tuple(answers))
+        lead = "Missing from the model" + (", together" if len(found.named) > 1 else "")
+        if found.verdict == "unlisted effect":
+            lead = "Missing from the model, in no catalogue and drawn from the data"
+        elif found.named[0].one_of and found.named[0].rivals:
+            lead = "Missing from the model is one of these"
+        return Headline(lead, tuple(answers))
     left = error_tile(
         found.errors_of(found.before), None, found.floor, f"{UNSEEN}{found.over}"
     )  # fmt: skip
@@ -154,15 +152,6 @@ def discovery_headline(found: Discovery) -> Headline:
     if is_above_noise(found):
         name, place = "No effect is named", "No candidate lowers the error beyond chance."
     return Headline("", (Answer(name, place, _three([left, shown if told else None, known])),))
-
-
-def _lead(found: Discovery) -> str:
-    """Returns the words above the first name."""
-    if found.verdict == "unlisted effect":
-        return "Missing from the model, in no catalogue and drawn from the data"
-    if found.named[0].one_of and found.named[0].rivals:
-        return "Missing from the model is one of these"
-    return "Missing from the model" if len(found.named) == 1 else "Missing from the model, together"
 
 
 def _named(found: Discovery, named: NamedEffect) -> Answer:

@@ -15,7 +15,7 @@ from identification.prediction.clocks import shown_shifts
 from identification.quantities import held
 from identification.report.discovery_figures import gap_figures, where_figures
 from identification.report.effect_sections import listed_below
-from identification.report.error_words import error_words, pair_words
+from identification.report.error_words import error_words
 from identification.report.finding_words import describe_finding, describe_shift, sentence
 from identification.report.fitted_values import (
     std_sentence,
@@ -26,7 +26,6 @@ from identification.report.fitted_values import (
 from identification.report.horizon_section import error_figures
 from identification.report.page import Section, Table
 from identification.report.parts_words import parts_sentence
-from identification.report.shown_words import shown_lines, shown_rows, shown_sentences
 from identification.report.value_words import departures_found, gathered, words_of
 from identification.shares import decimal, fall_words
 from identification.windows.coarse import steps_of
@@ -96,8 +95,9 @@ def records_section(found: Discovery) -> list[Section]:
     if not found.is_told_by_record:
         return []
     seen = [e for e in found.errors if not isnan(e.before)]
-    pairs = pair_words([(e.before_by_unit, e.after_by_unit) for e in seen], DIGITS)
-    words = dict(zip(map(id, seen), pairs, strict=True))
+    each = [errors for e in seen for errors in (e.before_by_unit, e.after_by_unit)]
+    told = error_words(each, "", DIGITS) if seen else []
+    words = dict(zip(map(id, seen), zip(told[::2], told[1::2], strict=True), strict=True))
     rows = [(e.name, *words.get(id(e), (FITTED, "")), e.role) for e in found.errors]
     said, over = (text.format(found.horizon) for text in RECORDS[found.judged_by])
     lines = [f"{over}, {'without and with what is named' if found.named else 'nothing is named'}:"]
@@ -105,21 +105,12 @@ def records_section(found: Discovery) -> list[Section]:
         is_told = bool(found.named) and before != FITTED
         worse = "; it is predicted worse" if is_told and error.after > error.before else ""
         lines.append(f"  {name} ({role}): {before}{f' -> {after}' if is_told else ''}{worse}")
-    return [
-        Section(
-            "Error by record",
-            " ".join([said, *steps_taken(found)]),
-            table=Table(
-                (
-                    "record",
-                    *(("nominal model", "final model") if found.named else ("error",)),
-                    "role",
-                ),
-                tuple(rows if found.named else ((n, before, r) for n, before, _, r in rows)),
-            ),
-            plain="\n".join(lines),
-        )
-    ]
+    table = Table(("record", "nominal model", "final model", "role"), tuple(rows))
+    if not found.named:
+        alone = tuple((name, before, role) for name, before, _, role in rows)
+        table = Table(("record", "error", "role"), alone)
+    text = " ".join([said, *steps_taken(found)])
+    return [Section("Error by record", text, table=table, plain="\n".join(lines))]
 
 
 def steps_taken(found: Discovery) -> list[str]:
@@ -139,14 +130,9 @@ def where_section(found: Discovery) -> list[Section]:
     if found.findings:
         title = "With what is named" if found.named else "What is left"
         parts.append(f"{title}: {'; '.join(map(describe_finding, found.findings))}.")
-    return [
-        Section(
-            "Where it disagrees",
-            "\n\n".join(parts),
-            figures=cache(partial(where_figures, found, run)),
-            plain=listed_below("where the nominal model fails", located),
-        )
-    ]
+    plain = listed_below("where the nominal model fails", located)
+    drawn = cache(partial(where_figures, found, run))
+    return [Section("Where it disagrees", "\n\n".join(parts), drawn, plain=plain)]
 
 
 def parameters_section(found: Discovery) -> Section:
@@ -176,25 +162,6 @@ def shifts_section(found: Discovery) -> list[Section]:
         return []
     rows = tuple((s.record, describe_shift(s), fall_words(s.fall)) for s in shifts)
     lines = [f"  {name}: {shift}; with this shift its mean square {f}" for name, shift, f in rows]
-    return [
-        Section(
-            "Shifts in time",
-            f"{sentence(SHIFTS)} {LATER}",
-            table=Table(("record", "its inputs act", "with this shift its mean square"), rows),
-            plain="\n".join([f"{SHIFTS}:", *lines]),
-        )
-    ]
-
-
-def unseen_section(found: Discovery) -> list[Section]:
-    """Returns the section on what this log would have shown, and what not; none where unknown."""
-    if not found.detectable:
-        return []
-    said = (
-        "The smallest size of each effect that is found in 9 of 10 logs like this one, beside the"
-        " largest plausible size, the hardest to see first. A smaller effect stays hidden."
-        f"\n\n{shown_sentences(found.detectable)}"
-    )
-    head = ("effect", "smallest seen", "largest plausible")
-    table, plain = Table(head, tuple(shown_rows(found.detectable))), shown_lines(found.detectable)
-    return [Section("What it could have seen", said, table=table, plain="\n".join(plain))]
+    table = Table(("record", "its inputs act", "with this shift its mean square"), rows)
+    plain = "\n".join([f"{SHIFTS}:", *lines])
+    return [Section("Shifts in time", f"{sentence(SHIFTS)} {LATER}", table=table, plain=plain)]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import hypot, inf, isfinite
 
 from identification.discovery.effect_results import RejectedEffect
-from identification.discovery.findings.finding import Finding, FindingKind
+from identification.discovery.findings.finding import FindingKind
 from identification.discovery.findings.records_evidence import UnprovenEffect
 from identification.discovery.result import Discovery
 from identification.progress import duration
@@ -19,8 +19,7 @@ from identification.report.effect_words import (
 )
 from identification.report.error_words import change_words, describe_scale, error_words, listed
 from identification.report.finding_words import describe_finding, sentence
-from identification.report.horizon_gap import MUCH
-from identification.report.horizon_words import needed_sentences
+from identification.report.horizon_gap import MUCH, needed_sentences
 from identification.report.missing_place import find_place
 from identification.report.named_words import basis_sentence, named_sentences
 from identification.report.nothing_words import NOISIER, errors_left, nothing_sentence
@@ -122,10 +121,15 @@ def _findings(found: Discovery) -> list[str]:
     What effects that are not named would leave is no error of a model that is told of.
     """
     unnamed, likeliest = found.verdict == "unknown effect", _likeliest(found)
-    told = [f for f in found.findings
-            if not (unnamed and f.kind is FindingKind.REMAINING_ERROR)
-            and not (likeliest and _is_of(f, likeliest))]  # fmt: skip
-    return [sentence(describe_finding(finding)) for finding in told]
+    key = likeliest.candidate.key if likeliest else None  # which has a sentence of its own
+    told = []
+    for finding in found.findings:
+        e = finding.evidence
+        if isinstance(e, UnprovenEffect) and (e.name, e.where) == key:
+            continue
+        if not (unnamed and finding.kind is FindingKind.REMAINING_ERROR):
+            told.append(sentence(describe_finding(finding)))
+    return told
 
 
 def _likeliest(found: Discovery) -> RejectedEffect | None:
@@ -135,12 +139,6 @@ def _likeliest(found: Discovery) -> RejectedEffect | None:
         if isfinite(r.evidence) and r.proof.told.fall > 0 and not r.candidate.effect.is_curve
     ]  # fmt: skip
     return max(tried, key=lambda r: r.evidence, default=None)
-
-
-def _is_of(finding: Finding, tried: RejectedEffect) -> bool:
-    """Returns whether a finding tells of an effect that was tried."""
-    e = finding.evidence
-    return isinstance(e, UnprovenEffect) and (e.name, e.where) == tried.candidate.key
 
 
 def _likeliest_sentences(found: Discovery) -> list[str]:
@@ -159,6 +157,10 @@ def _unknown(found: Discovery) -> str:
     if found.unlogged is None and 0 < found.input_error < inf:
         size = ratio_of(found.input_error, "their rms")
         needed = f"; the inputs would have to err by {size} to cause this"
+    place = []
+    if (at := find_place(found)) is not None:
+        figure = "" if found.horizon is None else "; see the figure"  # a free run has none of it
+        place.append(f"{sentence(str(at)).removesuffix('.')}{figure}.")
     return " ".join(
         [
             f"Something is missing that {none_explains(tried)}: the error of the fitted model on"
@@ -166,7 +168,7 @@ def _unknown(found: Discovery) -> str:
             *_likeliest_sentences(found),
             "The program gives no name rather than a wrong one.",
             *_doubtful(found),
-            *_place(found),
+            *place,
             *needed_sentences(found),
             *_any_forces(found),
             *_findings(found),
@@ -200,15 +202,6 @@ def _doubtful(found: Discovery) -> list[str]:
         f"Effects that were proven, but whose names are not sure, together take this error {moved}:"
         " they stand among those that are not believed."
     ]
-
-
-def _place(found: Discovery) -> list[str]:
-    """Returns the sentence that says where the largest force is missing; none where none is."""
-    place = find_place(found)
-    if place is None:
-        return []
-    figure = "" if found.horizon is None else "; see the figure"  # of a free run none has places
-    return [f"{sentence(str(place)).removesuffix('.')}{figure}."]
 
 
 def _unexplained(found: Discovery) -> str:

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from functools import cache, partial
 
 from identification.discovery.attempts import Failed
-from identification.discovery.effect_results import NamedEffect
+from identification.discovery.effect_results import NamedEffect, RejectedEffect
 from identification.discovery.result import Discovery, Scored
 from identification.report.discovery_figures import GAIN, score_figures
 from identification.report.effect_words import (
@@ -18,7 +18,6 @@ from identification.report.effect_words import (
     describe_rejected,
     describe_sizes,
     describe_there,
-    rejected_once,
     say_choice,
     shown_parameters,
     value_with_std,
@@ -102,7 +101,11 @@ def _numbers(named: NamedEffect) -> list[tuple[str, str]]:
 
 def rivals_section(found: Discovery) -> Section:
     """Returns the section on all candidates: what each would explain, and rivals of the named."""
-    (text, axis, caption), best = MEASURES[found.scored_by], best_scores(found)
+    text, axis, caption = MEASURES[found.scored_by]
+    each: dict[str, Scored] = {}  # the best of each effect: its best place and shape
+    for score in found.scores:
+        each.setdefault(score.candidate.effect.name, score)
+    best = [score for score in each.values() if score.p_value < LUCK]
     rows = tuple(
         (describe_effect(r.candidate), percent(r.confidence),
          describe_effect(n.candidate), r.alike)
@@ -113,14 +116,20 @@ def rivals_section(found: Discovery) -> Section:
     if not rows and found.named:
         parts.append("No other explanation comes near those that are named.")
     explained = "what each effect would explain at its best place, before it is fitted"
-    scores = [describe_score(found, score) for score in best[:LISTED]]
+    lines = []
+    for s in best[:LISTED]:
+        value = f"gain {s.explains:z.3g}"
+        if found.scored_by == "fall":
+            value = f"{percent(s.explains)} of the fitted error"
+        effect = describe_there(s.candidate, found.final.plant)
+        lines.append(f"{effect}: {value}, chance {s.p_value:.2g}")
     after = describe_next(found)
     return Section(
         "Who could explain it",
         "\n\n".join(filter(None, [*parts, after])),
         figures=cache(partial(score_figures, found, best[:BEST], axis, caption)) if best else (),
         table=Table(("rival", "confidence", "named", "alike"), rows) if rows else None,
-        plain="\n\n".join(filter(None, [after, listed_below(explained, scores)])),
+        plain="\n\n".join(filter(None, [after, listed_below(explained, lines)])),
     )
 
 
@@ -128,12 +137,15 @@ def tried_section(found: Discovery) -> list[Section]:
     """Returns the section on effects that were tried and not accepted; none where none was."""
     words = {s.candidate.effect.name: phrase(s.candidate.effect) for s in found.scores}
     failed, left = ([f for f in found.failed if f.dropped == d] for d in (False, True))
-    tried, plant = rejected_once(found), found.final.plant
+    each: dict[tuple[str, str], RejectedEffect] = {}  # at each place as it did best
+    for rejected in found.rejected:
+        each.setdefault(rejected.candidate.key, rejected)
+    tried, plant = [*each.values()], found.final.plant
     beside = " beside what is named" if found.named else ""
     rows = [
         (describe_there(r.candidate, plant), describe_sizes(r, plant),
          fall_words(r.proof.told.fall, 3),
-         chance_words(r.proof.told), describe_doubt(r, found.options))
+         chance_words(r.proof.told.chance), describe_doubt(r, found.options))
         for r in tried
     ]  # fmt: skip
     rows += [(name, *BLANK, why) for name, why in failed_rows(failed, words)]
@@ -147,31 +159,8 @@ def tried_section(found: Discovery) -> list[Section]:
         listed_below(FAILED, [f"{n}: {why}" for n, why in failed_rows(failed, words)]),
         listed_below(DROPPED, [f"{sentence(why)[:-1]}: {n}" for n, why in left_rows(left, words)]),
     ]
-    return [
-        Section(
-            "Tried, and not believed",
-            TRIED,
-            table=Table(TRIED_HEAD, tuple(rows)),
-            plain="\n\n".join(filter(None, plain)),
-        )
-    ]
-
-
-def best_scores(found: Discovery) -> list[Scored]:
-    """Returns the best score of each effect that is more than luck: its best place and shape."""
-    each: dict[str, Scored] = {}
-    for score in found.scores:
-        each.setdefault(score.candidate.effect.name, score)
-    return [score for score in each.values() if score.p_value < LUCK]
-
-
-def describe_score(found: Discovery, score: Scored) -> str:
-    """Returns in words what a candidate would explain, before it is fitted."""
-    value = f"gain {score.explains:z.3g}"
-    if found.scored_by == "fall":
-        value = f"{percent(score.explains)} of the fitted error"
-    effect = describe_there(score.candidate, found.final.plant)
-    return f"{effect}: {value}, chance {score.p_value:.2g}"
+    table, said = Table(TRIED_HEAD, tuple(rows)), "\n\n".join(filter(None, plain))
+    return [Section("Tried, and not believed", TRIED, table=table, plain=said)]
 
 
 def failed_rows(failed: Sequence[Failed], words: Mapping[str, str]) -> list[tuple[str, str]]:

@@ -12,12 +12,7 @@ from identification.report.value_words import in_record, phrase, without_colon
 from identification.shares import fall_words, percent
 
 if TYPE_CHECKING:  # a search is slow to import, and a page may tell of a model alone
-    from identification.discovery.effect_results import (
-        NamedEffect,
-        Outside,
-        Proof,
-        RejectedEffect,
-    )
+    from identification.discovery.effect_results import NamedEffect, Outside, Proof, RejectedEffect
     from identification.discovery.options import DiscoveryOptions
     from identification.discovery.result import Discovery
     from identification.effects.effect import Candidate
@@ -130,9 +125,7 @@ def _already(candidate: Candidate, plant: Plant) -> str:
     return quantity(value, unit=size.unit) if value else ""
 
 
-def shown_parameters(
-    found: NamedEffect | RejectedEffect,
-) -> dict[str, tuple[float, float, str]]:
+def shown_parameters(found: NamedEffect | RejectedEffect) -> dict[str, tuple[float, float, str]]:
     """Returns the sizes and shapes of a fitted effect that tell something of the robot.
 
     Shapes that no data tell, and those of one log alone, are left out.
@@ -178,14 +171,6 @@ def difference_sentences(found: Discovery) -> list[str]:
     return said
 
 
-def rejected_once(found: Discovery) -> list[RejectedEffect]:
-    """Returns the effects that were refitted and not accepted, at each place as they did best."""
-    each: dict[tuple[str, str], RejectedEffect] = {}
-    for rejected in found.rejected:
-        each.setdefault(rejected.candidate.key, rejected)
-    return [*each.values()]
-
-
 def describe_next(found: Discovery) -> str:
     """Returns the best candidate that was not refitted, where none was refused; "" without one."""
     if found.rejected or found.next_best is None:
@@ -208,7 +193,7 @@ def describe_rejected(rejected: RejectedEffect, found: Discovery) -> str:
     return (
         f"{describe_there(rejected.candidate, plant)}: {describe_sizes(rejected, plant)};"
         f" {_where_told(proof)} the mean square {fall_words(proof.told.fall, 3)}"
-        f" (t = {proof.told.t:z.1f}, chance {chance_words(proof.told)}){why and f'; {why}'}"
+        f" (t = {proof.told.t:z.1f}, chance {chance_words(proof.told.chance)}){why and f'; {why}'}"
     )
 
 
@@ -233,21 +218,17 @@ def doubt_words(doubt: str | None, luck: float) -> str:
     """Returns what a word of doubt says, with the chance of luck; "" without a word."""
     said = DOUBTS.get(doubt or "", "")
     if doubt == "chance" and isfinite(luck):
-        said += f" (chance {_probability(luck)}, all effects that were tried counted)"
+        said += f" (chance {chance_words(luck)}, all effects that were tried counted)"
     return said
 
 
 def describe_chance(proof: Proof) -> str:
     """Returns in words how far unseen samples are from chance, and by which test."""
-    return f"t = {proof.t:z.1f}, chance {chance_words(proof)} by {proof.test}"
+    return f"t = {proof.t:z.1f}, chance {chance_words(proof.chance)} by {proof.test}"
 
 
-def chance_words(proof: Proof) -> str:
+def chance_words(chance: float) -> str:
     """Returns the chance of a gain as large as this by luck."""
-    return _probability(proof.chance)
-
-
-def _probability(chance: float) -> str:
     return f"{chance:.2g}" if chance > FEW else probability(chance)
 
 

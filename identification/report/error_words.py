@@ -16,10 +16,8 @@ from identification.quantities import HELD, alike, held, quantity
 def describe_scale(outputs: Mapping[str, str], scale: np.ndarray | None) -> list[str]:
     """Returns a sentence on what a mean square over unlike outputs is; none for outputs alike.
 
-    Args:
-        outputs: the unit of each output by name.
-        scale: what counts as one of each output, shape (ny,), in its unit: its rms error under the
-            nominal model; None where 1 counts alike in each unit.
+    `outputs` are their units by name; `scale` is what counts as one of each, shape (ny,), in its
+    unit: its rms error under the nominal model; None where 1 counts alike in each unit.
     """
     units = [*dict.fromkeys(outputs.values())]
     if len(units) == 1:
@@ -48,10 +46,8 @@ def error_words(
 ) -> list[str]:
     """Returns errors in words, those of one unit with one prefix, so that they compare at a glance.
 
-    Args:
-        each: errors, by unit and in it; all have the same units.
-        word: that follows each size; "" for none.
-        digits: of each size.
+    Each has the same units, and errors by unit and in it; the word follows each size, if there is
+    one.
     """
     units = [*each[0]]
     columns = [alike([errors[unit] for errors in each], unit, digits) for unit in units]
@@ -64,16 +60,6 @@ def error_words(
         listed([f"{size}{after} ({what})" for size, what in zip(row, kinds, strict=True)])
         for row in rows
     ]
-
-
-def pair_words(
-    pairs: Sequence[tuple[Mapping[str, float], Mapping[str, float]]], digits: int = HELD
-) -> list[tuple[str, str]]:
-    """Returns errors of two models on several records in words, with one prefix for all."""
-    if not pairs:
-        return []
-    each = error_words([errors for pair in pairs for errors in pair], "", digits)
-    return [*zip(each[::2], each[1::2], strict=True)]
 
 
 def change_words(

@@ -107,10 +107,11 @@ def _values(found: Design, at: ParameterSet) -> list[str]:
     better = [k for k in order if before[k] > BETTER * after[k]]
     out = []
     if better:
-        told = [
-            f"{first.names[k]} {' instead of '.join(_std(after[k], before[k], first, at, k))}"
-            for k in better[:SAID]
-        ]
+        told = []
+        for k in better[:SAID]:
+            name = first.names[k]
+            stds = alike([after[k], before[k]], plain_unit(at[name].unit), 2)
+            told.append(f"{name} {' instead of '.join(stds)}")
         more = f" ({len(better) - SAID} more in the report)" if len(better) > SAID else ""
         gain = _mean(before[order] / after[order])
         random = _mean(found.random.std[order] / after[order])
@@ -134,33 +135,21 @@ def _mean(ratio: np.ndarray) -> float:
     return float(np.exp(np.mean(np.log(np.maximum(ratio, 1e-12)))))
 
 
-def _std(after: float, before: float, first: Any, at: ParameterSet, k: int) -> list[str]:
-    return alike([after, before], plain_unit(at[first.names[k]].unit), 2)
-
-
 def _margins(found: Design) -> list[str]:
     """Returns how near the simulated experiment comes to its limits."""
-    nearest = found.best.played.margins[:1]
-    out = [f"In the simulation it keeps all limits; the nearest is {_near(m, found)}."
-           for m in nearest]  # fmt: skip
-    if found.stage.limits.looks:
-        out.append("No bodies touch that do not touch at its beginning.")
-    else:
-        out.append("Contacts were not looked for, because the model has none.")
-    return out
-
-
-def _near(m: Margin, found: Design) -> str:
-    """Returns a margin in words."""
-    limit = m.limit
-    end, bound = (m.least, limit.low) if m.least - limit.low <= m.left else (m.most, limit.high)
-    unit = limit_unit(m, found)
-    whose = "the model's" if limit.source == "model" else "that of the logs"
-    what = "the force of " if limit.what == "force" else f"the {limit.what} of "
-    return (
-        f"{what}{limit.name}, which reaches {quantity(end, unit=unit)} of"
-        f" {quantity(bound, unit=unit)} ({whose})"
-    )
+    out = []
+    for m in found.best.played.margins[:1]:  # the nearest
+        limit, unit = m.limit, limit_unit(m, found)
+        end, bound = (m.least, limit.low) if m.least - limit.low <= m.left else (m.most, limit.high)
+        whose = "the model's" if limit.source == "model" else "that of the logs"
+        what = "the force of " if limit.what == "force" else f"the {limit.what} of "
+        out.append(
+            f"In the simulation it keeps all limits; the nearest is {what}{limit.name}, which"
+            f" reaches {quantity(end, unit=unit)} of {quantity(bound, unit=unit)} ({whose})."
+        )
+    looked = "No bodies touch that do not touch at its beginning."
+    none = "Contacts were not looked for, because the model has none."
+    return [*out, looked if found.stage.limits.looks else none]
 
 
 def limit_unit(m: Margin, found: Design) -> str:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from functools import singledispatch
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,14 +16,10 @@ if TYPE_CHECKING:  # slow to import
     from identification.prediction.records_fit import RecordsFit
 
 
-@singledispatch
 def fit_to_json(fit: Fit | RecordsFit) -> dict[str, Any]:
     """Returns the numbers and the verdict of a fit; what is unknown or infinite is null."""
-    return _of_records(fit)  # type: ignore[arg-type]
-
-
-@fit_to_json.register
-def _of_free_run(fit: Fit) -> dict[str, Any]:
+    if not isinstance(fit, Fit):
+        return _of_records(fit)
     e = fit.estimate
     return {
         "parameters": _parameters(fit, e.predictor.plant, fit.step_shift.tolist()),
@@ -46,6 +41,14 @@ def _of_free_run(fit: Fit) -> dict[str, Any]:
 def _of_records(found: RecordsFit) -> dict[str, Any]:
     before, after = found.unseen_rms
     rise = (after / before) ** 2 - 1 if found.worse else 0.0
+    records = []
+    for e in found.errors:
+        told = plain_fields(e, "role", "before", "after", "before_by_unit", "after_by_unit",
+                            file="name")  # fmt: skip
+        if e.role == "confirm" and found.own.get(e.name):  # those of a fitted one are parameters
+            own = found.own[e.name].items()
+            told["own"] = {n: plain({"value": value, "std": std}) for n, (value, std) in own}
+        records.append(told)
     return {
         "parameters": _parameters(found, found.model.plant, found.model.step_shift.values()),
         **plain_fields(
@@ -54,20 +57,9 @@ def _of_records(found: RecordsFit) -> dict[str, Any]:
         ),
         "validation_rms": plain(after),
         "worse": None if found.worse is None else plain({"rise": rise, "t": found.worse.t}),
-        "records": [
-            {**plain_fields(e, "role", "before", "after", "before_by_unit", "after_by_unit",
-                            file="name"), **_own(found, e.name, e.role)}
-            for e in found.errors
-        ],
+        "records": records,
         "verdict": fit_verdict(found),
     }  # fmt: skip
-
-
-def _own(found: RecordsFit, record: str, role: str) -> dict[str, Any]:
-    """Returns the own values of a record that confirms; those of a fitted one are parameters."""
-    own = found.own.get(record, {}) if role == "confirm" else {}
-    values = {name: plain({"value": value, "std": std}) for name, (value, std) in own.items()}
-    return {"own": values} if values else {}
 
 
 def _parameters(fit: Fit | RecordsFit, plant: Plant, shifts: Iterable[float]) -> dict[str, Any]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from functools import singledispatch
 from math import isnan, nan
 from typing import TYPE_CHECKING
 
@@ -70,14 +69,10 @@ def answer_sentence(fit: Fit | RecordsFit) -> str:
     return f"The model with the fitted values explains the log: {of_what}."
 
 
-@singledispatch
 def fit_verdict(fit: Fit | RecordsFit) -> list[str]:
     """Returns sentences: did the search converge, what is known, is it enough, is it confirmed."""
-    return _of_records(fit)  # type: ignore[arg-type]
-
-
-@fit_verdict.register
-def _of_free_run(fit: Fit) -> list[str]:
+    if not isinstance(fit, Fit):
+        return _of_records(fit)
     if fit.stopped:  # a search that was stopped says nothing of the model
         return search_sentences(fit)
     return [
@@ -88,13 +83,16 @@ def _of_free_run(fit: Fit) -> list[str]:
 
 def _of_records(fit: RecordsFit) -> list[str]:
     model, floor, rms = fit.model, fit.noise_by_unit, fit.rms_by_unit
+    # positive parameters of which the windows tell too little
+    rows = zip(fit.values.items(), fit.std, model.fit.problem.prior.space.logarithmic, strict=True)
+    weak = [n for (n, v), std, positive in rows if positive and std > WEAK * abs(v)]
     said = [
         *_worse(fit),  # first, because nothing else matters then
         CONVERGED[fit.converged],
         *filter(None, [std_sentence(model)]),
         *bound_sentences(model.plant.parameters, model.at_bound),
         *_blind(fit),
-        *_weak(fit),
+        *([f"{too_weak(weak, 'windows')} {cure(weak)}"] if weak else []),
         *_unknown_std(fit),
         _left_by_windows(_count_windows(fit), fit.horizon, rms, floor),
     ]
@@ -243,14 +241,6 @@ def _blind(fit: RecordsFit) -> list[str]:
                 " prior knowledge decides. If it is not sure, record a motion that shows more."
             )
     return out
-
-
-def _weak(fit: RecordsFit) -> list[str]:
-    """Returns a sentence on positive parameters of which the windows tell too little."""
-    logarithmic = fit.model.fit.problem.prior.space.logarithmic
-    rows = zip(fit.values.items(), fit.std, logarithmic, strict=True)
-    weak = [n for (n, v), std, positive in rows if positive and std > WEAK * abs(v)]
-    return [f"{too_weak(weak, 'windows')} {cure(weak)}"] if weak else []
 
 
 def _unknown_std(fit: RecordsFit) -> list[str]:

@@ -9,11 +9,11 @@ the worst known of many.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from math import isfinite
 from typing import TYPE_CHECKING
 
-from identification.discovery.fitted import Fitted, StepShift
+from identification.discovery.fitted import Fitted
 from identification.model.parameter import Parameter
 from identification.model.protocol import FINER
 from identification.quantities import alike, held, quantity
@@ -82,9 +82,8 @@ def shown_values(
 ) -> tuple[list[Sequence[str]], str]:
     """Returns the rows but those of well known single parts, and a sentence on those left out.
 
-    Args:
-        rows: of a table of parameters; each begins with what the parameter is called.
-        shares: see `unknown_shares`, by what the table calls them.
+    The rows are of a table of parameters, and begin with what each is called; so are `shares`
+    called, which are those of `unknown_shares`.
     """
     if len(shares) <= MANY:
         return list(rows), ""
@@ -97,16 +96,12 @@ def shown_values(
 
 
 def step_sentences(
-    model: Fitted,
-    words: Mapping[str, str] | None = None,
-    steps: tuple[float, float] | None = None,
+    model: Fitted, words: Mapping[str, str] | None = None, steps: tuple[float, float] | None = None
 ) -> list[str]:
     """Returns a paragraph on the steps; none where they are the model's and finer change little.
 
-    Args:
-        model: fitted.
-        words: what to call the values by name; their names when None.
-        steps: of the simulations and of the user's model [s]; those of `model` when None.
+    `words` call the values by name, else by their names; `steps` are those of the simulations and
+    of the user's model [s], else those of the fitted model.
     """
     from identification.windows.coarse import OUTPUT_ERROR, steps_of  # slow to import
 
@@ -170,23 +165,19 @@ def _changed(model: Fitted, words: Mapping[str, str]) -> list[str]:
     if finer is None:
         return []
     if far := _far(model):
-        value = _at_finer_steps(model, finer, far)
-        told = first_few([f"{words.get(n, n)} to {value[n]}" for n in far])
-        said.append(f"move {told}, which the std include")
+        parameters = {p.name: p for p in model.plant.parameters}
+        moved = dict(zip(model.told_std, finer.values.tolist(), strict=True))
+        told = []
+        for n in far:  # the values of a fit with finer steps, to first order
+            value, unit = model.told_values[n] + moved[n], _of(n, parameters).unit
+            told.append(f"{words.get(n, n)} to {alike([value], unit, TOLD_DIGITS)[0]}")
+        said.append(f"move {first_few(told)}, which the std include")
     if finer.is_lower():
         said.append(
             f"lower the error of the fitted windows to {held(finer.error)} of what it is: that part"
             " comes from the steps, and not from something that is missing"
         )
     return said
-
-
-def _at_finer_steps(model: Fitted, shift: StepShift, names: Iterable[str]) -> dict[str, str]:
-    """Returns the values that a fit with finer steps would have, to first order, in words."""
-    parameters = {p.name: p for p in model.plant.parameters}
-    moved, values = dict(zip(model.told_std, shift.values.tolist(), strict=True)), model.told_values
-    units = {n: _of(n, parameters).unit for n in names}
-    return {n: alike([values[n] + moved[n]], u, TOLD_DIGITS)[0] for n, u in units.items()}
 
 
 def _far(model: Fitted) -> list[str]:

@@ -48,11 +48,8 @@ def error_tile(
 ) -> Tile:
     """Returns the tile on the errors of two models, or of one, beside the noise.
 
-    Args:
-        before: rms error by unit, of the model before.
-        after: of the model after; None where there is one model.
-        noise: rms of the noise by unit; zeros where it is not known.
-        what: the error is of.
+    All are rms by unit: of the model before, of the one after (None where there is one model), and
+    of the noise (zeros where it is not known).
     """
     told = [before, *([] if after is None else [after]), noise]
     sizes = error_words(told, "")

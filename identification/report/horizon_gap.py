@@ -1,5 +1,5 @@
 """Where a model fails over a horizon: in which outputs and windows, over which lengths, and the
-forces that it would need.
+forces that it would need; also in lines and sentences.
 
     r_y = √(mean (y - ŷ)²)           of an output over windows of the horizon, in its unit
     e_w = √(mean_g Σ_g r_wy²/Σ_g ν_y²)
@@ -23,7 +23,10 @@ from identification.discovery.result import Discovery
 from identification.effects.curves import NODES
 from identification.prediction.model import WindowModel
 from identification.prediction.scores import WindowScore
+from identification.quantities import held, quantity
+from identification.report.error_words import listed
 from identification.report.named_words import Nodes, curve_nodes
+from identification.shares import percent
 from identification.windows.unseen import Unseen
 
 WORST = 4  # windows that are drawn
@@ -161,11 +164,8 @@ def _ratios(
 ) -> np.ndarray:
     """Returns e_w of windows, shape (W,); of a sensor without noise, its rms error in s.
 
-    Args:
-        squares: mean squares of each output in units of s², shape (W, ny).
-        units: of the outputs.
-        scale: s of each output, shape (ny,), in its unit.
-        noise: ν²/s² of each output, shape (ny,).
+    The outputs have units, scales s (ny,) in these, and noise ν²/s² (ny,); `squares` are mean
+    squares in units of s², shape (W, ny).
     """
     groups = [np.array([u == unit for u in units]) for unit in dict.fromkeys(units)]
     each = []
@@ -180,10 +180,7 @@ def _lengths(
 ) -> tuple[LengthError, ...]:
     """Returns the errors over each length that both models were judged by.
 
-    Args:
-        horizon: [s].
-        told: errors of the model before and after.
-        of_all: e of both over the horizon.
+    The horizon is in [s]; `of_all` is e over it, of the model before and after.
     """
     before, after = told
 
@@ -224,11 +221,8 @@ def _worst(
 ) -> tuple[FailedWindow, ...]:
     """Returns the fitted windows in which a model fails most, none of them near another.
 
-    Args:
-        final: the model.
-        ratios: how many times the noise each window errs, one array a record.
-        scale: s of each output, shape (ny,), in its unit.
-        outputs: the unit of each output by name.
+    By record, `ratios` are how many times the noise each window errs; s (ny,) is each output's
+    scale in its unit, which `outputs` names.
     """
     every = [(float(e), k, w) for k, each in enumerate(ratios) for w, e in enumerate(each)]
     errors, names = final.fit.errors, [*outputs]
@@ -247,3 +241,57 @@ def _worst(
             log.name, names[y], outputs[names[y]], time, measured, measured - error[:, y], ratio,
         ))  # fmt: skip
     return tuple(out)
+
+
+def worst_lines(gap: HorizonGap) -> list[str]:
+    """Returns which window errs most, in which record; none where no window is known."""
+    most = max(gap.records, key=lambda r: float(r.after.max(initial=0.0)))
+    if not len(most.after):
+        return []
+    at, every = int(np.argmax(most.after)), np.concatenate([r.after for r in gap.records])
+    begin, ratio = float(most.time[at]), float(most.after[at])
+    return [
+        f"the worst window begins at {quantity(begin, unit='s')} of {most.name}, with"
+        f" {held(ratio)} times the noise; the median of all windows is"
+        f" {held(float(np.median(every)))} times the noise"
+    ]
+
+
+def force_line(needed: NeededForce) -> str:
+    """Returns what a force at a joint would explain, and where it would be largest."""
+    k, nodes = needed.largest, needed.nodes
+    size = quantity(float(needed.force[k]), float(needed.std[k]), needed.unit)
+    at = quantity(float(nodes.at[k]), unit=nodes.unit)
+    return (
+        f"a force on {needed.nodes.joint} that depends on the {needed.nodes.reads} would remove"
+        f" {percent(needed.fall)} of the fitted error; it would be largest at {at}: {size}"
+    )
+
+
+def doubtful_sentences(needed: NeededForce, tried: int) -> str:
+    """Returns which of the forces that were tried would explain most, where none is missing."""
+    which = f"one on {needed.nodes.joint} that depends on the {needed.nodes.reads}"
+    chance = percent(needed.chance, 2)
+    doubt = f"This may be luck (chance {chance}, {tried} such forces were tried)."
+    if not needed.known.any():
+        doubt = "The motion tells its size nowhere."
+    return (
+        f"The force that would explain most is {which}: {percent(needed.fall)} of the fitted"
+        f" error. {doubt}"
+    )
+
+
+def needed_sentences(found: Discovery) -> list[str]:
+    """Returns a sentence on the forces that a fitted model would need; none where none is known.
+
+    Along a free run other sentences tell of forces.
+    """
+    gap = find_gap(found)
+    if gap is None or not gap.forces:
+        return []
+    each = listed([f"on {f.nodes.joint} that depends on the {f.nodes.reads}" for f in gap.forces])
+    first = gap.forces[0]
+    return [
+        f"It looks like a force {each}: the force on {first.nodes.joint} would remove"
+        f" {percent(first.fall)} of the fitted error."
+    ]

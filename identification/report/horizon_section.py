@@ -14,19 +14,17 @@ from matplotlib.ticker import LogLocator, NullFormatter
 from identification.discovery.result import Discovery
 from identification.quantities import alike, held
 from identification.report.effect_sections import listed_below
+from identification.report.error_words import listed
 from identification.report.finding_words import sentence
 from identification.report.horizon_gap import (
+    SURE,
     FailedWindow,
     NeededForce,
     OutputError,
     RecordWindows,
-    find_gap,
-)
-from identification.report.horizon_words import (
     doubtful_sentences,
+    find_gap,
     force_line,
-    length_lines,
-    output_line,
     worst_lines,
 )
 from identification.report.page import Section, Table
@@ -67,27 +65,31 @@ def horizon_sections(found: Discovery) -> list[Section]:
     if gap is None:
         return []
     model = "the model with what is named" if found.named else "the fitted model"
-    lines = [output_line(o) for o in gap.outputs]
+    lines = []
+    for o in gap.outputs:
+        size, noise = alike([o.after, o.noise], o.unit, 3)
+        said = f"the error of {o.name} on unseen data is {size} rms"
+        if o.noise > 0:
+            said += f", {held(o.after / o.noise)} times its sensor's noise of {noise}"
+        lines.append(said)
     is_far = max((r.after.max() for r in gap.records), default=0.0) > NEAR_NOISE
-    rest = [*(worst_lines(gap) if is_far else ()), *length_lines(gap.lengths)]
+    rest = worst_lines(gap) if is_far else []
+    if len(gap.lengths) > 1:
+        over = listed([f"{n.length:g} s" for n in gap.lengths])
+        ratios = listed([held(n.after) for n in gap.lengths])
+        rest.append(f"over {over} the error on unseen data is {ratios} times the noise")
     forces = gap.forces if is_far else ()
     text = [f"{' '.join(map(sentence, rest))} {GROWTH}"]
     plain = [listed_below(f"where {model} fails", [*lines, *rest, *map(force_line, forces)])]
     if is_far and not forces:
         most = gap.doubtful
-        said = NO_FORCE if most is None else doubtful_sentences(most, gap.curves)
-        text.append(said)
-        plain.append(said)
+        doubt = NO_FORCE if most is None else doubtful_sentences(most, gap.curves)
+        text.append(doubt)
+        plain.append(doubt)
     is_drawn = is_far and bool(gap.windows)
-    sections = [
-        Section(
-            TITLE,
-            "\n\n".join(text),
-            figures=cache(lambda: ((WORST, worst_windows(gap.windows)),)) if is_drawn else (),
-            table=_table(gap.outputs, bool(found.named)),
-            plain="\n".join(plain),
-        )
-    ]
+    figures = cache(lambda: ((WORST, worst_windows(gap.windows)),)) if is_drawn else ()
+    table = _table(gap.outputs, bool(found.named))
+    sections = [Section(TITLE, "\n\n".join(text), figures, table, plain="\n".join(plain))]
     if forces:
         is_answer = found.verdict == "unknown effect"
         needed = [f"{' '.join(sentence(force_line(f)) for f in forces)} {FORCES}"]
@@ -118,7 +120,6 @@ def _table(outputs: Sequence[OutputError], is_named: bool) -> Table:
     return Table(head, tuple(rows))
 
 
-SURE = 1.96  # std on each side of 95 %
 WIDTH, PANEL = 7.0, 1.7  # [in] of a figure, and the height of a panel
 FAR = 10.0  # errors that differ by more are drawn on a logarithmic axis
 
@@ -127,9 +128,7 @@ FAR = 10.0  # errors that differ by more are drawn on a logarithmic axis
 def windows_over_time(records: Sequence[RecordWindows], is_named: bool) -> Figure:
     """Returns a figure of the error of each window over time, one panel a record.
 
-    Args:
-        records: in the order of the panels.
-        is_named: whether the final model has effects, so that both models are drawn.
+    Both models are drawn where the final one has named effects.
     """
     columns = 2 if len(records) > 2 else 1
     rows = -(-len(records) // columns)
@@ -184,7 +183,15 @@ def needed_forces(forces: Sequence[NeededForce]) -> Figure:
     """Returns a figure of the force that each joint would need, over what it follows."""
     figure, axes = _panels(len(forces))
     for ax, needed in zip(axes, forces, strict=True):
-        _draw(ax, needed)
+        at, order = needed.nodes.at, np.argsort(needed.nodes.at)
+        told = order[needed.known[order]]
+        ax.plot(at[told], needed.force[told], color=SERIES[0], lw=1.0)
+        ax.errorbar(at[told], needed.force[told], SURE * needed.std[told], color=INK, fmt="o",
+                    ms=3.5, lw=1, capsize=2)  # fmt: skip
+        ax.axhline(0, color=GREY, lw=0.6)
+        ax.set_title(literal(f"joint {needed.nodes.joint}"), loc="left", color=INK)
+        ax.set_xlabel(literal(f"{needed.nodes.reads} [{needed.nodes.unit}]"))
+        ax.set_ylabel(literal(f"force [{needed.unit}]"))
     return figure
 
 
@@ -196,15 +203,3 @@ def _panels(count: int) -> tuple[Figure, list[Axes]]:
     for ax in axes[count:]:
         ax.set_axis_off()
     return figure, axes[:count]
-
-
-def _draw(ax: Axes, needed: NeededForce) -> None:
-    at, order = needed.nodes.at, np.argsort(needed.nodes.at)
-    told = order[needed.known[order]]
-    ax.plot(at[told], needed.force[told], color=SERIES[0], lw=1.0)
-    ax.errorbar(at[told], needed.force[told], SURE * needed.std[told], color=INK, fmt="o", ms=3.5,
-                lw=1, capsize=2)  # fmt: skip
-    ax.axhline(0, color=GREY, lw=0.6)
-    ax.set_title(literal(f"joint {needed.nodes.joint}"), loc="left", color=INK)
-    ax.set_xlabel(literal(f"{needed.nodes.reads} [{needed.nodes.unit}]"))
-    ax.set_ylabel(literal(f"force [{needed.unit}]"))

@@ -6,9 +6,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from identification.discovery.effect_results import NamedEffect
 from identification.discovery.recovered_force import LawLine, RecoveredForce
 from identification.discovery.result import Discovery
+from identification.effects.effect import Candidate
 from identification.errors import DivergenceError
 from identification.quantities import quantity
 from identification.report.effect_words import describe_effect
@@ -37,9 +37,14 @@ NONE = (
 
 def law_sections(found: Discovery) -> list[Section]:
     """Returns the section on the recovered forces; none where nothing is named."""
-    each = [(n.candidate, _recovered(found, n)) for n in found.named]
-    if not each:
+    if not found.named:
         return []
+    each: list[tuple[Candidate, RecoveredForce | None]] = []
+    for n in found.named:
+        try:
+            each.append((n.candidate, found.recover(n.candidate, n.rivals)))
+        except DivergenceError:  # of the changed law, or of a rival's
+            each.append((n.candidate, None))
     figures: list[tuple[str, Figure]] = []
     drawn = any(of is not None for _, of in each)
     said = [HOW + RECOVERED[found.judged_by]] if drawn else []
@@ -56,14 +61,6 @@ def law_sections(found: Discovery) -> list[Section]:
             f" {most} at most, which need not be the value of one of its parameters."
         )
     return [Section(LAWS, "\n\n".join(said), figures=tuple(figures), first=1)]
-
-
-def _recovered(found: Discovery, named: NamedEffect) -> RecoveredForce | None:
-    """Returns a recovered force; None where the changed law, or a rival's, diverges."""
-    try:
-        return found.recover(named.candidate, named.rivals)
-    except DivergenceError:
-        return None
 
 
 SURE = 1.96  # std on each side of 95 %
@@ -84,6 +81,11 @@ def law_figure(of: RecoveredForce) -> Figure:
     A law that changes in a small part of the range has a second panel of that part.
     """
     x_unit, unit = of.units
+    if "reading" in of.candidate.effect.hooks:
+        what = "error of the sensor"
+    else:
+        what = f"missing {'torque' if unit == 'N m' else 'force'}"
+        what += ", against the motion" if of.resists else ""
     top = max(np.abs(of.law.force).max(), np.abs(of.points.force).max(initial=0.0))
     factor, said = (1e3, f"m{unit}") if top < SMALL and unit else (1.0, unit)
     near, follows = _bends(of), FOLLOWS.get(of.along)
@@ -93,7 +95,7 @@ def law_figure(of: RecoveredForce) -> Figure:
     for ax in panels:
         _draw(ax, of, factor)
         ax.set_xlabel(literal(follows + (f" [{x_unit}]" if x_unit else "")))
-        ax.set_ylabel(literal(_force(of) + (f" [{said}]" if said else "")))
+        ax.set_ylabel(literal(what + (f" [{said}]" if said else "")))
     if near:
         panels[0].set_title("all of it", loc="left", color=INK)
         panels[1].set_title("where it bends", loc="left", color=INK)
@@ -140,10 +142,3 @@ def _drawn(line: LawLine, of: RecoveredForce) -> tuple[np.ndarray, np.ndarray, n
     if of.along != "rate" or not 0 < cut < len(line.x):
         return parts
     return tuple(np.insert(part, cut, np.nan) for part in parts)  # type: ignore[return-value]
-
-
-def _force(of: RecoveredForce) -> str:
-    if "reading" in of.candidate.effect.hooks:
-        return "error of the sensor"
-    kind = "torque" if of.units[1] == "N m" else "force"
-    return f"missing {kind}, against the motion" if of.resists else f"missing {kind}"

@@ -21,12 +21,7 @@ MATRICES = ("A", "B", "C", "D")
 def system_to_json(system: LinearSystem, rate: float | None = None) -> dict[str, Any]:
     """Returns a continuous system as plain values: minimal realisation, modes, discrete form.
 
-    Args:
-        system: continuous.
-        rate: of the samples of the discrete form [Hz]; none when None.
-
-    Raises:
-        InputError: the rate is not above zero.
+    The discrete form has the rate of the samples [Hz]; there is none without a rate.
     """
     small = minimal(system)
     discrete = None if rate is None else system.discrete(rate)
@@ -38,18 +33,15 @@ def system_to_json(system: LinearSystem, rate: float | None = None) -> dict[str,
             "order": len(small.system.A),
             **plain_fields(small, "unreached", "unfelt", "tolerance"),
         },
-        "modes": [mode_to_json(mode, system.states) for mode in modes(system)],
-    }
-
-
-def mode_to_json(mode: Mode, states: tuple[str, ...]) -> dict[str, Any]:
-    """Returns a mode as plain values: its eigenvalue, and the states that take part most."""
-    return {
-        "frequency": mode.frequency,
-        "damping": mode.damping,
-        "eigenvalue": [mode.eigenvalue.real, mode.eigenvalue.imag],
-        "leading": leading(mode, states),
-    }
+        "modes": [
+            {
+                "frequency": m.frequency, "damping": m.damping,
+                "eigenvalue": [m.eigenvalue.real, m.eigenvalue.imag],
+                "leading": leading(m, system.states),
+            }
+            for m in modes(system)
+        ],
+    }  # fmt: skip
 
 
 def leading(mode: Mode, states: tuple[str, ...]) -> list[str]:
@@ -89,10 +81,8 @@ def response_figure(
 ) -> Figure:
     """Returns a figure of the responses of outputs to inputs of the same number, over frequency.
 
-    Args:
-        system: continuous.
-        discrete: the same for inputs that are held, shown up to half its rate.
-        units: of inputs and outputs by name, as far as they are known.
+    A discrete system, for inputs that are held, is shown up to half its rate. Units are of inputs
+    and outputs by name, as far as they are known.
     """
     rates = [m.frequency for m in modes(system) if m.frequency > 0] or [1.0]
     top = max(rates) * BEYOND
@@ -110,21 +100,16 @@ def response_figure(
             magnitude.loglog(at, np.abs(G[:, k, k]), style, color=color, lw=1, label=label)
             turned = np.degrees(np.unwrap(np.angle(G[:, k, k])))
             phase.semilogx(at, turned, style, color=color, lw=1)
-    magnitude.set_ylabel(literal(f"magnitude [{_unit_of(pairs, units or {})}]"))
+    known = units or {}
+    told = {(known.get(output, ""), known.get(driven, "")) for output, driven, _ in pairs}
+    over, under = told.pop() if len(told) == 1 else ("", "")
+    unit = per(over, under) if over and under else "unit of the output / unit of the input"
+    magnitude.set_ylabel(literal(f"magnitude [{unit}]"))
     phase.set(xlabel="frequency [Hz]", ylabel="phase [°]")
     title = "dashed: inputs held between samples" if discrete is not None else ""
     magnitude.set_title(title, loc="left", color=INK)
     figure.legend(loc="outside lower center", ncols=4, fontsize=7)
     return figure
-
-
-def _unit_of(pairs: Sequence[tuple[str, str, str]], units: Mapping[str, str]) -> str:
-    """Returns the unit that all pairs of output and input share, else what it is made of."""
-    told = {(units.get(output, ""), units.get(driven, "")) for output, driven, _ in pairs}
-    over, under = told.pop() if len(told) == 1 else ("", "")
-    if not (over and under):
-        return "unit of the output / unit of the input"
-    return per(over, under)
 
 
 HEAD = ("mode", "frequency [Hz]", "damping", "states that take part most")
@@ -159,11 +144,8 @@ def linear_sections(
 ) -> list[Section]:
     """Returns the sections of a report on linear systems at some operating points.
 
-    Args:
-        systems: continuous.
-        labels: what each operating point is called.
-        rate: of the samples of the discrete form of the first one [Hz]; none when None.
-        units: of inputs and outputs by name, as far as they are known.
+    Labels call the points; a discrete form of the first one has the rate [Hz], if there is one.
+    Units are of inputs and outputs by name, as far as they are known.
     """
     first = systems[0]
     held = None if rate is None else first.discrete(rate)

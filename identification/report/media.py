@@ -86,7 +86,13 @@ def svg(figure: Figure, prefix: str = "", title: str = "") -> str:
         rf"#({'|'.join(DARK)})\b", lambda m: f"var(--c-{m[1].lower()}, #{m[1].lower()})", text,
         flags=re.I,
     )  # fmt: skip
-    text = _with_prefix(_rounded(text), prefix)
+    text = re.sub(  # numbers of paths to a hundredth of a point
+        r'\bd="([^"]*)"',
+        lambda m: re.sub(r"-?\d+\.\d{3,}", lambda n: f"{float(n[0]):.2f}", m[0]),
+        text,
+    )
+    for begin in (r'\bid="', 'href="#', r"url\(#"):
+        text = re.sub(begin, lambda m: m[0] + prefix, text)
     axes = [_tell(figure, ax, prefix, s, flat) for ax, s in zip(flat, series, strict=True)]
     name = f"{prefix}title"
     head = f' role="img" aria-labelledby="{name}"'
@@ -148,18 +154,3 @@ def _label(every: Sequence[Axes], shared: Any, ax: Axes, which: str) -> str:
     of = [ax, *(other for other in every if shared.joined(ax, other))]
     said = next((text for one in of if (text := getattr(one, f"get_{which}")())), which[0])
     return str(said).replace("\n", " ").replace(r"\$", "$")
-
-
-def _rounded(text: str) -> str:
-    """Returns the text with the numbers of paths rounded to a hundredth of a point."""
-    return re.sub(
-        r'\bd="([^"]*)"',
-        lambda m: re.sub(r"-?\d+\.\d{3,}", lambda n: f"{float(n[0]):.2f}", m[0]),
-        text,
-    )
-
-
-def _with_prefix(text: str, prefix: str) -> str:
-    text = re.sub(r'\bid="', f'id="{prefix}', text)
-    text = re.sub(r'href="#', f'href="#{prefix}', text)
-    return re.sub(r"url\(#", f"url(#{prefix}", text)

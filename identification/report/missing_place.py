@@ -70,14 +70,10 @@ class MissingPlace:
         own = next((OWN[w] for w in OWN if self.reads == w.format(self.joint)), None)
         if own is None:  # of a neighbour
             return f"where the {self.reads} is {ends}"
-        return f"{own} {ends}{self._against}{f', {self.moves}' if self.moves else ''}"
-
-    @property
-    def _against(self) -> str:
-        """Whether a force that follows the rate drives or brakes, in words."""
-        if not self.reads.startswith("rate") or not self.low * self.high > 0:
-            return ""
-        return ", with the motion" if self.low * self.force > 0 else ", against the motion"
+        way = ""
+        if self.reads.startswith("rate") and self.low * self.high > 0:  # it drives or brakes
+            way = f", {'with' if self.low * self.force > 0 else 'against'} the motion"
+        return f"{own} {ends}{way}{f', {self.moves}' if self.moves else ''}"
 
     def __str__(self) -> str:
         """Returns the answer as a clause."""

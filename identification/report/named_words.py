@@ -40,11 +40,7 @@ class Nodes:
 
 
 def curve_nodes(candidate: Candidate, plant: Plant) -> tuple[Nodes, ...]:
-    """Returns the nodes of a curve, once for each joint on which it acts.
-
-    Raises:
-        TypeError: the robot is none with effects on its joints, which alone have curves.
-    """
+    """Returns the nodes of a curve, once for each joint on which it acts."""
     if not isinstance(plant, JointPlant):
         raise TypeError(f"a {type(plant).__name__} has no curves on joints")
     word = next(w for w in READS if candidate.effect.name.endswith(f"_{w}"))
@@ -91,22 +87,12 @@ def node_lines(named: NamedEffect, plant: Plant) -> list[str]:
         most = max((abs(v) for v, std, _ in each if 0 < std < np.inf), default=0.0)
         told = sorted(zip(n.at, each, strict=True), key=lambda pair: pair[0])
         lines.append(f"force on {n.joint} at these values of the {n.reads}:")
-        lines += [f"  {quantity(float(at), unit=n.unit)}: {_force_there(*known, most)}"
-                  for at, known in told]  # fmt: skip
+        for at, (value, std, unit) in told:  # one that no data hold has no std, or ends on a bound
+            force = "not known, too few data"
+            if 0 < std < np.inf:
+                force = quantity(value, std, unit, like=most)
+            lines.append(f"  {quantity(float(at), unit=n.unit)}: {force}")
     return lines
-
-
-def _force_there(value: float, std: float, unit: str, most: float) -> str:
-    """Returns the force at a node in words; one that no data hold has no std, or ends on a bound.
-
-    Args:
-        value: of the force.
-        std: its standard deviation, in the same unit.
-        unit: of both.
-        most: the largest force of the curve, whose digits decide how this one is rounded.
-    """
-    is_known = 0 < std < np.inf
-    return quantity(value, std, unit, like=most) if is_known else "not known, too few data"
 
 
 RETUNED = 0.05  # the explanation without an effect gets a sentence above this confidence
@@ -116,9 +102,12 @@ NEAR = 0.1  # of the confidence of the first one: a less likely member of a set 
 
 def named_sentences(found: Discovery, named: NamedEffect) -> str:
     """Returns what a verdict says of a named effect; `basis_sentence` has the rest."""
+    outside = ""  # a law that no catalogue lists may explain the same
+    if named.outside is not None and named.outside.confidence >= RETUNED:
+        outside = f" Or it is {describe_outside(named.outside)}."
     return (
-        f"{_named(found, named)}{nearest_law(found, named)}{_retuned(found, named)}"
-        f"{_outside(named)}{_agreement(found, named)}"
+        f"{_named(found, named)}{nearest_law(found, named)}{_retuned(found, named)}{outside}"
+        f"{_agreement(found, named)}"
     )
 
 
@@ -128,7 +117,12 @@ def _named(found: Discovery, named: NamedEffect) -> str:
     first = "Missing from the model" if named is found.named[0] else "Missing too"
     if named.candidate.effect.is_curve:
         first += " (in no catalogue, drawn from the data)"
-    mine = f"{describe_there(named.candidate, plant)}{_twin(named)}"
+    mine = describe_there(named.candidate, plant)
+    if named.same_as is not None:  # another name of the same force
+        mine += (
+            f' (or "{phrase(named.same_as)}": below the Coulomb friction it is the same force, and'
+            " no record tells the two apart)"
+        )
     is_set = named.one_of and bool(named.rivals)
     rivals = likely_rivals(named)
     others = [
@@ -188,16 +182,6 @@ def nearest_law(found: Discovery, named: NamedEffect) -> str:
     )
 
 
-def _twin(named: NamedEffect) -> str:
-    """Returns the other name of the same force in words; "" where there is none."""
-    if named.same_as is None:
-        return ""
-    return (
-        f' (or "{phrase(named.same_as)}": below the Coulomb friction it is the same force, and no'
-        " record tells the two apart)"
-    )
-
-
 def _retuned(found: Discovery, named: NamedEffect) -> str:
     """Returns a sentence where a parameter far from what was known would explain the same."""
     other = named.retuned
@@ -209,13 +193,6 @@ def _retuned(found: Discovery, named: NamedEffect) -> str:
         f" Or no effect is missing ({percent(other.confidence)}): the model explains the same if"
         f" {what} is {far} what was given as known. Measure it, or record another motion."
     )
-
-
-def _outside(named: NamedEffect) -> str:
-    """Returns a sentence where a law that no catalogue lists may explain the same."""
-    if named.outside is None or named.outside.confidence < RETUNED:
-        return ""
-    return f" Or it is {describe_outside(named.outside)}."
 
 
 def _agreement(found: Discovery, named: NamedEffect) -> str:

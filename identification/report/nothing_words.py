@@ -8,7 +8,7 @@ from identification.discovery.result import Discovery
 from identification.quantities import held, quantity
 from identification.report.effect_words import describe_effect
 from identification.report.error_words import error_words
-from identification.report.shown_words import SHOWN, smallest
+from identification.report.shown_words import SHOWN
 from identification.report.value_words import phrase
 from identification.shares import HELD, decimal, ratio_of, times
 
@@ -39,11 +39,15 @@ def nothing_sentence(found: Discovery) -> str:
     """Returns the paragraph: nothing is missing, or no effect is named as no candidate helps."""
     left, noise, alone = errors_left(found)
     if _is_above_sensors(found):
-        ratio = found.before.rms / found.noise_rms
+        ratio, no_input = found.before.rms / found.noise_rms, not isfinite(found.input_error)
+        either = "No input that moves is a force, which might err. Something is"
+        if not no_input:
+            size = ratio_of(found.input_error, "their rms")
+            either = f"Either the inputs err by {size}, or something is"
         return (
             "No effect is named: no candidate lowers the error of prediction on unseen data beyond"
             f" chance. This error is {left}{found.over}, {held(ratio)} times the sensors' noise of"
-            f" {alone}. {_either(found)}"
+            f" {alone}. {either} missing that no candidate explains."
         )
     unseen = [d for d in found.detectable if not d.is_plausible]
     seen = [d for d in found.detectable if d.is_plausible]
@@ -65,25 +69,15 @@ def nothing_sentence(found: Discovery) -> str:
         )
         said += _rest(found, alone)
     if seen:
-        listed = "; ".join(f"{describe_effect(d.candidate)}, {smallest(d)}" for d in seen[:SHOWN])
+        listed = "; ".join(
+            f"{describe_effect(d.candidate)}, {d.size} {quantity(d.smallest, unit=d.unit)}"
+            for d in seen[:SHOWN]
+        )
         said += f" In 9 cases of 10 this log would have shown effects as small as: {listed}."
     if unseen:
         names = dict.fromkeys(phrase(d.candidate.effect) for d in unseen)
         said += f" It would not show these effects at any plausible size: {'; '.join(names)}."
     return said
-
-
-def _either(found: Discovery) -> str:
-    """Says what else than an effect may make the error: the inputs, where any input moves."""
-    if not isfinite(found.input_error):
-        return (
-            "No input that moves is a force, which might err. Something is missing that no"
-            " candidate explains."
-        )
-    return (
-        f"Either the inputs err by {ratio_of(found.input_error, 'their rms')}, or something is"
-        " missing that no candidate explains."
-    )
 
 
 def _rest(found: Discovery, alone: str) -> str:

@@ -29,7 +29,9 @@ def _sentence(o: TorqueOpinion, named: NamedEffect | None) -> str:
     which = f"{said}, {o.where}"
     if o.is_named and o.is_proven:
         what = "the same"
-        if named and _is_another_size(o, named):
+        known = named.parameters if named else {}
+        pairs = [(o.sizes[n], known[n]) for n in o.sizes if n in known]
+        if any(abs(a - b) > SURE * hypot(s, t) for (a, s, _), (b, t, _) in pairs):
             kind = "a friction" if "friction" in o.name else "such an effect"
             what = f"{kind} there too, with another size"
         return (
@@ -45,9 +47,3 @@ def _sentence(o: TorqueOpinion, named: NamedEffect | None) -> str:
         "The torques of the measured motion, computed without a simulation, name another effect"
         f" first: {which}, {sizes}; {by}. The command `identification torques` tells more."
     )
-
-
-def _is_another_size(o: TorqueOpinion, named: NamedEffect) -> bool:
-    """Tells whether torques have another size than the search, by more than both are uncertain."""
-    both = [(each, named.parameters[n]) for n, each in o.sizes.items() if n in named.parameters]
-    return any(abs(a - b) > SURE * hypot(s, t) for (a, s, _), (b, t, _) in both)

@@ -17,11 +17,7 @@ def own_stub(
 ) -> str:
     """Returns a Python file with an effect at the place, and a search that tries it.
 
-    Args:
-        place: where a force is missing.
-        robot: path of the robot's TOML from the folder of the file, as are those of all logs.
-        logs: paths of those that are fitted.
-        confirm: paths of those that confirm.
+    The robot's TOML, logs that are fitted, and logs that confirm are paths from the file's folder.
     """
     x = next(field for word, field in FIELDS.items() if place.reads.startswith(word))
     middle, half = (place.low + place.high) / 2, (place.high - place.low) / 2

@@ -75,9 +75,7 @@ class Table:
     def headings(self) -> list[tuple[str, bool]]:
         """Each heading, and whether numbers stand below it."""
         cells = zip(*self.rows, strict=True) if self.rows else ((),) * len(self.columns)
-        return [
-            (head, _holds_numbers(cell)) for head, cell in zip(self.columns, cells, strict=True)
-        ]
+        return [(h, _holds_numbers(c)) for h, c in zip(self.columns, cells, strict=True)]
 
 
 @dataclass(frozen=True)
@@ -229,18 +227,12 @@ def _parts(section: Section, number: int, drawings: dict[Figure, str]) -> dict[s
             for (caption, figure), inches in zip(figures, width, strict=True)
         ],
         "columns": table.headings if table else [],
-        "rows": [[_text(cell) for cell in row] for row in table.rows] if table else [],
+        "rows": [[f"{cell:z.5g}" if isinstance(cell, float) else str("–" if cell is None else cell)
+                  for cell in row] for row in table.rows] if table else [],
         "folded": table is not None and len(table.rows) > LONG,
         "video": video_source(section.video) if section.video else None,
         "poster": image_source(section.poster) if section.poster else None,
-    }
-
-
-def _text(cell: object) -> str:
-    """Returns a cell as it is read; – where it is empty."""
-    if cell is None:
-        return "–"
-    return f"{cell:z.5g}" if isinstance(cell, float) else str(cell)
+    }  # fmt: skip
 
 
 def _holds_numbers(column: Iterable[object]) -> bool:

@@ -11,8 +11,10 @@ from dataclasses import dataclass
 from math import inf, isfinite
 
 from identification.discovery.effect_results import Detectable, Hidden
+from identification.discovery.result import Discovery
 from identification.quantities import quantity
 from identification.report.effect_words import describe_effect
+from identification.report.page import Section, Table
 from identification.shares import percent
 
 SHOWN = 4  # of the effects that a log would have shown, or that its noise hides, so many are listed
@@ -21,6 +23,10 @@ LISTED = 8  # effects that have a line; the others are counted
 FEW = 4  # that are told in a paragraph, above the table of all
 NEVER = "effects that this log would not have shown at any plausible size"
 SEEN = "effects that this log would have shown in 9 cases of 10, the hardest to see first:"
+SMALLEST = (
+    "The smallest size of each effect that is found in 9 of 10 logs like this one, beside the"
+    " largest plausible size, the hardest to see first. A smaller effect stays hidden."
+)
 WHERE = (
     "An effect is judged at all places together or, if it acts at one place only, at the place"
     " where it is hardest to see."
@@ -67,42 +73,38 @@ def shown_effects(detectable: Sequence[Detectable]) -> tuple[list[Shown], list[S
     return [s for s in shown if s.is_seen], [s for s in shown if not s.is_seen]
 
 
-def shown_lines(detectable: Sequence[Detectable]) -> list[str]:
-    """Returns lines: what never shows, the hardest to see of the others, and how many more."""
-    seen, never = shown_effects(detectable)
-    lines = [f"{NEVER}:", *(f"  {s}" for s in never)] if never else []
-    if seen:
-        lines.append(SEEN)
-        lines += [f"  {s}: {s.bounds}" for s in seen[:LISTED]]
-        lines += [f"  {more}" for more in _more(seen)]
-    return [*lines, f"  {WHERE}"] if lines else []
-
-
-def shown_sentences(detectable: Sequence[Detectable]) -> str:
-    """Returns a paragraph on what a log would have shown, beside a table of all; "" for none."""
-    seen, never = shown_effects(detectable)
-    said = [f"{NEVER.capitalize()}: {'; '.join(map(str, never))}."] if never else []
+def unseen_section(found: Discovery) -> list[Section]:
+    """Returns the section on what this log would have shown, and what not; none where unknown."""
+    if not found.detectable:
+        return []
+    seen, never = shown_effects(found.detectable)
+    said, lines, rows = [], [], []
+    if never:
+        said.append(f"{NEVER.capitalize()}: {'; '.join(map(str, never))}.")
+        lines += [f"{NEVER}:", *(f"  {s}" for s in never)]
     if seen:
         hard = "; ".join(f"{s}, {s.bounds}" for s in seen[:FEW])
         said.append(f"Hardest to see{' of the others' if never else ''}: {hard}.")
-    return " ".join([*said, WHERE]) if said else ""
-
-
-def shown_rows(detectable: Sequence[Detectable]) -> list[tuple[str, str, str]]:
-    """Returns table rows of all effects: effect and place, smallest seen, largest plausible."""
-    seen, never = shown_effects(detectable)
-    rows = []
+        lines += [SEEN, *(f"  {s}: {s.bounds}" for s in seen[:LISTED])]
+    if (count := len(seen) - LISTED) > 0:
+        who = "1 more effect, which shows" if count == 1 else f"{count} more effects, which show"
+        share = percent(seen[LISTED].share, 2)
+        lines.append(
+            f"  and {who} from {share} of the largest plausible size on, or less; report and JSON"
+            " list all"
+        )
     for s in (*never, *seen):
         names = [f"{d.size} " if len(s.sizes) > 1 else "" for d in s.sizes]
+        each = list(zip(names, s.sizes, strict=True))
         least = "; ".join(
             name + (sized(d.smallest, d.unit) if d.is_plausible else "not at any plausible size")
-            for name, d in zip(names, s.sizes, strict=True)
+            for name, d in each
         )
-        most = "; ".join(
-            name + sized(d.largest, d.unit) for name, d in zip(names, s.sizes, strict=True)
-        )
+        most = "; ".join(name + sized(d.largest, d.unit) for name, d in each)
         rows.append((str(s), least if s.is_seen else "not by this log", most))
-    return rows
+    table = Table(("effect", "smallest seen", "largest plausible"), tuple(rows))
+    text, plain = f"{SMALLEST}\n\n{' '.join([*said, WHERE])}", "\n".join([*lines, f"  {WHERE}"])
+    return [Section("What it could have seen", text, table=table, plain=plain)]
 
 
 def sized(value: float, unit: str) -> str:
@@ -112,35 +114,17 @@ def sized(value: float, unit: str) -> str:
     return quantity(value, unit=unit) if unit else percent(value, 3)
 
 
-def _more(seen: Sequence[Shown]) -> list[str]:
-    """Returns a line on how many effects have no line."""
-    if len(seen) <= LISTED:
-        return []
-    count, share = len(seen) - LISTED, seen[LISTED].share
-    who = "1 more effect, which shows" if count == 1 else f"{count} more effects, which show"
-    return [
-        f"and {who} from {percent(share, 2)} of the largest plausible size on, or less; report and"
-        " JSON list all"
-    ]
-
-
 def hiding(hidden: Sequence[Hidden]) -> str:
     """Returns a sentence on how large effects may be that fitted noise hides; "" without any."""
     if not hidden:
         return ""
-    listed = "; ".join(map(_describe, hidden[:SHOWN]))
+    told = []
+    for h in hidden[:SHOWN]:
+        sizes = (f"{n} {quantity(most, unit=unit)}" for n, (_, most, unit) in h.sizes.items())
+        taken = f" (it would be {percent(h.taken)} of what counts as errors of the inputs)"
+        effect = f"{describe_effect(h.candidate)}, {', '.join(sizes)}"
+        told.append(effect + (taken if h.taken >= SHARE else ""))
     return (
         "The fitted noise may still hide effects up to these sizes (the size that the log seems to"
-        f" show, possibly by luck, plus 1.96 std): {listed}."
+        f" show, possibly by luck, plus 1.96 std): {'; '.join(told)}."
     )
-
-
-def _describe(h: Hidden) -> str:
-    sizes = ", ".join(f"{n} {quantity(most, unit=unit)}" for n, (_, most, unit) in h.sizes.items())
-    taken = f" (it would be {percent(h.taken)} of what counts as errors of the inputs)"
-    return f"{describe_effect(h.candidate)}, {sizes}{taken if h.taken >= SHARE else ''}"
-
-
-def smallest(d: Detectable) -> str:
-    """Returns the smallest size in words."""
-    return f"{d.size} {quantity(d.smallest, unit=d.unit)}"

@@ -36,8 +36,19 @@ def torque_sections(evidence: Evidence, model: mujoco.MjModel) -> list[Section]:
     figures = tuple(
         (f"Torques, {r.name}", torque_figure(evidence, model, k)) for k, r in enumerate(rows)
     )
+    drawn = tuple(
+        (s.missing.title, force_figure(evidence, s, model))
+        for s in evidence.named
+        if s.missing.is_curve
+    )
+    forces = Section(
+        "Forces that no law explains",
+        "The force that the torques need at a joint, as a curve with a band of two std, and what"
+        " each sample leaves to it. Its mean is left out, because a constant force is friction.",
+        figures=drawn,
+    )
     return [
-        *_forces(evidence, model),
+        *([forces] if drawn else []),
         Section(
             "Torques, joint by joint",
             "The torque that the drives gave, without the part that is known of the model; the same"
@@ -69,18 +80,6 @@ def torque_sections(evidence: Evidence, model: mujoco.MjModel) -> list[Section]:
                         tuple(friction_rows(evidence))),
         ),
     ]  # fmt: skip
-
-
-def _forces(evidence: Evidence, model: mujoco.MjModel) -> list[Section]:
-    """Returns the section on forces that no law explains; none where there is none."""
-    drawn = [s for s in evidence.named if s.missing.is_curve]
-    figures = tuple((s.missing.title, force_figure(evidence, s, model)) for s in drawn)
-    return [Section(
-        "Forces that no law explains",
-        "The force that the torques need at a joint, as a curve with a band of two std, and what"
-        " each sample leaves to it. Its mean is left out, because a constant force is friction.",
-        figures=figures,
-    )] if figures else []  # fmt: skip
 
 
 @styled
@@ -196,12 +195,14 @@ def evidence_to_json(evidence: Evidence, model: mujoco.MjModel) -> dict[str, Any
             for k, fit in enumerate(FITS)
         }
         joints[name] = {"unit": units[j], **of}
+    base, models = _values(evidence.whole), [*evidence.base.values, *evidence.friction]
+    for k, one in enumerate(base.values()):
+        one |= {"model": models[k]} if k < len(models) else {}
+        one["narrower"] = evidence.other[k]
     return plain({
         "joints": joints,
-        "base_parameters": _values(
-            evidence.whole, np.append(evidence.base.values, evidence.friction), evidence.other
-        ),
-        "values": _values(evidence.final, None, None),
+        "base_parameters": base,
+        "values": _values(evidence.final),
         "named": [_score(s) for s in evidence.named],
         "scores": [_score(s) for s in evidence.scores[:SHOWN]],
         "rest": [_score(s) for s in evidence.rest[:SHOWN]],
@@ -212,18 +213,9 @@ def evidence_to_json(evidence: Evidence, model: mujoco.MjModel) -> dict[str, Any
     })  # fmt: skip
 
 
-def _values(
-    fit: Fitted, model: np.ndarray | None, other: np.ndarray | None
-) -> dict[str, dict[str, Any]]:
-    out = {}
-    for k, name in enumerate(fit.names):
-        one: dict[str, Any] = {"value": fit.fit.θ[k], "std": fit.fit.std[k], "unit": fit.units[k]}
-        if model is not None and k < len(model):
-            one["model"] = model[k]
-        if other is not None:
-            one["narrower"] = other[k]
-        out[name] = one
-    return out
+def _values(fit: Fitted) -> dict[str, dict[str, Any]]:
+    rows = zip(fit.names, fit.fit.θ, fit.fit.std, fit.units, strict=False)
+    return {name: {"value": value, "std": std, "unit": unit} for name, value, std, unit in rows}
 
 
 def _score(score: Score) -> dict[str, Any]:

@@ -208,28 +208,23 @@ def _friction(evidence: Evidence) -> list[str]:
 
 
 def _far(evidence: Evidence) -> list[str]:
-    out, final = [], evidence.final
-    for i in range(final.inertial):
-        value, off = final.fit.θ[i], final.base.far[i]
-        if abs(off) > FAR:
-            out.append(
-                f"{final.names[i]} = {quantity(value, final.fit.std[i], final.units[i])} is"
-                f" {abs(off):.0f} std from what was known of it: it may stand for something that"
-                " the model lacks."
-            )
-    return out
+    final, off = evidence.final, np.abs(evidence.final.base.far)
+    return [
+        f"{final.names[i]} = {quantity(final.fit.θ[i], final.fit.std[i], final.units[i])} is"
+        f" {off[i]:.0f} std from what was known of it: it may stand for something that the model"
+        " lacks."
+        for i in range(final.inertial)
+        if off[i] > FAR
+    ]
 
 
 def _differences(evidence: Evidence) -> list[str]:
-    out = []
-    for score in evidence.differences[:1]:
-        if score.is_proven:
-            out.append(
-                f"The records differ by a load: {score.missing.title}, {size_words(score)}, with"
-                f" all inertial numbers free (t {score.t:.1f}, chance"
-                f" {chance_words(score.chance)})."
-            )
-    return out
+    return [
+        f"The records differ by a load: {score.missing.title}, {size_words(score)}, with all"
+        f" inertial numbers free (t {score.t:.1f}, chance {chance_words(score.chance)})."
+        for score in evidence.differences[:1]
+        if score.is_proven
+    ]
 
 
 def _doubts(evidence: Evidence) -> list[str]:

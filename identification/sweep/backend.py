@@ -63,11 +63,7 @@ class Processes:
     jobs: int  # how many
 
     def outcomes(self, work: Work, tasks: Iterable[Task]) -> Iterator[Outcome]:
-        """Yields the outcome of each task, in the order in which they end.
-
-        Raises:
-            InputError: a process died, by a signal or for want of memory.
-        """
+        """Yields the outcome of each task, in the order in which they end."""
         waiting = iter(tasks)
         others = set(active_children())
         pool = ProcessPoolExecutor(self.jobs, get_context("spawn"), initializer=_begin)

@@ -41,11 +41,7 @@ class Dask:
         needed("distributed", "cluster", "--backend dask")
 
     def outcomes(self, work: Work, tasks: Iterable[Task]) -> Iterator[Outcome]:
-        """Yields the outcome of each task, in the order in which they end.
-
-        Raises:
-            InputError: the scheduler or a worker cannot be reached, or a task killed its workers.
-        """
+        """Yields the outcome of each task, in the order in which they end."""
         import distributed
 
         waiting, run = iter(tasks), uuid4().hex
@@ -133,11 +129,7 @@ class Submitit:
         needed("submitit", "cluster", f"--backend {self.cluster}")
 
     def outcomes(self, work: Work, tasks: Iterable[Task]) -> Iterator[Outcome]:
-        """Yields the outcome of each task, in the order in which their jobs end.
-
-        Raises:
-            InputError: jobs cannot be submitted, an option is unknown, or a job failed.
-        """
+        """Yields the outcome of each task, in the order in which their jobs end."""
         import submitit
 
         executor, size = self._executor()

@@ -36,11 +36,7 @@ _FILES: Kinds = {"files": (str, "a pattern in quotes"), "label": (dict, "a table
 
 
 def axis(value: Any, folder: Path, where: str) -> tuple[Plain, ...]:
-    """Returns the values of an axis.
-
-    Raises:
-        InputError: it is no axis, or has no values.
-    """
+    """Returns the values of an axis, or refuses what is no axis or has no values."""
     if isinstance(value, list) and all(isinstance(v, bool | int | float | str) for v in value):
         values: tuple[Plain, ...] = tuple(value)
     elif isinstance(value, dict) and "files" in value:
@@ -65,11 +61,7 @@ def axis(value: Any, folder: Path, where: str) -> tuple[Plain, ...]:
 
 
 def _files(pattern: str, label: Mapping[str, Any], folder: Path, where: str) -> tuple[str, ...]:
-    """Returns the files of a pattern, written as the pattern is, in the order of their names.
-
-    Raises:
-        InputError: no file has such a name, or labels.json describes none so.
-    """
+    """Returns the files of a pattern, written as the pattern is, in the order of their names."""
     above, slash, name = pattern.rpartition("/")
     base = place(above, folder) if slash else folder
     found = sorted(Path(path).name for path in glob(str(base / name)))
@@ -78,21 +70,20 @@ def _files(pattern: str, label: Mapping[str, Any], folder: Path, where: str) -> 
     if label:
         labels = read_json(base / "labels.json", "JSON file of labels", "leave label out")
         labels = labels if isinstance(labels, dict) else {}
-        found = [f for f in found if _described(labels.get(Path(f).stem, {}), label)]
+
+        def says(told: Mapping[str, Any]) -> bool:  # a list in a label must hold the value
+            return all(
+                value == told.get(key) or (isinstance(told.get(key), list) and value in told[key])
+                for key, value in label.items()
+            )
+
+        found = [f for f in found if says(labels.get(Path(f).stem, {}))]
         if not found:
             raise InputError(
                 f"{where}: {base / 'labels.json'} describes no file of {name} by {dict(label)};"
                 " correct label, or leave it out"
             )
     return tuple(f"{above}{slash}{file}" for file in found)
-
-
-def _described(told: Mapping[str, Any], label: Mapping[str, Any]) -> bool:
-    """Returns whether a label says all that is asked; a list in it must hold the value."""
-    return all(
-        value == told.get(key) or (isinstance(told.get(key), list) and value in told[key])
-        for key, value in label.items()
-    )
 
 
 POINTS = 100_000  # of a grid; each is checked before anything runs
@@ -138,20 +129,16 @@ def read_sweep(path: str | Path, known: Registry, *, files: bool = True) -> Swee
         raise InputError(f"two studies in {path} are called {twice[0]!r}; give each a name")
     sweep = Sweep(path=path, seed=seed, about=content.get("about", path.stem), studies=studies)
     first = 0
-    for study in studies:
+    for study in studies:  # what a point would be refused for in each of its tasks
+        where = f"study {study.name!r}"
         for point in range(study.points):
-            _check(study, sweep.task(first + point * study.count).settings, files)
+            settings = sweep.task(first + point * study.count).settings
+            with told_of(where), told_in_method(study.reference, "refuses its settings"):
+                build(study.method.settings, settings)
+            if files:
+                refuse_missing_files(study.method.settings, settings, where)
         first += study.points * study.count
     return sweep
-
-
-def _check(study: Study, settings: Mapping[str, Plain], files: bool) -> None:
-    """Refuse what the settings of a point would be refused for in each of its tasks."""
-    where = f"study {study.name!r}"
-    with told_of(where), told_in_method(study.reference, "refuses its settings"):
-        build(study.method.settings, settings)
-    if files:
-        refuse_missing_files(study.method.settings, settings, where)
 
 
 def _study(table: dict[str, Any], known: Registry, path: Path) -> Study:

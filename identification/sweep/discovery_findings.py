@@ -53,7 +53,12 @@ def discovery_findings(records: Sequence[Record]) -> Findings:
     ]
     if pairs:
         sections.append(_reliability(pairs, found["calibration"]))
-    return Findings(found, sections, _sentences(found))
+    parts = [
+        f"{SAID[key]} in {said(found[key])}"
+        for key in ("first_name_right", "null_nothing_missing", "unknown_flagged")
+        if found[key]["of"]
+    ]
+    return Findings(found, sections, ["; ".join(parts) + "."] if parts else [])
 
 
 def _confusion(confusion: dict[str, dict[str, int]]) -> Section:
@@ -82,15 +87,6 @@ def _reliability(pairs: Sequence[tuple[float, bool]], first: dict[str, Any]) -> 
         )
     figures = (("Reliability of confidence", reliability_figure(pairs)),)
     return Section("reliability", text, figures)
-
-
-def _sentences(found: dict[str, Any]) -> list[str]:
-    parts = [
-        f"{SAID[key]} in {said(found[key])}"
-        for key in ("first_name_right", "null_nothing_missing", "unknown_flagged")
-        if found[key]["of"]
-    ]
-    return ["; ".join(parts) + "."] if parts else []
 
 
 def _true(row: Row) -> set[str]:
@@ -140,12 +136,11 @@ def size_errors(rows: Sequence[Row]) -> list[float]:
 
 
 def summary(rows: Sequence[Row]) -> dict[str, Any]:
-    """Returns counts and rates of all rows that did not fail."""
-    done = [row for row in rows if "error" not in row]
-    kind = {k: [r for r in done if r["truth"]["kind"] == k] for k in KINDS}
+    """Returns counts and rates of rows of tasks that met no error."""
+    kind = {k: [r for r in rows if r["truth"]["kind"] == k] for k in KINDS}
     known = [r for k, some in kind.items() if k not in ("null", "unknown") for r in some]
     confusion: dict[str, Counter[str]] = {}
-    for row in done:
+    for row in rows:
         true = "+".join(sorted(e["name"] for e in row["truth"]["effects"])) or "nothing"
         confusion.setdefault(true, Counter())[_first(row)] += 1
     signs = [
@@ -166,8 +161,8 @@ def summary(rows: Sequence[Row]) -> dict[str, Any]:
         return lambda row: row["answer"]["verdict"] == verdict
 
     return {
-        "logs": len(done),
-        "failed": len(rows) - len(done),
+        "logs": len(rows),
+        "failed": 0,
         "first_name_right": rate(known, right),
         "first_name_right_single": rate(kind["single"], right),
         "right_or_in_set_of_two": rate(known, in_set),
@@ -186,9 +181,9 @@ def summary(rows: Sequence[Row]) -> dict[str, Any]:
         "gap_closed_90_percent": rate(gaps, lambda gap: gap >= 0.9),
         "size_error_median": median(errors),
         "size_within_10_percent": rate(errors, lambda error: error <= 0.1),
-        "seconds_median": median([r["seconds"] for r in done]),
+        "seconds_median": median([r["seconds"] for r in rows]),
         "calibration": calibration_of(
-            [(r["answer"]["named"][0]["confidence"], right(r)) for r in done if is_named(r)]
+            [(r["answer"]["named"][0]["confidence"], right(r)) for r in rows if is_named(r)]
         ),
         "confusion": {true: dict(row) for true, row in sorted(confusion.items())},
     }

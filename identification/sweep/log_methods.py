@@ -86,11 +86,7 @@ class OnLog:
     )  # fmt: skip
 
     def read(self) -> Any:
-        """Reads the robot with its log.
-
-        Raises:
-            InputError: as `identification.read_robot`.
-        """
+        """Reads the robot with its log."""
         from identification.robot.reading import read_robot
 
         confirm = [] if self.confirm is None else [self.confirm]

@@ -110,15 +110,9 @@ class Method:
 
 
 def reference_of(word: str, known: Registry, folder: Path) -> str:
-    """Returns the reference by which a worker finds a method.
+    """Returns the reference by which a worker finds a method, or refuses a word that names none.
 
-    Args:
-        word: a registered name, or `file.py:NAME` of a method of your own.
-        known: the registered ones.
-        folder: in which the file is looked for.
-
-    Raises:
-        InputError: there is no such method.
+    The word is a registered name, or `file.py:NAME` of a method of your own, from the folder.
     """
     file, colon, name = word.rpartition(":")
     if colon and file.endswith(".py"):
@@ -134,11 +128,7 @@ def reference_of(word: str, known: Registry, folder: Path) -> str:
 
 @contextmanager
 def told_in_method(reference: str, what: str) -> Iterator[None]:
-    """Tells an error of a method's own code with its file and line; `sys.exit` in it is one too.
-
-    Raises:
-        InputError: the code raised, or wanted to end the program.
-    """
+    """Refuses an error of a method's own code, with file and line; `sys.exit` in it is one too."""
     try:
         yield
     except (InputError, MemoryError):
@@ -169,11 +159,7 @@ def error_line(error: BaseException, reference: str) -> str:
 
 
 def load_method(reference: str) -> Method:
-    """Import a method.
-
-    Raises:
-        InputError: the module cannot be imported, or has no method of that name.
-    """
+    """Imports a method; refuses a module that cannot be imported, or has no such method."""
     place, _, name = reference.rpartition(":")
     with told_in_method(reference, "cannot be imported"):
         module = _load_file(Path(place)) if place.endswith(".py") else import_module(place)

@@ -13,7 +13,7 @@ from typing import Any
 
 from identification.sweep.method import Record
 from identification.sweep.rows import SET
-from identification.sweep.settings import NAMES, Heads, Plain, in_words
+from identification.sweep.settings import Heads, Plain, in_words
 from identification.sweep.statistics import crossing, wilson
 
 LEVEL = 0.8
@@ -28,7 +28,7 @@ class Curve:
     others: Mapping[str, Plain]  # values of the other settings of the grid
     x: tuple[float, ...]  # values of the setting, ascending
     rates: tuple[Mapping[str, Any], ...]  # at each, as `statistics.wilson` has it
-    heads: Heads = NAMES  # the settings in words
+    heads: Heads  # the settings in words
 
     @property
     def label(self) -> str:
@@ -87,11 +87,7 @@ def grouped(rows: Sequence[Record], names: Sequence[str]) -> dict[tuple[Plain, .
 
 
 def curves(
-    rows: Sequence[Record],
-    success: str,
-    axis: str,
-    others: Sequence[str],
-    heads: Heads = NAMES,
+    rows: Sequence[Record], success: str, axis: str, others: Sequence[str], heads: Heads
 ) -> list[Curve]:
     """Returns a curve for each combination of the other settings."""
     counted = [row for row in rows if row[success] is not None]

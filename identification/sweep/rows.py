@@ -44,11 +44,7 @@ _LAST = {
 
 
 def columns(sweep: Sweep) -> dict[str, tuple[Any, str]]:
-    """Returns kind and meaning of every column of a sweep's table.
-
-    Raises:
-        InputError: two methods of the sweep have a column of one name and another kind.
-    """
+    """Returns kind and meaning of every column of a sweep's table; refuses one of two kinds."""
     out: dict[str, tuple[Any, str]] = dict(_FIRST)
 
     def add(name: str, kind: Any, about: str) -> None:
@@ -84,11 +80,7 @@ def row(sweep: Sweep, outcome: Outcome) -> dict[str, Any]:
 
 
 def schema(sweep: Sweep) -> Any:
-    """Returns the schema of the table, as pyarrow has it.
-
-    Raises:
-        InputError: as `columns`, or pyarrow is not installed.
-    """
+    """Returns the schema of the table, as pyarrow has it."""
     pa = needed("pyarrow", "sweep", "a sweep")
     plain = {bool: pa.bool_(), int: pa.int64(), float: pa.float64(), str: pa.string()}
 
@@ -113,11 +105,7 @@ def comparable(rows: Iterable[Record]) -> Iterator[str]:
 
 
 def digest(rows: Iterable[Record]) -> str:
-    """Returns a digest of rows, which tells whether two sweeps have equal records to the bit.
-
-    Args:
-        rows: in the order of their tasks.
-    """
+    """Returns a digest of rows in the order of their tasks; it tells records equal to the bit."""
     total = sha256()
     for text in comparable(rows):
         total.update(text.encode() + b"\n")

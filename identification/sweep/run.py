@@ -60,11 +60,6 @@ def run_sweep(
     return clock.ended
 
 
-def processors() -> int:
-    """Returns how many processors this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-
-
 def backend_of(
     word: str, jobs: int | None, folder: Path, options: Mapping[str, str] | None = None
 ) -> Backend:
@@ -87,7 +82,8 @@ def backend_of(
         raise InputError(f"{error}; or the address of a Dask scheduler, such as tcp://HOST:8786")
     if options and word not in ("slurm", "submitit-local"):
         raise InputError(f"--job is for --backend slurm, and the backend is {word}; leave it out")
-    count = jobs or processors()
+    allowed = os.sched_getaffinity(0) if hasattr(os, "sched_getaffinity") else ()
+    count = jobs or len(allowed) or os.cpu_count() or 1
     if word == "processes":
         return Processes(count)
     if word == "serial":

@@ -55,11 +55,7 @@ def file_words(settings: type) -> dict[str, tuple[str, ...]]:
 
 
 def kinds_of(settings: type) -> dict[str, type]:
-    """Returns the kind of each field of a settings dataclass, without None.
-
-    Raises:
-        InputError: a field is of a kind that a TOML cannot give.
-    """
+    """Returns the kind of each field of a settings dataclass, without None; refuses any other."""
     hints, kinds = get_type_hints(settings), {}
     for f in fields(settings):
         kind = hints[f.name]
@@ -72,11 +68,7 @@ def kinds_of(settings: type) -> dict[str, type]:
 
 
 def check_values(settings: type, values: Mapping[str, Plain], where: str) -> dict[str, Plain]:
-    """Returns the values of all fields, defaults among them, in the right kind.
-
-    Raises:
-        InputError: a name is unknown, a value is of another kind, or one is missing.
-    """
+    """Returns the values of all fields in the right kind, defaults among them, or refuses one."""
     kinds = kinds_of(settings)
     for name, value in values.items():
         if name not in kinds:
@@ -104,11 +96,7 @@ def _fits(value: Any, kind: type) -> bool:
 
 
 def resolve(settings: type, values: Mapping[str, Plain], folder: Path) -> dict[str, Plain]:
-    """Returns the values with whole paths in place of those that are relative to a TOML.
-
-    Raises:
-        InputError: a path names a variable of the environment that is not set.
-    """
+    """Returns the values with whole paths in place of those that are relative to a TOML."""
     kinds, words = kinds_of(settings), file_words(settings)
     return {
         name: str(place(value, folder))
@@ -120,11 +108,7 @@ def resolve(settings: type, values: Mapping[str, Plain], folder: Path) -> dict[s
 
 
 def refuse_missing_files(settings: type, values: Mapping[str, Plain], where: str) -> None:
-    """Refuse files that tasks would read and that are not there.
-
-    Raises:
-        InputError: there is no such file.
-    """
+    """Refuses files that tasks would read and that are not there."""
     for name, words in file_words(settings).items():
         value = values[name]
         if not isinstance(value, str) or value in words or is_file(Path(value)):
@@ -140,11 +124,7 @@ def refuse_missing_files(settings: type, values: Mapping[str, Plain], where: str
 
 
 def place(text: str, folder: Path) -> Path:
-    """Returns a path of a TOML: `$NAME` is from the environment, the rest is relative to the TOML.
-
-    Raises:
-        InputError: the variable is not set.
-    """
+    """Returns a path of a TOML: `$NAME` is of the environment, the rest relative to the TOML."""
     expanded = os.path.expandvars(text)
     if left := re.search(r"\$\{?(\w+)", expanded):
         raise InputError(
@@ -154,11 +134,7 @@ def place(text: str, folder: Path) -> Path:
 
 
 def build(settings: type, values: Mapping[str, Plain]) -> Any:
-    """Returns the settings as their dataclass.
-
-    Raises:
-        InputError: the dataclass refuses them.
-    """
+    """Returns the settings as their dataclass, which may refuse them."""
     kinds = kinds_of(settings)
     return settings(
         **{
@@ -188,9 +164,6 @@ class Heads:
         """Returns a name in words, and what it is about."""
         about = self.about.get(name, "")
         return f"{in_words(name)}: {about}" if about else in_words(name)
-
-
-NAMES = Heads({})  # names alone, without units
 
 
 def in_words(name: str) -> str:

@@ -7,6 +7,7 @@ calibration:   ECE = Σ_b n_b |mean confidence_b - share right_b| / n;   Brier =
 from __future__ import annotations
 
 import math
+import statistics
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, TypeVar
 
@@ -17,13 +18,7 @@ T = TypeVar("T")
 
 
 def wilson(hits: int, of: int, z: float = 1.96) -> dict[str, Any]:
-    """Returns a rate and its 95 % interval (Wilson 1927).
-
-    Args:
-        hits: how often it happened.
-        of: how often it could have.
-        z: of the interval.
-    """
+    """Returns the rate of hits of so many, and its 95 % interval (Wilson 1927)."""
     if not of:
         return {"value": None, "low": 0.0, "high": 1.0, "hits": 0, "of": 0}
     p, w = hits / of, z * z / of
@@ -49,9 +44,7 @@ def said(share: Mapping[str, Any]) -> str:
 
 def median(values: Sequence[float]) -> float | None:
     """Returns the median of some values; None where there are none."""
-    ordered = sorted(values)
-    n = len(ordered)
-    return (ordered[(n - 1) // 2] + ordered[n // 2]) / 2 if n else None
+    return statistics.median(values) if values else None
 
 
 def calibration_of(pairs: Sequence[tuple[float, bool]]) -> dict[str, Any]:
@@ -77,13 +70,8 @@ def calibration_of(pairs: Sequence[tuple[float, bool]]) -> dict[str, Any]:
 def crossing(x: Sequence[float], share: Sequence[float], level: float) -> float | None:
     """Returns the smallest x where a rate that rises with x reaches a level; None if it never does.
 
-    The rates are first made to rise (isotonic regression: Barlow et al. 1972, with equal weights);
-    between two points x is interpolated, in its logarithm where all are positive.
-
-    Args:
-        x: ascending.
-        share: the rate at each.
-        level: such as 0.8.
+    The x ascend. The rates are first made to rise (isotonic regression: Barlow et al. 1972, with
+    equal weights); between two points x is interpolated, in its logarithm where all are positive.
     """
     from scipy.optimize import isotonic_regression
 

@@ -191,11 +191,7 @@ def _lock(number: int, folder: Path) -> None:
 
 
 def _write_whole(folder: Path, stem: str, schema: Any, tables: Iterable[Any]) -> Path:
-    """Write tables into a file that is there whole when this returns, or not at all.
-
-    Returns:
-        The path of the file.
-    """
+    """Write tables into a file that is there whole when this returns; returns its path."""
     parquet: Any = needed("pyarrow.parquet", "sweep", "a sweep")
     draft = folder / f".{stem}.tmp"
     with draft.open("w+b") as stream:
@@ -211,12 +207,7 @@ def _write_whole(folder: Path, stem: str, schema: Any, tables: Iterable[Any]) ->
 
 
 def read_tasks(path: Path) -> set[int]:
-    """Reads the tasks of a file.
-
-    Raises:
-        InputError: it is no regular file.
-        OSError: the file is not whole, or was changed.
-    """
+    """Returns the tasks of a file; raises OSError where it is not whole, or was changed."""
     parquet: Any = needed("pyarrow.parquet", "sweep", "a sweep")
     if not path.stem.endswith(f"-{_digest(path)}"):
         raise OSError(f"{path} is not what was written")

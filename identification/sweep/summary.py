@@ -13,15 +13,7 @@ from identification.progress import duration
 from identification.quantities import finite_or_none
 from identification.report.page import Section, Table
 from identification.sweep.method import Findings, Record, told_in_method
-from identification.sweep.power import (
-    IN_WORDS,
-    axes,
-    curves,
-    grouped,
-    numeric,
-    thresholds,
-    word,
-)
+from identification.sweep.power import IN_WORDS, axes, curves, grouped, numeric, thresholds, word
 from identification.sweep.rows import RUN, digest
 from identification.sweep.settings import Heads, about_of, in_words
 from identification.sweep.statistics import rate, said
@@ -47,15 +39,19 @@ def summarise(sweep: Sweep, rows: Iterable[Record]) -> Findings:
         sections += found.sections
         sentences += found.sentences
     first = f"{len(every)} of {len(sweep)} tasks have a record"
-    first += f"; {failed.total()} of them met an error{_most(failed)}." if failed else "."
     if failed:
-        sections.append(_errors(failed))
+        ((most, count),) = failed.most_common(1)
+        which = "" if len(failed) == 1 else f", {count} of these"
+        first += f"; {failed.total()} of them met an error{which} ({most})"
+        rows_of_errors = tuple(failed.most_common(SHOWN))
+        text = "What tasks met; --again runs them once more."
+        sections.append(Section("Errors", text, table=Table(("error", "tasks"), rows_of_errors)))
     record = {
         "about": sweep.about, "tasks": len(sweep), "records": len(every),
         "errors": dict(failed.most_common(SHOWN)), "failed": failed.total(),
         "digest": digest(every), "studies": studies,
     }  # fmt: skip
-    return Findings(record, [*sections, _times(sweep, every)], [first, *sentences])
+    return Findings(record, [*sections, _times(sweep, every)], [f"{first}.", *sentences])
 
 
 def summarise_study(study: Study, rows: Sequence[Record]) -> Findings:
@@ -179,20 +175,6 @@ def _power_section(
         for curve, t in zip(found, at, strict=True)
     ]  # fmt: skip
     return record, [section]
-
-
-def _most(failed: Counter[str]) -> str:
-    """Returns the text of the error that most tasks met, and how many of them where not all."""
-    ((text, count),) = failed.most_common(1)
-    return f" ({text})" if len(failed) == 1 else f", {count} of these ({text})"
-
-
-def _errors(failed: Counter[str]) -> Section:
-    rows = tuple((text, count) for text, count in failed.most_common(SHOWN))
-    return Section(
-        "Errors", "What tasks met; --again runs them once more.",
-        table=Table(("error", "tasks"), rows),
-    )  # fmt: skip
 
 
 def _times(sweep: Sweep, rows: Sequence[Record]) -> Section:

@@ -76,9 +76,10 @@ class Outcome:
 def work(task: Task) -> Outcome:
     """Run a task; an error of its method is an outcome too.
 
-    Raises:
-        MemoryError: the machine has too little memory, which says nothing about the task.
+    A MemoryError is none: it says nothing about the task.
     """
+    import resource
+
     from threadpoolctl import threadpool_limits
 
     with _ONE, one_thread():
@@ -94,11 +95,13 @@ def work(task: Task) -> Outcome:
             except (Exception, SystemExit) as caught:
                 error = error_line(caught, task.reference)
                 trace = traceback.format_exc(limit=-4)
+        unit = 1 if sys.platform == "darwin" else 1024  # of the memory, in bytes
         run = {
             "seconds": time.perf_counter() - begin,
             "processor_seconds": time.process_time() - processor,
             "ended": time.time(), "host": socket.gethostname(), "process": os.getpid(),
-            "memory": peak_memory(), "code": code(), "trace": trace,
+            "memory": unit * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss, "code": code(),
+            "trace": trace,
         }  # fmt: skip
         return Outcome(task.number, record, error, run)
 
@@ -118,8 +121,7 @@ def one_thread() -> Iterator[None]:
 def checked(record: Mapping[str, Any], columns: Mapping[str, Column]) -> dict[str, Any]:
     """Returns a record with plain values of the kinds that its method declares.
 
-    Raises:
-        TypeError: an entry is missing, too many, or of another kind: a fault of the method.
+    A TypeError tells a fault of the method: an entry that is missing, too many, or of another kind.
     """
     if set(record) != set(columns):
         raise TypeError(
@@ -139,11 +141,3 @@ def _value(name: str, value: Any, kind: Any) -> Any:
     if not isinstance(plain, _PLAIN[kind]) or (isinstance(plain, bool) and kind is not bool):
         raise TypeError(f"{name} is {plain!r}, where its method declares {kind.__name__}")
     return kind(plain)
-
-
-def peak_memory() -> int:
-    """Returns the most memory that this process has held [bytes]."""
-    import resource
-
-    unit = 1 if sys.platform == "darwin" else 1024
-    return unit * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss

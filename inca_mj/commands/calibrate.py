@@ -10,9 +10,9 @@ from typing import Annotated
 import tyro
 
 import inca_mj as inca
-from identification.commands.common import LogLists, Output, conclude, flat, output_field, table
+from identification.commands.common import LogLists, Output, conclude, flat, table
 from identification.errors import InputError
-from inca_mj.commands.common import Trust, Values, do_not_draw, read_logs, values_field
+from inca_mj.commands.common import Trust, Values, do_not_draw, read_logs
 
 FILES = "The calibrated robot is in model.xml and effects.json; inca_mj.load_twin reads them."
 
@@ -40,8 +40,8 @@ class Calibrate:
     shows one)."""
     trust: Trust = ()
     """Checks of the log that you overrule: sensors, units, wiring."""
-    robot: Annotated[Values, tyro.conf.OmitArgPrefixes] = values_field
-    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
+    robot: Values = Values()
+    output: Output = Output()
 
     def run(self) -> int:
         """Calibrate, say, keep."""

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import tyro
 
@@ -55,11 +55,7 @@ class Robot(Values):
     """Largest step of the integrator [s]; stiff cables and light motors need a smaller one."""
 
     def check(self) -> None:
-        """Refuse what describes no robot, before anything heavy is imported.
-
-        Raises:
-            InputError: a value or the step is malformed or out of bounds, or a file is no geometry.
-        """
+        """Refuse what describes no robot, before anything heavy is imported."""
         from inca_mj.robot.parameters import refuse_step
 
         self.parameters()
@@ -67,11 +63,7 @@ class Robot(Values):
         refuse_step(self.step)
 
     def twin(self, sampling_time: float, effects: Sequence[Effect] = ()) -> inca.Twin:
-        """Returns the robot, with a step that divides the sampling time [s].
-
-        Raises:
-            InputError: as `check`, or the robot has no pretension.
-        """
+        """Returns the robot, with a step that divides the sampling time [s]."""
         from inca_mj.workflows.comparison import timestep_for
 
         step = timestep_for(sampling_time, self.step)
@@ -156,8 +148,3 @@ def do_not_draw() -> None:
             del os.environ["MUJOCO_GL"]
         else:
             os.environ["MUJOCO_GL"] = before
-
-
-values_field: Any = field(default_factory=Values)
-robot_field: Any = field(default_factory=Robot)
-saved_robot_field: Any = field(default_factory=SavedRobot)

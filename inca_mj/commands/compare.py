@@ -4,30 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
 import inca_mj as inca
-from identification.commands.common import (
-    Output,
-    conclude,
-    draw_report,
-    flat,
-    note,
-    output_field,
-    table,
-)
-from inca_mj.commands.common import (
-    SavedRobot,
-    Trust,
-    Values,
-    do_not_draw,
-    saved_robot_field,
-    values_field,
-)
+from identification.commands.common import Output, conclude, draw_report, flat, note, table
+from inca_mj.commands.common import SavedRobot, Trust, Values, do_not_draw
 
 if TYPE_CHECKING:
     from identification import Log
@@ -50,8 +34,8 @@ class Compare:
     """Log to explain: CSV (with a TOML beside it) or MATLAB .mat with u, y, Ts."""
     trust: Trust = ()
     """Checks of the log that you overrule: sensors, units, wiring."""
-    robot: Annotated[SavedRobot, tyro.conf.OmitArgPrefixes] = saved_robot_field
-    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
+    robot: SavedRobot = SavedRobot()
+    output: Output = Output()
 
     def run(self) -> int:
         """Compare, say and keep the result; 0 unless the input is bad."""
@@ -59,10 +43,20 @@ class Compare:
         result = compare_with(
             self.robot, inca.read_inca_log(self.log, flat(self.trust)), flat(self.trust)
         )
-        is_drawn = conclude(
-            self, result.to_json(), summary(result), partial(keep, result), partial(draw, result)
-        )
-        if is_drawn:
+
+        def keep(out: Path) -> None:
+            result.run.twin.save(out / "model.xml")
+            inca.save_run(result.run, out / "run.npz")
+
+        def draw(out: Path) -> None:
+            from inca_mj.report.sections import compare_section, compare_verdict
+            from inca_mj.twin.section import model_section
+
+            sections = [compare_section(result), model_section(result.run.twin)]
+            title = f"{result.log.name}: measured against simulated"
+            draw_report(out, title, compare_verdict(result), sections, data=[result.log.name])
+
+        if conclude(self, result.to_json(), summary(result), keep, draw):
             note(f"figure, report, model and result.json are in {self.output.out}")
         return 0
 
@@ -93,22 +87,6 @@ def summary(result: inca.Comparison) -> str:
     )  # fmt: skip
 
 
-def keep(result: inca.Comparison, out: Path) -> None:
-    """Write the model and the run into a folder."""
-    result.run.twin.save(out / "model.xml")
-    inca.save_run(result.run, out / "run.npz")
-
-
-def draw(result: inca.Comparison, out: Path) -> None:
-    """Write the figure and the one-file report into a folder."""
-    from inca_mj.report.sections import compare_section, compare_verdict
-    from inca_mj.twin.section import model_section
-
-    sections = [compare_section(result), model_section(result.run.twin)]
-    title = f"{result.log.name}: measured against simulated"
-    draw_report(out, title, compare_verdict(result), sections, data=[result.log.name])
-
-
 @dataclass(frozen=True)
 class Crosscheck:
     """Compare the MuJoCo twin with the reference ODE; exit 1 when they disagree.
@@ -122,8 +100,8 @@ class Crosscheck:
     """Length of each run [s]."""
     states: int = 10_000
     """Random states at which accelerations are compared."""
-    robot: Annotated[Values, tyro.conf.OmitArgPrefixes] = values_field
-    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
+    robot: Values = Values()
+    output: Output = Output()
 
     def run(self) -> int:
         """Check, say, keep; 0 when they agree, 1 when not."""
@@ -137,31 +115,23 @@ class Crosscheck:
             states=self.states,
             progress=self.output.tell,
         )
-        conclude(self, result.to_json(), crosscheck_table(result), partial(keep_crosscheck, result))
+
+        def keep(out: Path) -> None:
+            from inca_mj.report.sections import crosscheck_section
+
+            title, sections = "The twin against the reference", [crosscheck_section(result)]
+            draw_report(out, title, result.sentences, sections, good=result.passed)
+
+        conclude(self, result.to_json(), crosscheck_table(result), keep)
         return 0 if result.passed else 1
 
 
 def crosscheck_table(result: CrossCheck) -> str:
     """Returns the cross-check as a text table and its verdict."""
     head = ("case", "step [ms]", "angle [rad]", "position [m]", "tension [N]")
-    rows = [
-        (
-            str(row["case"]),
-            f"{1e3 * row['step']:g}",
-            *(_error(row[f"max_{what}_error"]) for what in ("angle", "position", "tension")),
-        )
-        for row in result.rows
-    ]
+    rows = []
+    for row in result.rows:
+        errors = [row[f"max_{what}_error"] for what in ("angle", "position", "tension")]
+        said = ("diverged" if error is None else f"{error:.2e}" for error in errors)
+        rows.append((str(row["case"]), f"{1e3 * row['step']:g}", *said))
     return table(head, rows) + "\n" + "\n".join(result.sentences)
-
-
-def keep_crosscheck(result: CrossCheck, out: Path) -> None:
-    """Write the figure and the one-file report into a folder."""
-    from inca_mj.report.sections import crosscheck_section
-
-    title, sections = "The twin against the reference", [crosscheck_section(result)]
-    draw_report(out, title, result.sentences, sections, good=result.passed)
-
-
-def _error(value: float | None) -> str:
-    return "diverged" if value is None else f"{value:.2e}"

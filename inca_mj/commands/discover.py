@@ -4,37 +4,20 @@ from __future__ import annotations
 
 import time
 from contextlib import ExitStack
-from dataclasses import dataclass, field
-from functools import partial
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
 import inca_mj as inca
-from identification.commands.common import (
-    LogLists,
-    Output,
-    add_drawings,
-    flat,
-    note,
-    output_field,
-    say,
-    say_json,
-)
+from identification.commands.common import LogLists, Output, add_drawings, flat, note, say, say_json
 from identification.commands.stopping import NO_ANSWER, leaving_out
 from identification.errors import InputError
 from identification.folders import draft_of
 from identification.progress import duration
 from identification.results import RESULT, write_result
-from inca_mj.commands.common import (
-    Trust,
-    Values,
-    cannot_draw,
-    do_not_draw,
-    read_logs,
-    values_field,
-)
+from inca_mj.commands.common import Trust, Values, cannot_draw, do_not_draw, read_logs
 from inca_mj.files import example_path
 
 if TYPE_CHECKING:
@@ -42,7 +25,9 @@ if TYPE_CHECKING:
     from identification.folders import Draft
     from inca_mj.workflows.discovery_files import TwinDiscoveryFiles
 
-ORDER = ("report", "model", "effects", "film")  # in which files are named
+FILES = {  # by what they are called, in the order in which they are named
+    "report": "report.html", "model": "model.xml", "effects": "effects.json", "film": "film.mp4",
+}  # fmt: skip
 LEAVE_OUT = "Ctrl-C leaves it out, and so does --no-film"
 
 
@@ -71,8 +56,8 @@ class Discover:
     """Time after which no further effect is sought (10 if not given); then it answers."""
     trust: Trust = ()
     """Checks of the log that you overrule: sensors, units, wiring."""
-    robot: Annotated[Values, tyro.conf.OmitArgPrefixes] = values_field
-    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
+    robot: Values = Values()
+    output: Output = Output()
 
     def run(self) -> int:
         """Discover, say, keep."""
@@ -103,7 +88,7 @@ class Discover:
         files = TwinDiscoveryFiles(found)
         if not self.output.json:
             say(discovery_text(found))
-        names: dict[str, Path] = {}
+        model: dict[str, str] = {}
         with ExitStack() as stack:
             draft = None
             try:  # what was found is said even where it cannot be saved
@@ -111,42 +96,34 @@ class Discover:
                     draft = stack.enter_context(draft_of(self.output.out))
                     saved = files.keep(draft.folder, draft.place)
                     write_result(draft.folder / RESULT, self, {**files.record, **saved})
-                    names = {"model": Path(saved["model"]), "effects": Path("effects.json")}
+                    model = {"model": str(draft.place / saved["model"])}
                     draft.save()
             finally:
                 if self.output.json:
-                    model = {"model": str(draft.place / names["model"])} if draft and names else {}
                     say_json({**files.record, **model})
             if draft is not None:
-                self._draw(found, files, draft, names, blind)
+                self._draw(found, files, draft, blind)
                 if not self.output.json:
-                    lines = [f"{w + ':':<8} {draft.place / names[w]}" for w in ORDER if w in names]
+                    places = {what: draft.place / name for what, name in FILES.items()}
+                    lines = [f"{what + ':':<8} {at}" for what, at in places.items() if at.exists()]
                     say("\n" + "\n".join(lines))
         return 0
 
-    def _draw(
-        self,
-        found: Discovery,
-        files: TwinDiscoveryFiles,
-        draft: Draft,
-        names: dict[str, Path],
-        blind: str,
-    ) -> None:
-        """Add figures and the report to the saved results, and then the film; adds their names."""
+    def _draw(self, found: Discovery, files: TwinDiscoveryFiles, draft: Draft, blind: str) -> None:
+        """Add figures and the report to the saved results, and then the film."""
         begun, tell = time.monotonic(), self.output.tell
-        page = draft.folder / "report.html"
+        page = draft.folder / FILES["report"]
 
-        def write() -> None:
+        def write() -> bool:
             tell("drawing the report")
             if not add_drawings(draft, "figures and report", lambda: files.draw(draft.folder)):
-                return
-            names["report"] = Path("report.html")
+                return False
             drawn = duration(time.monotonic() - begun)
-            tell(f"report: {draft.place / names['report']} (drawn in {drawn}, beside the search)")
+            tell(f"report: {draft.place / page.name} (drawn in {drawn}, beside the search)")
+            return True
 
         if blind or not self.film:
-            write()
-            if blind and "report" in names:
+            if write() and blind:
                 note(f"no film: {blind}")
             return
         from inca_mj.commands.film import FilmProgress
@@ -154,11 +131,7 @@ class Discover:
 
         progress = FilmProgress(tell, FPS, hint=LEAVE_OUT)
         with film_beside(found, draft.folder, progress) as film:
-            write()
-            if "report" not in names:
-                return
-            if add_drawings(draft, "film", lambda: files.write_filmed(page, film())):
-                names["film"] = Path("film.mp4")
+            if write() and add_drawings(draft, "film", lambda: files.write_filmed(page, film())):
                 tell(f"the film took {duration(time.monotonic() - begun)}")
 
 
@@ -175,10 +148,8 @@ class Demo:
     """The log; the one that comes with the program when none is given."""
     film: bool = True
     """Film the model before and after against unseen seconds of the log."""
-    robot: Annotated[Values, tyro.conf.OmitArgPrefixes] = values_field
-    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = field(
-        default_factory=partial(Output, out=Path("out/demo"))
-    )
+    robot: Values = Values()
+    output: Output = Output(out=Path("out/demo"))
 
     def run(self) -> int:
         """Do all of it, say the verdict first and where the report lies last."""

@@ -6,16 +6,13 @@ from dataclasses import dataclass
 from functools import partial
 from math import radians
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import tyro
 
 import inca_mj as inca
-from identification.commands.common import Output, conclude, draw_report, output_field, table
-from inca_mj.commands.common import Robot, do_not_draw, robot_field
-
-if TYPE_CHECKING:
-    from identification.estimation.information import Information
+from identification.commands.common import Output, conclude, draw_report, table
+from inca_mj.commands.common import Robot, do_not_draw
 
 Names = Annotated[tuple[str, ...], tyro.conf.arg(metavar="NAME")]
 UNKNOWN = ("lambda", "b", "J", "b_v", "b_c", "beta")
@@ -38,8 +35,8 @@ class Sensitivity:
     """Std of the noise on each motor angle [rad]; seen in the log, or 6.7e-4 without one."""
     duration: float = 5.0
     """Length of the PRBS [s]; a log has its own."""
-    robot: Annotated[Robot, tyro.conf.OmitArgPrefixes] = robot_field
-    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
+    robot: Robot = Robot()
+    output: Output = Output()
 
     def run(self) -> int:
         """Analyse, say, keep."""
@@ -62,21 +59,17 @@ class Sensitivity:
             what = f"The currents of {log.name}, {log.duration:g} s"
         about = f"{what}, noise {trial.sigma:.3g} rad."
         record = {"noise": trial.sigma, **information_json(found)}
+        std = dict(zip(found.names, zip(found.std, found.conditional, strict=True), strict=False))
+        rows = [(name, *(f"{x:.3g}" for x in std[name])) for name in found.ranking]
+        said = table(("parameter", "std", "others known"), rows)
         verdict, title = information_verdict(found), "What an experiment can say"
         conclude(
-            self, record, "\n".join([summary_of_information(found), about, *verdict]),
+            self, record, "\n".join([said, about, *verdict]),
             draw=lambda out: draw_report(
                 out, title, verdict, [information_section(found, about)]
             ),
         )  # fmt: skip
         return 0
-
-
-def summary_of_information(found: Information) -> str:
-    """Returns the ranking with the least std of every parameter."""
-    std = dict(zip(found.names, zip(found.std, found.conditional, strict=True), strict=False))
-    rows = [(name, *(f"{x:.3g}" for x in std[name])) for name in found.ranking]
-    return table(("parameter", "std", "others known"), rows)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -106,8 +99,8 @@ class Excite:
     """The platform stays so near its start along x, y, z [m]."""
     turn: float = 60.0
     """And turns no further from its start [deg]."""
-    robot: Annotated[Robot, tyro.conf.OmitArgPrefixes] = robot_field
-    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
+    robot: Robot = Robot()
+    output: Output = Output()
 
     def run(self) -> int:
         """Design, say, keep."""

@@ -6,7 +6,6 @@ import sys
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -19,7 +18,7 @@ from identification.files import check_file
 from identification.folders import whole_folder
 from identification.progress import duration
 from identification.results import RESULT, write_result
-from inca_mj.commands.common import SavedRobot, cannot_draw, do_not_draw, saved_robot_field
+from inca_mj.commands.common import SavedRobot, cannot_draw, do_not_draw
 
 if TYPE_CHECKING:
     from inca_mj.rendering.scene import Scene
@@ -55,10 +54,8 @@ class Film:
     """By how much the deviation from a path that inca track asked is drawn larger."""
     still: tuple[float, ...] = ()
     """Times [s] at which to write a PNG of the picture too."""
-    robot: Annotated[SavedRobot, tyro.conf.OmitArgPrefixes] = saved_robot_field
-    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = field(
-        default_factory=partial(Output, out=Path("out/film"))
-    )
+    robot: SavedRobot = SavedRobot()
+    output: Output = Output(out=Path("out/film"))
 
     def run(self) -> int:
         """Draw film.mp4 and stills."""
@@ -147,33 +144,31 @@ class View:
     """Show models/inca6d_plain.xml, the approximation that needs MuJoCo only."""
     speed: float = 1.0
     """Seconds of the run in a second; 0.25 is slow motion."""
-    robot: Annotated[SavedRobot, tyro.conf.OmitArgPrefixes] = saved_robot_field
+    robot: SavedRobot = SavedRobot()
 
     def run(self) -> int:
         """Show it until the window is closed."""
         do_not_draw()  # the viewer has an OpenGL of its own
+        from inca_mj.commands.compare import compare_with
         from inca_mj.rendering.interactive import refuse_speed, require_screen, view_model, view_run
+        from inca_mj.twin.logs import UNJUDGED
 
         if self.plain and self.source is not None:
             raise InputError("--plain shows a model and no run; leave out --plain, or the file")
         refuse_speed(self.speed)
         require_screen()  # before anything is simulated
         if self.source is not None:
-            view_run(self._run(self.source), speed=self.speed)
+            if self.source.suffix == ".npz":
+                run = inca.load_run(self.source)
+            else:
+                log = inca.read_inca_log(self.source, UNJUDGED)
+                run = compare_with(self.robot, log, UNJUDGED).run
+            view_run(run, speed=self.speed)
         elif self.plain:
             view_model(inca.build_plain(self.robot.parameters(), self.robot.place()).compile())
         else:
             view_model(self.robot.twin(1e-2).model)
         return 0
-
-    def _run(self, source: Path) -> inca.Run:
-        """Returns the run to play."""
-        from inca_mj.commands.compare import compare_with
-        from inca_mj.twin.logs import UNJUDGED, read_inca_log
-
-        if source.suffix == ".npz":
-            return inca.load_run(source)
-        return compare_with(self.robot, read_inca_log(source, UNJUDGED), UNJUDGED).run
 
 
 @dataclass

@@ -11,17 +11,10 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import tyro
 
 import inca_mj as inca
-from identification.commands.common import (
-    Output,
-    conclude,
-    draw_report,
-    flat,
-    output_field,
-    parameter_table,
-)
+from identification.commands.common import Output, conclude, draw_report, flat, parameter_table
 from identification.commands.stopping import STOPPED
 from identification.errors import InputError
-from inca_mj.commands.common import Robot, Trust, do_not_draw, robot_field
+from inca_mj.commands.common import Robot, Trust, do_not_draw
 
 if TYPE_CHECKING:
     from identification.estimation.fit import Fit
@@ -63,8 +56,8 @@ class Identify:
     """Estimated parameters to profile: refit the others at 9 values of each."""
     trust: Trust = ()
     """Checks of the log that you overrule: sensors, units, wiring."""
-    robot: Annotated[Robot, tyro.conf.OmitArgPrefixes] = robot_field
-    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
+    robot: Robot = Robot()
+    output: Output = Output()
 
     def run(self) -> int:
         """Identify, say, keep."""

@@ -9,21 +9,12 @@ from typing import TYPE_CHECKING, Annotated
 import tyro
 
 import inca_mj as inca
-from identification.commands.common import (
-    Output,
-    assignments,
-    conclude,
-    draw_report,
-    output_field,
-    table,
-)
+from identification.commands.common import Output, assignments, conclude, draw_report, table
 from identification.errors import InputError
-from inca_mj.commands.common import Values, do_not_draw, values_field
+from inca_mj.commands.common import Values, do_not_draw
 
 if TYPE_CHECKING:
     import numpy as np
-
-    from inca_mj.kinematics.cables import Cables
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,8 +34,8 @@ class Kinematics:
     """Of a log: std of each angle [rad]; seen in the log when not given."""
     std: Annotated[tuple[str, ...], tyro.conf.arg(metavar="NAME=STD")] = ()
     """Of a log: how well parameters are known, such as R=1e-4 x=0.002; exact when not given."""
-    robot: Annotated[Values, tyro.conf.OmitArgPrefixes] = values_field
-    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
+    robot: Values = Values()
+    output: Output = Output()
 
     def run(self) -> int:
         """Compute, say, keep."""
@@ -80,12 +71,8 @@ class Kinematics:
 
     def _at(self, pose: np.ndarray) -> None:
         from inca_mj.kinematics.cables import Pulleys, inverse
-        from inca_mj.report.poses import (
-            cables_json,
-            cables_rows,
-            cables_section,
-            cables_verdict,
-        )
+        from inca_mj.kinematics.jacobians import jacobian
+        from inca_mj.report.poses import cables_json, cables_rows, cables_section, cables_verdict
         from inca_mj.robot.spread import displaced
 
         if self.noise is not None or self.std:
@@ -93,7 +80,10 @@ class Kinematics:
         place = displaced(self.robot.place(), self.robot.parameters().values())
         cables = inverse(pose, place, Pulleys(self.pulley) if self.pulley else None)
         lines = cables_verdict(cables, place)
-        text = "\n".join([table(*cables_rows(cables)), jacobian_text(cables), *lines])
+        names = ("cable", "∂/∂x", "∂/∂y", "∂/∂z", "∂/∂ω_x [m]", "∂/∂ω_y [m]", "∂/∂ω_z [m]")
+        rows = [(str(k), *(f"{x:+z.4f}" for x in row)) for k, row in enumerate(jacobian(cables), 1)]
+        slopes = "Jacobian of the lengths by twist, along O:\n" + table(names, rows)
+        text = "\n".join([table(*cables_rows(cables)), slopes, *lines])
         conclude(
             self, cables_json(pose, cables), text,
             draw=lambda out: draw_report(
@@ -117,15 +107,6 @@ class Kinematics:
             keep=lambda out: write_poses(found, out / "poses.csv"),
             draw=lambda out: draw_report(out, title, verdict, [poses_section(found)]),
         )  # fmt: skip
-
-
-def jacobian_text(cables: Cables) -> str:
-    """Returns the Jacobian as a text table."""
-    from inca_mj.kinematics.jacobians import jacobian
-
-    names = ("cable", "∂/∂x", "∂/∂y", "∂/∂z", "∂/∂ω_x [m]", "∂/∂ω_y [m]", "∂/∂ω_z [m]")
-    rows = [(str(k + 1), *(f"{x:+z.4f}" for x in row)) for k, row in enumerate(jacobian(cables))]
-    return "Jacobian of the lengths by twist, along O:\n" + table(names, rows)
 
 
 def log_text(found: inca.LogPoses) -> str:

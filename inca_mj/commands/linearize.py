@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import tyro
 
 import inca_mj as inca
-from identification.commands.common import Output, conclude, draw_report, output_field, table
+from identification.commands.common import Output, conclude, draw_report, table
 from identification.commands.linearize import save_systems
 from identification.errors import InputError, unknown_name
 from identification.files import check_file
-from inca_mj.commands.common import Robot, do_not_draw, robot_field
+from inca_mj.commands.common import Robot, do_not_draw
 
 if TYPE_CHECKING:
     import numpy as np
@@ -46,8 +46,8 @@ class Linearize:
     """Axes of an LPV model, of x y z [m] roll pitch yaw [rad]."""
     interpolation: Literal["linear", "cubic"] = "cubic"
     """Between the points of the grid."""
-    robot: Annotated[Robot, tyro.conf.OmitArgPrefixes] = robot_field
-    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
+    robot: Robot = Robot()
+    output: Output = Output()
 
     def run(self) -> int:
         """Linearise, say, keep."""
@@ -148,11 +148,7 @@ def keep(
 
 
 def grid_axes(words: Sequence[str]) -> dict[str, np.ndarray]:
-    """Returns the axes [m, rad] of a grid from words NAME=LOW:HIGH:POINTS, such as `x=-0.4:0.4:5`.
-
-    Raises:
-        InputError: a word is malformed, names no scheduling variable, or names one twice.
-    """
+    """Returns the axes [m, rad] of a grid from words NAME=LOW:HIGH:POINTS, or refuses a word."""
     import numpy as np
 
     from inca_mj.robot.parameters import POSE

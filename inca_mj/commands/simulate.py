@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import tyro
 
 import inca_mj as inca
-from identification.commands.common import Output, conclude, draw_report, output_field, table
+from identification.commands.common import Output, conclude, draw_report, table
 from identification.commands.places import refuse_place
 from identification.errors import InputError
 from inca_mj.commands.common import SavedRobot, do_not_draw, keep_run
@@ -57,8 +57,8 @@ class Simulate:
     """Constant external force G on the platform, in the fixed frame [N]."""
     force_at: Annotated[tuple[float, float, float], tyro.conf.arg(metavar="X Y Z")] = (0, 0, 0)
     """The point b_G where the force acts, in the platform's frame [m]."""
-    robot: Annotated[FigureRobot, tyro.conf.OmitArgPrefixes] = field(default_factory=FigureRobot)
-    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
+    robot: FigureRobot = FigureRobot()
+    output: Output = Output()
 
     def run(self) -> int:
         """Simulate, write, say."""
@@ -66,7 +66,11 @@ class Simulate:
         now = self._resolved()
         refuse_place(now)
         currents, sampling_time, hold = now._currents()
-        robot = now._twin(sampling_time)
+        if now.force is None and any(now.force_at):
+            raise InputError("--force-at says where a force acts; give the force with --force")
+        robot = now.robot.twin(sampling_time)
+        if now.force is not None:
+            robot = inca.with_force(robot, now.force, now.force_at)
         result = inca.simulate(robot, currents, sampling_time, hold_kind=hold)
         summary = {
             "samples": len(result.time),
@@ -81,7 +85,11 @@ class Simulate:
             "figures and report.html follow" if is_drawn else "--out DIR adds figures and a report"
         )
         saved = f"log.csv, run.npz and model.xml are in {now.output.out}; {more}"
-        notes = now._notes()
+        notes = f"input {now.input}, seed {now.seed}"
+        if now.figure is not None:
+            notes = f"Figure {now.figure} of the thesis: {notes}, parameter set {now.robot.set}"
+        if now.force is not None:
+            notes += f", force {now.force} N at {now.force_at} m"
         drawn = partial(draw, result, notes) if is_drawn else None
         keep = partial(keep_run, result, f"simulated by inca simulate: {notes}")
         conclude(now, summary, _text(result), keep, drawn, saved)
@@ -113,21 +121,6 @@ class Simulate:
             raise InputError("--figure is of the thesis' robot; leave out --model, or --figure")
         robot = replace(self.robot, set=needs.set)
         return replace(self, input=needs.input, duration=needs.duration, robot=robot, output=output)
-
-    def _twin(self, sampling_time: float) -> inca.Twin:
-        """Returns the robot, with the force on it."""
-        if self.force is None and any(self.force_at):
-            raise InputError("--force-at says where a force acts; give the force with --force")
-        robot = self.robot.twin(sampling_time)
-        return robot if self.force is None else inca.with_force(robot, self.force, self.force_at)
-
-    def _notes(self) -> str:
-        text = f"input {self.input}, seed {self.seed}"
-        if self.figure is not None:
-            text = f"Figure {self.figure} of the thesis: {text}, parameter set {self.robot.set}"
-        if self.force is not None:
-            text += f", force {self.force} N at {self.force_at} m"
-        return text
 
     def _currents(self) -> tuple[np.ndarray, float, str]:
         from inca_mj.robot.inputs import INPUTS, make_input, sampling_time_of

@@ -10,8 +10,8 @@ from typing import Annotated, Literal
 import tyro
 
 import inca_mj as inca
-from identification.commands.common import Output, conclude, draw_report, note, output_field, table
-from inca_mj.commands.common import Values, cannot_draw, do_not_draw, values_field
+from identification.commands.common import Output, conclude, draw_report, note, table
+from inca_mj.commands.common import Values, cannot_draw, do_not_draw
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,8 +50,8 @@ class Statics:
     """Masses of the cables per length to look at [kg/m]."""
     seed: int = 0
     """Seed of the random points that measure the volume."""
-    robot: Annotated[Values, tyro.conf.OmitArgPrefixes] = values_field
-    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
+    robot: Values = Values()
+    output: Output = Output()
 
     def run(self) -> int:
         """Analyse, say, keep."""

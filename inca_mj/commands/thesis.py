@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING
 
-import tyro
-
-from identification.commands.common import Output, conclude, draw_report, output_field, table
+from identification.commands.common import Output, conclude, draw_report, table
 from inca_mj.commands.common import do_not_draw
 
 if TYPE_CHECKING:
@@ -32,9 +30,7 @@ class Thesis:
     """Seed of the simulated robot that stands in for the real one, and of trial 4's noise."""
     single: bool = False
     """One free-run fit over all data, as the thesis did, instead of a growing horizon."""
-    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = field(
-        default_factory=lambda: Output(out=Path("out/thesis"))
-    )
+    output: Output = Output(out=Path("out/thesis"))
 
     def run(self) -> int:
         """Compute, write, say."""
@@ -82,7 +78,7 @@ class Trials:
     """Repeat trial 4 with so many seeds: bias, std and coverage of the 95 %% intervals."""
     single: bool = False
     """One free-run fit over all data, as the thesis did, instead of a growing horizon."""
-    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
+    output: Output = Output()
 
     def run(self) -> int:
         """Run, say, keep."""

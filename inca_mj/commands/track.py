@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
@@ -13,7 +13,8 @@ import tyro
 import inca_mj as inca
 from identification.commands.common import Output, assignments, conclude, draw_report
 from identification.errors import InputError, unknown_name
-from inca_mj.commands.common import Robot, do_not_draw, keep_run, robot_field
+from identification.quantities import plain_fields
+from inca_mj.commands.common import Robot, do_not_draw, keep_run
 
 if TYPE_CHECKING:
     from identification.effects.effect import Effect
@@ -48,10 +49,8 @@ class Track:
     """Seed of the noise."""
     knows_pose: bool = False
     """Tell the controller the true pose, which the real robot cannot measure."""
-    robot: Annotated[Robot, tyro.conf.OmitArgPrefixes] = robot_field
-    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = field(
-        default_factory=partial(Output, out=Path("out/track"))
-    )
+    robot: Robot = Robot()
+    output: Output = Output(out=Path("out/track"))
 
     def run(self) -> int:
         """Track, write, say."""
@@ -70,7 +69,7 @@ class Track:
             gains=inca.Gains(bandwidth=self.bandwidth), knows_pose=self.knows_pose,
             noise=self.noise, seed=self.seed,
         )  # fmt: skip
-        text = _text(result)
+        text = "\n".join(sentences(result))
         if self.output.out is not None:
             files = "log.csv, run.npz and model.xml are in"
             text += f"\n{files} {self.output.out}; figures and report.html follow"
@@ -83,9 +82,6 @@ def effects_of(words: Sequence[str]) -> tuple[tuple[Effect, ...], dict[str, floa
     """Returns the effects of the catalogue that NAME.SIZE=VALUE words name, and their values.
 
     NAME alone stands for its first size, NAME.SIZE@3 for drive 3.
-
-    Raises:
-        InputError: a word is malformed, given twice, or names no effect or parameter of one.
     """
     from inca_mj.effects.values import records
 
@@ -114,11 +110,7 @@ def summary(result: inca.Tracking) -> dict[str, object]:
 
     run = result.run
     return {
-        "rms": result.rms,
-        "cross_track_rms": result.cross_track_rms,
-        "largest": result.largest,
-        "seen_rms": result.seen_rms,
-        "turned": result.turned,
+        **plain_fields(result, "rms", "cross_track_rms", "largest", "seen_rms", "turned"),
         "counted_from": result.counted,
         "seconds_simulated": float(run.time[-1]),
         "current_min": float(run.currents.min()),
@@ -129,18 +121,19 @@ def summary(result: inca.Tracking) -> dict[str, object]:
     }
 
 
-def _text(result: inca.Tracking) -> str:
+def sentences(result: inca.Tracking) -> list[str]:
+    """Returns how near the platform came, with which currents and tensions, and remarks."""
     from inca_mj.workflows.limits import remarks
 
     run = result.run
-    return (
+    return [
         f"The platform is {1e3 * result.rms:.3f} mm rms from the point that is asked,"
         f" {1e3 * result.largest:.3f} mm at most, and {1e3 * result.cross_track_rms:.3f} mm rms off"
-        f" the path; by the controller's own estimate {1e3 * result.seen_rms:.3f} mm rms.\n"
+        f" the path; by the controller's own estimate {1e3 * result.seen_rms:.3f} mm rms.",
         f"Currents from {run.currents.min():z.2f} to {run.currents.max():z.2f} A, tensions from"
-        f" {run.tension.min():.1f} to {run.tension.max():.1f} N."
-        + "".join(f"\n{line}" for line in remarks(run))
-    )
+        f" {run.tension.min():.1f} to {run.tension.max():.1f} N.",
+        *remarks(run),
+    ]
 
 
 def draw(result: inca.Tracking, out: Path) -> None:
@@ -150,4 +143,4 @@ def draw(result: inca.Tracking, out: Path) -> None:
 
     run = result.run
     sections = [tracking_section(result), run_section(run), model_section(run.twin)]
-    draw_report(out, "A robot on a path", _text(result).split("\n"), sections)
+    draw_report(out, "A robot on a path", sentences(result), sections)

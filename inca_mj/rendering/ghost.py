@@ -60,13 +60,6 @@ def ghost_difference(
     return Difference(simulated, own, ghost)
 
 
-def ghost_errors(off: Difference) -> tuple[np.ndarray, np.ndarray]:
-    """Returns distances of the platforms (N,) [m] and rms errors of the motor angles (N,) [rad]."""
-    distance = np.linalg.norm(off.moved, axis=1)
-    turned = np.sqrt(np.mean((off.simulated[:, 7:] - off.measured[:, 7:]) ** 2, axis=1))
-    return distance, turned
-
-
 @dataclass(frozen=True)
 class Difference:
     """Poses of a simulated and of the measured robot."""
@@ -85,6 +78,13 @@ class Difference:
     def turned(self) -> np.ndarray:
         """Rotation vector of the measured platform, shape (N, 3) [rad]."""
         return np.asarray((_rotation(self.measured) * _rotation(self.own).inv()).as_rotvec())
+
+    @property
+    def errors(self) -> np.ndarray:
+        """Distances of the platforms [m] and rms errors of the motor angles [rad], shape (N, 2)."""
+        angles = self.simulated[:, 7:] - self.measured[:, 7:]
+        distance = np.linalg.norm(self.moved, axis=1)
+        return np.stack([distance, np.sqrt(np.mean(angles**2, axis=1))], axis=1)
 
     @property
     def largest(self) -> float:

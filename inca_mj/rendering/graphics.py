@@ -40,13 +40,9 @@ def choose_backend() -> str:
     """Settle MUJOCO_GL before MuJoCo is imported; call it in commands that draw.
 
     On Linux without a display the unset variable becomes "egl". When MuJoCo is imported already,
-    its context class is exchanged instead.
-
-    Returns:
-        The value of MUJOCO_GL in force, "" where MuJoCo's own choice is right.
-
-    Raises:
-        GraphicsError: the value is unknown or off, or its library is not on this machine.
+    its context class is exchanged instead. Returns the value in force, "" where MuJoCo's own choice
+    is right; raises GraphicsError where it is unknown or off, or its library is not on this
+    machine.
     """
     backend = os.environ.get("MUJOCO_GL", "").lower().strip()
     if backend in _OFF:

@@ -7,7 +7,8 @@ together. It covers none of what lies inside, so that both robots are seen.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -44,8 +45,10 @@ def outline_of(
         if int(model.geom_type[i]) in (_SPHERE, _CAPSULE):
             corners = eye.pixels(_round(model, data, i, eye), size)
             if np.isfinite(corners).all():
-                is_hull = int(model.geom_type[i]) == _SPHERE
-                shapes.append(corners if is_hull else _hull(corners))
+                if int(model.geom_type[i]) == _CAPSULE:
+                    with suppress(QhullError):  # all in one pixel
+                        corners = np.asarray(corners[ConvexHull(corners).vertices])
+                shapes.append(corners)
     cables = []
     for k in range(model.ntendon):
         first, count = int(data.ten_wrapadr[k]), int(data.ten_wrapnum[k])
@@ -63,23 +66,16 @@ def draw_outline(picture: np.ndarray, outline: Outline, colour: str, width: floa
     for corners in outline.cables:
         for dash in _dashes(corners, max(1.0, image.size[1] / 480), image.size):
             pen.line(dash, fill=f"{colour}aa", width=thick)
-    for box, edge in _edges(outline.shapes, image.size, width):
-        image.paste(colour, box, edge)
-    return np.asarray(image)
-
-
-def _edges(
-    shapes: Sequence[np.ndarray], size: tuple[int, int], width: float
-) -> Iterator[tuple[Box, Image.Image]]:
-    """Yields the line round all shapes in parts: the box of each in the picture [px], its image."""
     room, reach = round(width) + 2, max(1, round(FINER * width / 2))
-    for (left, top, right, bottom), inside in _groups(shapes, size, room):
+    for box, inside in _groups(outline.shapes, image.size, room):
+        left, top, right, bottom = box
         fine = Image.new("L", (FINER * (right - left), FINER * (bottom - top)))
         pen = ImageDraw.Draw(fine)
         for shape in inside:
             pen.polygon([*map(tuple, (FINER * (shape - (left, top))).tolist())], fill=255)
         edge = morphological_gradient(np.asarray(fine), 2 * reach + 1, mode="nearest")
-        yield (left, top, right, bottom), Image.fromarray(edge).reduce(FINER)
+        image.paste(colour, box, Image.fromarray(edge).reduce(FINER))
+    return np.asarray(image)
 
 
 def _groups(
@@ -119,13 +115,6 @@ def _round(model: mujoco.MjModel, data: mujoco.MjData, i: int, eye: Eye) -> np.n
         return np.asarray(data.geom_xpos[i] + rim)
     axis = half * data.geom_xmat[i].reshape(3, 3)[:, 2]
     return np.vstack([data.geom_xpos[i] + end + rim for end in (axis, -axis)])
-
-
-def _hull(corners: np.ndarray) -> np.ndarray:
-    try:
-        return np.asarray(corners[ConvexHull(corners).vertices])
-    except QhullError:  # all in one pixel
-        return corners
 
 
 def _dashes(corners: np.ndarray, scale: float, size: tuple[int, int]) -> list[list[float]]:

@@ -49,17 +49,11 @@ class Eye:
 
 @dataclass(frozen=True)
 class Line:
-    """A line through corners.
+    """A line through corners."""
 
-    Attributes:
-        corners: in O, shape (M, 3) [m].
-        colour: a name or "#rrggbb".
-        width: [px].
-    """
-
-    corners: np.ndarray
-    colour: str
-    width: float
+    corners: np.ndarray  # in O, shape (M, 3) [m]
+    colour: str  # a name or "#rrggbb"
+    width: float  # [px]
 
 
 def overlay(picture: np.ndarray, lines: Sequence[Line], eye: Eye) -> np.ndarray:
@@ -67,10 +61,8 @@ def overlay(picture: np.ndarray, lines: Sequence[Line], eye: Eye) -> np.ndarray:
     image = Image.fromarray(picture)
     for line in lines:
         parts = _parts(eye.pixels(line.corners, image.size))
-        if not parts:
-            continue
-        box = box_of(np.vstack(parts), ceil(line.width) + 1, image.size)
-        if box is None:
+        box = parts and box_of(np.vstack(parts), ceil(line.width) + 1, image.size)
+        if not box:
             continue
         left, top, right, bottom = box
         fine = Image.new("L", ((right - left) * FINER, (bottom - top) * FINER))

@@ -93,21 +93,19 @@ def paste(frame: np.ndarray, box: Box, picture: np.ndarray) -> None:
 class Lettering:
     """The words on every frame, drawn once, and the clock, drawn each time."""
 
-    def __init__(self, size: tuple[int, int], boxes: Layout, scale: TensionScale, *, ghost: bool,
-                 assumed: bool, magnify: float | None, times: float,
-                 title: str) -> None:  # fmt: skip
-        """Draw what does not change.
-
-        Args:
-            size: width and height of the frame [px].
-            boxes: of the frame.
-            scale: of the tensions.
-            ghost: whether there is a measured robot.
-            assumed: whether the geometry is.
-            magnify: by how much a trace magnifies its deviation; None where there is no trace.
-            times: by how much the close view enlarges the difference from the measured robot.
-            title: stands over the picture; nothing when empty.
-        """
+    def __init__(
+        self,
+        size: tuple[int, int],  # width and height of the frame [px]
+        boxes: Layout,
+        scale: TensionScale,
+        *,
+        ghost: bool,  # whether there is a measured robot
+        assumed: bool,  # whether the geometry is
+        magnify: float | None,  # of a trace's deviation; None where there is no trace
+        times: float,  # by how much the close view enlarges the difference from the measured robot
+        title: str,  # stands over the picture; nothing when empty
+    ) -> None:
+        """Draw what does not change."""
         self._em = em_of(size[1])
         area = boxes.legend or boxes.scene
         image = Image.new("RGBA", size, (*BACKGROUND, 0))
@@ -141,7 +139,10 @@ class Lettering:
             left, top, width, height = boxes.handle
             pen.rectangle((left, top, left + width - 1, top + height - 1), outline="#C9CED4")
             self._caption(pen, left, top, width, times)
-        self._title(pen, title, size[0])
+        shown, font = title, self._font(1.15)
+        while shown and pen.textlength(shown, font) > size[0] - 2 * em:  # as much as has room
+            shown = shown.removesuffix("…")[:-1] + "…" if len(shown) > 1 else ""
+        pen.text((em, em), shown, INK, font, anchor="lm")
         pixels = np.asarray(image, np.uint16).reshape(-1, 4)
         self._where = np.flatnonzero(pixels[:, 3])
         alpha = pixels[self._where, 3:]
@@ -167,14 +168,6 @@ class Lettering:
         image = Image.fromarray(corner)
         ImageDraw.Draw(image).text((0, 0), text, INK, self._font(ems))
         corner[:] = np.asarray(image)
-
-    def _title(self, pen: ImageDraw.ImageDraw, title: str, width: int) -> None:
-        """Draws the title, as much of it as there is room for."""
-        font, room = self._font(1.15), width - 2 * self._em
-        shown = title
-        while shown and pen.textlength(shown, font) > room:
-            shown = shown.removesuffix("…")[:-1] + "…" if len(shown) > 1 else ""
-        pen.text((self._em, self._em), shown, INK, font, anchor="lm")
 
     def _caption(self, pen: ImageDraw.ImageDraw, left: int, top: int, room: int,
                  times: float) -> None:  # fmt: skip

@@ -11,13 +11,7 @@ import numpy as np
 
 from identification.errors import InputError
 from inca_mj.rendering.checks import refuse_magnify, refuse_titles
-from inca_mj.rendering.ghost import (
-    Difference,
-    common_factor,
-    ghost_difference,
-    ghost_errors,
-    ghost_positions,
-)
+from inca_mj.rendering.ghost import Difference, common_factor, ghost_difference, ghost_positions
 from inca_mj.rendering.legend import TensionScale, tension_scale
 from inca_mj.rendering.overlay import between, trace_of
 from inca_mj.rendering.picture import BACKGROUND, Box, Lettering, Panel, layout, paste
@@ -31,11 +25,7 @@ _THIN = 480  # height of a picture in which the path is one pixel thick
 
 @dataclass(frozen=True, kw_only=True)
 class Look:
-    """The look of films.
-
-    Raises:
-        InputError: the size is odd or too small, or `magnify` is not positive.
-    """
+    """The look of films; a size that is odd or too small is refused."""
 
     camera: str  # "front", "side" or "handle"
     size: tuple[int, int]  # width and height of the whole frame, even numbers [px]
@@ -74,7 +64,13 @@ def stage(scenes: Sequence[Scene], look: Look) -> Iterator[Callable[[float], Beg
         )
     scale = tension_scale(np.concatenate([s.run.tension for s in scenes]))
     plots = len(scenes) == 1 if look.plots is None else look.plots
-    each = [_difference(scene) for scene in scenes]
+    each: list[Difference | None] = []  # from the measured robot; None where none was measured
+    for scene in scenes:
+        off, robot = None, scene.run.twin
+        if scene.angles is not None:
+            ghost = ghost_positions(robot, scene.angles, scene.pose)
+            off = ghost_difference(robot, scene.run.qpos, ghost, scene.pose is not None)
+        each.append(off)
     known = [one for one in each if one is not None]
     times = common_factor(known) if len(known) > 1 else 1.0
     titles = look.titles or [""] * len(scenes)
@@ -106,7 +102,7 @@ def _stage(
         size, boxes, scale, ghost=off is not None, assumed=run.twin.geometry.assumed,
         magnify=None if trace is None else trace.magnify, times=times, title=title,
     )  # fmt: skip
-    errors = None if off is None else np.stack(ghost_errors(off), axis=1)
+    errors = None if off is None else off.errors
     canvas = np.full((size[1], size[0], 3), BACKGROUND, np.uint8)
     views: list[tuple[Box, View, np.ndarray | None]] = []  # with the measured robot as it is seen
 
@@ -142,12 +138,3 @@ def _stage(
                 seen = opened.enter_context(view(run.twin.model, camera, *box[2:], cable=cable))
                 views.append((box, seen, ghost))
         yield begin
-
-
-def _difference(shown: Scene) -> Difference | None:
-    """Returns the simulated robot beside the measured one; None where none was measured."""
-    if shown.angles is None:
-        return None
-    robot = shown.run.twin
-    ghost = ghost_positions(robot, shown.angles, shown.pose)
-    return ghost_difference(robot, shown.run.qpos, ghost, shown.pose is not None)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -53,8 +52,17 @@ def calibration_verdict(found: Calibration) -> list[str]:
         )
     far = unusual(found)
     if far:
+        told = []
+        for group, name, times in far[:MOST]:
+            column, _, number = name.partition("@")
+            if group in found.spread.points:
+                size = f"{POINTS[group]} {number}, {column[-1]} {_scaled(found, name, 1e3)} mm"
+            else:
+                kind = _kind(found, group)
+                size = f"drive {number}, {kind} {_scaled(found, name, 100)} %"
+            told.append(f"{size} ({times:.2g} times)")
         lines.append(
-            f"Far from what is usual: {'; '.join(_far(found, *one) for one in far[:MOST])}"
+            f"Far from what is usual: {'; '.join(told)}"
             + (f"; and {len(far) - MOST} more" if len(far) > MOST else "")
             + ". So large a difference is a fault of this part or of a sensor, or it stands for an"
             " effect that the twin lacks: run inca discover on the same logs."
@@ -83,9 +91,8 @@ def untold(found: Calibration) -> tuple[str, ...]:
 def unusual(found: Calibration) -> tuple[tuple[str, str, float], ...]:
     """Returns values farther from the others than usual parts ever are, the farthest first.
 
-    Returns:
-        The group, the name of the deviation, and how many times the usual std it is. A robot whose
-        parts scatter as usual has any such value with a probability of `RARE` at most.
+    Each has its group, its name, and how many times the usual std it is. A robot whose parts
+    scatter as usual has any such value with a probability of `RARE` at most.
     """
     usual = {**found.spread.drives, **found.spread.points}
     every = [(g, name) for g, names in found.spread.groups.items() for name in names]
@@ -97,17 +104,6 @@ def unusual(found: Calibration) -> tuple[tuple[str, str, float], ...]:
 def _kind(found: Calibration, group: str) -> str:
     """Returns the kind of a group's deviations, in words."""
     return f"{POINTS[group]}s" if group in POINTS else found.robot.parameters[group].short
-
-
-def _far(found: Calibration, group: str, name: str, times: float) -> str:
-    """Returns one value in words: where it is, how large, and how many times what is usual."""
-    number = name.partition("@")[2]
-    if group in found.spread.points:
-        axis = name.partition("@")[0][-1]
-        return (
-            f"{POINTS[group]} {number}, {axis} {_millimetres(found, name)} mm ({times:.2g} times)"
-        )
-    return f"drive {number}, {_kind(found, group)} {_percent(found, name)} % ({times:.2g} times)"
 
 
 def exit_std(found: Calibration) -> tuple[float, float]:
@@ -123,14 +119,18 @@ def exit_std(found: Calibration) -> tuple[float, float]:
     return float(np.sqrt(np.trace(P @ C @ P) / len(C))), float(np.sqrt(np.trace(C) / len(C)))
 
 
+def _common(found: Calibration) -> list[str]:
+    """Returns the names of the fitted values that all drives have in common."""
+    return [n for n in (*EACH_DRIVE, "m", *INERTIAS, *POSE) if n in found.std]
+
+
 def common_rows(found: Calibration) -> list[tuple[str, str, str]]:
     """Returns rows of common values: what it is, nominal value, value with std."""
     parameters, nominal = found.robot.parameters, found.fit.point.predictor.plant.parameters
-    names = [n for n in (*EACH_DRIVE, "m", *INERTIAS, *POSE) if n in found.std]
     return [
         (describe_parameter(nominal[n]), quantity(nominal[n].value, 0.0, nominal[n].unit),
          quantity(parameters[n].value, found.std[n], parameters[n].unit))
-        for n in names
+        for n in _common(found)
     ]  # fmt: skip
 
 
@@ -138,7 +138,7 @@ def drive_rows(found: Calibration) -> list[tuple[str, ...]]:
     """Returns rows of deviations: the parameter, then its deviation at each drive [%]."""
     parameters, every = found.robot.parameters, range(1, DRIVES + 1)
     return [
-        (describe_parameter(parameters[name]), *(_percent(found, f"{name}@{k}") for k in every))
+        (describe_parameter(parameters[name]), *(_scaled(found, f"{name}@{k}", 100) for k in every))
         for name in found.spread.drives
     ]
 
@@ -146,7 +146,7 @@ def drive_rows(found: Calibration) -> list[tuple[str, ...]]:
 def point_rows(found: Calibration) -> list[tuple[str, ...]]:
     """Returns rows of displacements: the point, then x, y, z [mm]."""
     return [
-        (f"{point} {k}", *(_millimetres(found, f"{point}_{axis}@{k}") for axis in AXES))
+        (f"{point} {k}", *(_scaled(found, f"{point}_{axis}@{k}", 1e3) for axis in AXES))
         for point in POINTS
         if point in found.spread.points
         for k in range(1, DRIVES + 1)
@@ -163,16 +163,17 @@ def gap_rows(found: Calibration) -> list[tuple[str, ...]]:
 def calibration_json(found: Calibration) -> dict[str, Any]:
     """Returns the calibration as plain values."""
     parameters, values, std = found.robot.parameters, found.values, found.std
+    places = range(1, DRIVES + 1)
 
     def row(name: str, unit: str) -> dict[str, Any]:
         return {"value": values[name], "std": std[name], "unit": unit}
 
-    common = [n for n in (*EACH_DRIVE, "m", *INERTIAS, *POSE) if n in std]
     return {
         "verdict": calibration_verdict(found),
-        "parameters": {n: row(n, parameters[n].unit) for n in common},
-        "drives": _by_place(found.spread.drives, row, ""),
-        "points": _by_place([f"{p}_{a}" for p in found.spread.points for a in AXES], row, "m"),
+        "parameters": {n: row(n, parameters[n].unit) for n in _common(found)},
+        "drives": {n: [row(f"{n}@{k}", "") for k in places] for n in found.spread.drives},
+        "points": {f"{p}_{a}": [row(f"{p}_{a}@{k}", "m") for k in places]
+                   for p in found.spread.points for a in AXES},
         "scatter": dict(found.scatter),
         "not_told": list(untold(found)),
         "unusual": [{"name": name, "times": times} for _, name, times in unusual(found)],
@@ -182,16 +183,9 @@ def calibration_json(found: Calibration) -> dict[str, Any]:
         "noise_rms": found.fit.level.sigma,
         "input_error_rms": found.fit.level.input_std,
         "seconds": found.seconds,
-    }
+    }  # fmt: skip
 
 
-def _by_place(names: Any, row: Any, unit: str) -> dict[str, list[Mapping[str, Any]]]:
-    return {n: [row(f"{n}@{k}", unit) for k in range(1, DRIVES + 1)] for n in names}
-
-
-def _percent(found: Calibration, name: str) -> str:
-    return " ± ".join(matched(100 * found.values[name], 100 * found.std[name], "+"))
-
-
-def _millimetres(found: Calibration, name: str) -> str:
-    return " ± ".join(matched(1e3 * found.values[name], 1e3 * found.std[name], "+"))
+def _scaled(found: Calibration, name: str, factor: float) -> str:
+    """Returns a value with its std in percent (a factor of 100) or in millimetres (1000)."""
+    return " ± ".join(matched(factor * found.values[name], factor * found.std[name], "+"))

@@ -2,34 +2,22 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
 
+Work = dict[str, str]  # what a bibliography says of a work, by the keys of `THESIS`
 
-@dataclass(frozen=True)
-class Work:
-    """A work to cite."""
-
-    key: str  # of its BibTeX entry
-    kind: str  # software or thesis
-    title: str  # its title
-    author: str  # who wrote it; a name or a group
-    version: str = ""  # of a software, else ""
-    license: str = ""  # SPDX name, or ""
-    where: str = ""  # the institution of a thesis, else ""
-    note: str = ""  # what a reader should know
-
-
-THESIS = Work(
-    key="inca_thesis",
-    kind="thesis",
-    title="Modélisation et identification d'un robot à câbles",
-    author="Équipe Automatique, Vision et Robotique (eAVR)",
-    where="Laboratoire des Sciences de l'Image, de l'Informatique et de la Télédétection,"
+THESIS = {
+    "key": "inca_thesis",  # of its BibTeX entry
+    "kind": "thesis",  # or software
+    "title": "Modélisation et identification d'un robot à câbles",
+    "author": "Équipe Automatique, Vision et Robotique (eAVR)",
+    "version": "",  # of a software
+    "license": "",  # SPDX name
+    "where": "Laboratoire des Sciences de l'Image, de l'Informatique et de la Télédétection,"
     " Strasbourg",
-    note="the title page with the author's name and the year is missing in the text that this"
+    "note": "the title page with the author's name and the year is missing in the text that this"
     " project works from",
-)
+}
 
 
 def software() -> Work:
@@ -38,15 +26,17 @@ def software() -> Work:
         number = version("inca-mj")
     except PackageNotFoundError:  # run from a source tree
         number = ""
-    return Work(
-        key="inca_mj",
-        kind="software",
-        title="inca_mj: the digital twin of a cable robot in MuJoCo, and the search for what it"
+    return {
+        "key": "inca_mj",
+        "kind": "software",
+        "title": "inca_mj: the digital twin of a cable robot in MuJoCo, and the search for what it"
         " lacks",
-        author="The inca_mj authors",
-        version=number,
-        license="Apache-2.0",
-    )
+        "author": "The inca_mj authors",
+        "version": number,
+        "license": "Apache-2.0",
+        "where": "",
+        "note": "",
+    }
 
 
 def works() -> tuple[Work, ...]:
@@ -65,20 +55,20 @@ def to_bibtex() -> str:
 
 
 def _sentence(work: Work) -> str:
-    about = [work.where, f"version {work.version}" if work.version else "", work.license]
+    about = [work["where"], work["version"] and f"version {work['version']}", work["license"]]
     rest = "".join(f", {part}" for part in about if part)
-    note = f" ({work.note})" if work.note else ""
-    return f"{work.author}: {work.title}{rest}.{note}"
+    note = f" ({work['note']})" if work["note"] else ""
+    return f"{work['author']}: {work['title']}{rest}.{note}"
 
 
 def _entry(work: Work) -> str:
     fields = {
-        "title": f"{{{work.title}}}",
-        "author": f"{{{work.author}}}",
-        "version": work.version,
-        "school": work.where,
-        "note": work.note or work.license,
+        "title": f"{{{work['title']}}}",
+        "author": f"{{{work['author']}}}",
+        "version": work["version"],
+        "school": work["where"],
+        "note": work["note"] or work["license"],
     }
-    kind = "software" if work.kind == "software" else "mastersthesis"
+    kind = "software" if work["kind"] == "software" else "mastersthesis"
     body = ",\n".join(f"  {name} = {{{value}}}" for name, value in fields.items() if value)
-    return f"@{kind}{{{work.key},\n{body}\n}}"
+    return f"@{kind}{{{work['key']},\n{body}\n}}"

@@ -6,18 +6,9 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from identification.report.style import (
-    GREY,
-    INK,
-    MEASURED,
-    SERIES,
-    SIMULATED,
-    literal,
-    styled,
-)
+from identification.report.style import GREY, INK, MEASURED, SERIES, SIMULATED, literal, styled
 from identification.report.value_words import describe_parameter
 from inca_mj.control.paths import PLANES, Circle
 from inca_mj.robot.geometry import DRIVES
@@ -115,16 +106,12 @@ def tracking_figure(results: Mapping[str, Tracking]) -> Figure:
 def crosscheck_figure(rows: Sequence[Mapping[str, Any]], order: float | None) -> Figure:
     """Returns a figure of the largest difference of the two models over the step, with slope 4.
 
-    Args:
-        rows: of `CrossCheck`, one for each case and step.
-        order: the observed order of convergence; None when it could not be observed.
+    The rows are those of `CrossCheck`; the observed order is None when it could not be observed.
     """
     cases = list(dict.fromkeys(str(row["case"]) for row in rows))
     figure = Figure((9.5, 3.6), layout="constrained")
     for ax, (kind, unit) in zip(
-        figure.subplots(1, 3),
-        (("angle", "rad"), ("position", "m"), ("tension", "N")),
-        strict=True,
+        figure.subplots(1, 3), (("angle", "rad"), ("position", "m"), ("tension", "N")), strict=True
     ):
         error = f"max_{kind}_error"
         for number, case in enumerate(cases):
@@ -133,11 +120,14 @@ def crosscheck_figure(rows: Sequence[Mapping[str, Any]], order: float | None) ->
                             if str(r["case"]) == case)  # fmt: skip
             ax.plot(*zip(*points, strict=True), color=SERIES[number % len(SERIES)],
                     marker=MARKERS[number % len(MARKERS)], ms=4.5, label=case)  # fmt: skip
-        _slope(ax, rows, error)
+        steps = sorted({row["step"] for row in rows})
+        largest = max((row[error] or 0.0 for row in rows if row["step"] == steps[-1]), default=0.0)
+        if largest > 0:  # a guide just below the largest errors
+            guide = 0.4 * largest * (np.array(steps) / steps[-1]) ** 4
+            ax.plot(steps, guide, color=GREY, ls="--", lw=1, label="slope 4")
         ax.set(xscale="log", xlabel="step [ms]")
         if any(row[error] for row in rows):
             ax.set_yscale("log")
-        steps = sorted({row["step"] for row in rows})
         ax.set_xticks(steps, [f"{1e3 * step:g}" for step in steps])
         ax.minorticks_off()
         ax.set_title(f"largest {kind} error [{unit}]", loc="left", color=INK)
@@ -146,15 +136,6 @@ def crosscheck_figure(rows: Sequence[Mapping[str, Any]], order: float | None) ->
     handles, labels = ax.get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=min(5, len(labels)))
     return figure
-
-
-def _slope(ax: Axes, rows: Sequence[Mapping[str, Any]], error: str) -> None:
-    """Draws a dashed line with error ~ step⁴, just below the largest errors."""
-    steps = np.array(sorted({row["step"] for row in rows}))
-    largest = max((row[error] or 0.0 for row in rows if row["step"] == steps[-1]), default=0.0)
-    if largest > 0:
-        guide = 0.4 * largest * (steps / steps[-1]) ** 4
-        ax.plot(steps, guide, color=GREY, ls="--", lw=1, label="slope 4")
 
 
 @styled

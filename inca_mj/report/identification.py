@@ -48,7 +48,13 @@ def identification_json(
             "input_error_time": found.level.noise.time if found.level.noise.ratio else None,
         }  # fmt: skip
     if profiles:
-        record["profiles"] = {p.name: _profile(p) for p in profiles}
+        record["profiles"] = {
+            p.name: {
+                "value": p.estimate, "interval": [finite_or_none(end) for end in p.interval],
+                "values": p.values.tolist(), "rise": [finite_or_none(r) for r in p.rise],
+            }
+            for p in profiles
+        }  # fmt: skip
     if (w := result.windows) is not None:
         record["parameters"] = {
             name: {"value": value, "std": finite_or_none(std), "unit": unit, "initial": first,
@@ -69,11 +75,22 @@ def identification_verdict(result: Identification) -> list[str]:
     if result.windows is not None:
         return windows_verdict(result.windows, result.fit)
     lines = fit_verdict(result.fit)
-    if held := held_sentence(result.fit):
-        lines.append(held)
+    held = [name for name in POSE if name not in result.fit.estimate.values]
+    if len(held) == len(POSE):
+        lines.append(
+            "The start pose is held where the parameter set puts it; where that is not exact,"
+            f" estimate it too: --free ... {' '.join(held)}."
+        )
     if result.starts:
-        unit = result.fit.estimate.predictor.log.output_unit
-        lines.append(starts_sentence(result.starts[result.best], unit))
+        unit, errors = result.fit.estimate.predictor.log.output_unit, result.starts[result.best]
+        best, worst = float(errors.min()), float(errors.max())
+        said = "The first start ended near the noise floor; no other was needed."
+        if len(errors) > 1:
+            said = (
+                f"{len(errors)} starts were tried; {int((errors < 1.01 * best).sum())} ended within"
+                f" 1 % of the best, {error(best, unit)} rms, the worst at {error(worst, unit)}."
+            )
+        lines.append(said)
     return lines
 
 
@@ -147,43 +164,11 @@ def innovations_verdict(found: InnovationsFit) -> list[str]:
     return lines
 
 
-def held_sentence(fit: Fit) -> str:
-    """Says that the start pose was not estimated, which spoils a fit if the pose is not exact."""
-    held = [name for name in POSE if name not in fit.estimate.values]
-    if len(held) < len(POSE):
-        return ""
-    return (
-        "The start pose is held where the parameter set puts it; where that is not exact, estimate"
-        f" it too: --free ... {' '.join(held)}."
-    )
-
-
-def starts_sentence(errors: np.ndarray, unit: str) -> str:
-    """Says how many starts were needed, and how well the rms errors [unit] of their ends agree."""
-    best = float(errors.min())
-    same = int((errors < 1.01 * best).sum())
-    if len(errors) == 1:
-        return "The first start ended near the noise floor; no other was needed."
-    return (
-        f"{len(errors)} starts were tried; {same} ended within 1 % of the best,"
-        f" {error(best, unit)} rms, the worst at {error(float(errors.max()), unit)}."
-    )
-
-
 def profile_sentence(known: Profile) -> str:
     """Returns the 95 % interval of a profile in words."""
     low, high = known.interval
     text = f"{known.name}: {known.estimate:.6g}, 95 % interval [{low:.6g}, {high:.6g}]"
     return text + ("; open: the log does not bound it here" if known.open else "")
-
-
-def _profile(known: Profile) -> dict[str, Any]:
-    return {
-        "value": known.estimate,
-        "interval": [finite_or_none(end) for end in known.interval],
-        "values": known.values.tolist(),
-        "rise": [finite_or_none(r) for r in known.rise],
-    }
 
 
 def fit_section(result: Identification, fit: Fit, title: str) -> Section:
@@ -195,13 +180,7 @@ def fit_section(result: Identification, fit: Fit, title: str) -> Section:
         table=Table(
             ("parameter", "value", "std", "unit", "start", "note"),
             tuple(
-                (
-                    name,
-                    *matched(value, std),
-                    unit,
-                    first,
-                    "at bound" if bound else "",
-                )
+                (name, *matched(value, std), unit, first, "at bound" if bound else "")
                 for name, value, std, unit, first, bound in rows(result, fit)
             ),
         ),

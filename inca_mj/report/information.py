@@ -13,7 +13,7 @@ from identification.report.untold_words import unresolved_words, untold
 from identification.shares import HELD, percent
 
 if TYPE_CHECKING:
-    from inca_mj.workflows.excitation import Design, Tried
+    from inca_mj.workflows.excitation import Design
 
 WEAK = 0.5  # a value with a larger relative std says little
 
@@ -167,21 +167,18 @@ def design_json(result: Design) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _row(tried: Tried) -> tuple[object, ...]:
-    found = tried.found
-    return (
-        tried.name, "yes" if tried.allowed else "no", float(tried.extent.tension),
-        float(tried.extent.reach), *(100 * float(s) for s in found.std),
-        float(np.log10(found.e_value)) if found.e_value > 0 else "blind",
-    )  # fmt: skip
-
-
 def design_section(result: Design) -> Section:
     """Returns the designed input compared with the thesis' PRBS, and a table of standard inputs."""
     from inca_mj.report.figures import std_figure
 
     names = result.best.found.names[: result.best.found.asked]
     stds = {"thesis' PRBS": result.prbs.found.std, "designed": result.best.found.std}
+    rows = []
+    for tried in (*result.standard, result.best):
+        least, far = float(tried.extent.tension), float(tried.extent.reach)
+        E = float(np.log10(tried.found.e_value)) if tried.found.e_value > 0 else "blind"
+        allowed = "yes" if tried.allowed else "no"
+        rows.append((tried.name, allowed, least, far, *map(float, 100 * tried.found.std), E))
     recipe = ", ".join(f"{k} {v:.3g}" for k, v in result.settings.items())
     return Section(
         "The effect of the input",
@@ -193,6 +190,6 @@ def design_section(result: Design) -> Section:
         table=Table(
             ("input", "allowed", "least tension [N]", "reach [m]",
              *(f"std {n} [%]" for n in names), "log10 E"),
-            tuple(_row(t) for t in (*result.standard, result.best)),
+            tuple(rows),
         ),
     )  # fmt: skip

@@ -11,11 +11,7 @@ from matplotlib.figure import Figure
 from identification.linear.gridded import GriddedSystem
 from identification.linear.modes import Mode, modes
 from identification.quantities import plain, plain_fields
-from identification.report.linear import (
-    linear_sections,
-    slowest_and_fastest,
-    system_to_json,
-)
+from identification.report.linear import linear_sections, slowest_and_fastest, system_to_json
 from identification.report.page import Section, Table
 from identification.report.style import GREY, INK, MEASURED, SIMULATED, styled
 from identification.shares import HELD, percent
@@ -79,8 +75,11 @@ def _draw_mode(axis: Any, model: LinearModel, mode: Mode, placed: Geometry) -> N
     small = 1e-3 / np.abs(shape).max()
     size = REACH * small / np.linalg.norm(connectors(small) - still, axis=1).max()
     for end, colour, width in ((-size, SIMULATED, 1.4), (size, MEASURED, 1.4), (0.0, GREY, 2.4)):
-        at = connectors(end)
-        _draw_handle(axis, at, p + end * shape[:3], placed.A, colour, width)
+        centre = p + end * shape[:3]
+        for point, far in zip(connectors(end), placed.A, strict=True):  # an arm, and its cable
+            axis.plot(*np.stack([centre, point], axis=1), color=colour, lw=width)
+            way = (far - point) / np.linalg.norm(far - point)
+            axis.plot(*np.stack([point, point + STUB * way], axis=1), color=colour, lw=0.5)
     moved = connectors(size) - still
     for point, way in zip(still, moved, strict=True):
         axis.quiver(*point, *way, color=INK, lw=0.8, arrow_length_ratio=0.3)
@@ -98,26 +97,12 @@ def _draw_mode(axis: Any, model: LinearModel, mode: Mode, placed: Geometry) -> N
     axis.set_box_aspect((1, 1, 1))
 
 
-def _draw_handle(
-    axis: Any, at: np.ndarray, centre: np.ndarray, exits: np.ndarray, colour: str, width: float
-) -> None:
-    """Draws the arms of the platform, and the first part of each cable."""
-    for point, far in zip(at, exits, strict=True):
-        axis.plot(*np.stack([centre, point], axis=1), color=colour, lw=width)
-        way = (far - point) / np.linalg.norm(far - point)
-        axis.plot(*np.stack([point, point + STUB * way], axis=1), color=colour, lw=0.5)
-
-
 ERRORS = ("matrix", "response", "eigenvalue")
 HANDLE_HEAD = ("frequency [Hz]", "damping", "the platform moves along", "share of the platform")
 
 
 def model_to_json(model: LinearModel, rate: float) -> dict[str, Any]:
-    """Returns a linear model of the robot as plain values; its discrete form has the rate [Hz].
-
-    Raises:
-        InputError: the rate is not above zero.
-    """
+    """Returns a linear model of the robot as plain values; its discrete form has the rate [Hz]."""
     return {
         **plain_fields(model, "time", "tension", "friction_slope"),
         **system_to_json(model.system, rate),

@@ -196,11 +196,7 @@ def poses_figure(found: LogPoses) -> Figure:
 
 
 def write_poses(found: LogPoses, path: Path) -> Path:
-    """Write poses, their std and the tensions as CSV; returns the path.
-
-    Raises:
-        InputError: the file cannot be written.
-    """
+    """Write poses, their std and the tensions as CSV; returns the path."""
     drives = range(1, found.tension.shape[1] + 1)
     names = [
         "time", *POSE, *(f"std_{name}" for name in POSE),

@@ -32,10 +32,7 @@ def compare_verdict(result: Comparison) -> list[str]:
         ]
     if still := [str(i + 1) for i in np.flatnonzero(np.isnan(fit))]:
         lines.append(f"No fit is said of drives that never move: {', '.join(still)}.")
-    return [
-        *lines,
-        f"The difference is {error:.1f} mrad rms, {cable:.2f} mm of cable.",
-    ]
+    return [*lines, f"The difference is {error:.1f} mrad rms, {cable:.2f} mm of cable."]
 
 
 def compare_section(result: Comparison) -> Section:

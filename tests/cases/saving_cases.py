@@ -1,6 +1,6 @@
 """Saves results in a child that is killed, or whose disk fails, at each of its calls in turn.
 
-    python saving_cases.py kill|ENOSPC|EIO|full CASE FOLDER
+    python saving_cases.py kill|ENOSPC|full CASE FOLDER
 
 Each call that opens a file to write, makes, links, renames or removes a name, or brings a file to
 the disk is met once. What every command does with its results (`conclude`) is run in a child, and
@@ -51,12 +51,10 @@ def save(out: Path) -> None:
 
 
 def prepare(case: str, out: Path) -> None:
-    """Make the folder of a case: new, empty, older, hidden (a file of a user), folders, inside."""
+    """Make the folder of a case: new, older, hidden (a file of a user), folders."""
     if case == "new":
         return
     out.mkdir(parents=True)
-    if case == "empty":
-        return
     with draft_of(out) as draft:
         for name, text in OLD.items():
             (draft.folder / name).write_text(text)
@@ -126,8 +124,6 @@ def main(what: str, case: str, place: str) -> None:
         home.mkdir(parents=True)
         out = home / "out"
         prepare(case, out)
-        if case == "inside":
-            os.chdir(out)
         before, names = content(out), sorted(p.name for p in home.iterdir())
         mine = {name: text for name, text in before.items() if name in MINE}
         new = {"result.json": "new", "robot.toml": "new", **mine}
@@ -154,7 +150,6 @@ def main(what: str, case: str, place: str) -> None:
         assert content(out) == whole[1], (found[-1], content(out))
         hidden = [p.name for p in (*home.iterdir(), *out.iterdir()) if p.name.startswith(LEFT)]
         assert hidden == [] or code != 9, (found[-1], hidden)  # those of killed programs go
-    os.chdir(place)
     sys.__stdout__.write(json.dumps(found) + "\n")
 
 

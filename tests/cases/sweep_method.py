@@ -78,4 +78,3 @@ TOSS = Method(
     against="size",
     summary=findings,
 )
-WRONG = Method(about="returns too little", settings=Toss, columns=COLUMNS, run=lambda s, r: {})

@@ -32,16 +32,6 @@ def last_json(capsys):
     return json.loads(out)
 
 
-def test_compare_says_the_contract(capsys):
-    assert run("compare", LOG, "--json") == 0
-    result = last_json(capsys)
-    assert set(result) == {"fit_percent", "rms", "samples", "seconds_simulated"}
-    assert len(result["fit_percent"]) == len(result["rms"]) == 8
-    assert result["samples"] == 2000
-    assert result["seconds_simulated"] == pytest.approx(19.99)
-    assert 70 < min(result["fit_percent"]) < max(result["fit_percent"]) < 100
-
-
 def test_a_simulated_log_is_explained_to_the_last_bit(kept, capsys):
     values = ("--param", "m=0.2", "x=0.01", "yaw=0.05")
     assert run("simulate", "--input", "multisine", "--duration", 1, *values) == 0

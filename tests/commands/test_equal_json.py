@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from robot_cases import TOML, simulated
+from robot_cases import TOML, simulated, write_slider
 
 from identification.logs.csv_files import write_log
 from inca_mj.twin.logs import read_inca_log
@@ -27,15 +27,11 @@ LINES = (
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     """A folder with a robot that is fitted in a free run, and over a horizon."""
-    from joint_cases import SLIDER
-
     folder = tmp_path_factory.mktemp("robot")
-    (folder / "slider.xml").write_text(SLIDER)
-    (folder / "robot.toml").write_text(TOML)
+    write_slider(folder)
     (folder / "horizon.toml").write_text("horizon = 0.3\nown = ['qpos[0]', 'qvel[0]']\n" + TOML)
     few = "[effects]\nonly = ['coulomb_friction', 'stiffness']\n"
     (folder / "few.toml").write_text("horizon = 0.3\n" + TOML + few)
-    write_log(simulated({"damping": 3.3, "mass": 2.2}, 200), folder / "log.csv")
     write_log(simulated({"damping": 3.3, "mass": 2.2}, 600), folder / "long.csv")
     write_log(read_inca_log(LOG).between(0.0, 2.0), folder / "twin.csv")
     return folder

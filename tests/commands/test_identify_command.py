@@ -97,10 +97,7 @@ def test_windows_can_be_asked_for(log, capsys):
 
 @pytest.mark.parametrize("options", [[], ["--windows", "0.25"]])
 def test_an_interrupt_keeps_the_best_values_and_is_told_by_the_exit_code(
-    log,
-    monkeypatch,
-    capsys,
-    options,
+    log, monkeypatch, capsys, options
 ):
     def interrupt(output, line):
         raise KeyboardInterrupt

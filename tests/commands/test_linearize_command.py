@@ -6,10 +6,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from joint_cases import SLIDER
-from robot_cases import TOML, simulated
+from robot_cases import write_slider
 
-from identification import load_grid, load_system, write_log
+from identification import load_grid, load_system
 from identification.__main__ import main as identification
 from inca_mj.cli import main as inca
 
@@ -38,9 +37,7 @@ def printed(capsys, main, *arguments):
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     path = tmp_path_factory.mktemp("slider")
-    (path / "slider.xml").write_text(SLIDER)
-    (path / "robot.toml").write_text(TOML)
-    write_log(simulated({"damping": 3.6, "mass": 1.8}, samples=300), path / "log.csv")
+    write_slider(path, 300)
     return path
 
 

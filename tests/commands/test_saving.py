@@ -10,11 +10,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import fake_discovery
-import numpy as np
 import pytest
 from folder_cases import content, list_foreign, made
 
-from identification.commands.common import Output, conclude, say_json
+from identification.commands.common import Output, conclude
 from identification.folders import refuse_foreign, try_folder
 from inca_mj.commands import filmed
 from inca_mj.commands.discover import Discover
@@ -200,8 +199,3 @@ def test_the_sentence_is_said_once_whoever_ends_the_program(tmp_path):
     ]  # fmt: skip
     assert {*content(tmp_path / "out")} == {"result.json"}
     try_folder(tmp_path / "out")
-
-
-def test_what_is_not_finite_is_null_on_the_way_out(capsys):
-    say_json({"a": float("nan"), "b": [1, np.float64("inf")], "c": Path("x")})
-    assert json.loads(capsys.readouterr().out) == {"a": None, "b": [1, None], "c": "x"}

@@ -52,25 +52,19 @@ LOG = str(ROOT / "examples" / "log.csv")
 HEAVY = ("mujoco", "matplotlib", "numba", "scipy")
 LINES = [
     ["film", "no.csv"],
-    ["film", str(ROOT / "README.md")],
     ["film", str(ROOT)],
     ["film", LOG, "--speed", "0"],
     ["film", LOG, "--seconds", "-1"],
     ["film", LOG, "--magnify", "0"],
     ["film", LOG, "--title", "a", "b"],
-    ["film", LOG, LOG, LOG],
     ["film", LOG, "--param", "q=1"],
     ["film", LOG, "--model", "no"],
-    ["film", LOG, "--model", "no", "--param", "m=0.2"],
-    ["linearize", "--pose", "1", "2"],
     ["linearize", "--pose", "9", "9", "9", "0", "0", "0"],
     ["linearize", "--log", "no.csv", "--time", "1"],
     ["linearize", "--log", LOG],
     ["linearize", "--grid", "x=1:2:1"],
-    ["linearize", "--grid", "q=1:2:3"],
     ["linearize", "--rate", "-4"],
     ["linearize", "--param", "q=1"],
-    ["linearize", "--step", "0"],
     ["linearize", "--geometry", "no.toml"],
 ]
 CODE = f"""

@@ -14,16 +14,10 @@ from identification.errors import InputError
 from identification.progress import duration
 from inca_mj.commands.film import FIRST, FilmProgress
 from inca_mj.commands.filmed import FILMED, film_discovery, filmed_seconds
-from inca_mj.rendering.film import stills
-from inca_mj.rendering.scene import make_scene
 from inca_mj.rendering.workspace_picture import workspace_picture
 from inca_mj.robot.geometry import INCA
-from inca_mj.robot.inputs import make_input
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.statics.workspace import DriveLimits, workspace
-from inca_mj.twin.run import save_run, simulate
-from inca_mj.twin.twin import build_twin
-from inca_mj.workflows.pulled import with_force
 
 
 @pytest.mark.parametrize(
@@ -144,12 +138,3 @@ def test_an_empty_workspace_is_refused(tmp_path):
     with pytest.raises(InputError, match="no point of the grid lies in the wrench-feasible"):
         workspace_picture(nothing, tmp_path / "a.png", TRIAL, INCA)
     assert not (tmp_path / "a.png").exists()
-
-
-def test_a_reloaded_run_with_an_effect_gives_a_picture(opengl, tmp_path):
-    run = simulate(with_force(build_twin(), (0, 0, 1.0)), make_input("zero", 0.1))
-    scene = make_scene(save_run(run, tmp_path / "run.npz"))
-    assert [e.name for e in scene.run.twin.effects] == ["pull"]
-    (picture,) = stills(scene, tmp_path, (0.1,), plots=False)
-    assert picture.read_bytes().startswith(b"\x89PNG")
-    assert picture.stat().st_size > 10_000

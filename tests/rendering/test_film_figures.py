@@ -7,30 +7,11 @@ import pytest
 from PIL import Image
 
 from identification.errors import InputError
-from identification.report.figures import compare_figure
 from identification.report.media import svg
 from identification.report.page import Section, Table, write_report
 from identification.report.style import save_png
 from inca_mj.rendering.legend import SLACK, tension_scale
 from inca_mj.report.figures import crosscheck_figure, simulation_figures
-
-
-def test_compare_shows_every_output_with_its_fit_and_residual():
-    channels = 8
-    time = np.linspace(0, 1, 20)
-    measured = np.sin(np.outer(time, np.arange(1, channels + 1)))
-    fit = np.linspace(90, 99, channels)
-    fit[-1] = np.nan
-    names = [f"angle_{k}" for k in range(channels)]
-    figure = compare_figure(time, measured, measured + 0.1, fit, names, "rad")
-    panels = {a.get_title("left"): a for a in figure.axes if a.get_title("left")}
-    assert len(panels) == channels
-    for k, name in enumerate(names[:-1]):
-        assert f"{name}   fit {fit[k]:.2f} %" in panels
-    residuals = [a for a in figure.axes if a.get_ylabel().startswith("residual")]
-    assert len(residuals) == channels
-    for axes in residuals:
-        np.testing.assert_allclose(axes.lines[0].get_ydata(), -0.1)
 
 
 def test_crosscheck_draws_each_case_and_the_slope():

@@ -26,7 +26,6 @@ from inca_mj.rendering.scene import Scene, make_scene
 from inca_mj.rendering.stage import Look, stage
 from inca_mj.robot.geometry import INCA
 from inca_mj.twin.logs import read_inca_log
-from inca_mj.twin.run import save_run
 from inca_mj.workflows.comparison import compare
 
 
@@ -81,12 +80,6 @@ def test_a_log_that_is_wired_in_another_way_is_drawn_as_it_is():
     with pytest.raises(InputError, match="turn the sign"):
         compare(wrong)
     np.testing.assert_array_equal(make_scene(wrong).angles, wrong.outputs)
-
-
-def test_a_saved_run_is_the_run_that_was_saved(short_run, tmp_path):
-    scene = make_scene(save_run(short_run, tmp_path / "run.npz"), 0.25)
-    np.testing.assert_array_equal(scene.run.qpos, short_run.qpos[:26])
-    assert scene.angles is None
 
 
 START = np.array([0.02, -0.01, 1.3, 0.05, -0.02, 0.3])

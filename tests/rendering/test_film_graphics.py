@@ -39,17 +39,13 @@ def headless(monkeypatch):
     return monkeypatch
 
 
-def draw(**environment):
-    clean = {k: v for k, v in os.environ.items() if k not in ("MUJOCO_GL", "DISPLAY")}
-    clean.pop("WAYLAND_DISPLAY", None)
+def draw(*before, code=DRAW, **environment):
+    hidden = ("MUJOCO_GL", "DISPLAY", "WAYLAND_DISPLAY")
+    clean = {k: v for k, v in os.environ.items() if k not in hidden}
     return subprocess.run(
-        [sys.executable, "-c", DRAW],
-        env={**clean, **environment},
-        capture_output=True,
-        text=True,
-        timeout=60,
-        check=False,
-    )
+        [sys.executable, *before, "-c", code], env={**clean, **environment}, capture_output=True,
+        text=True, timeout=60, check=False,
+    )  # fmt: skip
 
 
 def test_without_a_display_the_backend_is_egl(headless):
@@ -82,12 +78,5 @@ def test_without_a_driver_every_try_gives_one_sentence(opengl):
 
 
 def test_mujoco_imported_before_can_still_draw(opengl):
-    done = subprocess.run(
-        [sys.executable, "-W", "ignore", "-c", "import mujoco\n" + DRAW.replace("assert", "0,")],
-        env={k: v for k, v in os.environ.items() if k != "MUJOCO_GL"},
-        capture_output=True,
-        text=True,
-        timeout=60,
-        check=False,
-    )
+    done = draw("-W", "ignore", code="import mujoco\n" + DRAW.replace("assert", "0,"))
     assert done.stdout == 2 * "(8, 16, 3)"

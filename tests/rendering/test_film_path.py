@@ -109,23 +109,6 @@ def test_what_is_behind_the_camera_is_not_drawn_and_the_rest_is():
 
 
 @pytest.mark.usefixtures("opengl")
-def test_a_path_is_in_the_picture_and_its_colour_too(tmp_path, short_run):
-    run = asked(short_run, np.array([0.004, 0.0, 0.0]))
-    run = replace(run, asked=run.asked + np.linspace(-0.2, 0.2, len(run.time))[:, None] * [1, 0, 1])
-    (tmp_path / "plain").mkdir()
-    look = {"size": (640, 480), "plots": False, "camera": "handle"}
-    (with_path,) = stills(run, tmp_path, [0.5], **look)
-    (without,) = stills(short_run, tmp_path / "plain", [0.5], **look)
-
-    def green(path):
-        red, green, blue = np.moveaxis(pixels(path)[120:], 2, 0)  # under the legend
-        return (green - red > 60) & (green - blue > 10)
-
-    assert green(with_path).sum() > 100
-    assert not green(without).any()
-
-
-@pytest.mark.usefixtures("opengl")
 def test_two_pictures_are_the_single_ones_side_by_side(tmp_path, short_run):
     """To the pixel, where both have the tensions of the scale that they share."""
     one, two = asked(short_run, np.array([0.001, 0, 0])), short_run

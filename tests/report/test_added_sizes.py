@@ -4,11 +4,13 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from arm_cases import LOG
 
 from identification import read_robot
 from identification.effects.effect import Candidate
+from identification.effects.joint_plant import candidates, joint_plant
 from identification.quantities import quantity
-from identification.report.effect_words import ADDED_TO, describe_sizes
+from identification.report.effect_words import ADDED_TO, _already, describe_sizes
 
 MODEL = """<mujoco><option integrator="RK4"/><worldbody><body name="arm">
   <joint name="swing" axis="0 1 0" damping="0.05" {numbers}/>
@@ -49,3 +51,19 @@ def test_it_is_told_beside_the_number_that_it_adds_to(tmp_path, has):
         else:
             assert "addition" not in said
     assert seen == ({*OWN} if has else set()) | (seen & {"mass"})
+
+
+ARM = """<mujoco><worldbody><body><joint name="j1" axis="0 1 0" frictionloss="0.08"/>
+  <geom size="0.1" pos="0 0 -0.2" mass="0.5"/>
+  <body name="tip" pos="0 0 -0.4"><joint name="j2" axis="0 1 0"/>
+  <geom size="0.1" mass="0.25"/></body>
+  </body></worldbody>
+  <actuator><motor name="one" joint="j1"/><motor name="two" joint="j2"/></actuator>
+  <sensor><jointpos name="a" joint="j1"/><jointpos name="b" joint="j2"/></sensor></mujoco>"""
+
+
+def test_a_body_without_a_name_is_no_error():
+    plant = joint_plant(ARM, (), LOG)
+    effect = next(e for e in candidates(plant, ()) if e.name == "mass_mismatch")
+    first = next(w for w, suffix in effect.places.items() if suffix)
+    assert _already(Candidate(effect, first, {}), plant) == ""

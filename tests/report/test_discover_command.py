@@ -38,21 +38,6 @@ def run(*arguments):
     return main([str(a) for a in arguments])
 
 
-def test_json_is_the_contract(path, capsys):
-    assert run("discover", path, "--json") == 0
-    out = capsys.readouterr().out
-    assert out.count("\n") == 1
-    record = json.loads(out)
-    assert {"verdict", "effects", "unexplained", "gap", "located", "model", "seconds"} <= set(
-        record
-    )
-    assert record["verdict"] == "named"
-    assert record["model"] is None
-    (effect,) = record["effects"]
-    assert (effect["name"], effect["where"]) == ("stribeck_friction", "all drives")
-    assert set(record["gap"]["before"]) == {"rms", "fit_percent", "rms_by_unit"}
-
-
 @pytest.mark.parametrize(
     ("case", "says"),
     [

@@ -10,10 +10,7 @@ from records_cases import HORIZON
 
 from identification.report.discovery_json import discovery_to_json
 from identification.report.horizon_gap import APART, WORST, find_gap
-from identification.report.horizon_section import (
-    NO_FORCE,
-    horizon_sections,
-)
+from identification.report.horizon_section import NO_FORCE, horizon_sections
 
 
 def test_errors_are_those_that_the_discovery_tells():

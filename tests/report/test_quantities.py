@@ -94,8 +94,6 @@ WORDS = {"b": "damping b, elbow"}
 @pytest.mark.parametrize(
     ("symmetries", "said"),
     [
-        ([ALONE], "the data do not tell damping b, elbow"),
-        ([PAIR], "m and k trade off along (k -0.89, m +0.45), and no output changes"),
         (
             [PAIR, ALONE],
             "the data do not tell damping b, elbow; m and k trade off along (k -0.89, m +0.45)"

@@ -15,11 +15,7 @@ from matplotlib.figure import Figure
 from identification.report import media
 from identification.report.discovery_report import DiscoveryFiles
 from identification.report.media import drawing, svg
-from identification.report.page import (
-    Section,
-    whole_quantities,
-    write_report,
-)
+from identification.report.page import Section, whole_quantities, write_report
 from identification.report.style import SERIES, save_png
 
 SVG = "{http://www.w3.org/2000/svg}"

@@ -2,16 +2,16 @@
 
 from dataclasses import replace
 from math import hypot
+from types import SimpleNamespace
 
 import pytest
-from fake_discovery import NOISE, REJECTED, SLOW, found
+from fake_discovery import NOISE, REJECTED, found
 
 from identification.discovery.findings.finding import Finding, FindingKind
 from identification.discovery.findings.records_evidence import UnprovenEffect
 from identification.report.discovery_report import discovery_text
-from identification.report.discovery_verdict import discovery_verdict
+from identification.report.discovery_verdict import _any_forces, discovery_verdict
 from identification.report.effect_words import describe_effect, describe_rejected, describe_sizes
-from identification.report.finding_words import describe_finding, sentence
 from identification.report.named_words import nearest_law
 
 
@@ -35,13 +35,6 @@ def test_a_sensor_is_called_noisy_beside_those_of_its_unit_only():
     assert "2.4 times that of the other outputs of its unit" in loud[-1]
     missing = replace(found("unknown effect"), noise_by_output={**alike, names[1]: 2.4 * NOISE})
     assert "The noise of" not in " ".join(discovery_verdict(missing))
-
-
-def test_an_unknown_effect_is_not_named():
-    (said,) = discovery_verdict(found("unknown effect"))
-    assert said.startswith("Something is missing that none of the 3 known effects surely explains")
-    assert sentence(describe_finding(SLOW)) in said
-    assert "Stribeck" not in said
 
 
 @pytest.mark.parametrize("verdict", ["named", "nothing missing", "unknown effect"])
@@ -87,3 +80,16 @@ def test_of_an_unknown_effect_the_likeliest_that_was_tried_is_told_once_with_its
     assert f"The likeliest is {describe_rejected(best, answer)}." in said
     assert said.count(describe_effect(c)) + said.count(describe_effect(c).capitalize()) == 1
     assert "chance 0.2, all effects that were tried counted" in said
+
+
+@pytest.mark.parametrize(("shares", "told"), [
+    ({"joint b": 0.18, "joint a": 0.03}, ["18 % at joint b", "3 % at joint a"]),
+    ({"joint b": 0.18, "joint a": 0.0}, ["18 % at joint b"]),
+    ({"joint b": 0.04}, ["No smooth force", "4 %"]),
+    ({"joint b": 0.0}, ["No smooth force"]),
+])  # fmt: skip
+def test_the_joint_with_the_largest_share_comes_first(shares, told):
+    (sentence,) = _any_forces(SimpleNamespace(smooth_by_joint=shares))
+    places = [sentence.index(words) for words in told]
+    assert places == sorted(places)
+    assert ("joint a" in sentence) == (shares.get("joint a", 0) > 0)

@@ -3,10 +3,6 @@
 import json
 import os
 import random
-import signal
-import subprocess
-import sys
-import time
 
 import dask
 import pytest
@@ -67,9 +63,14 @@ def test_a_process_that_dies_ends_the_sweep_and_costs_no_record(tmp_path, refusa
 
 @pytest.mark.long
 @quiet
-def test_a_dask_worker_that_a_task_kills_is_replaced(tmp_path):
+def test_a_worker_of_a_running_scheduler_that_a_task_kills_is_replaced(tmp_path):
+    from distributed import LocalCluster
+
     path = write(tmp_path, f"[study.grid]\nmarker = ['{tmp_path / 'died'}']\n", 4)
-    records = run(path, tmp_path / "out", Dask(None, 1))
+    with LocalCluster(
+        n_workers=1, threads_per_worker=1, host="127.0.0.1", dashboard_address="127.0.0.1:0"
+    ) as cluster:
+        records = run(path, tmp_path / "out", Dask(cluster.scheduler_address, 1))
     assert (tmp_path / "died").exists()
     assert records == run(path, tmp_path / "whole")
 
@@ -83,60 +84,6 @@ def test_a_task_that_dask_gives_up_ends_the_sweep_and_costs_no_record(tmp_path, 
     assert "Dask gave a task up" in sentence
     assert "--resume" in sentence
     assert run(path, tmp_path / "out", resume=True) == run(path, tmp_path / "whole")
-
-
-@pytest.mark.long
-@quiet
-def test_a_dask_worker_is_killed_in_the_middle(tmp_path, serial):
-    path = write(tmp_path, "[study.settings]\nseconds = 0.1\n", 24)
-    where = tmp_path / "scheduler.json"
-    started = []
-
-    def start(*words):
-        line = [sys.executable, "-m", "dask", *words, "--scheduler-file", str(where)]
-        quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-        started.append(subprocess.Popen(line, cwd=tmp_path, **quiet))
-        return started[-1]
-
-    try:
-        start("scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard")
-        until(where.exists)
-        first, _ = (start("worker", "--nthreads", "1", "--no-nanny", "--no-dashboard")
-                    for _ in range(2))  # fmt: skip
-        address = json.loads(where.read_text())["address"]
-        processes = set()
-
-        class Watching:
-            """Kills the first worker as soon as it has ended a task."""
-
-            def outcomes(self, work, tasks):
-                for outcome in Dask(address, 1).outcomes(work, tasks):
-                    processes.add(outcome.run["process"])
-                    if len(processes) == 2 and first.poll() is None:
-                        first.send_signal(signal.SIGKILL)
-                        first.wait()
-                    yield outcome
-
-        import distributed
-
-        with distributed.Client(address, set_as_default=False) as client:
-            client.wait_for_workers(2, timeout=60)
-        records = run(path, tmp_path / "out", Watching())
-        assert first.returncode == -signal.SIGKILL
-    finally:
-        for process in started:
-            process.kill()
-            process.wait()
-    assert len(records) == 24
-    assert records == run(path, tmp_path / "whole")
-
-
-def until(ready):
-    for _ in range(600):
-        if ready():
-            return
-        time.sleep(0.1)
-    raise AssertionError("nothing came in a minute")
 
 
 def test_a_stopped_job_goes_on_where_it_was(serial):

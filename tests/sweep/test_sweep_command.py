@@ -9,7 +9,7 @@ import time
 from pathlib import Path
 
 import pytest
-from sweep_cases import METHOD, read, run, write
+from sweep_cases import read, run, write
 
 from identification.__main__ import main as identification
 from identification.sweep.config import read_sweep
@@ -108,10 +108,3 @@ def test_the_sweeps_of_the_project_are_right(path, tmp_path, monkeypatch):
     sweep = read_sweep(path, METHODS)
     assert len(sweep) > 0
     assert sweep.about != path.stem
-
-
-def test_a_users_own_method_lies_beside_its_sweep(tmp_path):
-    (tmp_path / "mine.py").write_text(METHOD.read_text())
-    (tmp_path / "mine.toml").write_text("[[study]]\nmethod = 'mine.py:TOSS'\ncount = 2\n")
-    sweep = read_sweep(tmp_path / "mine.toml", {})
-    assert sweep.studies[0].reference == f"{tmp_path / 'mine.py'}:TOSS"

@@ -8,6 +8,7 @@ from identification.sweep.answers import judged, nested
 from identification.sweep.discovery_findings import discovery_findings
 from identification.sweep.log_methods import estimate_findings
 from identification.sweep.power import curves, thresholds
+from identification.sweep.settings import Heads
 from identification.sweep.statistics import calibration_of, crossing, median, said, wilson
 
 NOTHING = {"size_of": [], "sizes": [], "hidden_size_of": [], "hidden_sizes": [], "named": [],
@@ -49,7 +50,7 @@ def test_power_curves_and_their_thresholds():
         for ratio, hits in zip((1.0, 3.0, 9.0), counts, strict=True)
         for k in range(10)
     ] + [{"set.ratio": 1.0, "set.duration": 5.0, "found": None}]
-    short, long = curves(rows, "found", "ratio", ["duration"])
+    short, long = curves(rows, "found", "ratio", ["duration"], Heads({}))
     assert [rate["hits"] for rate in short.rates] == [0, 5, 10]
     assert long.label == "duration 20"
     (line,) = thresholds([short, long], "duration").values()
