@@ -190,8 +190,7 @@ class DiscoveryOptions(KalmanOptions):
     )  # fmt: skip
     set_confidence: float = option(
         0.2, "probability",
-        "A rival that is more likely than this makes the answer a set of look-alikes; over a"
-        " horizon what is less likely is none of its names.",
+        "A rival that is more likely than this makes the answer a set of look-alikes.",
         "judgement", most=1.0,
     )  # fmt: skip
 

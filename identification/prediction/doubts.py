@@ -76,21 +76,14 @@ def doubts_of_names(
     of_all: Doubt | None = "gap" if _is_small(named, findings, share, options) else None
     return tuple(
         "neighbour" if has_neighbours_name(n.neighbour, options)
-        else forbidden or of_all or (None if is_sure(n, options) else "odds")
+        else forbidden or of_all or (None if is_sure(n) else "odds")
         for n, forbidden in zip(named, impossible, strict=True)
     )  # fmt: skip
 
 
-def is_sure(named: NamedEffect, options: DiscoveryOptions) -> bool:
-    """Returns whether a name is at least as likely as not, or one of a set that is told.
-
-    Args:
-        named: an accepted effect with its confidence.
-        options: what makes a rival one of the set, and so the name itself.
-    """
-    return named.confidence >= EVEN_ODDS or (
-        named.one_of and named.confidence > options.set_confidence
-    )
+def is_sure(named: NamedEffect) -> bool:
+    """Returns whether a name is at least as likely as not, or one of a set that is told."""
+    return named.confidence >= EVEN_ODDS or named.one_of
 
 
 def _is_small(
