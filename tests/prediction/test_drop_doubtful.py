@@ -8,7 +8,7 @@ from identification.discovery.effect_results import Neighbour
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import CURVE, Candidate, Effect
 from identification.effects.sizes import Size
-from identification.prediction.moves import add_set, drop_doubtful
+from identification.prediction.moves import drop_doubtful
 from identification.prediction.task import RecordsTask, WindowSearch
 from identification.prediction.trial import Contender
 
@@ -33,7 +33,7 @@ def accepted(name):
     )
 
 
-def state(*names, without=(), made=()):
+def state(*names, without=()):
     every = tuple(accepted(CURVE * name.isupper() + name) for name in names)
     task = RecordsTask(
         nominal_model=None, effects=(), options=DiscoveryOptions(without=without), records=()
@@ -41,7 +41,7 @@ def state(*names, without=(), made=()):
     whole = model(*(a.candidate for a in every))
     return WindowSearch(
         task=task, moves=(), nominal=model(), nominal_scores=(), model=whole, accepted=every,
-        scores=(), rejected=(), seconds={}, begun=None, made=made,
+        scores=(), rejected=(), seconds={}, begun=None,
     )  # fmt: skip
 
 
@@ -119,21 +119,6 @@ def test_a_further_law_explains_nearly_all_that_smooth_forces_could(
     assert after(monkeypatch, sure, shares=shares) == (kept, lost)
     begun = state(*sure, without=("further_laws",))
     assert after(monkeypatch, sure, shares=shares, begun=begun) == ("abc"[: len(shares)], [])
-
-
-@pytest.mark.parametrize(("made", "much", "without", "kept"), [
-    (("add_set",), True, (), "a"),
-    (("add_set",), False, (), "ab"),
-    (("add_effect",), True, (), "ab"),
-    (("add_set",), True, ("whole_sets",), "ab"),
-])  # fmt: skip
-def test_of_a_set_that_leaves_much_only_the_surest_is_a_name(
-    monkeypatch, made, much, without, kept
-):
-    monkeypatch.setattr(add_set, "is_much_left", lambda model, options: much)
-    begun = state("a", "b", made=made, without=without)
-    sure, shares = {"a": None, "b": None}, [(0.99, 9.0), (0.99, 5.0)]
-    assert after(monkeypatch, sure, shares=shares, begun=begun)[0] == kept
 
 
 def test_one_effect_is_not_asked_because_nothing_would_stay(monkeypatch):

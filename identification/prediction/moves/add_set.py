@@ -8,8 +8,8 @@ chosen    by what they explain of fitted windows together, and again about the r
           states of joints, which are left out      (`identification.prediction.set_choice`)
 in place  each is the best of what was refitted in its place, beside the others
 proven    each beside the others, and all together; the weakest that is not is left out
-whole     in the place of effects that were found one by one, little is left with it; of another set
-          with which a search ends, all but the surest are else in doubt (`drop_doubtful`)
+whole     in the place of effects that were found one by one, little is left with it: several laws
+          draw a part of any smooth force
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ def add_set(
         if _keys(chosen) in asked or _is_worse(chosen, begin_at or state.model, task.options):
             break
         asked.append(_keys(chosen))
-        if begin_at is not None and leaves_much(chosen, task.options):
+        if begin_at is not None and _leaves_much(chosen, task.options):
             break
         if not proven_members(state, chosen, refits, progress):
             break  # what is asked in the places of members takes most of the time
@@ -78,7 +78,7 @@ def add_set(
         asked.append(_keys(model))
     found = proven_members(state, model, refits, progress) if places else ()
     watch.stop("refits")
-    if not found or (begin_at is not None and leaves_much(found[0].model, task.options)):
+    if not found or (begin_at is not None and _leaves_much(found[0].model, task.options)):
         return replace(state, seconds=watch.seconds)
     model = weighed(found[0].model, task.horizon, task.confirm, task.options)
     scores = score_all(model, task.effects, task.options)
@@ -140,7 +140,7 @@ def _is_worse(chosen: WindowModel, present: WindowModel, options: DiscoveryOptio
     return not compared(present.unseen, chosen.unseen, options).t > 0
 
 
-def leaves_much(model: WindowModel, options: DiscoveryOptions) -> bool:
+def _leaves_much(model: WindowModel, options: DiscoveryOptions) -> bool:
     """Returns whether much is left with a set, which then is no sign of several effects.
 
     Of many laws, several draw together a part of whatever smooth force there is.

@@ -13,8 +13,7 @@ explain, too.
 
 Of several laws that are sure, all but the one with the most evidence must explain nearly all of
 what smooth forces of their joints could. What a law that is not exact leaves is a smooth force, and
-of that the nearest law of the catalogue explains much, wherever it acts. A set of laws that leaves
-much is no more than that, but for its surest law.
+of that the nearest law of the catalogue explains much, wherever it acts.
 """
 
 from __future__ import annotations
@@ -29,7 +28,6 @@ from identification.discovery.moves import Watch
 from identification.discovery.passes import uses
 from identification.prediction.doubts import doubts_of_names, forbidden_of, laws_of, names_of
 from identification.prediction.extension import refitted
-from identification.prediction.moves.add_set import add_set, leaves_much
 from identification.prediction.neighbours import has_neighbours_name, neighbour_of
 from identification.prediction.remaining import is_off
 from identification.prediction.screening import score_all
@@ -67,8 +65,6 @@ def _judged(state: WindowSearch) -> tuple[list[Contender], list[Contender]]:
     named, stick = names_of(state, options.max_confidence, is_off(state.model, options))
     doubts = doubts_of_names(named, forbidden_of(state), (), 1.0, options)
     why = {a.candidate.key: d for a, d in zip(laws, doubts, strict=True) if d is not None}
-    if add_set.__name__ in state.made and leaves_much(state.model, options):
-        why |= dict.fromkeys(_further(named), "further")
     if uses(options, "further_laws"):
         rest = [n for n in named if n.candidate.key not in why]
         why |= dict.fromkeys(rough_laws(rest), "further")
@@ -104,22 +100,15 @@ def _without(
 def rough_laws(named: Sequence[NamedEffect]) -> set[Key]:
     """Returns further laws of joints that explain too little of what smooth forces there could.
 
+    The law with the most evidence is none of them: it may be most of what is missing, and need not
+    be exact.
+
     Args:
         named: effects against which nothing else speaks.
     """
+    laws = sorted((n for n in named if not n.candidate.effect.is_curve), key=lambda n: -n.evidence)
     return {
         n.candidate.key
-        for n in named
-        if n.candidate.key in _further(named)
-        and n.smooth_share is not None
-        and n.smooth_share < LEAST_OF_FURTHER
+        for n in laws[1:]
+        if n.smooth_share is not None and n.smooth_share < LEAST_OF_FURTHER
     }
-
-
-def _further(named: Sequence[NamedEffect]) -> set[Key]:
-    """Returns all laws but the one with the most evidence.
-
-    That one may be most of what is missing, and need not be exact.
-    """
-    laws = sorted((n for n in named if not n.candidate.effect.is_curve), key=lambda n: -n.evidence)
-    return {n.candidate.key for n in laws[1:]}
