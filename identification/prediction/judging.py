@@ -64,7 +64,10 @@ def judged(
 
 
 def _shares_of_outputs(model: WindowModel, new: WindowModel) -> tuple[float, ...]:
-    """Returns how what a model explains beyond another one is shared by outputs that gain."""
+    """Returns the share of each output in what a model explains beyond another one, (ny,).
+
+    Outputs that lose have none; it is empty where no output gains.
+    """
     falls = np.maximum(model.powers_of_outputs - new.powers_of_outputs, 0.0)
     return tuple((falls / falls.sum()).tolist()) if falls.any() else ()
 

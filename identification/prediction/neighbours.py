@@ -12,13 +12,12 @@ what law and curve explain together:
 
 All three are of the fitted windows, in units of the errors of the model without effects: of a
 record that moves less, a law that grows with the cube of the position explains far less, whatever
-is beside it. It must also be more likely than
-not that this is no luck: what acts in few windows, as a stop does, has a large chance whatever it
-explains. No law is exact on a real robot, so that less than this speaks against none. A law of a
-sensor is of the joint that this measures; one of an input or a body has no joint of its own, and
-curves at all joints count. A curve counts,
-in the model or beside it, where it may draw what the law misses: it depends on a variable of the
-law. A force of the position that is left beside a friction is another thing that is missing.
+is beside it. It must also be more likely than not that this is no luck: what acts in few windows,
+as a stop does, has a large chance whatever it explains. No law is exact on a real robot, so that
+less than this speaks against none. A law of a sensor is of the joint that this measures; one of an
+input or a body has no joint of its own, and curves at all joints count. A curve counts, in the
+model or beside it, where it may draw what the law misses: it depends on a variable of the law. A
+force of the position that is left beside a friction is another thing that is missing.
 
 A force of two variables leaves what no single curve draws. So the smooth force of the law's joint
 is asked as well (`identification.prediction.yardstick`): all its curves at once, and where the

@@ -39,8 +39,9 @@ from identification.prediction.trial import compared, find_doubt
 from identification.progress import Progress
 
 MAX_CHOICES = 3  # of a set, each about the model with the one before
-# A linear choice errs: of a true set it expected 1.7 times the error that the refit left.
-FAR_ABOVE = 2.0
+# Of what a set is expected to leave, over what counts as little. A judgement: a linear choice errs,
+# and of a true set on a cart it expected 1.7 times the error that the refit left.
+MAX_EXPECTED_RATIO = 2.0
 MAX_ROUNDS = 2  # of a choice, and of asking each of its members in its place
 
 
@@ -158,7 +159,7 @@ def expects_much(model: WindowModel, found: Choice, options: DiscoveryOptions) -
     """
     now = float(output_ratios(model.unseen.select).max())
     expected = now * np.sqrt(max(0.0, found.left))
-    return uses(options, "whole_sets") and bool(expected > FAR_ABOVE * MAX_OUTPUT_RATIO)
+    return uses(options, "whole_sets") and bool(expected > MAX_EXPECTED_RATIO * MAX_OUTPUT_RATIO)
 
 
 def _keys(model: WindowModel) -> set[Key]:

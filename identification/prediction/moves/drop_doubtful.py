@@ -39,7 +39,7 @@ from identification.progress import Progress
 # Least share of a law beside a surer one, of what it and smooth forces of its joint explain. Of
 # worlds without exact laws whose answers were kept, 10 of 14 laws that were not there had less, and
 # 1 of 6 that were there; all laws beside exact ones had more. Present rates: docs/robot/models.md.
-LEAST_OF_FURTHER = 0.92
+MIN_FURTHER_SHARE = 0.92
 
 
 def drop_doubtful(state: WindowSearch, progress: Progress) -> WindowSearch:
@@ -110,5 +110,5 @@ def rough_laws(named: Sequence[NamedEffect]) -> set[Key]:
     return {
         n.candidate.key
         for n in laws[1:]
-        if n.smooth_share is not None and n.smooth_share < LEAST_OF_FURTHER
+        if n.smooth_share is not None and n.smooth_share < MIN_FURTHER_SHARE
     }
