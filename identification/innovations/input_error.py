@@ -29,10 +29,11 @@ from identification.discovery.findings.evidence import InputHold, StructuredInpu
 from identification.discovery.findings.finding import Finding, FindingKind
 from identification.discovery.options import DiscoveryOptions
 from identification.innovations.proof import Validation, flip_chance
-from identification.kalman.noise_model import Whitener
 from identification.kalman.point import evaluate_point, evaluate_sensitivities
 from identification.kalman.problem import estimate_noise
 from identification.kalman.refit import Refit
+from identification.kalman.response import respond
+from identification.kalman.system import System
 from identification.logs.parts import Part
 from identification.pool import one_blas_thread
 
@@ -48,6 +49,17 @@ class ErrorFamily:
 
     name: str  # of what they follow
     r: np.ndarray  # the regressors, errors of the inputs, shape (N, nu, p), of rms 1 each or zero
+
+
+@dataclass(frozen=True, eq=False)
+class _Linear:
+    """What the fits of all families share."""
+
+    system: System  # of the plant and of the inputs' errors
+    J: np.ndarray  # sensitivities, shape (N, ny, p)
+    F: np.ndarray  # the same whitened, in units of σ
+    rows: np.ndarray  # those of the fitted samples, shape (n, p)
+    products: np.ndarray  # of these with each other, shape (p, p)
 
 
 @dataclass(frozen=True)
@@ -105,7 +117,8 @@ def fit_families(
         options: the number of blocks.
     """
     nothing: dict[Part, tuple[FamilyFit, ...]] = {"select": (), "report": ()}
-    if not (validation.filter.A.size and validation.log.inputs.shape[1]):
+    system = validation.filter.system
+    if system is None or not validation.log.inputs.shape[1]:
         return nothing
     fit = validation.refit
     # A small change of a parameter may make the simulation diverge.
@@ -114,8 +127,10 @@ def fit_families(
         return nothing
     with one_blas_thread():
         F = validation.filter(J) / fit.level.sigma
+        rows = F[validation.seen].reshape(-1, J.shape[2])
+        linear = _Linear(system, J, F, rows, rows.T @ rows)
         families = list_families(validation, ERROR_KNOTS)
-        each = [_fit_family(validation, J, F, f, options.proof_blocks) for f in families]
+        each = [_fit_family(validation, linear, f, options.proof_blocks) for f in families]
     return {part: tuple(fits[part] for fits in each) for part in nothing}
 
 
@@ -166,50 +181,49 @@ def separate_inputs(x: np.ndarray) -> np.ndarray:
     return np.einsum("nik,ij->nijk", x, np.eye(nu)).reshape(N, nu, nu * k)
 
 
-def simulate_response(filter_: Whitener, r: np.ndarray) -> np.ndarray:
+def simulate_response(system: System, r: np.ndarray) -> np.ndarray:
     """Returns the response of the outputs of a free run to errors of the inputs.
 
     Args:
-        filter_: has the transitions of the state of plant and input error.
+        system: the plant.
         r: the errors, shape (N, nu, p).
 
     Returns:
         shape (N, ny, p).
     """
-    nu = r.shape[1]
-    A, B = filter_.A[:, :-nu, :-nu], filter_.A[:, :-nu, -nu:]
-    x, C = np.zeros((A.shape[1], r.shape[2])), filter_.C[:, :-nu]
-    out = [C @ x]
-    for k in range(len(r) - 1):
-        x = A[k] @ x + B[k] @ r[k]
-        out.append(C @ x)
-    return np.array(out)
+    read = np.flatnonzero(system.C.any(axis=0))
+    first, g = np.zeros((r.shape[2], system.A.shape[1])), np.moveaxis(r[:-1], 2, 0)
+    x = respond(system.A, system.B, first, g, 1, read)
+    return np.moveaxis(x @ system.C[:, read].T, 0, -1)
 
 
 def _fit_family(
-    validation: Validation, J: np.ndarray, F: np.ndarray, family: ErrorFamily, blocks: int
+    validation: Validation, linear: _Linear, family: ErrorFamily, blocks: int
 ) -> dict[Part, FamilyFit]:
     """Returns how well a family that is fitted to the fitted samples predicts each other part."""
+    J, F, rows = linear.J, linear.F, linear.rows
     fit, E, seen, p = validation.refit, validation.innovations, validation.seen, J.shape[2]
     r = fit.level.of_inputs(family.r.shape[1])[:, None] * family.r
-    moved = simulate_response(validation.filter, r)
-    X = np.concatenate([F, validation.filter(moved) / fit.level.sigma], axis=2)
+    moved = simulate_response(linear.system, r)
+    G = validation.filter(moved) / fit.level.sigma
+    more = G[seen].reshape(len(rows), -1)
     weight = np.concatenate([fit.priors.weight, np.ones(r.shape[2])])
     off = np.concatenate([fit.priors.mean - fit.point.q, np.zeros(r.shape[2])])
-    rows = np.vstack([X[seen].reshape(-1, X.shape[2]), np.diag(weight)])
-    target = np.concatenate([E[seen].ravel(), weight * off])
-    scale = 1 / (np.linalg.norm(rows, axis=0) + 1e-300)
-    rows *= scale
-    δg = scale * np.linalg.lstsq(rows.T @ rows, rows.T @ target, rcond=1e-12)[0]
+    across = rows.T @ more
+    H = np.block([[linear.products, across], [across.T, more.T @ more]]) + np.diag(weight**2)
+    target = np.concatenate([E[seen].ravel() @ rows, E[seen].ravel() @ more]) + weight**2 * off
+    scale = 1 / (np.sqrt(np.diag(H)) + 1e-300)
+    H *= np.outer(scale, scale)
+    δg = scale * np.linalg.lstsq(H, scale * target, rcond=1e-12)[0]
     error = np.sqrt(np.mean((r @ δg[p:]) ** 2, axis=0))
 
     def predict(part: Part) -> FamilyFit:
-        rows = validation.parts.rows(part)
-        before, after = E[rows], E[rows] - X[rows] @ δg
+        some = validation.parts.rows(part)
+        before, after = E[some], E[some] - F[some] @ δg[:p] - G[some] @ δg[p:]
         fewer = np.sum(before**2 - after**2, axis=1) / 2
         gains = np.array([block.mean() for block in np.array_split(fewer, blocks)])
-        free = validation.e[rows]
-        remaining = free - np.concatenate([J[rows], moved[rows]], axis=2) @ δg
+        free = validation.e[some]
+        remaining = free - J[some] @ δg[:p] - moved[some] @ δg[p:]
         return FamilyFit(
             name=family.name,
             p_value=flip_chance(gains),

@@ -98,12 +98,13 @@ def validate(fit: Refit, log: Log, parts: Parts | None = None) -> Validation:
     with one_blas_thread():
         filter_ = build_whitener(point.linear, fit.level.noise, log.sampling_time)
         E = filter_(point.e) / fit.level.sigma
-        variances = fit.level.noise.of_inputs(point.linear.B.shape[2]) ** 2
-        moved = propagate_input_error(filter_.A, filter_.C, variances)
+    moved = np.zeros_like(point.e)
+    if filter_.system is not None:
+        moved[1:] = propagate(filter_.system)
     return Validation(
         refit=fit, log=log, e=point.e, innovations=E, filter=filter_, seen=seen,
         parts=parts or Parts(~seen, ~seen, 0),
-        moved=moved if moved.size else np.zeros_like(point.e),
+        moved=moved,
     )  # fmt: skip
 
 
@@ -128,23 +129,6 @@ def divide_unseen(validation: Validation, options: DiscoveryOptions) -> Parts:
     )
     # What decides must be as much as a search asks of unseen samples at least.
     return next((parts for parts in kept if parts.select.sum() >= options.min_samples), every)
-
-
-def propagate_input_error(A: np.ndarray, C: np.ndarray, variances: np.ndarray) -> np.ndarray:
-    """Returns the variance over σ² that input errors cause in a free run, shape (N, ny).
-
-    Args:
-        A: transitions of the state of plant and input error, shape (N-1, nz, nz).
-        C: outputs from that state, shape (ny, nz).
-        variances: of the error of each input over σ², shape (nu,).
-    """
-    if not A.size:
-        return np.zeros((0, len(C)))
-    P = np.zeros(A.shape[1:])
-    nu = len(variances)
-    P[-nu:, -nu:] = np.diag(variances)
-    moved = propagate(A, C, P, 1 - A[:, -1, -1] ** 2)
-    return np.vstack([np.zeros(len(C)), moved])
 
 
 def prove(without: Validation, with_it: Validation, options: DiscoveryOptions) -> Proof:

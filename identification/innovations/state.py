@@ -30,7 +30,11 @@ from identification.innovations.pairs import find_pair
 from identification.innovations.proof import divide_unseen
 from identification.innovations.pruning import exchange, without_needless
 from identification.innovations.scoring.scores import Score
-from identification.innovations.scoring.sensitivities import Sensitivity, compute_sensitivities
+from identification.innovations.scoring.sensitivities import (
+    Sensitivity,
+    compute_sensitivities,
+    forget_records,
+)
 from identification.innovations.task import DiscoveryTask
 from identification.model.sensitivity import refuse_without_effect
 from identification.progress import Progress, enter
@@ -215,5 +219,6 @@ def _compute_all_sensitivities(
     single = list_single([s.candidate for s in best.values()])
     left = [c for c in single if not has_candidate(model, c)]
     alone = compute_sensitivities(point, left)
+    forget_records()
     tell_lost(left, (s.candidate for s in alone))
     return kept + common + alone

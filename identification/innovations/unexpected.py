@@ -81,17 +81,14 @@ def draw_squares(validation: Validation) -> np.ndarray:
 
 def _by_inputs(validation: Validation, rng: np.random.Generator) -> np.ndarray:
     """Returns what drawn errors of the inputs do to a free run, over σ, shape (N, ny, DRAWS)."""
-    A, C = validation.filter.A, validation.filter.C
-    out = np.zeros((*validation.e.shape, DRAWS))
-    if not A.size:
+    system, out = validation.filter.system, np.zeros((*validation.e.shape, DRAWS))
+    if system is None:
         return out
-    nu = validation.log.inputs.shape[1]
-    std = validation.refit.level.noise.of_inputs(nu)[:, None]
-    z = np.zeros((A.shape[1], DRAWS))
-    z[-nu:] = std * rng.standard_normal((nu, DRAWS))
-    for k, transition in enumerate(A):
-        z = transition @ z  # of another record nothing is known: A is zero there
-        new = np.sqrt(1 - transition[-1, -1] ** 2)
-        z[-nu:] += new * std * rng.standard_normal((nu, DRAWS))
-        out[k + 1] = C @ z
+    nx, nu, _ = system.sizes
+    fresh = np.sqrt(system.fresh)[..., None]
+    x, w = np.zeros((nx, DRAWS)), fresh[0] * rng.standard_normal((nu, DRAWS))
+    for k, (A, B, a) in enumerate(zip(system.A, system.B, system.a, strict=True)):
+        x = A @ x + B @ w  # of another record nothing is known: A, B and a are zero there
+        w = a * w + fresh[k + 1] * rng.standard_normal((nu, DRAWS))
+        out[k + 1] = system.C @ x
     return out

@@ -4,10 +4,13 @@
 
 E and Φ are the whitened residual and sensitivities; c is the small change of the parameters, held
 by their priors, that fits best. ρ is searched on a scale that the plant gives: at ρ₀ the inputs'
-error moves the outputs by as much as the sensors' noise. How the noise is shared out among the
-sensors is found with c held, which never lowers L (`noise_shares`). All inputs have one ρ: where
-one errs by more, innovations would be white with a ρ of its own, but what follows from another
-input would be taken for that error too (of 12 logs of crosstalk it is told in 7, and else in 11).
+error moves the outputs by as much as the sensors' noise. From there on c
+and the noise take turns: c is held while ρ, τ and how the noise is shared out among the sensors
+(`noise_shares`) are found. This never lowers L. It ends after a turn or two, because c says next to
+nothing of a covariance, and the columns are whitened once a turn and not for each noise. All inputs
+have one ρ: where one errs by more, innovations would be white with a ρ of its own, but what follows
+from another input would be taken for that error too (of 12 logs of crosstalk it is told in 7, and
+else in 11).
 """
 
 from __future__ import annotations
@@ -20,8 +23,15 @@ from threading import Lock
 import numpy as np
 
 from identification.kalman.linear import LinearPlant
-from identification.kalman.noise_model import Noise, Whitened, augment, keep, whiten
-from identification.kalman.noise_shares import share_noise
+from identification.kalman.noise_model import (
+    Noise,
+    Whitened,
+    augment,
+    build_whitener,
+    keep,
+    whiten,
+)
+from identification.kalman.noise_shares import END_RISE, share_noise
 from identification.kalman.recursion import propagate
 from identification.pool import one_blas_thread, run_parts, split
 
@@ -29,6 +39,7 @@ START_CORRELATION_TIME = 0.03  # [s] of the inputs' error, at which the search f
 # [s] at most: a noise that lasts without limit would explain a constant force.
 MAX_CORRELATION_TIME = 0.3
 NOISES_AT_ONCE = 4  # each takes the memory of the sensitivities
+MAX_TURNS = 4  # of c and of the noise
 FIRST_FACTOR, LAST_FACTOR = 1.6, 1.15  # with which the pattern search begins and ends
 # Multiples of the ρ of a point nearby that are tried; the last two where the second beats the first
 NEARBY_FACTORS = (1.0, 0.3, 0.05, 0.0)
@@ -61,7 +72,7 @@ class NoiseLevel:
 
 def compute_unit_ratio(plant: LinearPlant, sampling_time: float, time: float) -> float:
     """Returns ρ₀ at a correlation time [s]: input errors then move the outputs by σ, as an rms."""
-    moved = propagate(*augment(plant, Noise(1.0, time), sampling_time))
+    moved = propagate(augment(plant, Noise(1.0, time), sampling_time))
     return float(1 / np.sqrt(moved.mean()))
 
 
@@ -137,12 +148,6 @@ def fit_noise(
                 likeliest.update(level, white)
             return level
 
-        def shared(best: NoiseLevel) -> NoiseLevel:
-            if e.shape[1] == 1:
-                return best
-            white = likeliest.find(best.noise) or whiten(plant, J, best.noise, sampling_time)
-            return _best([best, at(share_level(white, e, prior, sampling_time, kinds))])
-
         def believed(noise: Noise, factors: Sequence[float]) -> list[NoiseLevel]:
             each = [noise.scaled(f) for f in factors]
             some = split(len(each), NOISES_AT_ONCE)
@@ -161,12 +166,38 @@ def fit_noise(
             found = believed(unit, SILENT_LEVELS if silent and not fine else levels)
         best = _best(found)
         times = sampling_time / 3, MAX_CORRELATION_TIME  # below the first it is white
-        if fine:
-            best = shared(best)
-            if best.noise.ratio:
-                best = shared(refine_noise(best, at, times))
+        for _ in range(MAX_TURNS if fine else 0):
+            white = likeliest.find(best.noise) or whiten(plant, J, best.noise, sampling_time)
+            rest = e - white.J @ _adjust(white, e, prior)[1]
+            held = _refine(plant, best, rest, sampling_time, times, kinds)
+            new = at(held.noise)
+            best = _best([best, new])
+            if best is not new or new.log_likelihood - held.log_likelihood < END_RISE:
+                break
     likeliest.keep(best)
     return best
+
+
+def _refine(
+    plant: LinearPlant, best: NoiseLevel, rest: np.ndarray, sampling_time: float,
+    times: tuple[float, float], kinds: Sequence[Hashable],
+) -> NoiseLevel:  # fmt: skip
+    """Returns the likeliest noise of what the parameters leave (N, ny), τ between two times [s]."""
+
+    def at(noise: Noise) -> NoiseLevel:
+        filter_ = build_whitener(plant, noise, sampling_time)
+        sigma = float(np.sqrt(np.mean(filter_(rest) ** 2)))
+        log_likelihood = -0.5 * (2 * rest.size * np.log(sigma) + filter_.log_determinant)
+        return NoiseLevel(noise, sigma, float(log_likelihood))
+
+    def shared(best: NoiseLevel) -> NoiseLevel:
+        if rest.shape[1] == 1:
+            return best
+        new = share_noise(plant, best.noise, rest, sampling_time, kinds)
+        return at(new.noise) if new.log_likelihood > best.log_likelihood else best
+
+    best = shared(best)
+    return shared(refine_noise(best, at, times)) if best.noise.ratio else best
 
 
 class _Likeliest:

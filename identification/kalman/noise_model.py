@@ -25,12 +25,13 @@ from __future__ import annotations
 
 from collections import deque
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from functools import cached_property
 
 import numpy as np
 
 from identification.kalman.linear import LinearPlant
 from identification.kalman.recursion import filter_gains, filter_innovations, transpose_filter
+from identification.kalman.system import System
 
 KEPT_POINTS = 2  # where a search is, and where it came from
 _kept: deque[Whitened] = deque(maxlen=KEPT_POINTS)
@@ -62,32 +63,29 @@ class Noise:
         return replace(self, ratio=self.ratio * (self.time / time) ** 0.5, time=time)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Whitener:
     """A whitening filter; residuals and sensitivities pass the same one."""
 
-    # transitions of the state z = (x, w) of plant and input error, shape (N-1, nz, nz); empty where
-    # the inputs have no error
-    A: np.ndarray
-    C: np.ndarray  # outputs from that state, shape (ny, nz)
+    system: System | None  # of plant and input errors; None where the inputs have no error
     s: np.ndarray  # std of the noise of each sensor over σ, shape (ny,)
-    K: np.ndarray  # Kalman gains, shape (N, nz, ny)
-    # inverted Cholesky factors of the innovations' covariances over σ², shape (N, ny, ny)
+    K: np.ndarray  # Kalman gains, shape (N, nz, ny); empty where the inputs have no error
+    # inverted Cholesky factors of the innovations' covariances over σ², shape (N, ny, ny), or empty
     L: np.ndarray
     log_determinant: float  # Σ log det of the covariances over σ²
 
     def __call__(self, e: np.ndarray) -> np.ndarray:
         """Returns innovations of e, shape (n, ny) or (n, ny, p), n <= N samples, of std σ each."""
-        if not self.A.size:
+        if self.system is None:
             return np.asarray(e / self.s.reshape(-1, *(1,) * (e.ndim - 2)))
         columns = e.reshape(*e.shape[:2], -1)
-        return filter_innovations(self.A, self.C, self.K, self.L, columns).reshape(e.shape)
+        return filter_innovations(self.system, self.K, self.L, columns).reshape(e.shape)
 
     def transposed(self, E: np.ndarray) -> np.ndarray:
         """Returns x with x · e = E · (innovations of e) for any residual e; shape (n, ny) both."""
-        if not self.A.size:
+        if self.system is None:
             return np.asarray(E / self.s)
-        return transpose_filter(self.A, self.C, self.K, self.L, E)[0]
+        return transpose_filter(self.system, self.K, self.L, E)[0]
 
 
 def build_whitener(plant: LinearPlant, noise: Noise, sampling_time: float) -> Whitener:
@@ -96,11 +94,12 @@ def build_whitener(plant: LinearPlant, noise: Noise, sampling_time: float) -> Wh
     samples = len(plant.A) + 1
     log_determinant = 2 * samples * float(np.log(s).sum())
     if noise.ratio == 0:
-        nothing = np.empty(0)
-        return Whitener(np.empty((0, 0, 0)), plant.C, s, nothing, nothing, log_determinant)
-    A, C, P, share = augment(plant, noise, sampling_time)
-    K, L, of_scaled = filter_gains(A, C / s[:, None], P, share)
-    return Whitener(A, C, s, K / s, L / s, of_scaled + log_determinant)
+        return Whitener(None, s, np.empty(0), np.empty(0), log_determinant)
+    system = augment(plant, noise, sampling_time)
+    K, L, of_scaled = filter_gains(system.with_outputs(plant.C / s[:, None]))
+    K /= s
+    L /= s
+    return Whitener(system, s, K, L, of_scaled + log_determinant)
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,46 +148,20 @@ def smooth(
     w has the shape (N, nu) and the inputs' unit, its part the shape and the unit of e.
     """
     n, nu = len(e), plant.B.shape[2]
-    if noise.ratio == 0:
-        return np.zeros((n, nu)), np.zeros_like(e)
     filter_ = build_whitener(plant, noise, sampling_time)
-    A, C, s = filter_.A, filter_.C, filter_.s
-    u, r = transpose_filter(A, C, filter_.K, filter_.L, filter_(e))
-    a = A[:, -1, -1]
-    fresh = noise.of_inputs(nu) ** 2 * np.concatenate([[1.0], 1 - a**2])[:, None] * r[:, -nu:]
-    w = np.empty((n, nu))
-    w[0] = now = fresh[0]
+    system, s = filter_.system, filter_.s
+    if system is None:
+        return np.zeros((n, nu)), np.zeros_like(e)
+    u, r = transpose_filter(system, filter_.K, filter_.L, filter_(e))
+    w = system.fresh * r[:, -nu:]
     for k in range(n - 1):
-        w[k + 1] = now = a[k] * now + fresh[k + 1]
+        w[k + 1] += system.a[k] * w[k]
     return w, e - s**2 * u
 
 
-def augment(
-    plant: LinearPlant, noise: Noise, sampling_time: float
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Returns the linear system of the state z = (x, w) of plant and input error.
-
-    These are A (N-1, nz, nz), C (ny, nz), the covariance over σ² of the first state, P (nz, nz),
-    and that of the process noise of each sample in units of P, shape (N-1,). Where another record
-    begins, A is zero and the share is 1: nothing is known of its inputs' error.
-    """
-    nx, nu = plant.B.shape[1:]
-    a = float(np.exp(-sampling_time / noise.time))
-    A, begins = _transitions(plant, a)
-    C = np.hstack([plant.C, np.zeros((len(plant.C), nu))])
-    P = np.zeros((nx + nu, nx + nu))
-    P[nx:, nx:] = np.diag(noise.of_inputs(nu) ** 2)
-    return A, C, P, np.where(begins, 1.0, 1 - a**2)
-
-
-@lru_cache(maxsize=3)  # a search of the correlation time tries a longer and a shorter one
-def _transitions(plant: LinearPlant, a: float) -> tuple[np.ndarray, np.ndarray]:
-    """Returns transitions of the state (x, w), and which of them are to another record."""
-    n, nx, nu = plant.B.shape
-    A = np.zeros((n, nx + nu, nx + nu))
-    A[:, :nx, :nx], A[:, :nx, nx:] = plant.A, plant.B
-    A[:, nx:, nx:] = a * np.eye(nu)
-    begins = np.asarray(~plant.A.any(axis=(1, 2)))
-    A[begins] = 0
-    A.flags.writeable = False
-    return A, begins
+def augment(plant: LinearPlant, noise: Noise, sampling_time: float) -> System:
+    """Returns the linear system of plant and input errors."""
+    begins = ~plant.A.any(axis=(1, 2))
+    a = np.where(begins, 0.0, np.exp(-sampling_time / noise.time))
+    A, B, C = (np.ascontiguousarray(x, float) for x in (plant.A, plant.B, plant.C))
+    return System(A, B, C, a, noise.of_inputs(plant.B.shape[2]) ** 2)

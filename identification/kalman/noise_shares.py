@@ -84,20 +84,17 @@ def judge_shares(
     E = filter_(e)
     squares = float(np.mean(E**2))  # σ²
     log_likelihood = -0.5 * (E.size * np.log(squares) + filter_.log_determinant)
-    if not filter_.A.size:
+    if filter_.system is None:
         sensors = np.mean(E**2, axis=0) / squares
         return Shared(noise, float(log_likelihood), sensors, 1.0)
-    system = filter_.A, filter_.C, filter_.K, filter_.L
-    x, r = transpose_filter(*system, E)
-    V, N = information(*system)
-    fresh = np.concatenate([[1.0], 1 - filter_.A[:, -1, -1] ** 2])  # of w in each sample
-    q, t = (fresh @ part[:, -nu:] for part in (r**2 / squares, N))
-    of_inputs = noise.of_inputs(nu) ** 2
+    x, r = transpose_filter(filter_.system, filter_.K, filter_.L, E)
+    V, N = information(filter_.system, filter_.K, filter_.L)
+    q, t = (np.sum(filter_.system.fresh * part[:, -nu:]) for part in (r**2 / squares, N))
     return Shared(
         noise=noise,
         log_likelihood=float(log_likelihood),
         sensors=np.sum(x**2, axis=0) / squares / V.sum(axis=0),
-        inputs=float(of_inputs @ q / (of_inputs @ t)),
+        inputs=float(q / t),
     )
 
 

@@ -1,33 +1,30 @@
 """The recursions of the Kalman filter over the samples of a log, compiled.
 
     S_k = C P_k Cᵀ + I = F Fᵀ,    L_k = F⁻¹,    W = P_k Cᵀ L_kᵀ,    K_k = W L_k
-    P_{k+1} = A_k (P_k - W Wᵀ) A_kᵀ + s_k P_0
+    P_{k+1} = A_k (P_k - W Wᵀ) A_kᵀ + (1 - a_k²) P_0,    P_0 = diag(0, ρ²)
 
     ε_k = e_k - C z_k,    E_k = L_k ε_k,    z_{k+1} = A_k (z_k + K_k ε_k),    z_0 = 0
 
-    D_{k+1} = A_k D_k A_kᵀ + s_k P_0,    D_0 = P_0          the same without any measurement
+    D_{k+1} = A_k D_k A_kᵀ + (1 - a_k²) P_0,    D_0 = P_0          the same without any measurement
 
-    M_k = A_k (1 - K_k C),    N_k = M_kᵀ N_{k+1} M_k + Cᵀ L_kᵀ L_k C,    N_N = 0      backwards
-    V_k = L_kᵀ L_k + K_kᵀ A_kᵀ N_{k+1} A_k K_k
+    Q_k = A_kᵀ N_{k+1} A_k,    N_k = (1 - K_k C)ᵀ Q_k (1 - K_k C) + Cᵀ L_kᵀ L_k C,    N_N = 0
+    V_k = L_kᵀ L_k + K_kᵀ Q_k K_k                                                    backwards
 
 K: gains, L: inverted Cholesky factors of the covariances S of the innovations ε over σ². V_k is a
-block of the diagonal of the inverse covariance of all residuals. A sample of a plant with few
-states costs less than a call of numpy, of which the loop would need a dozen. Columns are filtered
-on all threads at once.
+block of the diagonal of the inverse covariance of all residuals. Here A_k stands for the transition
+[[A_k, B_k], [0, a_k]] of the whole state z = (x, w) (`identification.kalman.system`). Its lower
+rows are no product of matrices, and C reads few states: both save a third of the work. A sample of
+a plant with few states costs less than a call of numpy, of which the loop would need a dozen.
+Records are filtered side by side, and so are columns.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from ctypes import POINTER, c_double, c_int64
-from functools import cache
-from threading import Lock
-from typing import Any
-
 import numpy as np
-from numba import carray, types
+from numba import carray
 
-from identification.native.cache import compile_once
+from identification.kalman.compiled import call
+from identification.kalman.system import System
 from identification.native.memory import internal
 from identification.pool import run_parts, split
 
@@ -35,49 +32,37 @@ from identification.pool import run_parts, split
 # with fewer columns take longer for each of them.
 COLUMNS_PER_CALL = 192
 
-# Addresses of arrays of doubles and of integers, to numba and to ctypes.
-ADDRESSES: dict[str, tuple[Any, Any]] = {
-    "f": (types.CPointer(types.float64), POINTER(c_double)),
-    "i": (types.CPointer(types.int64), POINTER(c_int64)),
-}
-_LOCK = Lock()
 
-
-def filter_gains(
-    A: np.ndarray, C: np.ndarray, P: np.ndarray, share: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, float]:
-    """Returns the gains K (N, nz, ny) of the Kalman filter, L (N, ny, ny), and Σ log det S.
-
-    Args:
-        A: transitions of the state, shape (N-1, nz, nz).
-        C: outputs from the state, shape (ny, nz).
-        P: covariance over σ² of the first state, shape (nz, nz).
-        share: s, the covariance of each sample's process noise in units of P, shape (N-1,).
-    """
-    n, nz, ny = len(A), len(P), len(C)
-    K, L = np.empty((n + 1, nz, ny)), np.empty((n + 1, ny, ny))
-    given = (np.ascontiguousarray(a, float) for a in (A, C, P, share))
-    call(_gains, (n, nz, ny), (*given, K, L))
+def filter_gains(system: System) -> tuple[np.ndarray, np.ndarray, float]:
+    """Returns the gains K (N, nz, ny) of the Kalman filter, L (N, ny, ny), and Σ log det S."""
+    nx, nu, ny = system.sizes
+    n = len(system.A) + 1
+    K, L = np.empty((n, nx + nu, ny)), np.empty((n, ny, ny))
+    given = (system.A, system.B, system.C, system.a, system.variances, K, L)
+    run_parts(lambda record: call(_gains, (n, nx, nu, ny, *record), given), system.records)
     return K, L, -2 * float(np.log(np.diagonal(L, axis1=1, axis2=2)).sum())
 
 
 def filter_innovations(
-    A: np.ndarray, C: np.ndarray, K: np.ndarray, L: np.ndarray, e: np.ndarray
-) -> np.ndarray:
+    system: System, K: np.ndarray, L: np.ndarray, e: np.ndarray
+) -> np.ndarray:  # fmt: skip
     """Returns the innovations, of std σ each, of residuals e (n, ny, p) of n <= N samples."""
     n, ny, p = e.shape
     out = np.empty((n, ny, p))
-    given = [np.ascontiguousarray(a, float) for a in (A, C, K, L, e)]
+    given = (system.A, system.B, system.C, system.a, K, L, np.ascontiguousarray(e, float), out)
+    sizes = (len(system.A) + 1, *system.sizes, p)
 
-    def part(some: slice) -> None:
-        call(_innovations, (n, A.shape[1], ny, p, some.start, some.stop), (*given, out))
+    def part(some: tuple[int, int, int, int]) -> None:
+        call(_innovations, (*sizes, *some), given)
 
-    run_parts(part, split(p, COLUMNS_PER_CALL))
+    columns = split(p, COLUMNS_PER_CALL)
+    records = [(first, min(end, n)) for first, end in system.records if first < n]
+    run_parts(part, [(*record, c.start, c.stop) for record in records for c in columns])
     return out
 
 
 def transpose_filter(
-    A: np.ndarray, C: np.ndarray, K: np.ndarray, L: np.ndarray, E: np.ndarray
+    system: System, K: np.ndarray, L: np.ndarray, E: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Applies the transposed filter to E (n, ny): x · e = E · (innovations of e) for any e.
 
@@ -86,78 +71,122 @@ def transpose_filter(
     Returns x, shape (n, ny), and r, shape (n, nz).
     """
     n, ny = E.shape
-    out, r = np.empty((n, ny)), np.empty((n, A.shape[1]))
-    given = (np.ascontiguousarray(a, float) for a in (A, C, K, L, E))
-    call(_transposed, (n, A.shape[1], ny), (*given, out, r))
+    out, r = np.empty((n, ny)), np.empty((n, K.shape[1]))
+    given = (system.A, system.B, system.C, system.a, K, L, np.ascontiguousarray(E, float), out, r)
+    call(_transposed, (len(system.A) + 1, *system.sizes, n), given)
     return out, r
 
 
-def information(
-    A: np.ndarray, C: np.ndarray, K: np.ndarray, L: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
+def information(system: System, K: np.ndarray, L: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Returns the diagonals of V_k, shape (N, ny), and of N_k, shape (N, nz).
 
     N_k is the covariance over σ² of the r_k of `transpose_filter` where the noise is right.
     """
-    n, nz, ny = len(A), A.shape[1], len(C)
-    V, N = np.empty((n + 1, ny)), np.empty((n + 1, nz))
-    given = (np.ascontiguousarray(a, float) for a in (A, C, K, L))
-    call(_information, (n + 1, nz, ny), (*given, V, N))
+    n, nz, ny = K.shape
+    V, N = np.empty((n, ny)), np.empty((n, nz))
+    given, sizes = (system.A, system.B, system.C, system.a, K, L, V, N), (n, *system.sizes)
+    run_parts(lambda record: call(_information, (*sizes, *record), given), system.records)
     return V, N
 
 
-def propagate(A: np.ndarray, C: np.ndarray, P: np.ndarray, share: np.ndarray) -> np.ndarray:
-    """Returns output variances over σ² (N-1, ny) by the process noise if nothing is measured."""
-    n, nz, ny = len(A), len(P), len(C)
+def propagate(system: System) -> np.ndarray:
+    """Returns output variances over σ² (N-1, ny) by the inputs' errors if nothing is measured."""
+    n, (_, _, ny) = len(system.A), system.sizes
     out = np.empty((n, ny))
-    given = (np.ascontiguousarray(a, float) for a in (A, C, P, share))
-    call(_propagate, (n, nz, ny), (*given, out))
+    given = (system.A, system.B, system.C, system.a, system.variances, out)
+    call(_propagate, (n, *system.sizes), given)
     return out
 
 
-def _gains(n, nz, ny, A_, C_, P_, share_, K_, L_):
-    A, share, first = carray(A_, (n, nz, nz)), carray(share_, n), carray(P_, (nz, nz))
-    C, P = carray(C_, (ny, nz)), first.copy()
-    K, L = carray(K_, (n + 1, nz, ny)), carray(L_, (n + 1, ny, ny))
-    PC, W, M, AM = np.empty((nz, ny)), np.empty((nz, ny)), np.empty((nz, nz)), np.empty((nz, nz))
-    S, F = np.empty((ny, ny)), np.empty((ny, ny))
-    for k in range(n + 1):
-        np.dot(P, C.T, PC)
-        np.dot(C, PC, S)
+def _gains(n, nx, nu, ny, begin, end, A_, B_, C_, a_, variances_, K_, L_):
+    nz = nx + nu
+    A, B = carray(A_, (n - 1, nx, nx)), carray(B_, (n - 1, nx, nu))
+    C, a, variances = carray(C_, (ny, nx)), carray(a_, n - 1), carray(variances_, nu)
+    K, L = carray(K_, (n, nz, ny)), carray(L_, (n, ny, ny))
+    P, M, W = _first(nx, variances), np.empty((nz, nz)), np.empty((ny, nz))
+    T, TP, X = np.empty((nx, nz)), np.empty((nx, nz)), np.empty((nx, nx))
+    CP, S, F = np.empty((ny, nz)), np.empty((ny, ny)), np.empty((ny, ny))
+    for k in range(begin, end):
+        _read(C, P, CP, S)
         for j in range(ny):
             S[j, j] += 1.0
         _inverted_factor(S, F, L[k])
-        np.dot(PC, L[k].T, W)
-        np.dot(W, L[k], K[k])
-        if k < n:
-            np.dot(W, W.T, M)
+        np.dot(L[k], CP, W)
+        np.dot(W.T, L[k], K[k])
+        if k + 1 < end:
+            np.dot(W.T, W, M)
             for i in range(nz):
                 for j in range(nz):
                     P[i, j] -= M[i, j]
-            _step(A[k], P, first, share[k], M, AM)
+            _step(A[k], B[k], a[k], variances, P, T, TP, X)
 
 
-def _propagate(n, nz, ny, A_, C_, P_, share_, out_):
-    A, share, first = carray(A_, (n, nz, nz)), carray(share_, n), carray(P_, (nz, nz))
-    C, P, out = carray(C_, (ny, nz)), first.copy(), carray(out_, (n, ny))
-    CP, M, AM = np.empty((ny, nz)), np.empty((nz, nz)), np.empty((nz, nz))
+def _propagate(n, nx, nu, ny, A_, B_, C_, a_, variances_, out_):
+    A, B = carray(A_, (n, nx, nx)), carray(B_, (n, nx, nu))
+    C, a, variances = carray(C_, (ny, nx)), carray(a_, n), carray(variances_, nu)
+    out, nz = carray(out_, (n, ny)), nx + nu
+    P, T, TP, X = _first(nx, variances), np.empty((nx, nz)), np.empty((nx, nz)), np.empty((nx, nx))
+    CP, S = np.empty((ny, nz)), np.empty((ny, ny))
     for k in range(n):
-        _step(A[k], P, first, share[k], M, AM)
-        np.dot(C, P, CP)
+        _step(A[k], B[k], a[k], variances, P, T, TP, X)
+        _read(C, P, CP, S)
         for i in range(ny):
-            out[k, i] = 0.0
-            for j in range(nz):
-                out[k, i] += CP[i, j] * C[i, j]
+            out[k, i] = S[i, i]
 
 
 @internal
-def _step(A, P, first, share, M, AM):
-    """Replaces P by that of the next sample; M and AM are scratch."""
-    np.dot(A, P, AM)
-    np.dot(AM, A.T, M)
-    for i in range(len(P)):
-        for j in range(len(P)):
-            P[i, j] = (M[i, j] + M[j, i]) / 2 + share * first[i, j]
+def _first(nx, variances):
+    """Returns the covariance over σ² of the first state of a record."""
+    P = np.zeros((nx + len(variances), nx + len(variances)))
+    for i in range(len(variances)):
+        P[nx + i, nx + i] = variances[i]
+    return P
+
+
+@internal
+def _read(C, P, CP, S):
+    """Writes C P into CP and C P Cᵀ into S; P is symmetric."""
+    CP[:] = 0.0
+    S[:] = 0.0
+    for i in range(len(C)):
+        for l in range(C.shape[1]):
+            if C[i, l] != 0.0:
+                for j in range(len(P)):
+                    CP[i, j] += C[i, l] * P[l, j]
+    for i in range(len(C)):
+        for l in range(C.shape[1]):
+            if C[i, l] != 0.0:
+                for j in range(len(C)):
+                    S[j, i] += C[i, l] * CP[j, l]
+
+
+@internal
+def _join(A, B, T):
+    """Writes the upper rows of a transition of the whole state into T."""
+    nx = len(A)
+    for i in range(nx):
+        for j in range(nx):
+            T[i, j] = A[i, j]
+        for j in range(B.shape[1]):
+            T[i, nx + j] = B[i, j]
+
+
+@internal
+def _step(A, B, a, variances, P, T, TP, X):
+    """Replaces P by that of the next sample; T, TP and X are scratch."""
+    nx = len(A)
+    _join(A, B, T)
+    np.dot(T, P, TP)
+    np.dot(TP, T.T, X)
+    for i in range(nx):
+        for j in range(nx):
+            P[i, j] = (X[i, j] + X[j, i]) / 2
+        for j in range(nx, len(P)):
+            P[i, j] = P[j, i] = a * TP[i, j]
+    for i in range(nx, len(P)):
+        for j in range(nx, len(P)):
+            P[i, j] *= a * a
+        P[i, i] += (1 - a * a) * variances[i - nx]
 
 
 @internal
@@ -178,41 +207,56 @@ def _inverted_factor(S, F, L):
             L[i, j] = s / F[i, i]
 
 
-def _innovations(n, nz, ny, columns, begin, end, A_, C_, K_, L_, e_, out_):
-    p = end - begin
-    A, C = carray(A_, (max(n - 1, 0), nz, nz)), carray(C_, (ny, nz))
+def _innovations(
+    n, nx, nu, ny, columns, begin, end, left, right, A_, B_, C_, a_, K_, L_, e_, out_
+):  # fmt: skip
+    p, nz = right - left, nx + nu
+    A, B = carray(A_, (n - 1, nx, nx)), carray(B_, (n - 1, nx, nu))
+    C, a = carray(C_, (ny, nx)), carray(a_, n - 1)
     K, L = carray(K_, (n, nz, ny)), carray(L_, (n, ny, ny))
     e, out = carray(e_, (n, ny, columns)), carray(out_, (n, ny, columns))
-    z, new = np.zeros((nz, p)), np.empty((ny, p))
-    KL, seen = np.empty((nz + ny, ny)), np.empty((nz + ny, p))
-    for k in range(n):
+    x, w, new = np.zeros((nx, p)), np.zeros((nu, p)), np.empty((ny, p))
+    T, KL, seen = np.empty((nx, nz)), np.empty((nz + ny, ny)), np.empty((nz + ny, p))
+    for k in range(begin, end):
         for i in range(ny):
             for j in range(p):
-                new[i, j] = e[k, i, begin + j]
-            for l in range(nz):
+                new[i, j] = e[k, i, left + j]
+            for l in range(nx):
                 if C[i, l] != 0.0:  # a sensor reads few of the states
                     for j in range(p):
-                        new[i, j] -= C[i, l] * z[l, j]
+                        new[i, j] -= C[i, l] * x[l, j]
         KL[:nz], KL[nz:] = K[k], L[k]
         np.dot(KL, new, seen)  # one product of gains and factors takes less than two
         for i in range(ny):
             for j in range(p):
-                out[k, i, begin + j] = seen[nz + i, j]
-        if k + 1 < n:
-            for i in range(nz):
+                out[k, i, left + j] = seen[nz + i, j]
+        if k + 1 < end:
+            for i in range(nx):
                 for j in range(p):
-                    seen[i, j] += z[i, j]
-            np.dot(A[k], seen[:nz], z)
+                    seen[i, j] += x[i, j]
+            for i in range(nu):
+                for j in range(p):
+                    seen[nx + i, j] += w[i, j]
+                    w[i, j] = a[k] * seen[nx + i, j]
+            _join(A[k], B[k], T)
+            np.dot(T, seen[:nz], x)
 
 
-def _transposed(n, nz, ny, A_, C_, K_, L_, E_, out_, r_):
-    A, C = carray(A_, (max(n - 1, 0), nz, nz)), carray(C_, (ny, nz))
+def _transposed(n, nx, nu, ny, some, A_, B_, C_, a_, K_, L_, E_, out_, r_):
+    nz = nx + nu
+    A, B = carray(A_, (n - 1, nx, nx)), carray(B_, (n - 1, nx, nu))
+    C, a = carray(C_, (ny, nx)), carray(a_, n - 1)
     K, L = carray(K_, (n, nz, ny)), carray(L_, (n, ny, ny))
-    E, out, r = carray(E_, (n, ny)), carray(out_, (n, ny)), carray(r_, (n, nz))
-    later = np.zeros(nz)
-    for k in range(n - 1, -1, -1):
-        if k + 1 < n:
-            np.dot(A[k].T, r[k + 1], later)
+    E, out, r = carray(E_, (some, ny)), carray(out_, (some, ny)), carray(r_, (some, nz))
+    later, of_x, of_w = np.zeros(nz), np.empty(nx), np.empty(nu)
+    for k in range(some - 1, -1, -1):
+        if k + 1 < some:
+            np.dot(A[k].T, r[k + 1, :nx], of_x)
+            np.dot(B[k].T, r[k + 1, :nx], of_w)
+            for i in range(nx):
+                later[i] = of_x[i]
+            for i in range(nu):
+                later[nx + i] = of_w[i] + a[k] * r[k + 1, nx + i]
         for i in range(ny):
             out[k, i] = 0.0
             for j in range(ny):
@@ -221,51 +265,62 @@ def _transposed(n, nz, ny, A_, C_, K_, L_, E_, out_, r_):
                 out[k, i] -= K[k, j, i] * later[j]
         for j in range(nz):
             r[k, j] = later[j]
-            for i in range(ny):
+        for i in range(ny):
+            for j in range(nx):
                 r[k, j] += C[i, j] * out[k, i]
 
 
-def _information(n, nz, ny, A_, C_, K_, L_, V_, N_):
-    A, C = carray(A_, (max(n - 1, 0), nz, nz)), carray(C_, (ny, nz))
+def _information(n, nx, nu, ny, begin, end, A_, B_, C_, a_, K_, L_, V_, N_):
+    nz = nx + nu
+    A, B = carray(A_, (n - 1, nx, nx)), carray(B_, (n - 1, nx, nu))
+    C, a = carray(C_, (ny, nx)), carray(a_, n - 1)
     K, L = carray(K_, (n, nz, ny)), carray(L_, (n, ny, ny))
     V, diagonal = carray(V_, (n, ny)), carray(N_, (n, nz))
-    N, NA, M = np.zeros((nz, nz)), np.empty((nz, nz)), np.empty((nz, nz))
-    KC, LC, NK = np.empty((nz, nz)), np.empty((ny, nz)), np.empty((nz, ny))
-    for k in range(n - 1, -1, -1):
-        if k + 1 < n:
-            np.dot(N, A[k], NA)
-            np.dot(A[k].T, NA, N)  # Aᵀ N A
-        np.dot(N, K[k], NK)
+    N, NT, T = np.zeros((nz, nz)), np.empty((nz, nz)), np.empty((nx, nz))
+    QK, KN, LL = np.empty((nz, ny)), np.empty((ny, nz)), np.empty((ny, ny))
+    for k in range(end - 1, begin - 1, -1):
+        if k + 1 < end:
+            _join(A[k], B[k], T)
+            np.dot(N[:nx].T, T, NT)  # N is symmetric
+            for i in range(nz):
+                for j in range(nx, nz):
+                    NT[i, j] += a[k] * N[i, j]
+            np.dot(T.T, NT[:nx], N)
+            for i in range(nx, nz):
+                for j in range(nz):
+                    N[i, j] += a[k] * NT[i, j]
+        np.dot(N, K[k], QK)
+        np.dot(L[k].T, L[k], LL)
         for i in range(ny):
-            V[k, i] = 0.0
-            for j in range(ny):
-                V[k, i] += L[k, j, i] ** 2
+            V[k, i] = LL[i, i]
             for j in range(nz):
-                V[k, i] += K[k, j, i] * NK[j, i]
-        np.dot(K[k], C, KC)
+                V[k, i] += K[k, j, i] * QK[j, i]
+        _seen(C, K[k], QK, LL, N, KN)
         for i in range(nz):
-            for j in range(nz):
-                KC[i, j] = (1.0 if i == j else 0.0) - KC[i, j]
-        np.dot(N, KC, NA)
-        np.dot(KC.T, NA, M)
-        np.dot(L[k], C, LC)
-        np.dot(LC.T, LC, N)
-        for i in range(nz):
-            for j in range(nz):
-                N[i, j] += M[i, j]
             diagonal[k, i] = N[i, i]
 
 
-def call(
-    function: Callable[..., Any], sizes: tuple[int, ...], arrays: Iterable[np.ndarray]
-) -> None:
-    """Runs a function of sizes and of the addresses of arrays, which is compiled once."""
-    given = [(a, *ADDRESSES[a.dtype.kind]) for a in arrays]
-    with _LOCK:  # one of several threads compiles
-        run = _compiled(function, len(sizes), tuple(kind for _, kind, _ in given))
-    run(*sizes, *(a.ctypes.data_as(pointer) for a, _, pointer in given))
+@internal
+def _seen(C, K, QK, LL, N, KN):
+    """Replaces Q, which stands in N, by (1 - K C)ᵀ Q (1 - K C) + Cᵀ Lᵀ L C; KN is scratch.
 
-
-@cache
-def _compiled(function: Callable[..., Any], sizes: int, kinds: tuple[Any, ...]) -> Any:
-    return compile_once(function, types.void(*[types.int64] * sizes, *kinds))
+    The two factors are multiplied one after the other: what the sum of all four products rounds
+    off grows from sample to sample.
+    """
+    for i in range(len(C)):
+        for l in range(C.shape[1]):
+            if C[i, l] != 0.0:
+                for j in range(len(N)):
+                    N[j, l] -= C[i, l] * QK[j, i]
+    np.dot(K.T, N, KN)
+    for i in range(len(C)):
+        for l in range(C.shape[1]):
+            if C[i, l] != 0.0:
+                for j in range(len(N)):
+                    N[l, j] -= C[i, l] * KN[i, j]
+                for o in range(len(C)):
+                    for m in range(C.shape[1]):
+                        N[l, m] += C[i, l] * LL[i, o] * C[o, m]
+    for i in range(len(N)):
+        for j in range(i):
+            N[i, j] = N[j, i] = (N[i, j] + N[j, i]) / 2

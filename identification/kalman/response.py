@@ -22,7 +22,7 @@ import numpy as np
 from numba import carray
 from scipy.linalg import matrix_balance
 
-from identification.kalman.recursion import call
+from identification.kalman.compiled import call
 from identification.native.memory import internal
 from identification.pool import run_parts, split, threads
 

@@ -26,7 +26,7 @@ from identification.innovations.input_error import (
     simulate_response,
 )
 from identification.innovations.shapes import is_structured
-from identification.kalman.noise_model import Noise, build_whitener
+from identification.kalman.noise_model import Noise, augment
 from identification.model.plant import ModelPlant
 from identification.model.predictor import Predictor
 from identification.report.discovery_report import discovery_text
@@ -98,7 +98,7 @@ def test_the_response_is_that_of_the_dense_plant():
     n, _, nu = plant.B.shape
     r = rng.standard_normal((n + 1, nu, 4))
     expected = (dense(plant) @ r.reshape(-1, 4)).reshape(n + 1, -1, 4)
-    found = simulate_response(build_whitener(plant, Noise(0.3, 0.1), STEP), r)
+    found = simulate_response(augment(plant, Noise(0.3, 0.1), STEP), r)
     np.testing.assert_allclose(found, expected, rtol=1e-9, atol=1e-9)
 
 

@@ -12,7 +12,12 @@ from identification.kalman.linear import LinearPlant
 from identification.kalman.noise_fit import NoiseLevel, evaluate_noise, fit_noise
 from identification.kalman.noise_model import Noise, Whitened, augment, build_whitener, whiten
 from identification.kalman.problem import linearise_criterion
-from identification.kalman.recursion import COLUMNS_PER_CALL, propagate
+from identification.kalman.recursion import (
+    COLUMNS_PER_CALL,
+    information,
+    propagate,
+    transpose_filter,
+)
 
 SHARES = (1.2, 0.75)  # of two outputs
 
@@ -104,17 +109,38 @@ def test_a_step_by_products_is_that_of_the_columns(damping, alike, monkeypatch):
         np.testing.assert_allclose(quick, slow, rtol=1e-9)
 
 
+def dense_steps(system):
+    """The transitions of the whole state (x, w), and the covariance of what is new in each."""
+    (nx, nu, _), last = system.sizes, np.diag(np.repeat([0.0, 1.0], system.sizes[:2]))
+    for A, B, a in zip(system.A, system.B, system.a, strict=True):
+        step = np.block([[A, B], [np.zeros((nu, nx)), a * np.eye(nu)]])
+        yield step, (1 - a**2) * last * np.concatenate([np.zeros(nx), system.variances])
+
+
 @pytest.fixture
 def system():
     return augment(two_records(np.random.default_rng(1)), Noise(0.7, 0.1), STEP)
 
 
 def test_variances_are_those_of_the_equations(system):
-    A, C, P, share = system
-    first = P
-    for step, fresh, found in zip(A, share, propagate(*system), strict=True):
-        P = step @ P @ step.T + fresh * first
+    (nx, nu, _) = system.sizes
+    C = np.hstack([system.C, np.zeros((len(system.C), nu))])
+    P = np.diag(np.concatenate([np.zeros(nx), system.variances]))
+    for (step, new), found in zip(dense_steps(system), propagate(system), strict=True):
+        P = step @ P @ step.T + new
         np.testing.assert_allclose(found, np.diag(C @ P @ C.T), rtol=1e-12)
+
+
+def test_information_is_that_of_the_dense_covariance(system):
+    """The diagonal of the inverse covariance of all residuals; N that of the transposed filter."""
+    plant, noise = two_records(np.random.default_rng(1)), Noise(0.7, 0.1)
+    filter_ = build_whitener(plant, noise, STEP)
+    V, N = information(system, filter_.K, filter_.L)
+    inverse = np.linalg.inv(whole(plant, noise))
+    np.testing.assert_allclose(V.ravel(), np.diag(inverse), rtol=1e-8)
+    every = [transpose_filter(system, filter_.K, filter_.L, E)[1]
+             for E in np.eye(80).reshape(80, 40, 2)]  # fmt: skip
+    np.testing.assert_allclose(N, np.sum(np.square(every), axis=0), rtol=1e-8, atol=1e-12)
 
 
 @pytest.mark.parametrize("columns", [1, 2 * COLUMNS_PER_CALL + 3])
@@ -122,10 +148,11 @@ def test_all_columns_are_filtered_however_they_are_divided(columns, monkeypatch)
     monkeypatch.setenv("INCA_MJ_THREADS", "2")
     rng = np.random.default_rng(2)
     filter_ = build_whitener(two_records(rng), Noise(0.7, 0.1), STEP)
-    e = rng.standard_normal((40, 2, columns))
-    z, slow = np.zeros((filter_.A.shape[1], columns)), []
+    system, e = filter_.system, rng.standard_normal((40, 2, columns))
+    nx, nu, _ = system.sizes
+    steps, z, slow = [*dense_steps(system)], np.zeros((nx + nu, columns)), []
     for k in range(40):
-        new = e[k] - filter_.C @ z
+        new = e[k] - system.C @ z[:nx]
         slow.append(filter_.L[k] @ new)
-        z = filter_.A[k] @ (z + filter_.K[k] @ new) if k < 39 else z
+        z = steps[k][0] @ (z + filter_.K[k] @ new) if k < 39 else z
     np.testing.assert_allclose(filter_(e), slow, atol=1e-10)

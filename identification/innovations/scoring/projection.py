@@ -14,6 +14,7 @@ a product with those of another candidate.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property, partial
 from itertools import pairwise
 
 import numpy as np
@@ -51,8 +52,9 @@ class Projection:
     def __init__(self, fit: Refit, noise: Noise) -> None:
         point = fit.point
         self.noise, self.samples = noise, point.e.size
-        white = whiten(point.linear, point.J, noise, point.log.sampling_time)
-        self._filter, self._F = white.filter, white.F
+        self._whiten = partial(whiten, point.linear, point.J, noise, point.log.sampling_time)
+        white = self._whiten()
+        self._filter, F = white.filter, white.F
         E = self._filter(point.e).ravel()
         # The priors enter as further measurements: rows below the samples, in units of σ.
         self._ridge = fit.priors.weight * fit.level.sigma
@@ -60,10 +62,15 @@ class Projection:
         w, V = np.linalg.eigh(white.H + np.diag(self._ridge**2))
         kept = w > MIN_EIGENVALUE_SHARE * w.max(initial=0.0)
         self._w, self._V = w[kept], V[:, kept]
-        c = self._coefficients(self._F.T @ E + self._ridge * below)
-        self._e, self._below = E - self._F @ c, below - self._ridge * c
+        c = self._coefficients(F.T @ E + self._ridge * below)
+        self._e, self._below = E - F @ c, below - self._ridge * c
         self.rest = float(self._e @ self._e + self._below @ self._below)
         self.dual = self._filter.transposed(self._e.reshape(point.e.shape))
+
+    @cached_property
+    def _F(self) -> np.ndarray:
+        """The whitened sensitivities of the parameters; most noises never need them again."""
+        return self._whiten().F
 
     def log_likelihood(self, squares: np.ndarray) -> np.ndarray:
         """Returns the log likelihood of sums of squares, up to a constant of the log."""

@@ -104,6 +104,11 @@ def _fine_records(point: Point) -> tuple[Linearisation, ...]:
     return records if holds else ()
 
 
+def forget_records() -> None:
+    """Frees the linearisation of the last point, which takes as much memory as a model."""
+    _fine_records.cache_clear()
+
+
 def _alone(
     compute: Callable[[list[Candidate]], Sequence[Sensitivity | None]],
     group: list[tuple[int, Candidate]],
