@@ -5,8 +5,8 @@
     F       = max(2 I n_f, 2 I n_v + OUTPUT_COPIES n_y)
     seconds = BASE_SECONDS + t₁ (SEARCH_RUNS + PARAMETER_RUNS p + SIZE_RUNS m)
 
-of N samples, n of them fitted, with n_y outputs, n_u inputs, p parameters, m sizes of effects, c =
-min(m, 128) columns that are computed at once, at most c_u of them for effects of inputs, n_v
+of N samples, n of them fitted, with n_y outputs, n_u inputs, p parameters, m sizes of effects, c
+columns that all threads compute at once, at most c_u of them for effects of inputs, n_v
 velocities, n_f velocities and activations, n_x states, s steps of the simulation in a sample, P
 points and I intervals of the trajectory in one, a model of b bytes, and one simulation that takes
 the processor time t₁. A sensitivity of each output to each size is kept. The model is linearised at
@@ -37,6 +37,7 @@ from identification.kalman.trajectory import FINE_POINTS, INTERVALS
 from identification.logs.joined import rows_of
 from identification.model.predictor import Predictor
 from identification.model.rollout import substeps
+from identification.pool import threads
 
 BASE_BYTES = 28e6  # of compiled code and libraries that only a search loads
 MODEL_COPIES = 96  # for changes of the model that are evaluated together
@@ -117,7 +118,8 @@ def _numbers(task: DiscoveryTask, sizes: int, on_inputs: int) -> float:
     inputs = log.inputs.shape[1] * (steps + points)
     linear = LINEAR_MATRICES * (2 * model.nv + model.na) ** 2
     kept = outputs * (len(task.nominal_model.names) + sizes)
-    batch, of_inputs = min(sizes, MAX_BATCH_COLUMNS), min(on_inputs, MAX_BATCH_COLUMNS)
+    together = threads() * MAX_BATCH_COLUMNS
+    batch, of_inputs = min(sizes, together), min(on_inputs, together)
     columns = batch * max(forced, felt) + of_inputs * inputs
     return float(max(len(log) * linear, fitted * (kept + linear + columns)))
 

@@ -14,6 +14,7 @@ import numpy as np
 
 from identification.discovery.attempts import attempt, refuse_infinite
 from identification.effects.effect import Candidate
+from identification.heap import release
 from identification.kalman.linear import Linearisation, linearise_records
 from identification.kalman.point import EQUATION_STEP_SHARE, Point, do_equations_hold
 from identification.kalman.sensitivity_equations import ALWAYS, Courses, solve_sensitivities
@@ -23,7 +24,7 @@ from identification.pool import each_part
 from identification.progress import counted
 
 LONG_AGO = 1e6  # before a record [s], later than any ramp lasts
-MAX_BATCH_COLUMNS = 128  # that are computed at once, which bounds the memory of their trajectories
+MAX_BATCH_COLUMNS = 64  # that are computed at once, which bounds the memory of their trajectories
 
 
 @dataclass(frozen=True)
@@ -44,6 +45,7 @@ def compute_sensitivities(point: Point, candidates: Sequence[Candidate]) -> tupl
         point: the plant, at which the sizes of the candidates are zero.
         candidates: the effects, each at a place and with shapes.
     """
+    release()
     found: dict[int, Sensitivity] = {}
     # A model that is linearised at its samples alone need not be so between them.
     records = attempt(None, partial(_fine_records, point)) or ()
