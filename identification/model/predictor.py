@@ -177,6 +177,25 @@ class Predictor:
         return self.plant.outputs(*self._every(values), self.log.output_names, readings)
 
 
+def settings_of(
+    predictors: Sequence[Predictor], values: Sequence[np.ndarray]
+) -> list[tuple[State, Numbers]]:
+    """Returns the settings of some predictors at values of each; those that are alike at once.
+
+    Args:
+        predictors: of records, most of which share their plant and its values.
+        values: shape (n, p) each.
+    """
+    known, out = dict[object, tuple[State, Numbers]](), []
+    for predictor, here in zip(predictors, values, strict=True):
+        names, every = predictor._every(here)
+        key = (id(predictor.plant), names, every.shape, every.tobytes())
+        if key not in known:
+            known[key] = predictor.plant.settings(names, every)
+        out.append(known[key])
+    return out
+
+
 def sensor_word(model: mujoco.MjModel, i: int) -> str:
     """Returns what MJCF calls the kind of a sensor, with its article, such as "a framequat"."""
     word = mujoco.mjtSensor(int(model.sensor_type[i])).name.removeprefix("mjSENS_").lower()

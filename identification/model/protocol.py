@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Protocol, runtime_checkable
+from functools import cache
+from typing import Protocol, cast, runtime_checkable
 
 import mujoco
 import numpy as np
@@ -115,9 +116,16 @@ class WithStates(Protocol):
 
 def with_states(plant: Plant) -> WithStates | None:
     """Returns the plant where it has states which no model file has, else None."""
-    if isinstance(plant, WithStates) and plant.without_states() is not plant:
-        return plant
-    return None
+    if not _may_have_states(type(plant)):
+        return None
+    known = cast(WithStates, plant)
+    return None if known.without_states() is plant else known
+
+
+@cache
+def _may_have_states(kind: type) -> bool:
+    """Returns whether plants of a kind are `WithStates`; it takes as long as some steps do."""
+    return issubclass(kind, WithStates)
 
 
 @runtime_checkable

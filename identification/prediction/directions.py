@@ -22,8 +22,9 @@ from identification.model.protocol import with_numbers
 from identification.model.rollout import State, without_sensors
 from identification.native.holding import MOST
 from identification.native.step_slopes import StepSlopes, linearise_steps
+from identification.windows.batches import at_own_steps, rough
 from identification.windows.held import NO_VALUES, HeldWindows, at_values, held_windows
-from identification.windows.shooting import Shooting, at_own_steps, rough
+from identification.windows.shooting import Shooting
 
 MOST_SLOPES = 2e7  # entries of all A at most: 160 MB
 

@@ -18,18 +18,12 @@ import numpy as np
 from identification.errors import DivergenceError
 from identification.model.coordinates import NOTHING
 from identification.model.paths import Slot
-from identification.model.predictor import Predictor, with_states
+from identification.model.predictor import Numbers, Predictor, settings_of, with_states
 from identification.model.protocol import with_numbers
 from identification.model.rollout import Simulations, State, hold, simulations, substeps
 from identification.model.sensitivity import FORWARD_STEP
-from identification.windows.shooting import (
-    Shooting,
-    Tangent,
-    at_own_steps,
-    decomposed,
-    rough,
-    slower,
-)
+from identification.windows.batches import at_own_steps, rough, slower
+from identification.windows.shooting import Shooting, Tangent, decomposed
 from identification.windows.windows import moved
 
 NO_VALUES = np.zeros((1, 0))  # the value set of a predictor whose values are all fixed
@@ -63,7 +57,9 @@ class HeldRecords:
 
 def held_records(parts: Sequence[Shooting]) -> HeldRecords:
     """Returns the windows of some records with parameters held, grouped into batches."""
-    each, groups = [held_windows(part) for part in parts], []
+    settings = settings_of([part.predictor for part in parts], [NO_VALUES] * len(parts))
+    each = [_held(part, numbers) for part, (_, numbers) in zip(parts, settings, strict=True)]
+    groups: list[tuple[tuple[int, ...], HeldWindows]] = []
     rest = list(range(len(each)))
     while rest:
         alike = tuple(k for k in rest if _is_alike(each[rest[0]], each[k]))
@@ -201,8 +197,12 @@ class HeldWindows:
 
 def held_windows(part: Shooting) -> HeldWindows:
     """Returns the windows of a record that has no free parameter."""
+    return _held(part, part.predictor.settings(NO_VALUES)[1])
+
+
+def _held(part: Shooting, numbers: Numbers) -> HeldWindows:
+    """Returns the windows of a record, whose parameters make these numbers of its model."""
     predictor, W = part.predictor, len(part.cut.starts)
-    _, numbers = predictor.settings(NO_VALUES)
     inputs, every, hold_kind = part.held_inputs(NO_VALUES)
     return HeldWindows(
         predictors=(predictor,), has_rough_slopes=part.has_rough_slopes, every=every,

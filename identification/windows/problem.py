@@ -28,7 +28,7 @@ from identification.windows.coarse import (
 from identification.windows.held import HeldRecords, at_values, held_records
 from identification.windows.records import Record
 from identification.windows.settling import settle
-from identification.windows.shooting import Shooting, Tangent, tangent
+from identification.windows.shooting import Shooting, Tangent, tangents
 from identification.windows.unknowns import Unknowns
 from identification.windows.windows import Windows, first_states, spread, windows
 
@@ -90,10 +90,9 @@ class Problem:
         """
         known = known or self.held(q).residuals(d)
         self.cost_of(q, known)
-        return tuple(
-            self.widened(k, tangent(part, q[self.unknowns.columns(k)], moves, known=r))
-            for k, (part, moves, r) in enumerate(zip(self.parts, d, known, strict=True))
-        )
+        each = [q[self.unknowns.columns(k)] for k in range(len(self.parts))]
+        found = tangents(self.parts, each, d, known)
+        return tuple(self.widened(k, t) for k, t in enumerate(found))
 
     def tangents_after(
         self, before: Sequence[Tangent], q: np.ndarray, d: Sequence[np.ndarray],
@@ -108,13 +107,14 @@ class Problem:
             known: residuals there, one array (W, m) a record.
             is_moved: which of them begin elsewhere than before, one mask (W,) a record.
         """
-        out = []
-        each = enumerate(zip(self.parts, before, d, known, is_moved, strict=True))
-        for k, (part, t, moves, r, at) in each:
-            if at.any():
-                some = tangent(part.rows(at), q[self.unknowns.columns(k)], moves[at], known=r[at])
-                t = t.with_rows(at, self.widened(k, some))
-            out.append(t)
+        out, some = [*before], [k for k, at in enumerate(is_moved) if at.any()]
+        moved = tangents(
+            [self.parts[k].rows(is_moved[k]) for k in some],
+            [q[self.unknowns.columns(k)] for k in some],
+            [d[k][is_moved[k]] for k in some], [known[k][is_moved[k]] for k in some],
+        )  # fmt: skip
+        for k, t in zip(some, moved, strict=True):
+            out[k] = out[k].with_rows(is_moved[k], self.widened(k, t))
         return tuple(out)
 
     def widened(self, record: int, t: Tangent) -> Tangent:

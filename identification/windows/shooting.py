@@ -17,23 +17,19 @@ the initial states are projected out. A direction of them that a window hardly f
 
 from __future__ import annotations
 
-import copy
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 
-import mujoco
 import numpy as np
 
-from identification.errors import DivergenceError
 from identification.model.coordinates import Coordinates
-from identification.model.lean import one_evaluation
-from identification.model.predictor import Plant, Predictor
-from identification.model.rollout import State, hold, rollout, substeps
+from identification.model.predictor import Predictor, settings_of
+from identification.model.rollout import State, hold, substeps
 from identification.model.sensitivity import FORWARD_STEP
+from identification.windows.batches import Points, simulated
 from identification.windows.windows import FirstStates, Windows, moved
 
 MIN_FELT_SHARE = 1e-6  # of the strongest direction of a state; weaker ones are not felt
-RK4 = int(mujoco.mjtIntegrator.mjINT_RK4)
 
 
 @dataclass(frozen=True)
@@ -89,31 +85,7 @@ class Shooting:
 
         Rough ones are for slopes, where only differences matter.
         """
-        plant = self.predictor.plant
-        if not is_rough:
-            return self._outputs(plant.model, q, moves)
-        try:
-            return self._outputs(rough(plant), q, moves)
-        except DivergenceError:  # longer steps may diverge where the model's own do not
-            return self._outputs(at_own_steps(rough(plant), plant.model), q, moves)
-
-    def _outputs(
-        self, model: mujoco.MjModel, q: np.ndarray, moves: Sequence[np.ndarray]
-    ) -> np.ndarray:
-        predictor, W = self.predictor, len(self.cut.starts)
-        values = self.space.decode(q)
-        begun = predictor.begun(values, State.stacked([self.states(d) for d in moves]))
-        inputs, every, hold_kind = self.held_inputs(values)
-        inputs, every = slower(inputs, every, predictor.plant.model, model)
-        _, numbers = predictor.settings(values)
-        run = rollout(
-            model, begun, inputs, predictor.log.sampling_time / every,
-            numbers=[(slot, np.repeat(column, W)) for slot, column in numbers],
-            record=predictor.recorded, hold_kind=hold_kind, time=np.tile(self.times, len(q)),
-        )  # fmt: skip
-        run = {field: states[:, ::every] for field, states in run.items()}
-        y = predictor.outputs(values, run, np.tile(self.times, len(q)))
-        return y.reshape(len(q), W, *y.shape[1:])
+        return simulated(points_of([self], [q], [moves]), is_rough)[0]
 
     def held_inputs(self, values: np.ndarray) -> tuple[np.ndarray, int, str]:
         """Returns inputs of all windows for some value sets, their number per sample, and hold."""
@@ -132,33 +104,75 @@ class Shooting:
         return each, every, "zoh"
 
 
+def points_of(
+    parts: Sequence[Shooting], q: Sequence[np.ndarray], moves: Sequence[Sequence[np.ndarray]]
+) -> list[Points]:
+    """Returns the windows of some records at k points q (k, p), each from its d; see `simulated`.
+
+    Args:
+        parts: the windows, one a record.
+        q: of each.
+        moves: of the states of each, k arrays (W, nx).
+    """
+    values = [part.space.decode(points) for part, points in zip(parts, q, strict=True)]
+    predictors = [part.predictor for part in parts]
+    out = []
+    for part, v, d, (_, numbers) in zip(
+        parts, values, moves, settings_of(predictors, values), strict=True
+    ):
+        inputs, every, hold_kind = part.held_inputs(v)
+        out.append(Points(
+            predictor=part.predictor, values=v, numbers=numbers, times=part.times,
+            start=part.predictor.begun(v, State.stacked([part.states(one) for one in d])),
+            inputs=inputs, every=every, hold_kind=hold_kind,
+        ))  # fmt: skip
+    return out
+
+
 def tangent(
     shooting: Shooting, q: np.ndarray, d: np.ndarray, step: float = FORWARD_STEP,
     known: np.ndarray | None = None,
 ) -> Tangent:  # fmt: skip
-    """Linearise all windows at q (p,) and d (W, nx), by forward differences in one batch.
+    """Linearise all windows of one record; see `tangents`."""
+    return tangents([shooting], [q], [d], [known], step)[0]
+
+
+def tangents(
+    parts: Sequence[Shooting], q: Sequence[np.ndarray], d: Sequence[np.ndarray],
+    known: Sequence[np.ndarray | None], step: float = FORWARD_STEP,
+) -> list[Tangent]:  # fmt: skip
+    """Linearise all windows of some records, by forward differences in one batch.
 
     Args:
-        shooting: the windows.
-        q: shape (p,).
-        d: shape (W, nx).
+        parts: the windows, one a record.
+        q: the point of each, shape (p,).
+        d: of each, shape (W, nx).
+        known: r there, shape (W, m) each; it is computed where None.
         step: of the differences.
-        known: r there, shape (W, m); it is computed when None.
 
     Raises:
         DivergenceError: a window left the finite numbers.
     """
-    p, nx = len(q), d.shape[1]
-    h = step
-    is_rough = shooting.has_rough_slopes
-    points = np.concatenate([np.tile(q, (1 + nx, 1)), q + h * np.eye(p)])
-    moves = [d, *(d + h * e for e in np.eye(nx)), *[d] * p]
-    y = shooting.outputs(points, moves, is_rough)
-    r = np.stack([shooting.joined(*pair) for pair in zip(y, moves, strict=True)], axis=-1)
-    if known is None:
-        known = shooting.residual(q, d) if is_rough else r[..., 0]
-    slopes = (r[..., :1] - r[..., 1:]) / h  # (W, m, nx + p)
-    return decomposed(known, slopes[..., :nx], slopes[..., nx:])
+    points = [
+        np.concatenate([np.tile(at, (1 + d_k.shape[1], 1)), at + step * np.eye(len(at))])
+        for at, d_k in zip(q, d, strict=True)
+    ]
+    moves = [
+        [d_k, *(d_k + step * e for e in np.eye(d_k.shape[1])), *[d_k] * len(at)]
+        for at, d_k in zip(q, d, strict=True)
+    ]
+    is_rough = [part.has_rough_slopes for part in parts]
+    every = points_of(parts, points, moves)
+    y = simulated(every, all(is_rough))
+    out = []
+    for k, part in enumerate(parts):
+        r = np.stack([part.joined(*pair) for pair in zip(y[k], moves[k], strict=True)], axis=-1)
+        here = known[k]
+        if here is None:
+            here = part.residual(q[k], d[k]) if is_rough[k] else r[..., 0]
+        nx, slopes = d[k].shape[1], (r[..., :1] - r[..., 1:]) / step  # (W, m, nx + p)
+        out.append(decomposed(here, slopes[..., :nx], slopes[..., nx:]))
+    return out
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -242,35 +256,3 @@ def along_states(t: Tangent, moves: np.ndarray) -> np.ndarray:
     """Returns X Δd of each window, shape (W, m)."""
     along = t.s * np.einsum("wkx,wx->wk", t.Vt, moves * t.size)
     return np.einsum("wmk,wk->wm", t.U, along)
-
-
-def rough(plant: Plant) -> mujoco.MjModel:
-    """Returns the model for slopes: smooth where the plant has one, with one evaluation a step."""
-    model: mujoco.MjModel = getattr(plant, "smooth", plant.model)
-    if model.opt.integrator != RK4:
-        return model
-    model = copy.copy(model)
-    model.opt.integrator = one_evaluation(model)
-    return model
-
-
-def at_own_steps(model: mujoco.MjModel, own: mujoco.MjModel) -> mujoco.MjModel:
-    """Returns a model whose steps may be longer, with the steps of another one."""
-    model = copy.copy(model)
-    model.opt.timestep = own.opt.timestep
-    return model
-
-
-def slower(
-    inputs: np.ndarray, every: int, model: mujoco.MjModel, other: mujoco.MjModel
-) -> tuple[np.ndarray, int]:
-    """Returns inputs (k, steps + 1, nu), `every` a sample, for another model with longer steps.
-
-    The last input stands behind the last step; a step of the other model takes a whole number of
-    steps of the model.
-    """
-    n = round(other.opt.timestep / model.opt.timestep)
-    if n == 1 or every == 1:
-        return inputs, every
-    steps = inputs[:, :-1].reshape(len(inputs), (inputs.shape[1] - 1) // n, n, inputs.shape[2])
-    return np.concatenate([steps.mean(axis=2), inputs[:, -1:]], axis=1), every // n

@@ -17,11 +17,12 @@ from identification.model.predictor import Predictor
 from identification.model.rollout import substeps
 from identification.prediction.extension import as_last_fit
 from identification.prediction.model import WindowModel, predict_fitted
+from identification.windows.batches import slower
 from identification.windows.coarse import OUTPUT_ERROR, with_longest_slope_steps, with_longest_steps
 from identification.windows.fit import solve
 from identification.windows.problem import Problem, no_moves, problem, with_longer_steps
 from identification.windows.records import Record
-from identification.windows.shooting import Shooting, slower, tangent
+from identification.windows.shooting import Shooting, tangent
 from identification.windows.unknowns import Unknowns
 from identification.windows.windows import first_states, windows
 
