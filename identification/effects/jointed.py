@@ -298,13 +298,13 @@ class JointPlant:
         """Returns the loads of `first_loads`; a search asks for the same ones again and again."""
         arrays = (values, known.qpos, known.qvel, known.act, inputs)
         key = (*names, *(np.asarray(x).tobytes() for x in arrays))
-        if key not in self._last_loads:
-            self._last_loads.clear()
+        found = self._last_loads.get(key)
+        if found is None:
             numbers = self.settings(names, values)[1]
-            self._last_loads[key] = first_loads(
-                self.bare.model, self.layout, numbers, known, inputs
-            )
-        return self._last_loads[key]
+            found = first_loads(self.bare.model, self.layout, numbers, known, inputs)
+            self._last_loads.clear()  # another thread may read it meanwhile
+            self._last_loads[key] = found
+        return found
 
     @cached_property
     def _last_loads(self) -> dict[object, tuple[np.ndarray, np.ndarray, np.ndarray]]:
