@@ -17,7 +17,7 @@ P_w and r_w are those of `identification.windows.point`.
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import partial
+from functools import lru_cache, partial
 
 import numpy as np
 
@@ -65,6 +65,7 @@ def degrees_of_freedom(found: WindowFit) -> np.ndarray:
     return np.where(total > 0, told, np.inf)
 
 
+@lru_cache(maxsize=2)  # a search asks again of the model that stays, and of the fit of its effect
 def step_shift(found: WindowFit) -> StepShift:
     """Returns the change of a fit with a quarter of the model's step.
 
