@@ -54,6 +54,16 @@ class Criterion(Protocol[Step]):
         """
         return None
 
+    def apart(self, step: Step, μ: Cost, raised: float) -> Cost:
+        """Returns the damping, μ or larger, whose step is not the one that was just rejected.
+
+        Args:
+            step: the one that was rejected.
+            μ: the damping that would be next.
+            raised: the factor by which it is raised.
+        """
+        return μ
+
     def moved(self, step: Step, taken: np.ndarray) -> Self:
         """Returns the criterion linearised after a step of those criteria that accept it."""
 
@@ -113,6 +123,8 @@ def levenberg_marquardt(
         following = damping.next(μ, taken)
         if taken.any():
             criterion = criterion.moved(step, taken)
+        else:
+            following = np.asarray(criterion.apart(step, following, damping.raised))
         yield Trial(
             criterion=criterion, step=step, before=before, after=after, taken=taken,
             μ=μ, next=following,

@@ -21,7 +21,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from identification.errors import InputError
-from identification.estimation.levenberg_marquardt import KEPT_GAIN, Cost, Criterion
+from identification.estimation.levenberg_marquardt import (
+    KEPT_GAIN,
+    SLOPE_ERROR,
+    Cost,
+    Criterion,
+)
 from identification.model.coordinates import Coordinates
 from identification.windows.problem import Problem, best_of
 from identification.windows.settling import settle
@@ -77,12 +82,28 @@ class AtPoint(Criterion[Step]):
             hoped = self.cost - promised
             is_short = hoped > self.tolerance * self.cost and self.cost - cost < KEPT_GAIN * hoped
             if is_short and cost < REJECT_COST_RATIO * self.cost:
-                settled = settle(held, moves, self.tangents, known=r, expected=expected)
+                most = self.cost - float(np.sum(self.problem.prior.against(q) ** 2))
+                settled = settle(held, moves, self.tangents, known=r, expected=expected, most=most)
                 moves, r = tuple(s.d for s in settled), tuple(s.r for s in settled)
                 cost = self.problem.cost_of(q, r)
         except InputError:  # it diverged, or has no start: the search must go elsewhere
             return Step(q, moves, (), np.inf, promised)
         return Step(q, moves, r, cost, promised)
+
+    def apart(self, step: Step, μ: Cost, raised: float) -> float:
+        """Returns the damping, μ or larger, whose step of the parameters is not the rejected one.
+
+        Far below the curvature, damping does nothing: the same step would be simulated, and its
+        states sought, up to ten times before it becomes a shorter one. Steps are as good as the
+        slopes, which tell none from another that is so near.
+        """
+        damping, tried = float(μ), step.q - self.q
+        while True:
+            dq, size, _ = parameters_step(self.problem, self.q, self.tangents, damping)
+            change, far = np.linalg.norm((dq - tried) * size), np.linalg.norm(tried * size)
+            if not change < SLOPE_ERROR * far:
+                return damping
+            damping *= raised
 
     def cost_after(self, step: Step) -> float:
         """Returns V after a step."""
@@ -142,6 +163,21 @@ def step_of(
     problem: Problem, q: np.ndarray, tangents: Sequence[Tangent], damping: float
 ) -> tuple[np.ndarray, Moves]:
     """Returns the damped step of the parameters, within bounds, and of the windows' states."""
+    dq, _, each = parameters_step(problem, q, tangents, damping)
+    moves = (
+        t.states_step(dq, damping, against, rest)
+        for t, (against, rest, _) in zip(tangents, each, strict=True)
+    )
+    return dq, tuple(moves)
+
+
+def parameters_step(
+    problem: Problem, q: np.ndarray, tangents: Sequence[Tangent], damping: float
+) -> tuple[np.ndarray, np.ndarray, list[tuple[np.ndarray, np.ndarray, np.ndarray]]]:
+    """Returns the damped step of the parameters, within bounds, (p,), and norms of columns, (p,).
+
+    What `Tangent.eliminated` returns of each record stands behind them.
+    """
     H, g = np.diag(problem.prior.weight**2), problem.prior.weight * problem.prior.against(q)
     each = [t.eliminated(damping) for t in tangents]
     for t, (against, rest, share) in zip(tangents, each, strict=True):
@@ -151,12 +187,7 @@ def step_of(
     size = np.sqrt(np.maximum(np.diag(H), 0.0))
     size = np.where(size > 0, size, 1.0)
     scaled = H / np.outer(size, size) + damping * np.eye(len(g))
-    dq = _within(scaled, g / size, problem.prior.space, q, size)
-    moves = (
-        t.states_step(dq, damping, against, rest)
-        for t, (against, rest, _) in zip(tangents, each, strict=True)
-    )
-    return dq, tuple(moves)
+    return _within(scaled, g / size, problem.prior.space, q, size), size, each
 
 
 def _within(

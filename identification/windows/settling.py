@@ -33,6 +33,7 @@ def settle(
     is_thorough: bool = False,
     known: Sequence[np.ndarray] | None = None,
     expected: Sequence[np.ndarray] | None = None,
+    most: float = np.inf,
 ) -> tuple[Settled, ...]:
     """Fit the initial state of each window of some records, none of which has a free parameter.
 
@@ -46,6 +47,7 @@ def settle(
             None.
         expected: sums of squares, one array (W,) a record; windows whose known residuals are as
             small stay as they are.
+        most: sum of squares of all windows above which it does not matter how they begin.
 
     Raises:
         DivergenceError: the simulation of a window diverged where the search begins.
@@ -56,7 +58,8 @@ def settle(
         slopes = None if near is None else _joined([near[k] for k in records], d)
         first = windows.residual(d) if known is None else _of(records, known)
         enough = None if expected is None else _of(records, expected)
-        d, r = search(states_at(windows, d, first, slopes), enough)
+        d, r = search(states_at(windows, d, first, slopes), enough, most)
+        most -= float(np.sum(r**2))
         if is_thorough:
             d, r = search_again(windows, d, r)
         out |= _by_record(records, windows, d, r)

@@ -38,10 +38,13 @@ WORSE_RATIO = 4.0
 RESTART_SHARES = (0.0, 0.5)  # of its changes, where such a window begins again
 
 
-def search(at: States, expected: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
+def search(
+    at: States, expected: np.ndarray | None = None, most: float = np.inf
+) -> tuple[np.ndarray, np.ndarray]:
     """Returns the best states and the residuals there; a finished window is no longer simulated.
 
-    Windows whose sums of squares are near those `expected`, shape (W,), stay as they are.
+    Windows whose sums of squares are near those `expected`, shape (W,), stay as they are. Where the
+    finished windows alone have more than `most`, the others no longer matter, and the search ends.
     """
     d, r = np.array(at.d), np.array(at.tangent.r)
     part, going, μ = at, np.arange(len(d)), None
@@ -49,7 +52,10 @@ def search(at: States, expected: np.ndarray | None = None) -> tuple[np.ndarray, 
         going = np.flatnonzero(at.cost - expected > FINISHED_CHANGE * float(np.mean(at.cost)))
         part = at.rows(going)
     for _ in range(MAX_STATE_STEPS if going.size else 0):
-        enough = FINISHED_CHANGE * float(np.mean(np.sum(r**2, axis=1)))
+        squares = np.sum(r**2, axis=1)
+        enough = FINISHED_CHANGE * float(np.mean(squares))
+        if float(squares.sum() - squares[going].sum()) > most:
+            break
         fresh = part.is_fresh
         trial = next(levenberg_marquardt(part, DAMPING, μ))
         part = trial.criterion
