@@ -168,12 +168,24 @@ def _settle(m, d, g, count, loose, h):
 
 
 @internal
+def _has_gears(m, key):
+    """Returns whether a joint of a set of effects has a gear."""
+    for j in range(word(m, M.njnt)):  # noqa: SIM110
+        if is_ours(m, j, key) and is_geared(gears_of(m, j)):
+            return True
+    return False
+
+
+@internal
 def transmit(m, d, key, is_implicit):
     """Writes τ of all geared joints into qfrc_actuator, behind MuJoCo's velocity stage.
 
     MuJoCo writes there, and into the room of qfrc_smooth and qacc_smooth, when it has asked all
-    actuators. Where a step moves friction that gives by the new rate, qacc_smooth holds a.
+    actuators. Where a step moves friction that gives by the new rate, qacc_smooth holds a. Without
+    gears nothing else is made of what is computed here.
     """
+    if not is_implicit and not _has_gears(m, key):
+        return
     h, a, out = load_constant(m + TIMESTEP), word(d, D.qacc_smooth), word(d, D.qfrc_actuator)
     g = np.empty((word(m, M.njnt), COLUMNS))
     count, loose, gives = _gather(m, d, key, g)
