@@ -6,14 +6,14 @@ from itertools import islice
 import numpy as np
 import pytest
 
-from identification.estimation.levenberg_marquardt import Damping, levenberg_marquardt
+from identification.estimation.levenberg_marquardt import Criterion, Damping, levenberg_marquardt
 
 PLAIN = Damping(first=0.0, raised=10.0, least=1e-4)
 CAREFUL = Damping(first=1e-2, raised=5.0, least=1e-12)
 
 
 @dataclass(frozen=True)
-class Rosenbrock:
+class Rosenbrock(Criterion):
     """r = (10 (b - a²), 1 - a): a curved valley to (1, 1), W of them at points (W, 2)."""
 
     q: np.ndarray
