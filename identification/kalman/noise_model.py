@@ -29,8 +29,9 @@ from functools import cached_property
 
 import numpy as np
 
+from identification.kalman.backwards import transpose_filter
 from identification.kalman.linear import LinearPlant
-from identification.kalman.recursion import filter_gains, filter_innovations, transpose_filter
+from identification.kalman.recursion import filter_gains, filter_innovations
 from identification.kalman.system import System
 
 KEPT_POINTS = 2  # where a search is, and where it came from

@@ -22,9 +22,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from identification.kalman.backwards import information, transpose_filter
 from identification.kalman.linear import LinearPlant
 from identification.kalman.noise_model import Noise, build_whitener
-from identification.kalman.recursion import information, transpose_filter
 
 POWERS = (1.0, 0.5)  # of q/t: the quick one, and the one that raises the likelihood always
 MAX_STEPS = 20

@@ -8,16 +8,12 @@ from discovery_cases import STEP, covariance, linear_plant, point_of
 
 from identification.estimation.priors import Priors
 from identification.kalman import problem as module
+from identification.kalman.backwards import information, transpose_filter
 from identification.kalman.linear import LinearPlant
 from identification.kalman.noise_fit import NoiseLevel, evaluate_noise, fit_noise
 from identification.kalman.noise_model import Noise, Whitened, augment, build_whitener, whiten
 from identification.kalman.problem import linearise_criterion
-from identification.kalman.recursion import (
-    COLUMNS_PER_CALL,
-    information,
-    propagate,
-    transpose_filter,
-)
+from identification.kalman.recursion import COLUMNS_PER_CALL, propagate
 
 SHARES = (1.2, 0.75)  # of two outputs
 

@@ -5,9 +5,9 @@ from effect_cases import bare
 from plain_logs import plain_log
 
 from identification import Predictor
+from identification.kalman.backwards import information
 from identification.kalman.linear import linearise
 from identification.kalman.noise_model import Noise, build_whitener
-from identification.kalman.recursion import information
 from inca_mj.robot.inputs import make_input
 from inca_mj.twin.logs import ANGLES, CURRENTS
 
