@@ -68,11 +68,13 @@ def counted() -> Iterator[Asked]:
             asked.steps += steps * self.many
             return super().rollout(steps, *rest, **more)
 
-    def evaluate(base: Any, cases: Any, results: Any, *, shares: bool, threads: int) -> Any:
-        many = len(base.states) * len(cases)
-        asked.shared += many if shares else 0
-        asked.evaluations += 0 if shares else many
-        return forward.evaluate(base, cases, results, shares=shares, threads=threads)
+    def evaluate(base: Any, cases: Any, *rest: Any) -> Any:
+        # The base is evaluated at each point; the share of an actuator is no evaluation.
+        others = [case for case in cases if not case.actuators]
+        whole = sum(case.keeps == "nothing" for case in others)
+        asked.evaluations += len(base.states) * (1 + whole)
+        asked.shared += len(base.states) * (len(others) - whole)
+        return forward.evaluate(base, cases, *rest)
 
     begin = time.process_time()
     with (

@@ -11,7 +11,6 @@ from identification.discovery.attempts import attempt, refuse_infinite
 from identification.discovery.effect_results import Proof
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate
-from identification.heap import release
 from identification.innovations.fit import MAX_FIT_STEPS, fit_with_effects
 from identification.innovations.proof import Validation, allowed_chance, validate
 from identification.innovations.scoring.scores import Score, score
@@ -95,7 +94,6 @@ def fit_model(
         DivergenceError: the start cannot be simulated.
         InputError: the robot cannot rest at its start.
     """
-    release()
     model, log, options = task.nominal_model, task.log, task.options
     nearby = None if near is None else near.refit
     part = log.part("estimation")

@@ -16,6 +16,7 @@ from identification.discovery.candidates import list_common, list_single
 from identification.discovery.moves import Move, SearchState, Watch, drop_needless
 from identification.discovery.outlook import SCORES
 from identification.discovery.passes import uses
+from identification.heap import release
 from identification.innovations.deviants import accept_deviants, within_bounds
 from identification.innovations.fitted_model import (
     AcceptedEffect,
@@ -99,6 +100,7 @@ def _with_scatter(task: DiscoveryTask, nominal: FittedModel) -> tuple[DiscoveryT
 def add_effect(state: InnovationSearch, progress: Progress) -> InnovationSearch:
     """Returns the state with the best effect that unseen samples prove, or what was refitted."""
     watch = Watch(state.seconds)
+    release()
     selection = select_effect(state.task, state.model, state.scores, progress)
     watch.stop("refits")
     if selection.accepted:
