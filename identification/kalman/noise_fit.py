@@ -4,12 +4,14 @@
 
 E and Φ are the whitened residual and sensitivities; c is the small change of the parameters, held
 by their priors, that fits best. ρ is searched on a scale that the plant gives: at ρ₀ the inputs'
-error moves the outputs by as much as the sensors' noise. From there on c is held while ρ, τ and how
-the noise is shared out among the sensors (`noise_shares`) are found, which never lowers L. Another
-turn with the new c never gained more than 0.1, because c says next to nothing of a covariance; so
-the columns are whitened twice, and not for each noise. All inputs have one ρ: where one errs by
-more, innovations would be white with a ρ of its own, but what follows from another input would be
-taken for that error too (of 12 logs of crosstalk it is told in 7, and else in 11).
+error moves the outputs by as much as the sensors' noise. From there on c and the noise take turns:
+c is held while ρ, τ and how the noise is shared out among the sensors (`noise_shares`) are found.
+This never lowers L. Two turns are mostly enough, because c says little of a covariance, and the
+columns are whitened once a turn and not for each noise. With one turn alone the noise of short logs
+whose model lacks something stays so wrong that effects are neither refused nor proven. All inputs
+have one ρ: where one errs by more, innovations would be white with a ρ of its own, but what follows
+from another input would be taken for that error too (of 12 logs of crosstalk it is told in 7, and
+else in 11).
 """
 
 from __future__ import annotations
@@ -30,7 +32,7 @@ from identification.kalman.noise_model import (
     keep,
     whiten,
 )
-from identification.kalman.noise_shares import share_noise
+from identification.kalman.noise_shares import END_RISE, share_noise
 from identification.kalman.recursion import propagate
 from identification.pool import one_blas_thread, run_parts, split
 
@@ -38,6 +40,7 @@ START_CORRELATION_TIME = 0.03  # [s] of the inputs' error, at which the search f
 # [s] at most: a noise that lasts without limit would explain a constant force.
 MAX_CORRELATION_TIME = 0.3
 NOISES_AT_ONCE = 4  # each takes the memory of the sensitivities
+MAX_TURNS = 4  # of c and of the noise
 FIRST_FACTOR, LAST_FACTOR = 1.6, 1.15  # with which the pattern search begins and ends
 # Multiples of the ρ of a point nearby that are tried; the last two where the second beats the first
 NEARBY_FACTORS = (1.0, 0.3, 0.05, 0.0)
@@ -164,11 +167,14 @@ def fit_noise(
             found = believed(unit, SILENT_LEVELS if silent and not fine else levels)
         best = _best(found)
         times = sampling_time / 3, MAX_CORRELATION_TIME  # below the first it is white
-        if fine:
+        for _ in range(MAX_TURNS if fine else 0):
             white = likeliest.find(best.noise) or whiten(plant, J, best.noise, sampling_time)
             rest = e - white.J @ _adjust(white, e, prior)[1]
             held = _refine(plant, best, rest, sampling_time, times, kinds)
-            best = _best([best, at(held.noise)])
+            new = at(held.noise)
+            best = _best([best, new])
+            if best is not new or new.log_likelihood - held.log_likelihood < END_RISE:
+                break
     likeliest.keep(best)
     return best
 
