@@ -25,6 +25,7 @@ from identification.discovery.findings.evidence import (
     ParametersAtLimit,
     RobotChange,
     SpectralLine,
+    UntriedEffect,
 )
 from identification.discovery.findings.finding import Finding, FindingKind
 from identification.discovery.options import DiscoveryOptions
@@ -37,7 +38,7 @@ from identification.innovations.fitted_model import (
 )
 from identification.innovations.proof import Validation
 from identification.innovations.scoring.scores import Score
-from identification.innovations.scoring.significance import find_oversized
+from identification.innovations.scoring.significance import find_oversized, select_significant
 from identification.kalman.point import evaluate_sensitivities
 from identification.pool import one_blas_thread
 
@@ -94,6 +95,22 @@ def find_doubtful_effect(
         and (r.bic_gain > 0 < told.gain or is_far_likelier(r.candidate, r.bic_gain, samples))
     ]  # fmt: skip
     return tuple(Finding(FindingKind.DOUBTFUL_EFFECT, DoubtfulEffect(r)) for r in wanted[:1])
+
+
+def find_untried_effect(
+    scores: Sequence[Score], cut_short: Sequence[str], options: DiscoveryOptions
+) -> tuple[Finding, ...]:
+    """Returns the best candidate beyond chance where the time limit ended the search; else nothing.
+
+    What is left is then no noise, although nothing was refused or proven.
+
+    Args:
+        scores: of all candidates on the final model.
+        cut_short: names of the moves that the time limit ended.
+        options: what is beyond chance.
+    """
+    best = select_significant(scores, options)[:1] if cut_short else []
+    return tuple(Finding(FindingKind.UNTRIED_EFFECT, UntriedEffect(s)) for s in best)
 
 
 def find_oversized_effect(

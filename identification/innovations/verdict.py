@@ -26,6 +26,7 @@ from identification.innovations.findings import (
     find_oversized_effect,
     find_robot_change,
     find_structure,
+    find_untried_effect,
 )
 from identification.innovations.fit import list_at_bound
 from identification.innovations.fitted_model import FittedModel, is_proven, score_candidates
@@ -62,6 +63,7 @@ def find_remaining(state: InnovationSearch) -> tuple[Finding, ...]:
         *find_input_error(model.validation, options, "report"),
         *(() if named else find_doubtful_effect(state.rejected, samples, options)),
         *_find_oversized(state, named),
+        *find_untried_effect(state.scores, state.cut_short, options),
     )
     if not findings:
         return ()
@@ -124,7 +126,8 @@ def decide(
         findings, *DISBELIEVED
     )
     explains_most = explained > options.min_explained_share and is_believed
-    if named and (not findings or explains_most):
+    others = [f for f in findings if f.kind is not FindingKind.UNTRIED_EFFECT]
+    if named and (not others or explains_most):
         return "named"
     return "unknown effect" if named or findings else "nothing missing"
 

@@ -30,6 +30,7 @@ import numpy as np
 from identification.chances import mean_above_other
 from identification.discovery.attempts import attempt
 from identification.discovery.effect_results import RejectedEffect
+from identification.discovery.findings.evidence import UntriedEffect
 from identification.discovery.findings.finding import Finding, FindingKind
 from identification.discovery.findings.records_evidence import (
     DifferentRecord,
@@ -45,6 +46,7 @@ from identification.estimation.metrics import relative
 from identification.model.predictor import Plant
 from identification.model.tied import is_set_point
 from identification.prediction.clocks import told_shifts
+from identification.prediction.contenders import is_plausible, is_significant
 from identification.prediction.model import WindowModel
 from identification.prediction.record_errors import errors_by_unit
 from identification.prediction.task import WindowSearch
@@ -91,9 +93,21 @@ def find_remaining(
     if state.accepted and left:
         out.append(Finding(FindingKind.REMAINING_ERROR, left))
     out += [Finding(FindingKind.DIFFERENT_RECORD, e) for e in different_records(state, needed)]
+    out += _untried(state)
     told = told_shifts(shifts, len(state.task.records), state.task.options) if left else ()
     out += [Finding(FindingKind.SHIFTED_RECORD, e) for e in told]
     return tuple(out)
+
+
+def _untried(state: WindowSearch) -> list[Finding]:
+    """Returns the best candidate beyond chance where the time limit ended the search."""
+    options = state.task.options
+    strict = options.significance / max(1, len(state.scores))
+    beyond = (
+        s for s in (state.scores if state.cut_short else ())
+        if is_significant(s, strict, options) and is_plausible(s, options)
+    )  # fmt: skip
+    return [Finding(FindingKind.UNTRIED_EFFECT, UntriedEffect(s)) for s in (*beyond,)[:1]]
 
 
 def is_much_left(model: WindowModel, options: DiscoveryOptions) -> bool:

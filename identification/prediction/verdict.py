@@ -45,6 +45,7 @@ from identification.windows.unseen import Unseen
 # With these findings and no name, the model lacks something.
 SUSPECT = (
     FindingKind.UNPROVEN_EFFECT, FindingKind.DIFFERENT_RECORD, FindingKind.SHIFTED_RECORD,
+    FindingKind.UNTRIED_EFFECT,
 )  # fmt: skip
 
 

@@ -8,7 +8,11 @@ from typing import Any
 import numpy as np
 
 from identification.discovery.effect_results import NamedEffect, Proof, RejectedEffect
-from identification.discovery.findings.evidence import DoubtfulEffect, OversizedEffect
+from identification.discovery.findings.evidence import (
+    DoubtfulEffect,
+    OversizedEffect,
+    UntriedEffect,
+)
 from identification.discovery.findings.finding import Finding
 from identification.discovery.fitted import Fitted
 from identification.discovery.result import Discovery
@@ -125,6 +129,9 @@ def finding_to_json(finding: Finding) -> dict[str, Any]:
     evidence = finding.evidence
     if isinstance(evidence, DoubtfulEffect):
         numbers = _rejected_to_json(evidence.rejected)
+    elif isinstance(evidence, UntriedEffect):
+        c = evidence.score.candidate
+        numbers = {"name": c.effect.name, "where": c.where}
     elif isinstance(evidence, OversizedEffect):
         score, c = evidence.score, evidence.score.candidate
         sizes = {

@@ -123,6 +123,11 @@ def describe_finding(finding: Finding) -> str:
                 f" beyond chance and {percent(r.proof.told.fall)} of the error on unseen data, but"
                 f" is not proven there ({describe_chance(r.proof)})"
             )
+        case free.UntriedEffect() as e:
+            return (
+                f"{describe_effect(e.score.candidate)}, would explain more than chance could by its"
+                " score, but the time limit ended the search before it was fitted"
+            )
         case free.OversizedEffect() as e:
             units = {s.name: s.unit for s in e.score.candidate.effect.sizes}
             values = dict(zip(units, e.score.size, strict=True))

@@ -24,6 +24,7 @@ EVIDENCE_OF = {
         "output rate", "current_3", "A", 0.004, 0.4
     ),
     FindingKind.DOUBTFUL_EFFECT: evidence.DoubtfulEffect(REJECTED),
+    FindingKind.UNTRIED_EFFECT: evidence.UntriedEffect(score_of(LATE, 0.1, 412.0)),
     FindingKind.OVERSIZED_EFFECT: evidence.OversizedEffect(
         score_of(LATE, 0.3, 412.0), {"tau": 0.1}
     ),

@@ -72,6 +72,18 @@ def test_what_fitted_samples_want_and_unseen_ones_do_not_prove_is_neither_named_
     assert doubt.rejected is offset
 
 
+def test_what_the_time_limit_left_untried_is_not_nothing():
+    """The noise model takes what is missing for an error of the inputs, and nothing is left."""
+    hurried = replace(OPTIONS, max_minutes=0.0)
+    answer = found(options=hurried, **OFFSET)
+    assert answer.verdict == "unknown effect"
+    (untried,) = evidence_of(answer, FindingKind.UNTRIED_EFFECT)
+    assert untried.score.candidate.effect.name == "offset"
+    silent = found(options=hurried)
+    assert silent.verdict == "nothing missing"
+    assert silent.cut_short
+
+
 @pytest.mark.parametrize("vibration", [0.0, 0.1])
 def test_what_is_proven_and_too_small_to_matter_is_named_where_nothing_else_is_left(vibration):
     error = vibration * np.sin(2 * np.pi * 2.3 * STEP * np.arange(500)[:, None])

@@ -33,7 +33,10 @@ def test_a_finding_without_a_name_is_an_unknown_effect_whatever_it_is(finding):
     assert verdict((), (finding,)) == "unknown effect"
 
 
-@pytest.mark.parametrize("finding", FINDINGS, ids=lambda f: f.kind)
+LEFT = [f for f in FINDINGS if f.kind is not FindingKind.UNTRIED_EFFECT]
+
+
+@pytest.mark.parametrize("finding", LEFT, ids=lambda f: f.kind)
 def test_a_name_stands_beside_a_finding_where_it_explains_most_of_a_believed_model(
     finding, monkeypatch
 ):
@@ -44,6 +47,11 @@ def test_a_name_stands_beside_a_finding_where_it_explains_most_of_a_believed_mod
     more = replace(OPTIONS, min_explained_share=0.0)
     monkeypatch.setattr(verdicts, "MAX_BELIEVED_INPUT_ERROR", 2.0)
     assert verdict(NAMED, (finding,), LITTLE, 1.0, more) == right
+
+
+def test_a_proven_name_stands_beside_what_the_time_limit_left_untried():
+    untried = Finding(FindingKind.UNTRIED_EFFECT, EVIDENCE_OF[FindingKind.UNTRIED_EFFECT])
+    assert verdict(NAMED, (untried,), explained=LITTLE) == "named"
 
 
 def test_evidence_of_another_kind_is_no_finding():

@@ -97,6 +97,9 @@ def test_a_search_behind_its_time_limit_answers_and_says_what_it_has_not_tried()
     assert discovery_to_json(answer)["cut_short"] == [*answer.cut_short]
     said = discovery_text(answer)
     assert "while it sought the next effect and sets of several effects. Effects that it" in said
+    (untried,) = [f.evidence for f in answer.findings if f.kind == "untried effect"]
+    assert untried.score.candidate.where == "joint hinge"
+    assert "would explain more than chance could by its score" in said
     assert found().cut_short == ()
 
 

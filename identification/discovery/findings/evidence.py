@@ -127,6 +127,13 @@ class DoubtfulEffect:
 
 
 @dataclass(frozen=True)
+class UntriedEffect:
+    """The best effect whose score is beyond chance, and that the time limit left unfitted."""
+
+    score: Scored  # of the effect
+
+
+@dataclass(frozen=True)
 class OversizedEffect:
     """An effect that explains more than what is named, but at a size beyond belief."""
 

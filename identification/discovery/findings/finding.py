@@ -28,6 +28,7 @@ class FindingKind(StrEnum):
     UNEXPECTED_ERROR = "unexpected error"
     STRUCTURED_INPUT_ERROR = "structured input error"
     DOUBTFUL_EFFECT = "doubtful effect"
+    UNTRIED_EFFECT = "untried effect"
     OVERSIZED_EFFECT = "oversized effect"
     REMAINING_ERROR = "remaining error"
     UNPROVEN_EFFECT = "unproven effect"
@@ -50,6 +51,7 @@ FindingEvidence = (
     | evidence.UnexpectedError
     | evidence.StructuredInputError
     | evidence.DoubtfulEffect
+    | evidence.UntriedEffect
     | evidence.OversizedEffect
     | records_evidence.RemainingError
     | records_evidence.UnprovenEffect
@@ -71,6 +73,7 @@ EVIDENCE: dict[FindingKind, type[FindingEvidence]] = {
     FindingKind.UNEXPECTED_ERROR: evidence.UnexpectedError,
     FindingKind.STRUCTURED_INPUT_ERROR: evidence.StructuredInputError,
     FindingKind.DOUBTFUL_EFFECT: evidence.DoubtfulEffect,
+    FindingKind.UNTRIED_EFFECT: evidence.UntriedEffect,
     FindingKind.OVERSIZED_EFFECT: evidence.OversizedEffect,
     FindingKind.REMAINING_ERROR: records_evidence.RemainingError,
     FindingKind.UNPROVEN_EFFECT: records_evidence.UnprovenEffect,
