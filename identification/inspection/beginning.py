@@ -117,7 +117,7 @@ def _unanswered(
 
 def _guesses(found: Inspection, model: mujoco.MjModel, matches: Sequence[Match]) -> tuple[str, ...]:
     """Returns a sentence on each thing in the file that is a guess."""
-    free = [_free(model, joint) for joint in _measured(matches)]
+    free = _freed(model, matches)
     columns = [
         f"{m.channel.name} is column {m.column} ({m.how.removeprefix('guessed').strip(' :')});"
         f" {_what(model, m)}"
@@ -127,8 +127,8 @@ def _guesses(found: Inspection, model: mujoco.MjModel, matches: Sequence[Match])
     units = [f"{line} (unit)" for line in _log_lines(found, matches) if "=" in line]
     return (
         *columns, *units, *_unanswered(found, model, matches),
-        f"free = {toml_value(free)}: one number for each measured joint; free what you want to"
-        " know",
+        f"free = {toml_value(free)}: one number for each measured joint, and the gain of each"
+        " position servo; free what you want to know",
         f"horizon = {_horizon(found)!r} s: how far ahead the model must predict, a part of a swing",
     )  # fmt: skip
 
@@ -161,8 +161,9 @@ def _lines(
         "",
         f"model = {toml_value(place)}",
         f"outputs = {toml_value([m.channel.name for m in outputs])}",
-        "# guessed: a number of the model for each measured joint; free what you want to know",
-        f"free = {toml_value([_free(model, joint) for joint in _measured(matches)])}",
+        "# guessed: a number of each measured joint, the gain of each position servo; free what"
+        " you want to know",
+        f"free = {toml_value(_freed(model, matches))}",
         f"horizon = {_horizon(found)!r}  # [s], guessed: a part of a swing that it must predict",
     ]
     if inputs or outputs:
@@ -242,6 +243,17 @@ def _needs(model: mujoco.MjModel, matches: Sequence[Match]) -> list[str]:
             f' such as <jointpos name="{joint}" joint="{joint}"/>, or name its column'
         )
     return out
+
+
+def _freed(model: mujoco.MjModel, matches: Sequence[Match]) -> list[str]:
+    """Returns a number of each measured joint, and the gain of each position servo in the log.
+
+    A gain that the model has wrong and that is held looks like a displaced mass or a late clock.
+    """
+    servos = [m.channel.name for m in matches if m.channel.is_input and m.column]
+    gains = [f"actuator/{name}.kp" for name in servos
+             if servo_kind(model, model.actuator(name).id) == "position"]  # fmt: skip
+    return [*(_free(model, joint) for joint in _measured(matches)), *gains]
 
 
 def _free(model: mujoco.MjModel, joint: str) -> str:

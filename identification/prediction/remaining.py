@@ -101,10 +101,12 @@ def find_remaining(
 
 def _untried(state: WindowSearch) -> list[Finding]:
     """Returns the best candidate beyond chance where the time limit ended the search."""
+    if not state.cut_short:
+        return []
     options = state.task.options
     strict = options.significance / max(1, len(state.scores))
     beyond = (
-        s for s in (state.scores if state.cut_short else ())
+        s for s in state.scores
         if is_significant(s, strict, options) and is_plausible(s, options)
     )  # fmt: skip
     return [Finding(FindingKind.UNTRIED_EFFECT, UntriedEffect(s)) for s in (*beyond,)[:1]]

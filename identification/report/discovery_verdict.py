@@ -185,8 +185,9 @@ def _any_forces(found: Discovery) -> list[str]:
     which = "whether it follows the rate, the position, the drive or the time, or two of these"
     most = max(shares.values())
     if most < MUCH:
-        size = percent(most) if most > 0 else "a part"
-        return [f"No smooth force at one joint would explain more than {size} of the fitted error,"
+        size = f"more than {percent(most)}" if most > 0 else "a part"
+        size = size.replace("more than less than", "as much as")
+        return [f"No smooth force at one joint would explain {size} of the fitted error,"
                 f" {which}."]  # fmt: skip
     each = [f"{percent(share)} at {joint}" for joint, share in shares.items() if share > 0]
     return [f"A force at one joint would explain {listed(each)} of the fitted error, {which}."]

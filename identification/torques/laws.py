@@ -149,19 +149,20 @@ class Laws:
 
 _ARRAYS = {  # of what a law calls, for all points at once
     "exp": np.exp, "cos": np.cos, "sin": np.sin, "sqrt": np.sqrt, "floor": np.floor,
-    "abs": np.abs, "min": np.minimum, "max": np.maximum,
+    "abs": np.abs, "min": np.minimum, "max": np.maximum, "tanh": np.tanh, "log": np.log,
 }  # fmt: skip
 
 
 def along(law: Any, states: Joint, p: Sequence[float]) -> np.ndarray:
     """Returns a law at many states of a joint, shape (n,), whose fields are arrays or numbers.
 
-    Its own Python is run once on the arrays; where it branches by a state, once for each of them.
+    Its own Python is run once on the arrays; where it branches by a state, or calls a function of
+    numbers such as `math.exp`, once for each of them.
     """
     try:
         with np.errstate(all="ignore"):
             return np.asarray(_on_arrays(law)(states, p) + np.zeros(len(states.q)))
-    except ValueError:  # the truth of an array
+    except (ValueError, TypeError):  # the truth of an array, or a function that takes a number
         fields = [np.broadcast_to(x, states.q.shape).tolist() for x in states]
         return np.array([law.py_func(Joint(*one), p) for one in zip(*fields, strict=True)])
 

@@ -11,6 +11,7 @@ from robot_cases import refused, run
 from touching_cases import simulated
 
 from identification import InputError, fit, inspect_log, read_robot
+from identification.files import toml_value
 from identification.inspection.answers import find_answers
 from identification.inspection.beginning import write_beginning
 from identification.inspection.guesses import is_time, role_of, time_unit, unit_of
@@ -156,8 +157,9 @@ def test_a_fit_runs_from_the_file_that_is_written(arm, capsys, monkeypatch):
     begun = run(capsys, "new", "arm.xml", "run")
     assert begun["needs"] == []
     assert begun["robot"] == "robot.toml"
-    assert any('free = ["joint/shoulder.damping", "joint/elbow.damping"]' in g
-               for g in begun["guessed"])  # fmt: skip
+    free = ["joint/shoulder.damping", "joint/elbow.damping", "actuator/shoulder_servo.kp",
+            "actuator/elbow_servo.kp"]  # fmt: skip
+    assert any(f"free = {toml_value(free)}" in g for g in begun["guessed"])
     assert any("elbow_pos is column joint_states.position.elbow" in g for g in begun["guessed"])
     assert any("answers desired.position.elbow" in f for f in begun["found"])
     record = run(capsys, "inspect", "run", "--out", "out")

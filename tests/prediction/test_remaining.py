@@ -48,7 +48,7 @@ def state_of(unseen, accepted, outputs=("x",), finer=np.nan):
     log = SimpleNamespace(output_names=outputs, units=units)
     told = SimpleNamespace(report=unseen, noise=unseen.noise)
     return SimpleNamespace(
-        worse_fit=None, accepted=accepted,
+        worse_fit=None, accepted=accepted, cut_short=(),
         model=SimpleNamespace(unseen=told, plant=None, finer=steps, scale=np.ones(len(outputs))),
         task=SimpleNamespace(options=OPTIONS, records=2 * (SimpleNamespace(log=log),)),
     )  # fmt: skip

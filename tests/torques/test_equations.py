@@ -1,7 +1,10 @@
 """Fits by moments of blocks are those of all equations, and their std forget no correlation."""
 
+import math
+
 import numpy as np
 import pytest
+from numba import njit
 from torque_cases import planar_record, planar_robot
 
 from identification.torques.base import find_base
@@ -111,6 +114,20 @@ def test_laws_on_arrays_are_those_at_each_state(robot, equations):
         for k in range(8):
             one = Joint(*(x[k] for x in arrays), np.sign(arrays[2][k]), 0.1, 0.5, 2.0, 3.0, 20.0)
             assert found[k] == pytest.approx(effect.hooks[hook].py_func(one, p), rel=1e-12)
+
+
+def rubbing(s, p):
+    """A law as a user writes it, with a function that takes one number at a time."""
+    return p[0] * math.tanh(s.v / 0.1) * math.exp(-s.q * s.q)
+
+
+def test_laws_may_call_functions_of_single_numbers():
+    from identification.native.joint_callback import Joint
+
+    q, v = np.random.default_rng(4).normal(size=(2, 8))
+    rest = (0.0,) * 3 + (0.1, 0.5, 2.0, 3.0, 20.0)
+    found = along(njit(rubbing), Joint(0.0, q, v, *rest), (0.4,))
+    np.testing.assert_allclose(found, 0.4 * np.tanh(v / 0.1) * np.exp(-q * q), rtol=1e-12)
 
 
 def others(equations):
