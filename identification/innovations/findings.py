@@ -98,19 +98,21 @@ def find_doubtful_effect(
 
 
 def find_untried_effect(
-    scores: Sequence[Score], cut_short: Sequence[str], options: DiscoveryOptions
+    scores: Sequence[Score], rejected: Sequence[RejectedEffect], options: DiscoveryOptions
 ) -> tuple[Finding, ...]:
-    """Returns the best candidate beyond chance where the time limit ended the search; else nothing.
+    """Returns the best candidate beyond chance that was not refitted; nothing without one.
 
-    What is left is then no noise, although nothing was refused or proven.
+    Where the time limit ended the search, what is left is then no noise, although nothing was
+    refused or proven.
 
     Args:
         scores: of all candidates on the final model.
-        cut_short: names of the moves that the time limit ended.
+        rejected: effects that were refitted beside it, and not accepted.
         options: what is beyond chance.
     """
-    best = select_significant(scores, options)[:1] if cut_short else []
-    return tuple(Finding(FindingKind.UNTRIED_EFFECT, UntriedEffect(s)) for s in best)
+    tried = {r.candidate.key for r in rejected}
+    left = [s for s in select_significant(scores, options) if s.candidate.key not in tried]
+    return tuple(Finding(FindingKind.UNTRIED_EFFECT, UntriedEffect(s)) for s in left[:1])
 
 
 def find_oversized_effect(

@@ -98,9 +98,9 @@ def validate(fit: Refit, log: Log, parts: Parts | None = None) -> Validation:
     with one_blas_thread():
         filter_ = build_whitener(point.linear, fit.level.noise, log.sampling_time)
         E = filter_(point.e) / fit.level.sigma
-    moved = np.zeros_like(point.e)
-    if filter_.system is not None:
-        moved[1:] = propagate(filter_.system)
+        moved = np.zeros_like(point.e)
+        if filter_.system is not None:
+            moved[1:] = propagate(filter_.system)
     return Validation(
         refit=fit, log=log, e=point.e, innovations=E, filter=filter_, seen=seen,
         parts=parts or Parts(~seen, ~seen, 0),

@@ -63,7 +63,7 @@ def find_remaining(state: InnovationSearch) -> tuple[Finding, ...]:
         *find_input_error(model.validation, options, "report"),
         *(() if named else find_doubtful_effect(state.rejected, samples, options)),
         *_find_oversized(state, named),
-        *find_untried_effect(state.scores, state.cut_short, options),
+        *(find_untried_effect(state.scores, state.rejected, options) if state.cut_short else ()),
     )
     if not findings:
         return ()

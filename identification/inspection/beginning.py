@@ -117,7 +117,7 @@ def _unanswered(
 
 def _guesses(found: Inspection, model: mujoco.MjModel, matches: Sequence[Match]) -> tuple[str, ...]:
     """Returns a sentence on each thing in the file that is a guess."""
-    free = _freed(model, matches)
+    free = _numbers_to_free(model, matches)
     columns = [
         f"{m.channel.name} is column {m.column} ({m.how.removeprefix('guessed').strip(' :')});"
         f" {_what(model, m)}"
@@ -163,7 +163,7 @@ def _lines(
         f"outputs = {toml_value([m.channel.name for m in outputs])}",
         "# guessed: a number of each measured joint, the gain of each position servo; free what"
         " you want to know",
-        f"free = {toml_value(_freed(model, matches))}",
+        f"free = {toml_value(_numbers_to_free(model, matches))}",
         f"horizon = {_horizon(found)!r}  # [s], guessed: a part of a swing that it must predict",
     ]
     if inputs or outputs:
@@ -245,7 +245,7 @@ def _needs(model: mujoco.MjModel, matches: Sequence[Match]) -> list[str]:
     return out
 
 
-def _freed(model: mujoco.MjModel, matches: Sequence[Match]) -> list[str]:
+def _numbers_to_free(model: mujoco.MjModel, matches: Sequence[Match]) -> list[str]:
     """Returns a number of each measured joint, and the gain of each position servo in the log.
 
     A gain that the model has wrong and that is held looks like a displaced mass or a late clock.
@@ -253,10 +253,10 @@ def _freed(model: mujoco.MjModel, matches: Sequence[Match]) -> list[str]:
     servos = [m.channel.name for m in matches if m.channel.is_input and m.column]
     gains = [f"actuator/{name}.kp" for name in servos
              if servo_kind(model, model.actuator(name).id) == "position"]  # fmt: skip
-    return [*(_free(model, joint) for joint in _measured(matches)), *gains]
+    return [*(_number_of(model, joint) for joint in _measured(matches)), *gains]
 
 
-def _free(model: mujoco.MjModel, joint: str) -> str:
+def _number_of(model: mujoco.MjModel, joint: str) -> str:
     """Returns a number of a joint that is not zero in the model, or the mass that it carries."""
     j = model.joint(joint)
     for path, value in (("damping", float(model.dof_damping[j.dofadr[0]])),

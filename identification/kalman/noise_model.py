@@ -163,6 +163,8 @@ def smooth(
 def augment(plant: LinearPlant, noise: Noise, sampling_time: float) -> System:
     """Returns the linear system of plant and input errors."""
     begins = ~plant.A.any(axis=(1, 2))
-    a = np.where(begins, 0.0, np.exp(-sampling_time / noise.time))
+    # Of samples that are far apart the share rounds to zero, which would be another record.
+    left = max(np.exp(-sampling_time / noise.time), np.finfo(float).tiny)
+    a = np.where(begins, 0.0, left)
     A, B, C = (np.ascontiguousarray(x, float) for x in (plant.A, plant.B, plant.C))
     return System(A, B, C, a, noise.of_inputs(plant.B.shape[2]) ** 2)

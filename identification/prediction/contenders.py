@@ -86,6 +86,17 @@ def is_significant(s: WindowScore, level: float, options: DiscoveryOptions) -> b
     return s.p_value < level and s.fall > options.min_fall
 
 
+def beyond_chance(scores: Sequence[WindowScore], options: DiscoveryOptions) -> list[WindowScore]:
+    """Returns the plausible scores that are beyond chance among all."""
+    level = _level_among(scores, options)
+    return [s for s in scores if is_significant(s, level, options) and is_plausible(s, options)]
+
+
+def _level_among(scores: Sequence[WindowScore], options: DiscoveryOptions) -> float:
+    """Returns the chance below which a score is beyond chance among all (Bonferroni)."""
+    return options.significance / max(1, len(scores))
+
+
 def refit_level(
     scores: Sequence[WindowScore], options: DiscoveryOptions, is_left: bool = False
 ) -> float:
@@ -102,12 +113,10 @@ def refit_level(
         options: what is beyond chance.
         is_left: whether much is left of the error of the model that was scored.
     """
-    strict = options.significance / max(1, len(scores))
     if not uses(options, "weak_scores"):
-        return strict
-    is_missing = (is_left and uses(options, "scores_of_much_left")) or any(
-        is_significant(s, strict, options) and is_plausible(s, options) for s in scores
-    )
+        return _level_among(scores, options)
+    is_missing = is_left and uses(options, "scores_of_much_left")
+    is_missing = is_missing or bool(beyond_chance(scores, options))
     return options.significance if is_missing else min(MAX_CHANCE, 1.0 / max(1, len(scores)))
 
 

@@ -46,7 +46,7 @@ from identification.estimation.metrics import relative
 from identification.model.predictor import Plant
 from identification.model.tied import is_set_point
 from identification.prediction.clocks import told_shifts
-from identification.prediction.contenders import is_plausible, is_significant
+from identification.prediction.contenders import beyond_chance
 from identification.prediction.model import WindowModel
 from identification.prediction.record_errors import errors_by_unit
 from identification.prediction.task import WindowSearch
@@ -100,16 +100,13 @@ def find_remaining(
 
 
 def _untried(state: WindowSearch) -> list[Finding]:
-    """Returns the best candidate beyond chance where the time limit ended the search."""
+    """Returns the best candidate beyond chance that the time limit left unfitted."""
     if not state.cut_short:
         return []
-    options = state.task.options
-    strict = options.significance / max(1, len(state.scores))
-    beyond = (
-        s for s in state.scores
-        if is_significant(s, strict, options) and is_plausible(s, options)
-    )  # fmt: skip
-    return [Finding(FindingKind.UNTRIED_EFFECT, UntriedEffect(s)) for s in (*beyond,)[:1]]
+    tried = {r.candidate.key for r in state.rejected} | {f.key for f in state.failed}
+    beyond = beyond_chance(state.scores, state.task.options)
+    left = [s for s in beyond if s.candidate.key not in tried]
+    return [Finding(FindingKind.UNTRIED_EFFECT, UntriedEffect(s)) for s in left[:1]]
 
 
 def is_much_left(model: WindowModel, options: DiscoveryOptions) -> bool:

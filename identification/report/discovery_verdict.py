@@ -185,10 +185,8 @@ def _any_forces(found: Discovery) -> list[str]:
     which = "whether it follows the rate, the position, the drive or the time, or two of these"
     most = max(shares.values())
     if most < MUCH:
-        size = f"more than {percent(most)}" if most > 0 else "a part"
-        size = size.replace("more than less than", "as much as")
-        return [f"No smooth force at one joint would explain {size} of the fitted error,"
-                f" {which}."]  # fmt: skip
+        return ["No smooth force at one joint would explain much of the fitted error: the best one"
+                f" {percent(most)}, {which}."]  # fmt: skip
     each = [f"{percent(share)} at {joint}" for joint, share in shares.items() if share > 0]
     return [f"A force at one joint would explain {listed(each)} of the fitted error, {which}."]
 

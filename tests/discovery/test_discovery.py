@@ -19,6 +19,7 @@ from discovery_cases import (
 from identification import InputError
 from identification.discovery.findings.finding import FindingKind
 from identification.innovations.discovery import discover
+from identification.innovations.findings import find_untried_effect
 
 OFFSET = {"offset.f": -0.8}
 
@@ -79,6 +80,10 @@ def test_what_the_time_limit_left_untried_is_not_nothing():
     assert answer.verdict == "unknown effect"
     (untried,) = evidence_of(answer, FindingKind.UNTRIED_EFFECT)
     assert untried.score.candidate.effect.name == "offset"
+    tried = found(options=replace(OPTIONS, min_proof_t=1e9), **OFFSET)
+    assert "offset" in {r.candidate.effect.name for r in tried.rejected}
+    left = find_untried_effect(tried.scores, tried.rejected, OPTIONS)
+    assert untried.score.candidate.key not in [f.evidence.score.candidate.key for f in left]
     silent = found(options=hurried)
     assert silent.verdict == "nothing missing"
     assert silent.cut_short

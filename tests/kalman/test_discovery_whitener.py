@@ -152,3 +152,14 @@ def test_all_columns_are_filtered_however_they_are_divided(columns, monkeypatch)
         slow.append(filter_.L[k] @ new)
         z = steps[k][0] @ (z + filter_.K[k] @ new) if k < 39 else z
     np.testing.assert_allclose(filter_(e), slow, atol=1e-10)
+
+
+def test_samples_that_are_far_apart_are_of_one_record():
+    """Nothing is left of an input's error after a sample, and the plant still remembers."""
+    rng = np.random.default_rng(5)
+    plant, noise, e = linear_plant(rng), Noise(0.7, 1e-5), rng.standard_normal((40, 2, 1))
+    filter_ = build_whitener(plant, noise, STEP)
+    assert filter_.system.records == ((0, 40),)
+    factor = np.linalg.cholesky(covariance(plant, noise))
+    dense = np.linalg.solve(factor, e.reshape(80, 1)).reshape(e.shape)
+    np.testing.assert_allclose(filter_(e), dense, atol=1e-9)

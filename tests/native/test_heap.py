@@ -33,5 +33,6 @@ def test_freed_arrays_between_those_that_live_on_leave_the_process():
 def test_a_library_that_cannot_is_left_alone(monkeypatch):
     heap._trim.cache_clear()
     monkeypatch.setattr(heap.ctypes, "CDLL", lambda name: object())
+    assert heap._trim()(0) is None
     release()
     heap._trim.cache_clear()

@@ -163,3 +163,17 @@ def test_what_explains_as_much_beside_the_name_is_missing_too_and_no_rival():
     least = OWN_SHARE * 0.4 * BEFORE.fitted_power / AFTER.fitted_power
     assert rivals(other, 0.9 * least) == (other,)
     assert rivals(other, 1.1 * least) == ()
+
+
+@pytest.mark.parametrize("known", ["rejected", "failed", ""])
+def test_what_was_fitted_before_the_time_limit_is_not_untried(known, monkeypatch):
+    score = SimpleNamespace(candidate=SimpleNamespace(key=("spring", "joint")))
+    monkeypatch.setattr(remaining, "beyond_chance", lambda *_: [score])
+    of = {"rejected": [score], "failed": [score.candidate]}
+    state = SimpleNamespace(
+        cut_short=("add_set",), scores=[score], task=SimpleNamespace(options=OPTIONS),
+        rejected=of["rejected"] if known == "rejected" else [],
+        failed=of["failed"] if known == "failed" else [],
+    )  # fmt: skip
+    found = [f.evidence.score for f in remaining._untried(state)]
+    assert found == ([] if known else [score])

@@ -85,8 +85,8 @@ def test_of_an_unknown_effect_the_likeliest_that_was_tried_is_told_once_with_its
 @pytest.mark.parametrize(("shares", "told"), [
     ({"joint b": 0.18, "joint a": 0.03}, ["18 % at joint b", "3 % at joint a"]),
     ({"joint b": 0.18, "joint a": 0.0}, ["18 % at joint b"]),
-    ({"joint b": 0.04}, ["No smooth force", "more than 4 %"]),
-    ({"joint b": 0.001}, ["No smooth force", "as much as 1 %"]),
+    ({"joint b": 0.04}, ["No smooth force", "the best one 4 %"]),
+    ({"joint b": 0.001}, ["No smooth force", "the best one less than 1 %"]),
     ({"joint b": 0.0}, ["No smooth force"]),
 ])  # fmt: skip
 def test_the_joint_with_the_largest_share_comes_first(shares, told):
