@@ -153,13 +153,14 @@ def _answers(
     # These take long to import, and the processes that only write the page need them not.
     from kept_steps import asked, kept_steps
 
-    from identification import read_robot
+    from identification import InputError, read_robot
     from identification.prediction.discovery import discover_records
-    from identification.robot.second_opinion import ask_torques, suggest
+    from identification.robot.second_opinion import ask_torques
+    from identification.robot.suggestions import suggest
 
     robot = read_robot(toml, logs[0], confirm=logs[1:])
     torques = ask_torques(robot, None)
-    suggested = suggest(torques, robot) if torques else ()
+    suggested = () if isinstance(torques, InputError) else suggest(torques, robot)
     model, candidates = robot.nominal_model, robot.candidates
     whole: dict[str, Any] = {}
     changed, seconds = {}, {}

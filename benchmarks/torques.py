@@ -27,7 +27,7 @@ from rows import search_commit
 from torque_arms import AXES, LISTED, SPREAD, UNLISTED, UNTOLD, arm, hidden, record
 
 from identification import fit_torques, read_robot
-from identification.report.torque_words import rivals_of, size_words
+from identification.report.torque_words import size_words
 from identification.torques.bodies import read_numbers
 
 ROWS = Path(__file__).resolve().parent / "results" / "torques.jsonl"
@@ -67,7 +67,7 @@ def world(joints: int, seed: int, hides: str) -> dict[str, Any]:
         "s": effect and effect.s, "seconds": round(seconds, 2),
         "named": [s.missing.title for s in found.named],
         "first": found.named[0].missing.title if found.named else None,
-        "rivals": [r.missing.title for s in found.named[:1] for r in rivals_of(found.found, s, 0)],
+        "rivals": [r.missing.title for r in found.found.rivals],
         "falls": [s.fall for s in found.named],
         "mass": None if payload is None else float(payload.size[0]),
         "std": None if payload is None else float(payload.std[0]),

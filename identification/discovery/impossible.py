@@ -1,5 +1,7 @@
 """Sizes that physics forbids: an effect that has one is told as what was tried, and is no name.
 
+Searches over windows and along a free run hold to it, and so do torques (`identification.torques`).
+
     mass        Δm <= -m/2            a body would lose half of what the model's file says, or more
     gain        |α| T > 1/2           an input's gain would leave [1/2, 3/2] within a record
     command     τ < -T_s              outputs would move before their servo is told to
@@ -11,7 +13,9 @@ likelier than what is possible, the latter is no name either.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
+from math import inf
 from typing import Literal, get_args
 
 import mujoco
@@ -37,14 +41,32 @@ def find_impossible(candidate: Candidate, fit: Fitted, logs: Sequence[Log]) -> I
         fit: with it.
         logs: that were fitted.
     """
-    name, sizes = candidate.effect.name, [*_values(candidate, fit)]
-    if name == "mass_mismatch" and any(v <= -MOST_LOST * m for v, m in _masses(sizes, fit.plant)):
+    name, plant = candidate.effect.name, fit.plant
+    masses = {b.label: b.mass for b in plant.bodies} if isinstance(plant, JointPlant) else {}
+    sizes = [(v, masses.get(n.partition("@")[2], inf)) for n, v in _values(candidate, fit)]
+    return forbids(name, sizes, logs, partial(_are_servos, candidate, plant))
+
+
+def forbids(
+    name: str, sizes: Sequence[tuple[float, float]], logs: Sequence[Log],
+    are_servos: Callable[[], bool],
+) -> Impossible | None:  # fmt: skip
+    """Returns what physics forbids of an effect with some sizes; None where it may be.
+
+    Args:
+        name: of the effect.
+        sizes: each with the mass of its body in the model's file [kg], inf where it is of no body.
+        logs: that were fitted.
+        are_servos: returns whether all inputs on which it acts are what servos are told.
+    """
+    values = [v for v, _ in sizes]
+    if name == "mass_mismatch" and any(v <= -MOST_LOST * m for v, m in sizes):
         return "mass"
     longest = max(log.duration for log in logs)
-    if name == "gain_drift" and any(abs(v) * longest > MOST_DRIFT for _, v in sizes):
+    if name == "gain_drift" and any(abs(v) * longest > MOST_DRIFT for v in values):
         return "gain"
-    is_early = name == "time_shift" and any(v < -logs[0].sampling_time for _, v in sizes)
-    return "command" if is_early and _are_servos(candidate, fit.plant) else None
+    is_early = name == "time_shift" and any(v < -logs[0].sampling_time for v in values)
+    return "command" if is_early and are_servos() else None
 
 
 def _values(candidate: Candidate, fit: Fitted) -> Iterator[tuple[str, float]]:
@@ -55,21 +77,14 @@ def _values(candidate: Candidate, fit: Fitted) -> Iterator[tuple[str, float]]:
             yield size, value
 
 
-def _masses(sizes: Sequence[tuple[str, float]], plant: Plant) -> Iterator[tuple[float, float]]:
-    """Yields each size at a body with the mass that the model's file gives this body [kg]."""
-    each = {b.label: b.mass for b in plant.bodies} if isinstance(plant, JointPlant) else {}
-    for name, value in sizes:
-        if (mass := each.get(name.partition("@")[2])) is not None:
-            yield value, mass
-
-
 def _are_servos(candidate: Candidate, plant: Plant) -> bool:
     """Returns whether all inputs on which an effect acts are what servos are told."""
     at = [suffix for suffix in candidate.effect.places.values() if suffix]
     own = candidate.effect.places[candidate.where]
     rows = (plant.model.actuator(suffix[1:]).id for suffix in ([own] if own else at))
-    return all(_is_servo(plant.model, int(row)) for row in rows)
+    return all(is_servo(plant.model, int(row)) for row in rows)
 
 
-def _is_servo(model: mujoco.MjModel, row: int) -> bool:
+def is_servo(model: mujoco.MjModel, row: int) -> bool:
+    """Returns whether the input of an actuator is a position or a rate that a servo is told."""
     return servo_kind(model, row) is not None and float(model.actuator_gainprm[row, 0]) != 0

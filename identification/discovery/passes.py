@@ -13,7 +13,8 @@ from typing import Protocol
 
 from identification.errors import InputError, unknown_name
 
-RUN, HORIZON, BOTH, TORQUES = "free run", "horizon", "both", "torques"  # which search makes a pass
+# Which search makes a pass.
+RUN, HORIZON, BOTH, TORQUES, ALL = "free run", "horizon", "both", "torques", "all"
 # By the name that leaves it out: which search makes it, and what it does.
 PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
     "untouched_part": (
@@ -36,7 +37,7 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
         HORIZON, "puts effects that are proven together in the place of those found one by one",
     ),
     "add_deviants": (RUN, "makes effects of parts that deviate by more than parts do"),
-    "impossible_sizes": (BOTH, "names no effect of a size that physics forbids"),
+    "impossible_sizes": (ALL, "names no effect of a size that physics forbids"),
     "drop_effects": (BOTH, "drops an effect that later ones have made needless"),
     "exchange_effects": (
         RUN, "puts a rival in the place of an effect, where the model with it is better",

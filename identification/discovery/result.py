@@ -108,8 +108,8 @@ class Discovery(Shown, Written):
             free run.
         differences: what differs between records and is counted for each by itself, such as the
             zero of a sensor; likewise.
-        torques: what the torques that the measured motion needs say of the names; empty where they
-            tell nothing, and for a free run.
+        torques: what the torques of the measured motion say of the names, and what they name.
+        torques_refused: why they cannot say anything; "" where they can, None where nobody asked.
         repeats: names of the records that confirm, but whose motion is that of a fitted record or
             of one that confirms before them; likewise.
         took: wall time of the whole search [s].
@@ -121,8 +121,8 @@ class Discovery(Shown, Written):
         run: the free runs of both fits; None over a horizon.
         recover: returns the force of a named effect, beside those of its rivals, as the data ask
             for it; None where it has none. It raises DivergenceError.
-        files_of: returns what writes its files (`identification.written`), which depend on what was
-            searched; None where no public function was asked.
+        files_of: returns what writes its files (`identification.written`); None where no public
+            function was asked.
     """
 
     records: tuple[Record, ...]
@@ -162,6 +162,7 @@ class Discovery(Shown, Written):
     shifts: tuple[ShiftedRecord, ...] = ()
     differences: tuple[RecordDifference, ...] = ()
     torques: tuple[TorqueOpinion, ...] = ()
+    torques_refused: str | None = None
     repeats: tuple[str, ...] = ()
     took: float
     seconds: Mapping[str, float]

@@ -132,6 +132,16 @@ def servo_kind(model: mujoco.MjModel, row: int) -> str | None:
     return "velocity" if gain and not bias[1] and bias[2] == -gain else None
 
 
+def gain_path(model: mujoco.MjModel, row: int) -> str:
+    """Returns the path of the number by which all grows that an actuator gives; "" without a name.
+
+    Of a position servo it is kp: the damping kv, which is a number by itself, stays as it is.
+    """
+    name = model.actuator(row).name
+    gain = {"position": "kp", "velocity": "kv", None: "gear[0]"}[servo_kind(model, row)]
+    return f"actuator/{name}.{gain}" if name else ""
+
+
 def is_set_point(model: mujoco.MjModel, control: int) -> bool:
     """Returns whether an input is what servos are told to reach, and no force."""
     rows = [i for i in range(len(model.actuator_trntype)) if model.actuator_ctrladr[i] == control]

@@ -69,11 +69,12 @@ def discovery_to_json(found: Discovery) -> dict[str, Any]:
             for d in found.differences
         ],
         "torques": [
-            {**plain_fields(o, "name", "where", "fall", "t"),
-             "proven": o.is_proven, "named": o.is_named,
+            {**plain_fields(o, "name", "where", "fall", "t", "chance", "standing", "doubt", "free"),
+             "proven": o.is_proven, "named": o.is_named, "first": o.is_first,
              "sizes": _parameters_to_json(o.sizes)}
             for o in found.torques
         ],
+        "torques_refused": found.torques_refused,
         "parts": parts_to_json(found),
         **plain_fields(found, "shifts", "repeats", "horizon"),
         "timestep": dict(zip(("simulated", "model"), steps_of(found.nominal.plant), strict=True)),

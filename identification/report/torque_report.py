@@ -204,6 +204,7 @@ def evidence_to_json(evidence: Evidence, model: mujoco.MjModel) -> dict[str, Any
         "base_parameters": base,
         "values": _values(evidence.final),
         "named": [_score(s) for s in evidence.named],
+        "tried": [{**_score(s), "doubt": evidence.doubts[s.missing.key]} for s in evidence.tried],
         "scores": [_score(s) for s in evidence.scores[:SHOWN]],
         "rest": [_score(s) for s in evidence.rest[:SHOWN]],
         "differences": [_score(s) for s in evidence.differences[:SHOWN]],

@@ -8,12 +8,15 @@ import mujoco
 import numpy as np
 
 from identification.quantities import quantity
+from identification.report.effect_words import DOUBTS
 from identification.report.error_words import listed
+from identification.report.opinion_words import OTHERWISE, against
 from identification.shares import decimal, fall_words, percent
 from identification.torques.evidence import Evidence
 from identification.torques.fits import Fitted
 from identification.torques.scores import CHANCE, FAR, PROOF, Score
 
+NONE = "Apart from friction, which is always fitted, the torques prove no effect"
 SHOWN = 8  # candidates that are told
 COLUMNS = "sizes; fall of the mean square on unseen data, its t, chance that luck alone does it"
 LATE = 1e-3  # shift of the clocks that is told [s]
@@ -72,14 +75,13 @@ def _missing(evidence: Evidence) -> list[str]:
     if not evidence.found:
         first = evidence.scores[0]
         return [
-            "Apart from friction, which is always fitted, the torques prove no effect. Of"
-            f" {evidence.asked} candidates the nearest is"
-            f" {called(first)}, {size_words(first)}: with it the mean square on {on} that"
-            f" no fit has seen {fall_words(first.fall)}, t {first.t:.1f}, chance"
-            f" {chance_words(first.chance)}.",
+            f"{NONE}. Of {evidence.asked} candidates the nearest is {called(first)},"
+            f" {size_words(first)}: with it the mean square on {on} that no fit has seen"
+            f" {fall_words(first.fall)}, t {first.t:.1f}, chance {chance_words(first.chance)}; but"
+            f" {against(first.doubt or OTHERWISE, first.chance)}.",
             *_imitated(evidence),
         ]
-    out = []
+    out = [] if evidence.named else [f"{NONE} that physics allows."]
     for k, score in enumerate(evidence.named):
         begins = "They also need" if k else "The torques need"
         if score.missing.is_curve:
@@ -97,8 +99,21 @@ def _missing(evidence: Evidence) -> list[str]:
                 " Free parameters imitate it, with values far from what was known of them; if they"
                 f" are held at what was known, they do not (t {score.held_t:.1f})."
             )
-        if len(rivals := rivals_of(evidence, score, k)):
+        if k == 0 and (rivals := evidence.rivals[:SHOWN]):
             out[-1] += f" Within chance as good: {listed([called(r) for r in rivals])}."
+    return [*out, *_tried(evidence)]
+
+
+def _tried(evidence: Evidence) -> list[str]:
+    """Returns a sentence on each effect that was added and is no name."""
+    out = []
+    for s in evidence.tried:
+        doubt = evidence.doubts[s.missing.key]
+        like = "" if doubt == "beside" else " So something is missing that acts like it."
+        out.append(
+            f"Tried, and no name: {called(s)}, {size_words(s)}; with it the mean square of their"
+            f" residual {fall_words(s.fall)}, t {s.t:.1f}, but {DOUBTS[doubt]}.{like}"
+        )
     return out
 
 
@@ -132,14 +147,6 @@ def _imitated(evidence: Evidence) -> list[str]:
         f" ({size_words(best)}; chance {chance_words(best.chance)}). But these parameters imitate"
         " it on unseen data: free fewer of them, or record a motion with larger accelerations."
     ]
-
-
-def rivals_of(evidence: Evidence, score: Score, step: int) -> list[Score]:
-    """Returns other candidates that predict as well as the first effect found, the best first."""
-    if step:
-        return []
-    others = [s for s in evidence.scores if s.missing.key != score.missing.key and s.is_proven]
-    return [s for s in others if s.is_like(score)][:SHOWN]
 
 
 def chance_words(chance: float) -> str:

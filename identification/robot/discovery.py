@@ -19,7 +19,8 @@ from identification.robot.blame import told_of_factors
 from identification.robot.checks import refuse_horizon, refuse_unlike
 from identification.robot.file import refuse_nothing_free
 from identification.robot.robot import Robot
-from identification.robot.second_opinion import ask_torques, suggest, with_torques
+from identification.robot.second_opinion import ask_torques, with_torques
+from identification.robot.suggestions import suggest
 from identification.written import Files
 
 
@@ -98,9 +99,9 @@ def discover(
                 model.candidates,
                 progress,
                 options,
-                suggest(torques, model) if torques else (),
+                () if isinstance(torques, InputError) else suggest(torques, model),
             )
-        return _written(with_torques(found, torques), model)
+        return _written(with_torques(found, torques, model), model)
     if log is None or effects is None:
         raise InputError("discover needs a log and candidate effects beside a nominal model")
     refuse_kind(log, Log, "discover takes a Log (read_log) beside a nominal model")

@@ -1,23 +1,23 @@
-"""What the torques of joints say: what a search may try, and what its names are worth.
+"""What the joints' torques say of the names of a search, and what they name themselves.
 
-A load at any place may sit at the body's end, where it needs no place of its own; where neither is
-a candidate, it is another mass or another centre of mass. Every fit of torques has Coulomb friction
-and an offset of each joint: where those are far from the model's, the model lacks them. A robot of
-one joint needs no such help with its frictions, because the search compares them with their rivals
-at that joint. A name that is no candidate of the search, such as a gain, is left out.
+Every fit of torques has Coulomb friction and an offset of each joint: where those are far from the
+model's, the model lacks them. An effect of a sensor, of a servo or of a state is none that torques
+can tell.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import replace
 
-from identification.discovery.candidates import iterate_shapes
 from identification.discovery.result import Discovery
-from identification.discovery.second_opinion import TorqueOpinion
-from identification.effects.effect import Candidate, Effect
+from identification.discovery.second_opinion import Standing, TorqueOpinion
+from identification.effects.joint_group import SLIDE
 from identification.errors import InputError
-from identification.prediction.screening import at_several
+from identification.model.tied import gain_path, value_of
+from identification.prediction.screening import places_of
+from identification.report.effect_words import ADDED_TO
+from identification.report.opinion_words import OTHERWISE
 from identification.robot.robot import Robot
 from identification.robot.torques import fit_torques
 from identification.torques.evidence import Evidence
@@ -27,130 +27,124 @@ from identification.torques.scores import PROOF, Score
 FRICTIONS = (
     ("coulomb of ", "coulomb_friction", "f_c"), ("offset of ", "offset", "f_0"),
 )  # fmt: skip
+MOST_RIVALS = 4  # of what torques name first, that are told
+# Numbers that an effect of torques adds to, beside those of the catalogue.
+OF_TORQUES = {"load": "body/{}.mass", "payload": "body/{}.mass"}
 
 
-def ask_torques(robot: Robot, progress: Callable[[str], None] | None = None) -> Evidence | None:
-    """Returns what the joints' torques say of a robot.
+def ask_torques(
+    robot: Robot, progress: Callable[[str], None] | None = None
+) -> Evidence | InputError:
+    """Returns what the joints' torques say of a robot, or the error that says why they cannot.
 
-    None where they tell nothing: a position is not measured, a drive has a state, bodies form a
-    loop.
+    They cannot where a position is not measured, a drive has a state, or bodies form a loop.
     """
     try:
         evidence = fit_torques(robot).found
-    except InputError:  # they need more than a search over windows does
-        return None
+    except InputError as error:  # they need more than a search over windows does
+        return error
     if progress is not None:
         named = ", ".join(s.missing.title for s in evidence.named) or "nothing"
         progress(f"the torques of the joints name {named}")
     return evidence
 
 
-def with_torques(found: Discovery, evidence: Evidence | None) -> Discovery:
-    """Returns a discovery with what the joints' torques say of its names, if they tell anything.
+def with_torques(found: Discovery, evidence: Evidence | InputError, robot: Robot) -> Discovery:
+    """Returns a discovery with what the joints' torques say of its names, or why they cannot.
 
     A discovery in which nothing is missing is returned as it is.
     """
-    if evidence is None or found.verdict == "nothing missing":
+    if found.verdict == "nothing missing":
         return found
-    return replace(found, torques=opinions(found, evidence))
+    if isinstance(evidence, InputError):
+        # what follows is advice for those who asked for torques
+        why = str(evidence).partition("; ")[0].partition(": ")[0]
+        return replace(found, torques_refused=why)
+    return replace(found, torques=opinions(found, evidence, robot), torques_refused="")
 
 
-def opinions(found: Discovery, evidence: Evidence) -> tuple[TorqueOpinion, ...]:
+def opinions(found: Discovery, evidence: Evidence, robot: Robot) -> tuple[TorqueOpinion, ...]:
     """Returns what torques say of each named effect that they can tell, in the search's order.
 
-    Where they prove none of these, what they name first themselves comes last; so it does where
-    nothing is named. An effect of a sensor or of a state is none that they can tell, and a search
-    that names one is not contradicted by them.
+    What they name themselves and the search does not comes last, in their order, then what they do
+    not tell from the first of these; where they name nothing, what they would name if physics
+    allowed it.
     """
-    scores = {s.missing.key: s for s in (*reversed(evidence.scores), *evidence.named)}
-    known = {key: _opinion(s, is_named=True) for key, s in scores.items()} | frictions(evidence)
-    named = [n.candidate.key for n in found.named]
-    told = [known[key] for key in named if key in known]
-    is_asked = len(told) == len(named) and not any(o.is_proven for o in told)
-    others = [s for s in evidence.named if s.missing.key not in named] if is_asked else []
-    return (*told, *(_opinion(s, is_named=False) for s in others[:1]))
+    known, told = _known(evidence), list[TorqueOpinion]()
+    for named in found.named:
+        for where in places_of(named.where):
+            plain = named.name.removeprefix(SLIDE), where
+            of = known.get((named.name, where)) or known.get(plain)
+            if of is not None:
+                told.append(replace(of, name=named.name, is_named=True))
+    keys = {(o.name, o.where) for o in told}
+    own = [s.missing.key for s in evidence.named or evidence.tried]
+    if any(known[key].is_first for key in own if key not in keys):
+        own += [s.missing.key for s in evidence.rivals[:MOST_RIVALS]]
+    others = [known[key] for key in dict.fromkeys(own) if key not in keys]
+    return (*told, *(replace(o, free=_number(o, robot)) for o in others))
+
+
+def _known(evidence: Evidence) -> dict[tuple[str, str], TorqueOpinion]:
+    """Returns what torques say of each effect that they can tell, by its name and its place."""
+    added = {s.missing.key for s in evidence.added}
+    alike = {s.missing.key for s in evidence.rivals}
+    first = {s.missing.key for s in evidence.named[:1]}
+    out: dict[tuple[str, str], TorqueOpinion] = {}
+    for score in (*reversed(evidence.scores), *evidence.added):
+        key = score.missing.key
+        # where torques add no effect, something is against one that its own score proves
+        doubt: str = score.doubt or ("" if evidence.found else OTHERWISE)
+        standing: Standing = "unproven" if doubt else "alike" if key in alike else "alone"
+        if key in added:
+            doubt = evidence.doubts.get(key, "")
+            standing = "forbidden" if doubt else "named"
+        out[key] = replace(_opinion(score, standing, doubt), is_first=key in first)
+    return out | frictions(evidence)
 
 
 def frictions(evidence: Evidence) -> dict[tuple[str, str], TorqueOpinion]:
     """Returns how far frictions that every fit has are from those of the model, by effect."""
-    fit, out = evidence.final, {}
+    fit, out = evidence.final, dict[tuple[str, str], TorqueOpinion]()
     for k, model in enumerate(evidence.friction):
         at = fit.inertial + k
         for word, effect, size in FRICTIONS:
             if fit.names[at].startswith(word) and fit.fit.std[at] > 0:
                 where = f"joint {fit.names[at].removeprefix(word)}"
                 value, std = float(fit.fit.θ[at] - model), float(fit.fit.std[at])
+                is_far = abs(value) > PROOF * std
                 out[effect, where] = TorqueOpinion(
                     name=effect, where=where, sizes={size: (value, std, fit.units[at])}, fall=None,
-                    t=abs(value) / std, is_proven=abs(value) > PROOF * std, is_named=True,
+                    t=abs(value) / std, standing="named" if is_far else "unproven",
+                    doubt="" if is_far else "small", is_named=False,
                 )  # fmt: skip
     return out
 
 
-def _opinion(score: Score, is_named: bool) -> TorqueOpinion:
+def _opinion(score: Score, standing: Standing, doubt: str) -> TorqueOpinion:
     m = score.missing
     sizes = {
         n.rpartition(".")[2].partition("@")[0]: (float(v), float(s), u)
         for n, v, s, u in zip(m.sizes, score.size, score.std, m.units, strict=True)
     }
     return TorqueOpinion(
-        name=m.name, where=m.where, sizes=sizes, fall=score.fall, t=score.t,
-        is_proven=score.is_proven, is_named=is_named,
+        name=m.name, where=m.where, phrase=m.phrase, sizes={} if m.is_curve else sizes,
+        fall=score.fall, t=score.t, chance=score.chance, standing=standing, doubt=doubt,
+        is_named=False,
     )  # fmt: skip
 
 
-OF_A_LOAD = (("payload", "load"), ("mass_mismatch",), ("com_offset",))
-
-
-def suggest(evidence: Evidence, robot: Robot) -> tuple[Candidate, ...]:
-    """Returns what torques name and a search over windows can fit, the first found first."""
-    known = {effect.name: effect for effect in robot.candidates}
-    out: list[Candidate] = []
-    for score in evidence.named:
-        m = score.missing
-        shape = {name: value for name, value, _ in m.shape}
-        for names in OF_A_LOAD if m.name == "load" else ((m.name,),):
-            each = [known[n] for n in names if n in known and m.where in known[n].places]
-            out += [Candidate(e, m.where, _believed(e, shape)) for e in each]
-            if each:
-                break
-    changed = [(c.effect.needs, c.where) for c in out if c.effect.needs]
-    return (*out, *_frictions(evidence, robot, known, changed))
-
-
-def _believed(effect: Effect, told: Mapping[str, float]) -> dict[str, float]:
-    """Returns shapes that torques tell, moved to the nearest that the search believes.
-
-    Torques see a jump within one sample, which a simulation cannot: it takes some time there. Where
-    they tell nothing, these are the first ones to try.
-    """
-    first = next(iterate_shapes(effect))
-    return {
-        shape.name: min(max(told.get(shape.name, first[shape.name]), shape.lower), shape.upper)
-        for shape in effect.shapes
-    }
-
-
-def _frictions(
-    evidence: Evidence, robot: Robot, known: dict[str, Effect], changed: list[tuple[str, str]]
-) -> list[Candidate]:
-    """Returns the frictions and offsets that joints have and the model has not.
-
-    Besides those that torques prove, these are the levels that are `changed` by what torques name,
-    such as a friction that grows along the way: the level itself is then hard to tell.
-    """
-    if len(robot.plant.joints) < 2:
-        return []
-    proven = [key for key, opinion in frictions(evidence).items() if opinion.is_proven]
-    far: dict[str, list[str]] = {}
-    for name, where in dict.fromkeys((*proven, *changed)):
-        effect, joint = known.get(name), where.removeprefix("joint ")
-        is_fitted = f"joint/{joint}.frictionloss" in robot.file.free and name != "offset"
-        if effect and where in effect.places and not is_fitted:
-            far.setdefault(name, []).append(where)
-    out = []
-    for name, places in far.items():
-        effect = at_several(known[name], places) if len(places) > 1 else known[name]
-        where = next(iter(effect.places)) if len(places) > 1 else places[0]
-        out.append(Candidate(effect, where, next(iterate_shapes(effect))))
-    return out
+def _number(o: TorqueOpinion, robot: Robot) -> str:
+    """Returns the number of a robot that an effect changes: a path, or a size of the effect."""
+    model, thing = robot.plant.model, o.where.partition(" ")[2]
+    if o.name == "gain":
+        return gain_path(model, int(model.actuator(thing).id))
+    of_effect, parameters = f"{o.name}.{next(iter(o.sizes), '')}@{thing}", robot.plant.parameters
+    path = (ADDED_TO | OF_TORQUES).get(o.name, of_effect).format(thing)
+    if path == of_effect:
+        return path if path in {p.name for p in parameters} else ""
+    try:
+        value_of(model, path)
+    except InputError:  # a body without a name, which is called by its joint
+        return ""
+    return "" if any(p.where == path and p.name in robot.file.free for p in parameters) else path

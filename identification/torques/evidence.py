@@ -8,12 +8,15 @@ The fits are those of `identification.torques.fits`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
+from typing import Literal
 
 import mujoco
 import numpy as np
 
+from identification.discovery.impossible import Impossible, forbids, is_servo
 from identification.discovery.passes import uses
 from identification.effects.effect import Effect
 from identification.effects.moving_bodies import MovingBody
@@ -40,6 +43,7 @@ from identification.torques.scores import Score, rank
 from identification.torques.search import Search, add_proven, draw_curves, others_of
 from identification.torques.shapes import with_shapes
 
+Doubt = Impossible | Literal["beside"]
 OTHER_BAND = 0.6  # factor of the bands of a second fit, which tells what they matter
 
 
@@ -65,6 +69,9 @@ class Evidence:
     unseen: np.ndarray
     friction: np.ndarray  # of the model, three numbers a joint as the fits have them, shape (3 nv,)
     inconsistent: tuple[int, ...]  # places of base parameters that no bodies have, within 3 std
+    # of effects that were added and are no names, by effect and place: what physics forbids of it,
+    # or that it was found beside such a one
+    doubts: Mapping[tuple[str, str], Doubt] = field(default_factory=dict)
 
     @property
     def noise(self) -> np.ndarray:
@@ -78,6 +85,25 @@ class Evidence:
 
     @property
     def named(self) -> tuple[Score, ...]:
+        """The effects that were added and that are names, as `added`."""
+        return tuple(s for s in self.added if s.missing.key not in self.doubts)
+
+    @property
+    def tried(self) -> tuple[Score, ...]:
+        """The effects that were added and that are no names, as `added`."""
+        return tuple(s for s in self.added if s.missing.key in self.doubts)
+
+    @property
+    def rivals(self) -> tuple[Score, ...]:
+        """Other candidates that predict as well as the first effect added, the best first."""
+        if not self.found:
+            return ()
+        first = self.found[0]
+        others = (s for s in self.scores if s.missing.key != first.missing.key and s.is_proven)
+        return tuple(s for s in others if s.is_like(first))
+
+    @property
+    def added(self) -> tuple[Score, ...]:
         """The effects that were added, each with its sizes and their std in the final fit."""
         fit, begin, out = self.final.fit, len(self.model.names), []
         for score in self.found:
@@ -147,13 +173,40 @@ def find_evidence(
     differences = rank(equations, whole.base, single) if fitted > 1 else ()
     unseen = [_unseen_residual(equations, f.base) for f in (whole, nominal, final)]
     r = len(base.names)
-    return Evidence(
+    evidence = Evidence(
         equations=equations, base=base, whole=whole, other=other, model=nominal, final=final,
         scores=scores, found=tuple(found), rest=rest, differences=differences,
         asked=len(candidates), unseen=np.array(unseen),
         friction=read_friction(model) if friction is None else friction,
         inconsistent=find_inconsistent(base, whole.fit.θ[:r], whole.fit.std[:r]),
     )  # fmt: skip
+    if not uses(search, "impossible_sizes"):
+        return evidence
+    masses = {body.label: body.mass for body in bodies}
+    return replace(evidence, doubts=_doubts(evidence, model, logs[:fitted], masses))
+
+
+def _doubts(
+    evidence: Evidence, model: mujoco.MjModel, logs: Sequence[Log], masses: Mapping[str, float]
+) -> dict[tuple[str, str], Doubt]:
+    """Returns what is against the names of effects that were added, by effect and place.
+
+    What was found beside a size that physics forbids makes up for what this one leaves.
+    """
+    out = dict[tuple[str, str], Doubt]()
+    for score in evidence.added:
+        name, where = score.missing.key
+        thing = where.partition(" ")[2]
+        sizes = [(float(v), masses.get(thing, np.inf)) for v in score.size]
+        asked = "time_shift" if name == "delay" else name
+        word = forbids(asked, sizes, logs, partial(_is_servo, model, thing))
+        if word is not None or out:
+            out[name, where] = word or "beside"
+    return out
+
+
+def _is_servo(model: mujoco.MjModel, name: str) -> bool:
+    return is_servo(model, int(model.actuator(name).id))
 
 
 def _unseen_residual(equations: Equations, base: Base) -> np.ndarray:

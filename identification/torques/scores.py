@@ -21,6 +21,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import chain
+from typing import Literal
 
 import numpy as np
 
@@ -39,6 +40,7 @@ from identification.torques.equations import Equations, unit_inverse, unseen_squ
 from identification.torques.laws import Missing
 from identification.torques.moments import Base, Weighted, held_by, joined
 
+Doubt = Literal["", "sign", "large", "body", "rise", "unseen", "chance"]
 CHANCE = 0.05  # of any candidate by luck
 PROOF = 3.0  # t of the fall on blocks that the fit did not see, or of a difference between two
 LIKELY = 2.0  # t on blocks that confirm, from which blocks of fitted records may prove the rest
@@ -79,8 +81,28 @@ class Score:
     @property
     def is_proven(self) -> bool:
         """Tells whether it is beyond chance and confirmed by blocks that the fit did not see."""
-        is_confirmed = max(self.confirmed_t, self.held_t) > PROOF and self.fall > 0
-        return self.chance < CHANCE and is_confirmed and self.is_plausible
+        return not self.doubt
+
+    @property
+    def doubt(self) -> Doubt:
+        """Why it is not proven, in a word; "" where it is.
+
+        "sign", "large" and "body": no robot has such a size, whatever it explains. "rise", "unseen"
+        and "chance": blocks do not prove it.
+        """
+        if not self.is_plausible:
+            return self._implausible()
+        if not self.fall > 0:
+            return "rise"
+        if not max(self.confirmed_t, self.held_t) > PROOF:
+            return "unseen"
+        return "" if self.chance < CHANCE else "chance"
+
+    def _implausible(self) -> Doubt:
+        if any(s * sign < 0 for s, sign in zip(self.size, self.missing.signs, strict=True)):
+            return "sign"
+        sizes = zip(self.size, self.missing.most, strict=True)
+        return "large" if any(abs(s) > most for s, most in sizes) else "body"
 
     def is_like(self, other: Score) -> bool:
         """Returns whether it predicts unseen blocks as well as another one, but for chance.

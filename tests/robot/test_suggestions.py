@@ -5,6 +5,7 @@ from __future__ import annotations
 from types import SimpleNamespace
 
 import pytest
+from elbow_cases import elbow
 from records_cases import listed, nominal_model, records
 from torque_cases import TOML, planar_record, planar_robot
 
@@ -12,7 +13,8 @@ from identification.discovery.candidates import list_common
 from identification.discovery.options import DiscoveryOptions
 from identification.prediction import selection
 from identification.prediction.discovery import discover_records
-from identification.robot.second_opinion import ask_torques, suggest
+from identification.robot.second_opinion import ask_torques
+from identification.robot.suggestions import suggest
 
 HIDDEN = {
     "hardening.k_3@hinge": 0.1, "gravity_force.alpha@hinge": 0.3, "quadratic_friction.c@hinge": 0.02
@@ -53,7 +55,7 @@ def test_a_load_at_any_place_is_a_payload_and_a_name_without_a_candidate_is_left
 ):
     load = next(s for s in evidence.scores if s.missing.name == "load")
     gain = next(s for s in evidence.scores if s.missing.name == "gain")
-    asked = SimpleNamespace(named=(load, gain), friction=(), final=evidence.final)
+    asked = SimpleNamespace(added=(load, gain), friction=(), final=evidence.final)
     where = load.missing.where
     assert [c.key for c in suggest(asked, loaded)] == [("payload", where), ("load", where)]
 
@@ -63,7 +65,7 @@ def test_a_level_that_changes_is_suggested_with_the_level(loaded, evidence):
     elbow = "joint elbow"
     grows = SimpleNamespace(name="position_dependent_friction", where=elbow, shape=())
     asked = SimpleNamespace(
-        named=(SimpleNamespace(missing=grows),), friction=(), final=evidence.final
+        added=(SimpleNamespace(missing=grows),), friction=(), final=evidence.final
     )
     assert [c.key for c in suggest(asked, loaded)] == [
         ("position_dependent_friction", elbow), ("coulomb_friction", elbow)
@@ -106,3 +108,17 @@ def test_what_changes_a_level_is_not_refitted_without_one(monkeypatch):
 
 def test_a_suggestion_that_is_not_there_is_not_named():
     assert search({}, ["hardening", "gravity_force"]).named == ()
+
+
+def test_a_jump_that_torques_see_within_a_sample_takes_some_time_in_a_simulation():
+    """With a width of zero its law divided by zero, and its score was whatever memory held."""
+    robot, _ = elbow()
+    jump = next(e for e in robot.candidates if e.name == "friction_jump")
+    missing = SimpleNamespace(
+        name=jump.name, where=next(iter(jump.places)), shape=(("t_j", 0.6, "s"), ("w", 0.0, "s")),
+    )  # fmt: skip
+    evidence = SimpleNamespace(added=[SimpleNamespace(missing=missing)], scores=(), friction=())
+    (found,) = suggest(evidence, robot)
+    width = next(s for s in jump.shapes if s.name == "w")
+    assert found.shape["t_j"] == pytest.approx(0.6, rel=0.5)
+    assert found.shape["w"] == width.lower > 0
