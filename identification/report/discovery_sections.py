@@ -25,7 +25,7 @@ from identification.report.fitted_values import (
 )
 from identification.report.horizon_section import error_figures
 from identification.report.page import Section, Table
-from identification.report.parts_words import parts_sentence
+from identification.report.parts_words import parts_sentence, unseen_of
 from identification.report.value_words import departures_found, gathered, words_of
 from identification.shares import decimal, fall_words
 from identification.windows.coarse import steps_of
@@ -76,7 +76,7 @@ def gap_section(found: Discovery) -> Section:
         times = held(ratio) if isfinite(ratio) else None
         rows.append((model, size, times, decimal(fit.mean(), FIT_DIGITS) if len(fit) else None))
         lines.append(f"  {when:<7}{rms}" + (f", {times} times the noise" if times else ""))
-    title, said = "error on unseen data:", parts_sentence(found)
+    title, said = f"error on unseen data{unseen_of(found)}:", parts_sentence(found)
     return Section(
         "The gap on unseen data",
         f"{GAPS[found.judged_by]} {said}",

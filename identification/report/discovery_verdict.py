@@ -24,7 +24,7 @@ from identification.report.missing_place import find_place
 from identification.report.named_words import basis_sentence, named_sentences
 from identification.report.nothing_words import NOISIER, errors_left, nothing_sentence
 from identification.report.opinion_words import opinion_sentences
-from identification.report.parts_words import is_untouched
+from identification.report.parts_words import is_untouched, unseen_of
 from identification.report.shown_words import hiding
 from identification.report.untold_words import bound_sentences
 from identification.shares import HELD, change, fall_words, percent, ratio_of, times
@@ -164,7 +164,7 @@ def _unknown(found: Discovery) -> str:
     return " ".join(
         [
             f"Something is missing that {none_explains(tried)}: the error of the fitted model on"
-            f" unseen data is {left}{found.over}{times}{needed}.",
+            f" unseen data{unseen_of(found)} is {left}{found.over}{times}{needed}.",
             *_likeliest_sentences(found),
             "The program gives no name rather than a wrong one.",
             *_doubtful(found),
@@ -215,7 +215,7 @@ def _unexplained(found: Discovery) -> str:
     return " ".join(
         [
             f"Something is left that no known effect surely explains: with the {more} in the model,"
-            f" the error on unseen data is still {left}{found.over}{times}.",
+            f" the error on unseen data{unseen_of(found)} is still {left}{found.over}{times}.",
             *_likeliest_sentences(found),
             *findings,
             *_nearest(found),

@@ -25,6 +25,8 @@ ADDED_TO = {
     "coulomb_friction": "joint/{}.frictionloss", "stiffness": "joint/{}.stiffness",
     "rotor_inertia": "joint/{}.armature", "mass_mismatch": "body/{}.mass",
 }  # fmt: skip
+SIGNIFICANCE = 0.01  # where the options of a search are not at hand
+SCATTERS = "its gain differs too much from block to block of the data that decide"
 NOT_TOLD = "(std not known, because too few data depend on it)"
 DOUBTS = {
     "numbers": "its gain is too small for so many parameters",
@@ -200,7 +202,7 @@ def describe_rejected(rejected: RejectedEffect, found: Discovery) -> str:
 def describe_doubt(rejected: RejectedEffect, options: DiscoveryOptions) -> str:
     """Returns in words why an effect is not believed; "" where no number of its own says so."""
     proof = rejected.proof
-    why = doubt_words(rejected.doubt, rejected.luck)
+    why = doubt_words(rejected.doubt, rejected.luck, options.significance)
     if rejected.doubt is None and rejected.bic_gain <= 0:
         why = DOUBTS["numbers"]
     elif rejected.doubt is None and proof.fall <= 0:
@@ -214,9 +216,17 @@ def describe_doubt(rejected: RejectedEffect, options: DiscoveryOptions) -> str:
     return why
 
 
-def doubt_words(doubt: str | None, luck: float) -> str:
-    """Returns what a word of doubt says, with the chance of luck; "" without a word."""
+def doubt_words(doubt: str | None, luck: float, asked: float = SIGNIFICANCE) -> str:
+    """Returns what a word of doubt says, with the chance of luck; "" without a word.
+
+    Args:
+        doubt: the word.
+        luck: the chance that one of all that were tried gains as much by luck.
+        asked: below which chance a gain is none by luck.
+    """
     said = DOUBTS.get(doubt or "", "")
+    if doubt == "chance" and luck < asked:
+        return SCATTERS
     if doubt == "chance" and isfinite(luck):
         said += f" (chance {chance_words(luck)}, all effects that were tried counted)"
     return said

@@ -15,6 +15,7 @@ from identification.model.protocol import FINER
 from identification.quantities import held, quantity
 from identification.report.error_words import describe_scale, error_words, times_words
 from identification.report.fitted_values import first_few, std_sentence, step_sentences
+from identification.report.parts_words import records_words
 from identification.report.untold_words import (
     WEAK,
     bound_sentences,
@@ -46,13 +47,28 @@ def error_over_noise(fit: Fit | RecordsFit) -> float:
     unless what was fitted does not hold.
     """
     if isinstance(fit, Fit):
-        there, expected = fit.validation_rms_by_unit, fit.validation_expected_by_unit
-        floor, errors = fit.floor_by_unit, fit.rms_by_unit
-        if there and expected and not relative(there, expected) < HOLDS:
-            errors = there
+        floor = fit.floor_by_unit
+        errors = fit.rms_by_unit if _holds(fit) else fit.validation_rms_by_unit or {}
     else:
         floor, errors = fit.noise_by_unit, fit.unseen_by_unit
     return relative(errors, floor) if all(floor.values()) else nan
+
+
+def _holds(fit: Fit) -> bool:
+    """Returns whether no unseen data contradict what was fitted along a free run."""
+    there, expected = fit.validation_rms_by_unit, fit.validation_expected_by_unit
+    return not (there and expected) or relative(there, expected) < HOLDS
+
+
+def _judged_on(fit: Fit | RecordsFit) -> str:
+    """Returns of which data the error is by which a fit is judged."""
+    if isinstance(fit, Fit):
+        return "the fitted data" if _holds(fit) else "unseen data"
+    return f"unseen data ({_names(fit, 'confirm')})"
+
+
+def _names(fit: RecordsFit, role: str) -> str:
+    return records_words([r.log.name for r in fit.records if r.role == role])
 
 
 def answer_sentence(fit: Fit | RecordsFit) -> str:
@@ -60,7 +76,7 @@ def answer_sentence(fit: Fit | RecordsFit) -> str:
     ratio = error_over_noise(fit)
     if isnan(ratio):
         return "Whether the model explains the log is not known: the log shows no sensor noise."
-    of_what = f"its error is {held(ratio)} times the noise of the sensors"
+    of_what = f"its error on {_judged_on(fit)} is {held(ratio)} times the noise of the sensors"
     if not ratio <= ABOVE:
         return (
             f"Something is missing from the model, or a column is not what it expects: {of_what};"
@@ -94,7 +110,7 @@ def _of_records(fit: RecordsFit) -> list[str]:
         *_blind(fit),
         *([f"{too_weak(weak, 'windows')} {cure(weak)}"] if weak else []),
         *_unknown_std(fit),
-        _left_by_windows(_count_windows(fit), fit.horizon, rms, floor),
+        _left_by_windows(_count_windows(fit), fit.horizon, rms, floor, _names(fit, "fit")),
     ]
     scale = describe_scale(output_units(fit.records[0].log), model.scale)
     return [*said, *scale, *step_sentences(model)]
@@ -143,12 +159,13 @@ def _steps(fit: Fit) -> list[str]:
 
 
 def _left_by_windows(
-    count: int, length: float, rms: Mapping[str, float], floor: Mapping[str, float]
-) -> str:
+    count: int, length: float, rms: Mapping[str, float], floor: Mapping[str, float],
+    names: str = "",
+) -> str:  # fmt: skip
     """Returns a sentence on the error that windows of a length [s] leave, and on the noise."""
     (left,), (noise,) = error_words([rms]), error_words([floor], "")
     ratio = f", {times_words(rms, floor)} times the noise floor of {noise}"
-    of = f"of {length:g} s"
+    of = f"of {length:g} s{names and f' of {names}'}"
     each = f"1 window {of} leaves" if count == 1 else f"{count} windows {of} leave"
     return f"{each} {left}{ratio if any(floor.values()) else ''}."
 

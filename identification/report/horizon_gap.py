@@ -26,6 +26,7 @@ from identification.prediction.scores import WindowScore
 from identification.quantities import held, quantity
 from identification.report.error_words import listed
 from identification.report.named_words import Nodes, curve_nodes
+from identification.report.parts_words import records_words
 from identification.shares import percent
 from identification.windows.unseen import Unseen
 
@@ -114,7 +115,6 @@ class HorizonGap:
     forces: tuple[NeededForce, ...]
     # where there is none: the curve at one joint that explains most; None where none explains much
     doubtful: NeededForce | None
-    curves: int  # how many curves at one joint were tried
     windows: tuple[FailedWindow, ...]  # fitted ones in which the final model fails most
 
 
@@ -154,7 +154,7 @@ def find_gap(found: Discovery) -> HorizonGap | None:
     return HorizonGap(
         outputs=tuple(outputs), records=(*fitted, *confirm),
         lengths=_lengths(found.horizon or 0.0, told, of_all), forces=forces,
-        doubtful=None if forces or most is None or most.fall < MUCH else most, curves=len(curves),
+        doubtful=None if forces or most is None or most.fall < MUCH else most,
         windows=_worst(final, [r.after for r in fitted], scale, found.outputs),
     )  # fmt: skip
 
@@ -252,8 +252,9 @@ def worst_lines(gap: HorizonGap) -> list[str]:
     begin, ratio = float(most.time[at]), float(most.after[at])
     return [
         f"the worst window begins at {quantity(begin, unit='s')} of {most.name}, with"
-        f" {held(ratio)} times the noise; the median of all windows is"
-        f" {held(float(np.median(every)))} times the noise"
+        f" {held(ratio)} times the noise; the median of all windows of"
+        f" {records_words([r.name for r in gap.records])} is {held(float(np.median(every)))} times"
+        " the noise"
     ]
 
 
@@ -265,19 +266,6 @@ def force_line(needed: NeededForce) -> str:
     return (
         f"a force on {needed.nodes.joint} that depends on the {needed.nodes.reads} would remove"
         f" {percent(needed.fall)} of the fitted error; it would be largest at {at}: {size}"
-    )
-
-
-def doubtful_sentences(needed: NeededForce, tried: int) -> str:
-    """Returns which of the forces that were tried would explain most, where none is missing."""
-    which = f"one on {needed.nodes.joint} that depends on the {needed.nodes.reads}"
-    chance = percent(needed.chance, 2)
-    doubt = f"This may be luck (chance {chance}, {tried} such forces were tried)."
-    if not needed.known.any():
-        doubt = "The motion tells its size nowhere."
-    return (
-        f"The force that would explain most is {which}: {percent(needed.fall)} of the fitted"
-        f" error. {doubt}"
     )
 
 

@@ -22,13 +22,14 @@ from identification.report.horizon_gap import (
     NeededForce,
     OutputError,
     RecordWindows,
-    doubtful_sentences,
     find_gap,
     force_line,
     worst_lines,
 )
 from identification.report.page import Section, Table
+from identification.report.parts_words import unseen_of
 from identification.report.style import GREY, INK, MEASURED, SERIES, SIMULATED, literal, styled
+from identification.shares import percent
 
 if TYPE_CHECKING:
     from identification.report.page import Figures
@@ -68,7 +69,7 @@ def horizon_sections(found: Discovery) -> list[Section]:
     lines = []
     for o in gap.outputs:
         size, noise = alike([o.after, o.noise], o.unit, 3)
-        said = f"the error of {o.name} on unseen data is {size} rms"
+        said = f"the error of {o.name} on unseen data{unseen_of(found)} is {size} rms"
         if o.noise > 0:
             said += f", {held(o.after / o.noise)} times its sensor's noise of {noise}"
         lines.append(said)
@@ -77,15 +78,16 @@ def horizon_sections(found: Discovery) -> list[Section]:
     if len(gap.lengths) > 1:
         over = listed([f"{n.length:g} s" for n in gap.lengths])
         ratios = listed([held(n.after) for n in gap.lengths])
-        rest.append(f"over {over} the error on unseen data is {ratios} times the noise")
+        rest.append(
+            f"over {over} the error on unseen data{unseen_of(found)} is {ratios} times the noise"
+        )
     forces = gap.forces if is_far else ()
     text = [f"{' '.join(map(sentence, rest))} {GROWTH}"]
     plain = [listed_below(f"where {model} fails", [*lines, *rest, *map(force_line, forces)])]
     if is_far and not forces:
-        most = gap.doubtful
-        doubt = NO_FORCE if most is None else doubtful_sentences(most, gap.curves)
-        text.append(doubt)
-        plain.append(doubt)
+        doubt = doubtful_sentences(gap.doubtful, found)
+        text += doubt
+        plain += doubt
     is_drawn = is_far and bool(gap.windows)
     figures = cache(lambda: ((WORST, worst_windows(gap.windows)),)) if is_drawn else ()
     table = _table(gap.outputs, bool(found.named))
@@ -97,6 +99,28 @@ def horizon_sections(found: Discovery) -> list[Section]:
         drawn = cache(lambda: ((NEEDED, needed_forces(forces)),))
         sections.append(Section(NEEDED, "\n\n".join(needed), figures=drawn, first=int(is_answer)))
     return sections
+
+
+def doubtful_sentences(needed: NeededForce | None, found: Discovery) -> list[str]:
+    """Returns which of the forces that were tried would explain most, where none is missing."""
+    if needed is None:
+        return [NO_FORCE] if any(s.candidate.effect.is_curve for s in found.remaining) else []
+    which = f"one on {needed.nodes.joint} that depends on the {needed.nodes.reads}"
+    tried, asked = len(found.remaining), found.options.significance
+    luck = min(1.0, tried * needed.chance)
+    doubt = f"That is no more than the {percent(found.options.min_fall)} which is asked for."
+    if not needed.known.any():
+        doubt = "The motion tells its size nowhere."
+    elif not luck < asked:
+        doubt = (
+            f"This may be luck: one of the {tried} candidates that were tried explains as much by"
+            f" luck with a chance of {percent(luck, 2)}, and {percent(asked)} is the most that"
+            " counts as proof."
+        )
+    return [
+        f"The force that would explain most is {which}: {percent(needed.fall)} of the fitted"
+        f" error. {doubt}"
+    ]
 
 
 def error_figures(found: Discovery) -> Figures:

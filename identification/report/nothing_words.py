@@ -8,6 +8,7 @@ from identification.discovery.result import Discovery
 from identification.quantities import held, quantity
 from identification.report.effect_words import describe_effect
 from identification.report.error_words import error_words
+from identification.report.parts_words import unseen_of
 from identification.report.shown_words import SHOWN
 from identification.report.value_words import phrase
 from identification.shares import HELD, decimal, ratio_of, times
@@ -38,6 +39,7 @@ def errors_left(found: Discovery) -> tuple[str, str, str]:
 def nothing_sentence(found: Discovery) -> str:
     """Returns the paragraph: nothing is missing, or no effect is named as no candidate helps."""
     left, noise, alone = errors_left(found)
+    where = unseen_of(found)
     if _is_above_sensors(found):
         ratio, no_input = found.before.rms / found.noise_rms, not isfinite(found.input_error)
         either = "No input that moves is a force, which might err. Something is"
@@ -45,9 +47,9 @@ def nothing_sentence(found: Discovery) -> str:
             size = ratio_of(found.input_error, "their rms")
             either = f"Either the inputs err by {size}, or something is"
         return (
-            "No effect is named: no candidate lowers the error of prediction on unseen data beyond"
-            f" chance. This error is {left}{found.over}, {held(ratio)} times the sensors' noise of"
-            f" {alone}. {either} missing that no candidate explains."
+            f"No effect is named: no candidate lowers the error of prediction on unseen data{where}"
+            f" beyond chance. This error is {left}{found.over}, {held(ratio)} times the sensors'"
+            f" noise of {alone}. {either} missing that no candidate explains."
         )
     unseen = [d for d in found.detectable if not d.is_plausible]
     seen = [d for d in found.detectable if d.is_plausible]
@@ -55,8 +57,9 @@ def nothing_sentence(found: Discovery) -> str:
     who = f"the sensors{' and unlogged disturbances' if found.unlogged else ''}"
     if is_above_noise(found):
         said = (
-            "No effect is named: no candidate lowers the error on unseen data beyond chance. But"
-            f" this error is {left}{found.over}, {times(found.before.rms / found.floor_rms)} the"
+            f"No effect is named: no candidate lowers the error on unseen data{where} beyond"
+            f" chance. But this error is {left}{found.over},"
+            f" {times(found.before.rms / found.floor_rms)} the"
             f" {noise} that {who} cause, so that noise does not explain all of it. Either something"
             " is missing that no candidate explains, or the robot does something in the unseen data"
             " that the fitted data never show."
@@ -64,8 +67,8 @@ def nothing_sentence(found: Discovery) -> str:
     else:
         said = (
             f"Nothing is missing{'' if found.detectable else ', as far as these data can tell'}:"
-            f" the error of the fitted model on unseen data is noise. It is {left}{found.over}, and"
-            f" {who} cause {noise}."
+            f" the error of the fitted model on unseen data{where} is noise. It is"
+            f" {left}{found.over}, and {who} cause {noise}."
         )
         said += _rest(found, alone)
     if seen:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from identification.discovery.passes import uses
@@ -9,6 +10,8 @@ from identification.discovery.result import Discovery
 from identification.logs.joined import Record
 from identification.quantities import held
 from identification.report.error_words import listed
+
+MOST_NAMES = 6  # of records, that are told one by one
 
 
 def parts_sentence(found: Discovery) -> str:
@@ -34,6 +37,20 @@ def parts_sentence(found: Discovery) -> str:
             " are somewhat too good."
         )
     return " ".join(said)
+
+
+def unseen_of(found: Discovery) -> str:
+    """Returns of which records the unseen data are over a horizon, in brackets behind these words.
+
+    It is "" along a free run, where they are of the log itself.
+    """
+    names = [r.log.name for r in _unseen(found)] if found.run is None else []
+    return f" ({records_words(names)})" if names else ""
+
+
+def records_words(names: Sequence[str]) -> str:
+    """Returns names of records in words; of many how many they are."""
+    return listed(names) if len(names) <= MOST_NAMES else f"{len(names)} records"
 
 
 def is_untouched(found: Discovery) -> bool:

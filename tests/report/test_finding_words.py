@@ -7,6 +7,7 @@ import pytest
 from finding_cases import EVIDENCE_OF
 
 from identification.discovery.findings.finding import Finding, FindingKind
+from identification.report.effect_words import SCATTERS, doubt_words
 from identification.report.finding_words import (
     FOLLOWED,
     HOLDS,
@@ -39,3 +40,13 @@ def test_every_regressor_and_every_hold_has_words():
     assert strings("discovery/missing_forces.py", "list_regressors") == set(REGRESSORS)
     assert strings("innovations/input_error.py", "list_families") == set(FOLLOWED)
     assert set(HOLDS) == {"foh", "zoh"}
+
+
+@pytest.mark.parametrize(("luck", "asked", "is_luck"), [
+    (0.2, 0.01, True), (0.02, 0.01, True), (1.8e-4, 0.01, False), (0.02, 0.05, False),
+])  # fmt: skip
+def test_no_chance_that_counts_as_proof_is_called_luck(luck, asked, is_luck):
+    """Such a gain differs too much from block to block, whatever its chance is."""
+    said = doubt_words("chance", luck, asked)
+    assert ("may be luck (chance" in said) == is_luck
+    assert (said == SCATTERS) != is_luck

@@ -30,17 +30,22 @@ def test_a_fit_says_whether_its_values_can_be_used():
 
 @pytest.mark.parametrize("ratio", [0.9, 1.1, 1.4, 20.0, np.inf])
 def test_the_first_sentence_of_a_fit_says_whether_the_model_explains_the_log(ratio):
-    found = SimpleNamespace(noise_by_unit={"m": 2.0}, unseen_by_unit={"m": 2.0 * ratio})
+    log = SimpleNamespace(name="third")
+    found = SimpleNamespace(noise_by_unit={"m": 2.0}, unseen_by_unit={"m": 2.0 * ratio},
+                            records=[SimpleNamespace(role="confirm", log=log)])  # fmt: skip
     explained, missing = ("explains the log", "is missing")
     said = answer_sentence(found)
     assert (explained in said, missing in said) == (ratio <= ABOVE, ratio > ABOVE)
+    assert "its error on unseen data (third) is " in said
     found.noise_by_unit = {"m": 0.0}
     assert "not known" in answer_sentence(found)
 
 
 def test_the_sentence_comes_before_all_else_that_is_said_of_a_fit():
     fit = fitted()
-    assert fit.to_dict()["verdict"][0] == answer_sentence(fit.found)
+    verdict = fit.to_dict()["verdict"]
+    assert verdict[0] == answer_sentence(fit.found)
+    assert any(" windows of 0.3 s of first leave " in s for s in verdict)  # not of the same record
 
 
 def test_no_section_stands_empty_and_what_stands_above_stands_once(tmp_path):

@@ -9,8 +9,11 @@ from gap_cases import LEVEL, named, unknown
 from records_cases import HORIZON
 
 from identification.report.discovery_json import discovery_to_json
+from identification.report.discovery_report import discovery_text
+from identification.report.discovery_verdict import discovery_verdict
 from identification.report.horizon_gap import APART, WORST, find_gap
 from identification.report.horizon_section import NO_FORCE, horizon_sections
+from identification.report.parts_words import records_words, unseen_of
 
 
 def test_errors_are_those_that_the_discovery_tells():
@@ -60,20 +63,46 @@ def test_the_force_that_is_needed_is_the_one_that_is_missing():
     assert needed.known[needed.largest]
 
 
+CHANCE = 0.037  # of one candidate
+
+
 @pytest.mark.parametrize(("share", "told"), [
     (0.42, "is one on hinge that depends on the rate of hinge: 42 % of the fitted error. This may"
-           " be luck (chance 3.7 %, 2 such forces were tried)."),
+           " be luck: one of the {} candidates that were tried explains as much by luck with a"
+           " chance of {} %, and 1 % is the most that counts as proof."),
     (0.09, NO_FORCE),
 ])  # fmt: skip
-def test_a_force_that_may_be_luck_is_told_as_such(share, told):
+def test_a_force_that_may_be_luck_is_told_with_the_chance_of_all_that_were_tried(share, told):
     answer = unknown()
     falls = {"curve_speed": share, "curve_position": share / 2}
-    scores = [replace(s, fall=falls.get(s.candidate.effect.name, 0.9), p_value=0.037)
+    scores = [replace(s, fall=falls.get(s.candidate.effect.name, 0.9), p_value=CHANCE)
               for s in answer.remaining]  # fmt: skip
     (section,) = horizon_sections(replace(answer, remaining=tuple(scores)))
+    told = told.format(len(scores), f"{100 * CHANCE * len(scores):.2g}")
     assert told in section.plain
     assert told in section.text
-    assert (NO_FORCE in section.plain) == (told is NO_FORCE)
+    assert (NO_FORCE in section.plain) == (told == NO_FORCE)
+
+
+def test_where_no_force_was_tried_none_is_said_to_explain_nothing():
+    answer = unknown()
+    laws = [s for s in answer.remaining if not s.candidate.effect.is_curve]
+    (section,) = horizon_sections(replace(answer, remaining=tuple(laws)))
+    assert NO_FORCE not in section.plain
+
+
+def test_each_ratio_to_the_noise_names_its_records():
+    answer = unknown()
+    confirm = "record 3 and record 4"
+    (verdict, *_) = discovery_verdict(answer)
+    assert f"on unseen data ({confirm}) is " in verdict
+    text = discovery_text(answer)
+    for line in text.splitlines():
+        if "times the noise" in line and "window" not in line and not line.startswith("  before"):
+            assert f"unseen data ({confirm})" in line
+    assert "the median of all windows of record 1, record 2, record 3 and record 4 is " in text
+    assert unseen_of(free_run()) == ""
+    assert records_words([f"r{k}" for k in range(7)]) == "7 records"
 
 
 def test_once_the_friction_is_named_no_force_is_needed():

@@ -90,7 +90,8 @@ def test_a_fit_over_a_horizon_tells_each_unit_by_itself(over_windows, capsys):
     said = run(capsys, "fit", *over_windows)
     text = " ".join(said["verdict"])
     for words in (
-        rf"windows of 0.3 s leave {ERRORS}, [\d.]+ and [\d.]+ times the noise floor of {SIZES}\.",
+        rf"windows of 0.3 s of first leave {ERRORS}, [\d.]+ and [\d.]+ times the noise floor of"
+        rf" {SIZES}\.",
         rf"On second: {ERRORS} with the values of the robot's file, {ERRORS} with those that were",
         r"Before outputs of several units are taken together in one mean square, the error of each",
     ):
