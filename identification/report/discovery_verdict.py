@@ -26,6 +26,7 @@ from identification.report.nothing_words import NOISIER, errors_left, nothing_se
 from identification.report.opinion_words import opinion_sentences
 from identification.report.parts_words import is_untouched, unseen_of
 from identification.report.shown_words import hiding
+from identification.report.straight_curves import line_of_named, lines_needed
 from identification.report.untold_words import bound_sentences
 from identification.shares import HELD, change, fall_words, percent, ratio_of, times
 from identification.shown import verdict_of
@@ -65,7 +66,8 @@ def _verdict(found: Discovery) -> list[str]:
         return [nothing_sentence(found), *_findings(found)]
     if found.verdict == "unknown effect":
         return [_unknown(found)]
-    said = [named_sentences(found, named) for named in found.named]
+    plant = found.final.plant
+    said = [named_sentences(found, named) + line_of_named(named, plant) for named in found.named]
     said.append(_proof(found))
     if found.unexplained:
         said.append(_unexplained(found))
@@ -170,6 +172,7 @@ def _unknown(found: Discovery) -> str:
             *_doubtful(found),
             *place,
             *needed_sentences(found),
+            *lines_needed(found),
             *_any_forces(found),
             *_findings(found),
             *(sentence(describe_finding(f)) for f in found.located),
