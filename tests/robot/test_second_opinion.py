@@ -15,6 +15,7 @@ from identification.prediction.screening import AND, at_several
 from identification.report.opinion_words import AGAINST, opinion_sentences
 from identification.robot import second_opinion
 from identification.robot.second_opinion import ask_torques, opinions, with_torques
+from identification.robot.suggestions import suggest
 from identification.torques.evidence import Doubt as Untold
 from identification.torques.scores import Doubt
 
@@ -220,3 +221,17 @@ def test_torques_that_cannot_serve_say_why_and_where_nothing_is_missing_none_are
     assert isinstance(error, InputError)
     (said,) = opinion_sentences(with_torques(found, error, robot))
     assert said.endswith("give no second opinion: an actuator has a state of its own.")
+
+
+def test_a_jump_that_torques_see_within_a_sample_takes_some_time_in_a_simulation():
+    """With a width of zero its law divided by zero, and its score was whatever memory held."""
+    robot, _ = elbow()
+    jump = next(e for e in robot.candidates if e.name == "friction_jump")
+    missing = SimpleNamespace(
+        name=jump.name, where=next(iter(jump.places)), shape=(("t_j", 0.6, "s"), ("w", 0.0, "s")),
+    )  # fmt: skip
+    evidence = SimpleNamespace(added=[SimpleNamespace(missing=missing)], scores=(), friction=())
+    (found,) = suggest(evidence, robot)
+    width = next(s for s in jump.shapes if s.name == "w")
+    assert found.shape["t_j"] == pytest.approx(0.6, rel=0.5)
+    assert found.shape["w"] == width.lower > 0

@@ -5,7 +5,6 @@ from __future__ import annotations
 from types import SimpleNamespace
 
 import pytest
-from elbow_cases import elbow
 from records_cases import listed, nominal_model, records
 from torque_cases import TOML, planar_record, planar_robot
 
@@ -108,17 +107,3 @@ def test_what_changes_a_level_is_not_refitted_without_one(monkeypatch):
 
 def test_a_suggestion_that_is_not_there_is_not_named():
     assert search({}, ["hardening", "gravity_force"]).named == ()
-
-
-def test_a_jump_that_torques_see_within_a_sample_takes_some_time_in_a_simulation():
-    """With a width of zero its law divided by zero, and its score was whatever memory held."""
-    robot, _ = elbow()
-    jump = next(e for e in robot.candidates if e.name == "friction_jump")
-    missing = SimpleNamespace(
-        name=jump.name, where=next(iter(jump.places)), shape=(("t_j", 0.6, "s"), ("w", 0.0, "s")),
-    )  # fmt: skip
-    evidence = SimpleNamespace(added=[SimpleNamespace(missing=missing)], scores=(), friction=())
-    (found,) = suggest(evidence, robot)
-    width = next(s for s in jump.shapes if s.name == "w")
-    assert found.shape["t_j"] == pytest.approx(0.6, rel=0.5)
-    assert found.shape["w"] == width.lower > 0
