@@ -60,16 +60,22 @@ all of them, because the motion cannot tell these apart.
 
 
 def study(
-    robot: str, effect: str, seed: int, without: tuple[str, ...], is_rough: bool = False
+    robot: str,
+    effect: str,
+    seed: int,
+    without: tuple[str, ...],
+    is_rough: bool = False,
+    has_clocks: bool = False,
 ) -> dict[str, Any]:
     """Returns what a search says of a world; an error is a row too."""
     from identification import DiscoveryOptions, discover, read_robot
 
-    world, motions = make(robot, effect, seed, is_rough)
+    world, motions = make(robot, effect, seed, is_rough, has_clocks)
     row: dict[str, Any] = {
         "robot": robot, "effect": world.effect, "joint": world.joint,
         "size": "+".join(f"{h.size:.4g}" for h in world.hidden), "seed": seed,
         "rough": {joint: round(size, 6) for joint, size in world.rough},
+        "clocks": list(world.clocks),
     }  # fmt: skip
     begun = time.process_time()
     try:
@@ -87,6 +93,9 @@ def answer_of(found: Discovery) -> dict[str, Any]:
     return {
         "verdict": found.verdict, "times_noise": found.times_noise(found.after),
         "share": found.share, "smooth_share": found.smooth_share,
+        "differences": [
+            [d.name, d.where, {n: v for n, (v, _) in d.values.items()}] for d in found.differences
+        ],
         "moves": list(found.moves), "cut_short": list(found.cut_short),
         "named": [
             {"name": n.name, "where": n.where, "confidence": n.confidence,
@@ -252,6 +261,7 @@ def main() -> None:
     add("--effects", nargs="*", choices=[*NAMES, *SEVERAL], default=[*NAMES, *SEVERAL])
     add("--seed", type=int, default=1)
     add("--count", type=int, default=1, help="worlds of each robot and effect")
+    add("--clocks", action="store_true", help="records that two clocks stamped; give --out too")
     add("--without", nargs="*", default=[], help="passes that are left out; give --out too")
     only = parser.add_mutually_exclusive_group()
     only.add_argument("--rough", action="store_true", help="rough worlds only")
@@ -262,8 +272,8 @@ def main() -> None:
     add("--only-page", action="store_true")
     given = parser.parse_args()
     tasks = {
-        f"{robot}/{effect}/{seed}" + "/rough" * rough:
-            (robot, effect, seed, tuple(given.without), rough)
+        f"{robot}/{effect}/{seed}" + "/rough" * rough + "/clocks" * given.clocks:
+            (robot, effect, seed, tuple(given.without), rough, given.clocks)
         for rough in ((True,) if given.rough else (False,) if given.exact else (False, True))
         for seed in range(given.seed, given.seed + given.count)
         for effect in given.effects

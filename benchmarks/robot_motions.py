@@ -55,6 +55,8 @@ class World:
     seed: int
     hidden: tuple[Hidden, ...] = ()
     rough: tuple[tuple[str, float], ...] = ()  # joints, and rms of what nobody could name there
+    # how much later the inputs of each record act than stamped [s]; none where clocks agree
+    clocks: tuple[float, ...] = ()
 
     @property
     def effect(self) -> str:
@@ -127,7 +129,11 @@ def law(effect: str, motion: Motion, joint: int) -> tuple[Law, float]:
 
 
 def simulate(
-    world: World, forces: Mapping[str, Law], seed: int, roughness: Mapping[str, Law] | None = None
+    world: World,
+    forces: Mapping[str, Law],
+    seed: int,
+    clock: float = 0.0,
+    roughness: Mapping[str, Law] | None = None,
 ) -> Motion:
     """Returns the motion of a world under inputs of a seed.
 
@@ -135,6 +141,8 @@ def simulate(
         world: what is simulated.
         forces: the force of each hidden effect that is one, in units of its size.
         seed: of the inputs.
+        clock: how much later inputs act than they are stamped [s]. Outputs that come before the
+            simulation, or after it, are NaN.
         roughness: of each rough joint, in units of its rms.
     """
     truth = DRIVEN[world.robot]
@@ -162,13 +170,18 @@ def simulate(
         for joint, size, force in laws
         for j in (model.joint(joint).id,)
     ]
-    outputs, q, v, drive = [], [], [], []
+    ahead = round(clock / model.opt.timestep)
+    outputs = np.full((len(time), len(truth.columns)), np.nan)
+    q, v, drive = [], [], []
     for k in range(len(time)):
         mujoco.mj_forward(model, data)
-        outputs.append([linkages.measured(model, data, c) for c in truth.columns])
         for rows, of in ((q, data.qpos), (v, data.qvel), (drive, data.qfrc_actuator)):
             rows.append(np.array(of))
         for i in range(each):
+            shown, rest = divmod(k * each + i + ahead, each)
+            if rest == 0 and 0 <= shown < len(time):
+                mujoco.mj_forward(model, data)
+                outputs[shown] = [linkages.measured(model, data, c) for c in truth.columns]
             data.ctrl[:] = steps[k * each + i]
             data.qfrc_applied[:] = 0.0
             for size, force, at, dof in acting:
@@ -176,7 +189,7 @@ def simulate(
                     data.qpos[at], data.qvel[dof], data.qfrc_actuator[dof]
                 )
             mujoco.mj_step(model, data)
-    return Motion(time, inputs, *map(np.array, (outputs, q, v, drive)))
+    return Motion(time, inputs, outputs, *map(np.array, (q, v, drive)))
 
 
 def _with_hidden(world: World) -> mujoco.MjModel:

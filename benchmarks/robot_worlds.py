@@ -6,6 +6,10 @@ enough to be seen alone; a voltage limit and a lever are as large as they are.
 
 No law is exact on a real robot. A rough world also has at every driven joint a force that no law
 describes, of an rms ρ s F; ρ is drawn from `ROUGH`, and s F is the hidden force there.
+
+Two clocks may have stamped a record. In a world of clocks the inputs of each record act later than
+their stamps say by a time of its own, which is drawn from `CLOCKS`; a servo does not answer what it
+is told later.
 """
 
 from __future__ import annotations
@@ -54,13 +58,17 @@ OF_TWO = ("lever", "guide")  # forces that depend on two variables at once
 UNLISTED = ("bump", "stop", *OF_TWO)
 ROUGH = (0.05, 0.2)  # ρ, the least and the most
 WITH_LINKS = ("arm", "finger", "leg")  # bodies on which a load has a place
+SERVOS = ("arm", "crane", "gripper", "leg")  # their inputs are set points
 MASS_IS_FREE = ("cart", "crane")  # of the body that would have more: nothing would be missing
+CLOCKS = (-0.025, 0.025)  # of a record [s]
 AS_THEY_ARE = ("voltage", "lever")  # forces whose size is no choice; they would hide others
 # Worlds that hide several effects: how many of the catalogue, and how many of none.
 SEVERAL: Mapping[str, tuple[int, int]] = {"two": (2, 0), "three": (3, 0), "two_unlisted": (1, 1)}
 
 
-def make(robot: str, effect: str, seed: int, is_rough: bool = False) -> tuple[World, list[Motion]]:
+def make(
+    robot: str, effect: str, seed: int, is_rough: bool = False, has_clocks: bool = False
+) -> tuple[World, list[Motion]]:
     """Returns a world with the motions of two records, each effect large enough to be seen.
 
     Args:
@@ -68,13 +76,15 @@ def make(robot: str, effect: str, seed: int, is_rough: bool = False) -> tuple[Wo
         effect: of `NAMES`, or of `SEVERAL`.
         seed: of the joint, the size and the inputs; and of the effects, where there are several.
         is_rough: whether the robot also has what no law describes.
+        has_clocks: whether two clocks stamp each record.
     """
     chance = np.random.default_rng([seed, *map(ord, robot + effect)])
-    bare = World(robot, seed)
+    bare = World(robot, seed, clocks=_clocks(robot, seed) if has_clocks else ())
     seeds = [int(s) for s in chance.integers(1, 2**31, 2)]
+    clocks = bare.clocks or (0.0, 0.0)
     without = [simulate(bare, {}, s) for s in seeds]
     if effect == "nothing" and not is_rough:
-        return bare, without
+        return bare, [simulate(bare, {}, *each) for each in zip(seeds, clocks, strict=True)]
     chosen = [effect] if effect != "nothing" else []
     if effect in SEVERAL:
         listed, unlisted = SEVERAL[effect]
@@ -92,7 +102,15 @@ def make(robot: str, effect: str, seed: int, is_rough: bool = False) -> tuple[Wo
     roughness: Mapping[str, Law] = {}
     if is_rough:
         world, roughness = _roughened(world, chance, without[0])
-    return world, [simulate(world, forces, s, roughness) for s in seeds]
+    each = zip(seeds, clocks, strict=True)
+    return world, [simulate(world, forces, s, clock, roughness) for s, clock in each]
+
+
+def _clocks(robot: str, seed: int) -> tuple[float, ...]:
+    """Returns how much later the inputs of each of two records act than their stamps say [s]."""
+    low, high = (0.0, CLOCKS[1]) if robot in SERVOS else CLOCKS
+    chance = np.random.default_rng([seed, *map(ord, robot), 1])
+    return tuple(map(float, chance.uniform(low, high, 2).round(5)))
 
 
 def _roughened(
@@ -177,5 +195,6 @@ def write(world: World, motions: list[Motion], folder: Path) -> tuple[Path, list
         outputs = np.round(motion.outputs + truth.noise * noise, 6)
         table = np.column_stack([motion.time, motion.inputs, outputs])
         logs.append(folder / f"record_{k + 1}.csv")
+        table = table[~np.isnan(outputs).any(axis=1)]
         np.savetxt(logs[-1], table, "%.7g", ",", header=header, comments="")
     return toml, logs

@@ -140,7 +140,7 @@ def input_effects(drives: Sequence[Drive]) -> tuple[Effect, ...]:
         Effect("time_shift", "u(t - τ), τ of each record's own, of either sign",
                (Size("tau", "s", SHIFT, 2e-3, 0, "how much later it acts than its stamps say"),),
                places=at, phrase="input: its time stamps are shifted", probes=SHIFTS, own=True,
-               hooks={"input": time_shift}),
+               of_records="input: its time stamps are shifted", hooks={"input": time_shift}),
         Effect("saturation", "u clipped at ±u_max", (share,), (limit,), places=at,
                phrase="input: clipped", hooks={"input": clipped}),
         Effect("lag", "τ u̇' = u - u'", (Size("tau", "s", 0.01, 5e-4, 1, tau),), (BEFORE,),

@@ -26,7 +26,7 @@ from identification.discovery.attempts import tell_lost
 from identification.discovery.candidates import list_common, list_single
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.passes import uses
-from identification.effects.effect import Candidate, Effect, in_each_record
+from identification.effects.effect import BY_RECORD, Candidate, Effect, in_each_record
 from identification.effects.sizes import Size
 from identification.prediction.contenders import is_plausible, is_significant, refit_level
 from identification.prediction.first_fit import picks, thinned, thinned_moves, thinned_tangents
@@ -91,12 +91,16 @@ def _listed(
     model: WindowModel, effects: Sequence[Effect], options: DiscoveryOptions
 ) -> list[Candidate]:
     """Returns all shapes of what the model lacks, at all places together and at each of them."""
-    if len(model.fit.problem.parts) > 1 and uses(options, "record_differences"):
-        effects = [*effects, *(in_each_record(e) for e in effects if e.of_records)]
+    if not uses(options, "record_differences"):
+        effects = [replace(e, of_records="") for e in effects]
+    elif len(model.fit.problem.parts) > 1:
+        effects = [*effects, *(in_each_record(e) for e in effects if e.of_records and not e.own)]
     has = {c.key for c in model.candidates}
     everywhere = {c.effect.name for c in model.candidates if not c.effect.places[c.where]}
     common = list_common([e for e in effects if e.name not in everywhere])
-    every = (c for c in (*common, *list_single(common)) if c.key not in has)
+    # a record has one clock: what comes late at one input is a delay of this input
+    several = [c for c in common if not c.effect.is_of_records]
+    every = (c for c in (*common, *list_single(several)) if c.key not in has)
     return [c for c in every if has_what_it_needs(model, c)]
 
 
@@ -196,7 +200,8 @@ def several_scores(
     first: dict[tuple[str, bool], Candidate] = {}
     for s in significant:
         effect = s.candidate.effect
-        if len(_places(model, s.candidate)) > 1 and effect.own == effect.is_of_records:
+        is_single = not effect.own or s.candidate.where.endswith(BY_RECORD)
+        if len(_places(model, s.candidate)) > 1 and is_single:
             first.setdefault((effect.name, effect.own), s.candidate)
     out: list[WindowScore] = []
     for c in [*first.values()][:MAX_SPREAD_EFFECTS]:

@@ -160,15 +160,20 @@ def difference_sentences(found: Discovery) -> list[str]:
 
     said = []
     for d in found.differences:
-        what, where = phrase(d.candidate.effect), d.candidate.where.replace(BY_RECORD, "")
+        effect, (where, is_split, _) = d.candidate.effect, d.candidate.where.partition(BY_RECORD)
         each = [
             f"{in_record(name, {})} = {quantity(value, std, d.unit)}"
             for name, (value, std) in d.values.items()
         ]
+        if is_split:
+            how_much = f"{quantity(d.spread, unit=d.unit)} between two of them"
+        else:
+            how_much = quantity(max(abs(value) for value, _ in d.values.values()), unit=d.unit)
+            each += [f"{size.name} is {size.about}" for size in effect.sizes]
+        values = f"by {how_much} at most ({'; '.join(each)})"
         said.append(
-            f"{what.capitalize()}, {where}: by {quantity(d.spread, unit=d.unit)} between two of"
-            f" them at most ({'; '.join(each)}). In the model each record has its own value; this"
-            " is no effect of the robot."
+            f"{phrase(effect).capitalize()}, {where}: {values}. In the model each record has its"
+            " own value; this is no effect of the robot."
         )
     return said
 

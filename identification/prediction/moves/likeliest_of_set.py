@@ -5,7 +5,7 @@ a mass of three bodies, which physics forbids, may be likelier than that of one 
 imitates what is found next. So after each effect that is found, an earlier one that is not the
 likeliest is asked again: it and the others are refitted in its place, beside all that was found
 since. The likeliest that unseen records prove there takes the place, and the odds are those of
-these refits.
+these refits. A difference between records takes the place of no law: it is no name.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ def likeliest_of_set(state: WindowSearch, progress: Progress) -> Change:
         odds = find_odds(old, model)
         is_forbidden = odds.forbidden > odds.own and old is not state.accepted[-1]
         # what unseen records do not prove takes no place, however likely it is
-        proven = [share for rival, share in odds.rivals if rival.is_proven]
+        proven = [p for rival, p in odds.rivals if rival.is_proven and _may_replace(rival, old)]
         is_likelier = max(proven, default=0.0) > odds.own
         new = _asked_again(state, model, old) if is_likelier or is_forbidden else None
         if new is None:
@@ -65,10 +65,11 @@ def _asked_again(state: WindowSearch, model: WindowModel, old: Contender) -> Con
         return None
     each = [with_one(state, without, c.candidate) for c in (old, *old.alternatives)]
     found = _judged_together(state, without, [c for c in each if c is not None])
-    if not any(c.is_proven for c in found):
+    if not any(c.is_proven and _may_replace(c, old) for c in found):
         return None
     shares = compute_confidence(evidences(found))
-    best, _ = max(zip(found, shares, strict=True), key=lambda pair: (pair[0].is_proven, pair[1]))
+    pairs = [(c, p) for c, p in zip(found, shares, strict=True) if _may_replace(c, old)]
+    best, _ = max(pairs, key=lambda pair: (pair[0].is_proven, pair[1]))
     others = (o for o in found if o is not best and is_rival(o))
     return replace(best, alternatives=tuple(others))
 
@@ -82,6 +83,11 @@ def _judged_together(
     parent, whole = at_all_lengths(without, models, task.horizon, task.confirm, crosses)
     found = (judged(parent, c, len(models), options) for c in whole if c is not None)
     return [without_imitated(parent, c, options) for c in found]
+
+
+def _may_replace(new: Contender, old: Contender) -> bool:
+    """Returns whether an effect may take the place of another: a difference only that of one."""
+    return old.candidate.effect.is_of_records or not new.candidate.effect.is_of_records
 
 
 def _label(c: Contender) -> str:
