@@ -184,6 +184,8 @@ def simulate(
                 outputs[shown] = [linkages.measured(model, data, c) for c in truth.columns]
             data.ctrl[:] = steps[k * each + i]
             data.qfrc_applied[:] = 0.0
+            if acting:  # laws of the drives' force take that of this input
+                mujoco.mj_forward(model, data)
             for size, force, at, dof in acting:
                 data.qfrc_applied[dof] += size * force(
                     data.qpos[at], data.qvel[dof], data.qfrc_actuator[dof]

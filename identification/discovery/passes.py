@@ -53,6 +53,9 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
     "jumps_at_outliers": (RUN, "scores jumps of a sensor where the outputs jump"),
     "begin_anew": (RUN, "refits from the nominal values where a parameter ended at a limit"),
     "hidden_effects": (RUN, "refits effects beyond no level where the noise model may hide them"),
+    "limits_of_much_left": (
+        HORIZON, "fits limits of motors and inputs, whatever their scores are, where much is left",
+    ),
     "weak_scores": (
         HORIZON, "refits effects whose scores may be luck, because unseen records decide",
     ),

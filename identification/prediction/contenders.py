@@ -63,6 +63,30 @@ def list_curves(
     return [s for s in curves if s.candidate.key not in tried][:MAX_CURVES]
 
 
+def list_limits(
+    scores: Sequence[WindowScore], chosen: Sequence[WindowScore], options: DiscoveryOptions
+) -> list[WindowScore]:
+    """Returns the best score of each law that is there or is not, which was not chosen.
+
+    A limit of a motor or of an input has no size that could be small: the score of a small share
+    of it says little of the whole, about parameters that a fit without it has moved far.
+
+    Args:
+        scores: of all candidates, the best first.
+        chosen: what is refitted anyway.
+        options: the switch `limits_of_much_left`.
+    """
+    if not uses(options, "limits_of_much_left"):
+        return []
+    known = {s.candidate.key for s in chosen}
+    each = {
+        s.candidate.key: s
+        for s in reversed(scores)
+        if s.candidate.sizes and not s.candidate.free and s.candidate.key not in known
+    }
+    return [*reversed(each.values())]
+
+
 def _best_few(
     listed: Sequence[WindowScore], level: float, options: DiscoveryOptions
 ) -> list[WindowScore]:

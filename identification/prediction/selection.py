@@ -21,6 +21,7 @@ from identification.pool import OutOfTime, lift_limit, run_parts
 from identification.prediction.contenders import (
     list_contenders,
     list_curves,
+    list_limits,
     list_starts,
     refit_level,
 )  # fmt: skip
@@ -66,9 +67,10 @@ def refit_contenders(
         The model without them, its windows at the best states that any of them found, and they.
     """
     windows = sum(len(p.cut.starts) for p in model.fit.problem.parts)
-    # where scores themselves say that something is missing, what is left need not be simulated
-    is_left = refit_level(scores, options) < options.significance and is_much_left(model, options)
+    is_much = is_much_left(model, options)
+    is_left = refit_level(scores, options) < options.significance and is_much
     chosen = list_contenders(scores, options, windows * len(model.scale), is_left)
+    chosen += list_limits(scores, chosen, options) if is_much else []
     if uses(options, "suggested_effects"):
         has = {*(s.candidate.key for s in chosen), *(c.key for c in model.candidates)}
         each = [c for c in suggested if c.key not in has and has_what_it_needs(model, c)]
