@@ -20,7 +20,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from robot_motions import DRIVEN
-from robot_worlds import NAMES, SEVERAL, UNLISTED, is_asked, make, write
+from robot_worlds import NAMES, SEVERAL, UNLISTED, UPRIGHT, is_asked, make, write
 from rows import ROOT, Row, answered, of_newest, rows_of
 
 from identification.discovery.result import Discovery
@@ -165,7 +165,9 @@ def _names_two(row: Row) -> bool:
 def _is_meant(row: Row, hidden: tuple[str, str], name: str, where: str) -> bool:
     """Returns whether a name at a place is one of what is hidden."""
     effect, joint = hidden
-    is_name = name.removeprefix("slide_") in NAMES[effect]
+    is_upright = effect == "load" and (row["robot"], joint) in UPRIGHT
+    names = (*NAMES[effect], *(NAMES["rotor"] if is_upright else ()))
+    is_name = name.removeprefix("slide_") in names
     is_place = (
         row["robot"] in ("four_bar", "gripper")
         or not where.startswith(("joint", "all joints"))  # inputs and bodies have other names

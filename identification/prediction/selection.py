@@ -30,7 +30,7 @@ from identification.prediction.extension import weighed, with_effect
 from identification.prediction.first_fit import Begun, begin
 from identification.prediction.judging import REFUTED, judged
 from identification.prediction.model import WindowModel
-from identification.prediction.remaining import is_much_left
+from identification.prediction.remaining import is_much_left, output_ratios
 from identification.prediction.scores import WindowScore, window_scores
 from identification.prediction.screening import has_what_it_needs
 from identification.prediction.simpler_laws import is_dear, likelier, simpler_laws
@@ -41,6 +41,9 @@ from identification.shares import fall_words
 from identification.windows.records import Record
 from identification.windows.unseen import Unseen
 
+# Of an output's error to its noise, above which limits are fitted whatever their scores are. What a
+# smaller limit does is nearly linear, and its score tells it.
+MIN_LIMITED_RATIO = 10.0
 STRONG_BIC = 10.0  # "very strong evidence" of one law against another (Kass and Raftery 1995)
 
 
@@ -70,7 +73,8 @@ def refit_contenders(
     is_much = is_much_left(model, options)
     is_left = refit_level(scores, options) < options.significance and is_much
     chosen = list_contenders(scores, options, windows * len(model.scale), is_left)
-    chosen += list_limits(scores, chosen, options) if is_much else []
+    is_far = is_much and output_ratios(model.unseen.select).max() > MIN_LIMITED_RATIO
+    chosen += list_limits(scores, chosen, options) if is_far else []
     if uses(options, "suggested_effects"):
         has = {*(s.candidate.key for s in chosen), *(c.key for c in model.candidates)}
         each = [c for c in suggested if c.key not in has and has_what_it_needs(model, c)]
