@@ -27,7 +27,7 @@ from identification.logs.noise import noise_floor
 from identification.model.predictor import Predictor, output_columns, with_states
 from identification.model.rollout import State, rollout
 
-MAX_LOST_SHARE = 0.2  # of the windows, for inputs at the ends that may not have been logged
+MAX_LOST_SHARE = 0.1  # of the windows, for inputs at the ends that may not have been logged
 MIN_SCALE_SHARE = 1e-3  # of the largest motion in its field, for the smallest s_j
 
 

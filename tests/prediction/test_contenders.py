@@ -22,6 +22,7 @@ from identification.prediction.contenders import (
     count_numbers,
     list_contenders,
     list_curves,
+    list_limits,
     refit_level,
 )
 from identification.prediction.evidence import compute_confidence, evidence
@@ -125,6 +126,16 @@ def test_where_much_is_left_a_weak_law_is_refitted_though_no_score_is_beyond_cha
     for name in ("scores_of_much_left", "weak_scores"):
         strict = DiscoveryOptions(without=(name,))
         assert list_contenders(scores, strict, 100, is_left=True) == []
+
+
+def test_laws_that_are_there_or_not_are_fitted_whatever_their_scores_are():
+    whole = replace(Size("c", "", 1.0, 0.02, 1), present=1.0)
+    limit = replace(effect("limit"), sizes=(whole,))
+    best, worse = score(limit, 0.01, p_value=0.9), score(limit, 0.001, p_value=0.9)
+    scores = [score(effect("law"), 0.9), best, worse]
+    assert list_limits(scores, scores[:1], OPTIONS) == [best]
+    assert list_limits(scores, [best], OPTIONS) == []
+    assert list_limits(scores, [], DiscoveryOptions(without=("limits_of_much_left",))) == []
 
 
 def test_a_curve_that_promises_less_than_a_law_is_refitted_only_where_no_law_is_proven():

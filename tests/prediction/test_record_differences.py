@@ -9,6 +9,7 @@ from records_cases import listed, nominal_model, pendulum, record, search
 from test_contenders import OPTIONS, contender, effect
 
 from identification.discovery.findings.finding import FindingKind
+from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate, in_each_record
 from identification.prediction.discovery import discover_records
 from identification.prediction.scores import WindowScore
@@ -18,6 +19,7 @@ from identification.report.discovery_json import discovery_to_json
 from identification.report.discovery_report import discovery_text
 
 FEW = ("offset", "stiffness", "encoder_offset")
+SHIFTS = (0.02, -0.015, 0.01, -0.02)  # of each record's inputs [s]
 ZEROS, PUSHES = (0.08, -0.07, 0.05, -0.09), (0.03, -0.02, 0.01, -0.04)
 
 
@@ -73,6 +75,43 @@ def test_what_all_records_have_is_named_and_not_hidden_by_values_of_each(name, s
     ((value, std, _),) = answer.named[0].parameters.values()
     assert value == pytest.approx(size, abs=max(5 * std, 0.02 * size))
     assert answer.differences == ()
+
+
+@cache
+def clocked(name, values, without=()):
+    """A search over four records, whose inputs come at other times than their stamps say."""
+    logs = [replace(record(k + 1, 400, {name: v}, plant=pendulum()), name=f"record {k + 1}")
+            for k, v in enumerate(values)]  # fmt: skip
+    base = replace(nominal_model(), horizon=0.26)  # the inputs jump within windows
+    effects = listed("offset", "delay", "time_shift")
+    options = DiscoveryOptions(without=without)
+    return discover_records(base, logs[:2], logs[2:], effects, options=options)
+
+
+def test_clocks_that_differ_are_told_and_are_no_name():
+    answer = clocked("time_shift.tau@drive", SHIFTS)
+    assert answer.verdict == "nothing missing"
+    assert answer.named == ()
+    (told,) = answer.differences
+    for (value, std), true in zip(told.values.values(), SHIFTS, strict=True):
+        assert value == pytest.approx(true, abs=max(5 * std, 1e-3))
+    said = discovery_text(answer)
+    assert "its time stamps are shifted, input drive: by" in said
+    assert "between two of them" not in said
+    assert "tau is how much later it acts than its stamps say" in said
+
+
+def test_inputs_that_come_late_in_all_records_alike_are_named_and_no_clock_doubts_it():
+    answer = clocked("delay.tau@drive", (0.015,) * 4)
+    (named,) = answer.named
+    assert named.candidate.effect.name == "delay"
+    assert named.rivals == ()
+    assert answer.differences == ()
+
+
+def test_without_the_pass_a_shift_of_clocks_is_a_name():
+    answer = clocked("time_shift.tau@drive", SHIFTS, ("record_differences",))
+    assert [n.candidate.effect.name for n in answer.named] == ["time_shift"]
 
 
 def test_friction_beside_zeros_that_differ_is_named_and_the_zeros_are_told():
