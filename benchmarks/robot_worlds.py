@@ -61,6 +61,7 @@ UNLISTED = ("bump", "stop", *OF_TWO)
 ROUGH = (0.05, 0.2)  # ρ, the least and the most
 WITH_LINKS = ("arm", "finger", "leg")  # bodies on which a load has a place
 SERVOS = ("arm", "crane", "gripper", "leg")  # their inputs are set points
+WITH_TENDONS = ("crane", "finger")  # what limits a winch is no limit of a joint
 MASS_IS_FREE = ("cart", "crane")  # of the body that would have more: nothing would be missing
 CLOCKS = (-0.025, 0.025)  # of a record [s]
 AS_THEY_ARE = ("voltage", "lever")  # forces whose size is no choice; they would hide others
@@ -163,6 +164,8 @@ def is_asked(robot: str, effect: str) -> bool:
     """Returns whether a robot may hide an effect: no parameter that is free is the same."""
     if effect == "load":
         return robot in WITH_LINKS
+    if effect == "voltage":
+        return robot not in WITH_TENDONS
     return effect not in ("heavier", "rotor") or robot not in MASS_IS_FREE
 
 

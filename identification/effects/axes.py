@@ -50,7 +50,8 @@ class Axis:
         force: largest force of its drives [N m or N].
         speed: top speed [rad/s or m/s].
         travel: how far it moves [rad or m].
-        plain: whether its drives' force is gain·u + bias: their load is then known.
+        plain: whether it has drives of its own, and their force is gain·u + bias: its load is then
+            known. A tendon that pulls is no drive of its own.
         heavy: whether gravity acts on it anywhere.
         duration: of the record [s]; 0 where it is not known.
         middle: of the way that it moves [rad or m].
@@ -165,7 +166,7 @@ def _axis(model: mujoco.MjModel, log: Log, j: int, columns: dict[str, np.ndarray
         force = _pulled(model, log, dof)
     if not force and travel > 0:
         force = float(model.dof_M0[dof]) * speed**2 / travel
-    name, is_plain = model.joint(j).name, all(_plain(model, i) for i in drives)
+    name, is_plain = model.joint(j).name, bool(drives) and all(_plain(model, i) for i in drives)
     return Axis(name, _KINDS[int(model.jnt_type[j])], force, speed, travel,
                 is_plain, _heavy(model, j),
                 log.begun + log.duration, float(way.min() + way.max()) / 2,

@@ -70,18 +70,29 @@ class Yardstick:
     def share_of(self, candidate: Candidate, explained: float, curves: float = 0.0) -> float | None:
         """Returns what an effect explains of what it and smooth forces at its joints could.
 
+        The joints of a law of sensors are those that they measure: a servo that is pushed aside
+        looks like an encoder that errs.
+
         Args:
             candidate: the effect at its place.
             explained: sum of squares that it took away, over what the model leaves.
             curves: likewise of the curves that the model has at its joints.
 
         Returns:
-            None for what is no law of a joint.
+            None for what is no law of a joint or of its sensor.
         """
-        left = [self.of_joint[j] for j in places_of(candidate.where) if j in self.of_joint]
-        if not acts_on_joints(candidate.effect) or not left:
+        left = [self.of_joint[j] for j in own_joints(candidate) if j in self.of_joint]
+        if not left:
             return None
         return explained_share(explained, 0.0, max(left) + curves)
+
+
+def own_joints(law: Candidate) -> list[str]:
+    """Returns the joints on which a law acts or which its sensors measure; none of other laws."""
+    places = places_of(law.where)
+    if acts_on_joints(law.effect):
+        return places
+    return [law.effect.joints[where] for where in places if where in law.effect.joints]
 
 
 def may_draw(curve: Effect, law: Effect) -> bool:
