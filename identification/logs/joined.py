@@ -47,6 +47,7 @@ class Record:
     values: Mapping[str, float] = field(default_factory=dict)
     # of what no fit sees of it, in a search; None where nothing is told apart
     parts: Parts | None = None
+    edge: float = 0.0  # for how long at its ends inputs act that it does not have [s]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -206,13 +206,13 @@ def problem(
     for record in records:
         fixed = {n: v for n, v in {**values, **record.values}.items() if n not in space.names}
         predictor = Predictor(plant, record.log, space.names, fixed)
-        cut = spread(_windows_of(plant, record, length), most)
+        cut = spread(_windows_of(record, length), most)
         first = first_states(predictor, np.array([begun[n] for n in space.names]), cut)
         parts.append(Shooting(predictor, space, cut, first, np.diag(1 / scale), True))
     return Problem(tuple(parts), Unknowns(shared, own, tuple(r.log.name for r in records)))
 
 
-def _windows_of(plant: Plant, record: Record, length: float) -> Windows:
+def _windows_of(record: Record, length: float) -> Windows:
     """Returns the windows of a record that a fit may see, of a length [s].
 
     A search fits the records that confirm too, to see its effects from the other side; what it
@@ -221,22 +221,8 @@ def _windows_of(plant: Plant, record: Record, length: float) -> Windows:
     Raises:
         InputError: there are none.
     """
-    cut = windows(record.log, length, unlogged_ends(plant))
+    cut = windows(record.log, length, record.edge)
     return cut.rows(inside(record.parts, "select", cut.places))
-
-
-def unlogged_ends(plant: Plant) -> float:
-    """Returns for how long at the ends of a record inputs may act that it does not have [s].
-
-    Where two clocks stamp a record, its first outputs answer inputs from before it, or its last
-    outputs those that came after it.
-
-    Args:
-        plant: the model, with its effects.
-    """
-    effects = plant.effects if isinstance(plant, JointPlant) else ()
-    shifts = (e for e in effects if e.is_of_records and "input" in e.hooks)
-    return max((size.largest for e in shifts for size in e.sizes), default=0.0)
 
 
 def most_windows(

@@ -23,7 +23,7 @@ from identification.model.coordinates import NOTHING
 from identification.model.predictor import Plant, Predictor
 from identification.windows.held import held_records
 from identification.windows.own_values import Own, of_halves, own_values
-from identification.windows.problem import MOST_STEPS, most_windows, unlogged_ends
+from identification.windows.problem import MOST_STEPS, most_windows
 from identification.windows.records import Record
 from identification.windows.settling import Starts, best_starts, settle, sought_from_others
 from identification.windows.shooting import Shooting
@@ -216,8 +216,7 @@ def cut_unseen(
     """
     # the others only agree or not
     most = most_windows(plant, records, length, MOST_STEPS if is_horizon else MOST_STEPS // 3)
-    ends = unlogged_ends(plant)
-    return [spread(windows(r.log, length, ends), most) for r in records]
+    return [spread(windows(r.log, length, r.edge), most) for r in records]
 
 
 def _is_better_elsewhere(own: Unseen, others: Sequence[Unseen], length: float) -> bool:

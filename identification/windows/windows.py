@@ -27,7 +27,7 @@ from identification.logs.noise import noise_floor
 from identification.model.predictor import Predictor, output_columns, with_states
 from identification.model.rollout import State, rollout
 
-MAX_LOST_SHARE = 0.1  # of the windows, for inputs at the ends that may not have been logged
+MAX_LOST_SHARE = 0.2  # of the windows, for inputs at the ends that were not logged
 MIN_SCALE_SHARE = 1e-3  # of the largest motion in its field, for the smallest s_j
 
 
@@ -52,14 +52,14 @@ class Windows:
         return Windows(self.inputs[keep], self.outputs[keep], self.starts[keep])
 
 
-def windows(log: Log, length: float, unlogged: float = 0.0) -> Windows:
+def windows(log: Log, length: float, edge: float = 0.0) -> Windows:
     """Split a log into windows of a length [s].
 
     Args:
         log: any.
         length: of a window [s].
-        unlogged: for how long at both ends of the log something may have acted that it does not
-            have [s]. Windows that feel it are left out, unless they are many of all.
+        edge: for how long at both ends of the log inputs act that it does not have [s]. Windows
+            that feel them are left out (`logged`).
 
     Raises:
         InputError: a window has fewer than 3 samples, the log is shorter than one, or each of them
@@ -72,9 +72,7 @@ def windows(log: Log, length: float, unlogged: float = 0.0) -> Windows:
             f" {log.sampling_time:g} s; take 3 samples or more, and no more than the log has"
         )
     starts = samples * np.arange(len(log) // samples)
-    edge = round(np.ceil(unlogged / log.sampling_time))
-    logged = (starts >= edge) & (starts + samples <= len(log) - edge)
-    starts = starts[logged] if np.mean(~logged) <= MAX_LOST_SHARE else starts
+    starts = starts[logged(log, np.column_stack([starts, starts + samples]), edge)]
     # The step before a window and the one behind it count: rates are taken from neighbours.
     h, begin, end = log.sampling_time, log.time[starts], log.time[starts + samples - 1]
     touched = [(begin < b + h) & (end > a - h) for a, b in log.gaps]
@@ -86,6 +84,20 @@ def windows(log: Log, length: float, unlogged: float = 0.0) -> Windows:
         )
     rows = starts[:, None] + np.arange(samples)
     return Windows(log.inputs[rows], log.outputs[rows], starts)
+
+
+def logged(log: Log, places: np.ndarray, edge: float) -> np.ndarray:
+    """Returns which windows feel only inputs that a log has, shape (W,); all where many would go.
+
+    Args:
+        log: any.
+        places: first sample of each window, and the one behind its last, shape (W, 2).
+        edge: for how long at both ends of the log inputs act that it does not have [s].
+    """
+    samples = round(np.ceil(edge / log.sampling_time))
+    first, behind = places.T
+    keep = (first >= samples) & (behind <= len(log) - samples)
+    return np.asarray(keep if np.mean(~keep) <= MAX_LOST_SHARE else np.full(len(keep), True))
 
 
 def noise_whitener(log: Log) -> np.ndarray:

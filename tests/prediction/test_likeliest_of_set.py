@@ -21,8 +21,8 @@ TRUE = ("quadratic_friction.c@hinge", 0.01)
 @cache
 def refits():
     """A search's first state, and what can be refitted in its first round."""
-    logs = records(3, dict([TRUE]), samples=260)
-    names = "quadratic_friction", "stribeck_friction", "sublinear_friction", "coulomb_friction"
+    logs = records(3, dict([TRUE]), samples=200)
+    names = ("quadratic_friction", "stribeck_friction", "sublinear_friction")
     task = RecordsTask(
         nominal_model=nominal_model(), records=as_records(logs[:1], logs[1:]),
         effects=listed(*names), options=DiscoveryOptions(max_effects=1),

@@ -15,6 +15,7 @@ from functools import partial
 from identification.discovery.attempts import attempt
 from identification.discovery.moves import Watch
 from identification.discovery.passes import uses
+from identification.prediction.edges import without_edges
 from identification.prediction.exchange import (
     exchanged,
     missing_chance_alone,
@@ -69,15 +70,16 @@ def add_effect(state: WindowSearch, progress: Progress) -> WindowSearch:
         model = attempt(best.candidate, shorter)
         tried = tried if model else tried[1:]
     model = weighed(model, task.horizon, task.confirm, task.options)
+    found = replace(state, model=model, exchanged=other_side)
+    if best.candidate.effect.is_of_records:
+        found = attempt(None, partial(without_edges, found)) or found
+    model = found.model
     watch.stop("refits")
     scores = score_all(model, task.effects, task.options)
     others = find_rivals(tried[1:], state.model, state.scores, best.model, scores)
     watch.stop("scores")
     accepted = (*state.accepted, replace(best, alternatives=others))
-    return replace(
-        state, model=model, accepted=accepted, scores=scores, rejected=(), seconds=watch.seconds,
-        exchanged=other_side,
-    )  # fmt: skip
+    return replace(found, accepted=accepted, scores=scores, rejected=(), seconds=watch.seconds)
 
 
 def _proven_by_both(
