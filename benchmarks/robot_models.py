@@ -19,6 +19,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
+import numpy as np
 from robot_motions import DRIVEN
 from robot_worlds import NAMES, SEVERAL, UNLISTED, UPRIGHT, is_asked, make, write
 from rows import ROOT, Row, answered, of_newest, rows_of
@@ -31,6 +32,7 @@ ROWS = ROOT / "benchmarks" / "results" / "robot_models.jsonl"
 PAGE = ROOT / "docs" / "robot" / "models.md"
 NO_NAME = ("unlisted effect", "unknown effect")
 NO_LAW = (*NO_NAME, "nothing missing")
+CLOSE = 1e-3  # of a shift of clocks [s]
 BINS = ((0.0, 0.5), (0.5, 0.8), (0.8, 0.9), (0.9, 1.1))  # of confidences
 REFUSED = (
     ("it explains less than 92 % of what smooth forces could", "further"),
@@ -55,7 +57,9 @@ log of 8 s at 100 Hz is fitted and searched, another one confirms. The search tr
 An answer is right if each name is that of a hidden effect at its joint, and no effect is left
 without one; what makes a robot rough must have no name, but a curve of the data may draw it. For
 the four-bar and the gripper, whose joints are coupled, a name may also stand at another joint or at
-all of them, because the motion cannot tell these apart.
+all of them, because the motion cannot tell these apart. In a world of *two clocks* the inputs of
+each record act up to 25 ms later or earlier than their stamps say, and each record has its own
+time; a servo only comes late.
 """
 
 
@@ -162,6 +166,19 @@ def _names_two(row: Row) -> bool:
     return sum(any(_is_meant(row, h, *n) for n in each) for h in _hidden(row)) > 1
 
 
+def _tells_clocks(row: Row) -> bool:
+    """Returns whether a shift of clocks is told."""
+    return any(name == "time_shift" for name, *_ in row.get("differences") or [])
+
+
+def _clocks_error(row: Row) -> float:
+    """Returns by how much the told shifts of two records are wrong at most [s]; inf without any."""
+    each = [values for name, _, values in row.get("differences") or [] if name == "time_shift"]
+    told = [v for values in each for v in values.values()]
+    pairs = zip(told, row["clocks"], strict=False)
+    return max(abs(a - b) for a, b in pairs) if len(told) == len(row["clocks"]) else np.inf
+
+
 def _is_meant(row: Row, hidden: tuple[str, str], name: str, where: str) -> bool:
     """Returns whether a name at a place is one of what is hidden."""
     effect, joint = hidden
@@ -198,8 +215,13 @@ def _refused(rows: Sequence[Row], doubt: str) -> list[bool]:
 
 def page(rows: Sequence[Row]) -> str:
     """Returns the page of the rows of one search."""
-    kinds = [[r for r in rows if not _is_rough(r)], [r for r in rows if _is_rough(r)]]
-    lines = [HEAD, "| of all robots | nothing else is missing | rough |", "|---|---|---|"]
+    kinds = [
+        [r for r in rows if not _is_rough(r) and not r.get("clocks")],
+        [r for r in rows if _is_rough(r)],
+        [r for r in rows if r.get("clocks")],
+    ]
+    lines = [HEAD, "| of all robots | nothing else is missing | rough | two clocks |",
+             "|---|---|---|---|"]  # fmt: skip
     for what, chosen, is_hit in MEASURES:
         rates = (said(rate([r for r in kind if chosen(r)], is_hit)) for kind in kinds)
         lines.append(f"| {what} | {' | '.join(rates)} |")
@@ -241,6 +263,9 @@ MEASURES: Sequence[tuple[str, Callable[[Row], bool], Callable[[Row], bool]]] = (
      lambda r: "+" in r["effect"] and _has_unlisted(r), is_right),
     ("nothing is named where nothing is missing, or nothing that has a name",
      lambda r: r["effect"] == "nothing", is_right),
+    ("a shift of clocks is told that is not there", lambda r: not r.get("clocks"), _tells_clocks),
+    ("the shifts of both records are told, to 1 ms", lambda r: bool(r.get("clocks")),
+     lambda r: _clocks_error(r) < CLOSE),
     ("a search ends in an error", lambda r: True, lambda r: "error" in r),
 )  # fmt: skip
 
@@ -251,7 +276,7 @@ def _told(row: Row) -> str:
         return f"`{row['effect']}`: an error"
     names = " + ".join(f"`{n['name']}` at {n['where']}" for n in row["named"])
     where = f" at {row['joint']}" if row["joint"] else ""
-    rough = ", rough" if _is_rough(row) else ""
+    rough = ", rough" if _is_rough(row) else ", two clocks" if row.get("clocks") else ""
     return f"`{row['effect']}`{where}{rough}: {names or row['verdict']}"
 
 
