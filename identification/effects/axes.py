@@ -53,6 +53,8 @@ class Axis:
         plain: whether it has drives of its own, and their force is gain·u + bias: its load is then
             known. A tendon that pulls is no drive of its own.
         heavy: whether gravity acts on it anywhere.
+        tilts: whether gravity's force on it changes with the pose; where it is constant, a friction
+            that grows with it is a Coulomb friction.
         duration: of the record [s]; 0 where it is not known.
         middle: of the way that it moves [rad or m].
         share: of its inertia that its model gives to the motor, as armature; 0 where there is none.
@@ -80,6 +82,7 @@ class Axis:
     servo: str = ""
     gear: float = 1.0
     stiffness: float = 0.0
+    tilts: bool = True
 
     def __post_init__(self) -> None:
         for word in MAGNITUDES:
@@ -167,25 +170,26 @@ def _axis(model: mujoco.MjModel, log: Log, j: int, columns: dict[str, np.ndarray
     if not force and travel > 0:
         force = float(model.dof_M0[dof]) * speed**2 / travel
     name, is_plain = model.joint(j).name, bool(drives) and all(_plain(model, i) for i in drives)
+    is_heavy, tilts = _weight(model, j)
     return Axis(name, _KINDS[int(model.jnt_type[j])], force, speed, travel,
-                is_plain, _heavy(model, j),
+                is_plain, is_heavy,
                 log.begun + log.duration, float(way.min() + way.max()) / 2,
                 float(model.dof_armature[dof] * model.dof_invweight0[dof]),
                 float(model.opt.timestep**2 * model.dof_invweight0[dof]),
-                *position_servo(model, drives if is_plain else ()))  # fmt: skip
+                *position_servo(model, drives if is_plain else ()), tilts=tilts)  # fmt: skip
 
 
 @quiet()
-def _heavy(model: mujoco.MjModel, j: int) -> bool:
-    """Returns whether gravity acts on joint j in one of several poses."""
+def _weight(model: mujoco.MjModel, j: int) -> tuple[bool, bool]:
+    """Returns whether gravity acts on joint j in one of several poses, and whether it changes."""
     data, rng = mujoco.MjData(model), np.random.default_rng(0)
-    dof, largest = int(model.jnt_dofadr[j]), 0.0
+    dof, forces = int(model.jnt_dofadr[j]), []
     for _ in range(POSES):
         mujoco.mj_integratePos(model, data.qpos, rng.normal(0, 1, model.nv), 1.0)
         mujoco.mj_forward(model, data)  # at rest: all of the bias is gravity
-        largest = max(largest, abs(float(data.qfrc_bias[dof])))
-    weight = float(np.linalg.norm(model.opt.gravity) * model.body_mass.sum())
-    return largest > 1e-9 * weight
+        forces.append(float(data.qfrc_bias[dof]))
+    least = 1e-9 * float(np.linalg.norm(model.opt.gravity) * model.body_mass.sum())
+    return bool(np.abs(forces).max() > least), bool(np.ptp(forces) > least)
 
 
 def _rate(way: np.ndarray, h: float) -> np.ndarray:

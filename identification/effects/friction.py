@@ -161,7 +161,7 @@ def friction_effects(g: Group) -> list[Effect]:
         g.friction(gravity_load_friction, "at most μ |f_g| more, f_g gravity's force",
                    "friction: grows with gravity's load",
                    g.size("mu", 0.2, "", "share of gravity's force", 1),
-                   places=g.heavy, reference=LOAD),
+                   places=g.tilting, reference=LOAD),
         g.friction(two_load_friction, "at most μ |f_u - ρ f_g| more",
                    "friction: grows with the drive's force and gravity's, each by its share",
                    g.size("mu", 0.2, "", "share of the drive's force", 1),

@@ -95,6 +95,11 @@ class Group:
         return places("joint", tuple(a.joint for a in self.axes if a.heavy))
 
     @cached_property
+    def tilting(self) -> dict[str, str]:
+        """Places on which gravity's force changes with the pose."""
+        return places("joint", tuple(a.joint for a in self.axes if a.heavy and a.tilts))
+
+    @cached_property
     def loaded(self) -> dict[str, str]:
         """Places where the drives' force is known and gravity acts."""
         return places("joint", tuple(a.joint for a in self.axes if a.plain and a.heavy))

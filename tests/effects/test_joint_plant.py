@@ -16,6 +16,7 @@ from joint_cases import (
     steps,
     stopping_time,
 )
+from plain_logs import plain_log
 
 from identification import InputError, Parameter
 from identification.effects.axes import Axis, axes
@@ -48,6 +49,31 @@ def test_axes_are_read_off_the_log_and_hinges_apart_from_slides():
     assert names["slide_offset"].sizes[0].unit == "N"
     assert names["offset"].sizes[0].unit == "N m"
     assert "slide_load_dependent_friction" not in names
+
+
+HOIST = """<mujoco><worldbody>
+<body><joint name="lift" type="slide" axis="0 0 1"/><geom size="0.1" mass="2"/>
+<body><joint name="swing" type="hinge" axis="0 1 0"/><geom size="0.05" pos="0 0 -0.5" mass="1"/>
+</body></body></worldbody>
+<actuator><motor name="winch" joint="lift"/></actuator>
+<sensor><jointpos name="height" joint="lift"/><jointpos name="angle" joint="swing"/></sensor>
+</mujoco>"""
+
+
+def test_laws_of_a_drive_ask_for_one_and_friction_by_weight_for_a_weight_that_changes():
+    rng = np.random.default_rng(0)
+    u, y = 30 + rng.standard_normal((200, 1)), np.cumsum(rng.standard_normal((200, 2)), axis=0)
+    log = plain_log(u, 1e-2 * y, "winch", "height angle", STEP)
+    lift, swing = axes(mujoco.MjModel.from_xml_string(HOIST), log)
+    assert (lift.plain, lift.heavy, lift.tilts) == (True, True, False)
+    assert (swing.plain, swing.heavy, swing.tilts) == (False, True, True)
+    places = {e.name: {*e.places} for e in joint_effects((lift, swing))}
+    assert (
+        places["slide_voltage_limit"] == places["slide_load_dependent_friction"] == {"joint lift"}
+    )
+    assert places["gravity_load_friction"] == places["gravity_force"] == {"joint swing"}
+    assert places["slide_gravity_force"] == {"joint lift"}
+    assert not {"slide_gravity_load_friction", "voltage_limit", "curve_load"} & {*places}
 
 
 def test_the_largest_force_of_a_servo_is_what_it_gave_and_not_what_its_command_alone_would():
