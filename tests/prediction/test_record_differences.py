@@ -8,10 +8,12 @@ import pytest
 from records_cases import listed, nominal_model, pendulum, record, search
 from test_contenders import OPTIONS, contender, effect
 
+from identification.discovery.candidates import list_common
 from identification.discovery.findings.finding import FindingKind
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate, in_each_record
 from identification.prediction.discovery import discover_records
+from identification.prediction.moves.likeliest_of_set import laws_of_records
 from identification.prediction.scores import WindowScore
 from identification.prediction.screening import at_several, felt_places
 from identification.prediction.selection import STRONG_BIC, ranked
@@ -101,12 +103,32 @@ def test_clocks_that_differ_are_told_and_are_no_name():
     assert "tau is how much later it acts than its stamps say" in said
 
 
-def test_inputs_that_come_late_in_all_records_alike_are_named_and_no_clock_doubts_it():
-    answer = clocked("delay.tau@drive", (0.015,) * 4)
+@pytest.mark.parametrize("name", ["delay.tau@drive", "time_shift.tau@drive"])
+def test_inputs_that_come_late_in_all_records_alike_are_named_and_no_clock_doubts_it(name):
+    answer = clocked(name, (0.015,) * 4)
     (named,) = answer.named
     assert named.candidate.effect.name == "delay"
     assert named.rivals == ()
     assert answer.differences == ()
+
+
+def test_inputs_that_come_early_in_all_records_alike_are_a_matter_of_clocks():
+    answer = clocked("time_shift.tau@drive", (-0.015,) * 4)
+    assert answer.named == ()
+    (told,) = answer.differences
+    assert all(v == pytest.approx(-0.015, abs=1e-3) for v, _ in told.values.values())
+
+
+def test_the_law_of_a_difference_is_that_of_all_records():
+    effects = listed("delay", "time_shift", "encoder_offset")
+    (shift,) = list_common([e for e in effects if e.name == "time_shift"])[:1]
+    (zero,) = (e for e in effects if e.name == "encoder_offset")
+    (differs,) = list_common([in_each_record(zero)])
+    assert {c.key for c in laws_of_records(shift, effects)} == {("delay", "input drive")}
+    assert [c.key for c in laws_of_records(differs, effects)] == [
+        ("encoder_offset", "sensor angle")
+    ]
+    assert laws_of_records(list_common([zero])[0], effects) == []
 
 
 def test_without_the_pass_a_shift_of_clocks_is_a_name():

@@ -5,26 +5,37 @@ a mass of three bodies, which physics forbids, may be likelier than that of one 
 imitates what is found next. So after each effect that is found, an earlier one that is not the
 likeliest is asked again: it and the others are refitted in its place, beside all that was found
 since. The likeliest that unseen records prove there takes the place, and the odds are those of
-these refits. A difference between records takes the place of no law: it is no name.
+these refits. A difference between records takes the place of no law: it is no name. A difference
+that is the same in all records is a law of the robot, which is asked in its place.
+
+    |a - b| < 3 √(σ_a² + σ_b²)        values a, b of any two records, and their std
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import combinations
 
+import numpy as np
+
+from identification.discovery.candidates import list_common, list_single
 from identification.discovery.passes import uses
+from identification.effects.effect import BY_RECORD, Candidate, Effect
 from identification.prediction.crossing import at_all_lengths
 from identification.prediction.evidence import compute_confidence
 from identification.prediction.extension import refitted
 from identification.prediction.judging import judged
 from identification.prediction.model import WindowModel
 from identification.prediction.moves.add_set import with_one
-from identification.prediction.odds import find_odds
+from identification.prediction.odds import LATE, find_odds
 from identification.prediction.smooth_rivals import without_imitated
 from identification.prediction.task import Change, WindowSearch
+from identification.prediction.told_effects import fitted_sizes
 from identification.prediction.trial import Contender, evidences, is_rival
 from identification.progress import Progress
+
+ALIKE = 3.0  # std by which values of two records may be apart and yet be one
 
 
 def likeliest_of_set(state: WindowSearch, progress: Progress) -> Change:
@@ -34,9 +45,13 @@ def likeliest_of_set(state: WindowSearch, progress: Progress) -> Change:
         odds = find_odds(old, model)
         is_forbidden = odds.forbidden > odds.own and old is not state.accepted[-1]
         # what unseen records do not prove takes no place, however likely it is
-        proven = [p for rival, p in odds.rivals if rival.is_proven and _may_replace(rival, old)]
+        proven = [
+            share for rival, share in odds.rivals
+            if rival.is_proven and not rival.candidate.effect.is_of_records
+        ]  # fmt: skip
         is_likelier = max(proven, default=0.0) > odds.own
-        new = _asked_again(state, model, old) if is_likelier or is_forbidden else None
+        is_asked = is_likelier or is_forbidden or is_alike(old, model)
+        new = _asked_again(state, model, old) if is_asked else None
         if new is None:
             out.append(old)
             continue
@@ -63,14 +78,23 @@ def _asked_again(state: WindowSearch, model: WindowModel, old: Contender) -> Con
     without = refitted(model, rest, task.nominal_model, task.confirm)
     if without is None:
         return None
-    each = [with_one(state, without, c.candidate) for c in (old, *old.alternatives)]
+    must_be_law = not old.candidate.effect.is_of_records or is_alike(old, model)
+    asked = [c.candidate for c in (old, *old.alternatives)]
+    asked += laws_of_records(old.candidate, task.effects) if must_be_law else []
+    each = [
+        with_one(state, without, c) for c in {(*c.key, str(c.shape)): c for c in asked}.values()
+    ]
     found = _judged_together(state, without, [c for c in each if c is not None])
-    if not any(c.is_proven and _may_replace(c, old) for c in found):
+    shares = compute_confidence(evidences(found)) if found else ()
+    proven = [
+        (share, c) for share, c in zip(shares, found, strict=True)
+        if c.is_proven and not (must_be_law and c.candidate.effect.is_of_records)
+    ]  # fmt: skip
+    if not proven:
         return None
-    shares = compute_confidence(evidences(found))
-    pairs = [(c, p) for c, p in zip(found, shares, strict=True) if _may_replace(c, old)]
-    best, _ = max(pairs, key=lambda pair: (pair[0].is_proven, pair[1]))
-    others = (o for o in found if o is not best and is_rival(o))
+    best = max(proven, key=lambda pair: pair[0])[1]
+    # another shape of the same law is no rival
+    others = (o for o in found if o.candidate.key != best.candidate.key and is_rival(o))
     return replace(best, alternatives=tuple(others))
 
 
@@ -85,9 +109,37 @@ def _judged_together(
     return [without_imitated(parent, c, options) for c in found]
 
 
-def _may_replace(new: Contender, old: Contender) -> bool:
-    """Returns whether an effect may take the place of another: a difference only that of one."""
-    return old.candidate.effect.is_of_records or not new.candidate.effect.is_of_records
+def is_alike(difference: Contender, model: WindowModel) -> bool:
+    """Returns whether a difference between records is none: their values are the same.
+
+    Args:
+        difference: an accepted effect; a law is no difference.
+        model: with it.
+    """
+    if not difference.candidate.effect.is_of_records:
+        return False
+    of_size: dict[str, list[tuple[float, float]]] = {}
+    for name, (value, std, _) in fitted_sizes(model, difference.candidate)[1].items():
+        of_size.setdefault(name.partition(" [")[0], []).append((value, std))
+    pairs = (pair for each in of_size.values() for pair in combinations(each, 2))
+    return all(abs(a - b) < ALIKE * np.hypot(s, t) for (a, s), (b, t) in pairs)
+
+
+def laws_of_records(difference: Candidate, effects: Sequence[Effect]) -> list[Candidate]:
+    """Returns the law that a difference is where all records have the same value; none of a law.
+
+    Args:
+        difference: a candidate.
+        effects: the catalogue.
+
+    Returns:
+        A candidate for each of its shapes.
+    """
+    if not difference.effect.is_of_records:
+        return []
+    name, where = difference.effect.name, difference.where.removesuffix(BY_RECORD)
+    laws = [e for e in effects if e.name == LATE.get(name, name) and not e.own]
+    return [c for c in (*list_common(laws), *list_single(list_common(laws))) if c.where == where]
 
 
 def _label(c: Contender) -> str:
