@@ -36,6 +36,7 @@ class SmoothForce:
     gains: np.ndarray
     ridges: np.ndarray  # ρ of each curve, shape (K,); infinite for one that explains nothing
     c: np.ndarray  # forces at all nodes, by all samples, shape (k,)
+    left_out: np.ndarray  # the same without the blocks of each fold, shape (F, k)
 
     @property
     def gain(self) -> float:
@@ -85,10 +86,10 @@ def find_smooth_force(G: np.ndarray, a: np.ndarray, nodes: Sequence[int]) -> Smo
                     best, most = tried, found
         if not most > before:
             break
-    gains = np.zeros(len(a))
-    for f, c in zip(folds, fitted(others, theirs, best), strict=True):
+    gains, left_out = np.zeros(len(a)), fitted(others, theirs, best)
+    for f, c in zip(folds, left_out, strict=True):
         gains[f] = 2 * a[f] @ c - (G[f] @ c) @ c
-    return SmoothForce(gains, best, fitted(every[None], b[None], best)[0])
+    return SmoothForce(gains, best, fitted(every[None], b[None], best)[0], left_out)
 
 
 def explained_share(before: float, after: float, gain: float) -> float | None:

@@ -1,33 +1,46 @@
 """The shift in time of each record's inputs against its outputs.
 
     u(t - τ_r) in record r, all other parameters those of the model
-    |τ_a - τ_b| < t 2 σ        halves a, b of it: each has twice the variance σ² of the whole record
+    |τ_a - τ_b| < max(t 2 σ, |τ|/10)      halves a, b of it, each of twice the variance σ²
 
 A controller of one record may have logged its torques late, and that of another not: such a shift
 is no physics of the robot, and what all records together say of it is little. Each record is asked
 by itself, whether it was fitted or not, by blocks of its windows. A shift counts where both halves
 of the record tell the same; it is a finding where it is beyond chance among all records, and takes
 away enough to matter.
+
+    E_0 = ‖r_0 - S c_0‖² - F,   E_τ = ‖r_τ - S c_τ‖² - F      without the shift, and with it
+
+A force that is missing looks a little like any other cause, and no scatter of blocks shows that: a
+bump of a rail made shifts of some ten std in records whose stamps were exact. So beside the shift
+stands the smooth force S c that the joints could have (`identification.discovery.smooth_force`).
+Where much more than the noise F is left with the shift, it counts only if it takes away most of
+what this force leaves, E_τ < E_0/2, and is then told with the value that it has beside the force.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
+from itertools import pairwise
 
 import numpy as np
 
 from identification.chances import student_above
 from identification.discovery.attempts import attempt
+from identification.discovery.candidates import list_common
 from identification.discovery.findings.records_evidence import ShiftedRecord
 from identification.discovery.options import DiscoveryOptions
+from identification.discovery.smooth_force import find_smooth_force
 from identification.effects.effect import Candidate
 from identification.estimation.priors import Priors
+from identification.logs.noise import noise_floor
 from identification.model.coordinates import coordinates
 from identification.pool import run_parts
+from identification.prediction.columns import columns
 from identification.prediction.model import WindowModel
-from identification.prediction.scores import WindowScore, window_scores
+from identification.prediction.scores import WindowScore, each_condensed, window_scores
 from identification.prediction.std import degrees_of_freedom, told_std
 from identification.prediction.task import RecordsTask
 from identification.windows.fit import WindowFit, solve
@@ -37,6 +50,10 @@ from identification.windows.records import Record
 SHIFT = "time_shift"  # the effect
 # Of the sampling time: a smaller shift that may be chance stands in the JSON alone.
 MIN_SHOWN_SHIFT = 0.1
+SMOOTH = ("_speed", "_load", "_position")  # ends of names of curves; over time they follow all
+ALIKE = 0.1  # of a shift: halves that differ by less tell the same
+FAR = 1.5  # times the noise, from which much is left
+MOST = 0.5  # of what is above the noise: a shift that leaves more is none
 ALONE_STEPS = MOST_STEPS // 4  # of the windows of one record: one number needs no more
 
 
@@ -70,8 +87,8 @@ def _record_shift(
     best = max(window_scores(at, candidates), key=lambda s: s.fall, default=None)
     if best is None:
         return None
-    largest = best.candidate.effect.sizes[0].largest
-    return _told(at, record, best, largest, task.options)
+    curves = list_common([e for e in task.effects if e.is_curve and e.name.endswith(SMOOTH)])
+    return _told(at, record, best, curves, task.options)
 
 
 def told_shifts(
@@ -123,23 +140,79 @@ def _alone(model: WindowModel, record: Record, horizon: float) -> WindowFit:
 
 
 def _told(
-    at: WindowFit, record: Record, score: WindowScore, largest: float, options: DiscoveryOptions
-) -> ShiftedRecord | None:
-    """Returns the best shift of a record; None where it is not significant or its halves differ."""
+    at: WindowFit, record: Record, score: WindowScore, curves: Sequence[Candidate],
+    options: DiscoveryOptions,
+) -> ShiftedRecord | None:  # fmt: skip
+    """Returns the best shift of a record.
+
+    It is None where it is not significant, its halves differ, or it leaves most of what is far
+    above the noise.
+    """
     windows, least = np.arange(len(at.moves[0])), options.min_proof_t
+    largest = score.candidate.effect.sizes[0].largest
     whole = _fitted(at, windows, score)
     std = float(told_std(whole)[0])
     if not (np.isfinite(std) and least * std < abs(_shift(whole)) < largest):
         return None
     a, b = (_shift(_fitted(at, half, score)) for half in np.array_split(windows, 2))
-    if a * b <= 0 or abs(a - b) > least * 2 * std:
+    if a * b <= 0 or abs(a - b) > max(least * 2 * std, ALIKE * abs(_shift(whole))):
         return None
-    t, freedom = abs(_shift(whole)) / std, degrees_of_freedom(whole)[0]
+    shift, noise = _shift(whole), _noise(whole)
+    if whole.cost > FAR**2 * noise:
+        before, after = (_beside_forces(fit, curves) for fit in (at, whole))
+        if after.left - noise > MOST * (before.left - noise):
+            return None
+        shift, std = shift + after.shift, max(std, after.std)
+        if not least * std < abs(shift) < largest:
+            return None
     return ShiftedRecord(
-        record=_called(record),
-        shift=_shift(whole), std=std, fall=float(1 - whole.cost / at.cost),
-        chance=2 * student_above(t, freedom),
+        record=_called(record), shift=shift, std=std, fall=float(1 - whole.cost / at.cost),
+        chance=2 * student_above(abs(shift) / std, degrees_of_freedom(whole)[0]),
     )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class _Beside:
+    """A fit of one record beside the smooth force of its joints."""
+
+    left: float  # sum of squares that the force leaves, in blocks that it was not fitted to
+    shift: float = 0.0  # by which the shift of the fit is another one beside it [s]
+    std: float = 0.0  # of the shift [s]
+
+
+def _beside_forces(fit: WindowFit, curves: Sequence[Candidate]) -> _Beside:
+    """Returns a fit of one record, with a shift or without, beside smooth forces."""
+    (t,) = fit.tangents
+    s, r = (x.reshape(t.r.size, -1) for x in t.projected)
+    left = float(np.sum(r**2))
+    S = np.hstack([columns(fit, [c])[0] for c in curves] or [np.zeros((t.r.size, 0))])
+    if not S.any():
+        return _Beside(left)
+    told = next(each_condensed(fit, [S]))
+    force = find_smooth_force(told.G, told.a, [len(c.sizes) for c in curves])
+    left -= force.gain
+    if not s.shape[1]:
+        return _Beside(left)
+    blocks = np.array_split(np.arange(len(t.r)), len(told.G) - 1)  # the last one are priors
+    rows = t.r.shape[1] * np.cumsum([0, *map(len, blocks)])
+    each = np.array([
+        s[a:b].T @ np.hstack([S[a:b], r[a:b], s[a:b]]) for a, b in pairwise(rows.tolist())
+    ])[:, 0]  # fmt: skip
+    folds = np.array_split(np.arange(len(told.G)), len(force.left_out))
+    rest = [np.delete(each, f[f < len(each)], axis=0) for f in folds]
+    sums = [x.sum(axis=0) for x in (each, *rest)]
+    q = [
+        (x[-2] - x[:-2] @ c) / x[-1] for x, c in zip(sums, (force.c, *force.left_out), strict=True)
+    ]
+    slope, out = float(fit.problem.prior.space.slope(fit.q)[0]), np.array(q[1:])
+    return _Beside(left, slope * q[0], slope * float(np.sqrt((len(out) - 1) * out.var())))
+
+
+def _noise(fit: WindowFit) -> float:
+    """Returns the sum of squares that the noise of the sensors makes in windows of one record."""
+    (part,), (t,) = fit.problem.parts, fit.tangents
+    square = (noise_floor(part.predictor.log.outputs) * np.diag(part.whitener)) ** 2
+    return float(np.mean(square)) * (part.cut.outputs.size - t.freedom)
 
 
 def _shift(found: WindowFit) -> float:

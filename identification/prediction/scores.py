@@ -11,7 +11,7 @@ no noise model (`identification.estimation.block_test`).
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import pairwise
@@ -117,13 +117,26 @@ def condensed(
     Raises:
         DivergenceError: one of them cannot be simulated.
     """
-    base = _Base(fit, held)
     every = np.hstack([np.vstack(columns(fit, group)) for group in _groups(candidates)])
-    S = base.without_base(np.vstack([every, np.zeros((len(fit.q), every.shape[1]))]))
-    G = np.array([S[rows].T @ S[rows] for rows in base.blocks])
-    a = np.array([S[rows].T @ base.r[rows] for rows in base.blocks])
+    return next(each_condensed(fit, [every], held))
+
+
+def each_condensed(
+    fit: WindowFit, each: Iterable[np.ndarray], held: Collection[str] = ()
+) -> Iterator[Condensed]:
+    """Yields what blocks of windows tell of the sizes of some columns, for each set of them.
+
+    Args:
+        fit: the model without them.
+        each: columns without what states make up for, record after record, shape (N, k) a set.
+        held: free parameters of the fit that do not make room for them.
+    """
+    base = _Base(fit, held)
     squares = np.array([base.r[rows] @ base.r[rows] for rows in base.blocks])
-    return Condensed(G, a, squares)
+    for X in each:
+        S = base.without_base(np.vstack([X, np.zeros((len(fit.q), X.shape[1]))]))
+        G = np.array([S[rows].T @ S[rows] for rows in base.blocks])
+        yield Condensed(G, np.array([S[rows].T @ base.r[rows] for rows in base.blocks]), squares)
 
 
 def find_imitated(fit: WindowFit, scores: Sequence[WindowScore]) -> set[tuple[str, str]]:

@@ -249,9 +249,8 @@ def _doubts(evidence: Evidence) -> list[str]:
             if many else f" no value moves by more than {moved.max():.1f} std."
         )
     ]  # fmt: skip
-    clock = evidence.whole.inertial + 3 * evidence.equations.joints
-    late, off = (float(x[clock]) for x in (evidence.whole.fit.θ, evidence.whole.fit.std))
-    if abs(late) > FAR * off and abs(late) > LATE:
+    late, off = evidence.clock or (0.0, 0.0)
+    if abs(late) > LATE:
         out.append(
             f"The torques act {quantity(abs(late), off, 's')} {'later' if late > 0 else 'earlier'}"
             " than their stamps say; the fits correct this."

@@ -23,6 +23,7 @@ from identification.effects.moving_bodies import MovingBody
 from identification.logs.log import Log
 from identification.torques.base import BaseParameters, find_base
 from identification.torques.candidates import in_record, list_missing
+from identification.torques.clock import find_clock
 from identification.torques.consistency import find_inconsistent
 from identification.torques.equations import Equations
 from identification.torques.fits import (
@@ -54,6 +55,8 @@ class Evidence:
     equations: Equations  # of the records
     base: BaseParameters  # the combinations of inertial numbers
     whole: Fitted  # the base fit
+    # how much later the inputs act than their stamps say, and its std [s]; None where they do not
+    clock: tuple[float, float] | None
     other: np.ndarray  # sizes of the base fit in a narrower band, shape (p,)
     model: Fitted  # the model fit, without effects
     final: Fitted  # the model fit with the effects that were found
@@ -76,7 +79,7 @@ class Evidence:
     @property
     def noise(self) -> np.ndarray:
         """What noise alone would leave of each joint, shape (nv,), where it is white."""
-        return np.sqrt(np.mean([r.noise**2 for r in self.equations.rows], axis=0))
+        return _noise(self.equations)
 
     @property
     def passive(self) -> np.ndarray:
@@ -173,9 +176,11 @@ def find_evidence(
     differences = rank(equations, whole.base, single) if fitted > 1 else ()
     unseen = [_unseen_residual(equations, f.base) for f in (whole, nominal, final)]
     r = len(base.names)
+    curves = [c for c in candidates if c.is_curve]
     evidence = Evidence(
         equations=equations, base=base, whole=whole, other=other, model=nominal, final=final,
-        scores=scores, found=tuple(found), rest=rest, differences=differences,
+        clock=find_clock(equations, whole, curves, _noise(equations)), scores=scores,
+        found=tuple(found), rest=rest, differences=differences,
         asked=len(candidates), unseen=np.array(unseen),
         friction=read_friction(model) if friction is None else friction,
         inconsistent=find_inconsistent(base, whole.fit.θ[:r], whole.fit.std[:r]),
@@ -207,6 +212,11 @@ def _doubts(
 
 def _is_servo(model: mujoco.MjModel, name: str) -> bool:
     return is_servo(model, int(model.actuator(name).id))
+
+
+def _noise(equations: Equations) -> np.ndarray:
+    """Returns what noise alone would leave of each joint, shape (nv,), where it is white."""
+    return np.sqrt(np.mean([r.noise**2 for r in equations.rows], axis=0))
 
 
 def _unseen_residual(equations: Equations, base: Base) -> np.ndarray:
