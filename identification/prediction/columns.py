@@ -25,6 +25,7 @@ from identification.prediction.directions import directions
 from identification.prediction.forced import Forces, acts_on_joints
 from identification.prediction.joint_states import rows_for
 from identification.windows.fit import WindowFit
+from identification.windows.shooting import Tangent
 
 
 def columns(fit: WindowFit, group: Sequence[Candidate], share: float = 1.0) -> list[np.ndarray]:
@@ -39,27 +40,37 @@ def columns(fit: WindowFit, group: Sequence[Candidate], share: float = 1.0) -> l
         DivergenceError: one of them cannot be simulated.
     """
     is_forced = all(acts_on_joints(c.effect) for c in group)
-    each = _forces_of(fit) if is_forced else (None,) * len(fit.moves)
+    each = forces_of(fit) if is_forced else (None,) * len(fit.moves)
     out = []
     for k, (forces, t) in enumerate(zip(each, fit.tangents, strict=True)):
         W = len(t.r)
         is_smooth = np.zeros(W, bool) if forces is None else forces.along.is_smooth
         S = np.zeros((*t.r.shape, sum(len(c.sizes) for c in group)))
         if forces is not None and is_smooth.any():
-            y = _forced(forces, group, share)
-            whitened = np.einsum("ij,wljk->wlik", fit.problem.parts[k].whitener, y)
-            S[:, : y.shape[1] * y.shape[2]] = whitened.reshape(W, -1, S.shape[2])
+            S = whitened(fit, k, _forced(forces, group, share))
         if not is_smooth.all():
             S[~is_smooth] = _simulated(fit, k, ~is_smooth, group, share)
         refuse_infinite(S)
-        U = t.U * (t.s > 0)[:, None]
-        S = S - U @ (np.swapaxes(U, 1, 2) @ S)
-        out.append(S.reshape(-1, S.shape[2]))
+        out.append(without_states(t, S).reshape(-1, S.shape[2]))
     return out
 
 
+def whitened(fit: WindowFit, record: int, y: np.ndarray) -> np.ndarray:
+    """Returns rows of the residual, (W, m, k), of changes of a record's outputs (W, L, ny, k)."""
+    S = np.zeros((*fit.tangents[record].r.shape, y.shape[3]))
+    each = np.einsum("ij,wljk->wlik", fit.problem.parts[record].whitener, y)
+    S[:, : y.shape[1] * y.shape[2]] = each.reshape(len(y), -1, y.shape[3])
+    return S
+
+
+def without_states(t: Tangent, S: np.ndarray) -> np.ndarray:
+    """Returns columns (W, m, k) of windows without what the states of these make up for."""
+    U = t.U * (t.s > 0)[:, None]
+    return np.asarray(S - U @ (np.swapaxes(U, 1, 2) @ S))
+
+
 @lru_cache(maxsize=2)  # a search asks often about the same fit
-def _forces_of(fit: WindowFit) -> tuple[Forces | None, ...]:
+def forces_of(fit: WindowFit) -> tuple[Forces | None, ...]:
     """Returns what evaluates forces along the windows of each record; None where nothing does."""
     out = []
     for k, (part, d) in enumerate(zip(fit.problem.parts, fit.moves, strict=True)):

@@ -76,9 +76,13 @@ class Forces:
         if "friction" in effect.hooks:
             δb = np.maximum(0.0, self._friction + more) - np.maximum(0.0, self._friction)
             τ -= np.sign(g) * np.minimum(δb, np.abs(g))
-        at = self._holding
-        τ[at] = np.einsum("pij,pj->pi", self._passed, τ[at])
-        return τ
+        return self.passed(τ)
+
+    def passed(self, τ: np.ndarray) -> np.ndarray:
+        """Returns forces at the points, shape (..., P, J), with what held joints answer to them."""
+        at, out = self._holding, np.array(τ)
+        out[..., at, :] = np.einsum("pij,...pj->...pi", self._passed, out[..., at, :])
+        return out
 
     def _at(self, effect: Effect, hook: str, joint: str, k: int, values: Values) -> np.ndarray:
         """Returns what a hook of an effect adds at a joint, shape (P,)."""

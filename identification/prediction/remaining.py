@@ -136,10 +136,10 @@ def _error_left(state: WindowSearch) -> RemainingError | None:
     unseen = state.model.unseen.report
     ratio, ratios = share * noise_ratio(state, unseen), share * output_ratios(unseen)
     names = state.task.records[0].log.output_names
-    worst = int(np.argmax(ratios))
+    worst, of = int(np.argmax(ratios)), tuple(r.log.name for r in state.task.confirm)
     if len(names) > 1 and ratios[worst] > max(MAX_OUTPUT_RATIO, ratio):
-        return RemainingError(float(ratios[worst]), names[worst])
-    return RemainingError(ratio) if ratio > 1 + options.min_gap_share else None
+        return RemainingError(float(ratios[worst]), names[worst], of)
+    return RemainingError(ratio, records=of) if ratio > 1 + options.min_gap_share else None
 
 
 def is_off(model: WindowModel, options: DiscoveryOptions) -> bool:

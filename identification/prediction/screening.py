@@ -29,7 +29,13 @@ from identification.discovery.passes import uses
 from identification.effects.effect import BY_RECORD, Candidate, Effect, in_each_record
 from identification.effects.sizes import Size
 from identification.prediction.contenders import is_plausible, is_significant, refit_level
-from identification.prediction.first_fit import picks, thinned, thinned_moves, thinned_tangents
+from identification.prediction.first_fit import (
+    THIN,
+    picks,
+    thinned,
+    thinned_moves,
+    thinned_tangents,
+)
 from identification.prediction.model import WindowModel
 from identification.prediction.scores import WindowScore, find_imitated, window_scores
 from identification.windows.fit import WindowFit
@@ -75,12 +81,12 @@ def score_all(
     return tuple(sorted((*found, *several), key=lambda s: -s.fall))
 
 
-def some_windows(fit: WindowFit) -> WindowFit:
-    """Returns a fit seen through one window of `THIN`; its values are those of all windows.
+def some_windows(fit: WindowFit, every: int = THIN) -> WindowFit:
+    """Returns a fit seen through one window of `every`; its values are those of all windows.
 
     They are spread evenly: shares of the error and chances of luck are those of all windows.
     """
-    at = picks(fit.tangents, is_loud=False)
+    at = picks(fit.tangents, every, is_loud=False)
     return replace(
         fit, problem=thinned(fit.problem, at), moves=thinned_moves(fit.moves, at),
         tangents=thinned_tangents(fit.tangents, at),

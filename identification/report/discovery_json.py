@@ -22,6 +22,7 @@ from identification.quantities import plain, plain_fields
 from identification.report.discovery_verdict import discovery_verdict
 from identification.report.finding_words import describe_finding
 from identification.report.horizon_gap import find_gap
+from identification.report.missing_place import find_place
 from identification.report.named_words import curve_nodes
 from identification.report.parts_words import parts_to_json
 from identification.windows.coarse import steps_of
@@ -98,6 +99,7 @@ def discovery_to_json(found: Discovery) -> dict[str, Any]:
              "rms": plain(np.sqrt(np.mean(m.force**2, axis=0)))}
             for m in found.missing_forces
         ],
+        "missing_place": plain(find_place(found)),
         "fails": _fails_to_json(found),
         **plain_fields(found, "options", "moves", "cut_short"),
         "stages": [{"stage": name, "seconds": t} for name, t in found.seconds.items()],
@@ -117,10 +119,13 @@ def _fails_to_json(found: Discovery) -> dict[str, Any] | None:
             for w in gap.windows
         ],
         "forces": [
-            {**plain_fields(f, "force", "std", "unit", "fall", "chance"),
+            {"force": plain(f.force[0]), "std": plain(f.std[0]),
+             "falling": {"force": plain(f.force[1]), "std": plain(f.std[1])}
+             if len(f.force) > 1 else None,
+             **plain_fields(f, "unit", "fall", "chance"),
              **plain_fields(f.nodes, "joint", "depends_on", "reads", nodes="at",
                             nodes_unit="unit")}
-            for f in gap.forces
+            for f in gap.needed.forces
         ],
     }  # fmt: skip
 

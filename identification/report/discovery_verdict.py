@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import hypot, inf, isfinite
 
 from identification.discovery.effect_results import RejectedEffect
@@ -19,9 +20,10 @@ from identification.report.effect_words import (
 )
 from identification.report.error_words import change_words, describe_scale, error_words, listed
 from identification.report.finding_words import describe_finding, sentence
-from identification.report.horizon_gap import MUCH, needed_sentences
+from identification.report.horizon_gap import find_gap
 from identification.report.missing_place import find_place
 from identification.report.named_words import basis_sentence, named_sentences
+from identification.report.needed_forces import MUCH, NeededForce, needed_sentences
 from identification.report.nothing_words import NOISIER, errors_left, nothing_sentence
 from identification.report.opinion_words import opinion_sentences
 from identification.report.parts_words import is_untouched, unseen_of
@@ -159,7 +161,8 @@ def _unknown(found: Discovery) -> str:
     if found.unlogged is None and 0 < found.input_error < inf:
         size = ratio_of(found.input_error, "their rms")
         needed = f"; the inputs would have to err by {size} to cause this"
-    place = []
+    place, gap = [], find_gap(found)
+    forces = gap.needed.forces if gap else ()
     if (at := find_place(found)) is not None:
         figure = "" if found.horizon is None else "; see the figure"  # a free run has none of it
         place.append(f"{sentence(str(at)).removesuffix('.')}{figure}.")
@@ -171,22 +174,25 @@ def _unknown(found: Discovery) -> str:
             "The program gives no name rather than a wrong one.",
             *_doubtful(found),
             *place,
-            *needed_sentences(found),
+            *needed_sentences(forces),
             *lines_needed(found),
-            *_any_forces(found),
+            *_any_forces(found, forces),
             *_findings(found),
             *(sentence(describe_finding(f)) for f in found.located),
         ]
     )
 
 
-def _any_forces(found: Discovery) -> list[str]:
-    """Returns the sentence that says at which joint some force is missing, whatever its law is."""
+def _any_forces(found: Discovery, forces: Sequence[NeededForce]) -> list[str]:
+    """Returns the sentence that says at which joint some force is missing, whatever its law is.
+
+    A force that explains more, because it is finer, says it better.
+    """
     shares = found.smooth_by_joint
-    if not shares:
+    most = max(shares.values(), default=0.0)
+    if not shares or (forces and forces[0].fall > most):
         return []
     which = "whether it follows the rate, the position, the drive or the time, or two of these"
-    most = max(shares.values())
     if most < MUCH:
         return ["No smooth force at one joint would explain much of the fitted error: the best one"
                 f" {percent(most)}, {which}."]  # fmt: skip

@@ -13,6 +13,7 @@ from identification.report.effect_words import (
     describe_sizes,
     doubt_words,
 )
+from identification.report.parts_words import records_words
 from identification.report.value_words import without_colon
 from identification.shares import HELD, change, decimal, fall_words, percent, ratio_of, times
 
@@ -167,9 +168,10 @@ def describe_finding(finding: Finding) -> str:
         case of_records.RemainingError() as e:
             of = f" of {e.output}" if e.output else ""
             noise = "its sensor's noise" if e.output else "the sensors' noise"
+            there = f" ({records_words(e.records)})" if e.records else ""
             return (
-                f"an error{of} on unseen data that is {times(e.noise_ratio)} {noise} is left, and"
-                " no candidate explains it"
+                f"an error{of} on unseen data{there} that is {times(e.noise_ratio)} {noise} is"
+                " left, and no candidate explains it"
             )
         case of_records.UnprovenEffect() as e:
             word = "believed" if e.doubt in IMPOSSIBLE else "proven"

@@ -12,7 +12,7 @@ from identification.prediction.record_errors import errors_by_unit
 from identification.prediction.records_fit import RecordsFit
 from identification.quantities import held
 from identification.report.effect_words import value_with_std
-from identification.report.fit_verdict import ABOVE, error_over_noise
+from identification.report.fit_verdict import ABOVE, error_over_noise, judged_on
 from identification.report.headline import Answer, Headline, Tile, error_tile
 
 FEW = 2  # values that have a tile each
@@ -35,7 +35,7 @@ def _judged(fit: Fit | RecordsFit) -> tuple[str, str]:
     ratio = error_over_noise(fit)
     if isnan(ratio):
         return "Fitted", ""
-    left = f"The error is {held(ratio)} times the noise"
+    left = f"The error on {judged_on(fit)} is {held(ratio)} times the noise"
     if ratio > ABOVE:
         return "Fitted, and something is missing", f"{left}; discover looks for what it is."
     return "Fitted, and the model explains the log", f"{left}."

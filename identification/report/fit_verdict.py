@@ -60,7 +60,7 @@ def _holds(fit: Fit) -> bool:
     return not (there and expected) or relative(there, expected) < HOLDS
 
 
-def _judged_on(fit: Fit | RecordsFit) -> str:
+def judged_on(fit: Fit | RecordsFit) -> str:
     """Returns of which data the error is by which a fit is judged."""
     if isinstance(fit, Fit):
         return "the fitted data" if _holds(fit) else "unseen data"
@@ -76,7 +76,7 @@ def answer_sentence(fit: Fit | RecordsFit) -> str:
     ratio = error_over_noise(fit)
     if isnan(ratio):
         return "Whether the model explains the log is not known: the log shows no sensor noise."
-    of_what = f"its error on {_judged_on(fit)} is {held(ratio)} times the noise of the sensors"
+    of_what = f"its error on {judged_on(fit)} is {held(ratio)} times the noise of the sensors"
     if not ratio <= ABOVE:
         return (
             f"Something is missing from the model, or a column is not what it expects: {of_what};"

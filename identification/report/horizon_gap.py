@@ -1,5 +1,6 @@
-"""Where a model fails over a horizon: in which outputs and windows, over which lengths, and the
-forces that it would need; also in lines and sentences.
+"""Where a model fails over a horizon: in which outputs and windows, and over which lengths.
+
+The forces that it would need are those of `identification.report.needed_forces`.
 
     r_y = √(mean (y - ŷ)²)           of an output over windows of the horizon, in its unit
     e_w = √(mean_g Σ_g r_wy²/Σ_g ν_y²)
@@ -7,8 +8,6 @@ forces that it would need; also in lines and sentences.
                                      outputs of a unit, ν: the sensors' noise. It is the ratio of
                                      the verdict (`Discovery.times_noise`), of one window
     e(L) = e √(V(L)/V)               over another length: V, V(L) are mean squares in units of s²
-    c, std(c)                        the curve of a joint that would take most of the fitted error,
-                                     at its nodes, by the linear score of the last model
 """
 
 from __future__ import annotations
@@ -20,19 +19,14 @@ from functools import partial
 import numpy as np
 
 from identification.discovery.result import Discovery
-from identification.effects.curves import NODES
 from identification.prediction.model import WindowModel
-from identification.prediction.scores import WindowScore
 from identification.quantities import held, quantity
-from identification.report.error_words import listed
-from identification.report.named_words import Nodes, curve_nodes
+from identification.report.needed_forces import NeededForces, find_needed
 from identification.report.parts_words import records_words
-from identification.shares import percent
 from identification.windows.unseen import Unseen
 
 WORST = 4  # windows that are drawn
-SURE = 1.96  # std on each side of 95 %
-MUCH = 0.1  # of the fitted error: what explains less is not told where it may be luck
+NEAR_NOISE = 1.5  # times the noise, below which no window or force is told
 APART = 3  # windows between two of them: neighbours fail for the same reason
 
 
@@ -68,28 +62,6 @@ class LengthError:
 
 
 @dataclass(frozen=True)
-class NeededForce:
-    """The force at one joint that would take most of what the final model leaves."""
-
-    nodes: Nodes  # of the curve, and what it is drawn over
-    force: np.ndarray  # at the nodes, shape (8,), in `unit`
-    std: np.ndarray  # of it
-    unit: str  # of the force
-    fall: float  # share of the fitted error that it would take away
-    chance: float  # of as much by luck
-
-    @property
-    def known(self) -> np.ndarray:
-        """Whether the motion tells the force at each node, shape (8,)."""
-        return np.isfinite(self.std) & (self.std < np.abs(self.force).max())
-
-    @property
-    def largest(self) -> int:
-        """The known node at which the force is surely large: the largest |f| - 1.96 std."""
-        return int(np.argmax(np.where(self.known, np.abs(self.force) - SURE * self.std, -np.inf)))
-
-
-@dataclass(frozen=True)
 class FailedWindow:
     """A fitted window in which the final model fails, of the output that errs most."""
 
@@ -111,10 +83,8 @@ class HorizonGap:
     records: tuple[RecordWindows, ...]  # those that were fitted, then those that confirm
     # of windows, over which they were predicted, the shortest first
     lengths: tuple[LengthError, ...]
-    # of each joint at which a curve would explain more than luck, the largest share first
-    forces: tuple[NeededForce, ...]
-    # where there is none: the curve at one joint that explains most; None where none explains much
-    doubtful: NeededForce | None
+    is_far: bool  # whether any window errs by more than noise may make
+    needed: NeededForces  # forces that the final model would need; none near the noise
     windows: tuple[FailedWindow, ...]  # fitted ones in which the final model fails most
 
 
@@ -148,13 +118,12 @@ def find_gap(found: Discovery) -> HorizonGap | None:
         for log, at, a, b in zip(logs, places, *squares, strict=True)
     ]
     of_all = [float(ratios(np.concatenate(u.of_outputs).mean(axis=0)[None])[0]) for u in told]
-    curves = _curves(found, final)
-    forces = _forces(found, curves)
-    most = max(curves, key=lambda c: c.fall, default=None)
+    every = (*fitted, *confirm)
+    is_far = max((float(r.after.max(initial=0.0)) for r in every), default=0.0) > NEAR_NOISE
     return HorizonGap(
-        outputs=tuple(outputs), records=(*fitted, *confirm),
-        lengths=_lengths(found.horizon or 0.0, told, of_all), forces=forces,
-        doubtful=None if forces or most is None or most.fall < MUCH else most,
+        outputs=tuple(outputs), records=every,
+        lengths=_lengths(found.horizon or 0.0, told, of_all), is_far=is_far,
+        needed=find_needed(found, final) if is_far else NeededForces(),
         windows=_worst(final, [r.after for r in fitted], scale, found.outputs),
     )  # fmt: skip
 
@@ -191,29 +160,6 @@ def _lengths(
 
     lengths = [n for n in before.lengths if n in after.lengths]
     return tuple(LengthError(horizon * n, ratio(0, n), ratio(1, n)) for n in lengths)
-
-
-def _curves(found: Discovery, final: WindowModel) -> list[NeededForce]:
-    """Returns all curves that act on one joint, as the scores of the final model have them."""
-    out = []
-    for s in found.remaining:
-        if not isinstance(s, WindowScore) or not s.candidate.effect.is_curve:
-            continue
-        nodes = curve_nodes(s.candidate, final.plant)
-        if len(nodes) == 1 and len(s.size) == NODES:
-            unit = s.candidate.effect.sizes[0].unit
-            out.append(NeededForce(nodes[0], s.size, s.std, unit, s.fall, s.p_value))
-    return out
-
-
-def _forces(found: Discovery, curves: Sequence[NeededForce]) -> tuple[NeededForce, ...]:
-    """Returns the best curve of each joint that explains more than luck among all scores."""
-    most = found.options.significance / max(1, len(found.remaining))
-    best: dict[str, NeededForce] = {}
-    for c in curves:
-        if c.fall > found.options.min_fall and c.chance < most and c.known.any():
-            best.setdefault(c.nodes.joint, c)
-    return tuple(sorted(best.values(), key=lambda n: -n.fall))
 
 
 def _worst(
@@ -255,31 +201,4 @@ def worst_lines(gap: HorizonGap) -> list[str]:
         f" {held(ratio)} times the noise; the median of all windows of"
         f" {records_words([r.name for r in gap.records])} is {held(float(np.median(every)))} times"
         " the noise"
-    ]
-
-
-def force_line(needed: NeededForce) -> str:
-    """Returns what a force at a joint would explain, and where it would be largest."""
-    k, nodes = needed.largest, needed.nodes
-    size = quantity(float(needed.force[k]), float(needed.std[k]), needed.unit)
-    at = quantity(float(nodes.at[k]), unit=nodes.unit)
-    return (
-        f"a force on {needed.nodes.joint} that depends on the {needed.nodes.reads} would remove"
-        f" {percent(needed.fall)} of the fitted error; it would be largest at {at}: {size}"
-    )
-
-
-def needed_sentences(found: Discovery) -> list[str]:
-    """Returns a sentence on the forces that a fitted model would need; none where none is known.
-
-    Along a free run other sentences tell of forces.
-    """
-    gap = find_gap(found)
-    if gap is None or not gap.forces:
-        return []
-    each = listed([f"on {f.nodes.joint} that depends on the {f.nodes.reads}" for f in gap.forces])
-    first = gap.forces[0]
-    return [
-        f"It looks like a force {each}: the force on {first.nodes.joint} would remove"
-        f" {percent(first.fall)} of the fitted error."
     ]

@@ -17,15 +17,14 @@ from identification.report.effect_sections import listed_below
 from identification.report.error_words import listed
 from identification.report.finding_words import sentence
 from identification.report.horizon_gap import (
-    SURE,
     FailedWindow,
-    NeededForce,
     OutputError,
     RecordWindows,
     find_gap,
-    force_line,
     worst_lines,
 )
+from identification.report.missing_place import MissingPlace, find_place
+from identification.report.needed_forces import SURE, NeededForce, NeededForces, force_line
 from identification.report.page import Section, Table
 from identification.report.parts_words import unseen_of
 from identification.report.style import GREY, INK, MEASURED, SERIES, SIMULATED, literal, styled
@@ -37,14 +36,14 @@ if TYPE_CHECKING:
 TITLE = "Where it disagrees"
 NEEDED = "The force that is missing, by joint"
 WORST = "The fitted windows in which the final model fails most"
-NEAR_NOISE = 1.5  # times the noise, below which no window or force is told
 GROWTH = (
     "A constant force that is missing makes about four times the error over twice the time; noise"
     " of the sensors makes the same error over any time."
 )
 FORCES = (
-    "The force is what a curve at that joint would have to be, in place of every other cause: a"
-    " first estimate, linear about the fitted values, with bars of 95 %."
+    "The force is what would have to act on that joint in place of every other cause, without what"
+    " the free parameters can imitate: a first estimate, linear about the fitted values, with a"
+    " band of 95 % for the noise alone."
 )
 NO_FORCE = (
     "No force that follows the position, the speed, the drive or the time at one joint would"
@@ -66,29 +65,26 @@ def horizon_sections(found: Discovery) -> list[Section]:
     if gap is None:
         return []
     model = "the model with what is named" if found.named else "the fitted model"
-    lines = []
+    lines, of = [], unseen_of(found)
     for o in gap.outputs:
         size, noise = alike([o.after, o.noise], o.unit, 3)
-        said = f"the error of {o.name} on unseen data{unseen_of(found)} is {size} rms"
+        said = f"the error of {o.name} on unseen data{of} is {size} rms"
         if o.noise > 0:
             said += f", {held(o.after / o.noise)} times its sensor's noise of {noise}"
         lines.append(said)
-    is_far = max((r.after.max() for r in gap.records), default=0.0) > NEAR_NOISE
-    rest = worst_lines(gap) if is_far else []
+    rest = worst_lines(gap) if gap.is_far else []
     if len(gap.lengths) > 1:
         over = listed([f"{n.length:g} s" for n in gap.lengths])
         ratios = listed([held(n.after) for n in gap.lengths])
-        rest.append(
-            f"over {over} the error on unseen data{unseen_of(found)} is {ratios} times the noise"
-        )
-    forces = gap.forces if is_far else ()
+        rest.append(f"over {over} the error on unseen data{of} is {ratios} times the noise")
+    forces = gap.needed.forces
     text = [f"{' '.join(map(sentence, rest))} {GROWTH}"]
     plain = [listed_below(f"where {model} fails", [*lines, *rest, *map(force_line, forces)])]
-    if is_far and not forces:
-        doubt = doubtful_sentences(gap.doubtful, found)
+    if gap.is_far and not forces:
+        doubt = doubtful_sentences(gap.needed, found)
         text += doubt
         plain += doubt
-    is_drawn = is_far and bool(gap.windows)
+    is_drawn = gap.is_far and bool(gap.windows)
     figures = cache(lambda: ((WORST, worst_windows(gap.windows)),)) if is_drawn else ()
     table = _table(gap.outputs, bool(found.named))
     sections = [Section(TITLE, "\n\n".join(text), figures, table, plain="\n".join(plain))]
@@ -96,29 +92,28 @@ def horizon_sections(found: Discovery) -> list[Section]:
         is_answer = found.verdict == "unknown effect"
         needed = [f"{' '.join(sentence(force_line(f)) for f in forces)} {FORCES}"]
         needed += [TRY] if is_answer else []
-        drawn = cache(lambda: ((NEEDED, needed_forces(forces)),))
+        drawn = cache(lambda: ((NEEDED, forces_figure(forces, find_place(found))),))
         sections.append(Section(NEEDED, "\n\n".join(needed), figures=drawn, first=int(is_answer)))
     return sections
 
 
-def doubtful_sentences(needed: NeededForce | None, found: Discovery) -> list[str]:
+def doubtful_sentences(needed: NeededForces, found: Discovery) -> list[str]:
     """Returns which of the forces that were tried would explain most, where none is missing."""
-    if needed is None:
-        return [NO_FORCE] if any(s.candidate.effect.is_curve for s in found.remaining) else []
-    which = f"one on {needed.nodes.joint} that depends on the {needed.nodes.reads}"
-    tried, asked = len(found.remaining), found.options.significance
-    luck = min(1.0, tried * needed.chance)
+    most, asked = needed.doubtful, found.options.significance
+    if most is None:
+        return [NO_FORCE] if needed.is_asked else []
+    which = f"one on {most.nodes.joint} that depends on the {most.nodes.reads}"
     doubt = f"That is no more than the {percent(found.options.min_fall)} which is asked for."
-    if not needed.known.any():
+    if not most.known.any():
         doubt = "The motion tells its size nowhere."
-    elif not luck < asked:
+    elif not most.chance < asked:
         doubt = (
-            f"This may be luck: one of the {tried} candidates that were tried explains as much by"
-            f" luck with a chance of {percent(luck, 2)}, and {percent(asked)} is the most that"
-            " counts as proof."
+            f"This may be luck: one of the {needed.tried} candidates that were tried explains as"
+            f" much by luck with a chance of {percent(most.chance, 2)}, and {percent(asked)} is the"
+            " most that counts as proof."
         )
     return [
-        f"The force that would explain most is {which}: {percent(needed.fall)} of the fitted"
+        f"The force that would explain most is {which}: {percent(most.fall)} of the fitted"
         f" error. {doubt}"
     ]
 
@@ -145,6 +140,7 @@ def _table(outputs: Sequence[OutputError], is_named: bool) -> Table:
 
 
 WIDTH, PANEL = 7.0, 1.7  # [in] of a figure, and the height of a panel
+PANEL_OF_FORCE, PANEL_ALONE = 2.1, 3.0  # [in] likewise; of the force on one joint alone
 FAR = 10.0  # errors that differ by more are drawn on a logarithmic axis
 
 
@@ -203,26 +199,36 @@ def worst_windows(windows: Sequence[FailedWindow]) -> Figure:
 
 
 @styled
-def needed_forces(forces: Sequence[NeededForce]) -> Figure:
-    """Returns a figure of the force that each joint would need, over what it follows."""
-    figure, axes = _panels(len(forces))
+def forces_figure(forces: Sequence[NeededForce], place: MissingPlace | None) -> Figure:
+    """Returns a figure of the force that each joint would need, over what it follows.
+
+    The place that is told stands out.
+    """
+    figure, axes = _panels(len(forces), PANEL_ALONE if len(forces) == 1 else PANEL_OF_FORCE)
     for ax, needed in zip(axes, forces, strict=True):
-        at, order = needed.nodes.at, np.argsort(needed.nodes.at)
-        told = order[needed.known[order]]
-        ax.plot(at[told], needed.force[told], color=SERIES[0], lw=1.0)
-        ax.errorbar(at[told], needed.force[told], SURE * needed.std[told], color=INK, fmt="o",
-                    ms=3.5, lw=1, capsize=2)  # fmt: skip
+        known, at = needed.known, needed.nodes.at
+        for way, force in enumerate(needed.force):
+            f, band = (np.where(known[way], x, np.nan) for x in (force, SURE * needed.std[way]))
+            label = ("rising", "falling")[way] if len(needed.force) > 1 else None
+            ax.fill_between(at, f - band, f + band, color=SERIES[way], alpha=0.25, lw=0)
+            ax.plot(at, f, ".-", ms=4, lw=1.2, color=SERIES[way], label=label)
+        if place is not None and needed is forces[0]:
+            ax.axvspan(place.low, place.high, color=GREY, alpha=0.2, lw=0)
         ax.axhline(0, color=GREY, lw=0.6)
         ax.set_title(literal(f"joint {needed.nodes.joint}"), loc="left", color=INK)
         ax.set_xlabel(literal(f"{needed.nodes.reads} [{needed.nodes.unit}]"))
         ax.set_ylabel(literal(f"force [{needed.unit}]"))
+    apart = [ax for ax, needed in zip(axes, forces, strict=True) if len(needed.force) > 1]
+    if apart:
+        handles = apart[0].get_legend_handles_labels()
+        figure.legend(*handles, loc="outside upper center", ncols=2)
     return figure
 
 
-def _panels(count: int) -> tuple[Figure, list[Axes]]:
-    """Returns a figure with so many panels, in up to two columns."""
+def _panels(count: int, height: float = 2.1) -> tuple[Figure, list[Axes]]:
+    """Returns a figure with so many panels of a height [in], in up to two columns."""
     rows = -(-count // 2)
-    figure = Figure((WIDTH, 0.6 + 2.1 * rows), layout="constrained")
+    figure = Figure((WIDTH, 0.6 + height * rows), layout="constrained")
     axes = [*figure.subplots(rows, min(2, count), squeeze=False).ravel()]
     for ax in axes[count:]:
         ax.set_axis_off()

@@ -1,19 +1,19 @@
 """Where a force is missing: at which joint, in which part of its range and direction, how large.
 
-Over a horizon it is read off the curve that the joint would need, along a free run off the smooth
+Over a horizon it is read off the force that the joint would need, along a free run off the smooth
 force that would explain the residual:
 
     f̄(i, ±) = mean of f over the samples in bin i of the position at which the rate is ± > 0
 
-The place is the bin and direction with the largest |f̄|, with the bins beside it that have at least
-half of it.
+The place is the node or bin and the direction with the largest |f|, with those beside it that have
+at least half of it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import nan
+from math import floor, log10, nan
 
 import mujoco
 import numpy as np
@@ -22,9 +22,9 @@ from identification.discovery.missing_forces import MissingForce
 from identification.discovery.result import Discovery
 from identification.logs.log import Log
 from identification.model.predictor import output_columns
-from identification.prediction.model import WindowModel
-from identification.quantities import alike, quantity
-from identification.report.horizon_gap import NeededForce, find_gap
+from identification.quantities import alike
+from identification.report.horizon_gap import find_gap
+from identification.report.needed_forces import NeededForce
 
 OWN = {  # what tells a place of a joint by itself: the words before its ends
     "position of {}": "near",
@@ -32,12 +32,15 @@ OWN = {  # what tells a place of a joint by itself: the words before its ends
     "force of the drives of {}": "at forces of its drives of",
     "time": "at times of",
 }
-DIGITS = 2  # of the ends of a place
+WAYS = {  # directions of the motion, in words
+    "": "", "both": ", in both directions", "rising": ", rising", "falling": ", falling",
+    "against": ", in both directions, against the motion",
+    "with": ", in both directions, with the motion",
+}  # fmt: skip
+DIGITS = 2  # of a force, and of the ends of a place
 HALF = 0.5  # of the largest force: as much is of the same place
 BINS = 8  # of a range of positions
 FEWEST = 5  # samples, or windows, of a bin and a direction
-TWICE = 4.0  # times the mean square in the other direction: the error is of this one
-INSIDE = 0.5  # of the samples of a window: it then lies in the place
 
 
 @dataclass(frozen=True)
@@ -49,31 +52,43 @@ class MissingPlace:
     unit: str  # of that
     low: float  # end of the place, in `unit`
     high: float  # the other end
-    moves: str  # the direction of the motion, "rising", "falling" or, for both, ""
-    force: float  # at the place, in `force_unit`
-    std: float  # of it; NaN where it is not known
+    # the direction of the motion: "rising", "falling", "both", "against" or "with" where the force
+    # turns with the motion, "" where it is not known
+    moves: str
+    force: float  # at the place, in `force_unit`; against or with the motion its magnitude
+    std: float  # of it by the noise alone; NaN where it is not known
     force_unit: str  # N or N m
 
     @property
     def size(self) -> str:
-        """The force with its std and unit."""
-        return quantity(self.force, self.std, self.force_unit)
+        """The force with its unit: a first estimate, of which two digits are told."""
+        return f"about {alike([self.force], self.force_unit, DIGITS)[0]}"
+
+    @property
+    def own(self) -> str | None:
+        """The words before the ends of the place; None where another joint tells it."""
+        return next((OWN[w] for w in OWN if self.reads == w.format(self.joint)), None)
 
     @property
     def range(self) -> str:
         """Where it is, in words."""
-        low, high = alike([self.low, self.high], self.unit, DIGITS)
+        low, high = alike([self.low, self.high], self.unit, self._digits)
         number, _, unit = low.partition(" ")
         ends = f"{number if high.endswith(unit) else low} to {high}"
         if self.low == self.high:
             ends = high
-        own = next((OWN[w] for w in OWN if self.reads == w.format(self.joint)), None)
-        if own is None:  # of a neighbour
-            return f"where the {self.reads} is {ends}"
+        if self.own is None:
+            return f"where the {self.reads} is {ends}{WAYS[self.moves]}"
         way = ""
         if self.reads.startswith("rate") and self.low * self.high > 0:  # it drives or brakes
             way = f", {'with' if self.low * self.force > 0 else 'against'} the motion"
-        return f"{own} {ends}{way}{f', {self.moves}' if self.moves else ''}"
+        return f"{self.own} {ends}{way}{WAYS[self.moves]}"
+
+    @property
+    def _digits(self) -> int:
+        """Digits of the ends, so many that they tell the width of the place."""
+        far, width = max(abs(self.low), abs(self.high)), self.high - self.low
+        return DIGITS if not width > 0 else max(DIGITS, floor(log10(far)) - floor(log10(width)) + 1)
 
     def __str__(self) -> str:
         """Returns the answer as a clause."""
@@ -87,23 +102,31 @@ def find_place(found: Discovery) -> MissingPlace | None:
     gap = find_gap(found)
     if gap is None:
         return _along(found, found.missing_forces)
-    return place_of(found, gap.forces[0]) if gap.forces else None
+    forces = gap.needed.forces
+    return place_of(forces[0]) if forces else None
 
 
-def place_of(found: Discovery, needed: NeededForce) -> MissingPlace:
+def place_of(needed: NeededForce) -> MissingPlace:
     """Returns the place of the force that a joint would need over a horizon."""
-    order = np.argsort(needed.nodes.at)
-    at, force, known = needed.nodes.at[order], needed.force[order], needed.known[order]
-    top = int(np.flatnonzero(order == needed.largest)[0])
-    same = known & (force * np.sign(force[top]) >= HALF * abs(force[top]))
-    first, last = _beside(same, top)
-    low, high = float(at[first]), float(at[last])
-    moves = ""
-    if needed.nodes.depends_on == "position" and isinstance(found.final, WindowModel):
-        moves = _direction(found.final, needed.nodes.joint, low, high)
+    (way, top), nodes = needed.largest, needed.nodes
+    of_nodes, known = needed.force, needed.known
+    same = known & (of_nodes * np.sign(of_nodes[way, top]) >= HALF * abs(of_nodes[way, top]))
+    first, last = _beside(same[way], top)
+    # a node tells of the force to half the way to the next one
+    edges = np.concatenate([nodes.at[:1], (nodes.at[1:] + nodes.at[:-1]) / 2, nodes.at[-1:]])
+    top = first + int(np.argmax(np.abs(of_nodes[way, first : last + 1])))  # the surest one before
+    force, moves = float(of_nodes[way, top]), ""
+    if needed.has_sides:
+        other, moves = of_nodes[1 - way, top] if len(of_nodes) > 1 else force, "both"
+        is_known = len(of_nodes) == 1 or bool(known[1 - way, top])
+        if not is_known or abs(other) < HALF * abs(force):
+            moves = ("rising", "falling")[way]
+        elif other * force < 0:
+            moves = "with" if force * (1 - 2 * way) > 0 else "against"
+            force = abs(force)
     return MissingPlace(
-        needed.nodes.joint, needed.nodes.reads, needed.nodes.unit, low, high, moves,
-        float(force[top]), float(needed.std[order][top]), needed.unit,
+        nodes.joint, nodes.reads, nodes.unit, float(edges[first]), float(edges[last + 1]), moves,
+        force, float(needed.std[way, top]), needed.unit,
     )  # fmt: skip
 
 
@@ -115,25 +138,6 @@ def _beside(same: np.ndarray, top: int) -> tuple[int, int]:
     while last < len(same) - 1 and same[last + 1]:
         last += 1
     return first, last
-
-
-def _direction(final: WindowModel, joint: str, low: float, high: float) -> str:
-    """Returns in which direction windows that lie in a place err far more; "" where in both."""
-    errors: dict[bool, list[float]] = {True: [], False: []}
-    for part, error in zip(final.fit.problem.parts, final.fit.errors, strict=True):
-        column = _measured(final.plant.model, part.predictor.log, joint)
-        if column is None:
-            return ""
-        y = part.cut.outputs[:, :, column]
-        inside = np.mean((y >= low) & (y <= high), axis=1) > INSIDE
-        for w in np.flatnonzero(inside):
-            errors[bool(y[w, -1] > y[w, 0])].append(float(np.mean(error[w] ** 2)))
-    if min(map(len, errors.values())) < FEWEST:
-        return ""
-    rising, falling = (float(np.mean(errors[way])) for way in (True, False))
-    if rising > TWICE * falling:
-        return "rising"
-    return "falling" if falling > TWICE * rising else ""
 
 
 def _measured(model: mujoco.MjModel, log: Log, joint: str) -> int | None:

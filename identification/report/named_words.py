@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from identification.discovery.effect_results import NamedEffect, Rival
 from identification.discovery.result import Discovery
+from identification.effects.axes import Axis
 from identification.effects.curves import NODES
 from identification.effects.effect import Candidate
 from identification.effects.jointed import JointPlant
@@ -36,7 +38,7 @@ class Nodes:
     depends_on: str  # the last words of the curve's name, such as "position" or "speed_before"
     reads: str  # what it is drawn over, in words
     unit: str  # of that
-    at: np.ndarray  # its values at the nodes, shape (8,)
+    at: np.ndarray  # its values at the nodes, shape (m,)
 
 
 def curve_nodes(candidate: Candidate, plant: Plant) -> tuple[Nodes, ...]:
@@ -49,21 +51,36 @@ def curve_nodes(candidate: Candidate, plant: Plant) -> tuple[Nodes, ...]:
 
 def _nodes_at(word: str, joint: str, plant: JointPlant) -> Nodes:
     """Returns the nodes of a curve that acts on one joint and depends on what a word says."""
-    every = {axis.joint: axis for axis in plant.axes}
-    axis = every.get(neighbour(word, joint, plant), every[joint])
-    x, steps = "rad" if axis.kind == "hinge" else "m", np.arange(1, NODES // 2 + 1) / (NODES // 2)
+    axis, steps = _read_axis(word, joint, plant), np.arange(1, NODES // 2 + 1) / (NODES // 2)
     even, signed = np.linspace(-1.0, 1.0, NODES), np.concatenate([-steps, steps])
     dense = np.sign(signed) * signed**2  # near zero
+    at = axis.middle + even * axis.travel / 2
     if word.startswith("speed"):
         at = dense * axis.speed
+    elif word == "load":
+        at = dense * axis.force
+    elif word == "time":
+        at = (even + 1) / 2 * axis.duration
+    return nodes_over(word, joint, plant, at)
+
+
+def nodes_over(word: str, joint: str, plant: JointPlant, at: np.ndarray) -> Nodes:
+    """Returns nodes at some values of what a force on a joint depends on, as a word says it."""
+    axis = _read_axis(word, joint, plant)
+    x, force = ("rad", "N m") if axis.kind == "hinge" else ("m", "N")
+    if word.startswith("speed"):
         return Nodes(joint, word, f"rate of {axis.joint}", f"{x}/s", at)
     if word == "load":
-        unit = "N m" if axis.kind == "hinge" else "N"
-        return Nodes(joint, word, f"force of the drives of {joint}", unit, dense * axis.force)
+        return Nodes(joint, word, f"force of the drives of {joint}", force, at)
     if word == "time":
-        return Nodes(joint, word, "time", "s", (even + 1) / 2 * axis.duration)
-    at = axis.middle + even * axis.travel / 2
+        return Nodes(joint, word, "time", "s", at)
     return Nodes(joint, word, f"position of {axis.joint}", x, at)
+
+
+def _read_axis(word: str, joint: str, plant: JointPlant) -> Axis:
+    """Returns the joint of which a curve on a joint reads something."""
+    every = {axis.joint: axis for axis in plant.axes}
+    return every.get(neighbour(word, joint, plant), every[joint])
 
 
 def curve_top(named: NamedEffect, plant: Plant) -> tuple[str, str]:
@@ -124,16 +141,16 @@ def _named(found: Discovery, named: NamedEffect) -> str:
             " no record tells the two apart)"
         )
     is_set = named.one_of and bool(named.rivals)
-    rivals = likely_rivals(named)
     others = [
-        f"{describe_there(r.candidate, plant)} ({percent(r.confidence)})" for r in rivals
+        f"{describe_there(r.candidate, plant)} ({percent(r.confidence)})"
+        for r in likely_rivals(named)
     ]  # fmt: skip
     if is_set:
-        total = own + sum(r.confidence for r in rivals)
         return (
             f"{first} is one of these, and the data do not tell which:"
             f" {'; '.join([f'{mine} ({percent(own)})', *others])}. It is one of them with a"
-            f" confidence of {percent(total)}. The model got the first one, with"
+            f" confidence of {percent(confidence_of_set(found, named))}. The model got the first"
+            f" one{'' if is_likeliest(named) else ', which is not the likeliest'}, with"
             f" {describe_sizes(named, plant)}." + (f" {named.advice}" if named.advice else "")
         )
     less = f" Less likely: {'; '.join(others)}." if others else ""
@@ -141,10 +158,31 @@ def _named(found: Discovery, named: NamedEffect) -> str:
 
 
 def likely_rivals(named: NamedEffect) -> list[Rival]:
-    """Returns the rivals of a named effect that are told: of a set, those near the first one."""
-    is_set = named.one_of and bool(named.rivals)
+    """Returns the rivals of a named effect that are told, the likeliest first.
+
+    Of a set they are those near the first one.
+    """
+    is_set, rivals = named.one_of and bool(named.rivals), _sorted(named.rivals)
     least = NEAR * named.confidence if is_set else SHOWN
-    return [r for r in named.rivals if r.confidence >= least] or [*named.rivals[:is_set]]
+    return [r for r in rivals if r.confidence >= least] or rivals[:is_set]
+
+
+def _sorted(rivals: Sequence[Rival]) -> list[Rival]:
+    return sorted(rivals, key=lambda r: -r.confidence)
+
+
+def is_likeliest(named: NamedEffect) -> bool:
+    """Returns whether no rival of a named effect is likelier than it."""
+    return all(r.confidence <= named.confidence for r in named.rivals)
+
+
+def confidence_of_set(found: Discovery, named: NamedEffect) -> float:
+    """Returns the confidence that one of the told names of a set is right.
+
+    It is no higher than that of a name may be.
+    """
+    limit = found.options.left_confidence if found.unexplained else found.options.max_confidence
+    return min(limit, named.confidence + sum(r.confidence for r in likely_rivals(named)))
 
 
 def basis_sentence(found: Discovery, named: NamedEffect) -> str:
@@ -160,6 +198,19 @@ def basis_sentence(found: Discovery, named: NamedEffect) -> str:
         return f"{said}."
     when = " while something is left" if found.unexplained else ""
     return f"{said}, and {percent(named.confidence)} is the highest confidence that is given{when}."
+
+
+def set_words(named: NamedEffect) -> str:
+    """Returns the names of a set with their odds in one line; "" where a name is none of a set."""
+    if not (named.one_of and named.rivals):
+        return ""
+    first = named.candidate, named.confidence
+    each = [first, *((r.candidate, r.confidence) for r in likely_rivals(named))]
+    told = [f"{c.effect.name}, {c.where} ({percent(share)})" for c, share in each]
+    return " ".join(
+        f"one of these is missing, and the data do not tell which: {'; or '.join(told)}; the model"
+        " has the first one".split()
+    )
 
 
 def nearest_law(found: Discovery, named: NamedEffect) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
+from math import floor, log, log10, sqrt
 
 from identification.quantities import held
 from identification.report.missing_place import MissingPlace
@@ -17,12 +18,19 @@ def own_stub(
 ) -> str:
     """Returns a Python file with an effect at the place, and a search that tries it.
 
+    It is "" where another joint tells the place: an effect of one's own does not know it.
+
     The robot's TOML, logs that are fitted, and logs that confirm are paths from the file's folder.
     """
+    if place.own is None:
+        return ""
     x = next(field for word, field in FIELDS.items() if place.reads.startswith(word))
     middle, half = (place.low + place.high) / 2, (place.high - place.low) / 2
-    width = half or 0.1 * abs(middle) or 1.0
-    ways = {"rising": " if s.v > 0 else 0.0", "falling": " if s.v < 0 else 0.0"}
+    width = half / sqrt(log(2)) or 0.1 * abs(middle) or 1.0  # at its ends is half of the force
+    ways = {
+        "rising": " if s.v > 0 else 0.0", "falling": " if s.v < 0 else 0.0",
+        "against": " * (-1.0 if s.v > 0 else 1.0)", "with": " * (1.0 if s.v > 0 else -1.0)",
+    }  # fmt: skip
     kind = "Torque" if place.force_unit == "N m" else "Force"
     size, confirming = abs(place.force), f"confirm=[{_files(confirm)}], " if confirm else ""
     bounds = f"largest={_number(LARGEST * size)}, probe={_number(PROBE * size)}"
@@ -46,7 +54,7 @@ def mine(s, p):
 
     s.q: position, s.v: rate, s.f_u: force of the drives, s.f_g: of gravity, s.time: of the record.
     """
-    x = ({x} - ({_number(middle)})) / {_number(width)}
+    x = ({x} - ({round(middle, 2 - floor(log10(width)))})) / {_number(width)}
     return p[0] * exp(-x * x){ways.get(place.moves, "")}
 
 

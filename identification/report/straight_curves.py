@@ -65,7 +65,7 @@ def line_words(nodes: Nodes, force: np.ndarray, std: np.ndarray, unit: str, plan
 
     Args:
         nodes: of a curve on one joint.
-        force: at the nodes, shape (8,).
+        force: at the nodes, shape (m,).
         std: of it.
         unit: of the force.
         plant: with the joint.
@@ -109,8 +109,11 @@ def line_of_named(named: NamedEffect, plant: Plant) -> str:
 def lines_needed(found: Discovery) -> list[str]:
     """Returns these sentences on each force that a model needs over a horizon and is a line."""
     gap = find_gap(found)
-    each = [line_words(f.nodes, f.force, f.std, f.unit, found.final.plant).strip()
-            for f in (gap.forces if gap else ())]  # fmt: skip
+    each = [
+        line_words(f.nodes, f.force[0], f.std[0], f.unit, found.final.plant).strip()
+        for f in (gap.needed.forces if gap else ())
+        if len(f.force) == 1  # it is the same in both directions
+    ]
     return [*filter(None, each)]
 
 

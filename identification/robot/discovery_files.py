@@ -14,6 +14,7 @@ from identification.quantities import plain
 from identification.report.discovery_json import discovery_to_json
 from identification.report.discovery_report import DiscoveryFiles
 from identification.report.missing_place import find_place
+from identification.report.named_words import set_words
 from identification.report.own_stub import own_stub
 from identification.report.page import Section
 from identification.robot.confirmation import confirm
@@ -25,7 +26,7 @@ from identification.robot.write import write_robot
 STUB = "own_effect.py"
 OWN = "A law of your own"
 OWN_TEXT = (
-    "The largest force is missing at {place}. The file below, which is kept beside this page as"
+    "The largest force is missing on {place}. The file below, which is kept beside this page as"
     f" {STUB}, has an effect there. Write the law that you suspect into it and run it: the search"
     " then compares it with all known ones."
 )
@@ -64,16 +65,19 @@ class RobotDiscoveryFiles(DiscoveryFiles):
         if stub := self._stub(place):
             write_text(folder / STUB, stub)
         path, std = folder / "robot.toml", found.final.told_std
-        write_robot(self.robot, values, path, place, own_values=own, std=std)
+        remark = "; ".join(filter(None, map(set_words, found.named)))
+        write_robot(self.robot, values, path, place, remark, own_values=own, std=std)
         return {}
 
     @cached_property
     def sections(self) -> list[Section]:
         """The sections of the report; where something has no name, the last one is what to try."""
         sections = super().sections
-        if (place := find_place(self.found)) is None:
+        at, stub = find_place(self.found), self._stub()
+        if at is None or not stub:
             return sections
-        return [*sections, Section(OWN, OWN_TEXT.format(place=place), code=self._stub())]
+        said = OWN_TEXT.format(place=f"joint {at.joint}, {at.range}: {at.size}")
+        return [*sections, Section(OWN, said, code=stub)]
 
     def _stub(self, folder: Path | None = None) -> str:
         """Returns an effect of the user's own where a force is missing; "" where none is known.

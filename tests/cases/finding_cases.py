@@ -28,7 +28,7 @@ EVIDENCE_OF = {
     FindingKind.OVERSIZED_EFFECT: evidence.OversizedEffect(
         score_of(LATE, 0.3, 412.0), {"tau": 0.1}
     ),
-    FindingKind.REMAINING_ERROR: records_evidence.RemainingError(7.1, "x"),
+    FindingKind.REMAINING_ERROR: records_evidence.RemainingError(7.1, "x", ("c.csv",)),
     FindingKind.DIFFERENT_RECORD: records_evidence.DifferentRecord("c.csv", 4.2, 1e-6),
     FindingKind.SHIFTED_RECORD: records_evidence.ShiftedRecord("c.csv", -0.014, 0.003, 0.3, 1e-5),
     FindingKind.WORSE_FIT: records_evidence.WorseFit(7.96),

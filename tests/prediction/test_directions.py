@@ -97,7 +97,7 @@ def forces(fit):
 
 def simulated(fit, group, share, monkeypatch):
     with monkeypatch.context() as patch:
-        patch.setattr(ways, "_forces_of", lambda fit: (None,) * len(fit.moves))
+        patch.setattr(ways, "forces_of", lambda fit: (None,) * len(fit.moves))
         return columns(fit, group, share)
 
 
@@ -131,17 +131,17 @@ def test_what_is_no_force_on_joints_and_where_a_constraint_acts_is_simulated(mon
 
     group = forces(free)[:5]
     stopped = fitted(ARM, "RK4", (), more=' limited="true" range="-1e-3 1e-3"')
-    assert not any(f.along.is_smooth.any() for f in ways._forces_of(stopped))
+    assert not any(f.along.is_smooth.any() for f in ways.forces_of(stopped))
     assert np.array_equal(columns(stopped, group), simulated(stopped, group, 1.0, monkeypatch))
 
     gives = fitted(ARM, "RK4", (("joint_elasticity.c@j0", 1e-3),))
-    assert not any(ways._forces_of(gives))
+    assert not any(ways.forces_of(gives))
 
 
 def test_some_windows_that_touch_a_limit_are_simulated_and_the_others_are_not(monkeypatch):
     fit = fitted(ARM, "RK4", (), more=' limited="true" range="-115 20"')
     group = [c for c in forces(fit) if c.effect.name in ("offset", "quadratic_friction")]
-    smooth = np.concatenate([f.along.is_smooth for f in ways._forces_of(fit)])
+    smooth = np.concatenate([f.along.is_smooth for f in ways.forces_of(fit)])
     assert 0 < smooth.mean() < 1
     found, truth = (
         np.concatenate([S.reshape(len(t.r), -1, S.shape[1])

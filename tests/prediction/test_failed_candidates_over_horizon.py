@@ -70,7 +70,7 @@ def failing(monkeypatch, how):
 
 
 def test_a_candidate_whose_simulation_fails_is_told_and_the_others_are_scored(monkeypatch):
-    monkeypatch.setattr(columns, "_forces_of", lambda fit: (None,) * len(fit.moves))
+    monkeypatch.setattr(columns, "forces_of", lambda fit: (None,) * len(fit.moves))
     bad, said = failing(monkeypatch, "gives NaN"), []
     bad.within(monkeypatch, state, "score_all")
     first = WINDOWS.begin(task(), said.append)

@@ -45,12 +45,15 @@ def kinds(
 
 def state_of(unseen, accepted, outputs=("x",), finer=np.nan):
     units, steps = dict.fromkeys(outputs, "rad"), SimpleNamespace(error=finer)
-    log = SimpleNamespace(output_names=outputs, units=units)
+    log = SimpleNamespace(output_names=outputs, units=units, name="c")
     told = SimpleNamespace(report=unseen, noise=unseen.noise)
     return SimpleNamespace(
         worse_fit=None, accepted=accepted, cut_short=(),
         model=SimpleNamespace(unseen=told, plant=None, finer=steps, scale=np.ones(len(outputs))),
-        task=SimpleNamespace(options=OPTIONS, records=2 * (SimpleNamespace(log=log),)),
+        task=SimpleNamespace(
+            options=OPTIONS, records=2 * (SimpleNamespace(log=log),),
+            confirm=[SimpleNamespace(log=log)],
+        ),
     )  # fmt: skip
 
 
@@ -68,6 +71,7 @@ def test_an_output_that_errs_is_told_whatever_the_others_do(monkeypatch, rms, ou
     (found,) = remaining.find_remaining(state, (), (), np.inf)
     assert found.evidence.output == output
     assert found.evidence.noise_ratio == pytest.approx(told, rel=1e-3)
+    assert found.evidence.records == ("c",)
     np.testing.assert_allclose(remaining.output_ratios(unseen), [1.0, rms])
 
 

@@ -2,6 +2,7 @@
 
 import runpy
 from dataclasses import replace
+from types import SimpleNamespace
 
 import fake_discovery
 import numpy as np
@@ -12,32 +13,63 @@ from robot_cases import TOML
 from identification import read_robot, write_log
 from identification.discovery.missing_forces import MissingForce
 from identification.report.discovery_verdict import discovery_verdict
-from identification.report.horizon_gap import NeededForce, find_gap
-from identification.report.missing_place import find_place, place_of
+from identification.report.horizon_gap import find_gap
+from identification.report.missing_place import MissingPlace, find_place, place_of
 from identification.report.named_words import Nodes
+from identification.report.needed_forces import NeededForce
 from identification.report.own_stub import own_stub
 from identification.robot import discovery_files
 from identification.robot.discovery_files import STUB, RobotDiscoveryFiles
 
 
-def needed(force, std, depends_on="position", reads="position of hinge", unit="rad"):
-    nodes = Nodes("hinge", depends_on, reads, unit, np.linspace(-0.7, 0.7, 8))
-    return NeededForce(nodes, np.array(force), np.array(std), "N m", 0.5, 1e-6)
+def needed(force, std, depends_on="position", reads="position of hinge", unit="rad", ends=0.7):
+    """A force at nodes, of one row, or of one row for each direction."""
+    force, std = np.atleast_2d(force).astype(float), np.atleast_2d(std).astype(float)
+    nodes = Nodes("hinge", depends_on, reads, unit, np.linspace(-ends, ends, force.shape[1]))
+    return NeededForce(nodes, force, std, "N m", 0.5, 1e-6, has_sides=depends_on != "speed")
 
 
 def test_the_place_is_the_part_of_the_range_with_half_the_largest_force():
-    force = [0.0, 0.1, 0.0, -0.1, 0.2, 0.6, 0.4, 0.0]
-    place = place_of(unknown(), needed(force, [0.05] * 8))
-    assert (place.low, place.high) == pytest.approx((0.3, 0.5))
+    force = [0.0, 0.1, 0.0, -0.1, 0.2, 0.6, 0.4, 0.0]  # nodes are 0.2 rad apart
+    place = place_of(needed(force, [0.05] * 8))
+    assert (place.low, place.high) == pytest.approx((0.2, 0.6))
     assert (place.joint, place.force, place.std) == ("hinge", 0.6, 0.05)
-    assert str(place) == "joint hinge, near 0.30 to 0.50 rad: 0.60 ± 0.05 N m are missing"
-    alone = place_of(unknown(), needed([0, 0, 0, 0, 0, 0.6, 0.2, 0], [0.05] * 8))
-    assert "near 0.30 rad: " in str(alone)
+    said = "joint hinge, near 0.20 to 0.60 rad, in both directions: about 0.60 N m are missing"
+    assert str(place) == said
+    alone = place_of(needed([0, 0, 0, 0, 0, 0.6, 0.2, 0], [0.05] * 8))
+    assert "near 0.20 to 0.40 rad, in" in str(alone)
+
+
+def test_the_ends_of_a_narrow_place_are_told_apart():
+    force = np.zeros(701)
+    force[500] = -1.0
+    place = place_of(needed(force, np.full(701, 0.1)))
+    assert "near 0.299 to 0.301 rad, in both directions: about -1 N m are" in str(place)
+
+
+@pytest.mark.parametrize(("rising", "falling", "told"), [
+    (-0.6, -0.5, "in both directions: about -0.60"),
+    (-0.6, 0.5, "in both directions, against the motion: about 0.60"),
+    (0.4, -0.6, "in both directions, with the motion: about 0.60"),
+    (-0.6, 0.2, "rising: about -0.60"),
+    (0.1, 0.6, "falling: about 0.60"),
+])  # fmt: skip
+def test_the_direction_is_that_of_the_force_and_of_the_motion(rising, falling, told):
+    force = np.zeros((2, 8))
+    force[:, 4] = rising, falling
+    assert f"rad, {told} N m are missing" in str(place_of(needed(force, np.full((2, 8), 0.05))))
+
+
+def test_the_largest_force_of_the_surest_place_is_told():
+    place = place_of(
+        needed([0, 0, 0, 0.4, 0.6, 0, 0, 0], [0.03, 0.03, 0.03, 0.03, 0.2] + [0.03] * 3)
+    )
+    assert (place.force, place.std) == (0.6, 0.2)
 
 
 def test_a_node_that_no_motion_tells_is_no_answer():
     force, std = [0.0, 0.0, 0.3, 0.0, 0.0, 0.0, 0.0, 9.0], [0.05] * 7 + [np.inf]
-    assert place_of(unknown(), needed(force, std)).force == 0.3
+    assert place_of(needed(force, std)).force == 0.3
 
 
 def test_over_the_rate_it_says_whether_the_force_brakes():
@@ -51,7 +83,6 @@ def test_over_the_rate_it_says_whether_the_force_brakes():
     turned = replace(place, force=-place.force)
     assert ", with the motion: " in str(turned)
     assert find_place(replace(unknown(), verdict="named")) is None
-    assert find_place(replace(unknown(), remaining=())) is None
 
 
 @pytest.mark.parametrize("rising", [True, False])
@@ -103,11 +134,34 @@ def test_the_stub_is_an_effect_at_the_place_that_a_search_takes(tmp_path):
     assert 'confirm=[here / "../b c.mcap", here / "d.csv"]' in text
 
 
+@pytest.mark.parametrize(("moves", "rising", "falling"), [
+    ("both", -2, -2), ("rising", -2, 0), ("falling", 0, -2), ("against", 2, -2), ("with", -2, 2),
+])  # fmt: skip
+def test_the_stub_acts_in_the_direction_and_at_the_place_that_are_told(moves, rising, falling):
+    """At the middle it is its size, at the ends of the place half of it; p[0] is negative here."""
+    place = MissingPlace("rail", "position of rail", "m", 0.4172, 0.4288, moves, 1.2, 0.1, "N")
+    names = {"__name__": "stub"}
+    exec(compile(own_stub(place, "robot.toml", ["a.csv"]), STUB, "exec"), names)
+    law = names["mine"].py_func
+    for v, force in ((0.3, rising), (-0.3, falling)):
+        at = [SimpleNamespace(q=q, v=v) for q in (0.423, place.low, place.high, 0.47)]
+        middle, *ends, far = (law(s, (-2.0,)) for s in at)
+        assert middle == pytest.approx(force, rel=1e-3)
+        assert ends == pytest.approx([force / 2] * 2, rel=0.05)
+        assert abs(far) < 1e-6
+
+
+def test_there_is_no_stub_where_another_joint_tells_the_place():
+    place = MissingPlace("elbow", "position of wrist", "rad", 0.4, 0.5, "both", 1.2, 0.1, "N m")
+    assert place.range == "where the position of wrist is 0.40 to 0.50 rad, in both directions"
+    assert own_stub(place, "robot.toml", ["a.csv"]) == ""
+
+
 def test_an_own_effect_is_a_candidate_of_a_robot_beside_those_of_its_file(tmp_path):
     from joint_cases import SLIDER
     from robot_cases import simulated
 
-    place = replace(find_place(unknown()), joint="slide", force_unit="N")
+    place = replace(find_place(unknown()), joint="slide", reads="rate of slide", force_unit="N")
     names = {"__name__": "stub"}
     exec(compile(own_stub(place, "robot.toml", ["log.csv"]), STUB, "exec"), names)
     (tmp_path / "slider.xml").write_text(SLIDER)
@@ -145,7 +199,7 @@ def test_the_folder_of_a_search_without_a_name_has_the_stub(tmp_path):
                       after=found.before, remaining=found.scores)  # fmt: skip
     files = RobotDiscoveryFiles(nothing, robot)
     files.keep(tmp_path, tmp_path)
-    has_force = bool(find_gap(nothing).forces)
+    has_force = bool(find_gap(nothing).needed.forces)
     assert (tmp_path / STUB).exists() == has_force == bool(find_place(nothing))
     assert [s.code != "" for s in files.sections][-1] == has_force
     named = RobotDiscoveryFiles(found, robot)

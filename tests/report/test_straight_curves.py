@@ -11,8 +11,8 @@ from records_cases import MJCF, listed, pendulum
 
 from identification.effects.effect import Candidate
 from identification.report.discovery_verdict import discovery_verdict
-from identification.report.horizon_gap import NeededForce
 from identification.report.named_words import Nodes, curve_nodes
+from identification.report.needed_forces import NeededForce
 from identification.report.straight_curves import (
     STRAIGHT,
     find_line,
@@ -118,11 +118,12 @@ def test_a_force_that_is_needed_is_told_as_a_gain_where_it_is_a_line(monkeypatch
     answer = unknown()
     assert lines_needed(answer) == []  # dry friction, over the rate
     nodes = Nodes("hinge", "load", "force of the drives of hinge", "N m", AT)
-    needed = NeededForce(nodes, -0.3 * AT, STD, "N m", 0.5, 1e-6)
+    line = NeededForce(nodes, -0.3 * AT[None], STD[None], "N m", 0.5, 1e-6)
+    two = NeededForce(nodes, -0.3 * np.stack([AT, AT**3]), np.stack([STD, STD]), "N m", 0.4, 1e-6)
     from identification.report import straight_curves
 
     class Gap:
-        forces = (needed,)
+        needed = SimpleNamespace(forces=(line, two))  # one that differs by direction is no line
 
     monkeypatch.setattr(straight_curves, "find_gap", lambda _: Gap)
     (sentence,) = lines_needed(answer)

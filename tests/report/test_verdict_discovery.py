@@ -90,7 +90,10 @@ def test_of_an_unknown_effect_the_likeliest_that_was_tried_is_told_once_with_its
     ({"joint b": 0.0}, ["No smooth force"]),
 ])  # fmt: skip
 def test_the_joint_with_the_largest_share_comes_first(shares, told):
-    (sentence,) = _any_forces(SimpleNamespace(smooth_by_joint=shares))
+    said = SimpleNamespace(smooth_by_joint=shares)
+    (sentence,) = _any_forces(said, ())
     places = [sentence.index(words) for words in told]
     assert places == sorted(places)
     assert ("joint a" in sentence) == (shares.get("joint a", 0) > 0)
+    assert _any_forces(said, [SimpleNamespace(fall=0.5)]) == []  # a finer force explains more
+    assert _any_forces(said, [SimpleNamespace(fall=0.0)]) == [sentence]

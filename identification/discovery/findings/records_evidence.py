@@ -14,6 +14,7 @@ class RemainingError:
     # of which both are, the one whose error is the most times its noise; "" where they are of all
     # outputs together
     output: str = ""
+    records: tuple[str, ...] = ()  # names of the records whose unseen windows it is of
 
 
 @dataclass(frozen=True)
