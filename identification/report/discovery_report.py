@@ -35,10 +35,16 @@ from identification.report.headline import Answer, Headline, Tile, capital, erro
 from identification.report.horizon_section import horizon_sections
 from identification.report.law import law_sections
 from identification.report.missing_place import find_place
-from identification.report.named_words import curve_top, likely_rivals
+from identification.report.named_words import (
+    confidence_of_set,
+    curve_top,
+    is_likeliest,
+    likely_rivals,
+)
 from identification.report.nothing_words import is_above_noise
 from identification.report.page import Section, write_report
 from identification.report.page_files import PageFiles
+from identification.report.parts_words import unseen_of
 from identification.report.shown_words import unseen_section
 from identification.report.value_words import without_colon
 from identification.shares import percent
@@ -119,25 +125,21 @@ def discovery_headline(found: Discovery) -> Headline:
     if found.named:
         error = error_tile(
             found.errors_of(found.before), found.errors_of(found.after), found.floor,
-            f"{UNSEEN}{found.over}",
+            f"{UNSEEN}{unseen_of(found)}{found.over}",
         )  # fmt: skip
         answers = [_named(found, named) for named in found.named]
         first = answers[0]
         answers[0] = Answer(first.name, first.place, (*first.tiles, error))
-        lead = "Missing from the model" + (", together" if len(found.named) > 1 else "")
-        if found.verdict == "unlisted effect":
-            lead = "Missing from the model, in no catalogue and drawn from the data"
-        elif found.named[0].one_of and found.named[0].rivals:
-            lead = "Missing from the model is one of these"
-        return Headline(lead, tuple(answers))
+        return Headline(_lead(found), tuple(answers))
     left = error_tile(
-        found.errors_of(found.before), None, found.floor, f"{UNSEEN}{found.over}"
+        found.errors_of(found.before), None, found.floor, f"{UNSEEN}{unseen_of(found)}{found.over}"
     )  # fmt: skip
     tried = len({s.candidate.effect.name for s in found.scores})
     none = f"{capital(none_explains(tried))} it."
     if found.verdict == "unknown effect":
         ratio = found.times_noise(found.before)
-        much = Tile("times the noise", held(ratio)) if isfinite(ratio) else None
+        note = f"on unseen data{unseen_of(found)}"
+        much = Tile("times the noise", held(ratio), note) if isfinite(ratio) else None
         at = find_place(found)
         missing = Tile(f"missing on {at.joint}", at.size, at.range) if at else None
         tiles = [missing, left, much]
@@ -154,6 +156,22 @@ def discovery_headline(found: Discovery) -> Headline:
     return Headline("", (Answer(name, place, _three([left, shown if told else None, known])),))
 
 
+def _lead(found: Discovery) -> str:
+    """Returns the words above the first name; they say where a name is one of a set."""
+    sets = [n for n in found.named if n.one_of and n.rivals]
+    if found.verdict == "unlisted effect":
+        return "Missing from the model, in no catalogue and drawn from the data"
+    if len(found.named) > 1:
+        each = ". A name with “or” is one of those that are told with it" if sets else ""
+        return f"Missing from the model, together{each}"
+    if not sets:
+        return "Missing from the model"
+    first = (
+        "most likely the first" if is_likeliest(sets[0]) else "and the first is not the likeliest"
+    )
+    return f"Missing from the model is one of these, {first}"
+
+
 def _named(found: Discovery, named: NamedEffect) -> Answer:
     """Returns the answer on a named effect, or on the set to which it belongs."""
     plant, rivals = found.final.plant, likely_rivals(named)
@@ -163,9 +181,11 @@ def _named(found: Discovery, named: NamedEffect) -> Answer:
     if named.compared:
         note = f"{named.compared} rival{'s' if named.compared > 1 else ''} refitted in its place"
     if named.one_of and rivals:
-        others = [describe_there(r.candidate, plant) for r in rivals]
-        place = f"{place}; or {'; or '.join(others)}"
-        total = percent(named.confidence + sum(r.confidence for r in rivals))
+        others = [
+            f"{describe_there(r.candidate, plant)} ({percent(r.confidence)})" for r in rivals
+        ]  # fmt: skip
+        place = f"{place} ({own}); or {'; or '.join(others)}"
+        total = percent(confidence_of_set(found, named))
         confidence = Tile("confidence, together", total, f"{own} for the first alone")
     else:
         confidence = Tile("confidence", own, note)

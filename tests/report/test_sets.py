@@ -1,0 +1,83 @@
+"""A name that is one of a set: the head, the verdict and the next file say so, with its odds."""
+
+from dataclasses import replace
+
+import pytest
+from elbow_cases import elbow
+from fake_discovery import found
+
+from identification import read_robot
+from identification.report.discovery_report import discovery_headline
+from identification.report.discovery_verdict import discovery_verdict
+from identification.report.named_words import confidence_of_set, likely_rivals
+from identification.robot.discovery_files import RobotDiscoveryFiles
+
+
+def odds(own, *others, several=False, unexplained=False):
+    """A discovery whose first name has these odds, and as many rivals."""
+    made = found(one_of=True, several=several, unexplained=unexplained)
+    first, *rest = made.named
+    rivals = tuple(replace(first.rivals[0], confidence=share) for share in others)
+    return replace(made, named=(replace(first, confidence=own, rivals=rivals), *rest))
+
+
+def test_the_likeliest_stands_first_and_its_odds_are_its_own():
+    answer = odds(0.5, 0.1, 0.3)
+    head = discovery_headline(answer)
+    assert head.lead == "Missing from the model is one of these, most likely the first"
+    (one,) = head.answers
+    own, *others = one.place.split("; or ")
+    assert own.endswith("(50 %)")
+    assert [words[-6:] for words in others] == ["(30 %)", "(10 %)"]
+    together = one.tiles[-2]  # before the error
+    assert (together.value, together.note) == ("90 %", "50 % for the first alone")
+    assert "likeliest" not in discovery_verdict(answer)[0]
+
+
+def test_a_model_that_has_another_one_than_the_likeliest_says_so():
+    answer = odds(0.3, 0.6)
+    assert discovery_headline(answer).lead.endswith("and the first is not the likeliest")
+    assert (
+        "The model got the first one, which is not the likeliest, with"
+        in (discovery_verdict(answer)[0])
+    )
+
+
+def test_of_several_names_each_that_is_one_of_a_set_says_or():
+    """ "Missing is one of these" above two names that are both missing would be wrong."""
+    head = discovery_headline(odds(0.5, 0.4, several=True))
+    assert head.lead == (
+        "Missing from the model, together. A name with “or” is one of those that are told with it"
+    )
+    assert ["; or " in answer.place for answer in head.answers] == [True, False]
+    alone = found(several=True)
+    assert discovery_headline(alone).lead == "Missing from the model, together"
+
+
+@pytest.mark.parametrize(("unexplained", "most"), [(False, 0.95), (True, 0.85)])
+def test_a_set_is_no_surer_than_a_name_may_be(unexplained, most):
+    answer = odds(0.6, 0.4, unexplained=unexplained)
+    assert confidence_of_set(answer, answer.named[0]) == most
+    assert f"with a confidence of {100 * most:.0f} %." in discovery_verdict(answer)[0]
+
+
+def test_what_is_far_less_likely_than_the_first_is_not_told():
+    (named,) = odds(0.8, 0.02, 0.15).named
+    assert [r.confidence for r in likely_rivals(named)] == [0.15]
+
+
+def test_the_file_for_the_next_log_says_that_its_effect_is_one_of_a_set(tmp_path):
+    robot, made = elbow()
+    first = made.named[0]
+    rival = replace(found(one_of=True).named[0].rivals[0], confidence=0.3)
+    of_set = replace(first, confidence=0.6, one_of=True, rivals=(rival,))
+    RobotDiscoveryFiles(replace(made, named=(of_set,)), robot).keep(tmp_path, tmp_path)
+    said = (tmp_path / "robot.toml").read_text().splitlines()[0]
+    assert said == (
+        f"# one of these is missing, and the data do not tell which: {first.name}, {first.where}"
+        f" (60 %); or {rival.name}, {rival.where} (30 %); the model has the first one"
+    )
+    again = read_robot(tmp_path / "robot.toml", robot.paths[0])
+    assert {*first.candidate.sizes} <= {*again.file.free}
+    RobotDiscoveryFiles(made, robot).keep(tmp_path, tmp_path)
+    assert not (tmp_path / "robot.toml").read_text().startswith("#")
