@@ -46,6 +46,7 @@ class Log:
         gaps: where nothing was measured and samples are made up that may be wrong: begin and end of
             each [s]; windows that touch one are left out.
         factors: what its TOML multiplied columns with beside their units, by column.
+        zeros: what its TOML takes off columns, in their units, by column.
         splits: named parts [start, end) [s], such as estimation and validation.
         values: values of a robot's parameters that hold in this log alone, by name, such as a
             payload.
@@ -72,6 +73,7 @@ class Log:
     begun: float = 0.0
     remarks: tuple[str, ...] = ()
     factors: Mapping[str, float] = field(default_factory=dict)
+    zeros: Mapping[str, float] = field(default_factory=dict)
     gaps: tuple[tuple[float, float], ...] = ()
 
     def __post_init__(self) -> None:
@@ -86,6 +88,7 @@ class Log:
         put("units", MappingProxyType(dict(self.units)))
         put("values", MappingProxyType(dict(self.values)))
         put("factors", MappingProxyType(dict(self.factors)))
+        put("zeros", MappingProxyType(dict(self.zeros)))
         put("splits", MappingProxyType({k: (a, b) for k, (a, b) in self.splits.items()}))
         self._check()
         # A part is judged by its own stamps, which may be fewer and printed with more digits than
@@ -119,7 +122,7 @@ class Log:
     def __reduce__(self) -> tuple[Callable[[], Log], tuple[()]]:
         # A mapping proxy cannot be pickled, but logs are sent to other processes.
         values = {name: getattr(self, name) for name in self.__dataclass_fields__}
-        for name in ("extras", "units", "values", "splits", "factors"):
+        for name in ("extras", "units", "values", "splits", "factors", "zeros"):
             values[name] = dict(values[name])
         return partial(type(self), **values), ()
 

@@ -112,7 +112,7 @@ def read_log(
         asked=[olds.get(name, name) for name in (*inputs, *measured)],
         of_matlab=(inputs, measured, optional),
     )
-    for key in ("units", "factors"):
+    for key in ("units", "factors", "zeros"):
         check_keys(
             f"column under {key!r} in {sidecar.file_of(key)}:",
             getattr(sidecar, key),
@@ -122,6 +122,11 @@ def read_log(
         raise InputError(
             f"the factor of time under 'factors' in {sidecar.file_of('factors')} is negative, and"
             " time goes on; write a positive one, such as 1e-9 for ns"
+        )
+    if "time" in sidecar.zeros:
+        raise InputError(
+            f"'zeros' in {sidecar.file_of('zeros')} has one for time, whose first stamp may be any;"
+            " leave it out"
         )
     table = with_time(renamed(table, sidecar), sidecar)
     if "time" not in table.names and sidecar.sampling_time:
@@ -170,12 +175,15 @@ def read_log(
         values=sidecar.values,
         remarks=table.remarks,
         gaps=gaps,
-        factors={
-            n: f
-            for n in table.names
-            if n != "time" and (f := lookup(sidecar.factors, n)) is not None
-        },
+        factors=_given(sidecar.factors, table),
+        zeros={n: zero * factors[n] for n, zero in _given(sidecar.zeros, table).items()},
     )
+
+
+def _given(by_name: Mapping[str, float], table: Table) -> dict[str, float]:
+    """Returns what is given for a column or its group, by column."""
+    found = {n: lookup(by_name, n) for n in table.names if n != "time"}
+    return {n: given for n, given in found.items() if given is not None}
 
 
 def _is_even(table: Table, sidecar: Sidecar) -> bool:

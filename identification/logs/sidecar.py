@@ -1,7 +1,8 @@
 """The TOML file beside a log, with the same stem; it says what the columns cannot say.
 
-`docs/robot/keys.md` has every key with its type, unit, default and meaning. Units and factors are
-given by column or by group; a factor comes on top of the unit.
+`docs/robot/keys.md` has every key with its type, unit, default and meaning. Units,
+factors and zeros are given by column or by group; a factor comes on top of the unit, and a zero is
+the number of the file that stands for zero.
 """
 
 from __future__ import annotations
@@ -30,6 +31,7 @@ class Sidecar:
     units: Mapping[str, str] = field(default_factory=dict)
     columns: Mapping[str, str] = field(default_factory=dict)
     factors: Mapping[str, float] = field(default_factory=dict)
+    zeros: Mapping[str, float] = field(default_factory=dict)
     splits: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     values: Mapping[str, float] = field(default_factory=dict)
     elsewhere: Mapping[str, Path] = field(default_factory=dict)  # files of keys that it lacks
@@ -121,6 +123,7 @@ _TABLES: dict[str, tuple[str, Callable[[Any], bool], str]] = {
         "a table of numbers", lambda v: _is_finite(v) and v != 0,
         "a number other than zero, such as -1",
     ),
+    "zeros": ("a table of numbers", _is_finite, "a finite number, such as 2048"),
     "splits": (
         "a table of parts in seconds, such as estimation = [0, 10]",
         lambda v: isinstance(v, list) and len(v) == 2 and all(map(_is_number, v)),

@@ -144,10 +144,11 @@ def conversions(
 
 
 def converted(table: Table, sidecar: Sidecar, factors: Mapping[str, float]) -> Table:
-    """Returns the table in SI units."""
+    """Returns the table in SI units, each column from its zero on."""
+    zeros = [lookup(sidecar.zeros, name) or 0.0 for name in table.names]
     # What overflows without a factor is refused with its row.
     with np.errstate(over="ignore", invalid="ignore"):
-        data = table.data * [factors[name] for name in table.names]
+        data = (table.data - zeros) * [factors[name] for name in table.names]
     for k, name in enumerate(table.names):
         given = lookup(sidecar.factors, name)
         largest = _largest(data[:, k]) if isfinite(factors[name]) else inf

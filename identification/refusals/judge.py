@@ -50,8 +50,8 @@ class Judge:
 
     @cached_property
     def as_read(self) -> np.ndarray | None:
-        """ε of the log as it is read, shape (ny,)."""
-        return unexplained(self.plant, self.length, self.log)
+        """ε of the log as it is read, shape (ny,); infinite where its simulation diverges."""
+        return _as_read(self.plant, self.length, self.log)
 
     def of(self, other: Log, most: int = MOST_WINDOWS, part: float = 1.0) -> np.ndarray | None:
         """Returns ε of the log as it may be read; see `unexplained`."""
@@ -76,7 +76,7 @@ class Judge:
         if self.log.duration < 2 * FEW_WINDOWS * self.length:
             yield from readings
             return
-        as_read = unexplained(self.plant, self.length, self.log, FEW_WINDOWS)
+        as_read = _as_read(self.plant, self.length, self.log, FEW_WINDOWS)
         for reading in readings:
             rest, k = self.of(reading.log, FEW_WINDOWS), list(reading.columns)
             if as_read is None or rest is None:
@@ -93,13 +93,31 @@ def unexplained(
     At most so many windows are spread over the log. Of these a part is simulated; what the rest
     leaves unexplained is not counted.
     """
-    if not MIN_ROWS * log.sampling_time <= length <= log.duration:
-        return None  # too short to tell, and whoever fits it will say so
+    if not _fits(length, log):
+        return None
     try:
         error = first_error(plant, log, length, most, part)
     except DivergenceError:
         return None
     return unexplained_share(spread(windows(log, length), most).outputs, error)
+
+
+def _as_read(
+    plant: JointPlant, length: float, log: Log, most: int = MOST_WINDOWS
+) -> np.ndarray | None:
+    """Returns ε (ny,) of a log as it is read; nothing is explained where the simulation diverges.
+
+    Angles in degrees that are read as radians often make it diverge.
+    """
+    found = unexplained(plant, length, log, most)
+    if found is None and _fits(length, log):
+        return np.full(len(log.output_names), np.inf)
+    return found
+
+
+def _fits(length: float, log: Log) -> bool:
+    """Returns whether windows tell something of a log; whoever fits a wrong one will say so."""
+    return MIN_ROWS * log.sampling_time <= length <= log.duration
 
 
 def lengths_of(robot: Robot, log: Log) -> list[float]:

@@ -17,21 +17,26 @@ from identification.errors import InputError
 from identification.logs.log import Log
 from identification.model.predictor import output_columns, output_dofs
 from identification.quantities import alike
+from identification.refusals.far_angles import COUNTS, FAR_ANGLE, far_sentence
 from identification.refusals.trust import RobotFile
 
+_HINGE = int(mujoco.mjtJoint.mjJNT_HINGE)
 FAR = 1.0  # of its range's width: a soft limit gives way by less
 SHARE = 0.05  # of the samples that are so far outside; fewer are wrong readings
-# A reading beyond it [rad, m] that lies within the range as degrees or millimetres has a wrong
-# unit, which other checks say.
-LARGE = {int(mujoco.mjtJoint.mjJNT_HINGE): (4 * np.pi, np.pi / 180),
-         int(mujoco.mjtJoint.mjJNT_SLIDE): (10.0, 1e-3)}  # fmt: skip
+# A reading beyond it [rad, m] that lies within the range as degrees, counts or millimetres has a
+# wrong unit, which other checks say first.
+LARGE = {_HINGE: (FAR_ANGLE, (np.pi / 180, *(2 * np.pi / n for n in COUNTS))),
+         int(mujoco.mjtJoint.mjJNT_SLIDE): (10.0, (1e-3,))}  # fmt: skip
 OFF = int(mujoco.mjtDisableBit.mjDSBL_LIMIT) | int(mujoco.mjtDisableBit.mjDSBL_CONSTRAINT)
 
 
-def refuse_limits(file: RobotFile, model: mujoco.MjModel, is_degree: bool, log: Log) -> None:
+def refuse_limits(
+    file: RobotFile, model: mujoco.MjModel, is_degree: bool, log: Log, whatever: bool = False
+) -> None:
     """Refuse a log that has a joint far outside the limits of the model, if nobody trusts it.
 
-    The file of the model gives angles in degrees where `is_degree`.
+    The file of the model gives angles in degrees where `is_degree`. A log that may have another
+    unit is left to the checks of units, or refused too, `whatever` it may have.
     """
     if "limits" in file.trust:
         return
@@ -42,20 +47,22 @@ def refuse_limits(file: RobotFile, model: mujoco.MjModel, is_degree: bool, log: 
         for (field, _), dof, y in each
         if field == "qpos"
     }
-    if said := limit_sentence(model, is_degree, positions, file.model):
+    if said := limit_sentence(model, is_degree, positions, file.model, whatever):
+        unit = f"; {far_sentence(model, log, file.columns)}" if whatever else ""
         raise InputError(
-            f'log {log.name!r} does not belong to the model: {said}, or write trust = ["limits"]'
-            f" into {file.path} if all is right"
+            f"log {log.name!r} does not belong to the model: {said}{unit}, or write trust ="
+            f' ["limits"] into {file.path} if all is right'
         )
 
 
 def limit_sentence(
-    model: mujoco.MjModel, is_degree: bool, positions: Mapping[str, np.ndarray], path: Path
-) -> str:
+    model: mujoco.MjModel, is_degree: bool, positions: Mapping[str, np.ndarray], path: Path,
+    whatever: bool = False,
+) -> str:  # fmt: skip
     """Returns what is wrong with the limits of a joint and how to mend it; "" where nothing is.
 
     Positions are given as measured, by joint, shape (n,) [rad or m], with the path of the model's
-    file.
+    file. What may have another unit is told too, `whatever` it may have.
     """
     if model.opt.disableflags & OFF:
         return ""
@@ -66,10 +73,11 @@ def limit_sentence(
         low, high = joint.range.tolist()
         if not joint.limited[0] or kind not in LARGE or not _is_far(q, low, high):
             continue
-        large, factor = LARGE[kind]
-        if np.max(np.abs(q)) > large and not _is_far(factor * q, low, high):
+        large, factors = LARGE[kind]
+        is_large = not whatever and np.max(np.abs(q)) > large
+        if is_large and not all(_is_far(factor * q, low, high) for factor in factors):
             continue
-        is_hinge = kind == int(mujoco.mjtJoint.mjJNT_HINGE)
+        is_hinge = kind == _HINGE
         least, most = np.quantile(q, [0.0, 1.0]).tolist()
         told = alike([low, high, least, most], "rad" if is_hinge else "m")
         cure = f"correct its range in {path.name}, or the unit of its column"

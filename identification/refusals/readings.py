@@ -53,6 +53,7 @@ def misread(
     readings: Iterable[Reading],
     unexplained: Unexplained,
     believed: Callable[[Reading, np.ndarray], bool] = lambda reading, rest: True,
+    enough: float = 0.0,
 ) -> tuple[Reading, str] | None:
     """Returns the reading that explains a log far better than the present one, and that in words.
 
@@ -62,6 +63,7 @@ def misread(
         readings: other ones; of several, that which leaves least in all, or else the first, counts.
         unexplained: ε of a reading.
         believed: whether a reading with its ε is what no better model could be.
+        enough: ε of a reading behind which no other one is asked.
     """
     best, least = None, np.inf
     for reading in counted(readings, "other readings of the log"):
@@ -70,6 +72,8 @@ def misread(
             continue
         if rest.sum() < (1 - SAME) * least and believed(reading, rest):
             best, least = (reading, rest), float(rest.sum())
+            if rest.max() < enough:
+                break
     if best is None:
         return None
     reading, rest = best

@@ -37,6 +37,7 @@ from identification.refusals.columns import (
     two_turns,
     unit_readings,
 )
+from identification.refusals.far_angles import are_whole, far_angles, far_readings, far_sentence
 from identification.refusals.judge import Judge, beginning, lengths_of
 from identification.refusals.readings import NEARER, SAME, UNEXPLAINED, Reading, misread
 from identification.refusals.same_units import different_units, drive_units, wanted_units
@@ -46,6 +47,7 @@ from identification.refusals.turned_inputs import all_inputs_turned
 # Inputs and outputs of a log in which two mistakes are looked for: exchanges with another sign grow
 # as the third power of the columns, and for 50 joints would be simulated for half a day.
 MOST_COLUMNS = 32
+ENOUGH = 0.15  # ε of a usual unit, behind which no unusual one is asked
 
 
 def refuse_miswired(robot: Robot, log: Log) -> None:
@@ -62,33 +64,50 @@ def refuse_miswired(robot: Robot, log: Log) -> None:
     balance, lengths = Balance(plant.model, log), lengths_of(robot, log)
     if units and (cure := different_units(plant.model, log, column)):
         raise InputError(f'log {log.name!r}: {cure}, or write trust = ["units"] into {file.path}')
+    is_far = bool(far_angles(plant.model, log))
     is_explained = is_nearer = False
     for judge in (Judge(plant, length, log) for length in lengths):
         if (as_read := judge.as_read) is None:
             continue
+        diverges = not np.isfinite(as_read).all()
+        if diverges and not wanted:
+            continue  # forces that are no guess tell more, below
         bad = as_read > UNEXPLAINED
         if not bad.any():
             is_explained = True
             continue
-        doubt = replace(every, bad=bad)
+        doubt, found = replace(every, bad=bad), None
+        if units and is_far:
+            # A servo's forces are a guess, and what diverges cannot be fitted in any case.
+            for likely in far_readings(doubt, plant.model, wanted):
+                found = found or misread(
+                    log, as_read, likely, judge.if_far_better,
+                    (lambda reading, rest: True) if diverges else balance.confirms, ENOUGH,
+                )  # fmt: skip
         kinds: list[Readings] = [factor_readings, in_units] * units
         kinds += [partial(_of_outputs, judge), input_readings] * wiring
         kinds += [together] * (wiring and len(log.input_names) > 1)
         readings = chain(*(kind(doubt) for kind in kinds))
-        found = misread(log, as_read, readings, judge.if_far_better, balance.confirms)
+        if found is None:
+            found = misread(log, as_read, readings, judge.if_far_better, balance.confirms)
         if found is None and wiring and is_small and balance.contradicts:
             two = [turned_units(doubt, wanted)] * units
             if judge.length == lengths[0]:  # an exchange is seen in all windows, and these are many
                 two += [two_turns(doubt), turned_exchanges(doubt)]
             near = judge.promising(chain(*two))
             found = misread(log, as_read, near, judge.if_far_better, balance.confirms)
-        if wiring:
+        if wiring and not diverges:
             turns = (judge.of(reading.log) for reading in together(doubt))
             is_nearer |= any(
                 e is not None and (e[bad] < NEARER * as_read[bad]).all() for e in turns
             )
         if found is not None:
             raise _refusal(robot, log, *found)
+    if units and are_whole(plant.model, log):
+        raise InputError(
+            f"{far_sentence(plant.model, log, column)} (they are whole numbers, which angles in"
+            f' radians never are), or write trust = ["units"] into {file.path}'
+        )
     if wiring and not is_explained and (is_nearer or balance.excludes):
         for reading in together(every):
             if words := balance.decides(reading):

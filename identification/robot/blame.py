@@ -26,6 +26,7 @@ from identification.errors import DivergenceError, InputError
 from identification.logs.log import Log
 from identification.model.plant import start_place
 from identification.model.predictor import output_columns
+from identification.refusals.far_angles import far_sentence
 from identification.robot.robot import Robot
 from identification.robot.start import given_apart, measured_begin
 
@@ -75,8 +76,10 @@ def _next_step(robot: Robot) -> str:
         f"The step is timestep in <option> of {file.model}, and the nominal values are those of"
         f" {file.path}"
     )
-    given = [said for log in (robot.log, *robot.others, *robot.records)
-             for said in _factors(log, robot)]  # fmt: skip
+    logs = (robot.log, *robot.others, *robot.records)
+    given = [said for log in logs for said in _factors(log, robot)]
+    far = [far_sentence(robot.plant.model, log, file.columns) for log in logs]
+    where = " ".join([*(f"{said[:1].upper()}{said[1:]}." for said in far[:1] if said), where])
     if not given:
         return where
     it = "it is" if len(given) == 1 else "they are"

@@ -134,8 +134,9 @@ def played_log(of: NextExperiment) -> Log:
             if field == "qpos" and i in joints:
                 data[name] = played.aim[0][:, joints.index(i)]
                 followed.append(name)
-    factors = robot.log.factors
-    data = {n: x / factors.get(columns.get(n, n), factors.get(n, 1.0)) for n, x in data.items()}
+    factors, zeros = robot.log.factors, robot.log.zeros
+    data = {n: (x + zeros.get(n, 0.0)) / factors.get(columns.get(n, n), factors.get(n, 1.0))
+            for n, x in data.items()}  # fmt: skip
     outputs = [data[n] for n in followed]
     return replace(
         log,

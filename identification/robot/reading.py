@@ -15,6 +15,9 @@ from identification.errors import InputError, refuse_kind
 from identification.logs.log import Log
 from identification.logs.plausible import still_sentence
 from identification.quantities import quantity
+from identification.refusals.far_angles import far_angles
+from identification.refusals.limits import refuse_limits
+from identification.refusals.same_units import wanted_units
 from identification.refusals.touching import (
     find_touches,
     is_contradicted,
@@ -87,19 +90,24 @@ def read_robot(
     contradicted = is_contradicted(robot, every, touches)
     text = touch_sentence(robot, every, touches, contradicted)
     with told_of_touches(text if contradicted else ""):
+        model, far = robot.plant.model, [log for log in every if far_angles(robot.plant.model, log)]
+        for measured in far:  # no step is short enough for degrees that are taken for radians
+            refuse_miswired(robot, measured)
+            refuse_limits(robot.file, model, False, measured, whatever=True)
         refuse_coarse_steps(robot)
         refuse_absurd_start(robot)
         for record in records:
-            axes(robot.plant.model, record, file.trust)  # a sensor that froze is refused
+            axes(model, record, file.trust)  # a sensor that froze is refused
         for measured in every:
-            refuse_miswired(robot, measured)
+            if not any(measured is log for log in far):
+                refuse_miswired(robot, measured)
     robot = replace(robot, touches=text, read_from=read_from)
     return replace(robot, remarks=_remarks(robot, every))
 
 
 def clipped_sentence(model: mujoco.MjModel, log: Log) -> str | None:
     """Returns one sentence on the input of which most is cut off; None where none is."""
-    worst, share = "", LEAST
+    worst, share, wanted = "", LEAST, wanted_units(model, log)
     for name, u in zip(log.input_names, log.inputs.T, strict=True):
         actuator = model.actuator(name)
         if not actuator.ctrllimited[0]:
@@ -111,11 +119,14 @@ def clipped_sentence(model: mujoco.MjModel, log: Log) -> str | None:
             unit = log.units.get(name, "")
             farthest = float(u[np.argmax(np.abs(off))])
             part = percent(float(np.mean(off != 0)))
+            cure = "widen ctrlrange in the model if they reached the robot as they were logged"
+            angle = np.deg2rad(u)
+            if wanted.get(name) == "rad" and (np.clip(angle, low, high) == angle).all():
+                cure += ", or give their unit under [units] of the log's TOML if they are degrees"
             worst = (
                 f"Of the samples of {name!r} in log {log.name!r}, {part} lie beyond the"
                 f" actuator's ctrlrange {low:g} to {high:g}, such as"
-                f" {quantity(farthest, unit=unit)}, and MuJoCo clips them; widen ctrlrange in the"
-                " model if they reached the robot as they were logged."
+                f" {quantity(farthest, unit=unit)}, and MuJoCo clips them; {cure}."
             )  # fmt: skip
     return worst or None
 

@@ -215,10 +215,12 @@ def read_robot_log(file: RobotFile, path: str | Path) -> Log:
     refuse_milliseconds(model, file, log, Path(path))
     refuse_every(file, log)
     given = {n: u for n in inputs if (u := log.units.get(column[n]))}
-    factors = {n: log.factors[column[n]] for n in column if column[n] in log.factors}
+    factors, zeros = (
+        {n: of[c] for n, c in column.items() if c in of} for of in (log.factors, log.zeros)
+    )
     refuse_unread_torques(file, log)
     log = replace(log, input_names=inputs, output_names=outputs, units=given, factors=factors,
-                  extras={})  # fmt: skip
+                  zeros=zeros, extras={})  # fmt: skip
     if tendons.sensors:
         log = joint_positions(model, tendons, log, told)
     log = replace(log, units={**units, **given})

@@ -27,6 +27,7 @@ import numpy as np
 from identification.errors import DivergenceError, InputError
 from identification.logs.noise import noise_floor
 from identification.model.predictor import Predictor
+from identification.refusals.far_angles import far_sentence
 from identification.robot.blame import blamed
 from identification.robot.robot import Robot
 from identification.windows.window_error import first_error, window_error
@@ -63,6 +64,7 @@ def refuse_coarse_steps(robot: Robot) -> None:
         raise InputError(f'{said}, or, if it is right, write trust = ["steps"] into {path}')
     if worst is None:  # the search will say why
         return
+    far = far_sentence(robot.plant.model, robot.log, robot.file.columns)
     option, unit = robot.plant.model.opt, robot.log.units.get(worst.output, "")
     raise InputError(
         f"{robot.file.model} errs by {worst.error:.2g} {unit}".rstrip()
@@ -70,6 +72,7 @@ def refuse_coarse_steps(robot: Robot) -> None:
         f" {option.timestep:g} s, more than the noise of log {robot.log.name!r},"
         f" {worst.noise:.2g} {unit}".rstrip()
         + f'; {_cure(robot)}, or write trust = ["steps"] into {path}'
+        + (f". {far}" if far else "")
     )
 
 

@@ -2,7 +2,7 @@
 
 import re
 
-_LINE = r'(?:"[^"]*"|[\w-]+) = (?:"[^"]*"|-?\d+)'
+_LINE = r'(?:"[^"]*"|[\w-]+) = (?:"[^"]*"|-?\d+(?:\.\d+)?(?:e-\d+)?)'
 _LINES = rf"write ({_LINE}(?:(?:, | and ){_LINE})*)"
 
 
@@ -11,7 +11,7 @@ def advised(message: str) -> str:
     found = [
         (table, lines)
         for lines, table in re.findall(
-            rf"{_LINES}(?: \(a line each\))? under \[(units|factors)\]", message
+            rf"{_LINES}(?: \(a line each\))? under \[(units|factors|zeros)\]", message
         )
     ]
     found += [
