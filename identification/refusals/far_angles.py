@@ -56,8 +56,8 @@ def far_readings(
         replace(r, cure=f"{r.cure} ({OR_COUNTS})") if "mrad" in r.words else r
         for r in unit_readings(doubt, wanted, alone=False)
     )
-    units = chain(factor_readings(doubt), units)
-    return (counts, units) if _are_counts(model, doubt.log) else (units, counts)
+    others = chain(factor_readings(doubt), units)
+    return (counts, others) if _are_counts(model, doubt.log) else (others, counts)
 
 
 def count_readings(
