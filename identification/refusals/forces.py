@@ -57,7 +57,7 @@ def widths(q: np.ndarray, h: float, wider: int = 1) -> Iterator[int]:
     for w in WIDTHS:
         if 8 * w * wider > len(q):
             return
-        _, _, bend = _kernels(w, h)
+        _, _, bend = kernels(w, h)
         if (noise * np.linalg.norm(bend) <= NOISE * _filtered(q, bend).std(axis=0)).all():
             yield w
 
@@ -66,7 +66,7 @@ def smoothed(q: np.ndarray, log: Log, w: int, rows: int) -> Smooth:
     """Returns positions q (n, nv) and the inputs through ψ of half the length w, at some rows."""
     u = log.inputs
     held = (np.vstack([u[:1], u[:-1]]) + u) / 2 if log.hold == "zoh" else u
-    psi, slope, bend = _kernels(w, log.sampling_time)
+    psi, slope, bend = kernels(w, log.sampling_time)
     parts = [_filtered(q, kernel) for kernel in (psi, slope, bend)]
     every = max(1, len(parts[0]) // max(rows, 1))
     return Smooth(*(part[::every] for part in (*parts, _filtered(held, psi))))
@@ -81,7 +81,7 @@ def is_hidden(
     They are compared with the forces M a themselves, and not with those of the drives, so that the
     unit of the positions does not matter. Where no drive acts, they may all cancel.
     """
-    noise = noise_floor(q) * np.linalg.norm(_kernels(w, h)[2])
+    noise = noise_floor(q) * np.linalg.norm(kernels(w, h)[2])
     data, M = mujoco.MjData(model), np.zeros((model.nv, model.nv))
     force, variance = np.empty(motion.a.shape), np.zeros(model.nv)
     for k in range(len(force)):
@@ -97,7 +97,7 @@ def is_hidden(
     return bool(share[driven].any())
 
 
-def _kernels(w: int, h: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def kernels(w: int, h: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Returns ψ of half the length w, and the kernels of the first and the second derivative."""
     x = np.arange(-w + 1, w) / w
     psi = np.pad((1 - x**2) ** 3, 2)

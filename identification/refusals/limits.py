@@ -14,14 +14,17 @@ import mujoco
 import numpy as np
 
 from identification.errors import InputError
+from identification.logs.cures import how_to_turn
 from identification.logs.log import Log
 from identification.model.predictor import output_columns, output_dofs
 from identification.quantities import alike
 from identification.refusals.far_angles import COUNTS, FAR_ANGLE, far_sentence
+from identification.refusals.same_units import wanted_units
 from identification.refusals.trust import RobotFile
 
 _HINGE = int(mujoco.mjtJoint.mjJNT_HINGE)
 FAR = 1.0  # of its range's width: a soft limit gives way by less
+MOST, SOFT = 0.5, 0.05  # share of samples outside a range, by this share of it, and mirrored none
 SHARE = 0.05  # of the samples that are so far outside; fewer are wrong readings
 # A reading beyond it [rad, m] that lies within the range as degrees, counts or millimetres has a
 # wrong unit, which other checks say first.
@@ -40,6 +43,7 @@ def refuse_limits(
     """
     if "limits" in file.trust:
         return
+    _refuse_mirrored(file, model, log)
     names = log.output_names
     each = zip(output_columns(model, names), output_dofs(model, names), log.outputs.T, strict=True)
     positions = {
@@ -53,6 +57,43 @@ def refuse_limits(
             f"log {log.name!r} does not belong to the model: {said}{unit}, or write trust ="
             f' ["limits"] into {file.path} if all is right'
         )
+
+
+def _refuse_mirrored(file: RobotFile, model: mujoco.MjModel, log: Log) -> None:
+    """Refuse a log most of which lies outside the range of a joint, and with another sign in it."""
+    if model.opt.disableflags & OFF:
+        return
+    names = log.output_names
+    each = zip(names, output_columns(model, names), output_dofs(model, names), log.outputs.T,
+               strict=True)  # fmt: skip
+    for name, (field, _), dof, q in each:
+        joint = int(model.dof_jntid[dof])
+        if field != "qpos" or not model.jnt_limited[joint]:
+            continue
+        low, high = model.jnt_range[joint].tolist()
+        if _outside(q, low, high) < MOST or _outside(-q, low, high) > 0:
+            continue
+        wanted = wanted_units(model, log)
+        driven = [
+            n for i, n in enumerate(log.input_names)
+            if n in wanted and model.actuator_trnid[i, 0] == joint
+            and _outside(log.inputs[:, i] / (model.actuator_gear[i, 0] or 1.0), low, high) >= MOST
+        ]  # fmt: skip
+        told = alike([low, high, *np.quantile(q, [0.0, 1.0]).tolist()], log.units.get(name, ""))
+        column = {n: file.columns.get(n, n) for n in log.columns}
+        factors = {column[n]: f for n, f in log.factors.items() if n in column}
+        cure = how_to_turn([column[n] for n in (name, *driven)], factors)
+        raise InputError(
+            f"log {log.name!r} does not belong to the model: joint {model.joint(joint).name} can"
+            f" move from {told[0]} to {told[1]} in the model, was measured from {told[2]} to"
+            f" {told[3]}, and would lie in its range with the other sign; {cure}, or correct its"
+            f' range in {file.model.name}, or write trust = ["limits"] into {file.path}'
+        )
+
+
+def _outside(q: np.ndarray, low: float, high: float) -> float:
+    """Returns the share of positions that lie outside a range by more than a soft limit gives."""
+    return float(np.mean(np.maximum(low - q, q - high) > SOFT * (high - low)))
 
 
 def limit_sentence(

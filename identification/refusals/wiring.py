@@ -43,6 +43,7 @@ from identification.refusals.readings import NEARER, SAME, UNEXPLAINED, Reading,
 from identification.refusals.same_units import different_units, drive_units, wanted_units
 from identification.refusals.trust import Robot
 from identification.refusals.turned_inputs import all_inputs_turned
+from identification.refusals.turned_servos import turned_servos
 
 # Inputs and outputs of a log in which two mistakes are looked for: exchanges with another sign grow
 # as the third power of the columns, and for 50 joints would be simulated for half a day.
@@ -112,6 +113,8 @@ def refuse_miswired(robot: Robot, log: Log) -> None:
         for reading in together(every):
             if words := balance.decides(reading):
                 raise _refusal(robot, log, reading, words)
+    if wiring and is_small and (words := turned_servos(plant.model, every)):
+        raise _refusal(robot, log, Reading(log, every.wrong, "", ""), words)
     # The gain of a drive that wants a position is a guess, and its force with it.
     if units and not (is_explained or wanted):
         found = rescaled(plant.model, every, wiring and is_small, is_small)
