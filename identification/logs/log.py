@@ -43,6 +43,7 @@ class Log:
         notes: remarks of its author.
         hold: the input between samples: "zoh" keeps the last value, "foh" draws a straight line.
         remarks: what was changed when it was read from a file, a sentence each.
+        unread: columns of its file that nobody asked for, and that were not read.
         gaps: where nothing was measured and samples are made up that may be wrong: begin and end of
             each [s]; windows that touch one are left out.
         factors: what its TOML multiplied columns with beside their units, by column.
@@ -75,6 +76,7 @@ class Log:
     factors: Mapping[str, float] = field(default_factory=dict)
     zeros: Mapping[str, float] = field(default_factory=dict)
     gaps: tuple[tuple[float, float], ...] = ()
+    unread: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         def put(attribute: str, value: object) -> None:

@@ -174,6 +174,7 @@ def read_log(
         splits=sidecar.splits,
         values=sidecar.values,
         remarks=table.remarks,
+        unread=tuple(n for n in table.unread if n not in sidecar.ignore),
         gaps=gaps,
         factors=_given(sidecar.factors, table),
         zeros={n: zero * factors[n] for n, zero in _given(sidecar.zeros, table).items()},

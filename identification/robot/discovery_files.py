@@ -21,6 +21,7 @@ from identification.robot.confirmation import confirm
 from identification.robot.reading import doubtful
 from identification.robot.record_error import Confirmation, Repetition, find_repetitions
 from identification.robot.robot import Robot
+from identification.robot.unexplained import Unexplained, find_unexplained
 from identification.robot.write import write_robot
 
 STUB = "own_effect.py"
@@ -44,8 +45,12 @@ class RobotDiscoveryFiles(DiscoveryFiles):
         record = discovery_to_json(self.found)
         repeated = self._repeated
         return record | {
-            "located": [*record["located"], *map(str, repeated)],
-            "findings": [*record["findings"], *(r.finding for r in repeated)],
+            "located": [*record["located"], *map(str, self._unexplained), *map(str, repeated)],
+            "findings": [
+                *record["findings"],
+                *(u.finding for u in self._unexplained),
+                *(r.finding for r in repeated),
+            ],
             "confirm": plain(self._confirmed),
             "remarks": list(self.robot.remarks),
         }
@@ -53,7 +58,8 @@ class RobotDiscoveryFiles(DiscoveryFiles):
     @cached_property
     def sentences(self) -> Sequence[str]:
         """The sentences behind the verdict."""
-        return [*doubtful(self.robot), *map(str, (*self._confirmed, *self._repeated))]
+        behind = (*self._unexplained, *self._confirmed, *self._repeated)
+        return [*doubtful(self.robot), *map(str, behind)]
 
     def keep(self, folder: Path, place: Path) -> dict[str, Any]:
         """Write robot.toml: the robot with what was found, as it is read from `place`."""
@@ -98,6 +104,10 @@ class RobotDiscoveryFiles(DiscoveryFiles):
     def _confirmed(self) -> Sequence[Confirmation]:
         """Errors on the records; over a horizon the report has those of every record already."""
         return confirm(self.robot, self.found) if self.found.horizon is None else ()
+
+    @cached_property
+    def _unexplained(self) -> Sequence[Unexplained]:
+        return find_unexplained(self.robot, self.found)
 
     @cached_property
     def _repeated(self) -> Sequence[Repetition]:

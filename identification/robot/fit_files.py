@@ -38,6 +38,7 @@ from identification.robot.free_swing import impossible_sentence
 from identification.robot.reading import doubtful
 from identification.robot.record_error import AS_WRITTEN, FITTED, Confirmation, find_repetitions
 from identification.robot.results import RobotFit, TorqueFit
+from identification.robot.unexplained import find_unexplained
 from identification.robot.write import write_robot
 from identification.shares import change
 
@@ -54,6 +55,7 @@ def robot_fit_to_json(result: RobotFit, confirmed: Sequence[Confirmation] = ()) 
     found = result.found
     record = {"horizon": None, "worse": None, **fit_to_json(found)}
     repeated = find_repetitions(result.robot)
+    unexplained = () if result.stopped else find_unexplained(result.robot, result)
     said = (*(confirmed or result.unseen), *repeated)
     far = _far(record["parameters"])
     # Then nothing else of the verdict matters as much.
@@ -61,13 +63,13 @@ def robot_fit_to_json(result: RobotFit, confirmed: Sequence[Confirmation] = ()) 
     far = [*doubtful(result.robot), *no_better(result, confirmed or result.unseen), *far]
     if not first:
         departures = departure_sentences(found.model) if isinstance(found, RecordsFit) else []
-        far = [answer_sentence(found), *departures, *far]
+        far = [answer_sentence(found), *map(str, unexplained), *departures, *far]
     if no_body := impossible_sentence(result.robot, result.shared):
         far.append(no_body)
     verdict = [*record["verdict"][:first], *far, *record["verdict"][first:], *map(str, said)]
     return {
         **record, "confirm": plain(tuple(confirmed)), "verdict": verdict,
-        "findings": [r.finding for r in repeated],
+        "findings": [*(u.finding for u in unexplained), *(r.finding for r in repeated)],
         "remarks": list(result.robot.remarks),
     }  # fmt: skip
 
