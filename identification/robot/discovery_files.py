@@ -18,6 +18,7 @@ from identification.report.named_words import set_words
 from identification.report.own_stub import own_stub
 from identification.report.page import Section
 from identification.robot.confirmation import confirm
+from identification.robot.mjcf import write_mjcf
 from identification.robot.reading import doubtful
 from identification.robot.record_error import Confirmation, Repetition, find_repetitions
 from identification.robot.robot import Robot
@@ -62,7 +63,7 @@ class RobotDiscoveryFiles(DiscoveryFiles):
         return [*doubtful(self.robot), *map(str, behind)]
 
     def keep(self, folder: Path, place: Path) -> dict[str, Any]:
-        """Write robot.toml: the robot with what was found, as it is read from `place`."""
+        """Write robot.toml and model.xml: the robot with what was found, read from `place`."""
         found = self.found
         named = {n for each in found.named for n in (*each.candidate.sizes, *each.candidate.fixed)}
         kept = {*found.nominal.values, *named}
@@ -73,6 +74,7 @@ class RobotDiscoveryFiles(DiscoveryFiles):
         path, std = folder / "robot.toml", found.final.told_std
         remark = "; ".join(filter(None, map(set_words, found.named)))
         write_robot(self.robot, values, path, place, remark, own_values=own, std=std)
+        write_mjcf(self.robot, values, folder / "model.xml", place, remark)
         return {}
 
     @cached_property

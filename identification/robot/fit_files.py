@@ -35,6 +35,7 @@ from identification.report.torque_words import torque_verdict
 from identification.report.value_words import departure_sentences, value_words
 from identification.robot.confirmation import confirm, plant_with
 from identification.robot.free_swing import impossible_sentence
+from identification.robot.mjcf import write_mjcf
 from identification.robot.reading import doubtful
 from identification.robot.record_error import AS_WRITTEN, FITTED, Confirmation, find_repetitions
 from identification.robot.results import RobotFit, TorqueFit
@@ -156,12 +157,13 @@ class RobotFitFiles(PageFiles):
         return [_values_section(self.fitted), _error_section(self.fitted)]
 
     def keep(self, folder: Path, place: Path) -> dict[str, Any]:
-        """Write robot.toml: the robot with the fitted values, as it is read from `place`."""
+        """Write robot.toml and model.xml: the robot with the fitted values, read from `place`."""
         found = self.fitted
         remark = self.record["verdict"][0] if found.is_worse or found.stopped else ""
         path = folder / "robot.toml"
         std = None if remark else found.std  # such values are not to be relied on
         write_robot(found.robot, found.shared, path, place, remark, found.own_values, std)
+        write_mjcf(found.robot, found.shared, folder / "model.xml", place, remark)
         return {}
 
     def write_page(self, path: Path) -> Path:
