@@ -27,6 +27,8 @@ BY_HAND = 2**20  # bytes of a file that a person writes
 BY_PROGRAM = 64 * 2**20  # bytes of a JSON file that a program writes
 MAX_BYTES = 512 * 2**20  # hours at 1 kHz; more would fill the memory before it failed
 _ALIKE = 0.75  # share of letters of a file that may be meant
+_ALIKE_STEM = 0.6  # likewise of its name without the ending
+_AT = re.compile(r" \(at line (\d+), column (\d+)\)$")  # in the words of tomllib
 _SAID = 120  # letters of another library's message
 _BARE = re.compile(r"[A-Za-z0-9_-]+")  # a key that TOML takes without quotes
 _UNPACKED = 8  # times as large an archive of arrays may be as the largest file
@@ -117,16 +119,21 @@ def read_json(path: Path, what: str, cure: str) -> Any:
 
 def read_toml(path: Path, what: str = "TOML file") -> dict[str, Any]:
     """Returns the content of a TOML file that was written by hand."""
+    text = ""
     try:
-        content = tomllib.loads(read_bytes(path, BY_HAND, what).decode("utf-8-sig"))
+        text = read_bytes(path, BY_HAND, what).decode("utf-8-sig")
+        content = tomllib.loads(text)
         _refuse_long(content)
         return content
     except (ValueError, RecursionError) as error:  # digits without end are a ValueError too
         if isinstance(error, InputError):
             raise
-        raise InputError(
-            f"{path} is not TOML ({_said(error)}); correct it, or give a {what}"
-        ) from error
+        said = _said(error)
+        if at := _AT.search(said):
+            line = "".join(text.splitlines()[int(at[1]) - 1 : int(at[1])]).strip()
+            reads = f", which reads {_short(line)}" if line else ""
+            said = f"line {at[1]}, column {at[2]}{reads}: {said[: at.start()]}"
+        raise InputError(f"{path} is not TOML ({said}); correct it, or give a {what}") from error
 
 
 def read_archive(path: Path, what: str) -> dict[str, np.ndarray]:
@@ -242,6 +249,10 @@ def _said(error: Exception) -> str:
     return "nested too deeply" if isinstance(error, RecursionError) else letters
 
 
+def _short(line: str) -> str:
+    return repr(line if len(line) <= _SAID else line[: _SAID - 3] + "...")
+
+
 def _refuse_long(value: Any) -> None:
     """Refuse whole numbers beyond the 64 bits that TOML has."""
     if isinstance(value, dict | list):
@@ -258,7 +269,10 @@ def _missing(path: Path) -> str:
         others = [file.name for file in path.parent.iterdir()]
     except (OSError, ValueError):  # a folder that may not be listed, or that no folder can be
         others = []
-    near = get_close_matches(path.name, others, n=3, cutoff=_ALIKE)
+    near = [  # a common ending makes no name alike
+        name for name in get_close_matches(path.name, others, n=3, cutoff=_ALIKE)
+        if get_close_matches(path.stem, [Path(name).stem], cutoff=_ALIKE_STEM)
+    ]  # fmt: skip
     hint = f"did you mean {' or '.join(near)}?" if near else "check its name and folder"
     return f"no such file: {path}; {hint}"
 

@@ -170,6 +170,8 @@ def _scale(magnitude: float, unit: str, exact: bool) -> tuple[float, str]:
         return (0.01, "%") if is_share and not exact else (1.0, "")
     lead, rest = _lead(unit)
     base = 1.0
+    if lead == "kg" and rest:  # nobody says g m² of an inertia
+        return 1.0, unit
     if lead == "kg":
         base, lead = 1e-3, "g"
     if lead not in (*_TAKE, *_SMALL) or magnitude == 0:

@@ -39,8 +39,8 @@ Trust = Annotated[
     tyro.conf.UseAppendAction,
     tyro.conf.arg(
         metavar="WORD",
-        help="What you know better than a check: contacts, gaps, joints, rows, sensors, start,"
-        " steps, time, units, wiring.",
+        help="What you know better than a check: contacts, gaps, joints, limits, rows, sensors,"
+        " start, steps, time, units, wiring.",
     ),
 ]
 

@@ -63,7 +63,20 @@ def find_answers(
         best = max(each, key=lambda a: abs(a.correlation), default=None)
         if best is not None and abs(best.correlation) >= LEAST:
             found.append(best)
-    return tuple(found)
+    return tuple(a for a in found if not _is_backwards(a, found))
+
+
+def _is_backwards(answer: Answer, others: Sequence[Answer]) -> bool:
+    """Returns whether the input of an answer rather answers its output.
+
+    Of columns whose names do not tell them apart each is tried as the input of the other. What
+    answers comes late, and looks more like what it answers than the other way round.
+    """
+    return any(
+        (b.output, b.input) == (answer.input, answer.output)
+        and (abs(b.correlation), b.lag) > (abs(answer.correlation), answer.lag)
+        for b in others
+    )
 
 
 def _answer(output: str, name: str, of: str, u: FloatArray, z: FloatArray, step: float) -> Answer:

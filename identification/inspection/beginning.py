@@ -12,7 +12,9 @@ import numpy as np
 
 from identification.errors import InputError
 from identification.files import exists, toml_key, toml_table, toml_value, whole_file
-from identification.inspection.inspected import SAID, Inspection
+from identification.inspection.answers import Answer
+from identification.inspection.guesses import Role
+from identification.inspection.inspected import SAID, Inspection, answers_of
 from identification.inspection.matching import SAME, Channel, Match, channels_of, match
 from identification.inspection.words import answer_sentences
 from identification.logs.names import listed
@@ -49,29 +51,42 @@ def write_beginning(found: Inspection, model: Path, path: Path) -> Beginning:
     Raises:
         InputError: the file exists, or the model cannot be read.
     """
+    file = RobotFile(path=path, model=model, free=())
+    spec, said = robot_spec(file)
     if exists(path):
         raise InputError(
             f"{path} exists, and nothing of yours is replaced; give another name behind --robot"
         )
-    file = RobotFile(path=path, model=model, free=())
-    spec, said = robot_spec(file)
     compiled = spec.compile()
     if motors := _motors(spec, compiled, found):
         spec, said = robot_spec(replace(file, columns=motors))
         compiled = spec.compile()
     matches = match(channels_of(compiled), found)
     needs = [*_needs(compiled, matches), *_limits(spec, compiled, matches, found, model)]
+    if (lasts := float(found.time[-1] - found.time[0])) < 2 * _horizon(found):
+        needs.append(
+            f"the log lasts {lasts:.3g} s, {len(found.time)} rows: too short to fit one part of it"
+            " and to confirm another; record some seconds of motion"
+        )
     place = os.path.relpath(model, path.parent)
     lines = _lines(found, compiled, matches, place, [*said, *(f"NEEDED: {n}" for n in needs)])
     with whole_file(path) as draft:
         draft.write_text("\n".join(lines) + "\n", encoding="utf-8")
     sure = [m for m in matches if m.how == SAME]
-    answers = answer_sentences(found.answers)
+    answers = answer_sentences(_answers(found, matches))
     told = [*said, f"columns of the same name: {_listed(sure)}"] if sure else [*said]
     return Beginning(
         path, (*told, *answers), _guesses(found, compiled, matches), tuple(needs),
         torques=not needs and _serves_torques(found, compiled, matches),
     )  # fmt: skip
+
+
+def _answers(found: Inspection, matches: Sequence[Match]) -> tuple[Answer, ...]:
+    """Returns what answers what, now that the model says what is an input and what an output."""
+    roles: dict[str, Role] = {
+        m.column: "input" if m.channel.is_input else "output" for m in matches if m.column
+    }
+    return answers_of(found, roles)
 
 
 def _serves_torques(found: Inspection, model: mujoco.MjModel, matches: Sequence[Match]) -> bool:
@@ -171,7 +186,7 @@ def _lines(
     for m in (*inputs, *outputs):
         note = f"  # {m.how}; {_what(model, m)}"
         lines.append(f"{toml_key(m.channel.name)} = {toml_value(m.column)}{note}")
-    answers = {a.output: a for a in found.answers}
+    answers = {a.output: a for a in _answers(found, matches)}
     told = [answers[m.column] for m in outputs if m.column in answers]
     lines += [f"# {sentence}" for sentence in answer_sentences(told)]
     return [*lines, *_log_lines(found, matches)]

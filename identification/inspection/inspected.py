@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -24,7 +24,7 @@ from identification.logs.formats import log_table, refuse_no_log
 from identification.logs.names import listed, lookup
 from identification.logs.sampling import MIN_ROWS, FloatArray, grid
 from identification.logs.sidecar import read_sidecar
-from identification.logs.stamps import with_time
+from identification.logs.stamps import seconds_of, with_time
 from identification.logs.table import renamed
 from identification.logs.units import to_si
 
@@ -32,6 +32,7 @@ GAP = 1.5  # of the usual interval, from which samples are missing
 EVEN = 1e-2  # of the usual interval, by which stamps of an even log differ
 SAID = "the TOML of the log"  # why a unit is believed that is no guess
 STAMPS = ("time", "%time", "stamp", "timestamp", "t")  # columns whose digits a float may lack
+COMPARED = 20  # rows, below which no column is compared with another
 LINES = 50  # of a CSV that show which of its columns hold numbers
 
 
@@ -157,6 +158,12 @@ def _column(name: str, time: FloatArray, values: FloatArray, said: str, farthest
     )  # fmt: skip
 
 
+def answers_of(found: Inspection, roles: Mapping[str, Role]) -> tuple[Answer, ...]:
+    """Returns what answers what in a log where a model tells the roles of some columns."""
+    columns = [replace(c, role=roles.get(c.name, c.role)) for c in found.columns]
+    return _answers(found.time, found.values, columns)
+
+
 def _answers(
     time: FloatArray, values: Mapping[str, FloatArray], columns: Sequence[Column]
 ) -> tuple[Answer, ...]:
@@ -173,7 +180,7 @@ def _answers(
     names = {role: [c.name for c in moving if c.role == role] for role in ("input", "output", "")}
     inputs = names["input"] or names[""]
     outputs = names["output"] or names[""]
-    if len(t) < MIN_ROWS:
+    if len(t) < COMPARED:
         return ()
     return find_answers(step, {n: even[n] for n in inputs}, {n: even[n] for n in outputs})
 
@@ -185,7 +192,12 @@ def _texts(path: Path) -> tuple[str, ...]:
     names = [name.strip().strip('"').strip() for name in (lines or [""])[0].split(",")]
     cells = [line.split(",") for line in lines[1:]]
     whole = [row for row in cells if len(row) == len(names)]
-    return tuple(n for k, n in enumerate(names) if any(not _is_number(row[k]) for row in whole))
+    return tuple(
+        n
+        for k, n in enumerate(names)
+        if any(not _is_number(row[k]) for row in whole)
+        and not (n in STAMPS and whole and seconds_of(whole[0][k]) is not None)
+    )
 
 
 def _is_number(cell: str) -> bool:

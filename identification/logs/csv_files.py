@@ -12,7 +12,7 @@ from identification.errors import InputError, repeated
 from identification.files import toml_table, toml_value, write_text
 from identification.logs.log import Log
 from identification.logs.names import group, listed, quoted
-from identification.logs.stamps import WHOLE, exact_stamps
+from identification.logs.stamps import WHOLE, dates_as_seconds, exact_stamps, seconds_of
 from identification.logs.table import Table
 
 _WRONG_SEPARATORS = {";": "semicolons", "\t": "tabs", "|": "bars", " ": "spaces"}
@@ -41,7 +41,7 @@ def parse_csv(
     first = lines[filled[start]]
     names = _given(header, first, path) if header else _header(first, filled[start] + 1, path)
     cells = zip(names, first.split(","), strict=True)
-    numbers = all(_is_number(cell) for name, cell in cells if name != SKIP)
+    numbers = all(_is_number(cell) or seconds_of(cell) for name, cell in cells if name != SKIP)
     rows = filled[start + (0 if header and numbers else 1) :]
     asked = names if wanted is None else wanted(names)
     keep = [k for k, n in enumerate(names) if n != SKIP and n in asked]
@@ -55,6 +55,8 @@ def parse_csv(
             f"{path} has a header and no rows under it; record the log again, or export its samples"
         )
     body, gaps = [lines[k] for k in rows], wanted is not None
+    dated = [k for k in keep if names[k] in stamps and _as_seconds(lines, rows, k)]
+    body = [lines[k] for k in rows] if dated else body
     try:
         data = np.loadtxt(body, delimiter=",", comments=None, ndmin=2)
     except ValueError:
@@ -70,7 +72,23 @@ def parse_csv(
         # Beyond WHOLE a float lost digits that the file has.
         if names[column] in stamps and WHOLE <= np.abs(data[:, k]).max() < np.inf:
             data[:, k] = exact_stamps([lines[row].split(",")[column] for row in rows])
-    return Table(path, kept, data, lambda row: _place(rows[row], path), unread)
+    table = Table(path, kept, data, lambda row: _place(rows[row], path), unread)
+    if not dated:
+        return table
+    return table.told(f"Stamps of log {path.stem!r} are dates; its time counts from the first one.")
+
+
+def _as_seconds(lines: list[str], rows: Sequence[int], k: int) -> bool:
+    """Writes the dates in cells k of some lines as seconds from the first; False without dates."""
+    cells = [lines[row].split(",") for row in rows]
+    whole = [n for n, row in enumerate(cells) if len(row) > k]
+    seconds = dates_as_seconds([cells[n][k] for n in whole])
+    if seconds is None:
+        return False
+    for n, text in zip(whole, seconds, strict=True):
+        cells[n][k] = text
+        lines[rows[n]] = ",".join(cells[n])
+    return True
 
 
 def _given(header: Sequence[str], first: str, path: Path) -> tuple[str, ...]:

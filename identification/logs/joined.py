@@ -122,11 +122,15 @@ def refuse_different(logs: Sequence[Log]) -> None:
     """Refuse logs that are not different records of one robot."""
     first = logs[0]
     for k, log in enumerate(logs):
-        if any(_is_same(log, other) for other in logs[:k]):
-            raise InputError(
-                f"log {log.name!r} is given twice; a record counts once, and confirms nothing when"
-                " it was fitted: leave one of them out"
-            )
+        for other in logs[:k]:
+            if _is_same(log, other):
+                said = f"logs {other.name!r} and {log.name!r} hold the same samples"
+                if log.name == other.name:
+                    said = f"log {log.name!r} is given twice"
+                raise InputError(
+                    f"{said}; a record counts once, and confirms nothing when it was fitted: leave"
+                    " one of them out"
+                )
         for what in ("input_names", "output_names", "hold"):
             names, expected = getattr(log, what), getattr(first, what)
             if names != expected:

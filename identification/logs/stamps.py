@@ -13,6 +13,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from datetime import datetime
 from decimal import Decimal
 
 import numpy as np
@@ -31,6 +32,7 @@ STILL = 0.25  # of the motion between stamps, below which there is none within t
 TIME = "time"
 APART = ("time.sec", "time.nanosec")  # names that a user may give to two columns
 WHOLE = 2.0**53  # from which a float does not hold every whole number
+_DATE = re.compile(r"(\d{4}-\d\d-\d\d)[Tt ](\d\d:\d\d:\d\d)(?:\.(\d+))? ?(Z|z|[+-]\d\d:?\d\d)?")
 _NANO = re.compile(r"(.*?)(nanosec|nanosecond|nsec)s?", re.IGNORECASE)
 _PARTS = {"nanosec": "sec", "nanosecond": "second", "nsec": "sec"}
 
@@ -39,6 +41,35 @@ def exact_stamps(cells: Sequence[str]) -> FloatArray:
     """Returns printed stamps less the first one, shape (n,), as exactly as a float holds these."""
     stamps = [Decimal(cell.strip()) for cell in cells]
     return np.array([float(stamp - stamps[0]) for stamp in stamps])
+
+
+def seconds_of(cell: str) -> Decimal | None:
+    """Returns the seconds of a date with its time, such as 2024-05-01T10:00:00.25Z; else None.
+
+    They count from 1970 on, and a date without a zone is taken for one in UTC.
+    """
+    found = _DATE.fullmatch(cell.strip().strip('"').strip())
+    if found is None:
+        return None
+    day, time, part, zone = found.groups()
+    zone = "+00:00" if zone in (None, "Z", "z") else zone
+    try:
+        whole = datetime.fromisoformat(f"{day}T{time}{zone}").timestamp()
+    except ValueError:  # such as a 13th month
+        return None
+    return Decimal(int(whole)) + Decimal(f"0.{part or 0}")
+
+
+def dates_as_seconds(cells: Sequence[str]) -> list[str] | None:
+    """Returns a column of dates as seconds from the first one; None where the first is no date.
+
+    Cells that are no dates stay as they are.
+    """
+    stamps = [seconds_of(cell) for cell in cells]
+    first = stamps[0] if stamps else None
+    if first is None:
+        return None
+    return [cell if t is None else str(t - first) for cell, t in zip(cells, stamps, strict=True)]
 
 
 def stamps_apart(names: Sequence[str], sidecar: Sidecar) -> tuple[str, str] | None:

@@ -171,7 +171,14 @@ def _without_time(table: Table, missing: Sequence[str], sidecar: Sidecar) -> str
     names = [*table.unread, *table.names]
     likely = [
         *get_close_matches("time", names, n=1),
-        *(n for n in names if "time" in n.lower() or "stamp" in n.lower() or n.lower() == "t"),
+        *(
+            n
+            for n in names
+            if "time" in n.lower()
+            or "stamp" in n.lower()
+            or "date" in n.lower()
+            or n.lower() == "t"
+        ),
     ]
     called = likely[0] if likely else "stamp"
     which = f"if {quoted(called)} is it" if likely else "if it is called stamp"

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
 import mujoco
 
-from identification.errors import InputError
+from identification.errors import InputError, unknown_name
 from identification.logs.log import Log
+from identification.logs.names import listed
 from identification.logs.plausible import still_sentence
 from identification.logs.sampling import MIN_ROWS, rows_between
 from identification.logs.sidecar import read_sidecar
@@ -79,6 +81,28 @@ def outputs_of(model: mujoco.MjModel, file: RobotFile) -> tuple[str, ...]:
         f"sensor {', '.join(kinds)}{more}; outputs are jointpos or jointvel sensors, so give the"
         " model one for each measured joint"
     )
+
+
+def refuse_unknown_outputs(model: mujoco.MjModel, file: RobotFile, outputs: Sequence[str]) -> None:
+    """Refuse an output that is no sensor of the model, with what to write."""
+    sensors = [name for i in range(model.nsensor) if (name := model.sensor(i).name)]
+    joints = [name for j in range(model.njnt) if (name := model.joint(j).name)]
+    for name in outputs:
+        if name not in sensors:
+            unknown = unknown_name(f"sensor under outputs in {file.path}:", name, sensors)
+            raise InputError(
+                f'{unknown}; write one of these, or add <jointpos name="{name}" joint="JOINT"/> to'
+                f" the <sensor> of {file.model}, with one of its joints: {listed(joints)}"
+            )
+
+
+def refuse_short(log: Log, path: Path) -> None:
+    """Refuse a log that has too few samples to fit one half and to confirm the other."""
+    if len(log) < 2 * MIN_ROWS:
+        raise InputError(
+            f"{path} has {len(log)} rows; one half of a log is fitted and the other one confirms,"
+            f" each of at least {MIN_ROWS}: record some seconds of motion, hundreds of rows"
+        )
 
 
 def refuse_unlike(file: RobotFile, log: Log) -> None:

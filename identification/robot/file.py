@@ -54,6 +54,7 @@ class RobotFile:
     own_values: Mapping[str, Mapping[str, float]] = field(default_factory=dict)  # by log, name
     joints: tuple[str, ...] = ()  # where effects may act; empty for the measured ones
     only: tuple[str, ...] = ()  # candidates by name; empty for all
+    own_effects: tuple[str, ...] = ()  # that are not of the catalogue, by name
     turns: tuple[float, ...] = ()  # periods of a turn to try; empty for the catalogue's
     fitted: Mapping[str, str] = field(default_factory=dict)  # digests of logs by name
     spread: tuple[Alike, ...] = ()  # their parameters are free too, behind those that it frees
@@ -134,6 +135,7 @@ def read_robot_file(path: str | Path) -> RobotFile:
         own_values=read_own_values(content, path),
         joints=texts(effects.get("joints", []), "effects.joints", path),
         only=texts(effects.get("only", []), "effects.only", path),
+        own_effects=texts(effects.get("own", []), "effects.own", path),
         turns=numbers(effects.get("turns", []), "effects.turns", path),
         spread=alike,
         fitted=words_of(content.get("fitted", {}), f"fitted in {path}"),

@@ -35,7 +35,7 @@ PARAMETER_KEYS: Kinds = {  # of [parameters.NAME]
     **dict.fromkeys(("value", "std", "prior", "known", "lower", "upper", "scale"), NUMBER),
 }
 EFFECTS_KEYS: Kinds = {  # of [effects]
-    **dict.fromkeys(("joints", "only"), (list, "a list of names")),
+    **dict.fromkeys(("joints", "only", "own"), (list, "a list of names")),
     "turns": (list, "a list of numbers above zero"),
 }
 POSITIVE = ("every", "known", "scale", "std")

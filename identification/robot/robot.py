@@ -32,6 +32,8 @@ from identification.robot.checks import (
     refuse_every,
     refuse_milliseconds,
     refuse_same_stem,
+    refuse_short,
+    refuse_unknown_outputs,
     refuse_unnamed,
 )
 from identification.robot.completed import refuse_unread_torques, torques_without_motor
@@ -140,6 +142,17 @@ class Robot:
         return {n: log.values.get(n, parameters[n].value) for each in logs for n in each.values}
 
 
+def _refuse_lost(file: RobotFile, given: Sequence[Effect]) -> None:
+    """Refuse a file with values of a user's own effects without these effects."""
+    lost = [name for name in file.own_effects if name not in {e.name for e in given}]
+    if lost:
+        raise InputError(
+            f"{file.path} has values of {listed(lost)}, which its [effects] own says to be your"
+            " own: give it again in Python, read_robot(..., own_effects=[...]), because no command"
+            f" can; or take {listed(lost)} out of own, free, [parameters] and [fixed] there"
+        )
+
+
 def _said_of_turning(known: Sequence[Axis], only: Sequence[str]) -> tuple[str, ...]:
     """Returns a sentence where laws of the angle are no candidates; none where they are asked."""
     on_and_on = turning(known)
@@ -171,6 +184,7 @@ def read_robot_log(file: RobotFile, path: str | Path) -> Log:
     outputs = outputs_of(model, file)  # without an actuator the log is one of a free swing
     tendons = measured_tendons(model, file)
     told = outputs
+    refuse_unknown_outputs(model, file, outputs)
     with told_of(f"outputs in {file.path}") if file.outputs else nullcontext():
         places = output_columns(model, outputs)
     units = {
@@ -212,6 +226,7 @@ def read_robot_log(file: RobotFile, path: str | Path) -> Log:
             f"{error}; or, where these are not measured, write outputs = [{', '.join(logged)}] into"
             f" {file.path}"
         ) from error
+    refuse_short(log, Path(path))
     refuse_milliseconds(model, file, log, Path(path))
     refuse_every(file, log)
     given = {n: u for n in inputs if (u := log.units.get(column[n]))}
@@ -241,6 +256,7 @@ def robot_of(
     refuse_unmeasured(file, model, log)
     for each in (log, *others, *records):
         refuse_limits(file, model, spec.compiler.degree, each)
+    _refuse_lost(file, own_effects)
     known = reach([axes(model, each, file.trust) for each in (log, *others)])
     for joint in file.joints:
         if joint not in {a.joint for a in known}:

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from identification.discovery.result import keep_of_robot
 from identification.effects.joint_group import SLIDE
+from identification.effects.named import effect_of
 from identification.files import toml_key, toml_table, toml_value, write_text
 from identification.robot.carried import digest
 from identification.robot.parameters import KNOWN, Free, effect_sizes
@@ -51,6 +52,8 @@ def write_robot(
     alike = {n for a in file.spread for n in a.names}
     found = [n for n in values if n not in (*file.free, *shapes)]
     names = [*file.free, *found]
+    used = {effect_of(n) for n in (*names, *fixed)}
+    of_user = [e.name for e in robot.own_effects if e.name in used]
     lines = [f"# {remark}"] if remark else []
     lines += [
         f"model = {toml_value(os.path.relpath(file.model, place))}",
@@ -58,6 +61,8 @@ def write_robot(
     ]
     if any(SLIDE in name for name in found):
         lines.append(f"# effects with {SLIDE} in their names act on slides, the others on hinges")
+    if of_user:
+        lines.append(f"# {', '.join(of_user)}: your own, which read_robot takes as own_effects")
     lines.append(f"free = {toml_value([*file.by_itself, *found])}")
     lines += [f"held = {toml_value(file.held)}"] if file.held else []
     lines += [f"own = {toml_value(own)}"] if own else []
@@ -85,7 +90,12 @@ def write_robot(
         tables[f"own_values.{toml_key(record)}"] = {n: float(v) for n, v in each.items()}
     tables["effects"] = {
         key: list(given)
-        for key, given in (("joints", file.joints), ("only", file.only), ("turns", file.turns))
+        for key, given in (
+            ("joints", file.joints),
+            ("only", file.only),
+            ("own", of_user),
+            ("turns", file.turns),
+        )
         if given
     }
     if std is not None:

@@ -1,5 +1,6 @@
 """What a help shows can be run, a shell can complete it, and progress can be had or not."""
 
+import re
 import shlex
 import subprocess
 
@@ -62,3 +63,14 @@ def test_progress_is_told_unless_it_shall_be_quiet(capsys, quiet):
     out, error = capsys.readouterr()
     assert out
     assert (error == "") is quiet
+
+
+def test_the_help_of_trust_has_every_word_and_no_other(capsys):
+    """The words are written out there, because a help must not wait for MuJoCo."""
+    from identification.refusals.trust import TRUST
+
+    with pytest.raises(SystemExit):
+        identification(["fit", "--help"])
+    said = " ".join(re.sub("[│╭╮╰╯─]", " ", capsys.readouterr().out).split())
+    told = re.search(r"better than a check: ([a-z, ]+)\.", said)
+    assert told[1].split(", ") == sorted(TRUST)

@@ -189,6 +189,33 @@ def test_no_file_is_replaced(arm, capsys, monkeypatch, tmp_path):
     assert tomllib.loads((tmp_path / "other.toml").read_text())["outputs"]
 
 
+def test_a_missing_model_is_told_before_a_file_that_stands_in_the_way(
+    arm, capsys, monkeypatch, tmp_path
+):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "robot.toml").write_text("mine")
+    said = refused(capsys, "new", "none.xml", arm / "run")
+    assert "no such file: none.xml" in said
+    assert "exists" not in said
+
+
+def test_names_without_a_role_are_told_the_right_way_round():
+    """The one that comes late answers, and not the other way round."""
+    u, _ = waves()
+    late = np.concatenate([np.zeros(8), u[:-8]])
+    both = {"motor": u, "shaft": late}
+    assert [(a.output, a.input) for a in find_answers(STEP, both, both)] == [("shaft", "motor")]
+
+
+def test_a_log_of_a_few_rows_is_no_beginning(tmp_path):
+    (tmp_path / "arm.xml").write_text(ARM.format(damping=0.2))
+    rows = "\n".join(f"{STEP * k},{k},{k},{k},{k}" for k in range(5))
+    (tmp_path / "run.csv").write_text(f"time,m1,m2,a1,a2\n{rows}\n")
+    begun = write_beginning(inspect_log(tmp_path / "run.csv"), tmp_path / "arm.xml",
+                            tmp_path / "robot.toml")  # fmt: skip
+    assert any("5 rows: too short" in need for need in begun.needs)
+
+
 @pytest.mark.parametrize("change", ["nothing", "servos", "slow", "a third joint"])
 def test_torques_are_offered_where_forces_and_all_positions_are_logged(arm, tmp_path, change):
     text = ARM.format(damping=0.1)

@@ -118,12 +118,14 @@ def test_matlab_7_3_says_how_to_save_it(tmp_path, refusal):
 
 def test_bad_paths(tmp_path, refusal):
     (tmp_path / "logs.csv").mkdir()
-    (tmp_path / "run_1.csv").write_text(lines())
+    for name in ("run_1.csv", "fissile.csv"):
+        (tmp_path / name).write_text(lines())
     (tmp_path / "run.xlsx").write_text(lines())
     os.mkfifo(tmp_path / "pipe.csv")
     for name, words in {
         "run_2.csv": ["no such file", "did you mean", "run_1.csv"],
         "zebra.csv": ["no such file", "check"],
+        "missing.csv": ["no such file", "check its name"],  # only its ending is that of others
         "nowhere/run.csv": ["no such folder", "nowhere"],
         "logs.csv": ["is a folder"],
         "pipe.csv": ["not a regular file"],

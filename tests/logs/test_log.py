@@ -118,7 +118,8 @@ def test_a_record_that_is_cut_knows_how_late_it_begins():
         (record("d", 30, 9, hold="foh"), "hold"),
         (replace(record("d", 30, 9), time=0.02 * np.arange(30)), "sampling time"),
         (record("d", 30, 9, values={"mass": 2.0}), r"\[values\]"),
-        (A, "given twice"),
+        (A, "log 'a' is given twice"),
+        (replace(A, name="copy"), "logs 'a' and 'copy' hold the same samples"),
     ],
 )
 def test_what_is_no_other_record_of_the_robot_is_refused(refusal, other, says):

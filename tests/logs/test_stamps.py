@@ -1,5 +1,7 @@
 """Stamps as recorders write them: nanoseconds since 1970, or seconds and nanoseconds apart."""
 
+from datetime import datetime, timedelta
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -8,7 +10,7 @@ from joint_cases import SLIDER
 from robot_cases import TOML, simulated
 
 from identification import InputError, read_log, read_robot
-from identification.logs.stamps import exact_stamps
+from identification.logs.stamps import exact_stamps, seconds_of
 
 N = 400
 EPOCH = 1_691_234_567_123_456_789  # [ns]
@@ -50,6 +52,31 @@ def test_nanoseconds_since_1970(csv, said):
     log = even(put(csv, "%time,frame,y,u", rows, columns + said))
     assert not log.factors
     assert log.sampling_time == 4e-3
+
+
+@pytest.mark.parametrize(
+    "form", ["{}T{}{}Z", "{} {}{}", "{}T{}{}+02:00", '"{}T{}{}000Z"', "{}T{}{}-0530"]
+)
+@pytest.mark.parametrize("name", ["time", "logged at"])
+def test_dates_are_read_and_their_time_counts_from_the_first(csv, form, name):
+    """Over midnight at the end of a year, whatever the zone is."""
+
+    def row(k):
+        at = datetime(2023, 12, 31, 23, 59, 59) + timedelta(microseconds=4000 * k)
+        day, clock = at.isoformat(timespec="seconds").split("T")
+        return f"{form.format(day, clock, f'.{at.microsecond:06d}')},{k},1"
+
+    columns = "" if name == "time" else f'[columns]\n"{name}" = "time"\n'
+    log = even(put(csv, f"{name},y,u", row, columns))
+    assert "its time counts from the first one" in log.remarks[0]
+
+
+def test_a_cell_that_is_no_date_among_dates_is_told_with_its_line(csv, refusal):
+    dates = lambda k: f"{'soon' if k == 3 else f'2024-05-01T10:00:0{k}Z'},{k},1"  # noqa: E731
+    said = refusal(read, put(csv, "time,y,u", dates))
+    assert "line 5 of" in said
+    assert "column time: soon is not a number" in said
+    assert seconds_of("2024-13-01T10:00:00Z") is None
 
 
 @pytest.mark.parametrize(
