@@ -116,7 +116,8 @@ def turned_servos(model: mujoco.MjModel, doubt: Doubt) -> str | None:
     for found in ({turned: share(turned) for turned in some} for some in _sets(motion)):
         least = min(found.values())
         if least < NEARER * min(1.0, as_read):
-            alike = [turned for turned, rest in found.items() if rest <= ALIKE * least]
+            best = sorted(found, key=lambda turned: found[turned])
+            alike = [turned for turned in best if found[turned] <= ALIKE * least]
             return _words(doubt, motion, alike, (as_read, least))
     return None
 

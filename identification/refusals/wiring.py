@@ -113,8 +113,7 @@ def refuse_miswired(robot: Robot, log: Log) -> None:
         for reading in together(every):
             if words := balance.decides(reading):
                 raise _refusal(robot, log, reading, words)
-    if wiring and is_small and (words := turned_servos(plant.model, every)):
-        raise _refusal(robot, log, Reading(log, every.wrong, "", ""), words)
+    _refuse_turned_servos(robot, every)
     # The gain of a drive that wants a position is a guess, and its force with it.
     if units and not (is_explained or wanted):
         found = rescaled(plant.model, every, wiring and is_small, is_small)
@@ -129,20 +128,31 @@ def refuse_unbalanced(robot: Robot, log: Log) -> None:
 
     Nothing is simulated: a simulation of an arm in a closed loop says little of its log, because
     what the model lacks grows over a window. Where a drive wants a position, its gain is a guess,
-    and nothing is told.
+    and only its sign is told.
     """
     file, model = robot.file, robot.plant_of(log).model
     column = {n: file.columns.get(n, n) for n in (*log.output_names, *log.input_names)}
     log = beginning(log)
-    if wanted_units(model, log) or len(column) > MOST_COLUMNS or not log.inputs.any():
-        return
     doubt, readings = Doubt.of(log, column), []
+    if wanted_units(model, log):
+        _refuse_turned_servos(robot, doubt)
+        return
+    if len(column) > MOST_COLUMNS or not log.inputs.any():
+        return
     if "units" not in file.trust:
         readings += [input_unit_readings(doubt, drive_units(model, log)), unit_readings(doubt)]
     if "wiring" not in file.trust:
         readings += [input_readings(doubt), output_readings(doubt)]
     if found := balanced_otherwise(model, doubt, chain(*readings)):
         raise _refusal(robot, log, *found)
+
+
+def _refuse_turned_servos(robot: Robot, doubt: Doubt) -> None:
+    """Refuse a log in which the setpoint and the encoder of a servo are both turned."""
+    if "wiring" in robot.file.trust or len(doubt.column) > MOST_COLUMNS:
+        return
+    if words := turned_servos(robot.plant_of(doubt.log).model, doubt):
+        raise _refusal(robot, doubt.log, Reading(doubt.log, doubt.wrong, "", ""), words)
 
 
 def _of_outputs(judge: Judge, doubt: Doubt) -> Iterator[Reading]:

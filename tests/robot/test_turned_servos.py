@@ -12,6 +12,7 @@ from tracked_cases import robot
 from identification import InputError, read_robot
 from identification.refusals.columns import Doubt
 from identification.refusals.turned_servos import turned_servos
+from identification.refusals.wiring import refuse_unbalanced
 
 pytestmark = pytest.mark.usefixtures("few_effects")
 
@@ -82,6 +83,14 @@ def test_weight_tells_a_turned_servo_and_what_is_told_mends_the_log(tmp_path, jo
     signs = np.sign(np.sum(mended.outputs * right.outputs, axis=0))
     assert signs[0] == signs[1]
     np.testing.assert_allclose(mended.outputs, signs * right.outputs, rtol=1e-9)
+
+
+def test_a_comparison_of_torques_tells_it_too(tmp_path):
+    log = turned(servo_log(WIDE, goals()), [0])
+    own, read = robot(tmp_path, WIDE.format(**DRAWN), log, "horizon = 0.4")
+    with pytest.raises(InputError, match="other sign of both setpoint and encoder"):
+        refuse_unbalanced(own, read)
+    refuse_unbalanced(replace(own, file=replace(own.file, trust=("wiring",))), read)
 
 
 def test_neighbours_tell_it_where_nothing_weighs():
