@@ -19,6 +19,7 @@ from identification.shares import decimal
 
 _PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M"}
 _TAKE = ("N", "m", "s", "A", "g", "V", "W", "Hz")  # units that take a prefix where they lead
+_SMALL_INERTIA = 1e-3  # [kg m²]
 _SMALL = ("rad",)  # those that take small ones only: nobody says kiloradian
 _LEAST = 1e-3  # smaller numbers, in units without a prefix, are said as powers of ten
 _SHARE = 1e-5  # a smaller number without unit is no percentage, but a power of ten
@@ -170,8 +171,9 @@ def _scale(magnitude: float, unit: str, exact: bool) -> tuple[float, str]:
         return (0.01, "%") if is_share and not exact else (1.0, "")
     lead, rest = _lead(unit)
     base = 1.0
-    if lead == "kg" and rest:  # nobody says g m² of an inertia
-        return 1.0, unit
+    if lead == "kg" and rest:  # nobody says g m² of an inertia: that of a rotor is told in kg cm²
+        is_small = rest in (" m^2", " m²") and 0 < magnitude < _SMALL_INERTIA
+        return (1e-4, unit.replace(" m", " cm")) if is_small else (1.0, unit)
     if lead == "kg":
         base, lead = 1e-3, "g"
     if lead not in (*_TAKE, *_SMALL) or magnitude == 0:
