@@ -182,7 +182,7 @@ def _clocks_error(row: Row) -> float:
 def _is_meant(row: Row, hidden: tuple[str, str], name: str, where: str) -> bool:
     """Returns whether a name at a place is one of what is hidden."""
     effect, joint = hidden
-    is_upright = effect == "load" and (row["robot"], joint) in UPRIGHT
+    is_upright = effect in ("load", "heavier") and (row["robot"], joint) in UPRIGHT
     names = (*NAMES[effect], *(NAMES["rotor"] if is_upright else ()))
     is_name = name.removeprefix("slide_") in names
     is_place = (

@@ -53,7 +53,8 @@ NAMES: Mapping[str, tuple[str, ...]] = {
     "lever": (),
     "guide": (),
 }
-# Robot and joint whose axis is vertical: of a load the motion shows the inertia about it alone.
+# Robot and joint whose axis is vertical: of a load or a body that is heavier the motion shows the
+# inertia about it alone.
 UPRIGHT = (("arm", "pan"),)
 LISTED = tuple(name for name, right in NAMES.items() if right)
 OF_TWO = ("lever", "guide")  # forces that depend on two variables at once
