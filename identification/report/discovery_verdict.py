@@ -28,7 +28,7 @@ from identification.report.nothing_words import NOISIER, errors_left, nothing_se
 from identification.report.opinion_words import opinion_sentences
 from identification.report.parts_words import is_untouched, unseen_of
 from identification.report.shown_words import hiding
-from identification.report.straight_curves import line_of_named, lines_needed
+from identification.report.straight_curves import limit_of_named, line_of_named, lines_needed
 from identification.report.untold_words import bound_sentences
 from identification.shares import HELD, change, fall_words, percent, ratio_of, times
 from identification.shown import verdict_of
@@ -69,7 +69,12 @@ def _verdict(found: Discovery) -> list[str]:
     if found.verdict == "unknown effect":
         return [_unknown(found)]
     plant = found.final.plant
-    said = [named_sentences(found, named) + line_of_named(named, plant) for named in found.named]
+    said = [
+        named_sentences(found, named)
+        + line_of_named(named, plant)
+        + limit_of_named(named, found.final)
+        for named in found.named
+    ]
     said.append(_proof(found))
     if found.unexplained:
         said.append(_unexplained(found))

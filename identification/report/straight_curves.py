@@ -1,9 +1,11 @@
-"""A curve that is a straight line through zero is no force of its own but a number of the model.
+"""What is no force of its own but a number of the model: straight curves, and limits of a force.
 
     f = s x,   s = Σ w x f / Σ w x²,   w = 1/σ²          at the nodes that the motion tells
     share = 1 - Σ w (f - s x)² / Σ w (f - f̄)²            of the changes of the curve, by the line
 
-Over the force of a joint's drives it is their gain, 1 + s; over the rate a damping, off by -s.
+A curve that is a straight line through zero is a gain, 1 + s, over the force of a joint's drives,
+and over the rate a damping, off by -s. A limit of a voltage that falls with no speed is one of the
+force.
 """
 
 from __future__ import annotations
@@ -14,6 +16,7 @@ import mujoco
 import numpy as np
 
 from identification.discovery.effect_results import NamedEffect
+from identification.discovery.fitted import Fitted
 from identification.discovery.result import Discovery
 from identification.model.predictor import Plant
 from identification.model.tied import gain_path
@@ -22,6 +25,7 @@ from identification.report.horizon_gap import find_gap
 from identification.report.named_words import Nodes, curve_nodes
 from identification.shares import percent
 
+LIMIT = "voltage_limit"  # the effect, of hinges or of slides
 # Of the changes of a curve, that a line explains: of a cube over a full range it explains 85 %.
 STRAIGHT = 0.95
 FEWEST = 4  # nodes that tell a line from a bent one
@@ -104,6 +108,28 @@ def line_of_named(named: NamedEffect, plant: Plant) -> str:
         force, std = (np.array([e[k] for e in each], float) for k in (0, 1))
         out += line_words(nodes, force, std, each[0][2], plant)
     return out
+
+
+def limit_of_named(named: NamedEffect, model: Fitted) -> str:
+    """Returns what a limit of a motor is that does not fall with its speed; "" of anything else.
+
+    Args:
+        named: any effect.
+        model: with it, which knows what ended on a bound.
+    """
+    candidate, speed = named.candidate, f"{named.candidate.effect.name}.v_0"
+    if not candidate.effect.name.endswith(LIMIT) or speed not in model.at_bound:
+        return ""
+    force, _, unit = named.parameters["f_m"]
+    drives = _drives(model.plant.model, candidate.where.removeprefix("joint "))
+    names = [model.plant.model.actuator(i).name for i in drives]
+    gear = abs(float(model.plant.model.actuator_gear[drives[0], 0])) if len(drives) == 1 else 0.0
+    least = f"{force / gear:.4g}" if gear else ""
+    cure = f': write forcerange="-{least} {least}" into its actuator {names[0]}' if least else ""
+    return (
+        " No fall of the force with the speed is seen, and v_0 ended on its bound: this is a limit"
+        f" of the force of the drive, ±{quantity(force, unit=unit)}{cure}."
+    )
 
 
 def lines_needed(found: Discovery) -> list[str]:

@@ -72,7 +72,7 @@ def write_mjcf(
     root = ElementTree.fromstring(spec.to_xml())
     for folder in ("meshdir", "texturedir"):
         _find_from(place, root, spec, folder)
-    left = _beside(plant.effects, values, model)
+    left = _beside(plant.effects, {**robot.file.fixed, **values}, model)
     said = filter(None, (
         f"{robot.file.model.name} with the values of robot.toml.", remark,
         f"MJCF has no place for {', '.join(left)}." if left else "",

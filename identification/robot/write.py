@@ -47,10 +47,13 @@ def write_robot(
     own = [*dict.fromkeys([*file.own, *(n for each in own_values.values() for n in each)])]
     values = {**_means([n for n in own if n not in file.own], own_values), **values}
     values = keep_of_robot(values, robot.plant.effects)
-    shapes = {f"{e.name}.{s.name}" for e in robot.plant.effects for s in e.shapes}
-    fixed = {**file.fixed, **{n: v for n, v in values.items() if n in shapes}}
+    held = {f"{e.name}.{s.name}" for e in robot.plant.effects for s in e.shapes}
+    # a size that is there or not, such as that of a limit, is nothing to be fitted
+    held |= {e.parameter(s.name, where) for e in robot.plant.effects for s in e.sizes
+             for where in e.places if s.present is not None}  # fmt: skip
+    fixed = {**file.fixed, **{n: v for n, v in values.items() if n in held}}
     alike = {n for a in file.spread for n in a.names}
-    found = [n for n in values if n not in (*file.free, *shapes)]
+    found = [n for n in values if n not in (*file.free, *held)]
     names = [*file.free, *found]
     used = {effect_of(n) for n in (*names, *fixed)}
     of_user = [e.name for e in robot.own_effects if e.name in used]
