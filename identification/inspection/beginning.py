@@ -203,6 +203,10 @@ def _log_lines(found: Inspection, matches: Sequence[Match]) -> list[str]:
     for m in matches:
         if (unit := guessed.get(m.column)) and to_si(unit)[1] != 1:
             units[m.column] = unit
+    known = {c.name for c in found.columns if c.unit}
+    for answer in _answers(found, matches):  # a setpoint has the unit of the position it commands
+        if answer.is_setpoint and answer.output in units and answer.input not in known:
+            units[answer.input] = units[answer.output]
     lines += [f"{line}  # guessed" if "=" in line else line
               for line in toml_table("log.units", units)]  # fmt: skip
     return lines

@@ -243,3 +243,19 @@ def test_logs_of_which_nothing_can_be_said_are_refused(tmp_path, refusal):
     (tmp_path / "run.mat").write_bytes(b"")
     with pytest.raises(InputError, match="no names of columns"):
         inspect_log(tmp_path / "run.mat")
+
+
+def test_a_setpoint_has_the_unit_of_the_position_that_it_commands(tmp_path):
+    t = STEP * np.arange(800)
+    wanted, moved = (40 * np.sin(2 * x) + 15 * np.sin(5 * x) for x in (t, t - 0.03))
+    table = np.column_stack([t, wanted, moved])
+    np.savetxt(tmp_path / "run.csv", table, "%.5f", ",", header="time,s1,q1", comments="")
+    (tmp_path / "arm.xml").write_text("""<mujoco><worldbody><body><joint name="elbow"/>
+        <geom size="0.1" mass="1"/></body></worldbody>
+        <actuator><position name="s1" joint="elbow" kp="20" kv="1"/></actuator>
+        <sensor><jointpos name="q1" joint="elbow"/></sensor></mujoco>""")
+    write_beginning(
+        inspect_log(tmp_path / "run.csv"), tmp_path / "arm.xml", tmp_path / "robot.toml"
+    )
+    content = tomllib.loads((tmp_path / "robot.toml").read_text())
+    assert content["log"]["units"] == {"q1": "deg", "s1": "deg"}
