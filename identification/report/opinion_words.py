@@ -177,7 +177,7 @@ def _advice(free: Sequence[TorqueOpinion]) -> str:
     turns = f", or in its place {listed(others)}" if others else ""
     return (
         f"To decide, add {first} to the list free of the robot's file, and search again{turns}: if"
-        " nothing is missing then, it was this."
+        " nothing is missing then, it was this; if the same is named again, it was not."
     )
 
 

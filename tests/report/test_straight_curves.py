@@ -16,6 +16,7 @@ from identification.report.needed_forces import NeededForce
 from identification.report.straight_curves import (
     STRAIGHT,
     find_line,
+    limit_of_named,
     line_of_named,
     line_words,
     lines_needed,
@@ -129,3 +130,22 @@ def test_a_force_that_is_needed_is_told_as_a_gain_where_it_is_a_line(monkeypatch
     (sentence,) = lines_needed(answer)
     assert sentence.startswith("The force on hinge is a straight line")
     assert "a gain of 0.70" in sentence
+
+
+def test_a_voltage_limit_that_falls_with_no_speed_is_told_as_a_limit_of_the_force():
+    model = mujoco.MjModel.from_xml_string("""<mujoco><worldbody><body><joint name="elbow"/>
+        <geom size="0.1"/></body></worldbody><actuator><motor name="low" joint="elbow" gear="2"/>
+        </actuator></mujoco>""")
+
+    def said(effect, at_bound):
+        candidate = SimpleNamespace(effect=SimpleNamespace(name=effect), where="joint elbow")
+        named = SimpleNamespace(candidate=candidate, parameters={"f_m": (3.0, 0.01, "N m")})
+        return limit_of_named(
+            named, SimpleNamespace(at_bound=at_bound, plant=SimpleNamespace(model=model))
+        )
+
+    assert 'forcerange="-1.5 1.5" into its actuator low' in said(
+        "voltage_limit", ("voltage_limit.v_0",)
+    )
+    assert said("voltage_limit", ()) == ""
+    assert said("coulomb_friction", ("voltage_limit.v_0",)) == ""

@@ -167,3 +167,17 @@ def test_an_elastic_gear_is_written_read_and_fitted(tmp_path):
     (told,) = confirm(again, fitted)
     assert np.isfinite(told.after)
     assert told.after < 0.5 * told.before
+
+
+def test_a_size_that_is_there_or_not_is_held_in_the_file_and_no_fit_frees_it(folder):
+    robot = read_robot(folder / "own.toml", written(folder, measured(1)))
+    (effect,) = (e for e in robot.plant.effects if e.name == "voltage_limit")
+    (where,) = [w for w, suffix in effect.places.items() if suffix]
+    size = effect.parameter("c", where)
+    values = {"J": 2e-3, "d": 0.02, size: 1.0, "voltage_limit.f_m": 0.5, "voltage_limit.v_0": 9.0}
+    write_robot(robot, values, folder / "again.toml", folder)
+    again = read_robot(folder / "again.toml", robot.log)
+    assert size not in again.file.free
+    for name, value in list(values.items())[2:]:
+        assert again.file.fixed[name] == value
+        assert again.plant.parameters[name].value == value
