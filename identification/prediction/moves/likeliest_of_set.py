@@ -5,8 +5,8 @@ a mass of three bodies, which physics forbids, may be likelier than that of one 
 imitates what is found next. So after each effect that is found, an earlier one that is not the
 likeliest is asked again: it and the others are refitted in its place, beside all that was found
 since. The likeliest that unseen records prove there takes the place, and the odds are those of
-these refits. A difference between records takes the place of no law: it is no name. A difference
-that is the same in all records is a law of the robot, which is asked in its place.
+these refits. A difference between records that is the same in all of them is a law of the robot,
+which is asked in its place.
 
     |a - b| < 3 √(σ_a² + σ_b²)        values a, b of any two records, and their std
 """
@@ -45,10 +45,7 @@ def likeliest_of_set(state: WindowSearch, progress: Progress) -> Change:
         odds = find_odds(old, model)
         is_forbidden = odds.forbidden > odds.own and old is not state.accepted[-1]
         # what unseen records do not prove takes no place, however likely it is
-        proven = [
-            share for rival, share in odds.rivals
-            if rival.is_proven and not rival.candidate.effect.is_of_records
-        ]  # fmt: skip
+        proven = [share for rival, share in odds.rivals if rival.is_proven]
         is_likelier = max(proven, default=0.0) > odds.own
         is_asked = is_likelier or is_forbidden or is_alike(old, model)
         new = _asked_again(state, model, old) if is_asked else None
@@ -78,7 +75,7 @@ def _asked_again(state: WindowSearch, model: WindowModel, old: Contender) -> Con
     without = refitted(model, rest, task.nominal_model, task.confirm)
     if without is None:
         return None
-    must_be_law = not old.candidate.effect.is_of_records or is_alike(old, model)
+    must_be_law = is_alike(old, model)
     asked = [c.candidate for c in (old, *old.alternatives)]
     asked += laws_of_records(old.candidate, task.effects) if must_be_law else []
     each = [
