@@ -25,6 +25,8 @@ import numpy as np
 
 FOLDS = 10  # of neighbouring blocks
 RIDGES = (np.inf, 10.0, 1.0, 0.1, 0.01, 1e-3, 1e-4)  # ρ that are tried
+MUCH_LEFT = 1.5  # times the noise: from there a cause is asked beside smooth forces
+MOST_LEFT = 0.5  # of what is above the noise: a cause that leaves more is none
 MAX_SWEEPS = 3  # over the curves, in each of which every ρ is chosen beside the others
 
 
@@ -105,3 +107,14 @@ def explained_share(before: float, after: float, gain: float) -> float | None:
     """
     explained = max(0.0, before - after)
     return explained / (explained + gain) if explained + gain > 0 else None
+
+
+def takes_most(without: float, with_it: float, noise: float) -> bool:
+    """Returns whether a cause takes away most of what smooth forces leave above the noise.
+
+    Args:
+        without: sum of squares that smooth forces leave without the cause.
+        with_it: the same with it.
+        noise: sum of squares that noise alone would make.
+    """
+    return with_it - noise <= MOST_LEFT * (without - noise)

@@ -32,7 +32,7 @@ from identification.discovery.attempts import attempt
 from identification.discovery.candidates import list_common
 from identification.discovery.findings.records_evidence import ShiftedRecord
 from identification.discovery.options import DiscoveryOptions
-from identification.discovery.smooth_force import find_smooth_force
+from identification.discovery.smooth_force import MUCH_LEFT, find_smooth_force, takes_most
 from identification.effects.effect import Candidate
 from identification.estimation.priors import Priors
 from identification.logs.noise import noise_floor
@@ -52,8 +52,6 @@ SHIFT = "time_shift"  # the effect
 MIN_SHOWN_SHIFT = 0.1
 SMOOTH = ("_speed", "_load", "_position")  # ends of names of curves; over time they follow all
 ALIKE = 0.1  # of a shift: halves that differ by less tell the same
-FAR = 1.5  # times the noise, from which much is left
-MOST = 0.5  # of what is above the noise: a shift that leaves more is none
 ALONE_STEPS = MOST_STEPS // 4  # of the windows of one record: one number needs no more
 
 
@@ -158,9 +156,9 @@ def _told(
     if a * b <= 0 or abs(a - b) > max(least * 2 * std, ALIKE * abs(_shift(whole))):
         return None
     shift, noise = _shift(whole), _noise(whole)
-    if whole.cost > FAR**2 * noise:
+    if whole.cost > MUCH_LEFT**2 * noise:
         before, after = (_beside_forces(fit, curves) for fit in (at, whole))
-        if after.left - noise > MOST * (before.left - noise):
+        if not takes_most(before.left, after.left, noise):
             return None
         shift, std = shift + after.shift, max(std, after.std)
         if not least * std < abs(shift) < largest:

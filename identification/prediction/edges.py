@@ -52,6 +52,5 @@ def _cut(model: WindowModel, confirm: Sequence[Record], edge: float, horizon: fl
         thinned(model.fit.problem, at), model.fit.q, thinned_moves(model.fit.moves, at),
         tolerance=REFIT_TOLERANCE, most=MAX_LINEARISATIONS,
     )  # fmt: skip
-    fixed = {n: v for c in model.candidates for n, v in (*c.fixed.items(), *c.whole.items())}
-    seen = predict_fitted(model.plant, confirm, horizon, model.scale, found, fixed)
+    seen = predict_fitted(model.plant, confirm, horizon, model.scale, found, model.held)
     return replace(model, fit=found, unseen=seen)

@@ -20,7 +20,7 @@ from identification.effects.jointed import JointPlant
 from identification.model.predictor import Plant
 from identification.model.protocol import FINER
 from identification.prediction.first_fit import REFIT_TOLERANCE, Begun, shapes_of
-from identification.prediction.model import WindowModel, predict_fitted, rms_error
+from identification.prediction.model import WindowModel, held_values, predict_fitted, rms_error
 from identification.prediction.nominal_fit import MAX_SCALE_FITS, SETTLED_CHANGE
 from identification.windows.coarse import steps_of
 from identification.windows.fit import solve
@@ -62,8 +62,7 @@ def with_effect(
     )
     if not found.cost < parent.fit.cost:
         return None
-    values = {n: v for o in parent.candidates for n, v in (*o.fixed.items(), *o.whole.items())}
-    fixed, plant = {**values, **begun.fixed}, begun.parent.plant
+    fixed, plant = {**parent.held, **begun.fixed}, begun.parent.plant
     seen = predict_fitted(plant, confirm, horizon, parent.scale, found, fixed, parent.unseen,
                           lengths=HORIZON)  # fmt: skip
     return WindowModel((*parent.candidates, begun.candidate), found, seen, parent.scale)
@@ -226,8 +225,9 @@ def _refitted(
     found = solve(
         task, model.fit.q, model.fit.moves, tolerance=REFIT_TOLERANCE, most=MAX_LINEARISATIONS
     )
-    fixed = {n: v for c in model.candidates for n, v in (*c.fixed.items(), *c.whole.items())}
-    seen = predict_fitted(task.plant, confirm, horizon, model.scale, found, fixed, model.unseen)
+    seen = predict_fitted(
+        task.plant, confirm, horizon, model.scale, found, model.held, model.unseen
+    )  # fmt: skip
     return replace(model, fit=found, unseen=seen)
 
 
@@ -252,7 +252,7 @@ def refitted(
     """
     fit, old = model.fit, model.fit.problem.unknowns
     keep = {*nominal_model.names, *(n for c in candidates for n in (*c.free, *shapes_of(c)))}
-    values = {n: v for c in candidates for n, v in (*c.fixed.items(), *c.whole.items())}
+    values = held_values(candidates)
     absent = {
         n: 0.0 for c in model.candidates for n in c.sizes if n not in values and n not in keep
     }

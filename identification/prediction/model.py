@@ -24,6 +24,15 @@ from identification.windows.records import Record
 from identification.windows.unseen import LENGTHS, Unseen, predict
 
 
+def held_values(candidates: Sequence[Candidate]) -> dict[str, float]:
+    """Returns the values of some effects' shapes, and of sizes that have one value alone, by name.
+
+    Args:
+        candidates: the effects.
+    """
+    return {n: v for c in candidates for n, v in (*c.fixed.items(), *c.whole.items())}
+
+
 @dataclass(frozen=True)
 class WindowModel:
     """A model with some effects."""
@@ -39,10 +48,14 @@ class WindowModel:
         return self.fit.problem.parts[0].predictor.plant
 
     @property
+    def held(self) -> dict[str, float]:
+        """Values of its effects that hold whatever is fitted: their shapes, and what is there."""
+        return held_values(self.candidates)
+
+    @property
     def values(self) -> dict[str, float]:
         """Values of all parameters that are not the plant's own and hold for all records."""
-        fixed = {n: v for c in self.candidates for n, v in (*c.fixed.items(), *c.whole.items())}
-        return {**fixed, **self.fit.shared}
+        return {**self.held, **self.fit.shared}
 
     @property
     def fitted_power(self) -> float:

@@ -70,10 +70,12 @@ def refit_contenders(
         The model without them, its windows at the best states that any of them found, and they.
     """
     windows = sum(len(p.cut.starts) for p in model.fit.problem.parts)
-    is_much = is_much_left(model, options)
-    is_left = refit_level(scores, options) < options.significance and is_much
+    is_weak = refit_level(scores, options) < options.significance
+    is_far = output_ratios(model.unseen.select).max() > MIN_LIMITED_RATIO
+    # what is left is simulated only where something depends on it
+    is_much = (is_weak or is_far) and is_much_left(model, options)
+    is_left, is_far = is_weak and is_much, is_far and is_much
     chosen = list_contenders(scores, options, windows * len(model.scale), is_left)
-    is_far = is_much and output_ratios(model.unseen.select).max() > MIN_LIMITED_RATIO
     chosen += list_limits(scores, chosen, options) if is_far else []
     if uses(options, "suggested_effects"):
         has = {*(s.candidate.key for s in chosen), *(c.key for c in model.candidates)}

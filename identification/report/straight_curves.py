@@ -12,12 +12,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import mujoco
 import numpy as np
 
 from identification.discovery.effect_results import NamedEffect
 from identification.discovery.fitted import Fitted
 from identification.discovery.result import Discovery
+from identification.effects.axes import drives_of
 from identification.model.predictor import Plant
 from identification.model.tied import gain_path
 from identification.quantities import matched, quantity
@@ -29,7 +29,6 @@ LIMIT = "voltage_limit"  # the effect, of hinges or of slides
 # Of the changes of a curve, that a line explains: of a cube over a full range it explains 85 %.
 STRAIGHT = 0.95
 FEWEST = 4  # nodes that tell a line from a bent one
-JOINTS = (int(mujoco.mjtTrn.mjTRN_JOINT), int(mujoco.mjtTrn.mjTRN_JOINTINPARENT))
 
 
 @dataclass(frozen=True)
@@ -85,7 +84,7 @@ def line_words(nodes: Nodes, force: np.ndarray, std: np.ndarray, unit: str, plan
         )
     elif 1 + line.slope > 0:
         what = f"a gain of {' ± '.join(matched(1 + line.slope, line.std))}"
-        drives = _drives(plant.model, nodes.joint)
+        drives = _drives_of(plant, nodes.joint)
         path = gain_path(plant.model, drives[0]) if len(drives) == 1 else ""
     else:  # no drive turns against what it is told
         return ""
@@ -121,7 +120,7 @@ def limit_of_named(named: NamedEffect, model: Fitted) -> str:
     if not candidate.effect.name.endswith(LIMIT) or speed not in model.at_bound:
         return ""
     force, _, unit = named.parameters["f_m"]
-    drives = _drives(model.plant.model, candidate.where.removeprefix("joint "))
+    drives = _drives_of(model.plant, candidate.where.removeprefix("joint "))
     names = [model.plant.model.actuator(i).name for i in drives]
     gear = abs(float(model.plant.model.actuator_gear[drives[0], 0])) if len(drives) == 1 else 0.0
     least = f"{force / gear:.4g}" if gear else ""
@@ -143,9 +142,6 @@ def lines_needed(found: Discovery) -> list[str]:
     return [*filter(None, each)]
 
 
-def _drives(model: mujoco.MjModel, joint: str) -> list[int]:
+def _drives_of(plant: Plant, joint: str) -> list[int]:
     """Returns the actuators that act on a joint alone."""
-    at = int(model.joint(joint).id)
-    rows = range(model.nu)
-    return [i for i in rows if int(model.actuator_trntype[i]) in JOINTS
-            and int(model.actuator_trnid[i, 0]) == at]  # fmt: skip
+    return drives_of(plant.model, int(plant.model.joint(joint).id))

@@ -29,9 +29,8 @@ from identification.robot.results import RobotFit
 from identification.robot.robot import Robot
 from identification.shares import percent
 
-NOTHING = (
-    0.8  # ε of an output of which next to nothing is explained; a fit always explains a little
-)
+# ε of an output of which next to nothing is explained; a fit always explains a little.
+NOTHING = 0.8
 # ε of an output whose joint has no drive, in a log with columns that nothing reads.
 UNDRIVEN = 0.3
 NOISE = 3.0  # times the noise, that an error must be, and the motion

@@ -15,14 +15,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from identification.discovery.smooth_force import MUCH_LEFT, takes_most
 from identification.torques.candidates import together
 from identification.torques.equations import Equations, unseen_squares
 from identification.torques.fits import CLOCK, FIXED, Fitted, extended
 from identification.torques.laws import Missing
 from identification.torques.scores import FAR
-
-MUCH = 1.5  # times the noise, from which much is left
-MOST = 0.5  # of what is above the noise: a clock that leaves more is no shift
 
 
 def find_clock(
@@ -40,12 +38,12 @@ def find_clock(
     if not abs(fit.θ[clock]) > FAR * fit.std[clock]:
         return None
     n, σ = equations.counts.sum(axis=1), np.nan_to_num(fit.σ)
-    if fit.weights @ (n * σ**2) > MUCH**2 * (fit.weights @ (n * noise**2)):
+    if fit.weights @ (n * σ**2) > MUCH_LEFT**2 * (fit.weights @ (n * noise**2)):
         smooth = [c for c in curves if not c.name.endswith("_time")]  # over time they follow all
         whole = extended(equations, whole, together(smooth)) if smooth else whole
         left, without = (_left(equations, whole, held) for held in (None, clock))
         floor = float(whole.fit.weights @ (n * noise**2))
-        if left - floor > MOST * (without - floor):
+        if not takes_most(without, left, floor):
             return None
     late, std = float(whole.fit.θ[clock]), max(float(f.std[clock]) for f in (fit, whole.fit))
     return (late, std) if abs(late) > FAR * std else None

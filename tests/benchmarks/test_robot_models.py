@@ -1,7 +1,7 @@
 """An answer is right if it names all that is hidden, each at its joint, and nothing else."""
 
 import pytest
-from robot_models import is_right, is_wrong, page
+from robot_models import is_right, is_wrong, page, study
 from robot_worlds import LISTED, UNLISTED, make
 
 
@@ -77,3 +77,10 @@ def test_a_world_of_two_effects_hides_two_that_its_robot_may_hide_and_is_made_ag
     assert len(motions) == 2
     assert world.hidden[0].effect in LISTED
     assert world.hidden[1].effect in UNLISTED
+
+
+@pytest.mark.long
+def test_a_weak_motor_of_a_servo_is_named_and_without_the_pass_it_is_not():
+    found, left = (study("leg", "voltage", 1603, w) for w in ((), ("limits_of_much_left",)))
+    assert [n["name"] for n in found["named"]] == ["voltage_limit"]
+    assert left["named"] == []

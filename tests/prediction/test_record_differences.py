@@ -12,13 +12,17 @@ from identification.discovery.candidates import list_common
 from identification.discovery.findings.finding import FindingKind
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate, in_each_record
-from identification.prediction.discovery import discover_records
+from identification.prediction.discovery import WINDOWS, discover_records
+from identification.prediction.edges import without_edges
+from identification.prediction.moves.add_set import with_one
 from identification.prediction.moves.likeliest_of_set import laws_of_records
 from identification.prediction.scores import WindowScore
 from identification.prediction.screening import at_several, felt_places
 from identification.prediction.selection import STRONG_BIC, ranked
+from identification.prediction.task import RecordsTask
 from identification.report.discovery_json import discovery_to_json
 from identification.report.discovery_report import discovery_text
+from identification.windows.records import as_records
 
 FEW = ("offset", "stiffness", "encoder_offset")
 SHIFTS = (0.02, -0.015, 0.01, -0.02)  # of each record's inputs [s]
@@ -117,6 +121,25 @@ def test_inputs_that_come_early_in_all_records_alike_are_a_matter_of_clocks():
     assert answer.named == ()
     (told,) = answer.differences
     assert all(v == pytest.approx(-0.015, abs=1e-3) for v, _ in told.values.values())
+
+
+def test_beside_a_shift_windows_that_feel_inputs_beyond_the_ends_are_left_out():
+    logs = [record(k, 600, {"time_shift.tau@drive": 0.02}, plant=pendulum()) for k in (1, 2)]
+    base = replace(nominal_model(), horizon=0.26)  # the inputs jump within windows
+    effects = listed("time_shift")
+    task = RecordsTask(nominal_model=base, records=as_records(logs[:1], logs[1:]), effects=effects,
+                       options=DiscoveryOptions())  # fmt: skip
+    state = WINDOWS.begin(task, print)
+    assert without_edges(state) is state
+    best = max(state.scores, key=lambda s: s.fall).candidate
+    model = with_one(state, state.model, best)
+    cut = without_edges(replace(state, model=model))
+    assert {r.edge for r in cut.task.records} == {pytest.approx(0.02, abs=1e-3)}
+    (before,), (after,) = (m.fit.problem.parts for m in (model, cut.model))
+    assert list(after.cut.starts) == list(before.cut.starts[1:-1])
+    assert len(cut.model.unseen.at_horizon[0]) == len(model.unseen.at_horizon[0]) - 2
+    again = without_edges(cut)
+    assert again is cut
 
 
 def test_the_law_of_a_difference_is_that_of_all_records():

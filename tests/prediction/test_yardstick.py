@@ -17,7 +17,7 @@ from identification.prediction.neighbours import (
 )
 from identification.prediction.nominal_fit import fit_nominal
 from identification.prediction.scores import condensed, window_scores
-from identification.prediction.yardstick import measure
+from identification.prediction.yardstick import Yardstick, measure
 
 EFFECTS = candidates(pendulum(), FREE)
 
@@ -99,3 +99,11 @@ def test_a_force_of_the_position_that_is_left_speaks_against_no_friction():
     (beyond,) = stick.beyond.values()
     assert stick.of_joint["joint hinge"] > 0.5
     assert beyond.share < 0.1 * stick.of_joint["joint hinge"]
+
+
+def test_a_law_of_a_sensor_is_measured_by_forces_on_the_joint_that_it_measures():
+    (law,) = list_common(listed("encoder_offset"))
+    stick = Yardstick(every=0.5, of_joint={"joint hinge": 0.25}, beyond={}, curves=())
+    assert stick.share_of(law, 0.75) == pytest.approx(0.75)  # of 0.75 and 0.25 more
+    (inputs,) = list_common(listed("saturation"))[:1]
+    assert stick.share_of(inputs, 0.75) is None
