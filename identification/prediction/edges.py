@@ -35,7 +35,8 @@ def without_edges(state: WindowSearch) -> WindowSearch:
     task, model = state.task, state.model
     shifts = [c for c in model.candidates if c.effect.is_of_records and "input" in c.effect.hooks]
     sizes = [v for c in shifts for v, _, _ in fitted_sizes(model, c)[1].values()]
-    edge = float(np.max(np.abs(sizes), initial=0.0))
+    steps = np.ceil(np.max(np.abs(sizes), initial=0.0) / task.records[0].log.sampling_time)
+    edge = float(steps) * task.records[0].log.sampling_time  # a refit moves τ a little
     if not edge > max(r.edge for r in task.records):
         return state
     records = tuple(replace(r, edge=edge) for r in task.records)

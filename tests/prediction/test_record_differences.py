@@ -14,8 +14,14 @@ from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate, in_each_record
 from identification.prediction.discovery import WINDOWS, discover_records
 from identification.prediction.edges import without_edges
+from identification.prediction.judging import judged
 from identification.prediction.moves.add_set import with_one
-from identification.prediction.moves.likeliest_of_set import laws_of_records
+from identification.prediction.moves.likeliest_of_set import (
+    is_alike,
+    laws_of_records,
+    likeliest_of_set,
+)
+from identification.prediction.odds import find_odds
 from identification.prediction.scores import WindowScore
 from identification.prediction.screening import at_several, felt_places
 from identification.prediction.selection import STRONG_BIC, ranked
@@ -123,23 +129,49 @@ def test_inputs_that_come_early_in_all_records_alike_are_a_matter_of_clocks():
     assert all(v == pytest.approx(-0.015, abs=1e-3) for v, _ in told.values.values())
 
 
-def test_beside_a_shift_windows_that_feel_inputs_beyond_the_ends_are_left_out():
-    logs = [record(k, 600, {"time_shift.tau@drive": 0.02}, plant=pendulum()) for k in (1, 2)]
+def with_shift(*shifts):
+    """A search's state whose model has a shift of each of some records; the last one confirms."""
+    logs = [replace(record(k, 600, {"time_shift.tau@drive": s}, plant=pendulum()), name=f"{k}")
+            for k, s in enumerate(shifts, 1)]  # fmt: skip
     base = replace(nominal_model(), horizon=0.26)  # the inputs jump within windows
-    effects = listed("time_shift")
-    task = RecordsTask(nominal_model=base, records=as_records(logs[:1], logs[1:]), effects=effects,
-                       options=DiscoveryOptions())  # fmt: skip
+    task = RecordsTask(
+        nominal_model=base, records=as_records(logs[:-1], logs[-1:]),
+        effects=listed("time_shift", "delay"), options=DiscoveryOptions(),
+    )  # fmt: skip
     state = WINDOWS.begin(task, print)
-    assert without_edges(state) is state
-    best = max(state.scores, key=lambda s: s.fall).candidate
-    model = with_one(state, state.model, best)
-    cut = without_edges(replace(state, model=model))
-    assert {r.edge for r in cut.task.records} == {pytest.approx(0.02, abs=1e-3)}
-    (before,), (after,) = (m.fit.problem.parts for m in (model, cut.model))
-    assert list(after.cut.starts) == list(before.cut.starts[1:-1])
-    assert len(cut.model.unseen.at_horizon[0]) == len(model.unseen.at_horizon[0]) - 2
-    again = without_edges(cut)
-    assert again is cut
+    best = max((s for s in state.scores if s.candidate.effect.own), key=lambda s: s.fall).candidate
+    new = judged(state.model, with_one(state, state.model, best), 1, task.options)
+    return state, replace(state, model=new.model, accepted=(new,))
+
+
+def test_beside_a_shift_windows_that_feel_inputs_beyond_the_ends_are_left_out():
+    bare, state = with_shift(0.016, 0.016)
+    assert without_edges(bare) is bare
+    cut = without_edges(state)
+    assert [r.edge for r in cut.task.records] == pytest.approx([0.02, 0.02])  # two samples
+    (before,), (after,) = (s.model.fit.problem.parts for s in (state, cut))
+    assert list(after.cut.starts) == list(before.cut.starts[1:])  # the last is not at the end
+    assert len(cut.model.unseen.at_horizon[0]) == len(state.model.unseen.at_horizon[0]) - 1
+    assert without_edges(cut) is cut
+
+
+def test_a_shift_that_all_records_have_alike_becomes_a_delay_and_is_no_rival_of_it():
+    _, state = with_shift(0.016, 0.016)
+    (shift,) = state.accepted
+    assert is_alike(shift, state.model)
+    model, (law,), _ = likeliest_of_set(without_edges(state), print)
+    assert [c.effect.name for c in model.candidates] == ["delay"]
+    assert law.is_proven
+    odds = find_odds(replace(law, alternatives=(shift,)), model)
+    assert (odds.own, odds.rivals) == (1.0, ())
+
+
+def test_shifts_that_differ_stay_differences():
+    _, state = with_shift(0.016, -0.009, 0.005)
+    assert not is_alike(state.accepted[0], state.model)
+    model, (kept,), _ = likeliest_of_set(state, print)
+    assert kept.candidate.effect.name == "time_shift"
+    assert model is state.model
 
 
 def test_the_law_of_a_difference_is_that_of_all_records():
