@@ -1,11 +1,12 @@
 """Have columns of one joint one unit: its position, its rate, and what its drive wants of it?
 
     q(t_k+1) - q(t_k) = b ∫ v dt + c        over equal pieces of the log; v is measured or wanted
-    q(t) = b u/g + c                        u is the wanted position, g the gear
+    q(t + τ) = b u(t)/g + c                 u is the wanted position, g the gear
 
-b and c are least squares, and c is an offset. No model is asked: whatever the robot is, b of a
-measured rate is 1, and a joint that goes with a wanted motion goes neither ten times as far nor a
-tenth. Degrees in one of the two columns make b 57 or 1/57, revolutions 6.3, rpm 1/9.5.
+b and c are least squares, c is an offset, and τ is how much later a servo follows. No model is
+asked: whatever the robot is, b of a measured rate is 1, and a joint that goes with a wanted motion
+goes neither ten times as far nor a tenth. Degrees in one of the two columns make b 57 or 1/57,
+revolutions 6.3, rpm 1/9.5.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ SERVO = {"qpos": ("m", "rad"), "qvel": ("m/s", "rad/s")}  # of a wanted motion: 
 PIECES = 20  # of a log
 CERTAIN = 0.95  # share of the variance that the line explains
 NEAR = 1.25  # factor from 1 that b may be once the unit is right; rpm is 1.5 from 1/2π
+LATEST, LAGS = 0.2, 21  # how much later a servo follows at most [s], and lags that are tried
 WANTED = 10.0  # factor from 1 that b may be of a drive that is weak, or of a joint that resounds
 
 
@@ -104,7 +106,7 @@ def _pairs(model: mujoco.MjModel, log: Log) -> Iterator[Pair]:
             if name in wanted and model.actuator_trnid[i, 0] == joint:
                 u = log.inputs[:, i] / (model.actuator_gear[i, 0] or 1.0)
                 is_rate = wanted[name].endswith("/s")
-                slope = _of_rate(log, y, u) if is_rate else _slope(u, y)
+                slope = _of_rate(log, y, u) if is_rate else _followed(log, u, y)
                 yield Pair(q, name, wanted[name], slope, WANTED)
 
 
@@ -114,6 +116,16 @@ def _of_rate(log: Log, y: np.ndarray, v: np.ndarray) -> float:
     means = (v[1:] + v[:-1]) / 2
     summed = np.concatenate([[0.0], np.cumsum(means * log.sampling_time)])
     return _slope(np.diff(summed[edges]), np.diff(y[edges]))
+
+
+def _followed(log: Log, u: np.ndarray, y: np.ndarray) -> float:
+    """Returns b of a wanted position and the position, shape (n,) each, at the best lag."""
+    most = min(round(LATEST / log.sampling_time), len(y) // 4)
+    lags = np.unique(np.linspace(0, most, LAGS).round().astype(int)).tolist()
+    each = [(u[: len(u) - lag], y[lag:]) for lag in lags]
+    if any(part.std() == 0 for pair in each for part in pair):
+        return _slope(u, y)
+    return _slope(*max(each, key=lambda pair: float(np.corrcoef(*pair)[0, 1])))
 
 
 def _slope(x: np.ndarray, y: np.ndarray) -> float:

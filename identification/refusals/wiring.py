@@ -51,6 +51,15 @@ MOST_COLUMNS = 32
 ENOUGH = 0.15  # ε of a usual unit, behind which no unusual one is asked
 
 
+def refuse_different_units(robot: Robot, log: Log) -> None:
+    """Refuse a log in which columns of one joint have another unit than they say."""
+    file, log = robot.file, beginning(log)
+    column = {n: file.columns.get(n, n) for n in (*log.output_names, *log.input_names)}
+    cure = different_units(robot.plant_of(log).model, log, column)
+    if cure and "units" not in file.trust:
+        raise InputError(f'log {log.name!r}: {cure}, or write trust = ["units"] into {file.path}')
+
+
 def refuse_miswired(robot: Robot, log: Log) -> None:
     """Refuse a log that other units, signs or places of its columns would explain far better."""
     file, plant = robot.file, robot.plant_of(log)
@@ -63,8 +72,6 @@ def refuse_miswired(robot: Robot, log: Log) -> None:
     together = partial(all_inputs_turned, model=plant.model, file=file)
     in_units = partial(unit_readings, wanted=wanted)
     balance, lengths = Balance(plant.model, log), lengths_of(robot, log)
-    if units and (cure := different_units(plant.model, log, column)):
-        raise InputError(f'log {log.name!r}: {cure}, or write trust = ["units"] into {file.path}')
     is_far = bool(far_angles(plant.model, log))
     is_explained = is_nearer = False
     for judge in (Judge(plant, length, log) for length in lengths):

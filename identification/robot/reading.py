@@ -26,7 +26,7 @@ from identification.refusals.touching import (
     touch_sentence,
 )
 from identification.refusals.trust import trusted
-from identification.refusals.wiring import refuse_miswired
+from identification.refusals.wiring import refuse_different_units, refuse_miswired
 from identification.robot.blame import refuse_absurd_start
 from identification.robot.checks import with_judged_gaps
 from identification.robot.file import RobotFile, read_robot_file, with_spread
@@ -90,8 +90,10 @@ def read_robot(
     contradicted = is_contradicted(robot, every, touches)
     text = touch_sentence(robot, every, touches, contradicted)
     with told_of_touches(text if contradicted else ""):
+        for measured in every:  # nor for degrees that are taken for radians, in one of two columns
+            refuse_different_units(robot, measured)
         model, far = robot.plant.model, [log for log in every if far_angles(robot.plant.model, log)]
-        for measured in far:  # no step is short enough for degrees that are taken for radians
+        for measured in far:  # nor in both
             refuse_miswired(robot, measured)
             refuse_limits(robot.file, model, False, measured, whatever=True)
         refuse_coarse_steps(robot)

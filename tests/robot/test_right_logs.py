@@ -24,7 +24,7 @@ from identification.refusals.balance import unbalanced
 from identification.refusals.by_forces import NEEDED, rescaled
 from identification.refusals.columns import Doubt
 from identification.refusals.same_units import different_units
-from identification.refusals.wiring import refuse_miswired
+from identification.refusals.wiring import refuse_different_units, refuse_miswired
 
 pytestmark = pytest.mark.usefixtures("few_effects")
 
@@ -146,6 +146,17 @@ def test_a_wanted_position_in_degrees_is_refused_by_the_robot(tmp_path):
     q = moved()[0][:, None]
     log = plain_log(q, stepped(model, q), "u1", "q1")
     own, read = robot(tmp_path, HOLDING, log, "horizon = 0.2")
-    refuse_miswired(own, read)
+    refuse_different_units(own, read)
     with pytest.raises(InputError, match='write u1 = "deg" under'):
-        refuse_miswired(own, replace(read, inputs=DEG * read.inputs))
+        refuse_different_units(own, replace(read, inputs=DEG * read.inputs))
+
+
+@pytest.mark.parametrize("late", [0, 4, 15])
+def test_a_wanted_position_in_degrees_is_told_however_late_the_servo_follows(late):
+    model, t = mujoco.MjModel.from_xml_string(HOLDING), 0.01 * np.arange(400)
+    q = 0.5 * np.sin(9 * t) + 0.2 * np.sin(23 * t)
+    y = np.concatenate([q[:1].repeat(late), q[: len(q) - late]])
+    names = {n: n for n in ("u1", "q1")}
+    assert different_units(model, read_as(y, q, "u1", "input"), names) is None
+    said = different_units(model, read_as(y, DEG * q, "u1", "input"), names)
+    assert 'u1 = "deg"' in said
