@@ -63,10 +63,16 @@ class Balance:
         return self.whole is not None and self.whole.whole > NEEDED
 
     def confirms(self, reading: Reading, rest: np.ndarray) -> bool:
-        """Returns whether forces speak for a reading that leaves ε (ny,)."""
+        """Returns whether forces speak for a reading that leaves ε (ny,).
+
+        Where they say nothing, the reading must explain nearly all. Then they say nothing of
+        another unit of a servo's setpoint and position either: it makes gravity and friction a
+        smaller part of the motion, as a larger gain does, and the gain of a servo is a guess.
+        """
         k = list(reading.columns)
         if self.as_read is None:
-            return bool((rest[k] < UNEXPLAINED).all())
+            is_rescaled = "units" in reading.kinds and np.any(reading.log.inputs != self.log.inputs)
+            return bool(not is_rescaled and (rest[k] < UNEXPLAINED).all())
         other = self.of(reading)
         # Together, because a joint without a drive looks the same from both sides.
         return other is not None and bool(other[k].sum() < NEARER * self.as_read[k].sum())
