@@ -59,7 +59,8 @@ without one; what makes a robot rough must have no name, but a curve of the data
 the four-bar and the gripper, whose joints are coupled, a name may also stand at another joint or at
 all of them, because the motion cannot tell these apart. In a world of *two clocks* the inputs of
 each record act up to 25 ms later or earlier than their stamps say, and each record has its own
-time; a servo only comes late.
+time; a servo only comes late. In a *sweep* the inputs grow and get faster along one record of 16 s,
+which is fitted and confirms in turn.
 """
 
 
@@ -70,23 +71,25 @@ def study(
     without: tuple[str, ...],
     is_rough: bool = False,
     has_clocks: bool = False,
+    is_sweep: bool = False,
 ) -> dict[str, Any]:
     """Returns what a search says of a world; an error is a row too."""
     from identification import DiscoveryOptions, discover, read_robot
 
-    world, motions = make(robot, effect, seed, is_rough, has_clocks)
+    world, motions = make(robot, effect, seed, is_rough, has_clocks, is_sweep)
     row: dict[str, Any] = {
         "robot": robot, "effect": world.effect, "joint": world.joint,
         "size": "+".join(f"{h.size:.4g}" for h in world.hidden), "seed": seed,
         "rough": {joint: round(size, 6) for joint, size in world.rough},
-        "clocks": list(world.clocks),
+        "clocks": list(world.clocks), "sweep": is_sweep,
     }  # fmt: skip
     begun = time.process_time()
     try:
         with TemporaryDirectory() as folder:
             toml, logs = write(world, motions, Path(folder))
             options = DiscoveryOptions(without=without)
-            found = discover(read_robot(toml, logs[0], confirm=[logs[1]]), options=options)
+            confirm = [] if is_sweep else [logs[1]]
+            found = discover(read_robot(toml, logs[0], confirm=confirm), options=options)
     except Exception as error:
         return {**row, "error": f"{type(error).__name__}: {error}"}
     return {**row, **answer_of(found), "seconds": time.process_time() - begun}
@@ -216,12 +219,13 @@ def _refused(rows: Sequence[Row], doubt: str) -> list[bool]:
 def page(rows: Sequence[Row]) -> str:
     """Returns the page of the rows of one search."""
     kinds = [
-        [r for r in rows if not _is_rough(r) and not r.get("clocks")],
+        [r for r in rows if not (_is_rough(r) or r.get("clocks") or r.get("sweep"))],
         [r for r in rows if _is_rough(r)],
         [r for r in rows if r.get("clocks")],
+        [r for r in rows if r.get("sweep")],
     ]
-    lines = [HEAD, "| of all robots | nothing else is missing | rough | two clocks |",
-             "|---|---|---|---|"]  # fmt: skip
+    lines = [HEAD, "| of all robots | nothing else is missing | rough | two clocks | sweep |",
+             "|---|---|---|---|---|"]  # fmt: skip
     for what, chosen, is_hit in MEASURES:
         rates = (said(rate([r for r in kind if chosen(r)], is_hit)) for kind in kinds)
         lines.append(f"| {what} | {' | '.join(rates)} |")
@@ -276,8 +280,9 @@ def _told(row: Row) -> str:
         return f"`{row['effect']}`: an error"
     names = " + ".join(f"`{n['name']}` at {n['where']}" for n in row["named"])
     where = f" at {row['joint']}" if row["joint"] else ""
-    rough = ", rough" if _is_rough(row) else ", two clocks" if row.get("clocks") else ""
-    return f"`{row['effect']}`{where}{rough}: {names or row['verdict']}"
+    kind = {"rough": _is_rough(row), "two clocks": row.get("clocks"), "sweep": row.get("sweep")}
+    of = "".join(f", {words}" for words, holds in kind.items() if holds)
+    return f"`{row['effect']}`{where}{of}: {names or row['verdict']}"
 
 
 def main() -> None:
@@ -289,6 +294,7 @@ def main() -> None:
     add("--seed", type=int, default=1)
     add("--count", type=int, default=1, help="worlds of each robot and effect")
     add("--clocks", action="store_true", help="records that two clocks stamped; give --out too")
+    add("--sweep", action="store_true", help="one record, whose inputs grow; give --out too")
     add("--without", nargs="*", default=[], help="passes that are left out; give --out too")
     only = parser.add_mutually_exclusive_group()
     only.add_argument("--rough", action="store_true", help="rough worlds only")
@@ -299,8 +305,9 @@ def main() -> None:
     add("--only-page", action="store_true")
     given = parser.parse_args()
     tasks = {
-        f"{robot}/{effect}/{seed}" + "/rough" * rough + "/clocks" * given.clocks:
-            (robot, effect, seed, tuple(given.without), rough, given.clocks)
+        f"{robot}/{effect}/{seed}" + "/rough" * rough + "/clocks" * given.clocks
+        + "/sweep" * given.sweep:
+            (robot, effect, seed, tuple(given.without), rough, given.clocks, given.sweep)
         for rough in ((True,) if given.rough else (False,) if given.exact else (False, True))
         for seed in range(given.seed, given.seed + given.count)
         for effect in given.effects

@@ -62,7 +62,7 @@ def test_the_page_counts_rough_robots_by_themselves():
         row("coulomb_friction", "hip", "named", STIFF) | {"rough": {"hip": 0.1}},
         row("nothing", "", "unlisted effect", CURVE) | {"rough": {"hip": 0.1}},
     ]
-    cells = [line.split("|")[2:4] for line in page(rows).splitlines() if line.count("|") == 5]
+    cells = [line.split("|")[2:4] for line in page(rows).splitlines() if line.count("|") == 6]
     rates = {tuple(cell.split("[")[0].strip() for cell in both) for both in cells}
     assert {("1 of 1", "0 of 1"), ("0 of 1", "1 of 2"), ("-", "1 of 1")} <= rates
 
