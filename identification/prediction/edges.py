@@ -12,8 +12,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from identification.prediction.extension import MAX_LINEARISATIONS
-from identification.prediction.first_fit import REFIT_TOLERANCE, thinned, thinned_moves
+from identification.prediction.first_fit import (
+    MAX_LINEARISATIONS,
+    REFIT_TOLERANCE,
+    thinned,
+    thinned_moves,
+)
 from identification.prediction.model import WindowModel, predict_fitted
 from identification.prediction.task import WindowSearch
 from identification.prediction.told_effects import fitted_sizes

@@ -21,8 +21,7 @@ from identification.discovery.attempts import attempt, refuse_infinite
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.passes import uses
 from identification.prediction.crossing import at_their_best
-from identification.prediction.extension import MAX_LINEARISATIONS
-from identification.prediction.first_fit import REFIT_TOLERANCE
+from identification.prediction.first_fit import MAX_LINEARISATIONS, REFIT_TOLERANCE
 from identification.prediction.judging import doubt_of_size
 from identification.prediction.model import WindowModel, predict_fitted
 from identification.prediction.selection import ranked

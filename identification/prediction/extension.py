@@ -19,7 +19,12 @@ from identification.effects.effect import Candidate
 from identification.effects.jointed import JointPlant
 from identification.model.predictor import Plant
 from identification.model.protocol import FINER
-from identification.prediction.first_fit import REFIT_TOLERANCE, Begun, shapes_of
+from identification.prediction.first_fit import (
+    MAX_LINEARISATIONS,
+    REFIT_TOLERANCE,
+    Begun,
+    shapes_of,
+)
 from identification.prediction.model import WindowModel, held_values, predict_fitted, rms_error
 from identification.prediction.nominal_fit import MAX_SCALE_FITS, SETTLED_CHANGE
 from identification.windows.coarse import steps_of
@@ -36,7 +41,6 @@ from identification.windows.unseen import HORIZON
 
 # Of logarithms: outputs whose errors have fallen by factors that differ by less keep their weights.
 UNLIKE_FALLS = 0.5
-MAX_LINEARISATIONS = 12  # of a refit: an effect that takes more is not what is missing
 
 
 def with_effect(

@@ -1,7 +1,8 @@
 """An answer is right if it names all that is hidden, each at its joint, and nothing else."""
 
 import pytest
-from robot_models import is_right, is_wrong, page, study
+from robot_models import study
+from robot_page import is_right, is_wrong, page
 from robot_worlds import LISTED, UNLISTED, make
 
 
