@@ -67,7 +67,7 @@ def _verdict(found: Discovery) -> list[str]:
     if found.verdict == "nothing missing":
         return [nothing_sentence(found), *_findings(found)]
     if found.verdict == "unknown effect":
-        return [_unknown(found)]
+        return _unknown(found)
     plant = found.final.plant
     said = [
         named_sentences(found, named)
@@ -156,8 +156,12 @@ def _likeliest_sentences(found: Discovery) -> list[str]:
     return [] if best is None else [f"The likeliest is {describe_rejected(best, found)}."]
 
 
-def _unknown(found: Discovery) -> str:
-    """Returns the paragraph that says that something is missing which no known effect explains."""
+def _unknown(found: Discovery) -> list[str]:
+    """Returns paragraphs on something missing that no known effect explains.
+
+    They say how much it is, what is likeliest, which force at which place would do it, what else
+    was left, and what is different in a record.
+    """
     tried = len({s.candidate.effect.name for s in found.scores})
     left, noise, _ = errors_left(found)
     ratio = found.times_noise(found.before)
@@ -171,21 +175,23 @@ def _unknown(found: Discovery) -> str:
     if (at := find_place(found)) is not None:
         figure = "" if found.horizon is None else "; see the figure"  # a free run has none of it
         place.append(f"{sentence(str(at)).removesuffix('.')}{figure}.")
-    return " ".join(
+    paragraphs = [
         [
             f"Something is missing that {none_explains(tried)}: the error of the fitted model on"
             f" unseen data{unseen_of(found)} is {left}{found.over}{times}{needed}.",
-            *_likeliest_sentences(found),
             "The program gives no name rather than a wrong one.",
-            *_doubtful(found),
+        ],
+        [*_likeliest_sentences(found), *_doubtful(found)],
+        [
             *place,
             *needed_sentences(forces),
             *lines_needed(found),
             *_any_forces(found, forces),
-            *_findings(found),
-            *(sentence(describe_finding(f)) for f in found.located),
-        ]
-    )
+        ],
+        _findings(found),
+        [sentence(describe_finding(f)) for f in found.located],
+    ]
+    return [" ".join(each) for each in paragraphs if each]
 
 
 def _any_forces(found: Discovery, forces: Sequence[NeededForce]) -> list[str]:

@@ -197,10 +197,13 @@ def describe_rejected(rejected: RejectedEffect, found: Discovery) -> str:
     """Returns a rejected effect in a line: its size, what it does on unseen data, and why not."""
     proof, plant = rejected.proof, found.final.plant
     why = describe_doubt(rejected, found.options)
+    told = proof.told
+    # A few windows that err by far make the mean square; blocks of windows make t.
+    but = ", but most of the data are predicted worse" if told.fall > 0 and told.t < 0 else ""
     return (
         f"{describe_there(rejected.candidate, plant)}: {describe_sizes(rejected, plant)};"
-        f" {_where_told(proof)} the mean square {fall_words(proof.told.fall, 3)}"
-        f" (t = {proof.told.t:z.1f}, chance {chance_words(proof.told.chance)}){why and f'; {why}'}"
+        f" {_where_told(proof)} the mean square {fall_words(told.fall, 3)}{but}"
+        f" (t = {told.t:z.1f}, chance {chance_words(told.chance)}){why and f'; {why}'}"
     )
 
 

@@ -78,7 +78,7 @@ def test_over_the_rate_it_says_whether_the_force_brakes():
     assert place.reads == "rate of hinge"
     assert abs(place.force) == pytest.approx(LEVEL, abs=3 * place.std + 0.2 * LEVEL)
     assert ", against the motion: " in str(place)
-    (said,) = discovery_verdict(unknown())
+    said = " ".join(discovery_verdict(unknown()))
     assert f"Joint hinge, {place.range}: {place.size} are missing; see the figure." in said
     turned = replace(place, force=-place.force)
     assert ", with the motion: " in str(turned)

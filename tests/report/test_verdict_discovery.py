@@ -76,7 +76,7 @@ def test_of_an_unknown_effect_the_likeliest_that_was_tried_is_told_once_with_its
         UnprovenEffect(*c.key[:1], c.effect.phrase, c.where, 0.59, proof.t, "chance", 0.2),
     )
     answer = replace(found("unknown effect"), rejected=(best, other), findings=(finding,))
-    (said,) = discovery_verdict(answer)
+    said = " ".join(discovery_verdict(answer))
     assert f"The likeliest is {describe_rejected(best, answer)}." in said
     assert said.count(describe_effect(c)) + said.count(describe_effect(c).capitalize()) == 1
     assert "chance 0.2, all effects that were tried counted" in said
