@@ -185,7 +185,7 @@ FITS = ("whole", "model", "final")
 def evidence_to_json(evidence: Evidence, model: mujoco.MjModel) -> dict[str, Any]:
     """Returns what torques say as plain values."""
     names, units = joint_names(model)
-    joints = {}
+    joints, rows = {}, evidence.equations.rows
     for j, name in enumerate(names):
         of = {
             fit: {
@@ -210,7 +210,11 @@ def evidence_to_json(evidence: Evidence, model: mujoco.MjModel) -> dict[str, Any
         "differences": [_score(s) for s in evidence.differences[:SHOWN]],
         "asked": evidence.asked,
         "inconsistent": [evidence.base.names[k] for k in evidence.inconsistent],
-        "bands": {r.name: r.band for r in evidence.equations.rows},
+        "bands": {r.name: r.band for r in rows},
+        "clocks": {
+            r.name: {"value": s, "std": std, "unit": "s"}
+            for r, s, std in zip(rows, evidence.clocks.shift, evidence.clocks.std, strict=True)
+        },
     })  # fmt: skip
 
 

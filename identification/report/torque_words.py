@@ -249,12 +249,7 @@ def _doubts(evidence: Evidence) -> list[str]:
             if many else f" no value moves by more than {moved.max():.1f} std."
         )
     ]  # fmt: skip
-    late, off = evidence.clock or (0.0, 0.0)
-    if abs(late) > LATE:
-        out.append(
-            f"The torques act {quantity(abs(late), off, 's')} {'later' if late > 0 else 'earlier'}"
-            " than their stamps say; the fits correct this."
-        )
+    out += _late(evidence)
     std, scale = evidence.whole.fit.std[:r], np.abs(evidence.whole.fit.θ[:r])
     told = int(np.sum(std < np.maximum(scale, np.abs(evidence.base.values)) / 2))
     out.append(f"Of {r} base parameters, {told} are known to better than half of their value.")
@@ -265,6 +260,18 @@ def _doubts(evidence: Evidence) -> list[str]:
             " geometry of the model is wrong, or the model lacks something."
         )
     return out
+
+
+def _late(evidence: Evidence) -> list[str]:
+    """Returns a sentence on inputs that act later or earlier than their stamps say."""
+    rows, clocks = evidence.equations.rows, evidence.clocks
+    said = [
+        f"{quantity(abs(s), float(std), 's')} {'later' if s > 0 else 'earlier'} in {r.name}"
+        for r, s, std in zip(rows, clocks.shift, clocks.std, strict=True) if abs(s) > LATE
+    ]  # fmt: skip
+    if not said:
+        return []
+    return [f"The inputs act {listed(said)} than their stamps say; the fits correct this."]
 
 
 def base_rows(evidence: Evidence) -> list[tuple[str, str, str, str]]:

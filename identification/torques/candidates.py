@@ -7,7 +7,7 @@
     load at a body                 Y_b (M, h, I_O)             any place and inertia
     rotor inertia of a joint       a at the joint
     gain of an actuator            -τ̂_u, so that its force is (1 + γ) τ_u
-    delay of one actuator          dτ̂_u/dt, for a delay far below the period of the band
+    delay of one actuator          dτ_u/dt of what its input moves, far below the band's period
     gain drift of an actuator      t τ̂_u
 
 τ̂_u is the drives' force as the base fit predicts it from the motion, and not the measured one: its
@@ -159,12 +159,12 @@ def _of_drives(
     alone = [
         i for i in range(model.nu) if acts[:, i].any() and (acts.sum(axis=1)[acts[:, i]] == 1).all()
     ]
-    rate = rate_of(equations, expected)
+    rate = equations.stacked("late")
     late = equations.stacked("time")[:, None] * expected
     lasts = max(float(r.time[-1]) for r in equations.rows)
     groups = [(f"input {model.actuator(i).name}", [i]) for i in alone]
     together = [("all inputs", alone)] if len(alone) > 1 else []
-    for name, phrase, size, unit, most, of, where in (
+    for name, phrase, size, unit, most, force, where in (
         # all gains together are the masses of everything
         ("gain", "input: another gain", "gamma", "", GAIN, -expected, groups),
         ("delay", "input: comes late", "tau", "s", SHIFT, rate, groups),
@@ -172,16 +172,11 @@ def _of_drives(
     ):
         for place, some in where:
             joints = np.flatnonzero(acts[:, some].any(axis=1)).tolist()
+            of = force if force.ndim == 2 else force[:, :, some].sum(axis=2)
             yield Missing(
                 name=name, where=place, phrase=phrase, sizes=(size,), units=(unit,), signs=(0,),
                 columns=partial(_at_joints, of, joints), most=(most,),
             )  # fmt: skip
-
-
-def rate_of(equations: Equations, x: np.ndarray) -> np.ndarray:
-    """Returns the rates of signals (N, nv) of all records, shape (N, nv)."""
-    parts = zip(equations.rows, equations.divided(x), strict=True)
-    return np.concatenate([np.gradient(part, r.time, axis=0) for r, part in parts])
 
 
 def together(laws: Sequence[Missing]) -> Missing:

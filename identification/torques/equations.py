@@ -17,7 +17,7 @@ outweigh what was known.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import mujoco
 import numpy as np
@@ -76,6 +76,16 @@ class Equations:
     def divided(self, x: np.ndarray) -> list[np.ndarray]:
         """Returns the part of each record of an array (N, ...) of all records."""
         return np.split(x, np.cumsum([len(r.time) for r in self.rows])[:-1])
+
+    def shifted(self, shifts: Sequence[float]) -> Equations:
+        """Returns the equations with the inputs of each record by a time later [s]."""
+        pairs = zip(self.rows, shifts, strict=True)
+        return replace(self, rows=tuple(r.shifted(float(s)) for r, s in pairs))
+
+    @property
+    def noise(self) -> np.ndarray:
+        """What noise alone would leave of each joint, shape (nv,), where it is white."""
+        return np.sqrt(np.mean([r.noise**2 for r in self.rows], axis=0))
 
     @property
     def judges(self) -> np.ndarray:
@@ -208,8 +218,9 @@ def _scatter(G: np.ndarray, θ: np.ndarray, H: np.ndarray) -> tuple[np.ndarray, 
     inverse = unit * np.outer(scale, scale)
     g = a - A @ θ
     eye = np.eye(len(θ))
-    lever = eye - A @ inverse
-    g = np.linalg.solve(lever + 1e-9 * eye, g[:, :, None])[:, :, 0]
+    # in units in which all sizes count alike, or what keeps it regular is lost in rounding
+    lever = eye - (A * np.outer(scale, scale)) @ unit
+    g = np.linalg.solve(lever + 1e-9 * eye, (g * scale)[:, :, None])[:, :, 0] / scale
     meat = g.T @ g
     felt = float(np.trace(A.sum(axis=0) @ inverse))
     return meat, inverse, float(np.einsum("bp,pq,bq->", g, inverse, g)) / max(felt, 1e-12)

@@ -23,22 +23,20 @@ from identification.effects.moving_bodies import MovingBody
 from identification.logs.log import Log
 from identification.torques.base import BaseParameters, find_base
 from identification.torques.candidates import in_record, list_missing
-from identification.torques.clock import find_clock
+from identification.torques.clock import Clocks, find_clocks
 from identification.torques.consistency import find_inconsistent
 from identification.torques.equations import Equations
 from identification.torques.fits import (
     Fitted,
     FreeNumber,
     Others,
-    base_fit,
     expect_drives,
-    model_fit,
+    gains_fit,
     read_friction,
-    with_gains_held,
     with_std_of_gains,
 )
 from identification.torques.moments import Base
-from identification.torques.passive import with_expected_motion
+from identification.torques.passive import fit_base
 from identification.torques.rows import make_rows
 from identification.torques.scores import Score, rank
 from identification.torques.search import Search, add_proven, draw_curves, others_of
@@ -55,8 +53,7 @@ class Evidence:
     equations: Equations  # of the records
     base: BaseParameters  # the combinations of inertial numbers
     whole: Fitted  # the base fit
-    # how much later the inputs act than their stamps say, and its std [s]; None where they do not
-    clock: tuple[float, float] | None
+    clocks: Clocks  # how much later the inputs of each record act than their stamps say
     other: np.ndarray  # sizes of the base fit in a narrower band, shape (p,)
     model: Fitted  # the model fit, without effects
     final: Fitted  # the model fit with the effects that were found
@@ -79,7 +76,7 @@ class Evidence:
     @property
     def noise(self) -> np.ndarray:
         """What noise alone would leave of each joint, shape (nv,), where it is white."""
-        return _noise(self.equations)
+        return self.equations.noise
 
     @property
     def passive(self) -> np.ndarray:
@@ -145,16 +142,16 @@ def find_evidence(
     measured = replace(measured, all_judge="blocks_of_all_records" not in without)
     base = find_base(model)
     others = Others.of(free, measured, logs)
-    plain = others.without_gains()
-    equations = with_expected_motion(model, measured, base, plain)
-    expected = expect_drives(model, equations, base, plain)
-    whole = base_fit(model, equations, base, expected, plain)
+    clocks = find_clocks(model, measured, base, others, effects)
+    measured = measured.shifted(clocks.shift.tolist())
+    others = others.at(measured)
+    equations, whole = fit_base(model, measured, base, others)
+    expected = expect_drives(model, equations, whole)
     narrow = Equations.of(make_rows(model, logs, own, OTHER_BAND), confirm)
-    there = Others.of(free, narrow, logs, OTHER_BAND).without_gains()
-    narrow = with_expected_motion(model, narrow, base, there)
-    other = base_fit(model, narrow, base, expect_drives(model, narrow, base, there), there).fit.θ
-    nominal = model_fit(model, equations, free, expected, others)
-    nominal = with_gains_held(nominal, others)
+    narrow = narrow.shifted(clocks.shift.tolist())
+    there = Others.of(free, narrow, logs, OTHER_BAND)
+    other = fit_base(model, narrow, base, there)[1].fit.θ
+    nominal = gains_fit(model, equations, free, others, expected)
     say(f"{int(equations.counts.sum())} equations, {len(base.names)} base parameters")
     candidates = list_missing(model, equations, expected, effects, bodies, [f.where for f in free])
     search = Search(equations, nominal, say, without)
@@ -176,10 +173,9 @@ def find_evidence(
     differences = rank(equations, whole.base, single) if fitted > 1 else ()
     unseen = [_unseen_residual(equations, f.base) for f in (whole, nominal, final)]
     r = len(base.names)
-    curves = [c for c in candidates if c.is_curve]
     evidence = Evidence(
         equations=equations, base=base, whole=whole, other=other, model=nominal, final=final,
-        clock=find_clock(equations, whole, curves, _noise(equations)), scores=scores,
+        clocks=clocks, scores=scores,
         found=tuple(found), rest=rest, differences=differences,
         asked=len(candidates), unseen=np.array(unseen),
         friction=read_friction(model) if friction is None else friction,
@@ -212,11 +208,6 @@ def _doubts(
 
 def _is_servo(model: mujoco.MjModel, name: str) -> bool:
     return is_servo(model, int(model.actuator(name).id))
-
-
-def _noise(equations: Equations) -> np.ndarray:
-    """Returns what noise alone would leave of each joint, shape (nv,), where it is white."""
-    return np.sqrt(np.mean([r.noise**2 for r in equations.rows], axis=0))
 
 
 def _unseen_residual(equations: Equations, base: Base) -> np.ndarray:

@@ -5,10 +5,14 @@
                  friction is free
     others       free parameters of the file that change no inertial number, such as a spring's
                  stiffness or a drive's gain, are in both: y(θ) = y(θ_0) + (θ - θ_0) dy/dθ
-    clock        in both, one shift of the inputs against the outputs, a nuisance: dτ̂_u/dt
+    clock        in both, the mean shift of all records' inputs against their outputs, a nuisance:
+                 dτ_u/dt of what the inputs alone move; by how much the records differ is known
+                 already (`identification.torques.clock`)
     gains        free gains of drives are fitted where the model's masses tell them, in the model
                  fit without effects; elsewhere they are held, because a drive without a gain that
-                 moves an arm without masses leaves no residual at all
+                 moves an arm without masses leaves no residual at all. For the same reason, what is
+                 left is counted in units of the drives as the model has them, and not as fitted:
+                 (θ - θ_0) dy/dθ has the forces that the fit predicts, and not the measured ones
 
 The base fit says how well a rigid arm with friction can do at all, and needs nothing of the model
 but its geometry. The model fit is where a payload can be told from the masses that are known.
@@ -18,6 +22,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import compress
 
 import mujoco
 import numpy as np
@@ -25,7 +30,6 @@ import numpy as np
 from identification.effects.inputs import SHIFT
 from identification.logs.log import Log
 from identification.torques.base import BaseParameters, all_columns, known_numbers
-from identification.torques.candidates import rate_of
 from identification.torques.equations import (
     Equations,
     Estimate,
@@ -39,7 +43,8 @@ from identification.torques.rows import Rows, make_rows
 
 FRICTION = ("viscous", "coulomb", "offset")
 CLOCK = "clock of the inputs"
-ALMOST = 1e-6  # share of a column that a sum may miss
+ROUNDS = 6  # of the forces that gains scale
+ALMOST = 1e-3  # share of a column that a sum may miss: a servo's own rate is of a wider band
 FIXED = 1e8  # times its precision, that a fitted number is held by
 
 
@@ -66,8 +71,10 @@ class Others:
 
     free: tuple[FreeNumber, ...]
     columns: np.ndarray  # -dy/dθ, shape (N, nv, k)
-    gains: np.ndarray  # whether each is a gain of drives, shape (k,)
+    # of each: what share of the joints' forces it scales, shape (k, nv); zero of what is no gain
+    shares: np.ndarray
     held: np.ndarray  # part of the right side of numbers that are held at their mean, shape (N, nv)
+    rows: tuple[tuple[Rows, ...], ...]  # of the models that have them moved
 
     @classmethod
     def of(
@@ -78,25 +85,42 @@ class Others:
 
         The equations of these logs were made with bands that were `wider` by this factor.
         """
-        y, drives = equations.stacked("y"), equations.stacked("drives")
-        some, columns = list[FreeNumber](), [np.zeros((*y.shape, 0))]
-        for f in free:
-            if f.moved is not None:
-                rows = make_rows(f.moved, logs, wider=wider)
-                some.append(f)
-                columns.append((y - np.concatenate([r.y for r in rows]))[:, :, None] / f.step)
+        some = [(f, make_rows(f.moved, logs, wider=wider)) for f in free if f.moved is not None]
+        return cls._of_rows(tuple(f for f, _ in some), tuple(r for _, r in some), equations)
+
+    @classmethod
+    def _of_rows(
+        cls, free: tuple[FreeNumber, ...], rows: tuple[tuple[Rows, ...], ...], equations: Equations
+    ) -> Others:
+        y, columns = equations.stacked("y"), [np.zeros((*equations.stacked("y").shape, 0))]
+        for f, of in zip(free, rows, strict=True):
+            moved = [m.shifted(r.shift).y for m, r in zip(of, equations.rows, strict=True)]
+            columns.append((y - np.concatenate(moved))[:, :, None] / f.step)
         every = np.concatenate(columns, axis=2)
-        gains = np.array([_is_sum_of(c, drives) for c in np.moveaxis(every, 2, 0)], bool)
-        return cls(free=tuple(some), columns=every, gains=gains, held=np.zeros_like(y))
+        each = [_share(c, equations) for c in np.moveaxis(every, 2, 0)]
+        shares = np.array(each).reshape(len(free), equations.joints)
+        return cls(free=free, columns=every, shares=shares, held=np.zeros_like(y), rows=rows)
+
+    @property
+    def gains(self) -> np.ndarray:
+        """Whether each is a gain of drives, shape (k,)."""
+        return np.asarray(self.shares.any(axis=1))
+
+    def expecting(self, off: np.ndarray) -> Others:
+        """Returns these with gains of forces that are another by `off` (N, nv) [N m or N]."""
+        return replace(self, columns=self.columns + off[:, :, None] * self.shares.T)
+
+    def at(self, equations: Equations) -> Others:
+        """Returns these where the inputs have other times."""
+        return self._of_rows(self.free, self.rows, equations)
 
     def without_gains(self) -> Others:
         """Returns these but for the gains, which are held at their means."""
         keep, off = ~self.gains, np.array([f.value - f.mean for f in self.free])
         held = self.columns @ np.where(self.gains, off, 0.0)
-        free = tuple(f for f, k in zip(self.free, keep, strict=True) if k)
         return Others(
-            free=free, columns=self.columns[:, :, keep], gains=self.gains[keep],
-            held=self.held + held,
+            free=tuple(compress(self.free, keep)), rows=tuple(compress(self.rows, keep)),
+            columns=self.columns[:, :, keep], shares=self.shares[keep], held=self.held + held,
         )  # fmt: skip
 
     @property
@@ -105,13 +129,25 @@ class Others:
         return np.asarray(self.columns @ np.array([f.value for f in self.free]) + self.held)
 
 
-def _is_sum_of(column: np.ndarray, drives: np.ndarray) -> bool:
-    """Returns whether a column (N, nv) is a sum of the drives' forces (N, nv, nu) at each joint."""
-    for of_joint, forces in zip(column.T, np.moveaxis(drives, 1, 0), strict=True):
-        left = of_joint - forces @ np.linalg.lstsq(forces, of_joint, rcond=None)[0]
-        if np.linalg.norm(left) > ALMOST * np.linalg.norm(of_joint):
-            return False
-    return bool(column.any())
+def _share(column: np.ndarray, equations: Equations) -> np.ndarray:
+    """Returns what multiple of each joint's force a column (N, nv) has, shape (nv,).
+
+    Zero where the column is no sum of drives' forces and of frictions, which are free in all fits:
+    kp of a servo with a damping scales its force but for that.
+    """
+    drives, friction = equations.stacked("drives"), friction_columns(equations.rows)
+    out = np.zeros(equations.joints)
+    for j, of_joint in enumerate(column.T):
+        acts = drives[:, j].any(axis=0)
+        X = np.hstack([drives[:, j, acts], friction[:, j, 3 * j : 3 * j + 3]])
+        size = np.maximum(np.linalg.norm(X, axis=0), np.finfo(float).tiny)
+        factors = np.linalg.lstsq(X / size, of_joint, rcond=None)[0]
+        if np.linalg.norm(of_joint - X / size @ factors) > ALMOST * np.linalg.norm(of_joint):
+            return np.zeros(equations.joints)
+        of_drives = factors[: acts.sum()]
+        if np.linalg.norm(of_drives) > ALMOST * np.linalg.norm(of_joint):
+            out[j] = np.mean(of_drives / size[: acts.sum()])
+    return out
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -175,36 +211,42 @@ def _friction_scales(model: mujoco.MjModel, equations: Equations) -> np.ndarray:
 
 
 def _nuisances(
-    model: mujoco.MjModel, equations: Equations, expected: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, list[str], list[str]]:
-    """Returns columns of friction and clock, the std of what is known, names and units."""
-    late = rate_of(equations, expected)[:, :, None]
+    model: mujoco.MjModel, equations: Equations, has_clocks: bool = False
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, list[str], list[str]]:
+    """Returns columns of friction and clocks, the std of what is known, names, units.
+
+    The third of them is the part of the right side that the clocks have already, shape (N, nv).
+    """
     names, units = friction_names(model)
+    late, of = equations.stacked("late").sum(axis=2)[:, :, None], equations.record[equations.block]
+    shifts = np.array([r.shift for r in equations.rows])
+    if has_clocks:
+        late = late * (of[:, None] == np.arange(len(shifts)))[:, None, :]
+        names += [f"{CLOCK} of {r.name}" for r in equations.rows]
+    else:
+        shifts = shifts.mean(keepdims=True)
+        names += [CLOCK]
     columns = np.concatenate([friction_columns(equations.rows), late], axis=2)
-    scales = np.append(_friction_scales(model, equations), SHIFT)
-    return columns, scales, [*names, CLOCK], [*units, "s"]
+    scales = np.append(_friction_scales(model, equations), [SHIFT] * len(shifts))
+    return columns, scales, late @ shifts, names, units + ["s"] * len(shifts)
 
 
-def expect_drives(
-    model: mujoco.MjModel, equations: Equations, base: BaseParameters, others: Others
-) -> np.ndarray:
-    """Returns the drives' forces as a fit to all inertial numbers predicts them, shape (N, nv).
+def expect_drives(model: mujoco.MjModel, equations: Equations, whole: Fitted) -> np.ndarray:
+    """Returns the drives' forces as the base fit predicts them, shape (N, nv).
 
     A joint without a drive has none: what the fit predicts there is the noise of its motion.
     """
-    force = equations.stacked("drives").sum(axis=2)
-    first = base_fit(model, equations, base, np.zeros_like(force), others)
-    expected = first.predicted() + force - first.base.y
+    expected = whole.predicted() + equations.stacked("drives").sum(axis=2) - whole.base.y
     return np.where(list_passive(model, equations), 0.0, expected)
 
 
 def base_fit(
-    model: mujoco.MjModel, equations: Equations, base: BaseParameters, expected: np.ndarray,
-    others: Others,
+    model: mujoco.MjModel, equations: Equations, base: BaseParameters, others: Others,
+    has_clocks: bool = False,
 ) -> Fitted:  # fmt: skip
-    """Returns the fit with all inertial numbers free; `expected` are the drives' forces (N, nv)."""
+    """Returns the fit with all inertial numbers free, and a clock for each record if asked for."""
     bodies, a, y = (equations.stacked(n) for n in ("bodies", "a", "y"))
-    more, scales, names, units = _nuisances(model, equations, expected)
+    more, scales, known, names, units = _nuisances(model, equations, has_clocks)
     Φ = np.concatenate([base.columns(bodies, a), others.columns, more], axis=2)
     P = 1 / np.concatenate([base.scales, [f.std for f in others.free], scales]) ** 2
     θ_0 = np.concatenate([base.values, [f.mean for f in others.free], np.zeros(len(scales))])
@@ -212,15 +254,31 @@ def base_fit(
         names=(*base.names, *(f.name for f in others.free), *names),
         units=(*base.units, *(f.unit for f in others.free), *units),
         inertial=len(base.names) + len(others.free),
-        base=_fitted(equations, Φ, y + others.start, P, θ_0),
+        base=_fitted(equations, Φ, y + known + others.start, P, θ_0),
     )  # fmt: skip
 
 
-def model_fit(
-    model: mujoco.MjModel, equations: Equations, free: Sequence[FreeNumber], expected: np.ndarray,
-    others: Others,
+def gains_fit(
+    model: mujoco.MjModel, equations: Equations, free: Sequence[FreeNumber], others: Others,
+    expected: np.ndarray,
 ) -> Fitted:  # fmt: skip
-    """Returns the fit of free numbers; `expected` are the drives' forces (N, nv) [N m or N]."""
+    """Returns the model fit with the gains of drives, which later fits hold at what it found.
+
+    `expected` are the drives' forces (N, nv) as the base fit predicts them [N m or N].
+    """
+    if not others.gains.any():
+        return model_fit(model, equations, free, others)
+    force = equations.stacked("drives").sum(axis=2)
+    for _ in range(ROUNDS):
+        fitted = model_fit(model, equations, free, others.expecting(expected - force))
+        expected = force + fitted.predicted() - fitted.base.y
+    return _with_gains_held(fitted, others)
+
+
+def model_fit(
+    model: mujoco.MjModel, equations: Equations, free: Sequence[FreeNumber], others: Others
+) -> Fitted:
+    """Returns the fit of free numbers."""
     free = [f for f in free if f.moved is None]
     bodies, a = equations.stacked("bodies"), equations.stacked("a")
     X = all_columns(bodies, a)
@@ -228,18 +286,18 @@ def model_fit(
     change = np.array([f.change for f in free]).reshape(len(free), len(known))
     start = np.array([f.value for f in free])
     y = equations.stacked("y") - X @ (known - start @ change) + others.start
-    more, scales, names, units = _nuisances(model, equations, expected)
+    more, scales, of_clocks, names, units = _nuisances(model, equations)
     every = [*free, *others.free]
     Φ = np.concatenate([X @ change.T, others.columns, more], axis=2)
     P = 1 / np.concatenate([[f.std for f in every], scales]) ** 2
     θ_0 = np.concatenate([[f.mean for f in every], np.zeros(len(scales))])
     return Fitted(
         names=(*(f.name for f in every), *names), units=(*(f.unit for f in every), *units),
-        inertial=len(every), base=_fitted(equations, Φ, y, P, θ_0, len(every)),
+        inertial=len(every), base=_fitted(equations, Φ, y + of_clocks, P, θ_0, len(every)),
     )  # fmt: skip
 
 
-def with_gains_held(fitted: Fitted, others: Others) -> Fitted:
+def _with_gains_held(fitted: Fitted, others: Others) -> Fitted:
     """Returns a model fit in which later fits hold the gains of drives at what it found."""
     base, gains = fitted.base, np.zeros(len(fitted.names), bool)
     gains[fitted.inertial - len(others.gains) : fitted.inertial] = others.gains

@@ -26,10 +26,20 @@ import numpy as np
 from identification.torques.base import BaseParameters, all_columns, known_numbers
 from identification.torques.bodies import regressor
 from identification.torques.equations import Equations, list_passive
-from identification.torques.fits import Others, base_fit, model_fit
+from identification.torques.fits import Fitted, Others, base_fit, model_fit
 
 ROUNDS = 4  # of δ: each leaves an error of second order
 LIGHT = 1e-2  # of the model's inertia: a fit with less has lost the scale, and δ stays as it was
+
+
+def fit_base(
+    model: mujoco.MjModel, measured: Equations, base: BaseParameters, others: Others,
+    has_clocks: bool = False,
+) -> tuple[Equations, Fitted]:  # fmt: skip
+    """Returns equations solved as `with_expected_motion` does, and the base fit to them."""
+    plain = others.without_gains()
+    equations = with_expected_motion(model, measured, base, plain)
+    return equations, base_fit(model, equations, base, plain, has_clocks)
 
 
 def with_expected_motion(
@@ -41,14 +51,13 @@ def with_expected_motion(
         return equations
     unit = _unit_forces(model, equations, p)
     M_0 = _inertia([all_columns(*u) for u in unit], known_numbers(model), p)
-    none = np.zeros(equations.stacked("y").shape)
-    held = model_fit(model, equations, (), none, others)
+    held = model_fit(model, equations, (), others)
     δ = np.linalg.solve(M_0, (held.base.y - held.predicted())[:, p, None])[..., 0]
     least = LIGHT * np.linalg.eigvalsh(M_0)[:, 0]
     of_base = [base.columns(*u) for u in unit]
     out = _moved(equations, unit, p, δ, M_0)
     for _ in range(ROUNDS):
-        fitted = base_fit(model, out, base, none, others)
+        fitted = base_fit(model, out, base, others)
         M = _inertia(of_base, fitted.fit.θ[: len(base.names)], p)
         if (np.linalg.eigvalsh(M)[:, 0] < least).any():
             break

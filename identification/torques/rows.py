@@ -6,17 +6,18 @@
 τ_inv is MuJoCo's inverse dynamics of the model (`mj_inverse`), so that its springs, tendons and
 whatever else it has stay known; τ_u is what its actuators make of the logged inputs. τ_u and the
 signs of the rates go through the filter that makes the motion smooth, as the accelerations do:
-where a joint turns, friction and accelerations jump together. Both sides are then means over short
-times, a weak form of the equation with boxes as test functions. A joint that is nearly at rest has
-no equation, because friction may then be any force below its level; nor has one that turns, where
-the filter mixes both directions.
+where a joint turns, friction and accelerations jump together. A clock that is off moves the inputs
+alone, and not the positions that a servo compares them with (`Rows.shifted`). Both sides are then
+means over short times, a weak form of the equation with boxes as test functions. A joint that is
+nearly at rest has no equation, because friction may then be any force below its level; nor has one
+that turns, where the filter mixes both directions.
 """
 
 from __future__ import annotations
 
 import copy
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from functools import partial
 
 import mujoco
@@ -29,9 +30,9 @@ from identification.model.predictor import output_columns
 from identification.model.rollout import logged_inputs
 from identification.torques.bodies import read_numbers, regressor
 from identification.torques.smoothing import (
-    EDGE,
     Motion,
     choose_band,
+    edge_of,
     low_pass,
     noise_gains,
     smooth,
@@ -43,6 +44,8 @@ SAMPLES = 20_000  # of which the regressor is made at once
 MOST = 8_000  # equations of each joint, over all records
 SLOW = 0.02  # of the top rate of a joint in all records: slower it is at rest
 TURNING = 0.1  # of a filtered sign, that it may be off
+WIDE = 2.0  # times the band, that of the rates of which a drive makes its force
+TAPS = 4  # samples of an input, of which it is made at another time
 STATES = 40  # of a record, over which the masses that joints move are averaged
 NOISY = 4.0  # std of a rate's noise: slower it may be at rest
 
@@ -60,10 +63,22 @@ class Rows:
     bodies: np.ndarray  # Y, shape (N, nv, bodies, 10)
     gravity: np.ndarray  # its force on the joints, shape (N, nv) [N m or N]
     drives: np.ndarray  # forces of each actuator on the joints, shape (N, nv, nu) [N m or N]
+    late: np.ndarray  # how they fall as the inputs come later, shape (N, nv, nu) [N m/s or N/s]
     y: np.ndarray  # shape (N, nv) [N m or N]
     used: np.ndarray  # where a joint moves, shape (N, nv)
     noise: np.ndarray  # std that noise of positions and drives makes in y, shape (nv,) [N m or N]
     band: float  # of the motion [Hz]
+    # returns `drives` and `late` with inputs that act by a time later than their stamps say
+    drives_at: Callable[[float], tuple[np.ndarray, np.ndarray]]
+    shift: float = 0.0  # this time [s]
+
+    def shifted(self, shift: float) -> Rows:
+        """Returns the equations with inputs that act this much later than their stamps say [s]."""
+        if shift == self.shift:
+            return self
+        drives, late = self.drives_at(shift)
+        y = self.y + (drives - self.drives).sum(axis=2)
+        return replace(self, drives=drives, late=late, y=y, shift=shift)
 
 
 def refuse_unfit(model: mujoco.MjModel, log: Log) -> None:
@@ -106,7 +121,8 @@ def make_rows(
             states, a position is not measured, no input moves, a record is too short for its band,
             or no joint moves long enough one way.
     """
-    motions = [_motion(model, log, wider) for log in logs]
+    measured = [_positions(model, log) for log in logs]
+    motions = [_motion(model, log, q, wider) for log, q in zip(logs, measured, strict=True)]
     top = np.max([np.abs(m.v).max(axis=0) for m in motions], axis=0)
     least = -(-sum(map(len, logs)) // MOST)
     if not any(log.inputs.any() for log in logs):
@@ -115,8 +131,8 @@ def make_rows(
             " have no scale: give a log with the drives' torques, or use identification fit"
         )
     known = read_numbers(model)
-    each = zip(own or [model] * len(logs), logs, motions, strict=True)
-    rows = tuple(_rows(m, known, log, motion, top, least) for m, log, motion in each)
+    each = zip(own or [model] * len(logs), logs, measured, motions, strict=True)
+    rows = tuple(_rows(m, known, log, q, motion, top, least) for m, log, q, motion in each)
     if not any(r.used.any() for r in rows):
         raise InputError(
             "no joint moves for longer than its filter needs between two turns; give logs of a"
@@ -125,11 +141,16 @@ def make_rows(
     return rows
 
 
-def _motion(model: mujoco.MjModel, log: Log, wider: float) -> Motion:
+def _positions(model: mujoco.MjModel, log: Log) -> np.ndarray:
+    """Returns the measured positions of the joints, shape (n, nv)."""
     refuse_unfit(model, log)
     columns = output_columns(model, log.output_names)
     at = {i: k for k, (field, i) in enumerate(columns) if field == "qpos"}
-    q, h = log.outputs[:, [at[int(i)] for i in model.jnt_qposadr]], log.sampling_time
+    return log.outputs[:, [at[int(i)] for i in model.jnt_qposadr]]
+
+
+def _motion(model: mujoco.MjModel, log: Log, q: np.ndarray, wider: float) -> Motion:
+    h = log.sampling_time
     chosen = [choose_band(x, h) for x in q.T]
     # One band for all: the torque of a joint has the accelerations of all others in it. The widest
     # where a joint has no drive: no torque goes through the filter that would leave out as much.
@@ -150,12 +171,12 @@ def _have_drives(model: mujoco.MjModel) -> bool:
 
 
 def _rows(
-    model: mujoco.MjModel, numbers: np.ndarray, log: Log, motion: Motion, top: np.ndarray,
-    least: int,
+    model: mujoco.MjModel, numbers: np.ndarray, log: Log, measured: np.ndarray, motion: Motion,
+    top: np.ndarray, least: int,
 ) -> Rows:  # fmt: skip
     h, band = log.sampling_time, motion.band
     width = max(least, round(1 / (PER_PERIOD * band * h)), 1)
-    cut = int(np.ceil(EDGE / (band * h)))
+    cut = edge_of(len(log), h, band)
     keep = slice(cut, len(log) - cut)
     count = (len(log) - 2 * cut) // width
     if count < 2:
@@ -165,12 +186,20 @@ def _rows(
         )
     mean = partial(_means, count=count, width=width)
     q, v, a = motion.q[keep], motion.v[keep], motion.a[keep]
-    u = log.inputs
-    held = (np.vstack([u[:1], u[:-1]]) + u) / 2 if log.hold == "zoh" else u
     Y, gravity = _mean_regressor(model, q, v, a, count, width)
-    inverse, drives = _forces(model, motion.q, motion.v, motion.a, held)
-    noise = _noise(model, motion, drives.sum(axis=2), h, width)
-    drives = mean(low_pass(drives, h, band)[keep])
+    bare = _without_constraints(model)
+    inverse = _inverse(bare, motion)
+    # What the filter leaves out of a setpoint, it leaves out of the position beside it, once.
+    rates = smooth(measured, h, WIDE * band, motion.noise).v
+    force = _drives(bare, measured, rates, log, [0.0])[0]
+    noise = _noise(model, motion, force.sum(axis=2), h, width)
+
+    def drives_at(shift: float) -> tuple[np.ndarray, np.ndarray]:
+        some = _drives(bare, measured, rates, log, [shift, shift - h / 2, shift + h / 2])
+        now, before, after = (mean(low_pass(x, h, band)[keep]) for x in some)
+        return now, (before - after) / h
+
+    drives, late = drives_at(0.0)
     sign = low_pass(np.sign(motion.v), h, band)[keep]
     known = mean(inverse[keep]) - np.einsum("kjbn,bn->kj", Y, numbers)
     known -= mean(model.dof_armature * a + model.dof_damping * v)
@@ -183,7 +212,7 @@ def _rows(
         used &= (mean(((at >= begin) & (at <= end)).astype(float)) == 0)[:, None]
     return Rows(
         name=log.name, time=mean(time), q=mean(q), v=mean(v), a=mean(a), sign=mean(sign),
-        bodies=Y, gravity=gravity, drives=drives,
+        bodies=Y, gravity=gravity, drives=drives, late=late, drives_at=drives_at,
         y=drives.sum(axis=2) - known, used=used, noise=noise, band=motion.band,
     )  # fmt: skip
 
@@ -228,26 +257,59 @@ def _means(x: np.ndarray, count: int, width: int) -> np.ndarray:
     return np.asarray(x[: count * width].reshape(count, width, *x.shape[1:]).mean(axis=1))
 
 
-@quiet()
-def _forces(
-    model: mujoco.MjModel, q: np.ndarray, v: np.ndarray, a: np.ndarray, u: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Returns the forces of inverse dynamics (n, nv), and those of each actuator (n, nv, nu)."""
-    bare = copy.copy(model)  # without contacts, limits and dry friction, which no equation has
-    off = mujoco.mjtDisableBit
+def input_at(u: np.ndarray, h: float, shift: float, is_held: bool) -> np.ndarray:
+    """Returns inputs (n, nu) that act by a time later, without what is faster than the samples.
+
+    Each sample, one every h [s], acts from its stamp to the next one where inputs are held. The
+    weights of a few samples have the moments of this box, so that a slow input comes as late and as
+    smooth as the force that the robot felt.
+    """
+    middle = shift / h + is_held / 2
+    taps = int(np.floor(middle)) + np.arange(TAPS) - TAPS // 2 + 1
+    moments = np.array([1.0, 0.0, is_held / 12, 0.0])
+    weights = np.linalg.solve(np.vander(taps - middle, TAPS, increasing=True).T, moments)
+    n = np.arange(len(u))
+    return np.asarray(
+        sum(w * u[np.clip(n - k, 0, len(u) - 1)] for w, k in zip(weights, taps, strict=True))
+    )
+
+
+def _without_constraints(model: mujoco.MjModel) -> mujoco.MjModel:
+    """Returns a model without contacts, limits and dry friction, which no equation has."""
+    bare, off = copy.copy(model), mujoco.mjtDisableBit
     bare.opt.disableflags |= int(off.mjDSBL_CONSTRAINT) | int(off.mjDSBL_CONTACT)
-    data, n = mujoco.MjData(bare), len(q)
-    inverse, drives = np.empty((n, model.nv)), np.zeros((n, model.nv, model.nu))
-    moment, logged = np.zeros((model.nu, model.nv)), logged_inputs(model)
+    return bare
+
+
+@quiet()
+def _inverse(model: mujoco.MjModel, motion: Motion) -> np.ndarray:
+    """Returns the forces of inverse dynamics, shape (n, nv)."""
+    data, out = mujoco.MjData(model), np.empty_like(motion.q)
+    for k in range(len(out)):
+        data.qpos, data.qvel, data.qacc = motion.q[k], motion.v[k], motion.a[k]
+        mujoco.mj_inverse(model, data)
+        out[k] = data.qfrc_inverse
+    return out
+
+
+@quiet()
+def _drives(
+    model: mujoco.MjModel, q: np.ndarray, v: np.ndarray, log: Log, shifts: Sequence[float]
+) -> np.ndarray:
+    """Returns the forces of each actuator with inputs at other times, (len(shifts), n, nv, nu)."""
+    u = np.array([input_at(log.inputs, log.sampling_time, s, log.hold == "zoh") for s in shifts])
+    data, n, logged = mujoco.MjData(model), len(q), logged_inputs(model)
+    out, moment = np.zeros((len(shifts), n, model.nv, model.nu)), np.zeros((model.nu, model.nv))
     for k in range(n):
-        data.qpos, data.qvel, data.qacc = q[k], v[k], a[k]
-        data.ctrl[:logged] = u[k]
-        mujoco.mj_inverse(bare, data)
-        mujoco.mj_fwdActuation(bare, data)
-        inverse[k] = data.qfrc_inverse
+        data.qpos, data.qvel = q[k], v[k]
+        mujoco.mj_fwdPosition(model, data)
+        mujoco.mj_fwdVelocity(model, data)
         mujoco.mju_sparse2dense(
             moment, data.actuator_moment, data.moment_rownnz, data.moment_rowadr,
             data.moment_colind,
         )  # fmt: skip
-        drives[k] = (moment * data.actuator_force[:, None]).T
-    return inverse, drives
+        for i in range(len(shifts)):
+            data.ctrl[:logged] = u[i, k]
+            mujoco.mj_fwdActuation(model, data)
+            out[i, k] = (moment * data.actuator_force[:, None]).T
+    return out

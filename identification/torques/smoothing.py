@@ -12,8 +12,9 @@ the one found from an eighth to a quarter of the sampling rate, where no motion 
 is made narrower until noise makes no more than a ten-thousandth of the accelerations' power: least
 squares make an inertia smaller by this share (errors in variables), and by a hundred times as much
 where columns are nearly sums of others. What a band leaves out of a motion makes no inertia
-smaller, as the torques go through the same filter. Near the ends the continued motion is none, so
-that `1/f_c` of them is cut by the caller.
+smaller, as the torques go through the same filter. Near the ends the continued motion is none: its
+acceleration jumps there, of which H leaves a tenth after `1/f_c` and a hundredth after twice that,
+so that the caller cuts the ends.
 """
 
 from __future__ import annotations
@@ -29,7 +30,8 @@ SLOWEST = 4.0  # periods in a record of the narrowest band
 BANDS = 48  # that are tried
 ATTENUATION = 1e-4  # share of noise in the power of an acceleration
 FREQUENCIES = 4096  # over which the power of filtered noise is summed
-EDGE = 1.0  # periods of the band that are cut at each end
+EDGES = (1.0, 2.0)  # periods of the band that are cut at each end: at least, and if long enough
+LONG = 0.1  # share of a record that may be cut at each end beyond the least
 
 
 @dataclass(frozen=True)
@@ -64,6 +66,12 @@ def noise_gains(band: float, h: float, width: int) -> tuple[float, float]:
     of = _pass(omega, band) * mean
     of_a, of_x = (float(np.sqrt(np.mean(x**2))) for x in (omega**2 * of, of))
     return of_a, of_x
+
+
+def edge_of(n: int, h: float, band: float) -> int:
+    """Returns how many of n samples are cut at each end, measured every h [s] in a band [Hz]."""
+    least, most = (int(np.ceil(periods / (band * h))) for periods in EDGES)
+    return max(least, min(most, int(LONG * n)))
 
 
 def low_pass(x: np.ndarray, h: float, band: float) -> np.ndarray:

@@ -136,7 +136,7 @@ def others(equations):
 
 
 def test_a_size_is_that_of_a_fit_with_its_column(robot, equations, candidates):
-    base = model_fit(robot.plant.model, equations, (), _force(equations), others(equations)).base
+    base = model_fit(robot.plant.model, equations, (), others(equations)).base
     scores = rank(equations, base, candidates)
     used = equations.stacked("used")
     w = np.where(used, np.sqrt(base.fit.weights), 0.0)
@@ -154,10 +154,10 @@ def test_a_size_is_that_of_a_fit_with_its_column(robot, equations, candidates):
 
 
 def test_what_the_fit_has_is_no_candidate(robot, equations, candidates):
-    base = model_fit(robot.plant.model, equations, (), _force(equations), others(equations)).base
+    base = model_fit(robot.plant.model, equations, (), others(equations)).base
     names = {s.missing.name for s in rank(equations, base, candidates)}
     assert {"coulomb_friction", "offset"} <= {c.name for c in candidates}
     assert not {"coulomb_friction", "offset"} & names
     model = robot.plant.model
-    whole = base_fit(model, equations, find_base(model), _force(equations), others(equations)).base
+    whole = base_fit(model, equations, find_base(model), others(equations)).base
     assert "payload" not in {s.missing.name for s in rank(equations, whole, candidates)}

@@ -42,7 +42,7 @@ def bench(tmp_path_factory):
 
     def fitted(equations):
         others = Others.of((), equations, records)
-        return model_fit(model, equations, (), still, others)
+        return model_fit(model, equations, (), others)
 
     every = list_missing(model, equations, still, robot.candidates, robot.plant.bodies, ())
     first = fitted(equations)

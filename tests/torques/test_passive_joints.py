@@ -72,8 +72,7 @@ def fitted(kind, log, factor=1.0):
     measured = Equations.of(make_rows(_plain(model), [log]))
     base, others = find_base(model), Others.of((), measured, [log])
     equations = with_expected_motion(model, measured, base, others)
-    none = np.zeros(measured.stacked("y").shape)
-    return measured, equations, base, base_fit(model, equations, base, none, others)
+    return measured, equations, base, base_fit(model, equations, base, others)
 
 
 @pytest.fixture(scope="module", params=KINDS)
