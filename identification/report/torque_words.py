@@ -253,6 +253,11 @@ def _doubts(evidence: Evidence) -> list[str]:
     std, scale = evidence.whole.fit.std[:r], np.abs(evidence.whole.fit.θ[:r])
     told = int(np.sum(std < np.maximum(scale, np.abs(evidence.base.values)) / 2))
     out.append(f"Of {r} base parameters, {told} are known to better than half of their value.")
+    if evidence.gains:
+        out.append(
+            f"The base parameters are those with {listed(evidence.gains)} at what was known of it:"
+            " where all inertial numbers are free, nothing tells a gain from the scale of them all."
+        )
     if evidence.inconsistent:
         names = listed([evidence.base.names[k] for k in evidence.inconsistent])
         out.append(

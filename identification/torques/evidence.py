@@ -33,8 +33,8 @@ from identification.torques.fits import (
     expect_drives,
     gains_fit,
     read_friction,
-    with_std_of_gains,
 )
+from identification.torques.laws import Missing
 from identification.torques.moments import Base
 from identification.torques.passive import fit_base
 from identification.torques.rows import make_rows
@@ -69,6 +69,7 @@ class Evidence:
     unseen: np.ndarray
     friction: np.ndarray  # of the model, three numbers a joint as the fits have them, shape (3 nv,)
     inconsistent: tuple[int, ...]  # places of base parameters that no bodies have, within 3 std
+    gains: tuple[str, ...]  # of drives, that are free in the model fit and held in the base fit
     # of effects that were added and are no names, by effect and place: what physics forbids of it,
     # or that it was found beside such a one
     doubts: Mapping[tuple[str, str], Doubt] = field(default_factory=dict)
@@ -157,16 +158,9 @@ def find_evidence(
     search = Search(equations, nominal, say, without)
     if not uses(search, "held_nodes"):
         candidates = tuple(replace(c, ridges=()) for c in candidates)
-    scores = rank(equations, nominal.base, candidates)
-    if uses(search, "fitted_shapes"):
-        scores = with_shapes(equations, nominal.base, scores, len(candidates))
-    first = f", {scores[0].missing.title} first" if scores else ""
-    say(f"{len(candidates)} candidates scored{first}")
-    laws = [s for s in scores if not s.missing.is_curve]
-    found, _ = add_proven(search, [], laws)
-    found, final = draw_curves(search, found, scores)
+    scores, found, final = _searched(search, candidates)
     rest = rank(equations, final.base, others_of(scores, found)) if found else scores
-    final = with_std_of_gains(final, nominal, others)
+    final = gains_fit(model, equations, free, others, expected, final.added)
     loads = [c for c in candidates if c.name == "load"]
     fitted = len(logs) - confirm
     single = [in_record(c, equations, k) for c in loads for k in range(fitted)]
@@ -176,6 +170,7 @@ def find_evidence(
     evidence = Evidence(
         equations=equations, base=base, whole=whole, other=other, model=nominal, final=final,
         clocks=clocks, scores=scores,
+        gains=tuple(f.name for f, is_gain in zip(others.free, others.gains, strict=True) if is_gain),
         found=tuple(found), rest=rest, differences=differences,
         asked=len(candidates), unseen=np.array(unseen),
         friction=read_friction(model) if friction is None else friction,
@@ -185,6 +180,20 @@ def find_evidence(
         return evidence
     masses = {body.label: body.mass for body in bodies}
     return replace(evidence, doubts=_doubts(evidence, model, logs[:fitted], masses))
+
+
+def _searched(
+    search: Search, candidates: Sequence[Missing]
+) -> tuple[tuple[Score, ...], list[Score], Fitted]:
+    """Returns scores of all candidates, the effects that were found, and the fit with them."""
+    scores = rank(search.equations, search.nominal.base, candidates)
+    if uses(search, "fitted_shapes"):
+        scores = with_shapes(search.equations, search.nominal.base, scores, len(candidates))
+    first = f", {scores[0].missing.title} first" if scores else ""
+    search.say(f"{len(candidates)} candidates scored{first}")
+    laws = [s for s in scores if not s.missing.is_curve]
+    found, _ = add_proven(search, [], laws)
+    return scores, *draw_curves(search, found, scores)
 
 
 def _doubts(

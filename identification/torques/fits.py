@@ -22,6 +22,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial, reduce
 from itertools import compress
 
 import mujoco
@@ -260,19 +261,18 @@ def base_fit(
 
 def gains_fit(
     model: mujoco.MjModel, equations: Equations, free: Sequence[FreeNumber], others: Others,
-    expected: np.ndarray,
+    expected: np.ndarray, added: Sequence[Missing] = (),
 ) -> Fitted:  # fmt: skip
-    """Returns the model fit with the gains of drives, which later fits hold at what it found.
+    """Returns the model fit with the gains of drives, and with some effects.
 
     `expected` are the drives' forces (N, nv) as the base fit predicts them [N m or N].
     """
-    if not others.gains.any():
-        return model_fit(model, equations, free, others)
     force = equations.stacked("drives").sum(axis=2)
-    for _ in range(ROUNDS):
+    for _ in range(ROUNDS if others.gains.any() else 1):
         fitted = model_fit(model, equations, free, others.expecting(expected - force))
+        fitted = reduce(partial(extended, equations), added, fitted)
         expected = force + fitted.predicted() - fitted.base.y
-    return _with_gains_held(fitted, others)
+    return fitted
 
 
 def model_fit(
@@ -295,24 +295,6 @@ def model_fit(
         names=(*(f.name for f in every), *names), units=(*(f.unit for f in every), *units),
         inertial=len(every), base=_fitted(equations, Φ, y + of_clocks, P, θ_0, len(every)),
     )  # fmt: skip
-
-
-def _with_gains_held(fitted: Fitted, others: Others) -> Fitted:
-    """Returns a model fit in which later fits hold the gains of drives at what it found."""
-    base, gains = fitted.base, np.zeros(len(fitted.names), bool)
-    gains[fitted.inertial - len(others.gains) : fitted.inertial] = others.gains
-    P = np.where(gains, FIXED / np.maximum(np.diag(base.fit.covariance), 1e-300), base.P)
-    fit = replace(base.fit, H=base.fit.H + np.diag(P - base.P))
-    θ_0 = np.where(gains, base.fit.θ, base.θ_0)
-    return replace(fitted, base=replace(base, P=P, θ_0=θ_0, fit=fit))
-
-
-def with_std_of_gains(final: Fitted, nominal: Fitted, others: Others) -> Fitted:
-    """Returns a fit in which held gains have the std with which the model fit told them."""
-    fit, C = final.fit, final.fit.covariance.copy()
-    at = np.flatnonzero(others.gains) + final.inertial - len(others.gains)
-    C[at, at] = np.diag(nominal.fit.covariance)[at]
-    return replace(final, base=replace(final.base, fit=replace(fit, covariance=C)))
 
 
 def extended(equations: Equations, fitted: Fitted, missing: Missing) -> Fitted:
