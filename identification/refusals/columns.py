@@ -88,17 +88,18 @@ def factor_readings(doubt: Doubt) -> Iterator[Reading]:
 
 
 def unit_readings(
-    doubt: Doubt, wanted: Mapping[str, str] | None = None, alone: bool = True
-) -> Iterator[Reading]:
+    doubt: Doubt, wanted: Mapping[str, str] | None = None, alone: bool = True,
+    together: bool = False,
+) -> Iterator[Reading]:  # fmt: skip
     """Yields other units of unexplained outputs, and of inputs that are wanted positions.
 
     The latter have SI units by name. One column of several of a kind may be in another unit if
-    `alone`.
+    `alone`; wanted positions are in that of the measured ones if `together`.
     """
     log, wanted, ny = doubt.log, wanted or {}, len(doubt.bad)
     names = [*log.output_names, *(n for n in log.input_names if n in wanted)]
     kinds = [(log.units.get(n, ""), False) for n in names[:ny]]
-    kinds += [(wanted[n], True) for n in names[ny:]]
+    kinds += [(wanted[n], not together) for n in names[ny:]]
     for words in _units(kinds, alone):
         changed = [k for k, word in enumerate(words) if word]
         if not all(doubt.bad[k] for k in changed if k < ny):

@@ -134,14 +134,19 @@ def refuse_unbalanced(robot: Robot, log: Log) -> None:
     """Refuse a log whose drives' forces only another unit, sign or order of columns explains.
 
     Nothing is simulated: a simulation of an arm in a closed loop says little of its log, because
-    what the model lacks grows over a window. Where a drive wants a position, its gain is a guess,
-    and only its sign is told.
+    what the model lacks grows over a window. Where a drive wants a position, its gain is a guess:
+    its sign is told, and the unit that all angles and setpoints share where angles go far, because
+    weight and the forces between joints have another course in each, whatever the gain.
     """
     file, model = robot.file, robot.plant_of(log).model
     column = {n: file.columns.get(n, n) for n in (*log.output_names, *log.input_names)}
     log = beginning(log)
     doubt, readings = Doubt.of(log, column), []
-    if wanted_units(model, log):
+    if wanted := wanted_units(model, log):
+        if "units" not in file.trust and far_angles(model, log):
+            of_all = unit_readings(doubt, wanted, alone=False, together=True)
+            if found := balanced_otherwise(model, doubt, of_all):
+                raise _refusal(robot, log, *found)
         _refuse_turned_servos(robot, doubt)
         return
     if len(column) > MOST_COLUMNS or not log.inputs.any():

@@ -23,6 +23,7 @@ from identification.logs.log import Log
 from identification.model.predictor import Predictor
 from identification.prediction.records_fit import RecordsFit
 from identification.quantities import plain, plain_unit, quantity
+from identification.refusals.far_angles import far_sentence
 from identification.report.error_words import kind, listed
 from identification.report.figures import compare_figure, windows_figure
 from identification.report.fit_headline import fit_headline
@@ -192,8 +193,12 @@ class TorqueFiles(PageFiles):
     def record(self) -> dict[str, Any]:
         """The comparison as plain values."""
         robot = self.fitted.robot
-        record = evidence_to_json(self.fitted.found, robot.plant.model)
-        return {"verdict": torque_verdict(self.fitted.found, robot.plant.model), **record,
+        model, column = robot.plant.model, robot.file.columns
+        logs = (robot.log, *robot.others, *robot.records)
+        # Forces do not tell the unit of a motion that needs next to none, such as a slow one.
+        far = [f"{said}." for log in logs if (said := far_sentence(model, log, column))]
+        return {"verdict": [*torque_verdict(self.fitted.found, model), *far[:1]],
+                **evidence_to_json(self.fitted.found, model),
                 "remarks": list(robot.remarks)}  # fmt: skip
 
     @cached_property

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
+from itertools import compress
 from typing import Literal
 
 import mujoco
@@ -170,7 +171,7 @@ def find_evidence(
     evidence = Evidence(
         equations=equations, base=base, whole=whole, other=other, model=nominal, final=final,
         clocks=clocks, scores=scores,
-        gains=tuple(f.name for f, is_gain in zip(others.free, others.gains, strict=True) if is_gain),
+        gains=tuple(compress([f.name for f in others.free], others.gains)),
         found=tuple(found), rest=rest, differences=differences,
         asked=len(candidates), unseen=np.array(unseen),
         friction=read_friction(model) if friction is None else friction,
