@@ -19,7 +19,8 @@ from identification.robot.results import TorqueFit
 from identification.robot.robot import Robot
 from identification.torques.bodies import read_numbers
 from identification.torques.evidence import find_evidence
-from identification.torques.fits import FreeNumber, read_friction
+from identification.torques.frictions import read_friction
+from identification.torques.others import FreeNumber
 from identification.written import Files
 
 FRICTIONS = (".damping", ".frictionloss")  # endings of paths

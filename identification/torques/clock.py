@@ -30,8 +30,9 @@ from identification.effects.effect import CURVE, Effect
 from identification.torques.base import BaseParameters
 from identification.torques.candidates import together
 from identification.torques.equations import Equations, unseen_squares
-from identification.torques.fits import CLOCK, FIXED, Fitted, Others, expect_drives, extended
+from identification.torques.fits import CLOCK, FIXED, Fitted, expect_drives, extended
 from identification.torques.laws import Laws
+from identification.torques.others import Others
 from identification.torques.passive import fit_base
 from identification.torques.scores import FAR
 

@@ -27,16 +27,11 @@ from identification.torques.candidates import in_record, list_missing
 from identification.torques.clock import Clocks, find_clocks
 from identification.torques.consistency import find_inconsistent
 from identification.torques.equations import Equations
-from identification.torques.fits import (
-    Fitted,
-    FreeNumber,
-    Others,
-    expect_drives,
-    gains_fit,
-    read_friction,
-)
+from identification.torques.fits import Fitted, expect_drives, gains_fit
+from identification.torques.frictions import read_friction
 from identification.torques.laws import Missing
 from identification.torques.moments import Base
+from identification.torques.others import FreeNumber, Others
 from identification.torques.passive import fit_base
 from identification.torques.rows import make_rows
 from identification.torques.scores import Score, rank

@@ -26,7 +26,8 @@ import numpy as np
 from identification.torques.base import BaseParameters, all_columns, known_numbers
 from identification.torques.bodies import regressor
 from identification.torques.equations import Equations, list_passive
-from identification.torques.fits import Fitted, Others, base_fit, model_fit
+from identification.torques.fits import Fitted, base_fit, model_fit
+from identification.torques.others import Others
 
 ROUNDS = 4  # of δ: each leaves an error of second order
 LIGHT = 1e-2  # of the model's inertia: a fit with less has lost the scale, and δ stays as it was

@@ -15,7 +15,6 @@ that turns, where the filter mixes both directions.
 
 from __future__ import annotations
 
-import copy
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -23,12 +22,11 @@ from functools import partial
 import mujoco
 import numpy as np
 
-from identification.engine import quiet
 from identification.errors import InputError
 from identification.logs.log import Log
 from identification.model.predictor import output_columns
-from identification.model.rollout import logged_inputs
 from identification.torques.bodies import read_numbers, regressor
+from identification.torques.drives import drive_forces, inverse_forces, without_constraints
 from identification.torques.smoothing import (
     Motion,
     choose_band,
@@ -45,7 +43,6 @@ MOST = 8_000  # equations of each joint, over all records
 SLOW = 0.02  # of the top rate of a joint in all records: slower it is at rest
 TURNING = 0.1  # of a filtered sign, that it may be off
 WIDE = 2.0  # times the band, that of the rates of which a drive makes its force
-TAPS = 4  # samples of an input, of which it is made at another time
 STATES = 40  # of a record, over which the masses that joints move are averaged
 NOISY = 4.0  # std of a rate's noise: slower it may be at rest
 
@@ -187,15 +184,15 @@ def _rows(
     mean = partial(_means, count=count, width=width)
     q, v, a = motion.q[keep], motion.v[keep], motion.a[keep]
     Y, gravity = _mean_regressor(model, q, v, a, count, width)
-    bare = _without_constraints(model)
-    inverse = _inverse(bare, motion)
+    bare = without_constraints(model)
+    inverse = inverse_forces(bare, motion)
     # What the filter leaves out of a setpoint, it leaves out of the position beside it, once.
     rates = smooth(measured, h, WIDE * band, motion.noise).v
-    force = _drives(bare, measured, rates, log, [0.0])[0]
+    force = drive_forces(bare, measured, rates, log, [0.0])[0]
     noise = _noise(model, motion, force.sum(axis=2), h, width)
 
     def drives_at(shift: float) -> tuple[np.ndarray, np.ndarray]:
-        some = _drives(bare, measured, rates, log, [shift, shift - h / 2, shift + h / 2])
+        some = drive_forces(bare, measured, rates, log, [shift, shift - h / 2, shift + h / 2])
         now, before, after = (mean(low_pass(x, h, band)[keep]) for x in some)
         return now, (before - after) / h
 
@@ -255,61 +252,3 @@ def _mean_regressor(
 def _means(x: np.ndarray, count: int, width: int) -> np.ndarray:
     """Returns the means of `count` times of `width` samples each, of an array (n, ...)."""
     return np.asarray(x[: count * width].reshape(count, width, *x.shape[1:]).mean(axis=1))
-
-
-def input_at(u: np.ndarray, h: float, shift: float, is_held: bool) -> np.ndarray:
-    """Returns inputs (n, nu) that act by a time later, without what is faster than the samples.
-
-    Each sample, one every h [s], acts from its stamp to the next one where inputs are held. The
-    weights of a few samples have the moments of this box, so that a slow input comes as late and as
-    smooth as the force that the robot felt.
-    """
-    middle = shift / h + is_held / 2
-    taps = int(np.floor(middle)) + np.arange(TAPS) - TAPS // 2 + 1
-    moments = np.array([1.0, 0.0, is_held / 12, 0.0])
-    weights = np.linalg.solve(np.vander(taps - middle, TAPS, increasing=True).T, moments)
-    n = np.arange(len(u))
-    return np.asarray(
-        sum(w * u[np.clip(n - k, 0, len(u) - 1)] for w, k in zip(weights, taps, strict=True))
-    )
-
-
-def _without_constraints(model: mujoco.MjModel) -> mujoco.MjModel:
-    """Returns a model without contacts, limits and dry friction, which no equation has."""
-    bare, off = copy.copy(model), mujoco.mjtDisableBit
-    bare.opt.disableflags |= int(off.mjDSBL_CONSTRAINT) | int(off.mjDSBL_CONTACT)
-    return bare
-
-
-@quiet()
-def _inverse(model: mujoco.MjModel, motion: Motion) -> np.ndarray:
-    """Returns the forces of inverse dynamics, shape (n, nv)."""
-    data, out = mujoco.MjData(model), np.empty_like(motion.q)
-    for k in range(len(out)):
-        data.qpos, data.qvel, data.qacc = motion.q[k], motion.v[k], motion.a[k]
-        mujoco.mj_inverse(model, data)
-        out[k] = data.qfrc_inverse
-    return out
-
-
-@quiet()
-def _drives(
-    model: mujoco.MjModel, q: np.ndarray, v: np.ndarray, log: Log, shifts: Sequence[float]
-) -> np.ndarray:
-    """Returns the forces of each actuator with inputs at other times, (len(shifts), n, nv, nu)."""
-    u = np.array([input_at(log.inputs, log.sampling_time, s, log.hold == "zoh") for s in shifts])
-    data, n, logged = mujoco.MjData(model), len(q), logged_inputs(model)
-    out, moment = np.zeros((len(shifts), n, model.nv, model.nu)), np.zeros((model.nu, model.nv))
-    for k in range(n):
-        data.qpos, data.qvel = q[k], v[k]
-        mujoco.mj_fwdPosition(model, data)
-        mujoco.mj_fwdVelocity(model, data)
-        mujoco.mju_sparse2dense(
-            moment, data.actuator_moment, data.moment_rownnz, data.moment_rowadr,
-            data.moment_colind,
-        )  # fmt: skip
-        for i in range(len(shifts)):
-            data.ctrl[:logged] = u[i, k]
-            mujoco.mj_fwdActuation(model, data)
-            out[i, k] = (moment * data.actuator_force[:, None]).T
-    return out

@@ -10,8 +10,9 @@ from torque_cases import planar_record, planar_robot
 from identification.torques.base import find_base
 from identification.torques.candidates import list_missing
 from identification.torques.equations import Equations, estimate, unseen_squares
-from identification.torques.fits import Others, base_fit, model_fit
+from identification.torques.fits import base_fit, model_fit
 from identification.torques.laws import along
+from identification.torques.others import Others
 from identification.torques.rows import make_rows
 from identification.torques.scores import rank
 

@@ -9,7 +9,8 @@ from identification import fit_torques, read_robot
 from identification.robot.torques import _plain
 from identification.torques.base import find_base
 from identification.torques.equations import Equations, list_passive
-from identification.torques.fits import Others, base_fit
+from identification.torques.fits import base_fit
+from identification.torques.others import Others
 from identification.torques.passive import with_expected_motion
 from identification.torques.rows import make_rows
 

@@ -13,7 +13,7 @@ from identification.__main__ import main
 from identification.logs.csv_files import write_log
 from identification.report.torque_words import centre_words
 from identification.robot.torques import free_numbers
-from identification.torques.fits import Others
+from identification.torques.others import Others
 
 LOAD = 0.7
 
