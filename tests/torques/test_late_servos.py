@@ -1,5 +1,6 @@
 """Arms with position servos: setpoints that come late, a clock for each record, and a wrong kp."""
 
+import re
 from dataclasses import replace
 from functools import cache
 
@@ -10,6 +11,7 @@ import pytest
 from identification import InputError, Log, fit_torques, read_robot
 from identification.refusals.wiring import refuse_unbalanced
 from identification.torques.drives import input_at
+from identification.torques.rows import make_rows
 
 ARM = """
 <mujoco><compiler angle="radian"/><option timestep="0.002" integrator="implicitfast"/><worldbody>
@@ -98,10 +100,14 @@ def test_the_masses_tell_a_free_kp_and_nothing_collapses(tmp_path, hardening):
         assert ratio[told] == pytest.approx(1 / OFF, rel=0.03)
 
 
-def test_what_was_known_of_masses_is_the_scale_where_these_are_free_too(tmp_path):
-    logs = [record(k, 0.0, OFF) for k in range(2)]
+@pytest.mark.parametrize("hardening", [0.0, 3.0])  # what is missing is smaller by smaller numbers
+def test_what_was_known_of_masses_is_the_scale_where_these_are_free_too(tmp_path, hardening):
+    logs = [record(k, 0.0, OFF, hardening) for k in range(2)]
     free = ("joint/j0.armature", "joint/j1.armature", "body/upper.mass", "body/fore.mass", *SERVOS)
-    final = fit_torques(read(tmp_path, logs[:1], logs[1:], free)).found.final
+    found = fit_torques(read(tmp_path, logs[:1], logs[1:], free)).found
+    nominal = found.model.fit.θ[[found.model.names.index(name) for name in SERVOS]]
+    assert (nominal > 0.7 * OFF * KP).all()
+    final = found.final
     truth = np.array([0.05, 0.02, 1.5, 0.7, *(OFF * KP)])
     at = [final.names.index(name) for name in free]
     assert (np.abs(final.fit.θ[at] - truth) < 3 * np.hypot(final.fit.std[at], 0.01 * truth)).all()
@@ -115,6 +121,21 @@ def test_a_slow_input_comes_as_late_and_as_smooth_as_a_robot_feels_it(shift, is_
     moved = input_at(np.sin(ω * t)[:, None], H, shift, is_held)[10:-10, 0]
     wanted = size * np.sin(ω * (t - shift - middle))[10:-10]
     np.testing.assert_allclose(moved, wanted, atol=1e-5)  # of fourth order: (ωh)⁴/8
+
+
+def test_setpoint_and_position_of_a_servo_go_through_the_filter_once():
+    """Its force is a small difference of both, and a narrow band leaves out some of each."""
+    rng, servo = np.random.default_rng(1), ARM.format(*KP)
+    log = record(0)
+    log = replace(log, outputs=log.outputs + 1e-3 * rng.standard_normal(log.outputs.shape))
+    motor = re.sub('position (name="u.") (joint="j.") kp="([^"]*)" kv="[^"]*"',
+                   r'motor \1 \2 gear="\3"', servo)  # fmt: skip
+    of_servo, of_setpoint = (
+        make_rows(mujoco.MjModel.from_xml_string(text), [log])[0] for text in (servo, motor)
+    )
+    force = of_setpoint.drives.sum(axis=2) - KP * of_servo.q - [3, 1.5] * of_servo.v
+    off = of_servo.drives.sum(axis=2) - force
+    assert np.sqrt(np.mean(off**2)) < 1e-4 * np.sqrt(np.mean((KP * of_servo.q) ** 2))
 
 
 def test_setpoints_and_positions_in_degrees_are_refused_and_radians_are_not(tmp_path):
