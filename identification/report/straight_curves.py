@@ -116,19 +116,46 @@ def limit_of_named(named: NamedEffect, model: Fitted) -> str:
         named: any effect.
         model: with it, which knows what ended on a bound.
     """
-    candidate, speed = named.candidate, f"{named.candidate.effect.name}.v_0"
-    if not candidate.effect.name.endswith(LIMIT) or speed not in model.at_bound:
+    if not _is_limit_of_force(named, model):
         return ""
     force, _, unit = named.parameters["f_m"]
-    drives = _drives_of(model.plant, candidate.where.removeprefix("joint "))
-    names = [model.plant.model.actuator(i).name for i in drives]
-    gear = abs(float(model.plant.model.actuator_gear[drives[0], 0])) if len(drives) == 1 else 0.0
-    least = f"{force / gear:.4g}" if gear else ""
-    cure = f': write forcerange="-{least} {least}" into its actuator {names[0]}' if least else ""
+    (name, least), *_ = [*force_ranges(named, model).items(), ("", 0.0)]
+    cure = (
+        f': write forcerange="-{least:.4g} {least:.4g}" into its actuator {name}, as it stands in'
+        " the model.xml that --out keeps. To fit the limit too, take that file as the model, leave"
+        f' this effect out, and add "actuator/{name}.forcerange" to the list free of the robot\'s'
+        " file"
+        if name
+        else ""
+    )
     return (
         " No fall of the force with the speed is seen, and v_0 ended on its bound: this is a limit"
         f" of the force of the drive, ±{quantity(force, unit=unit)}{cure}."
     )
+
+
+def force_ranges(named: NamedEffect, model: Fitted) -> dict[str, float]:
+    """Returns the forcerange that a named limit of the force is, by the name of its actuator.
+
+    It is empty of any other effect, and where several actuators share the limit or one has no name.
+
+    Args:
+        named: any effect.
+        model: with it, which knows what ended on a bound.
+    """
+    if not _is_limit_of_force(named, model):
+        return {}
+    plant = model.plant
+    drives = _drives_of(plant, named.candidate.where.removeprefix("joint "))
+    if len(drives) != 1 or not (name := plant.model.actuator(drives[0]).name):
+        return {}
+    return {name: named.parameters["f_m"][0] / abs(float(plant.model.actuator_gear[drives[0], 0]))}
+
+
+def _is_limit_of_force(named: NamedEffect, model: Fitted) -> bool:
+    """Returns whether an effect is a limit of a motor that does not fall with its speed."""
+    effect = named.candidate.effect.name
+    return effect.endswith(LIMIT) and f"{effect}.v_0" in model.at_bound
 
 
 def lines_needed(found: Discovery) -> list[str]:

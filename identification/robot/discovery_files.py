@@ -17,6 +17,7 @@ from identification.report.missing_place import find_place
 from identification.report.named_words import set_words
 from identification.report.own_stub import own_stub
 from identification.report.page import Section
+from identification.report.straight_curves import force_ranges
 from identification.robot.confirmation import confirm
 from identification.robot.mjcf import write_mjcf
 from identification.robot.reading import doubtful
@@ -74,7 +75,14 @@ class RobotDiscoveryFiles(DiscoveryFiles):
         path, std = folder / "robot.toml", found.final.told_std
         remark = "; ".join(filter(None, map(set_words, found.named)))
         write_robot(self.robot, values, path, place, remark, own_values=own, std=std)
-        write_mjcf(self.robot, values, folder / "model.xml", place, remark)
+        # MJCF has a place for a limit of a force that does not fall with the speed
+        limits, beside = dict[str, float](), dict(values)
+        for each in found.named:
+            if ranges := force_ranges(each, found.final):
+                limits |= ranges
+                for name in (*each.candidate.sizes, *each.candidate.fixed):
+                    beside.pop(name, None)
+        write_mjcf(self.robot, beside, folder / "model.xml", place, remark, limits)
         return {}
 
     @cached_property

@@ -42,8 +42,9 @@ _CARRIED = {hook.name for element in (BODY, ROTOR) for hook in element.hooks}
 
 
 def write_mjcf(
-    robot: Robot, values: Mapping[str, float], path: Path, place: Path, remark: str = ""
-) -> Path:
+    robot: Robot, values: Mapping[str, float], path: Path, place: Path, remark: str = "",
+    limits: Mapping[str, float] | None = None,
+) -> Path:  # fmt: skip
     """Write the model of a robot with new values as one MJCF, with its steps and its sensors.
 
     Args:
@@ -52,6 +53,8 @@ def write_mjcf(
         path: path of the file to write.
         place: the folder from which the file will be read, from which it names meshes.
         remark: one line about the values that stands at its head.
+        limits: of the forces of some actuators, by name, in their units; None for no others than
+            those of the model.
     """
     plant, spec = robot.plant.with_values(values), robot.plant.spec.copy()
     base, model = spec.compile(), plant.model
@@ -68,6 +71,9 @@ def write_mjcf(
                 _explicit(thing, model, row)
             else:
                 _put(thing, attribute, number)
+    for name, most in (limits or {}).items():
+        actuator = spec.actuator(name)
+        actuator.forcelimited, actuator.forcerange = True, [-most, most]
     spec.option.gravity = model.opt.gravity
     root = ElementTree.fromstring(spec.to_xml())
     for folder in ("meshdir", "texturedir"):

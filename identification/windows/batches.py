@@ -15,11 +15,9 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
-from identification.model.lean import one_evaluation
+from identification.model.lean import slope_integrator
 from identification.model.predictor import Numbers, Plant, Predictor
 from identification.model.rollout import State, rollout
-
-RK4 = int(mujoco.mjtIntegrator.mjINT_RK4)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -112,10 +110,11 @@ def _run(
 def rough(plant: Plant) -> mujoco.MjModel:
     """Returns the model for slopes: smooth where the plant has one, with one evaluation a step."""
     model: mujoco.MjModel = getattr(plant, "smooth", plant.model)
-    if model.opt.integrator != RK4:
+    integrator = slope_integrator(model)
+    if model.opt.integrator == integrator:
         return model
     model = copy.copy(model)
-    model.opt.integrator = one_evaluation(model)
+    model.opt.integrator = integrator
     return model
 
 

@@ -144,8 +144,8 @@ def test_a_voltage_limit_that_falls_with_no_speed_is_told_as_a_limit_of_the_forc
             named, SimpleNamespace(at_bound=at_bound, plant=SimpleNamespace(model=model))
         )
 
-    assert 'forcerange="-1.5 1.5" into its actuator low' in said(
-        "voltage_limit", ("voltage_limit.v_0",)
-    )
+    told = said("voltage_limit", ("voltage_limit.v_0",))
+    assert 'forcerange="-1.5 1.5" into its actuator low' in told
+    assert 'add "actuator/low.forcerange" to the list free' in told
     assert said("voltage_limit", ()) == ""
     assert said("coulomb_friction", ("voltage_limit.v_0",)) == ""

@@ -11,6 +11,7 @@ from tracked_cases import robot
 from identification import fit, read_robot
 from identification.effects.catalogue import all_effects
 from identification.model.predictor import Predictor
+from identification.model.tied import value_of
 from identification.robot import robot as made
 from identification.robot.mjcf import write_mjcf
 
@@ -92,6 +93,19 @@ def test_a_payload_is_in_it_and_a_friction_by_a_function_is_named(tmp_path, writ
     assert "has no place" not in path.read_text()
     path = write_mjcf(own, {payload: 0.15, friction: 0.3}, path, tmp_path)
     assert f"MJCF has no place for {friction} = 0.3." in path.read_text()
+
+
+def test_a_limit_of_a_force_that_was_found_is_in_it_and_can_be_fitted_next(tmp_path, written):
+    own = written(FREE[:1])
+    path = write_mjcf(own, {}, tmp_path / "model.xml", tmp_path, limits={"lift_goal": 2.5})
+    model = mujoco.MjModel.from_xml_path(str(path))
+    np.testing.assert_allclose(model.actuator("lift_goal").forcerange, [-2.5, 2.5])
+    assert list(model.actuator_forcelimited) == [name == "lift_goal" for name in _actuators(model)]
+    assert value_of(model, "actuator/lift_goal.forcerange") == 2.5
+
+
+def _actuators(model):
+    return [model.actuator(k).name for k in range(model.nu)]
 
 
 def test_a_fit_keeps_it_beside_the_toml(tmp_path, written):
