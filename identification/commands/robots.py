@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 WORSE = (
     "the fitted values predict unseen records worse than those of the robot's file, and are not to"
-    " be used (exit code 1)"
+    " be used (exit code 1); run discover, which looks for what the model lacks"
 )
 
 

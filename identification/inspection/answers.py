@@ -5,6 +5,10 @@
 u and z have no mean and no straight line. z is the column itself, its rate, or its acceleration: a
 joint under a servo goes where the input is, one under a motor is accelerated by it. Which of the
 three answers best is therefore a sign of what an input is.
+
+Waves alone tell no sign: the position of a free mass answers a slow force against it, and half a
+period later so does every form. What answers against an input is told as that only where no form
+answers with it as soon, and half as well.
 """
 
 from __future__ import annotations
@@ -23,6 +27,7 @@ SMOOTH = 5  # samples whose mean is differentiated
 SETPOINT = 0.8  # correlation of a position with a command that it follows
 NEAR = (0.5, 1.5)  # of such a command, that the position goes
 LEAST = 0.3  # correlation below which nothing is told
+RIVAL = 0.7  # of a correlation against an input, that one with it may be its true answer
 OF = ("itself", "rate", "acceleration")
 
 
@@ -56,11 +61,15 @@ def find_answers(
     for name, y in outputs.items():
         forms = [_centred(z) for z in _forms(y[:MOST])]
         each = [
-            _answer(name, other, of, u, z, step)
+            _answer(name, other, of, u, z, sign, step)
             for other, u in seen.items() if other != name
-            for of, z in zip(OF, forms, strict=True)
+            for of, z in zip(OF, forms, strict=True) for sign in (1, -1)
         ]  # fmt: skip
         best = max(each, key=lambda a: abs(a.correlation), default=None)
+        if best is not None and best.correlation < 0:
+            least = max(LEAST, RIVAL * abs(best.correlation))
+            soon = [a for a in each if a.correlation >= least and a.lag <= best.lag]
+            best = max(soon, key=lambda a: a.correlation, default=best)
         if best is not None and abs(best.correlation) >= LEAST:
             found.append(best)
     return tuple(a for a in found if not _is_backwards(a, found))
@@ -79,12 +88,15 @@ def _is_backwards(answer: Answer, others: Sequence[Answer]) -> bool:
     )
 
 
-def _answer(output: str, name: str, of: str, u: FloatArray, z: FloatArray, step: float) -> Answer:
-    """Returns how a form of an output answers an input."""
+def _answer(
+    output: str, name: str, of: str, u: FloatArray, z: FloatArray, sign: int, step: float
+) -> Answer:
+    """Returns how a form of an output answers an input, or the input with the other sign."""
     size = float(np.linalg.norm(u)), float(np.linalg.norm(z))
     if min(size) <= TINY:
         return Answer(output, name, 0.0, 0.0, of, 0.0)
-    r, lag = _best(u / size[0], z / size[1], step)
+    r, lag = _best(u / size[0], sign * z / size[1], step)
+    r *= sign
     return Answer(output, name, r, lag, of, r * size[1] / size[0])
 
 
@@ -103,9 +115,9 @@ def _centred(x: FloatArray) -> FloatArray:
 
 
 def _best(u: FloatArray, z: FloatArray, step: float) -> tuple[float, float]:
-    """Returns the largest correlation and its lag [s]."""
+    """Returns the most positive correlation and its lag [s]."""
     n = len(u)
     product = np.fft.rfft(z, 2 * n) * np.conj(np.fft.rfft(u, 2 * n))
     r = np.fft.irfft(product, 2 * n)[: max(1, min(n // 2, round(LONGEST / step)))]
-    k = int(np.argmax(np.abs(r)))
+    k = int(np.argmax(r))
     return float(r[k]), k * step

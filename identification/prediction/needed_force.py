@@ -15,7 +15,11 @@ Of all that a force on a joint may depend on, the one is taken by which it predi
 blocks, or a simpler one that predicts nearly as much. Its chance is that of the mean of the blocks'
 log gains, paid for all that were tried:
 
-    g_b = -ln(1 - gain_b/‖r_b‖²)
+    g_b = -ln(1 - gain_b/(‖r_b‖² + s)),   s = 0 and s = mean over blocks of ‖r_b‖² - gain_b
+
+With the second s a block counts little in which nothing is missing, such as one that never passes a
+bump: the smallest force there is many times what noise leaves of it. With s = 0 those count little
+that are explained worst. The better of the two chances is taken, and both are paid for.
 
 The std of the force is that of a jackknife over the folds (Efron 1982). It tells where a model
 fails, and names nothing.
@@ -199,13 +203,21 @@ def _drawn(joint: str, asked: _Asked, signs: Sequence[np.ndarray], told: Condens
     elif sides == 1:
         near = near.sum(axis=0, keepdims=True)
     std = np.sqrt((len(f) - 2) * f[1:].var(axis=0))
-    share = found.gains / np.maximum(told.squares, 1e-300)
-    chance = mean_above_zero(-np.log(np.maximum(1e-9, 1 - share)))[1] if found.gain > 0 else 1.0
+    chance = _chance(found.gains, told.squares) if found.gain > 0 else 1.0
     return FineForce(
         joint=joint, depends_on=asked.word, at=asked.at, force=f[0],
         std=np.where(near < FEWEST, np.inf, std), fall=found.gain / float(told.squares.sum()),
         chance=chance,
     )  # fmt: skip
+
+
+def _chance(gains: np.ndarray, squares: np.ndarray) -> float:
+    """Returns the chance of such gains of blocks (B,), of their sums of squares (B,), by luck."""
+    each = []
+    for s in (1e-300, float(np.mean(squares - gains))):
+        share = gains / (squares + s)
+        each.append(mean_above_zero(-np.log(np.maximum(1e-9, 1 - share)))[1])
+    return min(1.0, len(each) * min(each))
 
 
 def _best(told: Condensed, L: np.ndarray, sides: int) -> SmoothForce:

@@ -126,11 +126,14 @@ def where_section(found: Discovery) -> list[Section]:
     if (run := found.run) is None:
         return []
     located = [describe_finding(f) for f in found.located]
+    where = "where the nominal model fails"
+    if found.verdict == "nothing missing":
+        where = "where the errors of the nominal model are"
     parts = [" ".join(map(sentence, located))]
     if found.findings:
         title = "With what is named" if found.named else "What is left"
         parts.append(f"{title}: {'; '.join(map(describe_finding, found.findings))}.")
-    plain = listed_below("where the nominal model fails", located)
+    plain = listed_below(where, located)
     drawn = cache(partial(where_figures, found, run))
     return [Section("Where it disagrees", "\n\n".join(parts), drawn, plain=plain)]
 

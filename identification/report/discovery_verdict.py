@@ -292,8 +292,11 @@ def _smooth(found: Discovery) -> str:
         if len(found.named) > 1 and n.smooth_share is not None and n.smooth_share < EXACT_SHARE
     ]
     each = f" At their own joints the shares are {listed(inexact)}." if inexact else ""
-    who = "this effect explains" if len(found.named) == 1 else "these effects explain"
+    who, alone = "this effect", "it alone explains"
+    if len(found.named) > 1:
+        who, alone = "these effects", "they alone explain"
     return (
-        " With free smooth forces at the joints (of rate, position, drive or time) the model would"
-        f" explain more; without them {who} {percent(found.smooth_share)} of that.{each}"
+        " Smooth forces of any shape at the joints (over rate, position, drive or time), added to"
+        f" {who}, show how much can be explained at most: {alone}"
+        f" {percent(found.smooth_share)} of that.{each}"
     )

@@ -97,7 +97,7 @@ def describe_sizes(found: NamedEffect | RejectedEffect, plant: Plant | None = No
     effect, shown = found.candidate.effect, shown_parameters(found)
     if effect.is_curve and shown:
         value, std, unit = shown[largest_known(shown)]
-        return f"up to {quantity(abs(value), std, unit)}"
+        return f"up to {quantity(abs(value), std, unit)} at one of its {len(effect.sizes)} nodes"
     about = effect.about
     said = ", ".join(
         say_choice(found.candidate, name, value)

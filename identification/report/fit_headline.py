@@ -18,16 +18,28 @@ from identification.report.headline import Answer, Headline, Tile, error_tile
 FEW = 2  # values that have a tile each
 
 
-def fit_headline(fit: Fit | RecordsFit, units: Mapping[str, str]) -> Headline:
-    """Returns the answer of a fit in a few words and numbers."""
-    name, place = _judged(fit)
+def fit_headline(
+    fit: Fit | RecordsFit, units: Mapping[str, str], is_better: bool = True
+) -> Headline:
+    """Returns the answer of a fit in a few words and numbers.
+
+    Args:
+        fit: that has ended.
+        units: of its values, by name.
+        is_better: whether unseen data do not speak for the values with which it began.
+    """
+    name, place = _judged(fit, is_better)
     return Headline("", (Answer(name, place, (*_values(fit, units), _error(fit))),))
 
 
-def _judged(fit: Fit | RecordsFit) -> tuple[str, str]:
+def _judged(fit: Fit | RecordsFit, is_better: bool) -> tuple[str, str]:
     """Returns whether the fitted values can be used, and why."""
     if fit.worse is not None:
-        return "Do not use these values", "They predict unseen records worse than the first ones."
+        return (
+            "Do not use these values",
+            "They predict unseen records worse than the first"
+            " ones; discover looks for what the model lacks.",
+        )
     if fit.stopped:
         return "Stopped", "These are the best values that the search had seen."
     if not fit.converged:
@@ -38,6 +50,9 @@ def _judged(fit: Fit | RecordsFit) -> tuple[str, str]:
     left = f"The error on {judged_on(fit)} is {held(ratio)} times the noise"
     if ratio > ABOVE:
         return "Fitted, and something is missing", f"{left}; discover looks for what it is."
+    if not is_better:
+        said = "but unseen data do not confirm that the values are better"
+        return "Fitted, and not confirmed", f"{left}, {said}."
     return "Fitted, and the model explains the log", f"{left}."
 
 

@@ -14,7 +14,7 @@ from identification.estimation.metrics import output_units, relative
 from identification.model.protocol import FINER
 from identification.quantities import held, quantity
 from identification.report.error_words import describe_scale, error_words, times_words
-from identification.report.fitted_values import first_few, std_sentence, step_sentences
+from identification.report.fitted_values import first_few, matters, std_sentence, step_sentences
 from identification.report.parts_words import records_words
 from identification.report.untold_words import (
     WEAK,
@@ -71,8 +71,13 @@ def _names(fit: RecordsFit, role: str) -> str:
     return records_words([r.log.name for r in fit.records if r.role == role])
 
 
-def answer_sentence(fit: Fit | RecordsFit) -> str:
-    """Returns in one sentence whether the model explains the log."""
+def answer_sentence(fit: Fit | RecordsFit, is_better: bool = True) -> str:
+    """Returns in one sentence whether the model explains the log.
+
+    Args:
+        fit: that has ended.
+        is_better: whether unseen data do not speak for the values with which it began.
+    """
     ratio = error_over_noise(fit)
     if isnan(ratio):
         return "Whether the model explains the log is not known: the log shows no sensor noise."
@@ -82,6 +87,8 @@ def answer_sentence(fit: Fit | RecordsFit) -> str:
             f"Something is missing from the model, or a column is not what it expects: {of_what};"
             " discover looks for what is missing."
         )
+    if not is_better:
+        return f"The log does not show that anything is missing: {of_what}."
     return f"The model with the fitted values explains the log: {of_what}."
 
 
@@ -146,11 +153,17 @@ def coloured_outputs(fit: Fit) -> int:
 
 def _steps(fit: Fit) -> list[str]:
     """Returns a sentence on what a finer step would change, where this is most of the std."""
-    if not (far := fit.far):
-        return []
-    step = float(fit.estimate.predictor.plant.model.opt.timestep) / FINER
+    plant = fit.estimate.predictor.plant
+    own, units = float(plant.model.opt.timestep), {p.name: p.unit for p in plant.parameters}
     moves = dict(zip(fit.estimate.space.names, fit.step_shift.tolist(), strict=True))
-    told = [f"{name} by {moves[name]:+z.2g}" for name in far]
+    told = [
+        f"{name} by {moves[name]:+z.2g}"
+        for name in fit.far
+        if matters(moves[name], fit.values[name], units[name], own)
+    ]
+    if not told:
+        return []
+    step = own / FINER
     return [
         f"A quarter of the model's step, {quantity(step, unit='s')}, would move"
         f" {first_few(told, '; ')}. The std include this; for smaller ones write"
@@ -233,8 +246,10 @@ def _worse(fit: RecordsFit) -> list[str]:
     rise = change((after / before) ** 2 - 1)
     return [
         "The fitted values predict unseen data worse than the values with which the fit"
-        f" began (mean square {rise}, t = {fit.worse.t:z.1f}): do not use them. Fit"
-        " more records, state in the robot's file what is known of the free parameters (known), or"
+        f" began (mean square {rise}, t = {fit.worse.t:z.1f}): do not use them. The"
+        " model may lack something, for which the fit has changed the values: run discover to look"
+        " for it. Or fit more records, state in the robot's file what is known of the free"
+        " parameters (known), or"
         " leave some of them out."
     ]
 

@@ -24,6 +24,8 @@ from identification.report.value_words import is_part, words_of
 if TYPE_CHECKING:  # a search is slow to import
     from identification.discovery.result import Discovery
 
+LEAST_MOVE = 0.01  # of a value: that finer steps would move it by less is not told
+LEAST_OF_STEP = 0.1  # of the model's step, likewise of a time
 TOLD_DIGITS = 4  # of values that finer steps would give
 SHOWN, MOST_SHOWN = 3, 8  # of more values than the latter only the first are told
 FEW = 3  # single parts that are shown where there are more than MANY
@@ -106,7 +108,7 @@ def step_sentences(
     from identification.windows.coarse import OUTPUT_ERROR, steps_of  # slow to import
 
     taken, own = steps or steps_of(model.plant)
-    changed = _changed(model, words or {})
+    changed = _changed(model, words or {}, own)
     if taken == own and not changed:
         return []
     model_step, finer = quantity(own, unit="s"), own / FINER
@@ -159,18 +161,19 @@ def first_few(told: Sequence[str], join: str = ", ") -> str:
     return f"{join.join(told[:SHOWN])} and {len(told) - SHOWN} more"
 
 
-def _changed(model: Fitted, words: Mapping[str, str]) -> list[str]:
-    """Returns clauses on what finer steps would do that is worth to be told."""
+def _changed(model: Fitted, words: Mapping[str, str], own: float) -> list[str]:
+    """Returns clauses on what steps finer than `own` [s] would do that is worth to be told."""
     finer, said = model.finer, []
     if finer is None:
         return []
-    if far := _far(model):
-        parameters = {p.name: p for p in model.plant.parameters}
-        moved = dict(zip(model.told_std, finer.values.tolist(), strict=True))
+    parameters = {p.name: p for p in model.plant.parameters}
+    moved = dict(zip(model.told_std, finer.values.tolist(), strict=True))
+    units = {n: _of(n, parameters).unit for n in moved}
+    if far := [n for n in _far(model) if matters(moved[n], model.told_values[n], units[n], own)]:
         told = []
         for n in far:  # the values of a fit with finer steps, to first order
-            value, unit = model.told_values[n] + moved[n], _of(n, parameters).unit
-            told.append(f"{words.get(n, n)} to {alike([value], unit, TOLD_DIGITS)[0]}")
+            value = alike([model.told_values[n] + moved[n]], units[n], TOLD_DIGITS)[0]
+            told.append(f"{words.get(n, n)} to {value}")
         said.append(f"move {first_few(told)}, which the std include")
     if finer.is_lower():
         said.append(
@@ -178,6 +181,18 @@ def _changed(model: Fitted, words: Mapping[str, str]) -> list[str]:
             " comes from the steps, and not from something that is missing"
         )
     return said
+
+
+def matters(moved: float, value: float, unit: str, step: float) -> bool:
+    """Returns whether a change of a value by finer steps is so large that these are worth it.
+
+    Args:
+        moved: the change, in `unit`.
+        value: the value, in `unit`.
+        unit: in which both are.
+        step: of the model [s]; of a time less than a share of it matters to nobody.
+    """
+    return abs(moved) > max(LEAST_MOVE * abs(value), LEAST_OF_STEP * step * (unit == "s"))
 
 
 def _far(model: Fitted) -> list[str]:

@@ -23,8 +23,8 @@ from identification.report.horizon_gap import (
     find_gap,
     worst_lines,
 )
-from identification.report.missing_place import MissingPlace, find_place
-from identification.report.needed_forces import SURE, NeededForce, NeededForces, force_line
+from identification.report.missing_place import MissingPlace, find_place, force_line
+from identification.report.needed_forces import SURE, NeededForce, NeededForces
 from identification.report.page import Section, Table
 from identification.report.parts_words import unseen_of
 from identification.report.style import GREY, INK, MEASURED, SERIES, SIMULATED, literal, styled
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 TITLE = "Where it disagrees"
 NEEDED = "The force that is missing, by joint"
-WORST = "The fitted windows in which the final model fails most"
+WORST = "The fitted windows in which the error of the final model is largest"
 GROWTH = (
     "A constant force that is missing makes about four times the error over twice the time; noise"
     " of the sensors makes the same error over any time."
@@ -43,7 +43,8 @@ GROWTH = (
 FORCES = (
     "The force is what would have to act on that joint in place of every other cause, without what"
     " the free parameters can imitate: a first estimate, linear about the fitted values, with a"
-    " band of 95 % for the noise alone."
+    " band of 95 % for the noise alone. A peak that is narrower than the place that is told is"
+    " higher than the force that is told."
 )
 NO_FORCE = (
     "No force that follows the position, the speed, the drive or the time at one joint would"
@@ -64,7 +65,9 @@ def horizon_sections(found: Discovery) -> list[Section]:
     gap = find_gap(found)
     if gap is None:
         return []
-    model = "the model with what is named" if found.named else "the fitted model"
+    where = f"where {'the model with what is named' if found.named else 'the fitted model'} fails"
+    if found.verdict == "nothing missing":
+        where = "where the errors of the fitted model are"
     lines, of = [], unseen_of(found)
     for o in gap.outputs:
         size, noise = alike([o.after, o.noise], o.unit, 3)
@@ -79,7 +82,7 @@ def horizon_sections(found: Discovery) -> list[Section]:
         rest.append(f"over {over} the error on unseen data{of} is {ratios} times the noise")
     forces = gap.needed.forces
     text = [f"{' '.join(map(sentence, rest))} {GROWTH}"]
-    plain = [listed_below(f"where {model} fails", [*lines, *rest, *map(force_line, forces)])]
+    plain = [listed_below(where, [*lines, *rest, *map(force_line, forces)])]
     if gap.is_far and not forces:
         doubt = doubtful_sentences(gap.needed, found)
         text += doubt

@@ -25,6 +25,7 @@ from identification.model.predictor import output_columns
 from identification.quantities import alike
 from identification.report.horizon_gap import find_gap
 from identification.report.needed_forces import NeededForce
+from identification.shares import percent
 
 OWN = {  # what tells a place of a joint by itself: the words before its ends
     "position of {}": "near",
@@ -128,6 +129,18 @@ def place_of(needed: NeededForce) -> MissingPlace:
         nodes.joint, nodes.reads, nodes.unit, float(edges[first]), float(edges[last + 1]), moves,
         force, float(needed.std[way, top]), needed.unit,
     )  # fmt: skip
+
+
+def force_line(needed: NeededForce) -> str:
+    """Returns what a force at a joint would explain, and where it would be largest.
+
+    It is a first estimate, whose std by the noise alone would say too much.
+    """
+    at, reads = place_of(needed), needed.nodes.reads
+    return (
+        f"a force on {at.joint} that depends on the {reads} would remove {percent(needed.fall)} of"
+        f" the fitted error; it would be largest {at.range}: {at.size}"
+    )
 
 
 def _beside(same: np.ndarray, top: int) -> tuple[int, int]:

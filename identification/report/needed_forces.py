@@ -19,7 +19,6 @@ from identification.effects.jointed import JointPlant
 from identification.prediction.model import WindowModel
 from identification.prediction.needed_force import fine_forces
 from identification.prediction.scores import WindowScore
-from identification.quantities import HELD, alike, quantity
 from identification.report.error_words import listed
 from identification.report.named_words import Nodes, curve_nodes, nodes_over
 from identification.shares import percent
@@ -107,20 +106,6 @@ def _of_scores(found: Discovery, final: WindowModel) -> list[NeededForce]:
             out.append(NeededForce(each, s.size[order][None], s.std[order][None], unit, s.fall,
                                    chance))  # fmt: skip
     return out
-
-
-def force_line(needed: NeededForce) -> str:
-    """Returns what a force at a joint would explain, and where it would be largest.
-
-    It is a first estimate, whose std by the noise alone would say too much.
-    """
-    nodes, (way, k) = needed.nodes, needed.largest
-    size = f"about {alike([float(needed.force[way, k])], needed.unit, HELD)[0]}"
-    at = quantity(float(nodes.at[k]), unit=nodes.unit)
-    return (
-        f"a force on {needed.nodes.joint} that depends on the {needed.nodes.reads} would remove"
-        f" {percent(needed.fall)} of the fitted error; it would be largest at {at}: {size}"
-    )
 
 
 def needed_sentences(forces: Sequence[NeededForce]) -> list[str]:

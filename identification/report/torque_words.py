@@ -241,8 +241,9 @@ def _doubts(evidence: Evidence) -> list[str]:
     r = len(evidence.base.names)
     worst, many = int(np.argmax(moved)), int(np.sum(moved > MATTERS))
     out = [
-        "In closed loop the noise of the positions goes into the torques, so that noise and motion"
-        f" are correlated. If the band of the smooth motion is narrower by {percent(1 - 0.6)},"
+        "Where a controller computes the torques from the measured positions, the noise of these is"
+        " in the torques too, and std may be too small. If the band of the smooth motion is"
+        f" narrower by {percent(1 - 0.6)},"
         + (
             f" {many} of {len(moved)} values move by more than {MATTERS:g} std, most"
             f" {evidence.whole.names[worst]} ({moved[worst]:.1f} std): their std may be too small."

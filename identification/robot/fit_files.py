@@ -62,10 +62,11 @@ def robot_fit_to_json(result: RobotFit, confirmed: Sequence[Confirmation] = ()) 
     far = _far(record["parameters"])
     # Then nothing else of the verdict matters as much.
     first = int(result.is_worse or result.stopped)
-    far = [*doubtful(result.robot), *no_better(result, confirmed or result.unseen), *far]
+    worse = no_better(result, confirmed or result.unseen)
+    far = [*doubtful(result.robot), *worse, *far]
     if not first:
         departures = departure_sentences(found.model) if isinstance(found, RecordsFit) else []
-        far = [answer_sentence(found), *map(str, unexplained), *departures, *far]
+        far = [answer_sentence(found, not worse), *map(str, unexplained), *departures, *far]
     if no_body := impossible_sentence(result.robot, result.shared):
         far.append(no_body)
     verdict = [*record["verdict"][:first], *far, *record["verdict"][first:], *map(str, said)]
@@ -150,7 +151,12 @@ class RobotFitFiles(PageFiles):
     @cached_property
     def record(self) -> dict[str, Any]:
         """The fit as plain values, with how it predicts what it has not seen."""
-        return robot_fit_to_json(self.fitted, confirm(self.fitted.robot, self.fitted))
+        return robot_fit_to_json(self.fitted, self.confirmed)
+
+    @cached_property
+    def confirmed(self) -> Sequence[Confirmation]:
+        """How it predicts each record that it has not seen, or the unseen part of each log."""
+        return confirm(self.fitted.robot, self.fitted)
 
     @cached_property
     def sections(self) -> list[Section]:
@@ -172,6 +178,7 @@ class RobotFitFiles(PageFiles):
         robot, found = self.fitted.robot, self.fitted
         logs = [log.name for log in (robot.log, *robot.others)]
         units = {p.name: plain_unit(p.unit) for p in robot.plant.parameters}
+        worse = no_better(found, self.confirmed or found.unseen)
         return write_report(
             path,
             f"{', '.join(logs)}: fitted",
@@ -179,7 +186,7 @@ class RobotFitFiles(PageFiles):
             self.sections,
             good=False if found.is_worse else None,
             data=[*logs, *(log.name for log in robot.records)],
-            headline=fit_headline(found.found, units),
+            headline=fit_headline(found.found, units, not worse),
         )
 
 

@@ -80,6 +80,17 @@ def test_what_answers_what_and_how_late():
     assert find_answers(STEP, inputs, {"y": np.ones(len(u))}) == ()
 
 
+@pytest.mark.parametrize("seed", range(6))
+def test_a_free_cart_that_slow_waves_push_answers_them_with_their_own_sign(seed):
+    rng, t = np.random.default_rng(seed), np.arange(4000) * STEP
+    ω = 2 * np.pi * rng.uniform(0.2, 0.3, 2)
+    force = np.sin(np.outer(t, ω)) @ rng.uniform(0.5, 1, 2)
+    moved = -np.sin(np.outer(t, ω)) @ (rng.uniform(0.5, 1, 2) / ω**2)  # its acceleration: waves
+    (answer,) = find_answers(STEP, {"force": force}, {"x": moved})
+    assert answer.correlation > 0
+    assert "opposite" not in answer_sentence(answer)
+
+
 def test_rates_gaps_ranges_and_words_of_a_csv(tmp_path):
     path = tmp_path / "run.csv"
     rows = [f"{1000 * STEP * k:.0f},{k % 5},{k},on" for k in range(300) if not 100 <= k < 110]

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 from bump_cases import AT, SIZE, WIDTH, push, record, rise, rub, searched
 
+from identification.chances import mean_above_zero
 from identification.prediction import needed_force
-from identification.prediction.needed_force import fine_forces
+from identification.prediction.needed_force import _chance, fine_forces
 
 
 def found(seed=1, model=None, **how):
@@ -74,3 +75,17 @@ def test_where_forces_have_no_linear_response_none_is_told(monkeypatch):
     monkeypatch.setattr(needed_force, "forces_of", lambda fit: (None,) * len(fit.moves))
     fine_forces.cache_clear()
     assert fine_forces(model.fit, (1.0,)) is None
+
+
+def test_a_force_on_few_blocks_is_no_luck_though_the_others_have_nothing_to_explain():
+    rng = np.random.default_rng(4)
+    squares, share = np.full(40, 0.5), -10 * rng.uniform(size=40)  # of noise nothing is explained
+    squares[::3], share[::3] = rng.uniform(20, 2000, 14), rng.uniform(0.9, 1.0, 14)
+    assert _chance(share * squares, squares) < 0.01
+    assert mean_above_zero(-np.log(1 - share))[1] > 0.1  # where each block counts by its own noise
+
+
+def test_the_chance_of_luck_is_no_smaller_than_it_says():
+    rng, squares = np.random.default_rng(5), np.full(40, 1.0)
+    told = np.array([_chance(0.1 * rng.standard_normal(40), squares) for _ in range(2000)])
+    assert np.mean(told < 0.05) < 0.05 + 3 * np.sqrt(0.05 * 0.95 / 2000)

@@ -37,6 +37,8 @@ def test_the_first_sentence_of_a_fit_says_whether_the_model_explains_the_log(rat
     said = answer_sentence(found)
     assert (explained in said, missing in said) == (ratio <= ABOVE, ratio > ABOVE)
     assert "its error on unseen data (third) is " in said
+    # what the first values explain better is not called an explanation
+    assert explained not in answer_sentence(found, is_better=False)
     found.noise_by_unit = {"m": 0.0}
     assert "not known" in answer_sentence(found)
 

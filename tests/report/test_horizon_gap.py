@@ -131,6 +131,13 @@ def test_once_the_friction_is_named_no_force_is_needed():
     assert "where the model with what is named fails" in section.plain
 
 
+def test_a_model_that_lacks_nothing_does_not_fail():
+    (section, *_) = horizon_sections(replace(unknown(), verdict="nothing missing"))
+    assert "where the errors of the fitted model are" in section.plain
+    assert "fails" not in section.plain.partition(":")[0]
+    assert "where the fitted model fails" in horizon_sections(unknown())[0].plain
+
+
 def test_json_has_the_place_and_both_directions(monkeypatch):
     answer, ((force,), tried) = unknown(), fine(unknown())
     bump = np.zeros((2, 64))

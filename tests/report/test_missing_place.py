@@ -14,7 +14,7 @@ from identification import read_robot, write_log
 from identification.discovery.missing_forces import MissingForce
 from identification.report.discovery_verdict import discovery_verdict
 from identification.report.horizon_gap import find_gap
-from identification.report.missing_place import MissingPlace, find_place, place_of
+from identification.report.missing_place import MissingPlace, find_place, force_line, place_of
 from identification.report.named_words import Nodes
 from identification.report.needed_forces import NeededForce
 from identification.report.own_stub import own_stub
@@ -65,6 +65,15 @@ def test_the_largest_force_of_the_surest_place_is_told():
         needed([0, 0, 0, 0.4, 0.6, 0, 0, 0], [0.03, 0.03, 0.03, 0.03, 0.2] + [0.03] * 3)
     )
     assert (place.force, place.std) == (0.6, 0.2)
+
+
+def test_all_that_is_said_of_a_force_has_the_number_of_the_surest_place():
+    force, std = np.zeros((1, 64)), np.full((1, 64), 0.01)
+    force[0, 20:23], std[0, 20:23] = [2.0, 3.0, 2.1], [0.1, 0.9, 0.02]
+    one = needed(force, std)
+    assert place_of(one).size in force_line(one)
+    assert place_of(one).range in force_line(one)
+    assert "3 N m" in force_line(one)
 
 
 def test_a_node_that_no_motion_tells_is_no_answer():

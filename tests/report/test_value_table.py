@@ -7,7 +7,7 @@ from joint_cases import arm
 
 from identification.effects.effect import Candidate, effect_parameters
 from identification.effects.state_effects import joint_elasticity
-from identification.report.fitted_values import value_table
+from identification.report.fitted_values import matters, value_table
 
 
 def test_where_an_encoder_sits_is_no_fitted_value():
@@ -30,3 +30,10 @@ def test_where_an_encoder_sits_is_no_fitted_value():
     assert len(first) == 3
     assert not [name for name in first if name.startswith("link")]
     assert np.all([str(row[-1]) != "0 %" for row in value_table(found).rows])
+
+
+def test_a_finer_step_is_advised_only_where_somebody_would_see_what_it_moves():
+    assert matters(0.02, 1.0, "kg", 0.005)
+    assert not matters(0.002, 1.0, "kg", 0.005)
+    assert not matters(8e-5, 1e-4, "s", 0.005)  # a delay, by a sixtieth of the model's step
+    assert matters(8e-4, 1e-4, "s", 0.005)

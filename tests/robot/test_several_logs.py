@@ -80,6 +80,8 @@ def test_the_command_keeps_a_fit_that_is_worse_and_says_so_everywhere(folder, ca
     assert main(call) == 1
     text, error = capsys.readouterr()
     assert "do not use them" in text.splitlines()[0]
+    assert "run discover" in text.splitlines()[0]
+    assert "run discover" in error
     assert "are not to be used (exit code 1)" in error
     kept = json.loads((out / "result.json").read_text())
     assert kept["worse"]["rise"] > 0
