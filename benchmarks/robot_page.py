@@ -44,7 +44,7 @@ the four-bar and the gripper, whose joints are coupled, a name may also stand at
 all of them, because the motion cannot tell these apart. In a world of *two clocks* the inputs of
 each record act up to 25 ms later or earlier than their stamps say, and each record has its own
 time; a servo only comes late. In a *sweep* the inputs grow and get faster along one record of 16 s,
-which is fitted and confirms in turn.
+the first half of which is fitted.
 """
 
 

@@ -20,9 +20,6 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
     "untouched_part": (
         BOTH, "keeps blocks of what no fit sees from the search too, and tells errors of these",
     ),
-    "pieces_take_turns": (
-        HORIZON, "fits and confirms by pieces of a single log that take turns, not by its halves",
-    ),
     "add_pair": (
         RUN, "adds two effects of which none is proven alone, because each hides the other",
     ),

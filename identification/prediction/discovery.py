@@ -8,7 +8,6 @@ from identification.discovery.moves import Evidence
 from identification.discovery.nominal_model import NominalModel, without_starts
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.outlook import CHECKS, EFFECT, LEFT, SCORES, Rests
-from identification.discovery.passes import uses
 from identification.discovery.result import Discovery
 from identification.effects.effect import Candidate, Effect
 from identification.errors import InputError
@@ -57,8 +56,8 @@ def discover_records(
         nominal_model: the model with every candidate effect compiled in, its free parameters, what
             is known of them, and the horizon of predictions.
         fit: logs to fit.
-        confirm: logs that no fit may see; where there is none, a part of each log confirms
-            (`identification.windows.records`).
+        confirm: logs that no fit may see; where there is none, the first half of each log is fitted
+            and the second half confirms.
         effects: the candidates.
         progress: is told a line per step.
         options: what is believed; the defaults of `DiscoveryOptions` when None.
@@ -71,11 +70,9 @@ def discover_records(
     """
     if nominal_model.horizon is None:
         raise InputError(NO_HORIZON)
-    options = options or DiscoveryOptions()
-    takes_turns = uses(options, "pieces_take_turns")
-    records = as_records(fit, confirm, nominal_model.horizon if takes_turns else None)
+    records = as_records(fit, confirm)
     task = RecordsTask(
         nominal_model=without_starts(nominal_model), records=records, effects=tuple(effects),
-        options=options, suggested=tuple(suggested),
+        options=options or DiscoveryOptions(), suggested=tuple(suggested),
     )  # fmt: skip
     return WINDOWS.search(task, progress)

@@ -187,8 +187,8 @@ def fit_records(
     Args:
         nominal_model: the model, its free parameters, what is known of them, and the horizon.
         fit: logs to fit.
-        confirm: logs that the fit may not see; where there is none, a part of each log
-            confirms (`identification.windows.records`).
+        confirm: logs that the fit may not see; where there is none, the first half of each log is
+            fitted and the second half confirms.
         progress: is told one line per linearisation.
 
     Raises:
@@ -199,7 +199,7 @@ def fit_records(
     if base.horizon is None:
         raise InputError(NO_HORIZON)
     clock = time.perf_counter()
-    records = as_records(fit, confirm, base.horizon)
+    records = as_records(fit, confirm)
     unseen = [r for r in records if r.role == "confirm"]
     found = fit_nominal(base, records, progress)
     model = (

@@ -34,7 +34,7 @@ def discover(
     """Name what a model lacks to explain a log, and prove it on the part that was not fitted.
 
     A model with a horizon is judged by predictions over it, on the records that confirm or on the
-    other pieces of each log (`identification.prediction`); one without by the innovations of a
+    second half of each log (`identification.prediction`); one without by the innovations of a
     Kalman filter along its free run (`identification.innovations`).
 
     The result is of one kind. `found` itself shows the first sentence of its verdict;

@@ -21,7 +21,7 @@ from identification.windows.blocks import count_blocks
 from identification.windows.fit import WindowFit
 from identification.windows.records import Record
 from identification.windows.unseen import LENGTHS, cut_unseen
-from identification.windows.windows import Windows, outside_gaps
+from identification.windows.windows import Windows
 
 # Of windows that decide, over all records; with fewer no part is kept. At 0.3 % Student's t of 12
 # blocks asks for 1.2 times what it asks of many, and that of 8 for 1.4 times, beside the factor
@@ -52,7 +52,7 @@ def divide_records(
         samples = int(np.diff(longest.places[0])[0])
         apart = np.diff(longest.starts)
         unit = samples * max(1, round(float(np.median(apart)) / samples)) if len(apart) else samples
-        parts = divide(outside_gaps(record.log), unit, memory / record.log.sampling_time)
+        parts = divide(np.ones(len(record.log), bool), unit, memory / record.log.sampling_time)
         parted.append(replace(record, parts=parts if _is_enough(parts, cuts, k) else None))
     deciding = (
         count_blocks(int(inside(r.parts, "select", cut.places).sum()))

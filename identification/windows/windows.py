@@ -100,15 +100,6 @@ def logged(log: Log, places: np.ndarray, edge: float) -> np.ndarray:
     return np.asarray(keep if np.mean(~keep) <= MAX_LOST_SHARE else np.full(len(keep), True))
 
 
-def outside_gaps(log: Log) -> np.ndarray:
-    """Returns which samples of a log no gap of it holds, shape (N,)."""
-    return np.asarray(
-        ~np.any([(log.time > a) & (log.time < b) for a, b in log.gaps], axis=0)
-        if log.gaps
-        else np.ones(len(log), bool)
-    )
-
-
 def noise_whitener(log: Log) -> np.ndarray:
     """Returns C = I/σ, shape (ny, ny), where σ is the rms of the noise floor of all outputs."""
     sigma = float(np.sqrt(np.mean(noise_floor(log.outputs) ** 2))) or 1.0

@@ -20,7 +20,6 @@ from identification.prediction.scores import window_scores
 from identification.prediction.task import RecordsTask
 from identification.windows.records import as_records
 from identification.windows.unknowns import Unknowns
-from identification.windows.windows import windows
 
 SAMPLES = 300  # of each record
 SHIFTS = (0.02, -0.015, 0.01)  # of three records' inputs [s]
@@ -124,30 +123,6 @@ def test_without_records_that_confirm_the_second_half_of_each_log_does():
         np.testing.assert_array_equal(
             np.concatenate([first.log.outputs, second.log.outputs]), log.outputs
         )
-
-
-@given(samples=st.integers(330, 1200), horizon=st.sampled_from([0.1, 0.13, 0.2]))
-def test_pieces_of_a_log_take_turns_and_share_no_sample(samples, horizon):
-    log = record(1, samples=samples)
-    fitted, unseen = (r.log for r in as_records([log], [], horizon))
-    for length in (horizon / 2, horizon, 2 * horizon):
-        size = round(length / log.sampling_time)
-        parts = [windows(part, length).places for part in (fitted, unseen)]
-        seen = [np.concatenate([np.arange(*place) for place in places]) for places in parts]
-        assert not np.intersect1d(*seen).size
-        if size == 2 * round(horizon / log.sampling_time):
-            # no piece loses a window at its ends, and neither part is earlier than the other
-            assert sum(map(len, parts)) == len(log) // size
-            middles = [np.mean(s) for s in seen]
-            assert abs(middles[0] - middles[1]) < samples / 16 + size
-
-
-def test_a_short_log_is_cut_into_halves_and_one_that_names_its_parts_into_these():
-    short = record(1, samples=100)
-    assert as_records([short], [], 0.1)[1].log.begun == pytest.approx(50 * short.sampling_time)
-    splits = {"estimation": (0.0, 1.0), "validation": (1.0, 1.5)}
-    named = replace(record(1, samples=400), splits=splits)
-    assert [len(r.log) for r in as_records([named], [], 0.1)] == [100, 50]
 
 
 def test_records_that_confirm_leave_the_others_whole():
