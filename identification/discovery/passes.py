@@ -30,6 +30,7 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
         HORIZON, "fits a friction that gives before it slips from its largest compliance",
     ),
     "add_set": (HORIZON, "adds several effects that are proven together and not alone"),
+    "add_curve": (HORIZON, "adds a curve of the data where neither a law nor a set is proven"),
     "plain_sets": (
         HORIZON, "leaves laws with states of joints, on which a linear choice errs, out of sets",
     ),
@@ -85,9 +86,6 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
     ),
     "loud_windows": (
         HORIZON, "takes the windows that err most where effects are fitted to some windows first",
-    ),
-    "curves_at_last": (
-        HORIZON, "refits curves of the data that promise less than a law where no law is proven",
     ),
     "simpler_laws": (HORIZON, "fits laws with fewer numbers that act as the best one does"),
     "several_places": (

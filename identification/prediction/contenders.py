@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -18,49 +18,24 @@ MAX_CHANCE = 0.05  # of a score, above which its effect is not refitted however 
 
 
 def list_contenders(
-    scores: Sequence[WindowScore], options: DiscoveryOptions, errors: int, is_left: bool = False
-) -> list[WindowScore]:
+    scores: Sequence[WindowScore], options: DiscoveryOptions, is_left: bool = False,
+    are_curves: bool = False,
+) -> list[WindowScore]:  # fmt: skip
     """Returns the few best scores beyond chance, with the best shape of each effect at each place.
 
     They are fitted to some windows, and the best of them to all: a score is linear, and what is
-    right need not have the best one. Curves of the data are among them only where their criterion
-    promises to be better than that of every law: a curve can imitate any law of what it depends on.
-    Several of them are, because what a cause depends on need not have the best score either.
+    right need not have the best one. Of curves several are, because what a cause depends on need
+    not have the best score either.
 
     Args:
         scores: of all candidates, the best first.
         options: what is beyond chance, and how many are refitted.
-        errors: number of errors that count as a sample of the criterion.
         is_left: as `refit_level`.
+        are_curves: whether curves of the data are asked, or laws.
     """
-    level = refit_level(scores, options, is_left)
-    laws = _best_few([s for s in scores if not s.candidate.effect.is_curve], level, options)
-    curves = _best_few([s for s in scores if s.candidate.effect.is_curve], level, options)
-
-    def promised(s: WindowScore) -> float:
-        return errors * s.gain - len(s.size) * np.log(max(2, errors))
-
-    best = max([promised(s) for s in laws], default=0.0)
-    return [*laws, *[s for s in curves if promised(s) > best][:MAX_CURVES]]
-
-
-def list_curves(
-    scores: Sequence[WindowScore], tried: Collection[tuple[str, str]], options: DiscoveryOptions,
-    is_left: bool = False,
-) -> list[WindowScore]:  # fmt: skip
-    """Returns curves beyond chance that were not refitted, for want of a law that is proven.
-
-    Args:
-        scores: of all candidates, the best first.
-        tried: keys of the candidates that were refitted.
-        options: what is beyond chance; the switch `curves_at_last`.
-        is_left: as `refit_level`.
-    """
-    if not uses(options, "curves_at_last"):
-        return []
-    level = refit_level(scores, options, is_left)
-    curves = _best_few([s for s in scores if s.candidate.effect.is_curve], level, options)
-    return [s for s in curves if s.candidate.key not in tried][:MAX_CURVES]
+    some = [s for s in scores if s.candidate.effect.is_curve == are_curves]
+    found = _best_few(some, refit_level(scores, options, is_left), options)
+    return found[:MAX_CURVES] if are_curves else found
 
 
 def list_limits(

@@ -20,7 +20,6 @@ from identification.effects.effect import Candidate
 from identification.pool import OutOfTime, lift_limit, run_parts
 from identification.prediction.contenders import (
     list_contenders,
-    list_curves,
     list_limits,
     list_starts,
     refit_level,
@@ -56,8 +55,11 @@ def refit_contenders(
     progress: Progress,
     worse_fit: Unseen | None = None,
     suggested: Sequence[Candidate] = (),
+    are_curves: bool = False,
 ) -> tuple[WindowModel, tuple[Contender, ...]]:
     """Refit the contenders of a round, the best first: proven ones before others, by evidence.
+
+    They are laws, or curves of the data.
 
     Where the fit without effects was worse than the values with which it began, an effect must be
     proven against that fit, and be no worse than these values: it says why the fit went wrong.
@@ -69,14 +71,13 @@ def refit_contenders(
     Returns:
         The model without them, its windows at the best states that any of them found, and they.
     """
-    windows = sum(len(p.cut.starts) for p in model.fit.problem.parts)
     is_weak = refit_level(scores, options) < options.significance
     is_far = output_ratios(model.unseen.select).max() > MIN_LIMITED_RATIO
     # what is left is simulated only where something depends on it
     is_much = (is_weak or is_far) and is_much_left(model, options)
     is_left, is_far = is_weak and is_much, is_far and is_much
-    chosen = list_contenders(scores, options, windows * len(model.scale), is_left)
-    chosen += list_limits(scores, chosen, options) if is_far else []
+    chosen = list_contenders(scores, options, is_left, are_curves)
+    chosen += list_limits(scores, chosen, options) if is_far and not are_curves else []
     if uses(options, "suggested_effects"):
         has = {*(s.candidate.key for s in chosen), *(c.key for c in model.candidates)}
         each = [c for c in suggested if c.key not in has and has_what_it_needs(model, c)]
@@ -130,12 +131,6 @@ def refit_contenders(
     # of laws that a smooth force of a joint does as well, none is left: a curve may draw that force
     out = [*first_not_imitated(parent, ranked(out, options), options)]
     proven = [c for c in out if c.is_proven]
-    curves = list_curves(scores, {s.candidate.key for s in chosen}, options, is_left)
-    if curves and not proven and not is_late:
-        refits += len(curves)
-        more = refit(_near_best(_begun(model, curves, scores, options), options))
-        parent, out = judge(parent, [*(c.model for c in out), *more])
-        proven = [c for c in out if c.is_proven]
     better = [c for c in out if c.is_proven or is_dear(c, refits, options)]
     if better and not is_late and uses(options, "simpler_laws"):
         # Chance is not paid for these laws: they are asked only where a richer one has passed.

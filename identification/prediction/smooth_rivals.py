@@ -91,7 +91,7 @@ def does_as_much(model: WindowModel, new: WindowModel) -> bool:
     is_asked = not (effect.is_curve or effect.state or effect.is_of_records or effect.own)
     if not is_asked or not isinstance(plant, JointPlant):
         return False
-    if acts_on_joints(effect) and single_places(law) == [law.where]:
+    if acts_on_joints(effect):
         return False
     where = [f"joint {axis.joint}" for axis in plant.axes]
     forces = attempt(None, partial(list_forces, model, plant.effects, True, where, law))

@@ -14,6 +14,7 @@ from identification.discovery.moves import Move, Watch
 from identification.discovery.outlook import SCORES
 from identification.discovery.passes import uses
 from identification.errors import InputError
+from identification.prediction.moves.add_curve import add_curve
 from identification.prediction.moves.add_effect import add_effect
 from identification.prediction.moves.add_set import add_set, set_for_effects
 from identification.prediction.moves.add_yielding_friction import add_yielding_friction
@@ -40,6 +41,7 @@ MOVES = (
     Move("add_effect", add_effect, grows=True),
     Move("add_yielding_friction", add_yielding_friction, grows=True),
     Move("add_set", add_set, grows=True),
+    Move("add_curve", add_curve, grows=True),
     Move("set_for_effects", set_for_effects, takes_long=True),
     *(
         Move(change.__name__, finishing(change))

@@ -38,12 +38,19 @@ from identification.quantities import quantity
 from identification.windows.coarse import steps_of
 
 
-def add_effect(state: WindowSearch, progress: Progress) -> WindowSearch:
-    """Returns the state with the best effect that unseen records prove, or what was refitted."""
+def add_effect(state: WindowSearch, progress: Progress, are_curves: bool = False) -> WindowSearch:
+    """Returns the state with the best effect that unseen records prove, or what was refitted.
+
+    Args:
+        state: the state before.
+        progress: is told what is refitted.
+        are_curves: whether curves of the data are asked, or laws.
+    """
     task, watch = state.task, Watch(state.seconds)
     parent, tried = refit_contenders(
         state.model, state.scores, task.horizon, task.confirm, task.options, progress,
-        None if state.accepted else state.worse_fit, task.suggested,
+        None if state.accepted else state.worse_fit, () if are_curves else task.suggested,
+        are_curves,
     )  # fmt: skip
     nominal = state.nominal if state.accepted else parent
     state = replace(state, model=parent, nominal=nominal)
@@ -57,14 +64,15 @@ def add_effect(state: WindowSearch, progress: Progress) -> WindowSearch:
                 f"{c.effect.name}, {c.where}: the steps of the simulation may make it; the search"
                 f" goes on with steps of {quantity(taken, unit='s')}"
             )
-            return add_effect(replace(finer, seconds=watch.seconds), progress)
+            return add_effect(replace(finer, seconds=watch.seconds), progress, are_curves)
         tried = _without_made(state, tried)
     model = None
     while model is None:  # a model that its own steps let diverge is none: the next one is asked
         tried, other_side = _checked(state, tried, progress)
         if not tried or not tried[0].is_proven:
             watch.stop("refits")
-            return replace(state, rejected=tried, seconds=watch.seconds)
+            rejected = (*state.rejected, *tried) if are_curves else tried
+            return replace(state, rejected=rejected, seconds=watch.seconds)
         best = tried[0]
         shorter = partial(with_fitting_steps, best.model, task.horizon, task.confirm)
         model = attempt(best.candidate, shorter)

@@ -59,7 +59,10 @@ def curve_for_laws(state: WindowSearch, progress: Progress) -> Change:
         if bare is None:
             continue
         scores = [s for s in score_all(bare, curves, options) if s.candidate.where == where]
-        refit = partial(refit_contenders, bare, scores, task.horizon, confirm, options, progress)
+        refit = partial(
+            refit_contenders, bare, scores, task.horizon, confirm, options, progress,
+            are_curves=True,
+        )  # fmt: skip
         refitted_curves = attempt(None, refit)
         if refitted_curves is None:
             continue
