@@ -17,8 +17,9 @@ elsewhere  A sensor's error, a mass or a fault of all inputs is no force of one 
                g_l < 0.85 g_j    and    g_jl - g_j < 1/2 g_l     g_l: gain of the law, g_jl: of both
 
 Gains are of the fitted windows of the model without the law, those of forces over blocks of windows
-to which they were not fitted. A law that is the force of a single joint is asked in another way
-after the search, because other effects may act there (`identification.prediction.neighbours`).
+to which they were not fitted. A law that is a force of joints is asked in another way after the
+search, because other effects may act there: the zero of an encoder beside a dry friction
+(`identification.prediction.neighbours`).
 """
 
 from __future__ import annotations

@@ -21,7 +21,6 @@ from identification.model.predictor import Predictor
 from identification.prediction.contenders import (
     count_numbers,
     list_contenders,
-    list_curves,
     list_limits,
     refit_level,
 )
@@ -110,22 +109,21 @@ def test_one_refit_by_luck_is_expected_where_nothing_is_missing(count):
 def test_where_something_is_missing_a_weak_law_is_refitted_and_without_the_pass_it_is_not():
     curve, weak = score(effect("curve_speed", 8), 0.9), score(effect("law"), 0.5, p_value=0.005)
     others = [score(effect(f"e{k}"), 0.1, p_value=0.5) for k in range(100)]
-    names_of = names(list_contenders([curve, weak, *others], OPTIONS, 100))
-    assert names_of == ["law", "curve_speed"]
+    assert names(list_contenders([curve, weak, *others], OPTIONS)) == ["law"]
     strict = DiscoveryOptions(without=("weak_scores",))
-    assert names(list_contenders([curve, weak, *others], strict, 100)) == ["curve_speed"]
-    assert list_contenders([weak, *others], OPTIONS, 100) == [weak]  # 0.5 of 101 by luck
-    assert list_contenders([weak, *others, *others], OPTIONS, 100) == []
+    assert list_contenders([curve, weak, *others], strict) == []
+    assert list_contenders([weak, *others], OPTIONS) == [weak]  # 0.5 of 101 by luck
+    assert list_contenders([weak, *others, *others], OPTIONS) == []
 
 
 def test_where_much_is_left_a_weak_law_is_refitted_though_no_score_is_beyond_chance():
     weak = score(effect("law"), 0.5, p_value=0.005)
     scores = [weak, *(score(effect(f"e{k}"), 0.1, p_value=0.5) for k in range(300))]
-    assert list_contenders(scores, OPTIONS, 100, is_left=False) == []
-    assert list_contenders(scores, OPTIONS, 100, is_left=True) == [weak]
+    assert list_contenders(scores, OPTIONS, is_left=False) == []
+    assert list_contenders(scores, OPTIONS, is_left=True) == [weak]
     for name in ("scores_of_much_left", "weak_scores"):
         strict = DiscoveryOptions(without=(name,))
-        assert list_contenders(scores, strict, 100, is_left=True) == []
+        assert list_contenders(scores, strict, is_left=True) == []
 
 
 def test_laws_that_are_there_or_not_are_fitted_whatever_their_scores_are():
@@ -138,16 +136,12 @@ def test_laws_that_are_there_or_not_are_fitted_whatever_their_scores_are():
     assert list_limits(scores, [], DiscoveryOptions(without=("limits_of_much_left",))) == []
 
 
-def test_a_curve_that_promises_less_than_a_law_is_refitted_only_where_no_law_is_proven():
-    law_, curve = score(effect("law"), 0.8), score(effect("curve_speed", 8), 0.7)
+def test_laws_and_curves_are_asked_apart_whatever_they_promise():
+    law_, curve = score(effect("law"), 0.7), score(effect("curve_speed", 8), 0.8)
     weak = score(effect("curve_load", 8), 0.6, p_value=0.5)
-    scores = [law_, curve, weak]
-    asked = list_contenders(scores, OPTIONS, 100)
-    assert names(asked) == ["law"]
-    tried = {s.candidate.key for s in asked}
-    assert names(list_curves(scores, tried, OPTIONS)) == ["curve_speed"]
-    assert list_curves(scores, {*tried, curve.candidate.key}, OPTIONS) == []
-    assert list_curves(scores, tried, DiscoveryOptions(without=("curves_at_last",))) == []
+    scores = [curve, law_, weak]
+    assert names(list_contenders(scores, OPTIONS)) == ["law"]
+    assert names(list_contenders(scores, OPTIONS, are_curves=True)) == ["curve_speed"]
 
 
 def test_a_score_that_asks_for_too_large_a_size_is_refitted_and_one_of_a_wrong_sign_is_not():
@@ -156,9 +150,9 @@ def test_a_score_that_asks_for_too_large_a_size_is_refitted_and_one_of_a_wrong_s
         return replace(score(e, 0.8), size=np.array([size]))
 
     large, wrong, usual = sized("large", 50.0), sized("wrong", -0.5, sign=1), sized("usual", 0.5)
-    assert names(list_contenders([large, wrong, usual], OPTIONS, 100)) == ["large", "usual"]
+    assert names(list_contenders([large, wrong, usual], OPTIONS)) == ["large", "usual"]
     strict = DiscoveryOptions(without=("large_scores",))
-    assert names(list_contenders([large, wrong, usual], strict, 100)) == ["usual"]
+    assert names(list_contenders([large, wrong, usual], strict)) == ["usual"]
 
 
 def test_simpler_laws_act_as_the_winner_does():
