@@ -102,7 +102,8 @@ def with_step(spec: mujoco.MjSpec, logs: Sequence[Log]) -> tuple[str, ...]:
 def unit_of(model: mujoco.MjModel, path: str) -> str:
     """Returns the unit of a number of a model, "" where none is known.
 
-    Known are those of a body's mass, a joint's number, an entry of the start and a servo's gain.
+    Known are those of a body's mass, a place, a joint's number, an entry of the start and a servo's
+    gain.
     """
     place = start_place(path, model)
     thing, _, attribute = path.partition("[")[0].rpartition(".")
@@ -121,7 +122,9 @@ def unit_of(model: mujoco.MjModel, path: str) -> str:
                  if fnmatchcase(model.actuator(i).name, name)}  # fmt: skip
         return units.pop() if len(units) == 1 else ""
     if not joints or attribute not in UNITS:
-        of_bodies = {"mass": "kg", "inertia": "kg m^2", "spread": "kg m^2"}
+        of_bodies = {"mass": "kg", "inertia": "kg m^2", "spread": "kg m^2", "ipos": "m"}
+        if attribute == "pos":
+            return "m"
         return of_bodies.get(attribute, "") if kind == "body" else ""
     return _by_joint(model, joints[0], attribute)
 

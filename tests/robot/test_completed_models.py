@@ -140,3 +140,8 @@ ROBOT = """<mujoco><worldbody><site name="wall" pos="0 0 2"/><body name="cart">
 def test_a_gain_has_the_unit_of_its_place(path, unit):
     model = mujoco.MjModel.from_xml_string(ROBOT)
     assert unit_of(model, f"actuator/{path}") == unit
+
+
+@pytest.mark.parametrize("path", ["body/arm.ipos[2]", "body/arm.pos", "joint/q.pos[0]"])
+def test_a_place_is_told_in_metres(path):
+    assert unit_of(mujoco.MjModel.from_xml_string(ROBOT), path) == "m"
