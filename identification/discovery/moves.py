@@ -2,7 +2,8 @@
 
     growing moves     the first that adds an effect is taken, and all moves are asked again
     other moves       each is asked once: those before the growing ones after every new effect, the
-                      rest once none adds an effect, or there is room for no more
+                      rest once none adds an effect, or there is room for no more; one that makes
+                      room lets all be asked again, once
 
 What tells one model from another is an `Evidence`: the innovations of a free run
 (`identification.innovations`), or predictions over a horizon (`identification.prediction`). Each
@@ -103,6 +104,9 @@ class Move(Generic[State]):
     make: Callable[[State, Progress], State]
     grows: bool = False  # whether it adds effects
     takes_long: bool = False  # whether the time limit of a search ends it, as it ends growing ones
+    # whether all moves are asked again, once, where it drops effects: in their place there is room
+    # for what they had hidden
+    regrows: bool = False
 
     def __str__(self) -> str:
         return self.name.replace("_", " ")
@@ -163,8 +167,11 @@ class Evidence(Generic[State]):
         new = replace(new, failed=tuple(failed))
         if [*map(id, new.accepted)] != [*map(id, state.accepted)]:
             new = replace(new, made=(*new.made, move.name))
-        grown = len(new.accepted) > len(state.accepted)
-        return replace(new, moves=self.asked(new) if grown else tuple(rest))
+        change = len(new.accepted) - len(state.accepted)
+        is_first = move.regrows and move.name not in state.made
+        is_again = is_first and "grow_again" not in state.task.options.without
+        again = change > 0 or (change < 0 and is_again)
+        return replace(new, moves=self.asked(new) if again else tuple(rest))
 
     @one_blas_thread()
     def search(self, task: Task, progress: Progress | None = None) -> Discovery:

@@ -40,6 +40,7 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
     "add_deviants": (RUN, "makes effects of parts that deviate by more than parts do"),
     "impossible_sizes": (ALL, "names no effect of a size that physics forbids"),
     "drop_effects": (BOTH, "drops an effect that later ones have made needless"),
+    "grow_again": (HORIZON, "asks for further effects once more where needless ones were dropped"),
     "exchange_effects": (
         RUN, "puts a rival in the place of an effect, where the model with it is better",
     ),

@@ -43,9 +43,10 @@ MOVES = (
     Move("add_set", add_set, grows=True),
     Move("add_curve", add_curve, grows=True),
     Move("set_for_effects", set_for_effects, takes_long=True),
+    Move("drop_effects", finishing(drop_effects), regrows=True),
     *(
         Move(change.__name__, finishing(change))
-        for change in (drop_effects, drop_places, curve_for_laws, drop_beside_curves)
+        for change in (drop_places, curve_for_laws, drop_beside_curves)
     ),
     Move("drop_doubtful", drop_doubtful),
 )  # fmt: skip

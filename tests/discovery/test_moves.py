@@ -61,6 +61,27 @@ def test_after_each_effect_all_moves_are_asked_again_and_the_last_ones_once():
     assert end.made == (first, first, second)
 
 
+def test_what_was_dropped_makes_room_once():
+    """Of three that are missing the first one found stands for a part of two."""
+    asked = []
+
+    def add(state, progress):
+        asked.append("add_effect")
+        hidden = ("c", "a") if "b" in state.accepted else ("false", "b")
+        new = [e for e in hidden if e not in state.accepted][:1]
+        return replace(state, accepted=(*state.accepted, *new))
+
+    def drop(state, progress):
+        asked.append("drop_effects")
+        return replace(state, accepted=tuple(e for e in state.accepted if e != "false"))
+
+    every = (Move("add_effect", add, grows=True), Move("drop_effects", drop, regrows=True))
+    assert set(searched(begun(3), every).accepted) == {"a", "b", "c"}
+    assert asked.count("drop_effects") == 2
+    without = searched(begun(3, without=("grow_again",)), every)
+    assert set(without.accepted) == {"b", "c"}
+
+
 def test_where_there_is_room_for_no_more_nothing_is_added():
     most = 1
     asked = []
