@@ -33,7 +33,7 @@ from identification.windows.shooting import Tangent
 
 THIN = 3  # n: one window of so many
 START_SHARES = (1.0, 0.3, 0.05, 0.01)  # of the size that a score gives, at which a fit begins
-MAX_LINEARISATIONS = 12  # of an effect's fit: one that takes more is not what is missing
+MAX_LINEARISATIONS = 12  # of a refit: an effect that takes more is not what is missing
 REFIT_TOLERANCE = 1e-3  # relative fall of the criterion at which the refit of an effect ends
 
 
@@ -93,7 +93,7 @@ def _begun(parent: WindowModel, score: WindowScore, is_loud: bool) -> Begun | No
     if not tried:
         return None
     _, q, moves, r = min(tried, key=lambda t: t[0])
-    found = solve(few, q, moves, tolerance=REFIT_TOLERANCE, most=MAX_LINEARISATIONS, known=r)
+    found = solve(few, q, moves, tolerance=REFIT_TOLERANCE, known=r)
     windows = sum(len(rows) for rows in at)
     return Begun(found.cost, windows, c, parent, fixed, task, found.q)
 
