@@ -148,7 +148,8 @@ def balanced_otherwise(
     if as_read is None or as_read.max() <= UNEXPLAINED:
         return None
     best, least = None, NEARER * float(as_read.sum())
-    most = max(UNEXPLAINED, NEARER * float(as_read.max()))
+    # a reading that explains less than half is no cure, however little the present one explains
+    most = min(EXPLAINED, max(UNEXPLAINED, NEARER * float(as_read.max())))
     for reading in readings:
         rest = balance.of(reading)
         if rest is None or rest.sum() >= least:

@@ -287,7 +287,7 @@ def base_rows(evidence: Evidence) -> list[tuple[str, str, str, str]]:
 
 def friction_rows(evidence: Evidence) -> list[tuple[str, str, str, str]]:
     """Returns rows of frictions: name, value with std, the model's, the difference in std."""
-    return _rows(evidence.whole, evidence.whole.inertial, evidence.friction)
+    return _rows(evidence.final, evidence.final.inertial, evidence.friction)
 
 
 def _rows(fit: Fitted, first: int, models: np.ndarray) -> list[tuple[str, str, str, str]]:

@@ -68,7 +68,8 @@ def opinions(found: Discovery, evidence: Evidence, robot: Robot) -> tuple[Torque
 
     What they name themselves and the search does not comes last, in their order, then what they do
     not tell from the first of these; where they name nothing, what they would name if physics
-    allowed it.
+    allowed it. Where the search names nothing, frictions that are far from the model's are names of
+    theirs too, if no free number stands for them.
     """
     known, told = _known(evidence), list[TorqueOpinion]()
     for named in found.named:
@@ -81,6 +82,12 @@ def opinions(found: Discovery, evidence: Evidence, robot: Robot) -> tuple[Torque
     own = [s.missing.key for s in evidence.named or evidence.tried]
     if any(known[key].is_first for key in own if key not in keys):
         own += [s.missing.key for s in evidence.rivals[:MOST_RIVALS]]
+    if not found.named:
+        own += [
+            key
+            for key, o in frictions(evidence).items()
+            if o.standing == "named" and not _is_free(o, robot)
+        ]
     others = [known[key] for key in dict.fromkeys(own) if key not in keys]
     return (*told, *(replace(o, free=_number(o, robot)) for o in others))
 
@@ -119,6 +126,18 @@ def frictions(evidence: Evidence) -> dict[tuple[str, str], TorqueOpinion]:
                     doubt="" if is_far else "small", is_named=False,
                 )  # fmt: skip
     return out
+
+
+def _is_free(o: TorqueOpinion, robot: Robot) -> bool:
+    """Returns whether a robot frees the number that a friction of the torques would change."""
+    size, joint = next(iter(o.sizes)), o.where.partition(" ")[2]
+    stands = {f"{o.name}.{size}@{joint}", f"joint/{joint}.frictionloss"}
+    return any(
+        n in stands or p.where in stands
+        for n in robot.file.free
+        for p in robot.plant.parameters
+        if p.name == n
+    )
 
 
 def _opinion(score: Score, standing: Standing, doubt: str) -> TorqueOpinion:

@@ -55,6 +55,19 @@ def test_no_size_is_the_same_that_nothing_can_be_compared_with():
     assert "prove a friction there too: friction" in sentence
 
 
+def test_a_friction_that_torques_know_is_told_where_the_search_names_nothing():
+    robot, found = elbow()
+    evidence = ask_torques(robot)
+    lost = replace(found, named=(), verdict="unknown effect")
+    (told,) = opinions(lost, evidence, robot)
+    assert (told.name, told.where, told.standing) == ("coulomb_friction", AT, "named")
+    said = " ".join(opinion_sentences(replace(lost, torques=(told,))))
+    assert "coulomb friction, joint elbow, f_c = 0.1" in said
+    level = "coulomb_friction.f_c@elbow"
+    free = replace(robot, file=replace(robot.file, free=(*robot.file.free, level)))
+    assert opinions(lost, evidence, free) == ()
+
+
 def score(name, doubt="", where=AT):
     """A score whose key is that of an effect, with a size of 0.20 ± 0.01 N m."""
     missing = SimpleNamespace(

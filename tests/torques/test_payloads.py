@@ -77,6 +77,15 @@ def test_a_friction_that_the_model_lacks_is_told(tmp_path):
     assert found.values["coulomb of elbow"] == pytest.approx(1.6, rel=0.02)
 
 
+def test_frictions_are_told_beside_the_drag_that_was_found(tmp_path):
+    """Without it a drag is a larger viscous friction and a negative level."""
+    records = [planar_record(k, name=f"r{k}", force=lambda q, v: -3.0 * v[1] * abs(v[1]))
+               for k in (81, 82)]  # fmt: skip
+    found = fit_torques(planar_robot(tmp_path, records[0], confirm=[records[1]]))
+    assert found.named[0].missing.key == ("quadratic_friction", "joint elbow")
+    assert not [s for s in found.to_dict()["verdict"] if "differ from the model" in s]
+
+
 def test_a_load_of_one_record_is_told_without_any_prior(tmp_path):
     records = planar_record(41, name="empty"), planar_record(42, LOAD, name="carrying")
     toml = 'model = "arm.xml"\nfree = ["body/fore.mass"]\nhorizon = 0.2\n'
