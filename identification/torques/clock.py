@@ -37,8 +37,10 @@ from identification.torques.passive import fit_base
 from identification.torques.scores import FAR
 
 SMOOTH = ("_speed", "_load", "_position")  # ends of names of curves; over time they follow all
+MOST_JOINTS = 3  # whose curves are asked: with those of six joints a fit takes half a minute
 ROUNDS = 8  # of shifts
 STILL = 1e-5  # move of a shift that is none [s]
+STILL_SHARE = 0.1  # of its std, likewise
 
 
 @dataclass(frozen=True)
@@ -74,22 +76,33 @@ def find_clocks(
             whole = extended(equations, whole, together(curves))
         return equations, whole
 
-    clocks, is_much = _standing_still(len(every.rows), partial(fitted, has_curves=False))
-    if smooth and is_much:
-        return _standing_still(len(every.rows), partial(fitted, has_curves=True))[0]
+    none = np.zeros(len(every.rows))
+    clocks, shift, is_doubtful = _standing_still(none, partial(fitted, has_curves=False))
+    if smooth and is_doubtful and every.joints <= MOST_JOINTS:
+        return _standing_still(shift, partial(fitted, has_curves=True))[0]
     return clocks
 
 
 def _standing_still(
-    records: int, fitted: Callable[[np.ndarray], tuple[Equations, Fitted]]
-) -> tuple[Clocks, bool]:
-    """Returns clocks that stand still, and whether much more than noise is left with them."""
-    shift = none = np.zeros(records)
-    equations, whole = fitted(shift)
+    begin: np.ndarray, fitted: Callable[[np.ndarray], tuple[Equations, Fitted]]
+) -> tuple[Clocks, np.ndarray, bool]:
+    """Returns clocks that stand still, the shifts there, and whether these are in doubt.
+
+    They are far from nothing, and much more than noise is left.
+
+    Args:
+        begin: shifts with which the search begins, shape (R,) [s].
+        fitted: returns the equations and the fit at such shifts.
+    """
+    shift, none, records = begin, np.zeros(len(begin)), len(begin)
+    equations, whole = fitted(none)
     first, at = whole, [k for k, name in enumerate(whole.names) if name.startswith(CLOCK)]
+    if begin.any():
+        equations, whole = fitted(begin)
     for _ in range(ROUNDS):
         before, shift = shift, whole.fit.θ[at]
-        if np.abs(shift - before).max() < STILL:
+        still = np.maximum(STILL, STILL_SHARE * whole.fit.std[at])
+        if (np.abs(shift - before) < still).all():
             break
         equations, whole = fitted(shift)
     fit, C = whole.fit, whole.fit.covariance[np.ix_(at, at)]
@@ -99,11 +112,11 @@ def _standing_still(
     # From nothing, and from the mean of all: what all share is known less well than what differs.
     L = np.vstack([np.eye(records), np.eye(records) - 1 / records])
     std = np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", L, C, L), 0.0))
-    is_told = bool((np.abs(L @ shift) > np.maximum(FAR * std, STILL)).any())
+    is_far = is_told = bool((np.abs(L @ shift) > np.maximum(FAR * std, STILL)).any())
     if is_told and is_much:
         after, without = (_left(f, fit.weights, held) for f, held in ((whole, []), (first, at)))
         is_told = takes_most(without, after, noise)
-    return Clocks(shift if is_told else none, std[:records]), is_much
+    return Clocks(shift if is_told else none, std[:records]), shift, is_far and is_much
 
 
 def _left(fitted: Fitted, weights: np.ndarray, held: Sequence[int]) -> float:
