@@ -93,10 +93,11 @@ def test_a_search_behind_its_time_limit_answers_and_says_what_it_has_not_tried()
     answer = search(records(4, {MU: 0.15}, samples=SAMPLES), FEW, max_minutes=0.0)
     assert answer.verdict == "unknown effect"
     assert answer.scores
-    assert answer.cut_short == ("add_effect", "add_set")
+    assert answer.cut_short == ("add_effect", "add_set", "add_curve")
     assert discovery_to_json(answer)["cut_short"] == [*answer.cut_short]
     said = discovery_text(answer)
-    assert "while it sought the next effect and sets of several effects. Effects that it" in said
+    sought = "the next effect, sets of several effects and curves of the data"
+    assert f"while it sought {sought}. Effects that it" in said
     (untried,) = [f.evidence for f in answer.findings if f.kind == "untried effect"]
     assert untried.score.candidate.where == "joint hinge"
     assert "would explain more than chance could by its score" in said
