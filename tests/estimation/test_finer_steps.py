@@ -86,7 +86,7 @@ def test_std_that_are_mostly_of_the_steps_are_told_with_the_step_that_mends_it(b
     assert 'write timestep="0.0005"' in said
     values, moved = (
         coarse.estimate.values,
-        dict(zip(coarse.estimate.space.names, coarse.step_shift)),
+        dict(zip(coarse.estimate.space.names, coarse.step_shift, strict=True)),
     )
     told = {n for n, by in moved.items() if abs(by) > LEAST_MOVE * abs(values[n])}
     assert told  # of those that the steps move by enough to be worth finer ones
