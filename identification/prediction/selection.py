@@ -56,10 +56,12 @@ def refit_contenders(
     worse_fit: Unseen | None = None,
     suggested: Sequence[Candidate] = (),
     are_curves: bool = False,
+    refused: int = 0,
 ) -> tuple[WindowModel, tuple[Contender, ...]]:
     """Refit the contenders of a round, the best first: proven ones before others, by evidence.
 
-    They are laws, or curves of the data.
+    They are laws, or curves of the data. Chance also pays for the effects that were `refused` when
+    they were refitted in the same round.
 
     Where the fit without effects was worse than the values with which it began, an effect must be
     proven against that fit, and be no worse than these values: it says why the fit went wrong.
@@ -82,7 +84,7 @@ def refit_contenders(
         has = {*(s.candidate.key for s in chosen), *(c.key for c in model.candidates)}
         each = [c for c in suggested if c.key not in has and has_what_it_needs(model, c)]
         chosen += window_scores(model.fit, each)
-    refits, crosses, is_late = len(chosen), uses(options, "states_of_others"), False
+    refits, crosses, is_late = refused + len(chosen), uses(options, "states_of_others"), False
 
     def refit(each: Sequence[Begun]) -> list[WindowModel]:
         nonlocal is_late

@@ -188,15 +188,17 @@ def _rows(
     inverse = inverse_forces(bare, motion)
     # What the filter leaves out of a setpoint, it leaves out of the position beside it, once.
     rates = smooth(measured, h, WIDE * band, motion.noise).v
-    force = drive_forces(bare, measured, rates, log, [0.0])[0]
-    noise = _noise(model, motion, force.sum(axis=2), h, width)
 
-    def drives_at(shift: float) -> tuple[np.ndarray, np.ndarray]:
-        some = drive_forces(bare, measured, rates, log, [shift, shift - h / 2, shift + h / 2])
-        now, before, after = (mean(low_pass(x, h, band)[keep]) for x in some)
+    def forces_at(shift: float) -> np.ndarray:
+        return drive_forces(bare, measured, rates, log, [shift, shift - h / 2, shift + h / 2])
+
+    def averaged(forces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        now, before, after = (mean(low_pass(x, h, band)[keep]) for x in forces)
         return now, (before - after) / h
 
-    drives, late = drives_at(0.0)
+    forces = forces_at(0.0)
+    noise = _noise(model, motion, forces[0].sum(axis=2), h, width)
+    drives, late = averaged(forces)
     sign = low_pass(np.sign(motion.v), h, band)[keep]
     known = mean(inverse[keep]) - np.einsum("kjbn,bn->kj", Y, numbers)
     known -= mean(model.dof_armature * a + model.dof_damping * v)
@@ -209,7 +211,8 @@ def _rows(
         used &= (mean(((at >= begin) & (at <= end)).astype(float)) == 0)[:, None]
     return Rows(
         name=log.name, time=mean(time), q=mean(q), v=mean(v), a=mean(a), sign=mean(sign),
-        bodies=Y, gravity=gravity, drives=drives, late=late, drives_at=drives_at,
+        bodies=Y, gravity=gravity, drives=drives, late=late,
+        drives_at=lambda shift: averaged(forces_at(shift)),
         y=drives.sum(axis=2) - known, used=used, noise=noise, band=motion.band,
     )  # fmt: skip
 

@@ -18,6 +18,8 @@ from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate, places
 from identification.effects.joint_plant import candidates, joint_plant
 from identification.prediction import selection, smooth_rivals
+from identification.prediction.moves.add_curve import add_curve
+from identification.prediction.moves.add_effect import add_effect
 from identification.prediction.scores import window_scores
 from identification.prediction.screening import at_several, single_places
 from identification.prediction.selection import refit_contenders
@@ -138,6 +140,11 @@ def test_where_a_smooth_force_refutes_all_laws_the_force_is_drawn(monkeypatch):
     monkeypatch.setattr(selection, "without_imitated", refuted)
     assert names() == [("gravity_force", "smooth")]
     assert ("curve_position", None) in names(are_curves=True)
+    after = add_effect(replace(state, scores=tuple(scores)), print)
+    assert [c.candidate.effect.name for c in after.rejected] == ["gravity_force"]
+    (curve,) = add_curve(after, print).accepted
+    assert curve.candidate.effect.name == "curve_position"
+    assert curve.refits == 2  # chance pays for the law that was refused too
 
 
 LATE = 4  # samples by which a setpoint comes late

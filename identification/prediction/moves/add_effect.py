@@ -50,7 +50,7 @@ def add_effect(state: WindowSearch, progress: Progress, are_curves: bool = False
     parent, tried = refit_contenders(
         state.model, state.scores, task.horizon, task.confirm, task.options, progress,
         None if state.accepted else state.worse_fit, () if are_curves else task.suggested,
-        are_curves,
+        are_curves, len(state.rejected) if are_curves else 0,
     )  # fmt: skip
     nominal = state.nominal if state.accepted else parent
     state = replace(state, model=parent, nominal=nominal)
