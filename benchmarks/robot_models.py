@@ -36,25 +36,23 @@ def study(
     without: tuple[str, ...],
     is_rough: bool = False,
     has_clocks: bool = False,
-    is_sweep: bool = False,
 ) -> dict[str, Any]:
     """Returns what a search says of a world; an error is a row too."""
     from identification import DiscoveryOptions, discover, read_robot
 
-    world, motions = make(robot, effect, seed, is_rough, has_clocks, is_sweep)
+    world, motions = make(robot, effect, seed, is_rough, has_clocks)
     row: dict[str, Any] = {
         "robot": robot, "effect": world.effect, "joint": world.joint,
         "size": "+".join(f"{h.size:.4g}" for h in world.hidden), "seed": seed,
         "rough": {joint: round(size, 6) for joint, size in world.rough},
-        "clocks": list(world.clocks), "sweep": is_sweep,
+        "clocks": list(world.clocks),
     }  # fmt: skip
     begun = time.process_time()
     try:
         with TemporaryDirectory() as folder:
             toml, logs = write(world, motions, Path(folder))
             options = DiscoveryOptions(without=without)
-            confirm = [] if is_sweep else [logs[1]]
-            found = discover(read_robot(toml, logs[0], confirm=confirm), options=options)
+            found = discover(read_robot(toml, logs[0], confirm=[logs[1]]), options=options)
     except Exception as error:
         return {**row, "error": f"{type(error).__name__}: {error}"}
     return {**row, **answer_of(found), "seconds": time.process_time() - begun}
@@ -89,7 +87,6 @@ def main() -> None:
     add("--seed", type=int, default=1)
     add("--count", type=int, default=1, help="worlds of each robot and effect")
     add("--clocks", action="store_true", help="records that two clocks stamped; give --out too")
-    add("--sweep", action="store_true", help="one record, whose inputs grow; give --out too")
     add("--without", nargs="*", default=[], help="passes that are left out; give --out too")
     only = parser.add_mutually_exclusive_group()
     only.add_argument("--rough", action="store_true", help="rough worlds only")
@@ -100,9 +97,8 @@ def main() -> None:
     add("--only-page", action="store_true")
     given = parser.parse_args()
     tasks = {
-        f"{robot}/{effect}/{seed}" + "/rough" * rough + "/clocks" * given.clocks
-        + "/sweep" * given.sweep:
-            (robot, effect, seed, tuple(given.without), rough, given.clocks, given.sweep)
+        f"{robot}/{effect}/{seed}" + "/rough" * rough + "/clocks" * given.clocks:
+            (robot, effect, seed, tuple(given.without), rough, given.clocks)
         for rough in ((True,) if given.rough else (False,) if given.exact else (False, True))
         for seed in range(given.seed, given.seed + given.count)
         for effect in given.effects

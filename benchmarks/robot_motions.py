@@ -8,8 +8,7 @@ describes is
 
     Q_j ~ √(2/3) Σ_k sin(a_k q/σ_q + b_k q̇/σ_q̇ + c_k),   a_k, b_k ~ N(0, 1),  k = 1, 2, 3
 
-σ: standard deviations along the motion, c_k: uniform. Inputs are sums of sines of t, or in a sweep
-(0.3 + 0.7 t/T) times those of t²/T, which get faster from rest on.
+σ: standard deviations along the motion, c_k: uniform.
 """
 
 from __future__ import annotations
@@ -58,7 +57,6 @@ class World:
     rough: tuple[tuple[str, float], ...] = ()  # joints, and rms of what nobody could name there
     # how much later the inputs of each record act than stamped [s]; none where clocks agree
     clocks: tuple[float, ...] = ()
-    is_sweep: bool = False  # whether inputs grow and get faster along a record of twice the length
 
     @property
     def effect(self) -> str:
@@ -151,15 +149,11 @@ def simulate(
     model = _with_hidden(world)
     data = mujoco.MjData(model)
     chance = np.random.default_rng(seed)
-    seconds = linkages.SECONDS * (2 if world.is_sweep else 1)
-    time = np.arange(round(seconds / linkages.SAMPLING)) * linkages.SAMPLING
+    time = np.arange(round(linkages.SECONDS / linkages.SAMPLING)) * linkages.SAMPLING
     mujoco.mj_forward(model, data)
     middle = data.ten_length if np.isnan(truth.middle) else truth.middle
     waves = chance.uniform(0.1, 1.6, (5, model.nu)), chance.uniform(0, 2 * np.pi, (5, model.nu))
-    along = (time**2 / seconds if world.is_sweep else time)[:, None, None]
-    shape = np.sin(2 * np.pi * waves[0] * along + waves[1]).sum(1) / 2.5
-    if world.is_sweep:
-        shape *= (0.3 + 0.7 * time / seconds)[:, None]
+    shape = np.sin(2 * np.pi * waves[0] * time[:, None, None] + waves[1]).sum(1) / 2.5
     inputs = np.round(middle + truth.reach * shape, 4)
     each = round(linkages.SAMPLING / model.opt.timestep)
     lateness = sum(h.size for h in world.hidden if h.effect == "delay")

@@ -6,6 +6,7 @@ Rows are those of `robot_models`, an answer of a search each.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 from robot_worlds import NAMES, UNLISTED, UPRIGHT
@@ -43,8 +44,7 @@ without one; what makes a robot rough must have no name, but a curve of the data
 the four-bar and the gripper, whose joints are coupled, a name may also stand at another joint or at
 all of them, because the motion cannot tell these apart. In a world of *two clocks* the inputs of
 each record act up to 25 ms later or earlier than their stamps say, and each record has its own
-time; a servo only comes late. In a *sweep* the inputs grow and get faster along one record of 16 s,
-the first half of which is fitted.
+time; a servo only comes late. Clocks that differ by less than 1 ms may be told as one `delay`.
 """
 
 
@@ -53,7 +53,7 @@ def is_right(row: Row) -> bool:
 
     A force of no catalogue must be drawn or unknown, and so may what is hidden beside it.
     """
-    named, hidden = row.get("named") or [], _hidden(row)
+    named, hidden = _names(row), _hidden(row)
     if hidden and _is_rough(row) and not _has_unlisted(row):
         named = [n for n in named if not n["name"].startswith(CURVE)]
     if not hidden:
@@ -70,7 +70,7 @@ def is_wrong(row: Row) -> bool:
     """Returns whether a law is named that is not there, and no set of names has a right one."""
     if row.get("verdict") != "named":
         return False
-    for n in row["named"]:
+    for n in _names(row):
         if n["name"].startswith(CURVE):
             continue
         every = [[n["name"], n["where"]], *([r[0], r[1]] for r in n["rivals"])]
@@ -84,6 +84,18 @@ def _hidden(row: Row) -> list[tuple[str, str]]:
     if row["effect"] == "nothing":
         return []
     return list(zip(row["effect"].split("+"), row["joint"].split("+"), strict=True))
+
+
+def _names(row: Row) -> list[dict[str, Any]]:
+    """Returns the names of an answer, but for what all clocks of a world are late by."""
+    named = row.get("named") or []
+    return [n for n in named if not (_are_alike(row) and n["name"] in NAMES["delay"])]
+
+
+def _are_alike(row: Row) -> bool:
+    """Returns whether two clocks stamp a world's records and hardly differ."""
+    clocks = row.get("clocks") or []
+    return bool(clocks) and max(clocks) - min(clocks) < CLOSE
 
 
 def _is_rough(row: Row) -> bool:
@@ -111,6 +123,10 @@ def _clocks_error(row: Row) -> float:
     """Returns by how much the told shifts of two records are wrong at most [s]; inf without any."""
     each = [values for name, _, values in row.get("differences") or [] if name == "time_shift"]
     told = [v for values in each for v in values.values()]
+    if not told and _are_alike(row):
+        late = [n for n in row.get("named") or [] if n["name"] in NAMES["delay"]]
+        taus = [v for n in late for size, v in n["sizes"].items() if size.startswith("tau")]
+        told = [float(np.mean(taus))] * len(row["clocks"]) if taus else []
     pairs = zip(told, row["clocks"], strict=False)
     return max(abs(a - b) for a, b in pairs) if len(told) == len(row["clocks"]) else np.inf
 
@@ -134,7 +150,7 @@ def _names_of(rows: Sequence[Row]) -> list[tuple[float, bool]]:
     return [
         (n["confidence"], any(_is_meant(row, h, n["name"], n["where"]) for h in _hidden(row)))
         for row in rows
-        for n in row.get("named") or []
+        for n in _names(row)
         if row.get("verdict") == "named" and not n["name"].startswith(CURVE)
     ]
 
@@ -152,13 +168,12 @@ def _refused(rows: Sequence[Row], doubt: str) -> list[bool]:
 def page(rows: Sequence[Row]) -> str:
     """Returns the page of the rows of one search."""
     kinds = [
-        [r for r in rows if not (_is_rough(r) or r.get("clocks") or r.get("sweep"))],
+        [r for r in rows if not (_is_rough(r) or r.get("clocks"))],
         [r for r in rows if _is_rough(r)],
         [r for r in rows if r.get("clocks")],
-        [r for r in rows if r.get("sweep")],
     ]
-    lines = [HEAD, "| of all robots | nothing else is missing | rough | two clocks | sweep |",
-             "|---|---|---|---|---|"]  # fmt: skip
+    lines = [HEAD, "| of all robots | nothing else is missing | rough | two clocks |",
+             "|---|---|---|---|"]  # fmt: skip
     for what, chosen, is_hit in MEASURES:
         rates = (said(rate([r for r in kind if chosen(r)], is_hit)) for kind in kinds)
         lines.append(f"| {what} | {' | '.join(rates)} |")
@@ -213,6 +228,5 @@ def told(row: Row) -> str:
         return f"`{row['effect']}`: an error"
     names = " + ".join(f"`{n['name']}` at {n['where']}" for n in row["named"])
     where = f" at {row['joint']}" if row["joint"] else ""
-    kind = {"rough": _is_rough(row), "two clocks": row.get("clocks"), "sweep": row.get("sweep")}
-    of = "".join(f", {words}" for words, holds in kind.items() if holds)
+    of = ", rough" if _is_rough(row) else ", two clocks" if row.get("clocks") else ""
     return f"`{row['effect']}`{where}{of}: {names or row['verdict']}"

@@ -9,7 +9,7 @@ describes, of an rms ρ s F; ρ is drawn from `ROUGH`, and s F is the hidden for
 
 Two clocks may have stamped a record. In a world of clocks the inputs of each record act later than
 their stamps say by a time of its own, which is drawn from `CLOCKS`; a servo does not answer what it
-is told later. In a sweep one record is all there is, along which inputs grow and get faster.
+is told later.
 """
 
 from __future__ import annotations
@@ -71,12 +71,7 @@ SEVERAL: Mapping[str, tuple[int, int]] = {"two": (2, 0), "three": (3, 0), "two_u
 
 
 def make(
-    robot: str,
-    effect: str,
-    seed: int,
-    is_rough: bool = False,
-    has_clocks: bool = False,
-    is_sweep: bool = False,
+    robot: str, effect: str, seed: int, is_rough: bool = False, has_clocks: bool = False
 ) -> tuple[World, list[Motion]]:
     """Returns a world with the motions of two records, each effect large enough to be seen.
 
@@ -86,11 +81,9 @@ def make(
         seed: of the joint, the size and the inputs; and of the effects, where there are several.
         is_rough: whether the robot also has what no law describes.
         has_clocks: whether two clocks stamp each record.
-        is_sweep: whether inputs grow and get faster along each record.
     """
     chance = np.random.default_rng([seed, *map(ord, robot + effect)])
-    clocks = _clocks(robot, seed) if has_clocks else ()
-    bare = World(robot, seed, clocks=clocks, is_sweep=is_sweep)
+    bare = World(robot, seed, clocks=_clocks(robot, seed) if has_clocks else ())
     seeds = [int(s) for s in chance.integers(1, 2**31, 2)]
     clocks = bare.clocks or (0.0, 0.0)
     without = [simulate(bare, {}, s) for s in seeds]

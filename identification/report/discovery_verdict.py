@@ -209,7 +209,8 @@ def _any_forces(found: Discovery, forces: Sequence[NeededForce]) -> list[str]:
         return ["No smooth force at one joint would explain much of the fitted error: the best one"
                 f" {percent(most)}, {which}."]  # fmt: skip
     each = [f"{percent(share)} at {joint}" for joint, share in shares.items() if share > 0]
-    return [f"A force at one joint would explain {listed(each)} of the fitted error, {which}."]
+    return [f"A force at one joint would explain a part of the fitted error, {which}:"
+            f" {listed(each)}."]  # fmt: skip
 
 
 def _doubtful(found: Discovery) -> list[str]:
