@@ -71,7 +71,9 @@ def answer_of(found: Discovery) -> dict[str, Any]:
             {"name": n.name, "where": n.where, "confidence": n.confidence,
              "rivals": [[r.name, r.where, r.confidence] for r in n.rivals],
              "smooth_share": n.smooth_share,
-             "sizes": {name: p[0] for name, p in n.parameters.items()}}
+             "sizes": {name: p[0] for name, p in n.parameters.items()},
+             "std": {name: p[1] for name, p in n.parameters.items()},  # 0 where it is held
+             "untouched_t": n.proof.untouched.t if n.proof.untouched else None}
             for n in found.named
         ],
         "rejected": [[r.candidate.effect.name, r.candidate.where, r.doubt] for r in found.rejected],
