@@ -38,6 +38,7 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
         HORIZON, "puts effects that are proven together in the place of those found one by one",
     ),
     "add_deviants": (RUN, "makes effects of parts that deviate by more than parts do"),
+    "shape_bounds": (HORIZON, "names no law whose shape ends on the bound of its range"),
     "impossible_sizes": (ALL, "names no effect of a size that physics forbids"),
     "drop_effects": (BOTH, "drops an effect that later ones have made needless"),
     "grow_again": (HORIZON, "asks for further effects once more where needless ones were dropped"),

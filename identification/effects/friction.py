@@ -40,6 +40,8 @@ from identification.quantities import per
 
 SPEEDS = (0.03, 0.06, 0.12, 0.25, 0.5)  # Stribeck velocities to try, of the top speed
 FEW_SPEEDS = (0.06, 0.25)  # where two sizes are tried with each
+# Of the top speed: a peak that is wider than this is a level at nearly all speeds.
+WIDEST = 0.6
 LOAD = "Duclusaud, Passault, Padois, Ly 2024"
 LEVEL = "coulomb_friction"  # what laws change that say how much more friction there is
 
@@ -205,5 +207,5 @@ def drag_effects(g: Group) -> list[Effect]:
 
 
 def _peak(g: Group, speeds: tuple[float, ...]) -> Shape:
-    return Shape("v_s", f"{g.x}/s", tuple(g.V * s for s in speeds), 0.01 * g.V, 2 * g.V,
+    return Shape("v_s", f"{g.x}/s", tuple(g.V * s for s in speeds), 0.01 * g.V, WIDEST * g.V,
                  about="rate at which the peak has fallen to 1/e")  # fmt: skip

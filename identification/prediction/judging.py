@@ -81,7 +81,7 @@ def doubt_of_size(model: WindowModel, options: DiscoveryOptions) -> Doubt | None
     """
     if not has_size(model, options):
         return "size"
-    if is_at_bound(model):
+    if is_at_bound(model, uses(options, "shape_bounds")):
         return "bound"
     if not uses(options, "impossible_sizes"):
         return None

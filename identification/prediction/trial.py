@@ -184,14 +184,27 @@ def has_size(model: WindowModel, options: DiscoveryOptions) -> bool:
     )
 
 
-def is_at_bound(model: WindowModel) -> bool:
-    """Returns whether a size of the last effect ended on the bound of what is believed.
+def is_at_bound(model: WindowModel, are_shapes_asked: bool = True) -> bool:
+    """Returns whether a size or a shape of the last effect ended on the bound of what is believed.
 
-    The data then ask for more than physics allows: the effect stands for something else. Zero as a
-    bound of a size is no effect, and no reason.
+    The data then ask for more than the law allows: the effect stands for something else. A friction
+    that jumps when the record begins, or a Stribeck peak that is as wide as all speeds, is a
+    Coulomb friction. Zero as a bound is no effect, and no reason; nor is the bound of a shape that
+    tells something of the log and nothing of the robot, or of a joint with a state: a spring whose
+    damping is too small to be seen is still a spring.
+
+    Args:
+        model: with the effect, fitted.
+        are_shapes_asked: whether shapes count as sizes do.
     """
-    parameters, sizes = model.plant.parameters, model.candidates[-1].free
-    values = {n: v for n, v in model.fit.values.items() if n.partition(" [")[0] in sizes}
+    parameters, c = model.plant.parameters, model.candidates[-1]
+    are_shapes_asked = are_shapes_asked and not c.effect.state
+    asked = {
+        *c.free,
+        *(c.effect.parameter(s.name, c.where) for s in c.effect.shapes
+          if are_shapes_asked and s.free and not s.of_log),
+    }  # fmt: skip
+    values = {n: v for n, v in model.fit.values.items() if n.partition(" [")[0] in asked}
     each = ((v, parameters[n.partition(" [")[0]]) for n, v in values.items())
     return any(
         bound != 0 and np.isfinite(bound) and abs(v - bound) <= BOUND_TOLERANCE * abs(bound)

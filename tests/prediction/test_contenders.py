@@ -230,25 +230,40 @@ def test_confidence_is_shared_by_equals_as_their_blocks_scatter():
     assert 0 < shares.min() < shares.max() < 1
 
 
-def fitted(value, lower, upper):
-    """A model whose last effect has one free size, which was fitted."""
-    name = "law.size@a"
-    size = Parameter(name=name, value=0.0, unit="N", where="", lower=lower, upper=upper)
-    parameters = ParameterSet("effects", (size,))
+def fitted(value, lower, upper, shape=1.0, of_log=False):
+    """A model whose last effect has one free size and a free shape in [1, 4], which were fitted."""
+    size, wide = "law.size@a", "law.n"
+    each = ((size, lower, upper), (wide, 1.0, 4.0))
+    parameters = ParameterSet("effects", tuple(
+        Parameter(name=n, value=max(0.0, low), unit="N", where="", lower=low, upper=high)
+        for n, low, high in each
+    ))  # fmt: skip
+    law = Effect(
+        "law", "", (Size("size", "N", 1.0, 1.0),),
+        (Shape("n", "", (2.0,), 1.0, 4.0, of_log=of_log),), places={"joint a": "@a"},
+    )  # fmt: skip
     return SimpleNamespace(
         plant=SimpleNamespace(parameters=parameters),
-        candidates=(SimpleNamespace(free=(name,)),),
-        fit=SimpleNamespace(values={f"{name} [log]": value, "J": 1.0}),
+        candidates=(Candidate(law, "joint a", {"n": shape}),),
+        fit=SimpleNamespace(values={f"{size} [log]": value, wide: shape, "J": 1.0}),
     )
 
 
 @given(st.floats(0.1, 10.0), st.floats(-0.999, 0.999))
 def test_only_a_size_on_a_bound_that_is_not_zero_stands_for_something_else(bound, share):
-    assert is_at_bound(fitted(bound, -bound, bound))
-    assert is_at_bound(fitted(-bound, -bound, bound))
-    assert not is_at_bound(fitted(share * bound, -bound, bound))
-    assert not is_at_bound(fitted(0.0, 0.0, bound))
-    assert not is_at_bound(fitted(share * bound, -np.inf, np.inf))
+    inside = 2.0
+    assert is_at_bound(fitted(bound, -bound, bound, inside))
+    assert is_at_bound(fitted(-bound, -bound, bound, inside))
+    assert not is_at_bound(fitted(share * bound, -bound, bound, inside))
+    assert not is_at_bound(fitted(0.0, 0.0, bound, inside))
+    assert not is_at_bound(fitted(share * bound, -np.inf, np.inf, inside))
+
+
+@given(st.sampled_from([1.0, 4.0]))
+def test_a_law_whose_shape_is_on_its_bound_stands_for_something_else(shape):
+    assert is_at_bound(fitted(0.5, -1.0, 1.0, shape))
+    assert not is_at_bound(fitted(0.5, -1.0, 1.0, shape), are_shapes_asked=False)
+    assert not is_at_bound(fitted(0.5, -1.0, 1.0, shape, of_log=True))
 
 
 LEVEL_THERE = 0.1  # Coulomb friction [N m]
