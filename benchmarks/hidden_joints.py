@@ -61,7 +61,7 @@ def answer(toml: Path, a: Path, b: Path, without: tuple[str, ...] = ()) -> dict[
     """What is named, and the errors on record b of what was fitted and of what was found."""
 
     from identification import DiscoveryOptions, discover, fit, read_robot
-    from identification.robot.confirmation import compare_values
+    from identification.robot.results.confirmation import compare_values
 
     robot = read_robot(toml, a, confirm=[b])
     options = DiscoveryOptions(without=without)

@@ -24,7 +24,7 @@ import time
 from pathlib import Path
 from typing import Any
 
-from identification.made import list_content
+from identification.storage.made import list_content
 from identification.sweep.work import commit
 
 LATEST = 20.0  # [s] after the start; until then most commands read, fit, search, and draw
@@ -142,7 +142,7 @@ def write_robot(folder: Path) -> None:
     from joint_cases import SLIDER
     from robot_cases import TOML, simulated
 
-    from identification.logs.csv_files import write_log
+    from identification.logs.formats.csv_files import write_log
 
     (folder / "slider.xml").write_text(SLIDER)
     (folder / "robot.toml").write_text(TOML)

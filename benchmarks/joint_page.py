@@ -73,7 +73,7 @@ def section(rows: Sequence[Row]) -> str:
         "free parameter and no start of a window imitates. One record is fitted, another",
         "judges. A constant force that is smaller than the Coulomb level, and a level that",
         "differs by direction, are one force by two names",
-        "(`identification/prediction/trial.py`): either is right.",
+        "(`identification/prediction/judging/trial.py`): either is right.",
         "",
         "    python benchmarks/hidden_joints.py",
         "",

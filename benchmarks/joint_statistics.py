@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from typing import Any
 
-from identification.prediction.trial import LEVEL, TWINS
+from identification.prediction.judging.trial import LEVEL, TWINS
 from identification.sweep.statistics import median, rate
 
 WORSE = 1.02  # of an error: two searches that end at the same minimum differ by less

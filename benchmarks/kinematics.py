@@ -91,7 +91,7 @@ def main() -> None:
     logs = {(k, s): noisy_log(k, s) for k, s in (("prbs", 0), ("prbs", 3), ("multisine", 0),
                                                  ("step", 0))}  # fmt: skip
     if given.picture:
-        from identification.report.style import save_png
+        from identification.report.page.style import save_png
         from inca_mj.report.poses import poses_figure
 
         save_png(poses_figure(log_poses(logs["prbs", 0])), given.picture, dpi=110)

@@ -22,7 +22,7 @@ from matplotlib.figure import Figure
 from identification.linear.gridded import gridded
 from identification.linear.modes import minimal, modes
 from identification.linear.operating_points import State, at_rest
-from identification.report.style import SERIES, save_png, styled
+from identification.report.page.style import SERIES, save_png, styled
 from inca_mj.linear.accuracy import (
     BAND,
     InterpolationError,

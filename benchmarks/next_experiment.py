@@ -37,7 +37,7 @@ BUDGET = 40
 def study(robot: str, effect: str, seed: int) -> dict[str, Any]:
     """One world: its first answer, and where that is a set, the answers after a second record."""
     from identification import design_experiment, discover, read_robot
-    from identification.results import RESULT, write_result
+    from identification.storage.results import RESULT, write_result
 
     try:
         world = make_world(robot, effect, seed, SECONDS, reach=REACH)

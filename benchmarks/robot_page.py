@@ -12,7 +12,7 @@ import numpy as np
 from robot_worlds import NAMES, UNLISTED, UPRIGHT
 from rows import Row
 
-from identification.effects.curves import CURVE
+from identification.effects.laws.curves import CURVE
 from identification.sweep.statistics import median, rate, said
 
 NO_NAME = ("unlisted effect", "unknown effect")

@@ -28,8 +28,8 @@ import step_ratios
 from speed_page import write_page
 from step_shares import SAMPLES, bare_times, lean, share_of
 
-from identification.engine import untimed
 from identification.estimation.estimation import estimate
+from identification.runtime.engine import untimed
 from identification.sweep.work import commit
 from inca_mj.robot.inputs import prbs
 from inca_mj.robot.parameters import parameter_set

@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
-from identification.report.style import save_png
+from identification.report.page.style import save_png
 from inca_mj.kinematics.cables import inverse
 from inca_mj.robot.geometry import INCA
 from inca_mj.robot.parameters import parameter_set

@@ -18,10 +18,10 @@ import numpy as np
 import step_ratios
 from mujoco.batch import Batch
 
-from identification.engine import untimed
 from identification.linear import points
 from identification.model import rollout
 from identification.native import forward
+from identification.runtime.engine import untimed
 from inca_mj.twin.twin import Twin, build_twin
 
 SAMPLES, EVERY = 100, 10  # of the motion, and steps a sample

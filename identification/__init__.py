@@ -6,7 +6,7 @@ simulator and a bad graphics setting cannot stop it.
 
 from typing import TYPE_CHECKING
 
-from identification.lazy import lazy
+from identification.runtime.lazy import lazy
 
 if TYPE_CHECKING:  # the public names, by what they are for
     # isort: off
@@ -17,9 +17,9 @@ if TYPE_CHECKING:  # the public names, by what they are for
     # logs
     from identification.logs.log import Log as Log
     from identification.logs.read import read_log as read_log
-    from identification.logs.csv_files import write_log as write_log
-    from identification.logs.decimation import decimate as decimate
-    from identification.logs.resampling import on_a_grid as on_a_grid
+    from identification.logs.formats.csv_files import write_log as write_log
+    from identification.logs.stamps.decimation import decimate as decimate
+    from identification.logs.stamps.resampling import on_a_grid as on_a_grid
     from identification.logs.noise import noise_floor as noise_floor
     from identification.inspection.inspected import inspect_log as inspect_log
     from identification.inspection.inspected import Inspection as Inspection
@@ -28,20 +28,20 @@ if TYPE_CHECKING:  # the public names, by what they are for
     from identification.robot.reading import read_robot as read_robot
     from identification.robot.robot import Robot as Robot
     from identification.robot.fitting import fit as fit
-    from identification.robot.results import RobotFit as RobotFit
+    from identification.robot.results.results import RobotFit as RobotFit
     from identification.robot.torques import fit_torques as fit_torques
-    from identification.robot.results import TorqueFit as TorqueFit
+    from identification.robot.results.results import TorqueFit as TorqueFit
     from identification.robot.discovery import discover as discover
-    from identification.robot.confirmation import confirm as confirm
-    from identification.robot.record_error import Confirmation as Confirmation
-    from identification.robot.write import write_robot as write_robot
+    from identification.robot.results.confirmation import confirm as confirm
+    from identification.robot.results.record_error import Confirmation as Confirmation
+    from identification.robot.results.write import write_robot as write_robot
     from identification.robot.experiment import design_experiment as design_experiment
-    from identification.robot.results import NextExperiment as NextExperiment
+    from identification.robot.results.results import NextExperiment as NextExperiment
 
     # results that were saved
-    from identification.saved import load as load
-    from identification.saved import SavedDiscovery as SavedDiscovery
-    from identification.saved import SavedFit as SavedFit
+    from identification.storage.saved import load as load
+    from identification.storage.saved import SavedDiscovery as SavedDiscovery
+    from identification.storage.saved import SavedFit as SavedFit
 
     # models and their parameters
     from identification.model.parameter import Parameter as Parameter
@@ -58,9 +58,9 @@ if TYPE_CHECKING:  # the public names, by what they are for
     from identification.effects.axes import Axis as Axis
     from identification.effects.axes import axes as axes
     from identification.effects.catalogue import joint_effects as joint_effects
-    from identification.effects.jointed import JointPlant as JointPlant
-    from identification.effects.joint_plant import joint_plant as joint_plant
-    from identification.effects.joint_plant import candidates as candidates
+    from identification.effects.plant.jointed import JointPlant as JointPlant
+    from identification.effects.plant.joint_plant import joint_plant as joint_plant
+    from identification.effects.plant.joint_plant import candidates as candidates
     from identification.effects.effect import places as places
 
     # linear models
@@ -97,11 +97,11 @@ if TYPE_CHECKING:  # the public names, by what they are for
     from identification.discovery.findings.finding import Finding as Finding
 
     # words and figures
-    from identification.report.fit_verdict import fit_verdict as fit_verdict
-    from identification.report.discovery_report import discovery_text as discovery_text
-    from identification.report.figures import compare_figure as compare_figure
-    from identification.report.figures import windows_figure as windows_figure
-    from identification.report.style import save_png as save_png
+    from identification.report.fit.verdict import fit_verdict as fit_verdict
+    from identification.report.discovery.report import discovery_text as discovery_text
+    from identification.report.page.figures import compare_figure as compare_figure
+    from identification.report.page.figures import windows_figure as windows_figure
+    from identification.report.page.style import save_png as save_png
     # isort: on
 else:
     __all__, __getattr__, __dir__ = lazy(__name__)

@@ -5,7 +5,7 @@ The public names. Each is imported when it is first asked for, so that `inca --h
 
 from typing import TYPE_CHECKING
 
-from identification.lazy import lazy
+from identification.runtime.lazy import lazy
 
 if TYPE_CHECKING:  # the public names, by what they are for
     # isort: off

@@ -96,7 +96,8 @@ def few_effects() -> Iterator[None]:
 @pytest.fixture
 def undrawn(monkeypatch) -> None:
     """Pages have their words and no figures, which take a second each."""
-    from identification.report import discovery_report, page, page_files
+    from identification.report.discovery import report as discovery_report
+    from identification.report.page import page, page_files
 
     monkeypatch.setattr(page, "drawing", lambda *_: "")
     monkeypatch.setattr(page, "save_figures", lambda *_: [])

@@ -12,9 +12,9 @@ import numpy as np
 from mujoco.batch import Batch
 
 from gpu.worlds import FREE, Worlds, columns, motors
-from identification.engine import quiet, untimed
 from identification.model import rollout
 from identification.native.table import uninstall
+from identification.runtime.engine import quiet, untimed
 from inca_mj.robot.parameters import TIMESTEP
 from inca_mj.twin import native
 

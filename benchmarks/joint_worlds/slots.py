@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from identification.kept_code import kept_code
+from identification.runtime.kept_code import kept_code
 
 compiled = kept_code(Path(__file__).parent)
 # friction that holds: stiffness and damping of the contact, then what the largest friction is of

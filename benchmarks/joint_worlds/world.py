@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from departures import CONTROLLERS, EITHER_HALF, MISTUNED, POWERS, Departure
 
-from identification.prediction.trial import TWINS
+from identification.prediction.judging.trial import TWINS
 from joint_worlds import slots as at
 from joint_worlds.hidden import EVERY, HIDDEN, NULL, THREE, UNLISTED, Habits, Hidden, Shape
 from joint_worlds.motion import ROBOTS, closed_loop, terms

@@ -28,7 +28,7 @@ from identification import (
     joint_plant,
     window_error,
 )
-from identification.effects.rows import read_model
+from identification.effects.plant.rows import read_model
 from robots import needed
 from robots.measured_robot import (
     PROJECT_MODELS,

@@ -15,8 +15,8 @@ from typing import Any
 from identification import InputError, JointPlant, read_robot
 from identification.discovery.result import Discovery
 from identification.prediction.discovery import discover_records
-from identification.report.discovery_json import discovery_to_json
-from identification.report.discovery_report import discovery_text
+from identification.report.discovery.json import discovery_to_json
+from identification.report.discovery.report import discovery_text
 from identification.robot.robot import Robot
 from identification.sweep.work import commit
 from robots.measured_robot import MeasuredRobot, Outcome

@@ -16,7 +16,7 @@ import numpy as np
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
 from rosbags.typesys import Stores, get_typestore
 
-from identification.effects.rows import read_model
+from identification.effects.plant.rows import read_model
 
 MODEL = Path(__file__).with_name("arm.xml")
 JOINTS = ("shoulder_pan", "shoulder_lift", "elbow_flex", "wrist_flex", "wrist_roll", "gripper")

@@ -1,9 +1,9 @@
 """A line at least every ten seconds while a program computes, with the stage and the time left.
 
-A computation tells its stages and their steps (`identification.progress`). Where nothing else was
-said for a while, this says which stage it is, how far, and how long the rest will take; where the
-number of steps is not known beforehand, only how many were done. Of a search the text of the whole
-comes first: its stages have a number, and a forecast of the rest.
+A computation tells its stages and their steps (`identification.runtime.progress`). Where nothing
+else was said for a while, this says which stage it is, how far, and how long the rest will take;
+where the number of steps is not known beforehand, only how many were done. Of a search the text of
+the whole comes first: its stages have a number, and a forecast of the rest.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass, field
 
-from identification.progress import Advance, Watch, Whole, duration
+from identification.runtime.progress import Advance, Watch, Whole, duration
 
 EVERY = 10.0  # [s] after which a line is said
 

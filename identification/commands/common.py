@@ -17,12 +17,12 @@ import tyro
 from identification.commands.beat import told
 from identification.commands.stopping import leaving_out
 from identification.errors import InputError
-from identification.folders import draft_of
-from identification.results import RESULT, plain_text, write_result
+from identification.storage.folders import draft_of
+from identification.storage.results import RESULT, plain_text, write_result
 
 if TYPE_CHECKING:
-    from identification.folders import Draft
-    from identification.report.page import Section
+    from identification.report.page.page import Section
+    from identification.storage.folders import Draft
 
 T = TypeVar("T")
 _BACKENDS = ("egl", "osmesa", "glfw")  # of MuJoCo, by the words of MUJOCO_GL
@@ -175,7 +175,7 @@ def draw_report(
     out: Path, title: str, verdict: Sequence[str], sections: Sequence[Section], **how: Any
 ) -> None:
     """Write the figures of sections and the one-file report into a folder; see `write_report`."""
-    from identification.report.page import save_figures, write_report
+    from identification.report.page.page import save_figures, write_report
 
     save_figures(sections, out)
     write_report(out / "report.html", title, verdict, sections, **how)

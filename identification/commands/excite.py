@@ -64,7 +64,7 @@ class Excite:
 
     def logs(self) -> Sequence[Path]:
         """Returns the logs that were given, or else those of the result; refuses to have none."""
-        from identification.results import read_result
+        from identification.storage.results import read_result
 
         given = flat(self.log)
         if given or self.result is None:

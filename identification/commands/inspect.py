@@ -35,7 +35,7 @@ class Inspect:
 
         def draw(out: Path) -> None:
             from identification.inspection.picture import log_figure
-            from identification.report.style import save_png
+            from identification.report.page.style import save_png
 
             save_png(log_figure(found), out / "log.png")
 

@@ -46,7 +46,7 @@ class Linearize:
         from identification.linear.linearization import linearize
         from identification.linear.system import sampling_time_of
         from identification.report.linear import system_to_json
-        from identification.robot.file import read_robot_file
+        from identification.robot.file.file import read_robot_file
         from identification.robot.linearization import operating_points
         from identification.robot.robot import read_robot_log
 

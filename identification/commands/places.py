@@ -13,8 +13,8 @@ from typing import Any
 
 from identification.commands.common import Output
 from identification.errors import InputError
-from identification.files import exists, is_file
-from identification.folders import try_folder
+from identification.storage.files import exists, is_file
+from identification.storage.folders import try_folder
 
 
 def refuse_place(command: Any) -> None:

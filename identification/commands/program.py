@@ -19,7 +19,7 @@ from identification.commands.common import note
 from identification.commands.places import refuse_place
 from identification.commands.stopping import STOPPED, stoppable
 from identification.errors import InputError
-from identification.progress import USUAL, watched
+from identification.runtime.progress import USUAL, watched
 
 SLOW = 0.5  # [s] before a bar is drawn, so that short stages do not flicker
 

@@ -21,11 +21,11 @@ from identification.commands.common import (
 )
 from identification.commands.stopping import NO_ANSWER, STOPPED, leaving_out
 from identification.errors import InputError
-from identification.progress import duration
+from identification.runtime.progress import duration
 
 if TYPE_CHECKING:
     from identification.robot.robot import Robot
-    from identification.written import Files
+    from identification.storage.written import Files
 
 WORSE = (
     "the fitted values predict unseen records worse than those of the robot's file, and are not to"
@@ -55,7 +55,7 @@ class OnRobot:
 
         The checks `but` are left out. Where something `fits`, some parameters must be free.
         """
-        from identification.robot.file import read_robot_file, refuse_nothing_free
+        from identification.robot.file.file import read_robot_file, refuse_nothing_free
 
         if not self.logs:
             raise InputError("no log is given; write LOG behind the robot's file")
@@ -116,9 +116,9 @@ class Discover(OnRobot):
 
         options = options_of(self.options, self.minutes)
         robot = self.read()
-        from identification.report.discovery_report import discovery_text
+        from identification.report.discovery.report import discovery_text
         from identification.robot.discovery import discover
-        from identification.robot.discovery_files import RobotDiscoveryFiles
+        from identification.robot.results.discovery_files import RobotDiscoveryFiles
 
         with leaving_out(NO_ANSWER):
             found = discover(robot, progress=self.output.tell, options=options)
@@ -141,8 +141,8 @@ class Torques(OnRobot):
         """Compare, say, keep."""
         robot = self.read(but=("wiring",), fits=False)  # forces say it without a simulation
         from identification.refusals.wiring import refuse_unbalanced
-        from identification.report.torque_words import torque_text
-        from identification.robot.file import read_robot_file
+        from identification.report.torques.words import torque_text
+        from identification.robot.file.file import read_robot_file
         from identification.robot.torques import fit_torques
 
         trust = (*flat(self.trust), *read_robot_file(self.robot).trust)

@@ -24,8 +24,8 @@ import numpy as np
 
 from identification.effects.effect import Candidate
 from identification.errors import DivergenceError, InputError
-from identification.pool import each_part
-from identification.progress import Progress
+from identification.runtime.pool import each_part
+from identification.runtime.progress import Progress
 
 SAME_STDS = 0.1  # of the std: values are told to two digits of it
 SAME_RELATIVE = 1e-3  # of values whose std is not known

@@ -4,7 +4,7 @@
     evidence    = n_y W mean_b g_b - k ln W                     over all windows, fitted and unseen
 
 k numbers are added by the effect. A search along a free run has the first, one over a horizon the
-second (`identification.prediction.evidence`); they compare effects of one search only.
+second (`identification.prediction.judging.evidence`); they compare effects of one search only.
 
 An effect is proven by samples that no fit has seen, and told of others of which neither a fit nor
 the search knows (`identification.logs.parts`). Along a free run flips of the signs of their
@@ -177,8 +177,8 @@ class RejectedEffect(OfCandidate):
     # something like it that no catalogue lists and that is likelier, where it was
     outside: Outside | None = None
     evidence: float = nan  # what speaks for it over all windows; NaN for a free run
-    # why it is not proven, a word of `identification.prediction.trial.Doubt`; None where it is, or
-    # where no reason is told
+    # why it is not proven, a word of `identification.prediction.judging.trial.Doubt`; None where it
+    # is, or where no reason is told
     doubt: str | None = None
     confidence: float = 0.0  # that its name would have had
     # chance that one of all that were refitted gains as much by luck on samples that decide; NaN
@@ -236,10 +236,10 @@ class NamedEffect(OfCandidate):
     # named effects
     outside: Outside | None = None
     # the effect that is the same force by another name, so that no record tells which it is
-    # (`identification.prediction.trial`); None where there is none
+    # (`identification.prediction.judging.trial`); None where there is none
     same_as: Effect | None = None
     # of what it and smooth forces of its joint could explain, the share that it explains
-    # (`identification.discovery.smooth_force`); None where that is not known
+    # (`identification.discovery.forces.smooth_force`); None where that is not known
     smooth_share: float | None = None
     # what a smooth force of what it depends on would explain beside it; None where that is not
     # known

@@ -1,7 +1,7 @@
 """What a fitted model tells of itself, whichever search has fitted it.
 
 `identification.kalman.refit.Refit` is a model that was fitted along a free run, and
-`identification.prediction.model.WindowModel` one that was fitted to windows of records.
+`identification.prediction.fits.model.WindowModel` one that was fitted to windows of records.
 """
 
 from __future__ import annotations

@@ -22,7 +22,7 @@ import mujoco
 
 from identification.discovery.fitted import Fitted
 from identification.effects.effect import Candidate
-from identification.effects.jointed import JointPlant
+from identification.effects.plant.jointed import JointPlant
 from identification.logs.log import Log
 from identification.model.predictor import Plant
 from identification.model.tied import servo_kind

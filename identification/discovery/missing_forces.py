@@ -28,7 +28,7 @@ from identification.kalman.noise_fit import START_CORRELATION_TIME, compute_unit
 from identification.kalman.noise_model import smooth
 from identification.kalman.refit import Refit
 from identification.logs.noise import noise_floor
-from identification.pool import one_blas_thread
+from identification.runtime.pool import one_blas_thread
 
 # Of the power of a missing force: the regressor that it follows is reported from this share on.
 TOLD_REGRESSOR_SHARE = 0.1

@@ -25,9 +25,9 @@ from identification.discovery.options import DiscoveryOptions
 from identification.discovery.outlook import CHECKS, EFFECT, FIT, LEFT, Outlook, Rests
 from identification.discovery.result import Discovery
 from identification.effects.effect import Candidate, Effect
-from identification.pool import OutOfTime, one_blas_thread, until
-from identification.progress import Progress, following, stage
 from identification.quantities import held
+from identification.runtime.pool import OutOfTime, one_blas_thread, until
+from identification.runtime.progress import Progress, following, stage
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -13,8 +13,8 @@ from pathlib import Path
 from identification.discovery.passes import PASSES, refuse_unknown
 from identification.effects.sizes import FARTHEST
 from identification.errors import InputError, unknown_name
-from identification.files import read_toml
 from identification.kalman.options import KalmanOptions, option
+from identification.storage.files import read_toml
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -16,7 +16,7 @@ import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
-from identification.progress import duration
+from identification.runtime.progress import duration
 
 FIT, SCORES, EFFECT, CHECKS, LEFT = STAGES = (
     "the fit without effects", "scores of all candidates", "one effect more",

@@ -36,17 +36,17 @@ from identification.discovery.effect_results import (
 from identification.discovery.findings.finding import Finding, FindingKind
 from identification.discovery.findings.records_evidence import ShiftedRecord
 from identification.discovery.fitted import Fitted
+from identification.discovery.forces.recovered_force import RecoveredForce
 from identification.discovery.free_run import FreeRun
 from identification.discovery.missing_forces import MissingForce
 from identification.discovery.options import DiscoveryOptions
-from identification.discovery.recovered_force import RecoveredForce
 from identification.discovery.second_opinion import TorqueOpinion
 from identification.effects.effect import Candidate, Effect
 from identification.estimation.metrics import output_units, relative
 from identification.logs.joined import Record
 from identification.model.parameter import Parameter
-from identification.shown import Shown
-from identification.written import Files, Written
+from identification.storage.shown import Shown
+from identification.storage.written import Files, Written
 
 Recover = Callable[[Candidate, Sequence[Rival]], RecoveredForce | None]
 Verdict = Literal["named", "nothing missing", "unknown effect", "unlisted effect"]
@@ -121,8 +121,8 @@ class Discovery(Shown, Written):
         run: the free runs of both fits; None over a horizon.
         recover: returns the force of a named effect, beside those of its rivals, as the data ask
             for it; None where it has none. It raises DivergenceError.
-        files_of: returns what writes its files (`identification.written`); None where no public
-            function was asked.
+        files_of: returns what writes its files (`identification.storage.written`); None where no
+            public function was asked.
     """
 
     records: tuple[Record, ...]

@@ -17,7 +17,6 @@ import mujoco
 import numpy as np
 
 from identification.effects.servo_error import position_servo
-from identification.engine import quiet
 from identification.errors import InputError
 from identification.logs.log import Log
 from identification.logs.names import listed
@@ -26,6 +25,7 @@ from identification.logs.plausible import refuse_frozen
 from identification.model.hostile import HUGE
 from identification.model.predictor import output_columns
 from identification.model.rollout import UNLOGGED, logged_inputs
+from identification.runtime.engine import quiet
 
 Kind = Literal["hinge", "slide"]
 OVERRULE = ', or write trust = ["sensors"] into the robot\'s file'

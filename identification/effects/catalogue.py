@@ -9,17 +9,17 @@ from math import pi
 import mujoco
 
 from identification.effects.axes import Axis
-from identification.effects.bodies import body_effects
-from identification.effects.curves import curve_effects
 from identification.effects.effect import Effect, places
-from identification.effects.forces import force_effects, time_effects
-from identification.effects.friction import drag_effects, friction_effects
-from identification.effects.inputs import drives, input_effects
-from identification.effects.joint_group import groups
-from identification.effects.rotors import rotor_effects
-from identification.effects.sensors import sensor_effects
-from identification.effects.servos import rate_limits, servo_effects
-from identification.effects.state_effects import state_effects
+from identification.effects.laws.bodies import body_effects
+from identification.effects.laws.curves import curve_effects
+from identification.effects.laws.forces import force_effects, time_effects
+from identification.effects.laws.friction import drag_effects, friction_effects
+from identification.effects.laws.inputs import drives, input_effects
+from identification.effects.laws.joint_group import groups
+from identification.effects.laws.rotors import rotor_effects
+from identification.effects.laws.sensors import sensor_effects
+from identification.effects.laws.servos import rate_limits, servo_effects
+from identification.effects.laws.state_effects import state_effects
 from identification.logs.log import Log
 
 TURNS = (*map(float, range(1, 13)), 14.0, 16.0, 18.0, 20.0, 24.0, 28.0)  # harmonics of a turn

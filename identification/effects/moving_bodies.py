@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
-from identification.engine import derive, quiet
+from identification.runtime.engine import derive, quiet
 
 POSES = 4  # random states in which forces are compared
 FELT = 1e-9  # of the largest force: a smaller change of it is round-off

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from identification.effects.effect import Candidate, Effect, effect_parameters
-from identification.effects.joint_group import SLIDE, about_names
-from identification.effects.jointed import JointPlant
+from identification.effects.laws.joint_group import SLIDE, about_names
+from identification.effects.plant.jointed import JointPlant
 from identification.errors import InputError, nearest, unknown_name
 from identification.model.predictor import Plant
 

@@ -13,7 +13,7 @@ from functools import cache
 import numpy as np
 
 from identification.effects.effect import Effect
-from identification.native.joint_callback import Joint
+from identification.native.joints.joint_callback import Joint
 
 VARIABLES = ("time", "q", "v", "f_u", "f_g", "x_before", "x_behind", "v_before", "v_behind",
              "e")  # fmt: skip

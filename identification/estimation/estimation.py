@@ -34,8 +34,8 @@ from identification.logs.log import Log
 from identification.logs.noise import noise_floor
 from identification.model.coordinates import Coordinates
 from identification.model.predictor import Plant, Predictor
-from identification.pool import one_blas_thread
-from identification.progress import Progress
+from identification.runtime.pool import one_blas_thread
+from identification.runtime.progress import Progress
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -30,7 +30,7 @@ from identification.logs.log import Log
 from identification.logs.noise import noise_floor
 from identification.model.predictor import Predictor
 from identification.model.sensitivity import sensitivity
-from identification.progress import stage
+from identification.runtime.progress import stage
 
 
 @dataclass(frozen=True, kw_only=True)

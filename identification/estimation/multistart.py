@@ -27,7 +27,7 @@ from identification.logs.log import Log
 from identification.logs.noise import noise_floor, relative_weight, whitener_of
 from identification.model.coordinates import Coordinates, coordinates
 from identification.model.predictor import Plant
-from identification.progress import Progress, counted
+from identification.runtime.progress import Progress, counted
 
 # Of the error to the noise floor: a search that ends below it is good enough.
 ENOUGH_NOISE_RATIO = 1.5

@@ -25,7 +25,7 @@ from identification.estimation.estimation import Estimate
 from identification.estimation.estimation import estimate as search
 from identification.estimation.fit import Fit
 from identification.estimation.uncertainty import LOSSES, influence
-from identification.progress import stage
+from identification.runtime.progress import stage
 
 PROFILE_LEVEL = chi2_level(0.05, 1)  # 3.84
 REACH_STDS = 3.0  # to each side, unless points are given

@@ -35,7 +35,7 @@ from identification.model.sensitivity import (
     sensitivity,
     without_effect,
 )
-from identification.progress import USUAL, Progress, stage
+from identification.runtime.progress import USUAL, Progress, stage
 
 HORIZONS = (0.05, 0.2, 0.5, 1.0)  # of the log: a short one keeps a search from local minima
 Status = Literal["converged", "iterations", "stopped"]

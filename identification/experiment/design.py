@@ -14,13 +14,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from identification.effects.jointed import JointPlant
+from identification.effects.plant.jointed import JointPlant
 from identification.errors import DivergenceError, InputError
 from identification.experiment.hypotheses import Hypothesis, Seen, separations, shares_after
 from identification.experiment.playing import Played, Stage
 from identification.experiment.search import search
 from identification.experiment.series import Series, changed, draw
-from identification.progress import counted
+from identification.runtime.progress import counted
 
 
 @dataclass(frozen=True)

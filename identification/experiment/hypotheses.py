@@ -21,11 +21,11 @@ from typing import cast
 import numpy as np
 
 from identification.discovery.nominal_model import NominalModel, without_starts
-from identification.effects.jointed import JointPlant
+from identification.effects.plant.jointed import JointPlant
 from identification.logs.log import Log
 from identification.model.coordinates import Coordinates
-from identification.prediction.nominal_fit import fit_alone
-from identification.progress import Progress
+from identification.prediction.fits.nominal_fit import fit_alone
+from identification.runtime.progress import Progress
 from identification.windows.fit import WindowFit, solve
 from identification.windows.problem import Problem, no_moves, problem, with_scale
 from identification.windows.records import Record

@@ -16,10 +16,10 @@ import mujoco
 import numpy as np
 
 from identification.effects.axes import Axis
-from identification.engine import quiet
 from identification.errors import InputError
 from identification.logs.log import Log
 from identification.model.predictor import output_columns
+from identification.runtime.engine import quiet
 
 ROUNDING = 1e-9  # of a limit's width
 OFF = int(mujoco.mjtDisableBit.mjDSBL_CONTACT) | int(mujoco.mjtDisableBit.mjDSBL_CONSTRAINT)

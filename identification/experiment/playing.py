@@ -19,8 +19,7 @@ from typing import Literal
 import mujoco
 import numpy as np
 
-from identification.effects.jointed import JointPlant
-from identification.engine import quiet
+from identification.effects.plant.jointed import JointPlant
 from identification.errors import DivergenceError, InputError
 from identification.experiment.drives import Drive, drives_of, torque_for
 from identification.experiment.limits import Limit, Limits, Margin, keeps, margins
@@ -30,6 +29,7 @@ from identification.model.plant import own_start
 from identification.model.predictor import Predictor
 from identification.model.protocol import with_numbers
 from identification.model.rollout import State, substeps
+from identification.runtime.engine import quiet
 
 Form = Literal["inputs", "reference"]
 FORMS = ("auto", "inputs", "reference")

@@ -22,15 +22,15 @@ import numpy as np
 from identification.discovery.attempts import attempt
 from identification.discovery.effect_results import NamedEffect, Outside, Rival
 from identification.discovery.options import DiscoveryOptions
-from identification.effects.curves import NODES
 from identification.effects.effect import CURVE, Candidate
+from identification.effects.laws.curves import NODES
 from identification.innovations.fitted_model import AcceptedEffect, FittedModel, collect_parameters
 from identification.innovations.free_curves import Curve, find_curves
 from identification.innovations.replacement import replace_effect, retune
 from identification.innovations.scoring.sensitivities import Sensitivity
 from identification.innovations.task import DiscoveryTask
 from identification.kalman.noise_model import build_whitener
-from identification.pool import one_blas_thread
+from identification.runtime.pool import one_blas_thread
 
 
 def name_effects(

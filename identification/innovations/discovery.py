@@ -18,7 +18,7 @@ from identification.innovations.task import DiscoveryTask
 from identification.innovations.verdict import conclude
 from identification.logs.joined import records_of, rows_of
 from identification.logs.log import Log
-from identification.progress import Progress
+from identification.runtime.progress import Progress
 
 RESTS: Rests = {}  # of searches along a free run none is timed yet: no forecast is told
 

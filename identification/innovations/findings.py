@@ -40,7 +40,7 @@ from identification.innovations.proof import Validation
 from identification.innovations.scoring.scores import Score
 from identification.innovations.scoring.significance import find_oversized, select_significant
 from identification.kalman.point import evaluate_sensitivities
-from identification.pool import one_blas_thread
+from identification.runtime.pool import one_blas_thread
 
 
 def find_structure(model: FittedModel, options: DiscoveryOptions) -> tuple[Finding, ...]:

@@ -20,7 +20,7 @@ from identification.logs.log import Log
 from identification.model.coordinates import Coordinates, coordinates
 from identification.model.parameter import Parameter, ParameterSet
 from identification.model.predictor import Predictor
-from identification.progress import Progress
+from identification.runtime.progress import Progress
 
 MAX_FIT_STEPS = 20  # of a fit
 

@@ -30,14 +30,14 @@ import numpy as np
 
 from identification.discovery.candidates import list_common, list_single
 from identification.errors import InputError
-from identification.files import read_text
 from identification.innovations.scoring.sensitivities import MAX_BATCH_COLUMNS
 from identification.innovations.task import DiscoveryTask
 from identification.kalman.trajectory import FINE_POINTS, INTERVALS
 from identification.logs.joined import rows_of
 from identification.model.predictor import Predictor
 from identification.model.rollout import substeps
-from identification.pool import threads
+from identification.runtime.pool import threads
+from identification.storage.files import read_text
 
 BASE_BYTES = 28e6  # of compiled code and libraries that only a search loads
 MODEL_COPIES = 96  # for changes of the model that are evaluated together

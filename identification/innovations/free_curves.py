@@ -17,8 +17,8 @@ import numpy as np
 
 from identification.discovery.missing_forces import list_actuated_joints
 from identification.discovery.options import DiscoveryOptions
-from identification.effects.curves import NODES
 from identification.effects.effect import CURVE, Candidate, Effect
+from identification.effects.laws.curves import NODES
 from identification.effects.sizes import Size
 from identification.innovations.scoring.scores import score
 from identification.innovations.scoring.sensitivities import Sensitivity

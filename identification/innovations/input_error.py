@@ -35,7 +35,7 @@ from identification.kalman.refit import Refit
 from identification.kalman.response import respond
 from identification.kalman.system import System
 from identification.logs.parts import Part
-from identification.pool import one_blas_thread
+from identification.runtime.pool import one_blas_thread
 
 HOLDS = ("foh", "zoh")  # straight lines, steps
 # Of the inputs' error: the other hold is reported where it leaves less than this.

@@ -35,7 +35,7 @@ from identification.kalman.refit import Refit
 from identification.logs.joined import records_of, rows_of
 from identification.logs.log import Log
 from identification.logs.parts import Part, Parts, autocorrelation_time, divide, join
-from identification.pool import one_blas_thread
+from identification.runtime.pool import one_blas_thread
 
 MIN_PROOF_SAMPLES = 5  # of a block of unseen samples
 MAX_FLIPPED_BLOCKS = 32  # 2^16 sums of each half; of more blocks neighbours are added

@@ -1,7 +1,7 @@
 """The recovered force of an effect that was named for a free run, along the records of its log.
 
 It is the force that the values with the effect have and those without it lack; see
-`identification.discovery.recovered_force`.
+`identification.discovery.forces.recovered_force`.
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ import mujoco
 import numpy as np
 
 from identification.discovery.effect_results import Rival
-from identification.discovery.force_along import ForceAlong, Stretch, forces_along
-from identification.discovery.recovered_force import (
+from identification.discovery.forces.force_along import ForceAlong, Stretch, forces_along
+from identification.discovery.forces.recovered_force import (
     RecoveredForce,
     Shown,
     compare_force,
@@ -30,7 +30,7 @@ from identification.kalman.trajectory import COARSE_POINTS, Trajectory, average_
 from identification.model.predictor import Predictor
 from identification.model.protocol import with_numbers
 from identification.model.rollout import hold, substeps, without_sensors
-from identification.pool import one_blas_thread
+from identification.runtime.pool import one_blas_thread
 
 
 def recover_force(

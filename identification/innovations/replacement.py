@@ -21,7 +21,7 @@ from identification.effects.effect import Candidate
 from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.problem import linearise_criterion
 from identification.kalman.refit import Refit
-from identification.pool import one_blas_thread
+from identification.runtime.pool import one_blas_thread
 
 # Factor by which the prior std of the nominal model's parameters are larger where these may explain
 # what an effect does.

@@ -16,8 +16,6 @@ from identification.discovery.candidates import list_common, list_single
 from identification.discovery.moves import Move, SearchState, Watch, drop_needless
 from identification.discovery.outlook import SCORES
 from identification.discovery.passes import uses
-from identification.heap import release
-from identification.innovations.deviants import accept_deviants, within_bounds
 from identification.innovations.fitted_model import (
     AcceptedEffect,
     FittedModel,
@@ -25,11 +23,12 @@ from identification.innovations.fitted_model import (
     has_candidate,
     score_candidates,
 )
-from identification.innovations.forward_selection import select_effect
-from identification.innovations.kinds import improve_kinds
-from identification.innovations.pairs import find_pair
+from identification.innovations.moves.deviants import accept_deviants, within_bounds
+from identification.innovations.moves.forward_selection import select_effect
+from identification.innovations.moves.kinds import improve_kinds
+from identification.innovations.moves.pairs import find_pair
+from identification.innovations.moves.pruning import exchange, without_needless
 from identification.innovations.proof import divide_unseen
-from identification.innovations.pruning import exchange, without_needless
 from identification.innovations.scoring.scores import Score
 from identification.innovations.scoring.sensitivities import (
     Sensitivity,
@@ -38,8 +37,9 @@ from identification.innovations.scoring.sensitivities import (
 )
 from identification.innovations.task import DiscoveryTask
 from identification.model.sensitivity import refuse_without_effect
-from identification.progress import Progress, enter
 from identification.quantities import held
+from identification.runtime.heap import release
+from identification.runtime.progress import Progress, enter
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -22,7 +22,7 @@ from identification.discovery.findings.finding import Finding, FindingKind
 from identification.discovery.options import DiscoveryOptions
 from identification.innovations.proof import Validation
 from identification.kalman.point import evaluate_sensitivities
-from identification.pool import one_blas_thread
+from identification.runtime.pool import one_blas_thread
 
 # Of the rms of an error to what is expected of it, from which it matters. Chances alone would not
 # do: they rest on the linearised noise model. In 180 logs of a slider in which nothing is missing

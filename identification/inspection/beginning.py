@@ -11,7 +11,6 @@ import mujoco
 import numpy as np
 
 from identification.errors import InputError
-from identification.files import exists, toml_key, toml_table, toml_value, whole_file
 from identification.inspection.answers import Answer
 from identification.inspection.guesses import Role
 from identification.inspection.inspected import SAID, Inspection, answers_of
@@ -21,9 +20,10 @@ from identification.logs.names import listed
 from identification.logs.units import to_si
 from identification.model.tied import servo_kind
 from identification.refusals.limits import limit_sentence
-from identification.robot.completed import torques_without_motor
-from identification.robot.file import RobotFile
-from identification.robot.model_file import robot_spec
+from identification.robot.file.completed import torques_without_motor
+from identification.robot.file.file import RobotFile
+from identification.robot.file.model_file import robot_spec
+from identification.storage.files import exists, toml_key, toml_table, toml_value, whole_file
 
 SHORTEST = 0.3  # [s] of a horizon to begin with: a part of a swing
 FEWEST = 10  # samples of it

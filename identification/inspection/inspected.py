@@ -10,7 +10,6 @@ from pathlib import Path
 import numpy as np
 
 from identification.errors import InputError
-from identification.files import read_bytes
 from identification.inspection.answers import Answer, find_answers
 from identification.inspection.guesses import (
     Role,
@@ -20,13 +19,14 @@ from identification.inspection.guesses import (
     time_unit,
     unit_of,
 )
-from identification.logs.formats import log_table, refuse_no_log
+from identification.logs.formats.formats import log_table, refuse_no_log
 from identification.logs.names import listed, lookup
 from identification.logs.sampling import MIN_ROWS, FloatArray, grid
 from identification.logs.sidecar import read_sidecar
-from identification.logs.stamps import seconds_of, with_time
+from identification.logs.stamps.stamps import seconds_of, with_time
 from identification.logs.table import renamed
 from identification.logs.units import to_si
+from identification.storage.files import read_bytes
 
 GAP = 1.5  # of the usual interval, from which samples are missing
 EVEN = 1e-2  # of the usual interval, by which stamps of an even log differ

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from identification.inspection.inspected import Inspection
-from identification.report.style import GREY, MEASURED, SIMULATED, literal, styled, time_panels
+from identification.report.page.style import GREY, MEASURED, SIMULATED, literal, styled, time_panels
 
 MOST = 24  # columns that are drawn
 POINTS = 4000  # of each

@@ -19,7 +19,7 @@ from identification.kalman.compiled import call
 from identification.kalman.recursion import join_rows
 from identification.kalman.system import System
 from identification.native.memory import internal
-from identification.pool import run_parts
+from identification.runtime.pool import run_parts
 
 
 def transpose_filter(

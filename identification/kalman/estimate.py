@@ -32,8 +32,8 @@ from identification.kalman.refit import Refit, conclude, descend
 from identification.logs.log import Log
 from identification.model.predictor import Plant
 from identification.model.sensitivity import refuse_without_effect, without_effect
-from identification.pool import one_blas_thread
-from identification.progress import Progress
+from identification.runtime.pool import one_blas_thread
+from identification.runtime.progress import Progress
 
 MIN_SAMPLES = 50  # with fewer, the noise of the sensors cannot be told from that of the inputs
 STEPS = 30  # at most

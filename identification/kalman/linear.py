@@ -20,14 +20,14 @@ from functools import cached_property
 import mujoco
 import numpy as np
 
-from identification.engine import quiet
 from identification.kalman.response import transitions
 from identification.kalman.trajectory import COARSE_POINTS, Trajectory, follow_records
 from identification.linear.derivatives import FORWARD, differences, position_rows
 from identification.linear.points import Change, Points
 from identification.model.predictor import Predictor, output_columns
 from identification.native.forward import Intervals
-from identification.pool import one_blas_thread
+from identification.runtime.engine import quiet
+from identification.runtime.pool import one_blas_thread
 
 
 @dataclass(frozen=True, eq=False)

@@ -34,7 +34,7 @@ from identification.kalman.noise_model import (
 )
 from identification.kalman.noise_shares import END_RISE, share_noise
 from identification.kalman.recursion import propagate
-from identification.pool import one_blas_thread, run_parts, split
+from identification.runtime.pool import one_blas_thread, run_parts, split
 
 START_CORRELATION_TIME = 0.03  # [s] of the inputs' error, at which the search for the noise begins
 # [s] at most: a noise that lasts without limit would explain a constant force.

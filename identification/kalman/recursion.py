@@ -22,7 +22,7 @@ from numba import carray
 from identification.kalman.compiled import call
 from identification.kalman.system import System
 from identification.native.memory import internal
-from identification.pool import run_parts, split
+from identification.runtime.pool import run_parts, split
 
 # Columns that are filtered together: their states stay in a processor's own cache, and products
 # with fewer columns take longer for each of them.

@@ -29,7 +29,7 @@ from identification.kalman.problem import (
     share_out,
 )
 from identification.model.predictor import Plant
-from identification.progress import Progress, counted
+from identification.runtime.progress import Progress, counted
 
 # Expected fall of the criterion for each parameter, in units of the noise, below which a search
 # ends: the parameters are then, as a root mean square, within a tenth of their std of the optimum.

@@ -24,7 +24,7 @@ from scipy.linalg import matrix_balance
 
 from identification.kalman.compiled import call
 from identification.native.memory import internal
-from identification.pool import run_parts, split, threads
+from identification.runtime.pool import run_parts, split, threads
 
 MAX_SERIES_NORM = 2.8  # 2.8^25/26! is below the rounding of doubles
 GROUP = 5  # powers of X that are kept: a series of 25 terms is summed in groups of as many

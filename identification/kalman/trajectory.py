@@ -21,7 +21,7 @@ from identification.model.predictor import Predictor
 from identification.model.protocol import with_numbers, with_states
 from identification.model.rollout import hold, rollout, substeps, without_sensors
 from identification.native.forward import Intervals
-from identification.pool import run_parts
+from identification.runtime.pool import run_parts
 
 # Intervals of a sample, where the step of the simulation allows as many: a state of the rate
 # 100 1/s that is sampled at 100 Hz changes by half over one of them.

@@ -16,8 +16,8 @@ from typing import Any
 import numpy as np
 
 from identification.errors import InputError
-from identification.files import read_archive, whole_file
 from identification.linear.system import LinearSystem
+from identification.storage.files import read_archive, whole_file
 
 NAMES = ("states", "inputs", "outputs")
 _SHAPES = {

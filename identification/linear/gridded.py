@@ -27,7 +27,7 @@ from identification.linear.export import (
     write_arrays,
 )
 from identification.linear.system import LinearSystem, held_for, sampling_time_of
-from identification.pool import one_blas_thread
+from identification.runtime.pool import one_blas_thread
 
 FEWEST = {"linear": 2, "cubic": 4}  # points of an axis
 DEGREE = {"linear": 1, "cubic": 3}

@@ -14,13 +14,13 @@ from itertools import islice
 import mujoco
 import numpy as np
 
-from identification.engine import quiet, untimed
 from identification.errors import DivergenceError
 from identification.model.paths import Slot
 from identification.model.protocol import with_entries
 from identification.model.rollout import UNDERIVED, threads
 from identification.native.forward import RATES, STATE, Base, Case, Intervals, evaluate
 from identification.native.installer import owners_of
+from identification.runtime.engine import quiet, untimed
 
 TOGETHER = 32  # changes that share the positions of a point; more would save little more
 MEMORY = 2**28  # bytes of their models at most: one with meshes has tens of millions

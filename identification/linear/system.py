@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from identification.errors import InputError
-from identification.pool import one_blas_thread
+from identification.runtime.pool import one_blas_thread
 
 FASTEST = 1e6  # [Hz]
 

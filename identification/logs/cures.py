@@ -5,8 +5,8 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 
-from identification.files import toml_key
 from identification.logs.names import listed
+from identification.storage.files import toml_key
 
 
 def how_to_turn(

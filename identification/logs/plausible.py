@@ -23,12 +23,12 @@ import numpy as np
 
 from identification.chances import f_above
 from identification.errors import InputError
-from identification.files import toml_key
 from identification.logs.cures import lines_of
 from identification.logs.log import Log
 from identification.logs.names import group, lookup
 from identification.logs.table import HUGE, Table
 from identification.logs.units import to_si, units_that_fit
+from identification.storage.files import toml_key
 
 FEWEST = 50  # a frozen output repeats at least so many samples
 SHARE = 0.2  # and at least this share of the log

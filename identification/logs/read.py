@@ -11,22 +11,21 @@ from typing import Any
 import numpy as np
 
 from identification.errors import InputError
-from identification.files import readable
-from identification.logs.coarse import evened_stamps, refuse_contradicted
-from identification.logs.formats import log_table, refuse_no_log
+from identification.logs.formats.formats import log_table, refuse_no_log
 from identification.logs.log import Log
 from identification.logs.names import check_column_names, check_keys, lookup
 from identification.logs.plausible import check_plausible, check_possible
 from identification.logs.poses import Pose, measured_columns, with_angles
-from identification.logs.publishers import (
+from identification.logs.sampling import FloatArray, check_time, grid
+from identification.logs.sidecar import Sidecar, read_sidecar
+from identification.logs.stamps.coarse import evened_stamps, refuse_contradicted
+from identification.logs.stamps.publishers import (
     refuse_interleaved,
     refuse_second_publisher,
     refuse_two_inputs,
 )
-from identification.logs.resampling import even_out
-from identification.logs.sampling import FloatArray, check_time, grid
-from identification.logs.sidecar import Sidecar, read_sidecar
-from identification.logs.stamps import wanted_columns, with_time, without_repeated
+from identification.logs.stamps.resampling import even_out
+from identification.logs.stamps.stamps import wanted_columns, with_time, without_repeated
 from identification.logs.table import (
     Table,
     check_columns,
@@ -37,6 +36,7 @@ from identification.logs.table import (
     renamed,
 )
 from identification.logs.units import check_si
+from identification.storage.files import readable
 
 
 def read_log(
@@ -62,8 +62,8 @@ def read_log(
 
     Args:
         path: `.csv` with the header `time,<inputs>,<outputs>[,<optional>]`, `.mat` with `u`, `y`,
-            `Ts`, or a path of another kind (see `identification.logs.formats`); a `.toml` of the
-            same stem may say more (see `docs/robot/keys.md`).
+            `Ts`, or a path of another kind (see `identification.logs.formats.formats`); a `.toml`
+            of the same stem may say more (see `docs/robot/keys.md`).
         inputs: names of the actuators (nu).
         outputs: names of the sensors (ny).
         optional: columns that may be there; they become `Log.extras`.
@@ -72,7 +72,7 @@ def read_log(
         rates: largest plausible speed of change [SI/s]; this finds degrees taken for radians.
         named_in: the file that names `inputs` and `outputs`, for messages; the sidecar when None.
         lenient: columns that are not asked for are left out, and uneven time stamps and missing
-            cells are put on an even grid (`identification.logs.resampling`), which the log's
+            cells are put on an even grid (`identification.logs.stamps.resampling`), which the log's
             remarks say.
         said: keys of the sidecar that hold where it does not say otherwise.
         overrule: how a user may overrule `limits` and `rates`, for their messages.

@@ -14,8 +14,8 @@ from pathlib import Path
 from typing import Any
 
 from identification.errors import InputError, unknown_name
-from identification.files import read_toml
 from identification.logs.log import HOLDS
+from identification.storage.files import read_toml
 
 
 @dataclass(frozen=True, kw_only=True)

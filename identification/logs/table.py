@@ -11,11 +11,11 @@ from pathlib import Path
 import numpy as np
 
 from identification.errors import InputError, repeated, told_of, unknown_name
-from identification.files import toml_key
 from identification.logs.names import listed, lookup, quoted
 from identification.logs.sampling import FloatArray
 from identification.logs.sidecar import Sidecar
 from identification.logs.units import to_si
+from identification.storage.files import toml_key
 
 HUGE = 1e15  # of any SI unit: no angle, way, force, voltage or current of a robot is so large
 

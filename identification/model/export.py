@@ -15,7 +15,7 @@ from xml.etree import ElementTree
 import mujoco
 import numpy as np
 
-from identification.files import write_text
+from identification.storage.files import write_text
 
 # MJCF attribute -> attribute of the MjSpec element, for the elements a parameter may reach
 _EXACT = {

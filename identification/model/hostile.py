@@ -4,8 +4,9 @@ An MJCF may ask for more than it writes: a `replicate` of a `replicate` multipli
 MuJoCo cannot be stopped while it reads a model, and may take minutes or all memory: replicated
 elements cost the square of their number, and heightfields, meshes and user data cost memory. What a
 model asks for is counted in its text, in milliseconds. Only where a count is far beyond that of the
-robots of MuJoCo Menagerie, another process compiles the model first (`identification.child`). So a
-usual model pays nothing, and a large one its compilation twice.
+robots of MuJoCo Menagerie, another process compiles the model first
+(`identification.runtime.child`). So a usual model pays nothing, and a large one its compilation
+twice.
 """
 
 from __future__ import annotations
@@ -19,9 +20,9 @@ from xml.etree import ElementTree
 import mujoco
 import numpy as np
 
-from identification.child import FAILED, MEMORY, REFUSED, SECONDS, run_child
 from identification.errors import InputError
-from identification.files import MAX_BYTES, MODEL, check_file, exists, read_bytes
+from identification.runtime.child import FAILED, MEMORY, REFUSED, SECONDS, run_child
+from identification.storage.files import MAX_BYTES, MODEL, check_file, exists, read_bytes
 
 ELEMENTS = 2000  # are read in 0.1 s; ten times as many take 20 s
 CELLS = 2**20  # of heightfields and textures; they are compiled in 0.03 s

@@ -22,7 +22,6 @@ from functools import cached_property
 import mujoco
 import numpy as np
 
-from identification.engine import derive
 from identification.errors import InputError
 from identification.model.parameter import DEVIATION, ParameterSet
 from identification.model.paths import Slot, resolve, write
@@ -36,6 +35,7 @@ from identification.model.tied import (
     spread_place,
     with_spreads,
 )
+from identification.runtime.engine import derive
 
 _START = re.compile(r"(?P<field>qpos|qvel|act)\[(?P<index>\d+)\]")
 

@@ -10,11 +10,11 @@ from typing import Protocol, cast, runtime_checkable
 import mujoco
 import numpy as np
 
-from identification.engine import derive
 from identification.logs.log import Log
 from identification.model.parameter import ParameterSet
 from identification.model.paths import Slot
 from identification.model.rollout import UNDERIVED, State
+from identification.runtime.engine import derive
 
 FINER = 4  # an error that is proportional to the step falls by three quarters
 Entries = Sequence[tuple[Slot, float]]

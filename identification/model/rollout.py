@@ -18,11 +18,11 @@ import mujoco
 import numpy as np
 from mujoco.batch import Batch, SimulationError
 
-from identification.engine import quiet, untimed
 from identification.errors import DivergenceError, InputError
 from identification.model.lean import lean
 from identification.model.paths import Slot
-from identification.pool import end_if_given_up, threads
+from identification.runtime.engine import quiet, untimed
+from identification.runtime.pool import end_if_given_up, threads
 
 # MuJoCo derives no other number from these entries: after writing them, no mj_setConst is needed.
 # Nor does anything depend on them that follows from positions alone.

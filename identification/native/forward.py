@@ -25,7 +25,7 @@ import numpy as np
 
 from identification.native import structs
 from identification.native.forward_loop import NONE, POSITION, SHARES, VELOCITY, compiled_loop
-from identification.pool import run_parts
+from identification.runtime.pool import run_parts
 
 STATE = ("time", "qpos", "qvel", "act", "ctrl")  # a row of states, in this order
 RATES = ("qacc", "act_dot")

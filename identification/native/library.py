@@ -20,7 +20,6 @@ from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
-from identification.engine import library
 from identification.native.memory import (
     double,
     inlined,
@@ -30,6 +29,7 @@ from identification.native.memory import (
     store_double,
     word,
 )
+from identification.runtime.engine import library
 
 POINTER, INT = 64, 32  # bits of an argument
 

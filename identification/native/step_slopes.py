@@ -7,7 +7,7 @@
 A is that of forward differences, each of which does again only what follows from what it moves:
 all for a position, forces for a rate, actuators for an activation. B needs accelerations alone,
 and without constraints it is exact. g is what is left of the force that would have to be resisted
-to stop a joint when its friction has resisted (`identification.native.holding`): zero where
+to stop a joint when its friction has resisted (`identification.native.joints.holding`): zero where
 friction holds it, of the direction of its motion where it slips.
 """
 
@@ -21,11 +21,18 @@ import mujoco
 import numpy as np
 from numba import types
 
-from identification.engine import quiet, untimed
-from identification.native import joint_callback, library, structs
+from identification.native import library, structs
 from identification.native.cache import compile_once
 from identification.native.forward_loop import NONE, POSITION, VELOCITY, clear, load_state
-from identification.native.joint_callback import HINGE, SLIDE, STOP, Joint, drive_force, joint
+from identification.native.joints import joint_callback
+from identification.native.joints.joint_callback import (
+    HINGE,
+    SLIDE,
+    STOP,
+    Joint,
+    drive_force,
+    joint,
+)
 from identification.native.library import (
     mj_Euler,
     mj_forwardSkip,
@@ -44,7 +51,8 @@ from identification.native.memory import (
     store_double,
     word,
 )
-from identification.pool import run_parts, threads
+from identification.runtime.engine import quiet, untimed
+from identification.runtime.pool import run_parts, threads
 
 STEP = 1e-6  # of the differences, in the units of the states
 FIELDS = len(Joint._fields)

@@ -13,11 +13,11 @@ from identification.effects.effect import Candidate, Effect
 from identification.errors import InputError
 from identification.logs.log import Log
 from identification.prediction.records_fit import NO_HORIZON
-from identification.prediction.remaining import noise_ratio
 from identification.prediction.state import MOVES, first_state
 from identification.prediction.task import RecordsTask, WindowSearch
-from identification.prediction.verdict import conclude
-from identification.progress import Progress
+from identification.prediction.verdict.remaining import noise_ratio
+from identification.prediction.verdict.verdict import conclude
+from identification.runtime.progress import Progress
 from identification.windows.records import as_records
 
 # Time left over time passed when a stage begins, by the number of effects that the model has then.

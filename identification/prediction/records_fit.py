@@ -20,18 +20,18 @@ from identification.discovery.nominal_model import NominalModel, without_starts
 from identification.discovery.options import DiscoveryOptions
 from identification.errors import InputError
 from identification.logs.log import Log
-from identification.pool import one_blas_thread
-from identification.prediction.extension import as_last_fit
-from identification.prediction.model import WindowModel
-from identification.prediction.nominal_fit import begin, fit_nominal
-from identification.prediction.record_errors import (
+from identification.prediction.fits.model import WindowModel
+from identification.prediction.fits.nominal_fit import begin, fit_nominal
+from identification.prediction.fits.record_errors import (
     RecordError,
     error_of_all,
     errors_by_unit,
     record_errors,
 )
-from identification.prediction.trial import find_doubt
-from identification.progress import Progress
+from identification.prediction.judging.extension import as_last_fit
+from identification.prediction.judging.trial import find_doubt
+from identification.runtime.pool import one_blas_thread
+from identification.runtime.progress import Progress
 from identification.windows.comparison import Prediction, compare
 from identification.windows.fit import WindowFit
 from identification.windows.problem import no_moves

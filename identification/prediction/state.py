@@ -14,6 +14,8 @@ from identification.discovery.moves import Move, Watch
 from identification.discovery.outlook import SCORES
 from identification.discovery.passes import uses
 from identification.errors import InputError
+from identification.prediction.fits.nominal_fit import as_begun, fit_alone, predicted
+from identification.prediction.judging.trial import compared, find_doubt
 from identification.prediction.moves.add_curve import add_curve
 from identification.prediction.moves.add_effect import add_effect
 from identification.prediction.moves.add_set import add_set, set_for_effects
@@ -24,11 +26,9 @@ from identification.prediction.moves.drop_doubtful import drop_doubtful
 from identification.prediction.moves.drop_effects import drop_effects
 from identification.prediction.moves.drop_places import drop_places
 from identification.prediction.moves.likeliest_of_set import likeliest_of_set
-from identification.prediction.nominal_fit import as_begun, fit_alone, predicted
-from identification.prediction.screening import score_all
+from identification.prediction.scoring.screening import score_all
 from identification.prediction.task import RecordsTask, WindowSearch, finishing
-from identification.prediction.trial import compared, find_doubt
-from identification.progress import Progress, enter
+from identification.runtime.progress import Progress, enter
 from identification.shares import change
 from identification.windows.blocks import count_blocks
 from identification.windows.comparison import rise

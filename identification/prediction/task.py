@@ -9,10 +9,10 @@ from functools import partial
 from identification.discovery.attempts import attempt
 from identification.discovery.moves import SearchState, Task, Watch
 from identification.effects.effect import Candidate
-from identification.prediction.model import WindowModel
-from identification.prediction.screening import score_all
-from identification.prediction.trial import Contender
-from identification.progress import Progress
+from identification.prediction.fits.model import WindowModel
+from identification.prediction.judging.trial import Contender
+from identification.prediction.scoring.screening import score_all
+from identification.runtime.progress import Progress
 from identification.windows.records import Record
 from identification.windows.unseen import Unseen
 

@@ -31,7 +31,6 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
-from identification.engine import quiet
 from identification.logs.log import Log
 from identification.model.predictor import output_columns, output_dofs
 from identification.refusals.forces import (
@@ -44,7 +43,8 @@ from identification.refusals.forces import (
     weights,
     widths,
 )
-from identification.torques.bodies import follow_bodies
+from identification.runtime.engine import quiet
+from identification.torques.equations.bodies import follow_bodies
 
 FACTOR = 4.0  # that a mass, an inertia or a stiffness may be off; more is a matter of units
 GRAVITY = 9.81  # the most that a robot weighs by its mass [m/s^2]

@@ -17,7 +17,6 @@ from itertools import chain, product
 import mujoco
 import numpy as np
 
-from identification.files import toml_key
 from identification.logs.cures import lines_of, unit_lines
 from identification.logs.log import Log
 from identification.logs.names import listed
@@ -25,6 +24,7 @@ from identification.logs.units import UNITS
 from identification.model.predictor import output_columns, output_dofs
 from identification.refusals.columns import Doubt, factor_readings, unit_readings
 from identification.refusals.readings import Reading
+from identification.storage.files import toml_key
 
 FAR_ANGLE = 4 * np.pi  # [rad]; an arm's joint hardly turns twice to one side
 FEW = 20  # numbers that are whole by chance, such as those of a joint that hardly moves

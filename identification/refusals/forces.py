@@ -29,10 +29,10 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
-from identification.engine import quiet
 from identification.logs.log import Log
 from identification.logs.noise import noise_floor
-from identification.torques.bodies import MovedBody
+from identification.runtime.engine import quiet
+from identification.torques.equations.bodies import MovedBody
 
 NOISE = 0.1  # of an acceleration, or of the force that it needs, that its noise may be
 WIDTHS = (2, 4, 8, 16, 32, 64)  # half the length of ψ that are tried, in samples

@@ -12,7 +12,7 @@ from functools import cached_property
 
 import numpy as np
 
-from identification.effects.joint_plant import JointPlant
+from identification.effects.plant.joint_plant import JointPlant
 from identification.errors import DivergenceError
 from identification.logs.log import Log
 from identification.logs.sampling import MIN_ROWS

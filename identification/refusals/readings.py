@@ -18,7 +18,7 @@ import numpy as np
 
 from identification.logs.log import Log
 from identification.logs.names import listed
-from identification.progress import counted
+from identification.runtime.progress import counted
 
 UNEXPLAINED = 0.05  # least ε of an output that is not what it says
 NEARER = 0.2  # of ε, that another reading must leave

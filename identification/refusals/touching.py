@@ -22,8 +22,7 @@ from fnmatch import fnmatchcase
 import mujoco
 import numpy as np
 
-from identification.effects.joint_plant import JointPlant
-from identification.engine import quiet
+from identification.effects.plant.joint_plant import JointPlant
 from identification.errors import InputError
 from identification.logs.log import Log
 from identification.model.plant import own_start
@@ -33,6 +32,7 @@ from identification.refusals.judge import lengths_of, unexplained
 from identification.refusals.readings import NEARER
 from identification.refusals.trust import Robot
 from identification.refusals.unmeasured import felt_trees
+from identification.runtime.engine import quiet
 from identification.shares import percent
 
 LISTED = 3  # pairs that a sentence lists

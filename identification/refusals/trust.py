@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Protocol
 
-from identification.effects.joint_plant import JointPlant
+from identification.effects.plant.joint_plant import JointPlant
 from identification.errors import unknown_name
 from identification.logs.log import Log
 
@@ -26,7 +26,8 @@ TRUST = {  # what a user may know better than a check
 
 
 class RobotFile(Protocol):
-    """The part of a robot's file that the checks read; `identification.robot.file` has it all."""
+    """The part of a robot's file that the checks read; all of it is in
+    `identification.robot.file.file`."""
 
     @property
     def path(self) -> Path:

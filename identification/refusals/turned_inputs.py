@@ -19,7 +19,7 @@ from dataclasses import replace
 import mujoco
 import numpy as np
 
-from identification.effects.joint_plant import JointPlant
+from identification.effects.plant.joint_plant import JointPlant
 from identification.logs.log import Log
 from identification.logs.names import listed
 from identification.refusals.columns import Doubt, turned

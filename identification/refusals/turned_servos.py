@@ -22,7 +22,6 @@ from itertools import combinations
 import mujoco
 import numpy as np
 
-from identification.engine import quiet
 from identification.logs.log import Log
 from identification.logs.names import listed
 from identification.logs.noise import noise_floor
@@ -32,6 +31,7 @@ from identification.refusals.columns import Doubt
 from identification.refusals.forces import Smooth, kernels, smoothed, widths
 from identification.refusals.readings import NEARER
 from identification.refusals.same_units import SERVO, wanted_units
+from identification.runtime.engine import quiet
 from identification.shares import percent
 
 FACTOR = 4.0  # that a mass or a gain may be off

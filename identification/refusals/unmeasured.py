@@ -4,7 +4,7 @@ A simulation begins with such a joint where the model's file has it, at rest, an
 window of a horizon. A base with a free joint then falls, and a search takes what the fall does for
 a force that is missing. So does one on a slide that nothing holds. Hinges, and slides that rest,
 may stay unmeasured. A free joint whose pose the robot's file measures is none any more
-(`identification.robot.measured_base`).
+(`identification.robot.file.measured_base`).
 """
 
 from __future__ import annotations
@@ -15,12 +15,12 @@ import re
 import mujoco
 import numpy as np
 
-from identification.engine import quiet
 from identification.errors import InputError
-from identification.files import MODEL, read_bytes, toml_key
 from identification.logs.log import Log
 from identification.model.predictor import output_dofs
 from identification.refusals.trust import RobotFile
+from identification.runtime.engine import quiet
+from identification.storage.files import MODEL, read_bytes, toml_key
 
 _SLIDE = int(mujoco.mjtJoint.mjJNT_SLIDE)
 _WORDS = {int(mujoco.mjtJoint.mjJNT_FREE): "free", int(mujoco.mjtJoint.mjJNT_BALL): "ball",

@@ -11,7 +11,7 @@ from identification.experiment.design import Design
 from identification.experiment.limits import Margin
 from identification.model.parameter import ParameterSet
 from identification.quantities import alike, plain, plain_unit, quantity
-from identification.report.error_words import listed
+from identification.report.words.errors import listed
 from identification.shares import percent
 
 FILE = "next_experiment.csv"  # in the folder of results

@@ -11,8 +11,8 @@ from matplotlib.figure import Figure
 from identification.linear.modes import Minimal, Mode, minimal, modes
 from identification.linear.system import LinearSystem
 from identification.quantities import per, plain_fields
-from identification.report.page import Section, Table
-from identification.report.style import GREY, INK, SERIES, literal, styled
+from identification.report.page.page import Section, Table
+from identification.report.page.style import GREY, INK, SERIES, literal, styled
 
 LEADING = 3  # states that a mode is described by
 MATRICES = ("A", "B", "C", "D")

@@ -27,8 +27,8 @@ from identification.logs.log import Log
 from identification.model.plant import start_place
 from identification.model.predictor import output_columns
 from identification.refusals.far_angles import far_sentence
+from identification.robot.file.start import given_apart, measured_begin
 from identification.robot.robot import Robot
-from identification.robot.start import given_apart, measured_begin
 
 FAR = 1e3  # of the largest number of the log, or of one unit
 LARGE = 10.0  # a factor from here on is asked; a smaller one makes no step too long by itself

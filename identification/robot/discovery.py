@@ -14,14 +14,14 @@ from identification.errors import InputError, refuse_kind
 from identification.innovations import discovery as search
 from identification.logs.log import Log
 from identification.prediction.discovery import discover_records
-from identification.report import discovery_verdict  # noqa: F401  how the result is shown
+from identification.report.discovery import verdict as discovery_verdict  # noqa: F401  how the result is shown
 from identification.robot.blame import told_of_factors
-from identification.robot.checks import refuse_horizon, refuse_unlike
-from identification.robot.file import refuse_nothing_free
+from identification.robot.file.checks import refuse_horizon, refuse_unlike
+from identification.robot.file.file import refuse_nothing_free
 from identification.robot.robot import Robot
 from identification.robot.second_opinion import ask_torques, with_torques
 from identification.robot.suggestions import suggest
-from identification.written import Files
+from identification.storage.written import Files
 
 
 def discover(
@@ -127,7 +127,7 @@ def _written(found: Discovery, robot: Robot | None = None) -> Discovery:
 
 def _files(found: Discovery, robot: Robot | None) -> Files:
     # What draws figures is slow to import.
-    from identification.report.discovery_report import DiscoveryFiles
-    from identification.robot.discovery_files import RobotDiscoveryFiles
+    from identification.report.discovery.report import DiscoveryFiles
+    from identification.robot.results.discovery_files import RobotDiscoveryFiles
 
     return DiscoveryFiles(found) if robot is None else RobotDiscoveryFiles(found, robot)

@@ -12,13 +12,13 @@ from identification.experiment.design import design
 from identification.experiment.hypotheses import Hypothesis, fitted
 from identification.experiment.limits import limits_of
 from identification.experiment.playing import stage_of
-from identification.pool import one_blas_thread
-from identification.results import RESULT, read_result
 from identification.robot.reading import read_robot
-from identification.robot.results import NextExperiment
+from identification.robot.results.results import NextExperiment
 from identification.robot.rivals import Model, read_rivals
 from identification.robot.robot import Robot
-from identification.written import Files
+from identification.runtime.pool import one_blas_thread
+from identification.storage.results import RESULT, read_result
+from identification.storage.written import Files
 
 ROBOT = "robot.toml"  # in the folder of a result: the robot with what was found
 
@@ -96,6 +96,6 @@ def with_result(robot: Robot, result: str | Path) -> Robot:
 
 
 def _files(found: NextExperiment) -> Files:
-    from identification.robot.experiment_files import ExperimentFiles  # what draws is slow
+    from identification.robot.results.experiment_files import ExperimentFiles  # what draws is slow
 
     return ExperimentFiles(found)

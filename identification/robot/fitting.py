@@ -15,11 +15,11 @@ from identification.estimation.estimation import estimate
 from identification.estimation.fit import assess
 from identification.prediction.records_fit import fit_records
 from identification.robot.blame import told_of_factors
-from identification.robot.checks import refuse_horizon
-from identification.robot.file import refuse_nothing_free
-from identification.robot.results import RobotFit
+from identification.robot.file.checks import refuse_horizon
+from identification.robot.file.file import refuse_nothing_free
+from identification.robot.results.results import RobotFit
 from identification.robot.robot import Robot
-from identification.written import Files
+from identification.storage.written import Files
 
 FEWEST = 10  # measured values for each parameter
 
@@ -70,6 +70,6 @@ def fit(robot: Robot, progress: Callable[[str], None] | None = None) -> RobotFit
 
 
 def _files(fitted: RobotFit) -> Files:
-    from identification.robot.fit_files import RobotFitFiles  # what draws is slow to import
+    from identification.robot.results.fit_files import RobotFitFiles  # what draws is slow to import
 
     return RobotFitFiles(fitted)

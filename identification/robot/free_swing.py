@@ -10,8 +10,8 @@ and the rest is fitted.
     I_k <= I_i + I_j        of every distribution of mass; flat bodies have I_k = I_i + I_j
 
 An inertia that is free alone has bounds for this, or the other two go along with it where nothing
-feels them (`identification.robot.parameters`). Bounds cannot say it of several, whose limits move
-with each other; spreads of the mass can (`identification.model.tied`).
+feels them (`identification.robot.file.parameters`). Bounds cannot say it of several, whose limits
+move with each other; spreads of the mass can (`identification.model.tied`).
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from identification.logs.names import listed
 from identification.model.coordinates import coordinates
 from identification.model.predictor import Predictor
 from identification.model.sensitivity import sensitivity, without_effect
-from identification.robot.file import RobotFile
+from identification.robot.file.file import RobotFile
 from identification.robot.robot import Robot, robot_of
 
 ROUNDING = 1e-9  # relative: a flat body lies on the limit

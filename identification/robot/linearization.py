@@ -21,10 +21,10 @@ from identification.model.plant import ModelPlant, own_start
 from identification.model.predictor import Predictor
 from identification.model.protocol import with_numbers
 from identification.model.rollout import State
-from identification.robot.file import RobotFile, read_robot_file
-from identification.robot.model_file import robot_spec
+from identification.robot.file.file import RobotFile, read_robot_file
+from identification.robot.file.model_file import robot_spec
+from identification.robot.file.start import start_of
 from identification.robot.reading import read_robot
-from identification.robot.start import start_of
 
 
 def operating_points(

@@ -28,16 +28,16 @@ from identification.refusals.touching import (
 from identification.refusals.trust import trusted
 from identification.refusals.wiring import refuse_different_units, refuse_miswired
 from identification.robot.blame import refuse_absurd_start
-from identification.robot.checks import with_judged_gaps
-from identification.robot.file import RobotFile, read_robot_file, with_spread
-from identification.robot.free_swing import carried_sentence, inertias_sentence, without_untold
-from identification.robot.robot import Robot, read_robot_log, robot_of
-from identification.robot.start import (
+from identification.robot.file.checks import with_judged_gaps
+from identification.robot.file.file import RobotFile, read_robot_file, with_spread
+from identification.robot.file.start import (
     apart_sentence,
     made_up_sentence,
     start_sentence,
     unused_sentence,
 )
+from identification.robot.free_swing import carried_sentence, inertias_sentence, without_untold
+from identification.robot.robot import Robot, read_robot_log, robot_of
 from identification.robot.step_error import refuse_coarse_steps
 from identification.shares import percent
 

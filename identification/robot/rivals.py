@@ -16,9 +16,9 @@ import numpy as np
 from identification.discovery.nominal_model import SHAPE_STD, NominalModel, nonzero
 from identification.effects.effect import Effect
 from identification.errors import InputError, unknown_name
-from identification.results import read_result
-from identification.robot.parameters import KNOWN
+from identification.robot.file.parameters import KNOWN
 from identification.robot.robot import Robot
+from identification.storage.results import read_result
 
 LEAST_SHARE = 0.02  # of a rival: less likely ones are not worth an experiment
 

@@ -13,21 +13,20 @@ from identification.discovery.nominal_model import NominalModel
 from identification.effects.axes import Axis, axes, reach
 from identification.effects.catalogue import OF_ANGLE, TURNS, all_effects, turning
 from identification.effects.effect import Effect
-from identification.effects.joint_plant import JointPlant, candidates, joint_plant
 from identification.effects.named import unknown_effect
+from identification.effects.plant.joint_plant import JointPlant, candidates, joint_plant
 from identification.errors import InputError, told_of, unknown_name
-from identification.files import toml_key
-from identification.logs.decimation import decimate
 from identification.logs.log import Log
 from identification.logs.names import listed
 from identification.logs.read import read_log
+from identification.logs.stamps.decimation import decimate
 from identification.logs.table import MissingColumnsError
 from identification.model.plant import start_place
 from identification.model.predictor import output_columns
 from identification.refusals.limits import refuse_limits
 from identification.refusals.unmeasured import refuse_unmeasured
-from identification.robot.carried import with_carried
-from identification.robot.checks import (
+from identification.robot.file.carried import with_carried
+from identification.robot.file.checks import (
     outputs_of,
     refuse_every,
     refuse_milliseconds,
@@ -36,18 +35,19 @@ from identification.robot.checks import (
     refuse_unknown_outputs,
     refuse_unnamed,
 )
-from identification.robot.completed import refuse_unread_torques, torques_without_motor
-from identification.robot.file import RobotFile
-from identification.robot.measured_tendons import joint_positions, measured_tendons
-from identification.robot.model_file import measured_poses, robot_spec, unit_of, with_step
-from identification.robot.own_values import (
+from identification.robot.file.completed import refuse_unread_torques, torques_without_motor
+from identification.robot.file.file import RobotFile
+from identification.robot.file.measured_tendons import joint_positions, measured_tendons
+from identification.robot.file.model_file import measured_poses, robot_spec, unit_of, with_step
+from identification.robot.file.own_values import (
     held_parameters,
     refuse_impossible,
     value_parameters,
     with_fixed,
 )
-from identification.robot.parameters import free_parameter, measured_start
-from identification.robot.start import refuse_start, start_of
+from identification.robot.file.parameters import free_parameter, measured_start
+from identification.robot.file.start import refuse_start, start_of
+from identification.storage.files import toml_key
 
 
 @dataclass(frozen=True)

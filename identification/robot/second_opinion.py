@@ -12,12 +12,12 @@ from dataclasses import replace
 
 from identification.discovery.result import Discovery
 from identification.discovery.second_opinion import Standing, TorqueOpinion
-from identification.effects.joint_group import SLIDE
+from identification.effects.laws.joint_group import SLIDE
 from identification.errors import InputError
 from identification.model.tied import gain_path, value_of
-from identification.prediction.screening import places_of
-from identification.report.effect_words import ADDED_TO
-from identification.report.opinion_words import OTHERWISE
+from identification.prediction.scoring.screening import places_of
+from identification.report.torques.opinion_words import OTHERWISE
+from identification.report.words.effects import ADDED_TO
 from identification.robot.robot import Robot
 from identification.robot.torques import fit_torques
 from identification.torques.evidence import Evidence

@@ -14,7 +14,7 @@ another speed and at another time, and the steps then differ by much that no win
 shows.
 
 It is the error of one law. The time in which a joint with dry friction stops goes with the step,
-and is held here; `identification.prediction.std` tells what it does to a fit.
+and is held here; `identification.prediction.fits.std` tells what it does to a fit.
 """
 
 from __future__ import annotations

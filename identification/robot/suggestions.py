@@ -12,7 +12,7 @@ from collections.abc import Mapping
 
 from identification.discovery.candidates import iterate_shapes
 from identification.effects.effect import Candidate, Effect
-from identification.prediction.screening import at_several
+from identification.prediction.scoring.screening import at_several
 from identification.robot.robot import Robot
 from identification.robot.second_opinion import frictions
 from identification.torques.evidence import Evidence

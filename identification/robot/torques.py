@@ -10,18 +10,18 @@ import mujoco
 import numpy as np
 
 from identification.discovery.passes import refuse_unknown
-from identification.effects.jointed import JointPlant
+from identification.effects.plant.jointed import JointPlant
 from identification.errors import refuse_kind
 from identification.logs.joined import refuse_different
 from identification.logs.log import Log
 from identification.model.protocol import with_numbers
-from identification.robot.results import TorqueFit
+from identification.robot.results.results import TorqueFit
 from identification.robot.robot import Robot
-from identification.torques.bodies import read_numbers
+from identification.storage.written import Files
+from identification.torques.equations.bodies import read_numbers
+from identification.torques.equations.frictions import read_friction
+from identification.torques.equations.others import FreeNumber
 from identification.torques.evidence import find_evidence
-from identification.torques.frictions import read_friction
-from identification.torques.others import FreeNumber
-from identification.written import Files
 
 FRICTIONS = (".damping", ".frictionloss")  # endings of paths
 STEP = 1e-3  # of a value, or of its scale where it is zero, by which it is moved
@@ -126,6 +126,6 @@ def _plain(model: mujoco.MjModel) -> mujoco.MjModel:
 
 
 def _files(found: TorqueFit) -> Files:
-    from identification.robot.fit_files import TorqueFiles  # what draws is slow to import
+    from identification.robot.results.fit_files import TorqueFiles  # what draws is slow to import
 
     return TorqueFiles(found)

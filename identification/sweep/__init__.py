@@ -8,7 +8,7 @@ as Parquet as each task ends. The public names; `docs/sweeps.md` shows their use
 
 from typing import TYPE_CHECKING
 
-from identification.lazy import lazy
+from identification.runtime.lazy import lazy
 
 if TYPE_CHECKING:  # the public names
     # isort: off

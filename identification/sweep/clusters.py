@@ -22,7 +22,7 @@ from typing import Any
 from uuid import uuid4
 
 from identification.errors import InputError
-from identification.lazy import needed
+from identification.runtime.lazy import needed
 from identification.sweep.backend import WINDOW, LostWorkers, Work
 from identification.sweep.task import Task
 from identification.sweep.work import Outcome, one_thread

@@ -24,8 +24,8 @@ from pathlib import Path
 from typing import Any
 
 from identification.errors import InputError, repeated, told_of
-from identification.files import read_json, read_toml
-from identification.robot.file_checks import Kinds, check_table
+from identification.robot.file.file_checks import Kinds, check_table
+from identification.storage.files import read_json, read_toml
 from identification.sweep.method import Registry, load_method, reference_of, told_in_method
 from identification.sweep.settings import Plain, build, place, refuse_missing_files
 from identification.sweep.task import Study, Sweep

@@ -11,7 +11,7 @@ from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from identification.report.page import Section, Table
+from identification.report.page.page import Section, Table
 from identification.sweep.answers import nested
 from identification.sweep.method import Findings, Record
 from identification.sweep.statistics import calibration_of, median, rate, said, wilson

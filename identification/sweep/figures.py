@@ -9,7 +9,7 @@ import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 
-from identification.report.style import GREY, INK, MEASURED, SERIES, STYLE, literal, styled
+from identification.report.page.style import GREY, INK, MEASURED, SERIES, STYLE, literal, styled
 from identification.sweep.power import IN_WORDS, LEVEL, Curve, Threshold
 from identification.sweep.settings import LOGARITHMIC
 from identification.sweep.statistics import wilson

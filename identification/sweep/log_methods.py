@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from identification.quantities import finite_or_none
-from identification.report.page import Section, Table
+from identification.report.page.page import Section, Table
 from identification.sweep.answers import ANSWER, answer
 from identification.sweep.method import Column, Findings, Method, Record, Seed
 from identification.sweep.settings import file_setting
@@ -95,8 +95,8 @@ class OnLog:
 
 def fit_log(settings: OnLog, seed: Seed) -> dict[str, Any]:
     """Fit; nothing is left to chance, so the seed is not used."""
-    from identification.robot.confirmation import confirm
     from identification.robot.fitting import fit
+    from identification.robot.results.confirmation import confirm
 
     robot = settings.read()
     found = fit(robot)

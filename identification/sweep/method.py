@@ -23,10 +23,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from identification.errors import InputError, unknown_name
-from identification.files import BY_HAND, check_file, is_file
+from identification.storage.files import BY_HAND, check_file, is_file
 
 if TYPE_CHECKING:
-    from identification.report.page import Section
+    from identification.report.page.page import Section
 
 Record = Mapping[str, Any]
 Registry = Mapping[str, str]  # the reference of each method by its name

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from identification.errors import InputError
-from identification.lazy import needed
+from identification.runtime.lazy import needed
 from identification.sweep.method import Record
 from identification.sweep.settings import about_of, kinds_of
 from identification.sweep.task import Sweep

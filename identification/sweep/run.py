@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from identification.errors import InputError, unknown_name
-from identification.progress import duration, stage
+from identification.runtime.progress import duration, stage
 from identification.sweep.backend import Backend, Processes, Serial
 from identification.sweep.rows import row
 from identification.sweep.store import Store

@@ -15,7 +15,7 @@ from types import NoneType, UnionType
 from typing import Any, Union, get_args, get_origin, get_type_hints
 
 from identification.errors import InputError, unknown_name
-from identification.files import is_file
+from identification.storage.files import is_file
 
 Plain = bool | int | float | str | None
 _WORDS = {bool: "true or false", int: "a whole number", float: "a number", str: "text in quotes",

@@ -21,8 +21,8 @@ from typing import Any, Self
 from uuid import uuid4
 
 from identification.errors import InputError
-from identification.files import digest, read_json, to_disk, write_text
-from identification.lazy import needed
+from identification.runtime.lazy import needed
+from identification.storage.files import digest, read_json, to_disk, write_text
 from identification.sweep.rows import schema
 from identification.sweep.task import Sweep
 

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from identification.progress import duration
 from identification.quantities import finite_or_none
-from identification.report.page import Section, Table
+from identification.report.page.page import Section, Table
+from identification.runtime.progress import duration
 from identification.sweep.method import Findings, Record, told_in_method
 from identification.sweep.power import IN_WORDS, axes, curves, grouped, numeric, thresholds, word
 from identification.sweep.rows import RUN, digest

@@ -28,15 +28,21 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from identification.effects.bodies import HOOK
-from identification.effects.body_numbers import frame_inertia, seen
 from identification.effects.effect import Effect
-from identification.effects.inputs import SHIFT
+from identification.effects.laws.bodies import HOOK
+from identification.effects.laws.inputs import SHIFT
 from identification.effects.moving_bodies import MovingBody
+from identification.effects.plant.body_numbers import frame_inertia, seen
 from identification.effects.variables import variables
-from identification.torques.base import independent_columns, reach_of
-from identification.torques.bodies import NUMBERS, UNITS, label_of, list_bodies, read_numbers
-from identification.torques.equations import Columns, Equations
+from identification.torques.equations.base import independent_columns, reach_of
+from identification.torques.equations.bodies import (
+    NUMBERS,
+    UNITS,
+    label_of,
+    list_bodies,
+    read_numbers,
+)
+from identification.torques.equations.equations import Columns, Equations
 from identification.torques.laws import CURVES, Laws, Missing, listed
 
 GAIN = 0.5  # largest change of a gain, also of one that drifts

@@ -25,14 +25,14 @@ from functools import partial
 import mujoco
 import numpy as np
 
-from identification.discovery.smooth_force import MUCH_LEFT, takes_most
+from identification.discovery.forces.smooth_force import MUCH_LEFT, takes_most
 from identification.effects.effect import CURVE, Effect
-from identification.torques.base import BaseParameters
 from identification.torques.candidates import together
-from identification.torques.equations import Equations, unseen_squares
+from identification.torques.equations.base import BaseParameters
+from identification.torques.equations.equations import Equations, unseen_squares
+from identification.torques.equations.others import Others
 from identification.torques.fits import CLOCK, FIXED, Fitted, expect_drives, extended
 from identification.torques.laws import Laws
-from identification.torques.others import Others
 from identification.torques.passive import fit_base
 from identification.torques.scores import FAR
 

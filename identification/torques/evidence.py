@@ -22,18 +22,18 @@ from identification.discovery.passes import uses
 from identification.effects.effect import Effect
 from identification.effects.moving_bodies import MovingBody
 from identification.logs.log import Log
-from identification.torques.base import BaseParameters, find_base
 from identification.torques.candidates import in_record, list_missing
 from identification.torques.clock import Clocks, find_clocks
-from identification.torques.consistency import find_inconsistent
-from identification.torques.equations import Equations
+from identification.torques.equations.base import BaseParameters, find_base
+from identification.torques.equations.consistency import find_inconsistent
+from identification.torques.equations.equations import Equations
+from identification.torques.equations.frictions import read_friction
+from identification.torques.equations.others import FreeNumber, Others
+from identification.torques.equations.rows import make_rows
 from identification.torques.fits import Fitted, expect_drives, gains_fit
-from identification.torques.frictions import read_friction
 from identification.torques.laws import Missing
 from identification.torques.moments import Base
-from identification.torques.others import FreeNumber, Others
 from identification.torques.passive import fit_base
-from identification.torques.rows import make_rows
 from identification.torques.scores import Score, rank
 from identification.torques.search import Search, add_proven, draw_curves, others_of
 from identification.torques.shapes import with_shapes

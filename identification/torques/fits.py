@@ -25,19 +25,19 @@ from functools import partial, reduce
 import mujoco
 import numpy as np
 
-from identification.effects.inputs import SHIFT
-from identification.torques.base import BaseParameters, all_columns, known_numbers
-from identification.torques.equations import (
+from identification.effects.laws.inputs import SHIFT
+from identification.torques.equations.base import BaseParameters, all_columns, known_numbers
+from identification.torques.equations.equations import (
     Equations,
     Estimate,
     estimate,
     list_passive,
     model_forces,
 )
-from identification.torques.frictions import friction_columns, friction_names
+from identification.torques.equations.frictions import friction_columns, friction_names
+from identification.torques.equations.others import FreeNumber, Others
 from identification.torques.laws import Missing
 from identification.torques.moments import Base, Weighted, held_by
-from identification.torques.others import FreeNumber, Others
 
 CLOCK = "clock of the inputs"
 ROUNDS = 6  # of the forces that gains scale

@@ -19,8 +19,8 @@ from identification.discovery.candidates import iterate_shapes
 from identification.effects.effect import CURVE, Effect
 from identification.effects.sizes import Shape
 from identification.effects.variables import variables
-from identification.native.joint_callback import Joint
-from identification.torques.equations import Columns, Equations
+from identification.native.joints.joint_callback import Joint
+from identification.torques.equations.equations import Columns, Equations
 
 # What the curves of a joint depend on, by the ends of their names, as fields of its state.
 CURVES = {"_speed": "v", "_load": "f_u", "_position": "q", "_time": "time"}

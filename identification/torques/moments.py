@@ -12,7 +12,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from identification.torques.equations import Columns, Equations, Estimate, unseen_squares
+from identification.torques.equations.equations import Columns, Equations, Estimate, unseen_squares
 from identification.torques.laws import Missing
 
 

@@ -22,7 +22,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from identification.torques.candidates import together
-from identification.torques.equations import Equations, unseen_squares
+from identification.torques.equations.equations import Equations, unseen_squares
 from identification.torques.laws import Missing
 from identification.torques.moments import Base, Weighted, held_by, joined
 from identification.torques.scores import t_of

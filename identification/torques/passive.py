@@ -23,11 +23,11 @@ from dataclasses import replace
 import mujoco
 import numpy as np
 
-from identification.torques.base import BaseParameters, all_columns, known_numbers
-from identification.torques.bodies import regressor
-from identification.torques.equations import Equations, list_passive
+from identification.torques.equations.base import BaseParameters, all_columns, known_numbers
+from identification.torques.equations.bodies import regressor
+from identification.torques.equations.equations import Equations, list_passive
+from identification.torques.equations.others import Others
 from identification.torques.fits import Fitted, base_fit, model_fit
-from identification.torques.others import Others
 
 ROUNDS = 4  # of δ: each leaves an error of second order
 LIGHT = 1e-2  # of the model's inertia: a fit with less has lost the scale, and δ stays as it was

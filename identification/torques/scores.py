@@ -35,8 +35,8 @@ from identification.estimation.block_test import (
     p_values,
     scatter_of,
 )
-from identification.torques.consistency import nearest_body
-from identification.torques.equations import Equations, unit_inverse, unseen_squares
+from identification.torques.equations.consistency import nearest_body
+from identification.torques.equations.equations import Equations, unit_inverse, unseen_squares
 from identification.torques.laws import Missing
 from identification.torques.moments import Base, Weighted, held_by, joined
 

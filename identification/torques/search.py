@@ -17,7 +17,7 @@ from identification.discovery.neighbour import MORE_LIKELY_THAN_NOT
 from identification.discovery.passes import uses
 from identification.shares import fall_words
 from identification.torques.candidates import together
-from identification.torques.equations import Equations
+from identification.torques.equations.equations import Equations
 from identification.torques.fits import Fitted, extended
 from identification.torques.laws import Missing
 from identification.torques.neighbours import curves_beside

@@ -17,7 +17,7 @@ import numpy as np
 from scipy import optimize
 
 from identification.effects.sizes import Shape
-from identification.torques.equations import Equations
+from identification.torques.equations.equations import Equations
 from identification.torques.laws import Missing
 from identification.torques.moments import Base, Weighted
 from identification.torques.scores import CHANCE, Score, rank

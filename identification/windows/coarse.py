@@ -16,7 +16,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from identification.effects.jointed import JointPlant
+from identification.effects.plant.jointed import JointPlant
 from identification.errors import DivergenceError
 from identification.estimation.levenberg_marquardt import SLOPE_ERROR
 from identification.model.predictor import Plant

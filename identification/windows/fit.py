@@ -21,8 +21,8 @@ from identification.errors import InputError
 from identification.estimation.levenberg_marquardt import Damping, levenberg_marquardt
 from identification.estimation.metrics import rms_by_unit
 from identification.model.rollout import State
-from identification.progress import Progress, counted
 from identification.quantities import alike
+from identification.runtime.progress import Progress, counted
 from identification.windows.point import AtPoint, linearised
 from identification.windows.problem import Problem, with_scale
 from identification.windows.shooting import Tangent

@@ -15,7 +15,7 @@ from functools import cached_property
 
 import numpy as np
 
-from identification.effects.jointed import JointPlant
+from identification.effects.plant.jointed import JointPlant
 from identification.errors import DivergenceError
 from identification.estimation.priors import Priors
 from identification.logs.parts import inside

@@ -29,8 +29,8 @@ from identification.logs.log import Log
 from identification.model.predictor import Plant
 from identification.model.rollout import State
 from identification.model.sensitivity import FORWARD_STEP, refuse_without_effect
-from identification.pool import one_blas_thread
-from identification.progress import Progress, stage
+from identification.runtime.pool import one_blas_thread
+from identification.runtime.progress import Progress, stage
 from identification.windows.shooting import Shooting, Tangent, tangent
 from identification.windows.windows import apart, first_states, noise_whitener, windows
 

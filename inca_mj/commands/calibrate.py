@@ -87,8 +87,8 @@ def keep(found: inca.Calibration, out: Path) -> None:
 
 def draw(found: inca.Calibration, out: Path) -> None:
     """Write figures and the report into a folder."""
-    from identification.report.page import Section, Table, write_report
-    from identification.report.style import save_png
+    from identification.report.page.page import Section, Table, write_report
+    from identification.report.page.style import save_png
     from inca_mj.report import calibration as told
     from inca_mj.report.figures import drives_figure, points_figure
 

@@ -14,15 +14,15 @@ import inca_mj as inca
 from identification.commands.common import LogLists, Output, add_drawings, flat, note, say, say_json
 from identification.commands.stopping import NO_ANSWER, leaving_out
 from identification.errors import InputError
-from identification.folders import draft_of
-from identification.progress import duration
-from identification.results import RESULT, write_result
+from identification.runtime.progress import duration
+from identification.storage.folders import draft_of
+from identification.storage.results import RESULT, write_result
 from inca_mj.commands.common import Trust, Values, cannot_draw, do_not_draw, read_logs
 from inca_mj.files import example_path
 
 if TYPE_CHECKING:
     from identification.discovery.result import Discovery
-    from identification.folders import Draft
+    from identification.storage.folders import Draft
     from inca_mj.workflows.discovery_files import TwinDiscoveryFiles
 
 FILES = {  # by what they are called, in the order in which they are named
@@ -82,7 +82,7 @@ class Discover:
                 logs, parameters, place, confirm=confirm, spread=spread, progress=self.output.tell,
                 settled=self.settled, options=options, trust=trust,
             )  # fmt: skip
-        from identification.report.discovery_report import discovery_text  # slow to import
+        from identification.report.discovery.report import discovery_text  # slow to import
         from inca_mj.workflows.discovery_files import TwinDiscoveryFiles
 
         files = TwinDiscoveryFiles(found)

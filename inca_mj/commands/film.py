@@ -14,10 +14,10 @@ import tyro
 import inca_mj as inca
 from identification.commands.common import Output, say, say_json
 from identification.errors import GraphicsError, InputError
-from identification.files import check_file
-from identification.folders import whole_folder
-from identification.progress import duration
-from identification.results import RESULT, write_result
+from identification.runtime.progress import duration
+from identification.storage.files import check_file
+from identification.storage.folders import whole_folder
+from identification.storage.results import RESULT, write_result
 from inca_mj.commands.common import SavedRobot, cannot_draw, do_not_draw
 
 if TYPE_CHECKING:

@@ -15,7 +15,7 @@ from threading import Event
 from identification.discovery.result import Discovery
 from identification.logs.joined import rows_of
 from identification.logs.log import Log, halves
-from identification.report.page import Section
+from identification.report.page.page import Section
 from inca_mj.rendering.film import Progress, film
 from inca_mj.rendering.graphics import draws_in_any_thread
 from inca_mj.rendering.scene import Scene

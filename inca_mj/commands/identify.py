@@ -145,7 +145,7 @@ class Identify:
 def summary(result: inca.Identification, fit: Fit) -> str:
     """Returns a fit as a text table and its verdict."""
     from identification.estimation.metrics import mean_fit
-    from identification.report.fit_verdict import fit_verdict
+    from identification.report.fit.verdict import fit_verdict
     from inca_mj.report.identification import identification_verdict, rows
 
     seconds = fit.estimate.seconds + (result.windows.seconds if result.windows else 0.0)
@@ -170,7 +170,7 @@ def draw(
     result: inca.Identification, profiles: Sequence[Profile], shown: inca.Comparison, out: Path
 ) -> None:
     """Write figures and the one-file report into a folder."""
-    from identification.report.fit_headline import fit_headline
+    from identification.report.fit.headline import fit_headline
     from inca_mj.report.identification import fit_section, identification_verdict, profile_section
     from inca_mj.report.information import information_section
     from inca_mj.report.sections import compare_section

@@ -14,7 +14,7 @@ import inca_mj as inca
 from identification.commands.common import Output, conclude, draw_report, table
 from identification.commands.linearize import save_systems
 from identification.errors import InputError, unknown_name
-from identification.files import check_file
+from identification.storage.files import check_file
 from inca_mj.commands.common import Robot, do_not_draw
 
 if TYPE_CHECKING:

@@ -102,7 +102,7 @@ class Trials:
 
 def summary(result: TrialResult) -> str:
     """Returns a trial as the thesis' table with a column of ours."""
-    from identification.report.fit_verdict import fit_verdict
+    from identification.report.fit.verdict import fit_verdict
 
     shown = result.to_json()
     rows = [

@@ -10,8 +10,8 @@ Torques Δτ on the motor [N m], with the smooth sign tanh(β ω):
 
 Currents [A]. Delay, saturation and lag act before the model, in this order: what an amplifier
 limits is what its current loop is asked for. Delay and lag have the laws of any robot
-(`identification.effects.inputs`). A limit has no size that is zero when it is absent, so that the
-size of the saturation is a share of the clipping: 0 is none, 1 is a real limit.
+(`identification.effects.laws.inputs`). A limit has no size that is zero when it is absent, so that
+the size of the saturation is a share of the clipping: 0 is none, 1 is a real limit.
 
     delay                      i(t) = u(t - τ)                  the current arrives late
     saturation                 i + c (clip(i, ±i_max) - i)      or i_max tanh(i/i_max) where soft
@@ -20,8 +20,8 @@ size of the saturation is a share of the clipping: 0 is none, 1 is a real limit.
     current crosstalk          i_k + a i_(k-1) + b i_(k+1)      its cable lies beside others
 
 Encoders change what is measured; the robot moves as if they were not there. Their laws are those of
-any robot (`identification.effects.sensors`). A jump is looked for as a ramp of a tenth of a second,
-so that the outputs change smoothly with its time, and is then fitted as short as it is.
+any robot (`identification.effects.laws.sensors`). A jump is looked for as a ramp of a tenth of a
+second, so that the outputs change smoothly with its time, and is then fitted as short as it is.
 
     scale                      (1 + s) φ                        counts a turn are not as taken for
     eccentricity               φ + a cos φ + b sin φ            the disc turns about another centre
@@ -33,11 +33,11 @@ from math import cos, exp, sin, tanh
 
 from numba import njit
 
-from identification.effects import sensors
 from identification.effects.effect import Effect
-from identification.effects.inputs import BEFORE
-from identification.effects.inputs import DELAY as DELAYED
-from identification.effects.inputs import LAG as LAGGED
+from identification.effects.laws import sensors
+from identification.effects.laws.inputs import BEFORE
+from identification.effects.laws.inputs import DELAY as DELAYED
+from identification.effects.laws.inputs import LAG as LAGGED
 from identification.effects.sizes import Shape, Size
 from inca_mj.effects.change import LASTS, TIMES
 from inca_mj.effects.hooks import DRIVES_EACH, ONE_DRIVE, by_law

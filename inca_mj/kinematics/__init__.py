@@ -5,7 +5,7 @@ pretension of the robot as well: `inca_mj.pose_at_rest` and `inca_mj.log_poses`.
 
 from typing import TYPE_CHECKING
 
-from identification.lazy import lazy
+from identification.runtime.lazy import lazy
 
 if TYPE_CHECKING:  # the public names
     # isort: off

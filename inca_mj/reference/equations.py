@@ -30,7 +30,7 @@ from pathlib import Path
 
 import numpy as np
 
-from identification.kept_code import kept_code
+from identification.runtime.kept_code import kept_code
 from inca_mj.reference import layout as at
 
 FOLDERS = ("reference", "robot", "studies/worlds")  # from which the equations import

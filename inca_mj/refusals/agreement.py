@@ -31,8 +31,8 @@ import mujoco
 import numpy as np
 
 from identification import Log, Predictor
-from identification.engine import quiet
 from identification.model.rollout import hold, rollout, substeps
+from identification.runtime.engine import quiet
 from inca_mj.kinematics.cables import cables_at
 from inca_mj.kinematics.jacobians import jacobian
 from inca_mj.kinematics.rotations import rotation, turn

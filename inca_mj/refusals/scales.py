@@ -31,11 +31,11 @@ from dataclasses import replace
 import numpy as np
 
 from identification import Log
-from identification.files import toml_key
 from identification.logs.cures import how_to_turn, unit_lines
 from identification.logs.names import listed
 from identification.logs.units import UNITS
 from identification.refusals.same_units import NEAR
+from identification.storage.files import toml_key
 from inca_mj.refusals import bounds
 from inca_mj.refusals.agreement import angles_under, follow, shares_of, some, unreached_share
 from inca_mj.refusals.angles import apart, is_right, off

@@ -16,8 +16,8 @@ from pathlib import Path
 import numpy as np
 
 from identification.errors import InputError
-from identification.files import whole_file
-from identification.progress import counted
+from identification.runtime.progress import counted
+from identification.storage.files import whole_file
 from inca_mj.rendering.checks import refuse_speed
 from inca_mj.rendering.overlay import MAGNIFY
 from inca_mj.rendering.scene import Scene, Source, make_scene

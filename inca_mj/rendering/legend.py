@@ -8,7 +8,7 @@ from math import ceil, floor
 import numpy as np
 from PIL import ImageDraw
 
-from identification.report.style import MEASURED
+from identification.report.page.style import MEASURED
 
 SLACK = (0.62, 0.64, 0.66, 1.0)
 ASKED = "#009E73"  # green of Okabe and Ito, which no tension has

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from PIL import Image, ImageDraw, ImageFont
 
-from identification.report.style import GREY, INK, MEASURED, SIMULATED
+from identification.report.page.style import GREY, INK, MEASURED, SIMULATED
 from inca_mj.rendering.legend import (
     ASKED,
     MEASURED_ROBOT,

@@ -17,7 +17,7 @@ import mujoco
 import numpy as np
 
 from identification.errors import unknown_name
-from identification.report.style import MEASURED
+from identification.report.page.style import MEASURED
 from inca_mj.rendering.graphics import drawing_thread, renderer
 from inca_mj.rendering.outline import draw_outline, outline_of
 from inca_mj.rendering.overlay import Eye, Line, overlay

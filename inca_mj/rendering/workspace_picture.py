@@ -17,10 +17,10 @@ import numpy as np
 from PIL import Image, ImageDraw
 
 from identification.errors import InputError
-from identification.files import whole_file
 from identification.model.parameter import ParameterSet
 from identification.quantities import quantity
-from identification.report.style import INK
+from identification.report.page.style import INK
+from identification.storage.files import whole_file
 from inca_mj.kinematics.rotations import quaternion
 from inca_mj.rendering.legend import tension_scale
 from inca_mj.rendering.picture import font_of

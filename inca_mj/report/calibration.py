@@ -8,7 +8,7 @@ import numpy as np
 
 from identification.chances import normal_level
 from identification.quantities import alike, matched, quantity
-from identification.report.value_words import describe_parameter
+from identification.report.words.values import describe_parameter
 from inca_mj.robot.geometry import DRIVES
 from inca_mj.robot.spread import AXES, EACH_DRIVE, POINTS
 from inca_mj.twin.logs import POSE

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from identification.report.style import GREY, INK, MEASURED, SERIES, SIMULATED, literal, styled
-from identification.report.value_words import describe_parameter
+from identification.report.page.style import GREY, INK, MEASURED, SERIES, SIMULATED, literal, styled
+from identification.report.words.values import describe_parameter
 from inca_mj.control.paths import PLANES, Circle
 from inca_mj.robot.geometry import DRIVES
 from inca_mj.robot.spread import AXES

@@ -12,16 +12,16 @@ from identification.estimation.fit import Fit
 from identification.estimation.profiles import Profile
 from identification.kalman.estimate import InnovationsFit
 from identification.quantities import error, finite_or_none, matched
-from identification.report.fit_json import fit_to_json
-from identification.report.fit_verdict import (
+from identification.report.fit.json import fit_to_json
+from identification.report.fit.untold_words import identifiable_sentences
+from identification.report.fit.verdict import (
     HOLDS,
     coloured_outputs,
     fit_verdict,
     search_sentences,
     window_sentences,
 )
-from identification.report.page import Section, Table
-from identification.report.untold_words import identifiable_sentences
+from identification.report.page.page import Section, Table
 from identification.windows.window_estimate import WindowEstimate
 from inca_mj.twin.logs import POSE
 from inca_mj.workflows.identification import Identification
@@ -189,7 +189,7 @@ def fit_section(result: Identification, fit: Fit, title: str) -> Section:
 
 def profile_section(fit: Fit, known: Profile) -> Section:
     """Returns the profile of one parameter: how well the others can compensate a change of it."""
-    from identification.report.figures import profile_figure
+    from identification.report.page.figures import profile_figure
 
     unit = fit.estimate.predictor.plant.parameters[known.name].unit
     return Section(

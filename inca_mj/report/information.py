@@ -8,8 +8,8 @@ import numpy as np
 
 from identification.estimation.information import Information, determinable
 from identification.quantities import plain
-from identification.report.page import Section, Table
-from identification.report.untold_words import unresolved_words, untold
+from identification.report.fit.untold_words import unresolved_words, untold
+from identification.report.page.page import Section, Table
 from identification.shares import HELD, percent
 
 if TYPE_CHECKING:

@@ -12,8 +12,8 @@ from identification.linear.gridded import GriddedSystem
 from identification.linear.modes import Mode, modes
 from identification.quantities import plain, plain_fields
 from identification.report.linear import linear_sections, slowest_and_fastest, system_to_json
-from identification.report.page import Section, Table
-from identification.report.style import GREY, INK, MEASURED, SIMULATED, styled
+from identification.report.page.page import Section, Table
+from identification.report.page.style import GREY, INK, MEASURED, SIMULATED, styled
 from identification.shares import HELD, percent
 from inca_mj.kinematics.rotations import rotation
 from inca_mj.linear.accuracy import InterpolationError, RunError

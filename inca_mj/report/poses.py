@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from identification.files import write_text
 from identification.quantities import plain, plain_fields
-from identification.report.page import Section, Table
-from identification.report.style import GREY, INK, SERIES, styled
+from identification.report.page.page import Section, Table
+from identification.report.page.style import GREY, INK, SERIES, styled
 from identification.shares import percent
+from identification.storage.files import write_text
 from inca_mj.kinematics.cables import Cables
 from inca_mj.kinematics.jacobians import condition, jacobian, rank
 from inca_mj.robot.geometry import Geometry

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from identification.estimation.metrics import mean_fit
-from identification.report.figures import compare_figure
-from identification.report.page import Section, Table
+from identification.report.page.figures import compare_figure
+from identification.report.page.page import Section, Table
 from identification.shares import percent
 from inca_mj.report.figures import crosscheck_figure, simulation_figures, tracking_figure
 

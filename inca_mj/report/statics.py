@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from identification.quantities import plain, plain_fields, quantity
-from identification.report.page import Section, Table
+from identification.report.page.page import Section, Table
 from inca_mj.report.statics_figures import (
     cable_mass_figure,
     frequency_figure,

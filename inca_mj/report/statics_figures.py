@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 
-from identification.report.style import GREY, INK, MEASURED, SERIES, SIMULATED, styled
+from identification.report.page.style import GREY, INK, MEASURED, SERIES, SIMULATED, styled
 from inca_mj.kinematics.cables import inverse
 from inca_mj.robot.elastic import Robot
 from inca_mj.statics.cable_mass import NOISE, RHO

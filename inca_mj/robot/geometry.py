@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from identification.errors import InputError
-from identification.files import read_toml, write_text
+from identification.storage.files import read_toml, write_text
 
 DRIVES = 8
 FARTHEST = 100.0  # a frame of more is one in another unit [m]

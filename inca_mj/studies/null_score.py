@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from identification.errors import refuse_negative
-from identification.report.page import Section, Table
+from identification.report.page.page import Section, Table
 from identification.shares import percent
 from identification.sweep.method import Column, Findings, Method, Record, Seed
 from identification.sweep.settings import file_setting, setting

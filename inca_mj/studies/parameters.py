@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from identification.errors import refuse_negative, refuse_number, unknown_name
-from identification.report.page import Section, Table
+from identification.report.page.page import Section, Table
 from identification.sweep.log_methods import ESTIMATES, estimate_findings
 from identification.sweep.method import Column, Findings, Method, Record, Seed
 from identification.sweep.settings import LOGARITHMIC, setting
@@ -178,7 +178,7 @@ def _figures(found: dict[str, Any]) -> tuple[tuple[str, Any], ...]:
     import matplotlib
     from matplotlib.figure import Figure
 
-    from identification.report.style import SERIES, STYLE
+    from identification.report.page.style import SERIES, STYLE
 
     names = list(next(iter(found.values()))["std"])
     with matplotlib.rc_context(STYLE):

@@ -11,7 +11,7 @@ from functools import lru_cache
 from typing import Any
 
 from identification import Log
-from identification.report.page import Section, Table
+from identification.report.page.page import Section, Table
 from identification.sweep.answers import TRUTH
 from identification.sweep.method import Column, Findings, Method, Record, Seed
 from identification.sweep.statistics import rate, said

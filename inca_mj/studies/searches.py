@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from identification.errors import InputError
-from identification.files import read_json
+from identification.storage.files import read_json
 from identification.sweep.answers import (
     ANSWER,
     JUDGED,

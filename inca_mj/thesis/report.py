@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 from identification import Log
 from identification.estimation.fit import Fit
 from identification.estimation.metrics import loss
-from identification.report.figures import compare_figure
-from identification.report.page import Section, Table
+from identification.report.page.figures import compare_figure
+from identification.report.page.page import Section, Table
 from inca_mj.report.figures import currents_figure, over_time, simulation_figures
 from inca_mj.report.identification import identification_json
 from inca_mj.robot.parameters import parameter_set

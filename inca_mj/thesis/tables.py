@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from identification.estimation.fit import Fit
-from identification.report.page import Table
+from identification.report.page.page import Table
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.thesis.prints import FITS, NAMES, TABLES, PrintedTable
 from inca_mj.thesis.trials import TrialResult

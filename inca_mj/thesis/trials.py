@@ -20,8 +20,8 @@ from identification.errors import refuse_negative, unknown_name
 from identification.estimation.estimation import Options, estimate
 from identification.estimation.fit import Fit, assess
 from identification.estimation.metrics import fit_percent, loss
-from identification.progress import counted
 from identification.quantities import finite_or_none
+from identification.runtime.progress import counted
 from inca_mj.robot.inputs import make_input
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.thesis.prints import FITS, printed

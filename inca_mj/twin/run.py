@@ -14,8 +14,8 @@ from mujoco.batch import Batch
 
 from identification.effects.effect import Effect
 from identification.errors import InputError
-from identification.files import read_archive, whole_file
 from identification.model.rollout import State, rollout
+from identification.storage.files import read_archive, whole_file
 from inca_mj.effects.catalogue import EVERY
 from inca_mj.kinematics.rotations import euler
 from inca_mj.robot.geometry import DRIVES

@@ -18,8 +18,8 @@ import numpy as np
 
 from identification.effects.effect import Effect
 from identification.errors import InputError
-from identification.files import MODEL, read_json, read_text, write_text
 from identification.model.parameter import Parameter, ParameterSet
+from identification.storage.files import MODEL, read_json, read_text, write_text
 from inca_mj.effects.catalogue import EVERY
 from inca_mj.effects.values import records
 from inca_mj.robot.geometry import geometry_of

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from identification.report.page import Section, Table
-from identification.report.value_words import parameter_words
+from identification.report.page.page import Section, Table
+from identification.report.words.values import parameter_words
 from inca_mj.twin.twin import Twin
 
 

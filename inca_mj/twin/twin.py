@@ -13,12 +13,12 @@ import numpy as np
 
 from identification.effects.effect import Effect
 from identification.effects.values import changed_inputs, changed_outputs, merged
-from identification.engine import derive
 from identification.model.export import write_xml
 from identification.model.parameter import ParameterSet
 from identification.model.paths import Slot, write
 from identification.model.predictor import Numbers
 from identification.model.rollout import State
+from identification.runtime.engine import derive
 from inca_mj.effects.hooks import THINGS, Layout
 from inca_mj.effects.values import with_effects
 from inca_mj.robot import law

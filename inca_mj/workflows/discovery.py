@@ -24,7 +24,7 @@ from inca_mj.workflows.spread import Spread, spread_of
 
 if TYPE_CHECKING:
     from identification.discovery.result import Discovery
-    from identification.written import Files
+    from identification.storage.written import Files
 
 TOLD = 2.0  # of a record that confirms, the fit sees so much, which tells where it begins [s]
 
@@ -98,7 +98,7 @@ def discover(
     # These imports are slow, so they come after the checks that may refuse the log.
     from identification.innovations.discovery import discover as search
     from identification.innovations.discovery import refuse_unfit
-    from identification.report import discovery_verdict  # noqa: F401  how the result is shown
+    from identification.report.discovery import verdict as discovery_verdict  # noqa: F401  how the result is shown
     from inca_mj.workflows.discovery_model import told
 
     options, spread = options or DiscoveryOptions(), spread or spread_of("usual")

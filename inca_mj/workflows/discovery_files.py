@@ -7,9 +7,9 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from identification.report.discovery_json import discovery_to_json
-from identification.report.discovery_report import DiscoveryFiles, discovery_sections, write_page
-from identification.report.page import Section
+from identification.report.discovery.json import discovery_to_json
+from identification.report.discovery.report import DiscoveryFiles, discovery_sections, write_page
+from identification.report.page.page import Section
 from inca_mj.twin.saved import save_twin
 from inca_mj.twin.section import model_section
 from inca_mj.twin.twin import Twin

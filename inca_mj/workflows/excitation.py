@@ -19,7 +19,7 @@ from identification.errors import DivergenceError, InputError, refuse_negative
 from identification.estimation.experiment import Experiment
 from identification.estimation.information import Information, determinable
 from identification.experiment.search import search
-from identification.progress import counted
+from identification.runtime.progress import counted
 from inca_mj.robot.parameters import UNKNOWN
 from inca_mj.twin.logs import ANGLES
 from inca_mj.twin.run import Run, simulate

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from identification.errors import InputError, unknown_name
-from identification.files import is_file, read_toml
+from identification.storage.files import is_file, read_toml
 from inca_mj.files import model_path
 from inca_mj.robot.geometry import DRIVES
 from inca_mj.robot.spread import AXES, EACH_DRIVE, POINTS

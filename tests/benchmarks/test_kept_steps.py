@@ -9,7 +9,7 @@ import pytest
 from records_cases import nominal_model, records
 
 from identification.discovery.options import DiscoveryOptions
-from identification.effects.joint_plant import candidates
+from identification.effects.plant.joint_plant import candidates
 from identification.prediction.discovery import discover_records
 
 FORCE = {"coulomb_friction.f_c@hinge": 0.08}

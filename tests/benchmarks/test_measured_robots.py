@@ -11,7 +11,7 @@ from robots.unseen import MOST, spread
 from robots.written import command, write_files
 
 from identification import read_robot
-from identification.effects.rows import read_model
+from identification.effects.plant.rows import read_model
 
 LENGTHS = {  # of the records to fit and of those that confirm [s]
     "emps": ((12.41,), (12.42, 24.84)),

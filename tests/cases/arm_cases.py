@@ -15,7 +15,7 @@ from chain_cases import with_some
 from joint_cases import arm_log, steps
 from scipy.integrate import solve_ivp
 
-from identification.effects.joint_plant import JointPlant
+from identification.effects.plant.joint_plant import JointPlant
 from identification.model.rollout import State, rollout
 
 JOINTS = ("shoulder", "elbow")

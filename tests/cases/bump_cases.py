@@ -12,10 +12,10 @@ import numpy as np
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.axes import Axis
-from identification.effects.joint_plant import candidates, joint_plant
+from identification.effects.plant.joint_plant import candidates, joint_plant
 from identification.logs.log import Log
 from identification.model.parameter import Parameter
-from identification.prediction.nominal_fit import fit_nominal
+from identification.prediction.fits.nominal_fit import fit_nominal
 from identification.prediction.task import RecordsTask
 from identification.windows.records import as_records
 

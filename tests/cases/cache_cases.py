@@ -32,7 +32,7 @@ def refuse(callback):
 if sys.argv[1:] == ["refuse"]:
     CFunc.compile = refuse
 
-from identification.effects.joint_plant import joint_plant
+from identification.effects.plant.joint_plant import joint_plant
 from joint_cases import DAMPING, MASS, SLIDER, run, slider_log, steps
 from inca_mj import build_twin, make_input, simulate
 from inca_mj.effects.catalogue import CATALOGUE

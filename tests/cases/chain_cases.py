@@ -4,7 +4,7 @@ import numpy as np
 from joint_cases import STEP, steps
 
 from identification import Log
-from identification.effects.joint_plant import JointPlant, joint_plant
+from identification.effects.plant.joint_plant import JointPlant, joint_plant
 
 WANTED = ("coulomb_friction", "joint_elasticity", "gear_backlash", "presliding", "stiffness")
 

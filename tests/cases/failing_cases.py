@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from identification.effects.jointed import JointPlant
+from identification.effects.plant.jointed import JointPlant
 from identification.errors import DivergenceError, InputError
 from identification.model.plant import ModelPlant
 

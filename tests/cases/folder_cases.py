@@ -1,7 +1,7 @@
 """Folders of results that are written and read in short."""
 
-from identification.folders import whole_folder
-from identification.made import list_content
+from identification.storage.folders import whole_folder
+from identification.storage.made import list_content
 
 
 def content(folder):

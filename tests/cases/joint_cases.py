@@ -5,11 +5,11 @@ from functools import cache
 import numpy as np
 from plain_logs import plain_log
 
-from identification.effects.joint_plant import JointPlant, joint_plant
+from identification.effects.plant.joint_plant import JointPlant, joint_plant
 from identification.effects.values import numbers_at
 from identification.model.parameter import Parameter
 from identification.model.predictor import Predictor
-from identification.native.joint_callback import Joint
+from identification.native.joints.joint_callback import Joint
 
 STEP = 0.01  # between samples [s]
 SLIDER = """<mujoco model="slider">

@@ -8,14 +8,14 @@ from identification.discovery.candidates import list_common
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.axes import Axis
-from identification.effects.joint_plant import JointPlant, candidates, joint_plant
+from identification.effects.plant.joint_plant import JointPlant, candidates, joint_plant
 from identification.logs.log import Log
 from identification.model.parameter import Parameter
 from identification.model.predictor import Predictor
 from identification.prediction.discovery import discover_records
-from identification.prediction.extension import with_effect
-from identification.prediction.first_fit import begin
-from identification.prediction.scores import window_scores
+from identification.prediction.judging.extension import with_effect
+from identification.prediction.scoring.first_fit import begin
+from identification.prediction.scoring.scores import window_scores
 from identification.windows.records import as_records
 
 STEP = 0.01  # between samples [s]

@@ -8,8 +8,8 @@ from joint_cases import DAMPING, MASS, SLIDER, slider_log, steps
 
 from identification import Predictor
 from identification.__main__ import main
-from identification.effects.joint_plant import joint_plant
-from identification.logs.csv_files import write_log
+from identification.effects.plant.joint_plant import joint_plant
+from identification.logs.formats.csv_files import write_log
 
 TRUTH = {"damping": 3.6, "mass": 1.8, "stribeck_friction.f_s": 0.0}
 HIDDEN = {"asymmetric_viscous_friction.d_a@slide": 0.9}

@@ -20,11 +20,11 @@ from pathlib import Path
 
 from folder_cases import list_foreign
 
-from identification import results
 from identification.commands.common import Output, conclude
 from identification.errors import InputError
-from identification.files import write_text
-from identification.folders import draft_of, refuse_foreign
+from identification.storage import results
+from identification.storage.files import write_text
+from identification.storage.folders import draft_of, refuse_foreign
 
 CALLS = ("os.rename", "os.mkdir", "os.link", "os.remove", "os.rmdir", "os.chmod", "os.utime")
 WRITES = os.O_WRONLY | os.O_RDWR | os.O_CREAT

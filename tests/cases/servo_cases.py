@@ -11,7 +11,7 @@ import numpy as np
 from plain_logs import plain_log
 
 from identification import Log
-from identification.effects.joint_plant import JointPlant, joint_plant
+from identification.effects.plant.joint_plant import JointPlant, joint_plant
 
 STEP, FINE = 0.01, 10  # between samples [s], and steps of the integration in one of them
 MJCF = """<mujoco model="lever">

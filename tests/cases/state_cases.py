@@ -13,7 +13,7 @@ from records_cases import AXIS, MJCF, PARAMETERS, STEP, record
 from scipy.integrate import solve_ivp
 
 from identification import Log, Parameter
-from identification.effects.joint_plant import joint_plant
+from identification.effects.plant.joint_plant import joint_plant
 
 FILE = 0.5 * 0.01 + 1e-3  # inertia about the hinge, as the model's file has it [kg m²]
 WHOLE = FILE + 2e-3  # with the armature among the parameters

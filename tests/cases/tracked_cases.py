@@ -7,7 +7,7 @@ from plain_logs import model_log
 
 from identification import InputError, write_log
 from identification.refusals.wiring import refuse_miswired
-from identification.robot.file import read_robot_file
+from identification.robot.file.file import read_robot_file
 from identification.robot.robot import read_robot_log, robot_of
 
 HEAD = '<mujoco><compiler autolimits="true"/><option timestep="0.0025" integrator="RK4"/>'

@@ -1,7 +1,7 @@
 """A line is said at least every ten seconds, with the stage and the time that is left."""
 
 from identification.commands.beat import EVERY, Beat
-from identification.progress import stage, watched
+from identification.runtime.progress import stage, watched
 
 
 class Clock:

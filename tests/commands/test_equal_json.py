@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from robot_cases import TOML, simulated, write_slider
 
-from identification.logs.csv_files import write_log
+from identification.logs.formats.csv_files import write_log
 from inca_mj.twin.logs import read_inca_log
 
 LOG = Path(__file__).parents[2] / "examples" / "log.csv"

@@ -10,7 +10,7 @@ from identification.__main__ import main as identification
 from identification.commands.arguments import _commands, examples_of, parsed
 from identification.commands.cli import EXAMPLES as ROBOT_EXAMPLES
 from identification.commands.cli import Command as RobotCommand
-from identification.logs.formats import KINDS
+from identification.logs.formats.formats import KINDS
 from inca_mj.cli import EXAMPLES, Command
 from inca_mj.cli import main as inca
 

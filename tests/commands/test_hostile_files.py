@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from identification import InputError, read_log
-from identification import child as child_process
 from identification.discovery.options import read_options
+from identification.runtime import child as child_process
 from inca_mj.cli import main
 from inca_mj.robot.geometry import INCA, read_geometry, write_geometry
 from inca_mj.robot.inputs import prbs
@@ -149,6 +149,8 @@ def test_a_matlab_file_that_kills_its_reader_is_refused(tmp_path, monkeypatch, c
     (tmp_path / "child.py").write_text(child)
     (tmp_path / "log.mat").write_bytes(b"MATLAB 5.0")
     monkeypatch.setattr(child_process, "__file__", str(tmp_path / "child.py"))
-    monkeypatch.setattr("identification.logs.read_mat.SECONDS", 2.0 if "sleep" in child else 60.0)
+    monkeypatch.setattr(
+        "identification.logs.formats.read_mat.SECONDS", 2.0 if "sleep" in child else 60.0
+    )
     with pytest.raises(InputError, match=CHILDREN[child]):
         read_log(tmp_path / "log.mat", CURRENTS, ANGLES)

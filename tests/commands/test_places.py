@@ -11,13 +11,14 @@ import numpy as np
 import pytest
 from folder_cases import content, list_foreign, made
 
-from identification import folders, write_log
+from identification import write_log
 from identification.__main__ import main as identification
 from identification.errors import InputError
-from identification.folders import MADE, whole_folder
-from identification.report.discovery_figures import gap_figure, rms_figure
-from identification.report.figures import compare_figure
-from identification.report.media import svg
+from identification.report.discovery.figures import gap_figure, rms_figure
+from identification.report.page.figures import compare_figure
+from identification.report.page.media import svg
+from identification.storage import folders
+from identification.storage.folders import MADE, whole_folder
 from inca_mj.cli import main as inca
 from inca_mj.twin.logs import read_inca_log
 

@@ -14,7 +14,7 @@ import pytest
 from folder_cases import content, list_foreign, made
 
 from identification.commands.common import Output, conclude
-from identification.folders import refuse_foreign, try_folder
+from identification.storage.folders import refuse_foreign, try_folder
 from inca_mj.commands import filmed
 from inca_mj.commands.discover import Discover
 
@@ -81,7 +81,7 @@ def test_a_full_disk_leaves_the_old_results_or_the_new_ones(tmp_path):
 READ_ONLY = """
 import subprocess, sys
 from pathlib import Path
-from identification.folders import try_folder
+from identification.storage.folders import try_folder
 subprocess.run(["mount", "-t", "tmpfs", "-o", "ro", "none", sys.argv[1]], check=True)
 try_folder(Path(sys.argv[1]) / sys.argv[2])
 """
@@ -140,7 +140,7 @@ def test_an_interrupt_in_the_film_costs_the_film_only(tmp_path, capsys, monkeypa
         raise KeyboardInterrupt
 
     monkeypatch.setattr(Output, "tell", lambda _, line: told.append(line))
-    monkeypatch.setattr("identification.report.page_files.save_figures", save_one)
+    monkeypatch.setattr("identification.report.page.page_files.save_figures", save_one)
     monkeypatch.setattr(filmed, "film_discovery", interrupted)
     monkeypatch.setattr("inca_mj.commands.discover.cannot_draw", lambda: "")
     monkeypatch.setattr(

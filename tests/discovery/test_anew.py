@@ -4,14 +4,14 @@ import pytest
 from discovery_cases import EFFECTS, OPTIONS, SENSOR, record, slider, task, wander
 
 from identification.effects.effect import Candidate
-from identification.innovations import shapes as anew
 from identification.innovations.fitted_model import (
     fit_model,
     list_parameters_at_limit,
     score_candidates,
 )
+from identification.innovations.moves import shapes as anew
+from identification.innovations.moves.shapes import begin_anew
 from identification.innovations.scoring.sensitivities import compute_sensitivities
-from identification.innovations.shapes import begin_anew
 
 K = 5.0
 ROBOT = {"mass": 2.2, "damping": 2.7, "x0": 0.01, "v0": 0.02, "spring.k": K}

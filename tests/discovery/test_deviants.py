@@ -20,8 +20,8 @@ from discovery_cases import (
 
 from identification import Log, Parameter, ParameterSet
 from identification.discovery.nominal_model import NominalModel
-from identification.innovations.deviants import accept_deviants, find_deviants
 from identification.innovations.fitted_model import fit_model
+from identification.innovations.moves.deviants import accept_deviants, find_deviants
 from identification.innovations.task import DiscoveryTask
 from identification.model.plant import ModelPlant
 from identification.model.predictor import Predictor

@@ -20,12 +20,13 @@ from identification.discovery.attempts import (
 )
 from identification.effects.effect import Candidate
 from identification.errors import DivergenceError, InputError
-from identification.innovations import fitted_model, forward_selection, state
+from identification.innovations import fitted_model, state
 from identification.innovations.discovery import INNOVATIONS
+from identification.innovations.moves import forward_selection
 from identification.innovations.verdict import conclude
-from identification.report.discovery_json import discovery_to_json
-from identification.report.discovery_report import discovery_text
-from identification.report.effect_sections import FAILED
+from identification.report.discovery.effect_sections import FAILED
+from identification.report.discovery.json import discovery_to_json
+from identification.report.discovery.report import discovery_text
 
 TRUTH = {"offset.f": -0.8, "rubbing.c": 1.0}
 KEY = ("rubbing", "joint")

@@ -19,16 +19,16 @@ from discovery_cases import (
 from scipy.integrate import solve_ivp
 
 from identification import Log
-from identification.effects.curves import NODES
 from identification.effects.effect import Candidate
+from identification.effects.laws.curves import NODES
 from identification.innovations.discovery import discover
 from identification.innovations.fitted_model import fit_model
 from identification.innovations.free_curves import _respond, find_curves, list_curves
 from identification.innovations.replacement import replace_effect
 from identification.kalman.linear import LinearPlant
 from identification.model.predictor import Predictor
-from identification.report.discovery_json import discovery_to_json
-from identification.report.discovery_report import discovery_text
+from identification.report.discovery.json import discovery_to_json
+from identification.report.discovery.report import discovery_text
 
 N = 1000
 ROBOT = {"mass": 2.2, "damping": 2.7, "x0": 0.01, "v0": 0.02}

@@ -39,7 +39,7 @@ from identification.innovations.scoring.significance import (
 )
 from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.noise_model import Noise
-from identification.report.finding_words import describe_finding
+from identification.report.discovery.finding_words import describe_finding
 
 PLACES = {"all": "", "drive 1": "@1"}
 LEVEL = NoiseLevel(Noise(2.0, 0.1), 0.5, 0.0)

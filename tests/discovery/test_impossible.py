@@ -13,9 +13,9 @@ from identification.discovery.impossible import MOST_DRIFT, find_impossible
 from identification.effects.axes import Axis
 from identification.effects.catalogue import MOST_TURNS, OF_ANGLE, joint_effects
 from identification.effects.effect import Candidate
-from identification.effects.joint_plant import joint_plant
-from identification.prediction.screening import contains
-from identification.report.discovery_report import discovery_text
+from identification.effects.plant.joint_plant import joint_plant
+from identification.prediction.scoring.screening import contains
+from identification.report.discovery.report import discovery_text
 
 LOG = arm_log(steps(400, 2))  # 4 s
 

@@ -25,11 +25,11 @@ from identification.innovations.input_error import (
     separate_inputs,
     simulate_response,
 )
-from identification.innovations.shapes import is_structured
+from identification.innovations.moves.shapes import is_structured
 from identification.kalman.noise_model import Noise, augment
 from identification.model.plant import ModelPlant
 from identification.model.predictor import Predictor
-from identification.report.discovery_report import discovery_text
+from identification.report.discovery.report import discovery_text
 
 N = 1000
 

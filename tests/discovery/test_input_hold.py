@@ -10,7 +10,7 @@ from scipy.signal import lfilter
 
 from identification.discovery.findings.finding import FindingKind
 from identification.discovery.nominal_model import NominalModel
-from identification.effects.joint_plant import joint_plant
+from identification.effects.plant.joint_plant import joint_plant
 from identification.innovations.fitted_model import fit_model
 from identification.innovations.input_error import find_input_hold
 

@@ -8,9 +8,9 @@ from discovery_cases import EFFECTS, SENSOR, record, slider, task, wander
 from identification.discovery.effect_results import Proof
 from identification.effects.effect import Candidate
 from identification.effects.sizes import Shape
-from identification.innovations import kinds
 from identification.innovations.fitted_model import AcceptedEffect, fit_model
-from identification.innovations.kinds import improve_kinds, improve_rivals
+from identification.innovations.moves import kinds
+from identification.innovations.moves.kinds import improve_kinds, improve_rivals
 from identification.innovations.replacement import replace_effect
 from identification.innovations.scoring.sensitivities import Sensitivity, compute_sensitivities
 

@@ -6,7 +6,11 @@ import mujoco
 import numpy as np
 import pytest
 
-from identification.discovery.law_regressors import FAIR_TOLERANCE, find_regressor, unexplained
+from identification.discovery.forces.law_regressors import (
+    FAIR_TOLERANCE,
+    find_regressor,
+    unexplained,
+)
 
 
 @pytest.mark.parametrize(("is_switch", "along"), [(True, "rate"), (False, "law")])

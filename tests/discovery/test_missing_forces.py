@@ -21,7 +21,7 @@ from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
 from identification.innovations.fit import fit_with_effects
 from identification.kalman.noise_model import Noise, smooth
-from identification.report.finding_words import describe_finding
+from identification.report.discovery.finding_words import describe_finding
 from inca_mj.studies.worlds import HiddenSetting, effect, world
 from inca_mj.twin.twin import build_twin
 from inca_mj.workflows.spread import KNOWN as KNOWN_INCA

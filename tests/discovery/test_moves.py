@@ -10,9 +10,9 @@ from identification.discovery.moves import Evidence, Move, SearchState
 from identification.discovery.passes import PASSES
 from identification.errors import InputError
 from identification.innovations import state as innovations
-from identification.pool import OutOfTime, end_if_given_up
 from identification.prediction import state as windows
-from identification.report.discovery_verdict import SOUGHT
+from identification.report.discovery.verdict import SOUGHT
+from identification.runtime.pool import OutOfTime, end_if_given_up
 
 ROOT = Path(__file__).parents[2]
 

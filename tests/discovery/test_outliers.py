@@ -5,7 +5,7 @@ import pytest
 from discovery_cases import OPTIONS, record, slider, wander
 
 from identification.effects.effect import Candidate, Effect
-from identification.effects.sensors import encoder_jump
+from identification.effects.laws.sensors import encoder_jump
 from identification.effects.sizes import Shape, Size
 from identification.innovations.scoring.outliers import (
     MAX_JUMPS,

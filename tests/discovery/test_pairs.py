@@ -7,8 +7,8 @@ from discovery_cases import EFFECTS, OPTIONS, disturbed, nominal_model
 
 from identification.innovations.discovery import discover
 from identification.innovations.fitted_model import is_confirmed
-from identification.innovations.forward_selection import Selection, select_effect
-from identification.innovations.pairs import find_pair
+from identification.innovations.moves.forward_selection import Selection, select_effect
+from identification.innovations.moves.pairs import find_pair
 from identification.innovations.proof import prove
 
 OFFSET, RUBBING = {"offset.f": -0.8}, {"rubbing.c": 1.0}
@@ -52,7 +52,7 @@ def test_what_the_fitted_samples_want_and_the_free_run_confirms_begins_a_pair(
             return proof
         return replace(proof, gain=-100.0, t=-1.6, chance=0.94, fall=fall, above=fall)
 
-    monkeypatch.setattr("identification.innovations.forward_selection.prove", astray)
+    monkeypatch.setattr("identification.innovations.moves.forward_selection.prove", astray)
     # The log is short.
     monkeypatch.setattr("identification.innovations.fitted_model.NEEDED_BIC_RATIO", 1.0)
     answer = discover(nominal_model(), disturbed(**OFFSET, **RUBBING), EFFECTS)

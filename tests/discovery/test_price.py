@@ -21,8 +21,8 @@ from identification.effects.sizes import Size
 from identification.innovations.fitted_model import is_confirmed
 from identification.innovations.proof import flip_chance
 from identification.innovations.scoring.significance import select_significant
-from identification.prediction.contenders import list_contenders
-from identification.prediction.trial import TESTS, find_doubt
+from identification.prediction.judging.trial import TESTS, find_doubt
+from identification.prediction.scoring.contenders import list_contenders
 from identification.windows.blocks import block_gains
 from identification.windows.comparison import Prediction
 

@@ -11,7 +11,7 @@ from joint_cases import slider as every_slider
 from identification.discovery.effect_results import Rival
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate
-from identification.effects.joint_plant import joint_plant
+from identification.effects.plant.joint_plant import joint_plant
 from identification.estimation.priors import Priors
 from identification.innovations.recovery import recover_force
 from identification.kalman.point import evaluate_point

@@ -12,7 +12,7 @@ from identification.discovery.nominal_model import NominalModel
 from identification.effects.effect import Candidate
 from identification.innovations.discovery import discover
 from identification.innovations.fitted_model import fit_model
-from identification.innovations.shapes import BARE_BIC
+from identification.innovations.moves.shapes import BARE_BIC
 from identification.logs.joined import join_logs
 from identification.model.parameter import ParameterSet, own_name, with_own
 

@@ -13,9 +13,9 @@ from identification import Predictor
 from identification.discovery.candidates import list_between
 from identification.effects.effect import Candidate, Effect
 from identification.effects.sizes import Shape, Size
-from identification.innovations import shapes
+from identification.innovations.moves import shapes
+from identification.innovations.moves.shapes import BARE_BIC, improve_shape
 from identification.innovations.scoring.sensitivities import compute_sensitivities
-from identification.innovations.shapes import BARE_BIC, improve_shape
 from identification.kalman.point import evaluate_point
 from identification.model.coordinates import coordinates
 from inca_mj.effects.catalogue import CATALOGUE

@@ -9,7 +9,7 @@ import pytest
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate, Effect
 from identification.effects.sizes import Shape, Size
-from identification.innovations import forward_selection
+from identification.innovations.moves import forward_selection
 
 JUMP = Effect(
     "jump", "", (Size("c", "", 1.0, 0.1, about=""),),

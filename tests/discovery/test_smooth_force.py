@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from identification.discovery.smooth_force import (
+from identification.discovery.forces.smooth_force import (
     FOLDS,
     explained_share,
     find_smooth_force,

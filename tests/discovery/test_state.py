@@ -9,7 +9,7 @@ from discovery_cases import EFFECTS, OPTIONS, searched
 
 from identification.innovations.discovery import INNOVATIONS
 from identification.innovations.fitted_model import fit_model
-from identification.innovations.pruning import exchange
+from identification.innovations.moves.pruning import exchange
 from identification.innovations.scoring.sensitivities import compute_sensitivities
 
 

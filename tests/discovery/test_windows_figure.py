@@ -3,7 +3,7 @@
 import numpy as np
 from discovery_cases import record, slider
 
-from identification.report.figures import windows_figure
+from identification.report.page.figures import windows_figure
 from identification.windows.window_error import window_error
 
 

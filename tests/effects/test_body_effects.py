@@ -5,10 +5,10 @@ import numpy as np
 import pytest
 from joint_cases import ARM, SLIDER, arm, arm_log, run, slider, slider_log, steps
 
-from identification.effects.bodies import body_effects
-from identification.effects.body_numbers import frame_inertia, principal
-from identification.effects.joint_plant import joint_plant
+from identification.effects.laws.bodies import body_effects
 from identification.effects.moving_bodies import moving_bodies
+from identification.effects.plant.body_numbers import frame_inertia, principal
+from identification.effects.plant.joint_plant import joint_plant
 from identification.model.plant import ModelPlant
 
 LOWER = '<inertial pos="0 0 -0.1" mass="0.5" diaginertia="0.01 0.01 0.005"/>'

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from effect_cases import BY_NAME, CATALOGUE, full, simulate
 
-from identification.effects.inputs import Drive, input_effects
+from identification.effects.laws.inputs import Drive, input_effects
 from identification.effects.values import changed_inputs
 
 STEP, FINE = 1e-3, 400

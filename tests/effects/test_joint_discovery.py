@@ -12,7 +12,7 @@ from plain_logs import plain_log
 from identification import Parameter
 from identification.discovery.nominal_model import NominalModel
 from identification.effects.axes import Axis
-from identification.effects.joint_plant import candidates, joint_plant
+from identification.effects.plant.joint_plant import candidates, joint_plant
 from identification.innovations.discovery import discover
 
 ROOT = Path(__file__).parents[2]

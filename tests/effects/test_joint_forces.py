@@ -25,9 +25,9 @@ from joint_cases import (
 from scipy.optimize import lsq_linear
 
 from identification import InputError
-from identification.effects.joint_plant import joint_plant
+from identification.effects.plant.joint_plant import joint_plant
 from identification.model.plant import ModelPlant
-from identification.native.joint_callback import TAG, Joint
+from identification.native.joints.joint_callback import TAG, Joint
 
 HOOKS = ("force", "friction")
 FORCES = {e.name: e for e in (*slider().effects, *arm().effects) if {*HOOKS} & {*e.hooks}}

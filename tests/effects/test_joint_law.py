@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 from joint_cases import ARM, SLIDER, arm_log, slider_log, steps
 
-from identification.effects import rows
 from identification.effects.axes import axes
 from identification.effects.catalogue import joint_effects
-from identification.effects.joint_law import JointTerms, _listed, joint_terms
-from identification.effects.joint_plant import joint_plant
-from identification.effects.rows import JointLayout
+from identification.effects.plant import rows
+from identification.effects.plant.joint_law import JointTerms, _listed, joint_terms
+from identification.effects.plant.joint_plant import joint_plant
+from identification.effects.plant.rows import JointLayout
 from identification.effects.values import terms_of
 from identification.model.predictor import Predictor
-from identification.native.joint_callback import JOINT
+from identification.native.joints.joint_callback import JOINT
 
 VALUES = {"coulomb_friction.f_c@elbow": 0.05, "stiffness.k": 0.4, "cogging.a@shoulder": 0.1}
 

@@ -21,8 +21,8 @@ from plain_logs import plain_log
 from identification import InputError, Parameter
 from identification.effects.axes import Axis, axes
 from identification.effects.catalogue import joint_effects
-from identification.effects.joint_plant import joint_plant
-from identification.native.joint_callback import STEPS
+from identification.effects.plant.joint_plant import joint_plant
+from identification.native.joints.joint_callback import STEPS
 from identification.native.table import uninstall
 from identification.windows.window_error import window_error
 from identification.windows.window_estimate import estimate_windows

@@ -26,7 +26,7 @@ from scipy.linalg import eigh
 
 from identification import DivergenceError
 from identification.model.rollout import State
-from identification.native.holding import MOST
+from identification.native.joints.holding import MOST
 
 FRICTION = {"coulomb_friction.f_c@shoulder": 0.5, "coulomb_friction.f_c@elbow": 0.2}
 BOTH = {"shoulder": 0.02, "elbow": 0.03}

@@ -8,7 +8,7 @@ import pytest
 from arm_cases import FULL, LOG, Arm, arm_plant, elastic, gap, inertias, states_of, weighing
 from joint_cases import run
 
-from identification.effects.joint_states import places_of
+from identification.effects.plant.joint_states import places_of
 from identification.model.paths import write
 from identification.model.rollout import State
 

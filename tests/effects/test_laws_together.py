@@ -12,7 +12,7 @@ from numpy.testing import assert_allclose
 from scipy.interpolate import CubicSpline
 
 from identification.effects.effect import Effect, places
-from identification.effects.joint_plant import joint_plant
+from identification.effects.plant.joint_plant import joint_plant
 from identification.effects.sizes import Size
 from identification.native.table import uninstall
 from inca_mj.effects.hooks import KEY

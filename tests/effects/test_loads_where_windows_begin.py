@@ -3,7 +3,7 @@
 import numpy as np
 from chain_cases import chain_log, chain_text, with_some
 
-from identification.effects.joint_states import first_loads
+from identification.effects.plant.joint_states import first_loads
 from identification.model.rollout import State
 
 

@@ -11,8 +11,8 @@ from numba import njit
 from identification.effects.axes import Axis
 from identification.effects.catalogue import joint_effects
 from identification.effects.effect import Effect, places
-from identification.effects.inputs import Drive, input_effects
-from identification.effects.joint_plant import joint_plant
+from identification.effects.laws.inputs import Drive, input_effects
+from identification.effects.plant.joint_plant import joint_plant
 from identification.effects.sizes import Shape, Size
 from identification.errors import InputError
 from inca_mj.effects.hooks import DRIVES_EACH

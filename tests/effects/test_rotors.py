@@ -6,7 +6,7 @@ import pytest
 from joint_cases import ARM, arm, arm_log, run, slider, slider_log, steps
 
 from identification import InputError, Parameter
-from identification.effects.joint_plant import joint_plant
+from identification.effects.plant.joint_plant import joint_plant
 from identification.model.plant import ModelPlant
 
 LOG = arm_log(steps(100, 2))

@@ -8,7 +8,7 @@ from joint_cases import DAMPING, MASS, SLIDER, arm, arm_log, run, slider, slider
 from plain_logs import plain_log
 
 from identification.effects.axes import Axis
-from identification.effects.joint_plant import joint_plant
+from identification.effects.plant.joint_plant import joint_plant
 from identification.model.predictor import Predictor
 from identification.model.rollout import State
 from identification.native.reading import Reading

@@ -12,8 +12,8 @@ from servo_cases import DAMPING, STEP, WEIGHT, J, Servo, lever, servo_log, setpo
 from identification import discover, fit, read_robot
 from identification.effects.axes import Axis, axes
 from identification.effects.catalogue import all_effects
-from identification.effects.joint_group import groups
-from identification.effects.servos import rate_limits
+from identification.effects.laws.joint_group import groups
+from identification.effects.laws.servos import rate_limits
 from identification.effects.values import changed_inputs
 from identification.effects.variables import variables
 from identification.model.rollout import State, rollout

@@ -5,8 +5,8 @@ import pytest
 from joint_cases import ARM, arm, arm_log, run, steps
 from scipy.interpolate import RegularGridInterpolator
 
-from identification.effects.joint_plant import candidates, joint_plant
-from identification.effects.surfaces import X_NODES, Y_NODES, bilinear, surface_effects
+from identification.effects.laws.surfaces import X_NODES, Y_NODES, bilinear, surface_effects
+from identification.effects.plant.joint_plant import candidates, joint_plant
 
 LOG = arm_log(steps(100, 2))
 SURFACES = surface_effects(arm().axes)

@@ -7,11 +7,11 @@ from numba import njit
 
 from identification.effects.catalogue import joint_effects
 from identification.effects.effect import Effect
-from identification.effects.joint_law import _AXES
+from identification.effects.plant.joint_law import _AXES
 from identification.effects.sizes import Size
 from identification.effects.variables import VARIABLES, variables
-from identification.prediction.forced import ON_JOINTS
-from identification.prediction.screening import at_several
+from identification.prediction.scoring.forced import ON_JOINTS
+from identification.prediction.scoring.screening import at_several
 
 EFFECTS = {e.name: e for e in joint_effects(_AXES)}
 

@@ -8,8 +8,8 @@ import pytest
 
 from identification import fit, read_robot
 from identification.model.protocol import FINER
-from identification.report.fit_verdict import fit_verdict
-from identification.report.fitted_values import LEAST_MOVE
+from identification.report.fit.fitted_values import LEAST_MOVE
+from identification.report.fit.verdict import fit_verdict
 
 pytestmark = pytest.mark.usefixtures("few_effects")
 

@@ -12,7 +12,7 @@ from identification.estimation.estimation import Options, estimate
 from identification.estimation.fit import assess
 from identification.estimation.scaling_symmetry import ScalingSymmetry, known_products
 from identification.model.plant import ModelPlant
-from identification.report.fit_verdict import fit_verdict
+from identification.report.fit.verdict import fit_verdict
 
 ALL = ("mass", "damping", "stiffness", "gear")
 OFF = {"mass": 2.4, "damping": 2.5, "stiffness": 17.0, "gear": 6.0}

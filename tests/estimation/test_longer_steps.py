@@ -9,14 +9,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from records_cases import AXIS, MJCF, PARAMETERS, STEP, record
 
-from identification.effects.joint_plant import joint_plant
+from identification.effects.plant.joint_plant import joint_plant
 from identification.estimation.levenberg_marquardt import SLOPE_ERROR
 from identification.estimation.priors import Priors
 from identification.model.coordinates import coordinates
 from identification.model.predictor import Predictor
 from identification.model.rollout import substeps
-from identification.prediction.extension import as_last_fit
-from identification.prediction.model import WindowModel, predict_fitted
+from identification.prediction.fits.model import WindowModel, predict_fitted
+from identification.prediction.judging.extension import as_last_fit
 from identification.windows.batches import slower
 from identification.windows.coarse import OUTPUT_ERROR, with_longest_slope_steps, with_longest_steps
 from identification.windows.fit import solve

@@ -12,7 +12,7 @@ from identification.estimation.estimation import Options, estimate
 from identification.estimation.fit import assess
 from identification.estimation.multistart import _cost, estimate_from
 from identification.estimation.uncertainty import LOSSES
-from identification.robot.file import read_robot_file
+from identification.robot.file.file import read_robot_file
 from identification.robot.robot import read_robot_log
 
 ONCE = Options(horizons=(1.0,), max_evaluations=20)

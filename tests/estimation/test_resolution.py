@@ -15,7 +15,7 @@ from identification.estimation.identifiability import identifiability
 from identification.estimation.resolution import RESOLVED_STEPS, resolve_columns
 from identification.kalman.estimate import estimate_innovations
 from identification.model.plant import ModelPlant
-from identification.report.fit_verdict import fit_verdict
+from identification.report.fit.verdict import fit_verdict
 from identification.windows.window_estimate import estimate_windows
 from inca_mj.robot.inputs import make_input
 from inca_mj.robot.parameters import parameter_set

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from records_cases import AXIS, MJCF, PARAMETERS, record
 
-from identification.effects.joint_plant import joint_plant
+from identification.effects.plant.joint_plant import joint_plant
 from identification.estimation.levenberg_marquardt import SLOPE_ERROR
 from identification.estimation.priors import Priors
 from identification.model.coordinates import coordinates

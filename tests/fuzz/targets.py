@@ -11,9 +11,9 @@ from scipy.io import savemat
 from identification import read_log, read_robot
 from identification.commands.arguments import parsed
 from identification.discovery.options import read_options
-from identification.folders import MADE, whole_folder
 from identification.linear.export import load_system, save_system
 from identification.linear.system import LinearSystem
+from identification.storage.folders import MADE, whole_folder
 from identification.sweep.config import read_sweep
 from inca_mj.cli import Command
 from inca_mj.robot.geometry import INCA, read_geometry, write_geometry

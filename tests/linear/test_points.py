@@ -9,7 +9,6 @@ import pytest
 from effect_cases import full
 from linear_cases import PENDULUM, compiled
 
-from identification.engine import library, untimed
 from identification.errors import DivergenceError
 from identification.linear import points as of_points
 from identification.linear.operating_points import OperatingPoints
@@ -17,6 +16,7 @@ from identification.linear.points import Change, Points
 from identification.model.protocol import list_differences, with_entries, with_numbers
 from identification.model.rollout import without_sensors
 from identification.native.forward import Intervals
+from identification.runtime.engine import library, untimed
 
 LIMITED = """<mujoco><option timestep="0.001"/><worldbody><body>
   <joint name="hinge" axis="0 1 0" range="-0.5 0.5" limited="true" frictionloss="0.05"/>

@@ -9,10 +9,10 @@ from hypothesis import strategies as st
 from plain_logs import plain_log
 
 from identification import InputError, read_log
-from identification.logs.coarse import evened_stamps
-from identification.logs.fitting_steps import EXACT, judged
 from identification.logs.sampling import sampling_time
 from identification.logs.sidecar import Sidecar
+from identification.logs.stamps.coarse import evened_stamps
+from identification.logs.stamps.fitting_steps import EXACT, judged
 from identification.logs.table import Table
 
 FORMS = ("%.4g", "%.5g", "%.6g", "%.7g", "%.8g", "%.1f", "%.2f", "%.3f", "%.4f")

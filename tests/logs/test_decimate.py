@@ -5,7 +5,7 @@ import pytest
 from plain_logs import plain_log
 
 from identification import InputError, Parameter
-from identification.logs.decimation import decimate
+from identification.logs.stamps.decimation import decimate
 from identification.logs.units import dimension, refuse_not_si, refuse_other_unit
 
 T = 0.001

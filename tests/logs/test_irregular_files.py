@@ -7,10 +7,10 @@ import pytest
 from folder_cases import list_foreign
 
 from identification import InputError, read_log
-from identification.files import read_archive, read_bytes, read_json, read_text, read_toml
-from identification.folders import MADE, whole_folder
 from identification.linear.export import load_system
-from identification.report.media import image_source, video_source
+from identification.report.page.media import image_source, video_source
+from identification.storage.files import read_archive, read_bytes, read_json, read_text, read_toml
+from identification.storage.folders import MADE, whole_folder
 from inca_mj.twin.run import load_run
 from inca_mj.twin.saved import load_twin, save_twin
 from inca_mj.twin.twin import build_twin
@@ -77,7 +77,7 @@ def test_a_folder_of_results_with_one_is_foreign_or_unknown(tmp_path, make, name
 
 def test_a_file_that_grows_while_it_is_read_is_bounded(tmp_path, monkeypatch):
     (tmp_path / "file").write_bytes(bytes(101))
-    monkeypatch.setattr("identification.files.check_file", lambda *_: None)
+    monkeypatch.setattr("identification.storage.files.check_file", lambda *_: None)
     with pytest.raises(InputError, match="more than"):
         read_bytes(tmp_path / "file", 100)
     assert len(read_bytes(tmp_path / "file", 101)) == 101
@@ -86,7 +86,7 @@ def test_a_file_that_grows_while_it_is_read_is_bounded(tmp_path, monkeypatch):
 def test_an_archive_that_unpacks_to_gigabytes_is_refused(tmp_path, monkeypatch):
     np.savez_compressed(tmp_path / "run.npz", a=np.zeros(2**20))
     assert read_archive(tmp_path / "run.npz", "run")["a"].shape == (2**20,)
-    monkeypatch.setattr("identification.files.MAX_BYTES", 2**19)
+    monkeypatch.setattr("identification.storage.files.MAX_BYTES", 2**19)
     with pytest.raises(InputError, match="more than the 4 MB"):
         read_archive(tmp_path / "run.npz", "run")
 

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from identification import read_log
-from identification.logs.publishers import refuse_interleaved, refuse_second_publisher
+from identification.logs.stamps.publishers import refuse_interleaved, refuse_second_publisher
 from identification.logs.table import Table
 
 UNITS = {"u": "N", "q": "m", "v": "m/s"}

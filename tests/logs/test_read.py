@@ -13,8 +13,8 @@ from hypothesis.extra.numpy import arrays
 from scipy.io import savemat
 
 from identification import write_log
-from identification.files import toml_table, toml_value
 from identification.logs.units import UNITS as WORDS
+from identification.storage.files import toml_table, toml_value
 
 TEXT = "time,current_1,current_2,angle_1,angle_2\n0,1,2,3,4\n0.1,1,2,3,5\n0.2,1,2,3,6\n"
 

@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from identification import InputError, read_log
-from identification.logs.gaps import Channel, find_lost_rows
-from identification.logs.resampling import even_out, on_a_grid
+from identification.logs.stamps.gaps import Channel, find_lost_rows
+from identification.logs.stamps.resampling import even_out, on_a_grid
 from identification.logs.table import Table
 
 RNG = np.random.default_rng(4)

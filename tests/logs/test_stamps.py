@@ -10,7 +10,7 @@ from joint_cases import SLIDER
 from robot_cases import TOML, simulated
 
 from identification import InputError, read_log, read_robot
-from identification.logs.stamps import exact_stamps, seconds_of
+from identification.logs.stamps.stamps import exact_stamps, seconds_of
 
 N = 400
 EPOCH = 1_691_234_567_123_456_789  # [ns]

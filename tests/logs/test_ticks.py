@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from test_coarse import motion, put, read
 
 from identification import read_log
-from identification.logs.fitting_steps import quanta_of
+from identification.logs.stamps.fitting_steps import quanta_of
 
 CLOCKS = [  # the tick of the clock [s], its first stamp [s], how it is printed, the sampling time
     (1 / 64, 0.0, "%.4f", 0.01),

@@ -11,7 +11,7 @@ from identification.estimation.estimation import estimate
 from identification.model.plant import ModelPlant
 from identification.model.rollout import State
 from identification.model.tied import value_of
-from identification.robot.model_file import unit_of
+from identification.robot.file.model_file import unit_of
 
 pytestmark = pytest.mark.usefixtures("few_effects")
 

@@ -6,7 +6,7 @@ from joint_cases import DAMPING, MASS, SLIDER, run, slider_log, steps
 from numba import njit
 
 from identification.effects.effect import Effect, places
-from identification.effects.joint_plant import joint_plant
+from identification.effects.plant.joint_plant import joint_plant
 from identification.effects.sizes import Size
 from identification.errors import DivergenceError
 from identification.kalman.linear import linearise

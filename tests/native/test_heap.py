@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from identification import heap
-from identification.heap import release
+from identification.runtime import heap
+from identification.runtime.heap import release
 
 STATM = Path("/proc/self/statm")
 PAGE, ROOM = 4096, 2**28  # bytes

@@ -11,7 +11,7 @@ from plain_logs import plain_log
 from scipy.optimize import lsq_linear
 
 from identification import joint_plant
-from identification.native.holding import hold, invert
+from identification.native.joints.holding import hold, invert
 
 SEEDS = st.integers(0, 10**6)
 

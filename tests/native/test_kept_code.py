@@ -16,7 +16,7 @@ print(outer(1.0), sum(outer.stats.cache_hits.values()))
 """
 INNER = """
 from pathlib import Path
-from identification.kept_code import kept_code
+from identification.runtime.kept_code import kept_code
 
 compiled = kept_code(Path(__file__).parent)
 

@@ -6,8 +6,8 @@ import time
 
 import pytest
 
-from identification import pool
-from identification.pool import (
+from identification.runtime import pool
+from identification.runtime.pool import (
     OutOfTime,
     each_part,
     end_if_given_up,

@@ -2,6 +2,7 @@
 
 import re
 import tomllib
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -25,6 +26,14 @@ def test_the_tree_shows_every_folder_and_none_that_is_not_there(package):
         shown.add(name if len(indent) == 6 else f"{above}/{name}")
     there = {p.parent.relative_to(ROOT / package) for p in (ROOT / package).rglob("__init__.py")}
     assert shown == {folder.as_posix() for folder in there} - {"."}
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_no_folder_has_more_than_20_files(package):
+    files = [p for p in (ROOT / package).rglob("*") if p.is_file() and "__pycache__" not in p.parts]
+    sizes = Counter(p.parent.relative_to(ROOT).as_posix() for p in files)
+    assert len(sizes) > 10
+    assert {folder: size for folder, size in sizes.items() if size > 20} == {}
 
 
 @pytest.mark.parametrize("package", PACKAGES)

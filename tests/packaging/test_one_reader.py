@@ -1,4 +1,4 @@
-"""Every file is read by `identification.files`, which waits for no pipe and has a bound."""
+"""Every file is read by `identification.storage.files`, which waits for no pipe and has a bound."""
 
 import ast
 from pathlib import Path
@@ -19,21 +19,21 @@ OURS = ("read_text", "read_bytes")
 WRITES = frozenset("wxa")
 ALLOWED = {
     "inca_mj/rendering/film.py: open": "a film that the program wrote just now",
-    "identification/files.py: fdopen": "the reader",
-    "identification/exchange.py: open": "a folder, to lock it",
-    "identification/files.py: open": "the reader; a file or folder, to bring it to the disk",
-    "identification/folders.py: copy2": "a file of the draft that the program wrote just now",
-    "identification/files.py: load": "the bytes that the reader has read",
+    "identification/storage/files.py: fdopen": "the reader",
+    "identification/storage/exchange.py: open": "a folder, to lock it",
+    "identification/storage/files.py: open": "the reader; a file or folder, to bring to the disk",
+    "identification/storage/folders.py: copy2": "a file that the program wrote just now",
+    "identification/storage/files.py: load": "the bytes that the reader has read",
     "identification/commands/streams.py: open": "the file that takes everything and holds nothing",
     "identification/commands/streams.py: fdopen": "the file that takes everything",
     "identification/native/cache_folder.py: open": "bounded, and no links or pipes either",
     "identification/native/cache_folder.py: fdopen": "bounded, and no links or pipes either",
-    "identification/kept_code.py: read_bytes": "the program's own files",
-    "identification/logs/csv_files.py: loadtxt": "lines that the reader has read",
-    "identification/logs/read_mat.py: load": "the bytes that another process wrote",
-    "identification/child.py: loadmat": "the bytes of its input",
-    "identification/effects/rows.py: from_file": "MuJoCo, after the reader has looked",
-    "identification/child.py: from_file": "MuJoCo, after the reader has looked",
+    "identification/runtime/kept_code.py: read_bytes": "the program's own files",
+    "identification/logs/formats/csv_files.py: loadtxt": "lines that the reader has read",
+    "identification/logs/formats/read_mat.py: load": "the bytes that another process wrote",
+    "identification/runtime/child.py: loadmat": "the bytes of its input",
+    "identification/effects/plant/rows.py: from_file": "MuJoCo, after the reader has looked",
+    "identification/runtime/child.py: from_file": "MuJoCo, after the reader has looked",
     "identification/sweep/store.py: read_table": "pyarrow, after the digest was read",
     "identification/sweep/store.py: dataset": "pyarrow, after the digest was read",
     "identification/sweep/store.py: open": "the lock and a folder, of which nothing is read",

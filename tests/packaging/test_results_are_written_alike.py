@@ -22,7 +22,7 @@ from identification import (
 )
 from identification.commands.cli import main
 from identification.robot import discovery, fitting
-from identification.shown import verdict_of
+from identification.storage.shown import verdict_of
 
 ROOT = Path(__file__).parents[2]
 LINE = [ELBOW / "elbow.toml", ELBOW / "first.csv", "--confirm", ELBOW / "second.csv"]

@@ -17,7 +17,7 @@ from page_text import text_of
 import identification
 import inca_mj
 from identification import discovery_text
-from identification.shown import Shown, verdict_of
+from identification.storage.shown import Shown, verdict_of
 
 ROOT = Path(__file__).parents[2]
 README, YOUR_ROBOT = ROOT / "README.md", ROOT / "docs" / "robot" / "index.md"

@@ -9,10 +9,10 @@ import pytest
 
 from identification.errors import InputError
 from identification.logs.sidecar import _KEYS, _TABLES, Sidecar, _values
-from identification.robot import alike
-from identification.robot.file import RobotFile
-from identification.robot.file_checks import EFFECTS_KEYS, KEYS, PARAMETER_KEYS, check_table
-from identification.robot.parameters import KNOWN
+from identification.robot.file import alike
+from identification.robot.file.file import RobotFile
+from identification.robot.file.file_checks import EFFECTS_KEYS, KEYS, PARAMETER_KEYS, check_table
+from identification.robot.file.parameters import KNOWN
 
 PAGE = (Path(__file__).parents[2] / "docs" / "robot" / "keys.md").read_text(encoding="utf-8")
 TYPES = {"text": str, "list": list, "number": (int, float), "whole number": int}

@@ -10,10 +10,10 @@ from records_cases import listed, nominal_model, records, roles, search, with_la
 from identification.discovery.candidates import list_common
 from identification.discovery.options import DiscoveryOptions
 from identification.prediction.discovery import WINDOWS
+from identification.prediction.fits.nominal_fit import fit_nominal
 from identification.prediction.moves import add_set
-from identification.prediction.nominal_fit import fit_nominal
-from identification.prediction.scores import condensed, window_scores
-from identification.prediction.set_choice import Choice, choose, find_members
+from identification.prediction.scoring.scores import condensed, window_scores
+from identification.prediction.selection.set_choice import Choice, choose, find_members
 from identification.prediction.task import RecordsTask
 
 NAMES = ("quadratic_friction", "hardening", "gravity_force", "offset", "stiffness", "encoder_scale")

@@ -11,7 +11,7 @@ from state_cases import F_C, Truth, measured, pendulum
 
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
-from identification.effects.joint_plant import candidates
+from identification.effects.plant.joint_plant import candidates
 from identification.prediction.discovery import discover_records
 from identification.prediction.moves.add_yielding_friction import _from_largest
 from identification.prediction.state import first_state

@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.stats import chi2
 
-from identification.prediction.first_fit import THIN, picks
-from identification.prediction.std import MIN_FREEDOM, degrees_of_freedom, told_std
+from identification.prediction.fits.std import MIN_FREEDOM, degrees_of_freedom, told_std
+from identification.prediction.scoring.first_fit import THIN, picks
 from identification.windows.blocks import MAX_BLOCKS_PER_RECORD, block_gains, count_blocks
 from identification.windows.problem import MIN_WINDOWS
 

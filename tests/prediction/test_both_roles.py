@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from identification.discovery.options import DiscoveryOptions
-from identification.prediction.trial import find_doubt, luck_of
+from identification.prediction.judging.trial import find_doubt, luck_of
 from identification.windows.comparison import compare, joined
 from identification.windows.unseen import Unseen
 

@@ -3,7 +3,7 @@
 import pytest
 from bump_cases import push, record, rise, rub, searched
 
-from identification.prediction.clocks import SHIFT, record_shifts, told_shifts
+from identification.prediction.verdict.clocks import SHIFT, record_shifts, told_shifts
 
 NAMES = (SHIFT, "curve_speed", "curve_load", "curve_position")
 LATE = 0.02  # [s]

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from identification.discovery.options import DiscoveryOptions
-from identification.prediction.doubts import doubts_of_names
-from identification.prediction.verdict import decide, largest_share
+from identification.prediction.verdict.doubts import doubts_of_names
+from identification.prediction.verdict.verdict import decide, largest_share
 
 LEFT = [SimpleNamespace(kind="remaining error")]
 

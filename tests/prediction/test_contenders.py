@@ -14,21 +14,12 @@ from identification.discovery.attempts import collected
 from identification.discovery.candidates import list_common
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate, Effect
-from identification.effects.joint_plant import candidates
+from identification.effects.plant.joint_plant import candidates
 from identification.effects.sizes import Shape, Size
 from identification.model.parameter import Parameter, ParameterSet
 from identification.model.predictor import Predictor
-from identification.prediction.contenders import (
-    count_numbers,
-    list_contenders,
-    list_limits,
-    refit_level,
-)
-from identification.prediction.evidence import compute_confidence, evidence
-from identification.prediction.scores import WindowScore
-from identification.prediction.selection import STRONG_BIC, _near_best, ranked
-from identification.prediction.simpler_laws import list_simpler, simpler_than
-from identification.prediction.trial import (
+from identification.prediction.judging.evidence import compute_confidence, evidence
+from identification.prediction.judging.trial import (
     LEVEL,
     TWINS,
     Contender,
@@ -36,6 +27,15 @@ from identification.prediction.trial import (
     find_twin,
     is_at_bound,
 )
+from identification.prediction.scoring.contenders import (
+    count_numbers,
+    list_contenders,
+    list_limits,
+    refit_level,
+)
+from identification.prediction.scoring.scores import WindowScore
+from identification.prediction.selection.selection import STRONG_BIC, _near_best, ranked
+from identification.prediction.selection.simpler_laws import list_simpler, simpler_than
 
 OPTIONS = DiscoveryOptions()
 

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from records_cases import HORIZON, nominal_model, records
 
 from identification.estimation.priors import Priors
-from identification.prediction.crossing import at_their_best, crossed
-from identification.prediction.nominal_fit import fit_nominal
+from identification.prediction.fits.crossing import at_their_best, crossed
+from identification.prediction.fits.nominal_fit import fit_nominal
 from identification.windows.fit import solve
 from identification.windows.held import HeldWindows
 from identification.windows.problem import best_of, no_moves, problem

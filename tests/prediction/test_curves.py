@@ -8,8 +8,8 @@ import pytest
 from records_cases import nominal_model, records, roles, search, with_law
 
 from identification.discovery.effect_results import Rival
-from identification.prediction.nominal_fit import fit_nominal
-from identification.prediction.recovery import recover_over_horizon
+from identification.prediction.fits.nominal_fit import fit_nominal
+from identification.prediction.verdict.recovery import recover_over_horizon
 
 CURVES = ("curve_speed", "curve_load", "curve_position")
 

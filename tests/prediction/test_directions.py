@@ -9,11 +9,11 @@ import pytest
 from identification import Log, Parameter
 from identification.discovery.candidates import list_common, list_single
 from identification.discovery.nominal_model import NominalModel
-from identification.effects.joint_plant import joint_plant
-from identification.prediction import columns as ways
-from identification.prediction.columns import columns
-from identification.prediction.forced import acts_on_joints
-from identification.prediction.nominal_fit import _priors, begin
+from identification.effects.plant.joint_plant import joint_plant
+from identification.prediction.fits.nominal_fit import _priors, begin
+from identification.prediction.scoring import columns as ways
+from identification.prediction.scoring.columns import columns
+from identification.prediction.scoring.forced import acts_on_joints
 from identification.windows.fit import WindowFit
 from identification.windows.problem import no_moves, problem
 from identification.windows.records import as_records

@@ -10,11 +10,11 @@ from records_cases import HORIZON, STEP, listed, nominal_model, records, roles
 from identification.discovery.options import DiscoveryOptions
 from identification.logs.parts import MEMORIES, inside
 from identification.prediction.discovery import WINDOWS
-from identification.prediction.exchange import exchanged
-from identification.prediction.nominal_fit import fit_alone, predicted
+from identification.prediction.fits.nominal_fit import fit_alone, predicted
+from identification.prediction.selection.exchange import exchanged
 from identification.prediction.task import RecordsTask
-from identification.prediction.verdict import conclude
-from identification.report.parts_words import is_untouched, parts_sentence, parts_to_json
+from identification.prediction.verdict.verdict import conclude
+from identification.report.words.parts import is_untouched, parts_sentence, parts_to_json
 from identification.windows import dividing
 from identification.windows.comparison import compare
 from identification.windows.dividing import divide_records, memory_of

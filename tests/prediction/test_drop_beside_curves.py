@@ -6,9 +6,9 @@ import pytest
 from arm_cases import LOG, text
 
 from identification.effects.effect import Candidate
-from identification.effects.joint_plant import candidates, joint_plant
+from identification.effects.plant.joint_plant import candidates, joint_plant
+from identification.prediction.judging.trial import Contender
 from identification.prediction.moves import drop_beside_curves
-from identification.prediction.trial import Contender
 from identification.windows.comparison import Prediction
 
 KNOWN = {e.name: e for e in candidates(joint_plant(text(0.002, "implicitfast"), (), LOG), ())}

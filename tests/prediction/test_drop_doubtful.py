@@ -8,9 +8,9 @@ from identification.discovery.effect_results import Neighbour
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import CURVE, Candidate, Effect
 from identification.effects.sizes import Size
+from identification.prediction.judging.trial import Contender
 from identification.prediction.moves import drop_doubtful
 from identification.prediction.task import RecordsTask, WindowSearch
-from identification.prediction.trial import Contender
 
 SIZES = (Size("c", "N", 1.0, 0.1, about=""),)
 N = "neighbour"

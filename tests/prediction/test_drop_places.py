@@ -11,23 +11,23 @@ from arm_cases import LOG, text
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate, Effect
-from identification.effects.joint_plant import candidates, joint_plant
+from identification.effects.plant.joint_plant import candidates, joint_plant
 from identification.effects.sizes import Size
 from identification.model.parameter import Parameter
 from identification.model.predictor import Predictor
-from identification.prediction import screening
 from identification.prediction.discovery import WINDOWS
-from identification.prediction.extension import with_effect
-from identification.prediction.first_fit import begin
+from identification.prediction.fits.nominal_fit import fit_nominal
+from identification.prediction.judging.extension import with_effect
+from identification.prediction.judging.trial import Contender
 from identification.prediction.moves.drop_places import drop_places
-from identification.prediction.nominal_fit import fit_nominal
-from identification.prediction.scores import WindowScore, window_scores
-from identification.prediction.screening import at_several, felt_places, places_of
+from identification.prediction.scoring import screening
+from identification.prediction.scoring.first_fit import begin
+from identification.prediction.scoring.scores import WindowScore, window_scores
+from identification.prediction.scoring.screening import at_several, felt_places, places_of
 from identification.prediction.task import RecordsTask
-from identification.prediction.trial import Contender
-from identification.prediction.verdict import conclude
-from identification.report.effect_words import describe_there
-from identification.report.named_words import curve_nodes
+from identification.prediction.verdict.verdict import conclude
+from identification.report.discovery.named_words import curve_nodes
+from identification.report.words.effects import describe_there
 from identification.windows.comparison import compare
 from identification.windows.records import as_records
 

@@ -11,17 +11,17 @@ from state_cases import COULOMB
 
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
-from identification.effects.joint_plant import joint_plant
+from identification.effects.plant.joint_plant import joint_plant
 from identification.model.predictor import Predictor
 from identification.model.protocol import FINER
 from identification.prediction.discovery import discover_records
-from identification.prediction.finer_steps import (
+from identification.prediction.selection.finer_steps import (
     MOVED,
     STEPS_SHARE,
     is_made_by_steps,
     is_of_steps,
 )
-from identification.report.discovery_report import discovery_text
+from identification.report.discovery.report import discovery_text
 
 LEVEL, NOISE = COULOMB.name, 1e-4
 FEW = ("coulomb_friction", "time_shift", "stribeck_friction", "sublinear_friction", "offset")

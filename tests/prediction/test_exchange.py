@@ -23,22 +23,22 @@ from records_cases import (
 from identification.discovery.findings.finding import FindingKind
 from identification.discovery.options import DiscoveryOptions
 from identification.model.predictor import Predictor
-from identification.prediction import remaining
 from identification.prediction.discovery import discover_records
-from identification.prediction.exchange import (
+from identification.prediction.fits.model import predict_fitted
+from identification.prediction.fits.nominal_fit import fit_nominal
+from identification.prediction.judging.judging import REFUTED
+from identification.prediction.judging.trial import Contender, find_doubt
+from identification.prediction.scoring.screening import score_all
+from identification.prediction.selection.exchange import (
     exchanged,
     is_contradicted,
     missing_chance_alone,
     with_both_roles,
     without_contradicted,
 )
-from identification.prediction.judging import REFUTED
-from identification.prediction.model import predict_fitted
-from identification.prediction.nominal_fit import fit_nominal
-from identification.prediction.remaining import needed_input_error
-from identification.prediction.screening import score_all
-from identification.prediction.selection import refit_contenders
-from identification.prediction.trial import Contender, find_doubt
+from identification.prediction.selection.selection import refit_contenders
+from identification.prediction.verdict import remaining
+from identification.prediction.verdict.remaining import needed_input_error
 from identification.windows.comparison import compare
 from identification.windows.fit import solve
 from identification.windows.problem import with_scale

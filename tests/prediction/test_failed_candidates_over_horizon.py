@@ -15,21 +15,17 @@ from records_cases import listed, nominal_model, records
 
 from identification.discovery.options import DiscoveryOptions
 from identification.errors import InputError
-from identification.prediction import (
-    columns,
-    crossing,
-    exchange,
-    extension,
-    forced,
-    selection,
-    state,
-)
+from identification.prediction import state
 from identification.prediction.discovery import WINDOWS
+from identification.prediction.fits import crossing
+from identification.prediction.judging import extension
 from identification.prediction.moves import add_effect
+from identification.prediction.scoring import columns, forced
+from identification.prediction.selection import exchange, selection
 from identification.prediction.task import RecordsTask
-from identification.prediction.verdict import conclude
-from identification.report.discovery_json import discovery_to_json
-from identification.report.discovery_report import DiscoveryFiles, discovery_text
+from identification.prediction.verdict.verdict import conclude
+from identification.report.discovery.json import discovery_to_json
+from identification.report.discovery.report import DiscoveryFiles, discovery_text
 from identification.windows.records import as_records
 
 SIZE, NAME, WHERE = "quadratic_friction.c@hinge", "quadratic_friction", "joint hinge"

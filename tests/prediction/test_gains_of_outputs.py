@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from identification.discovery.options import DiscoveryOptions
-from identification.prediction.evidence import all_gains, compute_confidence, evidence
-from identification.prediction.trial import compared, find_doubt
+from identification.prediction.judging.evidence import all_gains, compute_confidence, evidence
+from identification.prediction.judging.trial import compared, find_doubt
 from identification.windows.blocks import count_blocks
 from identification.windows.unseen import Unseen
 

@@ -11,7 +11,7 @@ from plain_logs import plain_log
 
 from identification.discovery.nominal_model import NominalModel
 from identification.effects.axes import axes
-from identification.effects.joint_plant import candidates, joint_plant
+from identification.effects.plant.joint_plant import candidates, joint_plant
 from identification.model.parameter import Parameter
 from identification.prediction.discovery import discover_records
 

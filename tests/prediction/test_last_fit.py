@@ -7,7 +7,7 @@ import pytest
 from records_cases import FREE, HORIZON, nominal_model, records, roles, search
 
 from identification.discovery.nominal_model import NominalModel
-from identification.prediction.nominal_fit import fit_nominal
+from identification.prediction.fits.nominal_fit import fit_nominal
 
 HIDDEN, SIZE = "hardening.k_3@hinge", 0.2
 KNOWN = np.array([0.3, 0.3])  # of what is free, far from which the truth lies: 2e-3 of 1.5e-3

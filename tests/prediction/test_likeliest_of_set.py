@@ -8,10 +8,10 @@ from records_cases import listed, nominal_model, records
 
 from identification.discovery.options import DiscoveryOptions
 from identification.prediction.discovery import WINDOWS
-from identification.prediction.judging import judged
+from identification.prediction.judging.judging import judged
+from identification.prediction.judging.odds import find_odds
 from identification.prediction.moves.add_set import with_one
 from identification.prediction.moves.likeliest_of_set import likeliest_of_set
-from identification.prediction.odds import find_odds
 from identification.prediction.task import RecordsTask
 from identification.windows.records import as_records
 

@@ -5,8 +5,8 @@ import pytest
 from bump_cases import AT, SIZE, WIDTH, push, record, rise, rub, searched
 
 from identification.chances import mean_above_zero
-from identification.prediction import needed_force
-from identification.prediction.needed_force import _chance, fine_forces
+from identification.prediction.verdict import needed_force
+from identification.prediction.verdict.needed_force import _chance, fine_forces
 
 
 def found(seed=1, model=None, **how):

@@ -15,10 +15,14 @@ from identification.discovery.options import DiscoveryOptions
 from identification.effects.axes import Axis
 from identification.effects.catalogue import joint_effects
 from identification.effects.effect import Candidate
-from identification.effects.joint_plant import candidates
-from identification.prediction.judging import judged
+from identification.effects.plant.joint_plant import candidates
+from identification.prediction.fits.nominal_fit import fit_nominal
+from identification.prediction.judging.judging import judged
 from identification.prediction.moves.curve_for_laws import curve_for_laws
-from identification.prediction.neighbours import (
+from identification.prediction.scoring.screening import score_all
+from identification.prediction.state import first_state
+from identification.prediction.task import RecordsTask
+from identification.prediction.verdict.neighbours import (
     MOST_OF_BOTH,
     Explained,
     _may_be_of,
@@ -27,11 +31,7 @@ from identification.prediction.neighbours import (
     has_neighbours_name,
     share_a_joint,
 )
-from identification.prediction.nominal_fit import fit_nominal
-from identification.prediction.screening import score_all
-from identification.prediction.state import first_state
-from identification.prediction.task import RecordsTask
-from identification.prediction.yardstick import measure
+from identification.prediction.verdict.yardstick import measure
 
 LAWS = ("hardening", "stiffness", "offset")
 EFFECTS = [e for e in candidates(pendulum(), FREE) if e.is_curve or e.name in LAWS]

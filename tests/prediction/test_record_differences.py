@@ -13,21 +13,21 @@ from identification.discovery.findings.finding import FindingKind
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate, in_each_record
 from identification.prediction.discovery import WINDOWS, discover_records
-from identification.prediction.edges import without_edges
-from identification.prediction.judging import judged
+from identification.prediction.judging.judging import judged
+from identification.prediction.judging.odds import find_odds
 from identification.prediction.moves.add_set import with_one
 from identification.prediction.moves.likeliest_of_set import (
     is_alike,
     laws_of_records,
     likeliest_of_set,
 )
-from identification.prediction.odds import find_odds
-from identification.prediction.scores import WindowScore
-from identification.prediction.screening import at_several, felt_places
-from identification.prediction.selection import STRONG_BIC, ranked
+from identification.prediction.scoring.scores import WindowScore
+from identification.prediction.scoring.screening import at_several, felt_places
+from identification.prediction.selection.edges import without_edges
+from identification.prediction.selection.selection import STRONG_BIC, ranked
 from identification.prediction.task import RecordsTask
-from identification.report.discovery_json import discovery_to_json
-from identification.report.discovery_report import discovery_text
+from identification.report.discovery.json import discovery_to_json
+from identification.report.discovery.report import discovery_text
 from identification.windows.records import as_records
 
 FEW = ("offset", "stiffness", "encoder_offset")

@@ -8,12 +8,13 @@ from types import SimpleNamespace
 import pytest
 from records_cases import listed, nominal_model, pendulum, record, records, search
 
-from identification import pool
 from identification.errors import InputError
-from identification.prediction import selection, verdict
 from identification.prediction.discovery import discover_records
-from identification.report.discovery_json import discovery_to_json
-from identification.report.discovery_report import discovery_text
+from identification.prediction.selection import selection
+from identification.prediction.verdict import verdict
+from identification.report.discovery.json import discovery_to_json
+from identification.report.discovery.report import discovery_text
+from identification.runtime import pool
 
 SAMPLES = 300  # of each record
 MU = "transmitted_load_friction.mu@hinge"

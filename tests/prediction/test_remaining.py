@@ -8,8 +8,8 @@ import pytest
 from identification.discovery.findings.finding import FindingKind
 from identification.discovery.findings.records_evidence import ShiftedRecord
 from identification.discovery.options import DiscoveryOptions
-from identification.prediction import remaining
-from identification.prediction.trial import CONTRADICTED, OWN_SHARE, find_rivals
+from identification.prediction.judging.trial import CONTRADICTED, OWN_SHARE, find_rivals
+from identification.prediction.verdict import remaining
 
 OPTIONS = DiscoveryOptions()
 LEAST = 1 + OPTIONS.min_gap_share  # rms over the noise beyond which something is left

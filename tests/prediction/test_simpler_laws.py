@@ -9,11 +9,11 @@ from records_cases import FREE, listed, nominal_model, records, roles, with_law
 
 from identification.discovery.candidates import list_common
 from identification.discovery.options import DiscoveryOptions
-from identification.prediction import simpler_laws as module
-from identification.prediction.extension import at_values_of
-from identification.prediction.nominal_fit import fit_nominal
-from identification.prediction.scores import window_scores
-from identification.prediction.simpler_laws import is_dear, likelier, simpler_laws
+from identification.prediction.fits.nominal_fit import fit_nominal
+from identification.prediction.judging.extension import at_values_of
+from identification.prediction.scoring.scores import window_scores
+from identification.prediction.selection import simpler_laws as module
+from identification.prediction.selection.simpler_laws import is_dear, likelier, simpler_laws
 
 SIZE = "hardening.k_3@hinge"
 STIFF = 0.2  # of a spring that hardens [N m/rad³], for which the fit without it makes up

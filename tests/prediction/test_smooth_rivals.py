@@ -16,14 +16,14 @@ from identification.discovery.candidates import list_common
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate, places
-from identification.effects.joint_plant import candidates, joint_plant
-from identification.prediction import selection, smooth_rivals
+from identification.effects.plant.joint_plant import candidates, joint_plant
 from identification.prediction.moves.add_curve import add_curve
 from identification.prediction.moves.add_effect import add_effect
-from identification.prediction.scores import window_scores
-from identification.prediction.screening import at_several, single_places
-from identification.prediction.selection import refit_contenders
-from identification.prediction.smooth_rivals import (
+from identification.prediction.scoring.scores import window_scores
+from identification.prediction.scoring.screening import at_several, single_places
+from identification.prediction.selection import selection, smooth_rivals
+from identification.prediction.selection.selection import refit_contenders
+from identification.prediction.selection.smooth_rivals import (
     does_as_much,
     is_smooth_force,
     without_imitated,

@@ -14,13 +14,13 @@ from identification import Parameter
 from identification.discovery.candidates import list_common
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
-from identification.effects.joint_plant import candidates, joint_plant
-from identification.effects.joint_states import JointState
+from identification.effects.plant.joint_plant import candidates, joint_plant
+from identification.effects.plant.joint_states import JointState
 from identification.prediction.discovery import discover_records
-from identification.prediction.joint_states import model_for, widened
-from identification.prediction.nominal_fit import fit_nominal
-from identification.prediction.scores import window_scores
-from identification.prediction.screening import score_all
+from identification.prediction.fits.nominal_fit import fit_nominal
+from identification.prediction.scoring.joint_states import model_for, widened
+from identification.prediction.scoring.scores import window_scores
+from identification.prediction.scoring.screening import score_all
 from identification.windows.records import as_records
 
 FREE = ("J", "d", COULOMB.name)

@@ -9,8 +9,8 @@ import pytest
 
 from identification import Log, fit
 from identification.model.protocol import FINER
-from identification.prediction.std import step_shift, told_std
-from identification.robot.file import read_robot_file
+from identification.prediction.fits.std import step_shift, told_std
+from identification.robot.file.file import read_robot_file
 from identification.robot.robot import robot_of
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "elbow"

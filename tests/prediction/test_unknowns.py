@@ -12,12 +12,12 @@ from identification.discovery.candidates import list_common
 from identification.discovery.options import DiscoveryOptions
 from identification.estimation.priors import Priors
 from identification.model.coordinates import Coordinates
-from identification.prediction.clocks import record_shifts, told_shifts
-from identification.prediction.extension import with_effect
-from identification.prediction.first_fit import begin
-from identification.prediction.nominal_fit import fit_nominal
-from identification.prediction.scores import window_scores
+from identification.prediction.fits.nominal_fit import fit_nominal
+from identification.prediction.judging.extension import with_effect
+from identification.prediction.scoring.first_fit import begin
+from identification.prediction.scoring.scores import window_scores
 from identification.prediction.task import RecordsTask
+from identification.prediction.verdict.clocks import record_shifts, told_shifts
 from identification.windows.records import as_records
 from identification.windows.unknowns import Unknowns
 

@@ -9,14 +9,14 @@ from arm_cases import LOG, text
 
 from identification.discovery.nominal_model import NominalModel
 from identification.effects.effect import Candidate
-from identification.effects.joint_plant import candidates, joint_plant
+from identification.effects.plant.joint_plant import candidates, joint_plant
 from identification.model.parameter import Parameter
 from identification.model.predictor import Predictor
-from identification.prediction.extension import with_effect
-from identification.prediction.first_fit import begin
-from identification.prediction.nominal_fit import fit_nominal
-from identification.prediction.scores import window_scores
-from identification.prediction.yardstick import measure
+from identification.prediction.fits.nominal_fit import fit_nominal
+from identification.prediction.judging.extension import with_effect
+from identification.prediction.scoring.first_fit import begin
+from identification.prediction.scoring.scores import window_scores
+from identification.prediction.verdict.yardstick import measure
 from identification.windows.point import linearised
 from identification.windows.problem import with_scale
 from identification.windows.records import as_records

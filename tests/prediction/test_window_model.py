@@ -18,9 +18,9 @@ from records_cases import (
 )
 
 from identification.discovery.candidates import list_common
-from identification.prediction.nominal_fit import fit_nominal
-from identification.prediction.scores import find_imitated, window_scores
-from identification.prediction.screening import has_what_it_needs
+from identification.prediction.fits.nominal_fit import fit_nominal
+from identification.prediction.scoring.scores import find_imitated, window_scores
+from identification.prediction.scoring.screening import has_what_it_needs
 from identification.windows import point
 from identification.windows.comparison import compare
 from identification.windows.records import as_records

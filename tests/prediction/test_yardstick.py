@@ -9,15 +9,15 @@ from scipy.optimize import lsq_linear
 
 from identification.discovery.candidates import list_common
 from identification.discovery.options import DiscoveryOptions
-from identification.effects.joint_plant import candidates
-from identification.prediction.neighbours import (
+from identification.effects.plant.joint_plant import candidates
+from identification.prediction.fits.nominal_fit import fit_nominal
+from identification.prediction.scoring.scores import condensed, window_scores
+from identification.prediction.verdict.neighbours import (
     Explained,
     find_smooth_neighbour,
     has_neighbours_name,
 )
-from identification.prediction.nominal_fit import fit_nominal
-from identification.prediction.scores import condensed, window_scores
-from identification.prediction.yardstick import Yardstick, measure
+from identification.prediction.verdict.yardstick import Yardstick, measure
 
 EFFECTS = candidates(pendulum(), FREE)
 

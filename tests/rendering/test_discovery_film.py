@@ -11,7 +11,7 @@ from PIL import Image
 from statics_cases import ROBOT
 
 from identification.errors import InputError
-from identification.progress import duration
+from identification.runtime.progress import duration
 from inca_mj.commands.film import FIRST, FilmProgress
 from inca_mj.commands.filmed import FILMED, film_discovery, filmed_seconds
 from inca_mj.rendering.workspace_picture import workspace_picture

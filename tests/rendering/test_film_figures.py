@@ -7,9 +7,9 @@ import pytest
 from PIL import Image
 
 from identification.errors import InputError
-from identification.report.media import svg
-from identification.report.page import Section, Table, write_report
-from identification.report.style import save_png
+from identification.report.page.media import svg
+from identification.report.page.page import Section, Table, write_report
+from identification.report.page.style import save_png
 from inca_mj.rendering.legend import SLACK, tension_scale
 from inca_mj.report.figures import crosscheck_figure, simulation_figures
 

@@ -6,7 +6,7 @@ import pytest
 from PIL import Image
 
 from identification.errors import InputError
-from identification.report.style import MEASURED
+from identification.report.page.style import MEASURED
 from inca_mj.rendering.film import film, stills
 from inca_mj.rendering.ghost import ghost_difference, ghost_positions
 from inca_mj.rendering.legend import tension_scale

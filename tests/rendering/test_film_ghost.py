@@ -12,7 +12,7 @@ from PIL import Image, ImageChops, ImageDraw, ImageFilter
 from scipy.spatial.transform import Rotation
 
 from identification.errors import InputError
-from identification.report.style import MEASURED
+from identification.report.page.style import MEASURED
 from inca_mj.kinematics import stiff
 from inca_mj.kinematics.cables import cables_at
 from inca_mj.kinematics.forward import find

@@ -8,9 +8,9 @@ from arm_cases import LOG
 
 from identification import read_robot
 from identification.effects.effect import Candidate
-from identification.effects.joint_plant import candidates, joint_plant
+from identification.effects.plant.joint_plant import candidates, joint_plant
 from identification.quantities import quantity
-from identification.report.effect_words import ADDED_TO, _already, describe_sizes
+from identification.report.words.effects import ADDED_TO, _already, describe_sizes
 
 MODEL = """<mujoco><option integrator="RK4"/><worldbody><body name="arm">
   <joint name="swing" axis="0 1 0" damping="0.05" {numbers}/>

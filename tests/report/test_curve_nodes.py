@@ -9,7 +9,7 @@ from joint_cases import arm, reached, seen, share, slider
 
 from identification.effects.effect import Candidate
 from identification.quantities import quantity
-from identification.report.named_words import curve_nodes, curve_top, node_lines
+from identification.report.discovery.named_words import curve_nodes, curve_top, node_lines
 
 C = (1.0, -2.0, 3.0, -4.0, 5.0, -6.0, 7.0, -8.0)
 FIELD = {"speed": "v", "load": "f_u", "position": "q", "time": "time",

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from records_cases import FREE, KNOWN, pendulum, record
 
 from identification.discovery.nominal_model import NominalModel
-from identification.prediction.nominal_fit import fit_nominal
-from identification.report.value_words import FAR, departure_sentences
+from identification.prediction.fits.nominal_fit import fit_nominal
+from identification.report.words.values import FAR, departure_sentences
 from identification.windows.records import as_records
 
 moved = st.dictionaries(

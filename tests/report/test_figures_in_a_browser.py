@@ -8,7 +8,7 @@ import subprocess
 import pytest
 from matplotlib.figure import Figure
 
-from identification.report.page import Section, Table, write_report
+from identification.report.page.page import Section, Table, write_report
 
 NAMES = ("chromium", "chromium-browser", "google-chrome")
 BROWSER = next(filter(None, map(shutil.which, NAMES)), None)

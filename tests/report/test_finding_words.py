@@ -7,14 +7,14 @@ import pytest
 from finding_cases import EVIDENCE_OF
 
 from identification.discovery.findings.finding import Finding, FindingKind
-from identification.report.effect_words import SCATTERS, doubt_words
-from identification.report.finding_words import (
+from identification.report.discovery.finding_words import (
     FOLLOWED,
     HOLDS,
     REGRESSORS,
     describe_finding,
     sentence,
 )
+from identification.report.words.effects import SCATTERS, doubt_words
 
 
 @pytest.mark.parametrize("kind", FindingKind)

@@ -8,9 +8,9 @@ import pytest
 from elbow_cases import fitted
 
 from identification.quantities import quantity
-from identification.report.fit_headline import fit_headline
-from identification.report.fit_verdict import ABOVE, answer_sentence
-from identification.report.page import Section, Table, write_report
+from identification.report.fit.headline import fit_headline
+from identification.report.fit.verdict import ABOVE, answer_sentence
+from identification.report.page.page import Section, Table, write_report
 
 
 def plain(words):

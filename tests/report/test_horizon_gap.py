@@ -8,13 +8,13 @@ from fake_discovery import found as free_run
 from gap_cases import LEVEL, named, unknown
 from records_cases import HORIZON
 
-from identification.report import needed_forces
-from identification.report.discovery_json import discovery_to_json
-from identification.report.discovery_report import discovery_headline, discovery_text
-from identification.report.discovery_verdict import discovery_verdict
-from identification.report.horizon_gap import APART, WORST, find_gap
-from identification.report.horizon_section import NO_FORCE, horizon_sections
-from identification.report.parts_words import records_words, unseen_of
+from identification.report.discovery import needed_forces
+from identification.report.discovery.horizon_gap import APART, WORST, find_gap
+from identification.report.discovery.horizon_section import NO_FORCE, horizon_sections
+from identification.report.discovery.json import discovery_to_json
+from identification.report.discovery.report import discovery_headline, discovery_text
+from identification.report.discovery.verdict import discovery_verdict
+from identification.report.words.parts import records_words, unseen_of
 
 
 def test_errors_are_those_that_the_discovery_tells():

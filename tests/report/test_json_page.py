@@ -11,7 +11,7 @@ from finding_cases import FINDINGS
 
 from identification import write_log
 from identification.discovery.findings.finding import FindingKind
-from identification.report.discovery_json import finding_to_json
+from identification.report.discovery.json import finding_to_json
 from inca_mj.cli import main
 from inca_mj.robot.inputs import make_input
 from inca_mj.twin.logs import run_to_log

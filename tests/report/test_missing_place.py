@@ -12,14 +12,19 @@ from robot_cases import TOML
 
 from identification import read_robot, write_log
 from identification.discovery.missing_forces import MissingForce
-from identification.report.discovery_verdict import discovery_verdict
-from identification.report.horizon_gap import find_gap
-from identification.report.missing_place import MissingPlace, find_place, force_line, place_of
-from identification.report.named_words import Nodes
-from identification.report.needed_forces import NeededForce
-from identification.report.own_stub import own_stub
-from identification.robot import discovery_files
-from identification.robot.discovery_files import STUB, RobotDiscoveryFiles
+from identification.report.discovery.horizon_gap import find_gap
+from identification.report.discovery.missing_place import (
+    MissingPlace,
+    find_place,
+    force_line,
+    place_of,
+)
+from identification.report.discovery.named_words import Nodes
+from identification.report.discovery.needed_forces import NeededForce
+from identification.report.discovery.own_stub import own_stub
+from identification.report.discovery.verdict import discovery_verdict
+from identification.robot.results import discovery_files
+from identification.robot.results.discovery_files import STUB, RobotDiscoveryFiles
 
 
 def needed(force, std, depends_on="position", reads="position of hinge", unit="rad", ends=0.7):

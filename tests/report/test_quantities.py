@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from identification.estimation.scaling_symmetry import ScalingSymmetry
 from identification.quantities import HELD, alike, held, matched, quantity
-from identification.report.untold_words import untold
+from identification.report.fit.untold_words import untold
 
 NAN, INF = float("nan"), float("inf")
 VALUES = st.floats(-1e9, 1e9) | st.floats(-1e-3, 1e-3) | st.just(-0.0)

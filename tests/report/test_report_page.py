@@ -12,11 +12,11 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from identification.report import media
-from identification.report.discovery_report import DiscoveryFiles
-from identification.report.media import drawing, svg
-from identification.report.page import Section, whole_quantities, write_report
-from identification.report.style import SERIES, save_png
+from identification.report.discovery.report import DiscoveryFiles
+from identification.report.page import media
+from identification.report.page.media import drawing, svg
+from identification.report.page.page import Section, whole_quantities, write_report
+from identification.report.page.style import SERIES, save_png
 
 SVG = "{http://www.w3.org/2000/svg}"
 

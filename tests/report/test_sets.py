@@ -7,10 +7,10 @@ from elbow_cases import elbow
 from fake_discovery import found
 
 from identification import read_robot
-from identification.report.discovery_report import discovery_headline
-from identification.report.discovery_verdict import discovery_verdict
-from identification.report.named_words import confidence_of_set, likely_rivals
-from identification.robot.discovery_files import RobotDiscoveryFiles
+from identification.report.discovery.named_words import confidence_of_set, likely_rivals
+from identification.report.discovery.report import discovery_headline
+from identification.report.discovery.verdict import discovery_verdict
+from identification.robot.results.discovery_files import RobotDiscoveryFiles
 
 
 def odds(own, *others, several=False, unexplained=False):

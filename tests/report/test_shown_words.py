@@ -9,10 +9,10 @@ from fake_discovery import fit
 from identification.discovery.effect_results import Detectable
 from identification.effects.effect import Candidate, Effect
 from identification.effects.sizes import Size
-from identification.report.fitted_values import FEW as FEW_PARTS
-from identification.report.fitted_values import shown_values, unknown_shares
-from identification.report.shown_words import shown_effects
-from identification.report.value_words import parameter_words
+from identification.report.discovery.shown_words import shown_effects
+from identification.report.fit.fitted_values import FEW as FEW_PARTS
+from identification.report.fit.fitted_values import shown_values, unknown_shares
+from identification.report.words.values import parameter_words
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.robot.spread import with_spread
 

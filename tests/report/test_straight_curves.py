@@ -10,10 +10,9 @@ from gap_cases import named, unknown
 from records_cases import MJCF, listed, pendulum
 
 from identification.effects.effect import Candidate
-from identification.report.discovery_verdict import discovery_verdict
-from identification.report.named_words import Nodes, curve_nodes
-from identification.report.needed_forces import NeededForce
-from identification.report.straight_curves import (
+from identification.report.discovery.named_words import Nodes, curve_nodes
+from identification.report.discovery.needed_forces import NeededForce
+from identification.report.discovery.straight_curves import (
     STRAIGHT,
     find_line,
     limit_of_named,
@@ -21,6 +20,7 @@ from identification.report.straight_curves import (
     line_words,
     lines_needed,
 )
+from identification.report.discovery.verdict import discovery_verdict
 
 AT = np.array([-1, -0.5625, -0.25, -0.0625, 0.0625, 0.25, 0.5625, 1.0])
 STD = np.full(8, 0.01)
@@ -121,7 +121,7 @@ def test_a_force_that_is_needed_is_told_as_a_gain_where_it_is_a_line(monkeypatch
     nodes = Nodes("hinge", "load", "force of the drives of hinge", "N m", AT)
     line = NeededForce(nodes, -0.3 * AT[None], STD[None], "N m", 0.5, 1e-6)
     two = NeededForce(nodes, -0.3 * np.stack([AT, AT**3]), np.stack([STD, STD]), "N m", 0.4, 1e-6)
-    from identification.report import straight_curves
+    from identification.report.discovery import straight_curves
 
     class Gap:
         needed = SimpleNamespace(forces=(line, two))  # one that differs by direction is no line

@@ -8,7 +8,7 @@ import pytest
 from page_text import text_of
 
 from identification.estimation.estimation import Options
-from identification.report.page import write_report
+from identification.report.page.page import write_report
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.thesis.prints import FITS, TABLES
 from inca_mj.thesis.report import thesis_sections, thesis_verdict

@@ -6,8 +6,8 @@ import numpy as np
 from joint_cases import arm
 
 from identification.effects.effect import Candidate, effect_parameters
-from identification.effects.state_effects import joint_elasticity
-from identification.report.fitted_values import matters, value_table
+from identification.effects.laws.state_effects import joint_elasticity
+from identification.report.fit.fitted_values import matters, value_table
 
 
 def test_where_an_encoder_sits_is_no_fitted_value():

@@ -9,10 +9,10 @@ from fake_discovery import NOISE, REJECTED, found
 
 from identification.discovery.findings.finding import Finding, FindingKind
 from identification.discovery.findings.records_evidence import UnprovenEffect
-from identification.report.discovery_report import discovery_text
-from identification.report.discovery_verdict import _any_forces, discovery_verdict
-from identification.report.effect_words import describe_effect, describe_rejected, describe_sizes
-from identification.report.named_words import nearest_law
+from identification.report.discovery.named_words import nearest_law
+from identification.report.discovery.report import discovery_text
+from identification.report.discovery.verdict import _any_forces, discovery_verdict
+from identification.report.words.effects import describe_effect, describe_rejected, describe_sizes
 
 
 @pytest.mark.parametrize(

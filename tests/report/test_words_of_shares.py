@@ -7,7 +7,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from identification.quantities import quantity
-from identification.report.shown_words import sized
+from identification.report.discovery.shown_words import sized
 from identification.shares import change, decimal, fall_words, percent, ratio_of, times
 
 EXPONENT = re.compile(r"\de[-+]?\d")

@@ -13,7 +13,7 @@ from identification import InputError, ParameterSet, Predictor, read_robot, writ
 from identification.discovery.options import DiscoveryOptions
 from identification.innovations.fit import fit_with_effects
 from identification.model.plant import ModelPlant
-from identification.robot.file import read_robot_file
+from identification.robot.file.file import read_robot_file
 
 pytestmark = pytest.mark.usefixtures("few_effects")
 AXES = ("left", "middle", "right")

@@ -9,7 +9,7 @@ from elbow_cases import ELBOW
 
 from identification import fit, read_robot
 from identification.errors import InputError
-from identification.robot.carried import digest
+from identification.robot.file.carried import digest
 
 pytestmark = pytest.mark.usefixtures("few_effects")
 

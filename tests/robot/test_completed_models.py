@@ -10,7 +10,7 @@ from robot_cases import TOML
 from touching_cases import simulated
 
 from identification import fit, read_robot, write_log
-from identification.robot.model_file import unit_of
+from identification.robot.file.model_file import unit_of
 
 pytestmark = pytest.mark.usefixtures("few_effects")
 MESH = '<{0}><geometry><mesh filename="package://none/{1}.stl"/></geometry></{0}>'

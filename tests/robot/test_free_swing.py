@@ -13,7 +13,7 @@ from records_cases import MJCF, pendulum, record
 from identification import fit, joint_plant, read_robot, write_log
 from identification.__main__ import main
 from identification.errors import InputError
-from identification.report.fit_verdict import fit_verdict
+from identification.report.fit.verdict import fit_verdict
 from identification.robot.free_swing import impossible_sentence
 
 DOUBLE = """<mujoco model="double"><option timestep="0.005" integrator="RK4"/>

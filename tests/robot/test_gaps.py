@@ -13,8 +13,8 @@ from robot_cases import TOML as TOML_PUBLISHER
 from robot_cases import simulated
 
 from identification import InputError, Predictor, fit, read_robot, write_log
-from identification.logs.decimation import decimate
-from identification.report.figures import windows_figure
+from identification.logs.stamps.decimation import decimate
+from identification.report.page.figures import windows_figure
 from identification.windows.windows import windows
 
 pytestmark = pytest.mark.usefixtures("few_effects")

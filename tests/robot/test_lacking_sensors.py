@@ -8,7 +8,7 @@ from robot_cases import run
 from touching_cases import simulated
 
 from identification import fit, read_robot
-from identification.robot.file import read_robot_file
+from identification.robot.file.file import read_robot_file
 from identification.robot.robot import read_robot_log
 
 pytestmark = pytest.mark.usefixtures("few_effects")

@@ -10,11 +10,11 @@ from joint_cases import SLIDER
 from robot_cases import write_slider
 
 from identification import InputError, read_robot
-from identification import child as child_process
-from identification.effects.rows import read_model
-from identification.files import is_file
+from identification.effects.plant.rows import read_model
 from identification.model import hostile
 from identification.model.hostile import refuse_hostile
+from identification.runtime import child as child_process
+from identification.storage.files import is_file
 
 SMALL = '<geom size="0.01" contype="0" conaffinity="0" mass="0"/>'
 LARGE = {
@@ -39,7 +39,7 @@ def compiled_by_another(monkeypatch):
     """What another process was asked to compile."""
     asked = []
     monkeypatch.setattr(
-        "identification.effects.rows.refuse_endless",
+        "identification.effects.plant.rows.refuse_endless",
         lambda source, where, amount: asked.append((source, where)),
     )
     return asked

@@ -7,10 +7,10 @@ import pytest
 from identification import fit, read_robot
 from identification.logs.poses import Pose, angles, with_angles
 from identification.logs.table import Table
-from identification.robot.file import RobotFile, read_robot_file
-from identification.robot.measured_base import with_measured_base
+from identification.robot.file.file import RobotFile, read_robot_file
+from identification.robot.file.measured_base import with_measured_base
+from identification.robot.results.write import write_robot
 from identification.robot.robot import read_robot_log
-from identification.robot.write import write_robot
 
 pytestmark = pytest.mark.usefixtures("few_effects")
 

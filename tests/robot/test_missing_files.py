@@ -6,8 +6,8 @@ import pytest
 from touching_cases import make_robot, simulated
 
 from identification import read_robot
-from identification.effects.rows import read_model, read_told_model
-from identification.robot.model_file import robot_spec
+from identification.effects.plant.rows import read_model, read_told_model
+from identification.robot.file.model_file import robot_spec
 
 ARM = """<mujoco><compiler meshdir="meshes" texturedir="pictures"/>{option}
 <default><default class="visual"><geom type="mesh" contype="0" conaffinity="0" group="2" mass="0"/>

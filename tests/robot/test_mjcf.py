@@ -13,7 +13,7 @@ from identification.effects.catalogue import all_effects
 from identification.model.predictor import Predictor
 from identification.model.tied import value_of
 from identification.robot import robot as made
-from identification.robot.mjcf import write_mjcf
+from identification.robot.results.mjcf import write_mjcf
 
 # degrees, a mesh in a folder of its own, and a body without a name
 DEGREES = LIFTING.replace(

@@ -9,7 +9,7 @@ import scipy.optimize
 
 from identification.refusals.balance import solve_bounded
 from identification.refusals.forces import inertial_force, point_force, weights
-from identification.torques.bodies import follow_bodies
+from identification.torques.equations.bodies import follow_bodies
 
 ARM = """
 <mujoco>

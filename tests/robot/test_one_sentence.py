@@ -7,8 +7,8 @@ from robot_cases import write_slider
 from identification import InputError, read_robot
 from identification.effects.effect import Effect, places
 from identification.effects.sizes import Size
-from identification.robot.file import read_robot_file
-from identification.robot.write import write_robot
+from identification.robot.file.file import read_robot_file
+from identification.robot.results.write import write_robot
 
 pytestmark = pytest.mark.usefixtures("few_effects")
 

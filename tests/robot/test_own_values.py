@@ -12,8 +12,8 @@ from state_cases import ELASTIC, Truth, elastic
 from state_cases import measured as measured_states
 
 from identification import confirm, fit, read_robot, write_log, write_robot
-from identification.robot.file import read_robot_file
-from identification.robot.fit_files import robot_fit_to_json
+from identification.robot.file.file import read_robot_file
+from identification.robot.results.fit_files import robot_fit_to_json
 
 
 @pytest.fixture

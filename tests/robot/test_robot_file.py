@@ -8,9 +8,9 @@ from robot_cases import NAMES, TOML, refused, run
 from identification import InputError, discover, read_log, read_robot
 from identification.__main__ import main
 from identification.commands.common import Output
-from identification.robot.file import read_robot_file
+from identification.robot.file.file import read_robot_file
+from identification.robot.results.write import write_robot
 from identification.robot.robot import read_robot_log, robot_of
-from identification.robot.write import write_robot
 
 
 def test_what_the_file_leaves_out_comes_from_the_model_and_the_log(folder):

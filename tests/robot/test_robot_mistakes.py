@@ -7,7 +7,7 @@ from joint_cases import SLIDER
 from robot_cases import TOML, refused, simulated
 
 from identification import write_log
-from identification.robot.file import read_robot_file
+from identification.robot.file.file import read_robot_file
 from identification.robot.robot import read_robot_log
 
 

@@ -11,8 +11,8 @@ from torque_cases import planar, planar_record
 from identification import read_robot
 from identification.effects.effect import Candidate
 from identification.errors import InputError
-from identification.prediction.screening import AND, at_several
-from identification.report.opinion_words import AGAINST, opinion_sentences
+from identification.prediction.scoring.screening import AND, at_several
+from identification.report.torques.opinion_words import AGAINST, opinion_sentences
 from identification.robot import second_opinion
 from identification.robot.second_opinion import ask_torques, opinions, with_torques
 from identification.robot.suggestions import suggest

@@ -8,7 +8,7 @@ import pytest
 
 from identification import fit, inspect_log, read_robot
 from identification.inspection.beginning import write_beginning
-from identification.robot.file import read_robot_file
+from identification.robot.file.file import read_robot_file
 from identification.robot.robot import read_robot_log
 
 pytestmark = pytest.mark.usefixtures("few_effects")

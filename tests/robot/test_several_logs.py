@@ -13,8 +13,8 @@ from robot_cases import refused, run
 from identification import fit, read_robot
 from identification.__main__ import main
 from identification.logs.joined import REPLAYED, replayed_share
-from identification.robot.file import read_robot_file
-from identification.robot.fit_files import robot_fit_to_json
+from identification.robot.file.file import read_robot_file
+from identification.robot.results.fit_files import robot_fit_to_json
 
 pytestmark = pytest.mark.usefixtures("few_effects")
 

@@ -11,9 +11,9 @@ from pendulum_robot import TOML as TOML_CLIPPED
 from robot_cases import TOML
 
 from identification import confirm, fit, read_robot, write_log
-from identification.effects.rows import read_model
+from identification.effects.plant.rows import read_model
+from identification.robot.file.start import measured_begin
 from identification.robot.reading import doubtful
-from identification.robot.start import measured_begin
 
 pytestmark = pytest.mark.usefixtures("few_effects")
 

@@ -9,7 +9,7 @@ import pytest
 from joint_cases import SLIDER, STEP, run, slider, slider_log, steps
 
 from identification import InputError, read_robot
-from identification.robot.file import RobotFile
+from identification.robot.file.file import RobotFile
 from identification.robot.robot import robot_of
 from identification.robot.step_error import refuse_coarse_steps, step_error
 

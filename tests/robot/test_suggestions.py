@@ -10,8 +10,8 @@ from torque_cases import TOML, planar_record, planar_robot
 
 from identification.discovery.candidates import list_common
 from identification.discovery.options import DiscoveryOptions
-from identification.prediction import selection
 from identification.prediction.discovery import discover_records
+from identification.prediction.selection import selection
 from identification.robot.second_opinion import ask_torques
 from identification.robot.suggestions import suggest
 

@@ -9,8 +9,8 @@ from servo_logs import DRAWN, LIFTING, LYING, goals, servo_log
 from tracked_cases import robot
 
 from identification import fit, read_robot, write_log
-from identification.robot.fit_files import robot_fit_to_json
-from identification.robot.unexplained import find_unexplained
+from identification.robot.results.fit_files import robot_fit_to_json
+from identification.robot.results.unexplained import find_unexplained
 
 pytestmark = pytest.mark.usefixtures("few_effects")
 

@@ -10,10 +10,10 @@ from unlike_cases import MODEL, NOISE, TOML, TRUE, write_robot_and_logs
 
 from identification import InputError, discover, fit, read_robot
 from identification.estimation.metrics import relative
-from identification.prediction.record_errors import error_of_all, errors_by_unit
-from identification.report.fit_verdict import fit_verdict
-from identification.robot.fit_files import worse_unit
-from identification.robot.record_error import AS_WRITTEN, FITTED, Confirmation
+from identification.prediction.fits.record_errors import error_of_all, errors_by_unit
+from identification.report.fit.verdict import fit_verdict
+from identification.robot.results.fit_files import worse_unit
+from identification.robot.results.record_error import AS_WRITTEN, FITTED, Confirmation
 
 pytestmark = pytest.mark.usefixtures("few_effects")
 

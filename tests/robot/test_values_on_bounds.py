@@ -17,8 +17,8 @@ from identification import fit, read_robot, write_log
 from identification.effects.moving_bodies import Felt
 from identification.model.coordinates import coordinates
 from identification.model.parameter import Parameter, ParameterSet
-from identification.robot.fit_files import robot_fit_to_json
-from identification.robot.write import write_robot
+from identification.robot.results.fit_files import robot_fit_to_json
+from identification.robot.results.write import write_robot
 
 pytestmark = pytest.mark.usefixtures("few_effects")
 

@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 from torque_cases import TREE, planar
 
-from identification.torques.base import all_columns, find_base, read_inertia
-from identification.torques.bodies import regressor
-from identification.torques.consistency import find_inconsistent
+from identification.torques.equations.base import all_columns, find_base, read_inertia
+from identification.torques.equations.bodies import regressor
+from identification.torques.equations.consistency import find_inconsistent
 
 PENDULUM = """
 <mujoco><worldbody><body name="rod"><joint name="hinge" axis="0 1 0" armature="0.01"/>

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 from bump_cases import MJCF, SMALL, cart, push, record, rub
 
-from identification.effects.joint_plant import candidates
-from identification.report.torque_words import torque_verdict
+from identification.effects.plant.joint_plant import candidates
+from identification.report.torques.words import torque_verdict
 from identification.torques.evidence import find_evidence
 from identification.torques.fits import CLOCK
 from identification.torques.scores import FAR

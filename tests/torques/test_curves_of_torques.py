@@ -5,8 +5,8 @@ import pytest
 from torque_cases import planar_record, planar_robot
 
 from identification import fit_torques
-from identification.native.joint_callback import Joint
-from identification.report.torque_report import torque_sections
+from identification.native.joints.joint_callback import Joint
+from identification.report.torques.report import torque_sections
 from identification.torques.laws import CURVES, Missing, _along_curve
 from identification.torques.scores import Score
 

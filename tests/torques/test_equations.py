@@ -7,13 +7,13 @@ import pytest
 from numba import njit
 from torque_cases import planar_record, planar_robot
 
-from identification.torques.base import find_base
 from identification.torques.candidates import list_missing
-from identification.torques.equations import Equations, estimate, unseen_squares
+from identification.torques.equations.base import find_base
+from identification.torques.equations.equations import Equations, estimate, unseen_squares
+from identification.torques.equations.others import Others
+from identification.torques.equations.rows import make_rows
 from identification.torques.fits import base_fit, model_fit
 from identification.torques.laws import along
-from identification.torques.others import Others
-from identification.torques.rows import make_rows
 from identification.torques.scores import rank
 
 NV, P, W = 2, 3, np.array([2.0, 0.5])
@@ -101,7 +101,7 @@ def candidates(robot, equations):
 
 
 def test_laws_on_arrays_are_those_at_each_state(robot, equations):
-    from identification.native.joint_callback import Joint
+    from identification.native.joints.joint_callback import Joint
 
     rng = np.random.default_rng(3)
     arrays = [rng.normal(size=8) for _ in range(5)]
@@ -123,7 +123,7 @@ def rubbing(s, p):
 
 
 def test_laws_may_call_functions_of_single_numbers():
-    from identification.native.joint_callback import Joint
+    from identification.native.joints.joint_callback import Joint
 
     q, v = np.random.default_rng(4).normal(size=(2, 8))
     rest = (0.0,) * 3 + (0.1, 0.5, 2.0, 3.0, 20.0)

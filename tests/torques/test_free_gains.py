@@ -6,7 +6,7 @@ from torque_cases import TOML, planar_record, planar_robot
 
 from identification import Log, fit_torques, read_robot
 from identification.robot.torques import free_numbers
-from identification.torques.others import Others
+from identification.torques.equations.others import Others
 
 GAIN = "actuator/t2.gear[0]"
 FREE = (

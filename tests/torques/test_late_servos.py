@@ -10,8 +10,8 @@ import pytest
 
 from identification import InputError, Log, fit_torques, read_robot
 from identification.refusals.wiring import refuse_unbalanced
-from identification.torques.drives import input_at
-from identification.torques.rows import make_rows
+from identification.torques.equations.drives import input_at
+from identification.torques.equations.rows import make_rows
 
 ARM = """
 <mujoco><compiler angle="radian"/><option timestep="0.002" integrator="implicitfast"/><worldbody>

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from identification.torques.smoothing import choose_band, low_pass, smooth
+from identification.torques.equations.smoothing import choose_band, low_pass, smooth
 
 H = 0.01
 T = np.arange(0, 20, H)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from identification.torques.consistency import nearest_body
+from identification.torques.equations.consistency import nearest_body
 
 
 @pytest.mark.parametrize(("inertia", "nearest"), [(0.02, 0.02), (0.01, 0.01), (-0.01, 0.0)])

@@ -8,12 +8,12 @@ from torque_cases import planar_record, planar_robot
 
 from identification import fit_torques
 from identification.torques.candidates import list_missing
-from identification.torques.equations import Columns, Equations
+from identification.torques.equations.equations import Columns, Equations
+from identification.torques.equations.others import Others
+from identification.torques.equations.rows import make_rows
 from identification.torques.fits import extended, model_fit
 from identification.torques.laws import Missing
 from identification.torques.neighbours import curves_beside
-from identification.torques.others import Others
-from identification.torques.rows import make_rows
 from identification.torques.scores import rank
 from identification.torques.shapes import explained_by, refined
 

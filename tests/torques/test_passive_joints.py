@@ -7,12 +7,12 @@ from plain_logs import model_log
 
 from identification import fit_torques, read_robot
 from identification.robot.torques import _plain
-from identification.torques.base import find_base
-from identification.torques.equations import Equations, list_passive
+from identification.torques.equations.base import find_base
+from identification.torques.equations.equations import Equations, list_passive
+from identification.torques.equations.others import Others
+from identification.torques.equations.rows import make_rows
 from identification.torques.fits import base_fit
-from identification.torques.others import Others
 from identification.torques.passive import with_expected_motion
-from identification.torques.rows import make_rows
 
 STEP, EVERY, LASTS = 0.001, 10, 15.0
 TRUE = {"first": 1.15, "pole": 0.26, "d": 0.007}

@@ -10,10 +10,10 @@ from torque_cases import TOML, planar, planar_record, planar_robot
 
 from identification import fit_torques
 from identification.__main__ import main
-from identification.logs.csv_files import write_log
-from identification.report.torque_words import centre_words
+from identification.logs.formats.csv_files import write_log
+from identification.report.torques.words import centre_words
 from identification.robot.torques import free_numbers
-from identification.torques.others import Others
+from identification.torques.equations.others import Others
 
 LOAD = 0.7
 

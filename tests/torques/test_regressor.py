@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from torque_cases import TREE, planar, planar_record
 
-from identification.torques.bodies import list_bodies, read_numbers, regressor
-from identification.torques.rows import make_rows, refuse_unfit
+from identification.torques.equations.bodies import list_bodies, read_numbers, regressor
+from identification.torques.equations.rows import make_rows, refuse_unfit
 
 MODEL = mujoco.MjModel.from_xml_string(TREE)
 

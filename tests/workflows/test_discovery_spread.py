@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from as_built_cases import COMMON, NOISE, SPREAD, log_as_built, robot_as_built
 
-from identification.report.discovery_json import discovery_to_json
+from identification.report.discovery.json import discovery_to_json
 from inca_mj.effects.catalogue import CATALOGUE
 from inca_mj.robot.inputs import prbs
 from inca_mj.robot.parameters import parameter_set

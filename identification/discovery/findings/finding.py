@@ -1,7 +1,7 @@
 """Findings: where a model fails and what it leaves unexplained, each a kind and its evidence.
 
-The verdict of a discovery depends on kinds and numbers only; `identification.report.finding_words`
-puts findings into sentences.
+The verdict of a discovery depends on kinds and numbers only;
+`identification.report.discovery.finding_words` puts findings into sentences.
 """
 
 from __future__ import annotations

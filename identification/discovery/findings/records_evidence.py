@@ -36,7 +36,7 @@ class UnprovenEffect:
     where: str  # its place
     fall: float  # relative fall of the unseen mean square, at the horizon
     t: float  # of its gain over blocks there
-    doubt: str  # what is against it, a word of `identification.prediction.trial.Doubt`
+    doubt: str  # what is against it, a word of `identification.prediction.judging.trial.Doubt`
     luck: float = nan  # see `RejectedEffect.luck`
 
 

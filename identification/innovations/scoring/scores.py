@@ -43,7 +43,7 @@ from identification.innovations.scoring.projection import (
 from identification.innovations.scoring.sensitivities import Sensitivity
 from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.refit import Refit
-from identification.pool import one_blas_thread, run_parts, split
+from identification.runtime.pool import one_blas_thread, run_parts, split
 
 MIN_SCORE_SAMPLES = 10  # of a block of fitted samples
 MAX_COLUMNS, MAX_COLUMN_BYTES = 96, 2**24  # that are projected at once

@@ -14,14 +14,14 @@ import numpy as np
 
 from identification.discovery.attempts import attempt, refuse_infinite
 from identification.effects.effect import Candidate
-from identification.heap import release
 from identification.kalman.linear import Linearisation, linearise_records
 from identification.kalman.point import EQUATION_STEP_SHARE, Point, do_equations_hold
 from identification.kalman.sensitivity_equations import ALWAYS, Courses, solve_sensitivities
 from identification.kalman.trajectory import FINE_POINTS
 from identification.model.predictor import Predictor
-from identification.pool import each_part
-from identification.progress import counted
+from identification.runtime.heap import release
+from identification.runtime.pool import each_part
+from identification.runtime.progress import counted
 
 LONG_AGO = 1e6  # before a record [s], later than any ramp lasts
 MAX_BATCH_COLUMNS = 64  # that are computed at once, which bounds the memory of their trajectories

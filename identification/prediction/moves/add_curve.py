@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from identification.prediction.moves.add_effect import add_effect
 from identification.prediction.task import WindowSearch
-from identification.progress import Progress
+from identification.runtime.progress import Progress
 
 
 def add_curve(state: WindowSearch, progress: Progress) -> WindowSearch:

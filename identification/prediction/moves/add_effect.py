@@ -1,9 +1,9 @@
 """The effect that explains most is added, where unseen records prove it.
 
 It must also hold where the fitted and the unseen records exchange their roles
-(`identification.prediction.exchange`), and be simulated with steps that its own error allows. Where
-the steps themselves may make it (`identification.prediction.finer_steps`), it is asked again with
-finer ones.
+(`identification.prediction.selection.exchange`), and be simulated with steps that its own error
+allows. Where the steps themselves may make it (`identification.prediction.selection.finer_steps`),
+it is asked again with finer ones.
 """
 
 from __future__ import annotations
@@ -15,26 +15,26 @@ from functools import partial
 from identification.discovery.attempts import attempt
 from identification.discovery.moves import Watch
 from identification.discovery.passes import uses
-from identification.prediction.edges import without_edges
-from identification.prediction.exchange import (
+from identification.prediction.fits.model import WindowModel
+from identification.prediction.judging.extension import weighed, with_fitting_steps
+from identification.prediction.judging.trial import Contender, find_rivals
+from identification.prediction.scoring.screening import score_all
+from identification.prediction.selection.edges import without_edges
+from identification.prediction.selection.exchange import (
     exchanged,
     missing_chance_alone,
     with_both_roles,
     without_contradicted,
 )
-from identification.prediction.extension import weighed, with_fitting_steps
-from identification.prediction.finer_steps import (
+from identification.prediction.selection.finer_steps import (
     at_finer_steps,
     is_made_by_steps,
     is_of_steps,
 )
-from identification.prediction.model import WindowModel
-from identification.prediction.screening import score_all
-from identification.prediction.selection import first_not_imitated, refit_contenders
+from identification.prediction.selection.selection import first_not_imitated, refit_contenders
 from identification.prediction.task import WindowSearch
-from identification.prediction.trial import Contender, find_rivals
-from identification.progress import Progress
 from identification.quantities import quantity
+from identification.runtime.progress import Progress
 from identification.windows.coarse import steps_of
 
 

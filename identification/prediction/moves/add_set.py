@@ -5,7 +5,7 @@ too little to be told from chance, and the first that is accepted may stand for 
 
 chosen    by what they explain of fitted windows together, and again about the refitted model, until
           the set stays the same: far from the truth a linear choice errs, and most of laws with
-          states of joints, which are left out      (`identification.prediction.set_choice`)
+          states of joints, which are left out    (`identification.prediction.selection.set_choice`)
 in place  each is the best of what was refitted in its place, beside the others
 proven    each beside the others, and all together; the weakest that is not is left out
 whole     in the place of effects that were found one by one, little is left with it: several laws
@@ -23,20 +23,29 @@ from identification.discovery.moves import Watch
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.passes import uses
 from identification.effects.effect import Candidate
-from identification.prediction.contenders import list_starts
-from identification.prediction.evidence import all_gains, count_windows, evidence
-from identification.prediction.extension import refitted, weighed, with_effect
-from identification.prediction.first_fit import begin
-from identification.prediction.model import WindowModel
-from identification.prediction.remaining import MAX_OUTPUT_RATIO, is_much_left, output_ratios
-from identification.prediction.scores import window_scores
-from identification.prediction.screening import score_all
-from identification.prediction.set_choice import Choice, choose, find_members
-from identification.prediction.set_members import Key, Place, each_at_its_best, with_rivals
-from identification.prediction.set_proof import proven_members
+from identification.prediction.fits.model import WindowModel
+from identification.prediction.judging.evidence import all_gains, count_windows, evidence
+from identification.prediction.judging.extension import refitted, weighed, with_effect
+from identification.prediction.judging.trial import compared, find_doubt
+from identification.prediction.scoring.contenders import list_starts
+from identification.prediction.scoring.first_fit import begin
+from identification.prediction.scoring.scores import window_scores
+from identification.prediction.scoring.screening import score_all
+from identification.prediction.selection.set_choice import Choice, choose, find_members
+from identification.prediction.selection.set_members import (
+    Key,
+    Place,
+    each_at_its_best,
+    with_rivals,
+)
+from identification.prediction.selection.set_proof import proven_members
 from identification.prediction.task import WindowSearch
-from identification.prediction.trial import compared, find_doubt
-from identification.progress import Progress
+from identification.prediction.verdict.remaining import (
+    MAX_OUTPUT_RATIO,
+    is_much_left,
+    output_ratios,
+)
+from identification.runtime.progress import Progress
 
 MAX_CHOICES = 3  # of a set, each about the model with the one before
 # Of what a set is expected to leave, over what counts as little. A judgement: a linear choice errs,

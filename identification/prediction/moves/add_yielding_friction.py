@@ -25,14 +25,14 @@ import numpy as np
 from identification.discovery.attempts import attempt
 from identification.discovery.moves import Watch
 from identification.discovery.passes import uses
-from identification.prediction.contenders import is_significant, refit_level
-from identification.prediction.first_fit import Begun, begin, picks, thinned_tangents
-from identification.prediction.model import WindowModel
+from identification.prediction.fits.model import WindowModel
 from identification.prediction.moves.add_effect import add_effect
-from identification.prediction.remaining import is_much_left
-from identification.prediction.scores import WindowScore
+from identification.prediction.scoring.contenders import is_significant, refit_level
+from identification.prediction.scoring.first_fit import Begun, begin, picks, thinned_tangents
+from identification.prediction.scoring.scores import WindowScore
 from identification.prediction.task import WindowSearch
-from identification.progress import Progress
+from identification.prediction.verdict.remaining import is_much_left
+from identification.runtime.progress import Progress
 
 GRIP = "grip"  # the state of a joint whose friction gives
 MAX_PLACES = 3  # at which it is fitted, those of the best scores

@@ -6,8 +6,9 @@ acts from a speed on, that of a friction which grows with the square of the spee
 fitted in the place of all laws at the joint, and their cause is unlisted where it
 
     has more evidence for it than several laws have, with the price of its many numbers, or
-    is proven, where a single law has a neighbour's name (`identification.prediction.neighbours`),
-    and unseen records do not prove that the law predicts better.
+    is proven, where a single law has a neighbour's name
+    (`identification.prediction.verdict.neighbours`), and unseen records do not prove that the law
+    predicts better.
 
 That a curve predicts better than a single law is no reason by itself: no law is exact on a real
 robot, and a curve also draws what lies beside the law. Laws that are there have the evidence of
@@ -24,22 +25,22 @@ from functools import partial
 
 from identification.discovery.attempts import attempt
 from identification.discovery.options import DiscoveryOptions
-from identification.prediction.contenders import count_numbers
-from identification.prediction.evidence import all_gains, count_windows, evidence
-from identification.prediction.extension import refitted
-from identification.prediction.forced import acts_on_joints
-from identification.prediction.model import WindowModel
-from identification.prediction.neighbours import (
+from identification.prediction.fits.model import WindowModel
+from identification.prediction.judging.evidence import all_gains, count_windows, evidence
+from identification.prediction.judging.extension import refitted
+from identification.prediction.judging.trial import Contender, compared, find_doubt
+from identification.prediction.scoring.contenders import count_numbers
+from identification.prediction.scoring.forced import acts_on_joints
+from identification.prediction.scoring.screening import places_of, score_all
+from identification.prediction.selection.selection import refit_contenders
+from identification.prediction.task import Change, WindowSearch
+from identification.prediction.verdict.neighbours import (
     explained_by,
     find_neighbour,
     has_neighbours_name,
 )
-from identification.prediction.screening import places_of, score_all
-from identification.prediction.selection import refit_contenders
-from identification.prediction.task import Change, WindowSearch
-from identification.prediction.trial import Contender, compared, find_doubt
-from identification.prediction.yardstick import measure
-from identification.progress import Progress
+from identification.prediction.verdict.yardstick import measure
+from identification.runtime.progress import Progress
 
 
 def curve_for_laws(state: WindowSearch, progress: Progress) -> Change:

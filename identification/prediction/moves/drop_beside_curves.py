@@ -11,11 +11,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from identification.prediction.extension import refitted
-from identification.prediction.neighbours import share_a_joint
+from identification.prediction.judging.extension import refitted
+from identification.prediction.judging.trial import Contender
 from identification.prediction.task import Change, WindowSearch
-from identification.prediction.trial import Contender
-from identification.progress import Progress
+from identification.prediction.verdict.neighbours import share_a_joint
+from identification.runtime.progress import Progress
 
 
 def drop_beside_curves(state: WindowSearch, progress: Progress) -> Change:

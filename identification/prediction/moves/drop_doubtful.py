@@ -2,8 +2,8 @@
 
 On a real robot no law is exact. The first law found may be the right name of most of what is
 missing, and those found later may be neighbours' names of what it leaves. So effects against which
-something speaks (`identification.prediction.doubts`) are taken out, and the others are fitted
-again. What the model then lacks is told as what is left.
+something speaks (`identification.prediction.verdict.doubts`) are taken out, and the others are
+fitted again. What the model then lacks is told as what is left.
 
 Each name is judged in the model that has all effects, because what else is missing would speak
 against it in a smaller one. There an effect in doubt counts as what is beside a law, where it may
@@ -26,15 +26,20 @@ from identification.discovery.attempts import attempt
 from identification.discovery.effect_results import NamedEffect
 from identification.discovery.moves import Watch
 from identification.discovery.passes import uses
-from identification.prediction.doubts import doubts_of_names, forbidden_of, laws_of, names_of
-from identification.prediction.extension import refitted
-from identification.prediction.neighbours import has_neighbours_name, neighbour_of
-from identification.prediction.remaining import is_off
-from identification.prediction.screening import score_all
-from identification.prediction.set_members import Key
+from identification.prediction.judging.extension import refitted
+from identification.prediction.judging.trial import Contender
+from identification.prediction.scoring.screening import score_all
+from identification.prediction.selection.set_members import Key
 from identification.prediction.task import WindowSearch
-from identification.prediction.trial import Contender
-from identification.progress import Progress
+from identification.prediction.verdict.doubts import (
+    doubts_of_names,
+    forbidden_of,
+    laws_of,
+    names_of,
+)
+from identification.prediction.verdict.neighbours import has_neighbours_name, neighbour_of
+from identification.prediction.verdict.remaining import is_off
+from identification.runtime.progress import Progress
 
 # Least share of a law beside a surer one, of what it and smooth forces of its joint explain. Of
 # worlds without exact laws whose answers were kept, 10 of 14 laws that were not there had less, and

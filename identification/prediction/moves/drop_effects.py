@@ -11,12 +11,12 @@ from collections.abc import Sequence
 from identification.discovery.moves import drop_needless
 from identification.discovery.passes import uses
 from identification.effects.effect import Candidate
-from identification.prediction.crossing import at_their_best
-from identification.prediction.extension import refitted
-from identification.prediction.model import WindowModel
+from identification.prediction.fits.crossing import at_their_best
+from identification.prediction.fits.model import WindowModel
+from identification.prediction.judging.extension import refitted
+from identification.prediction.judging.trial import Contender, Doubt, compared, find_doubt
 from identification.prediction.task import Change, RecordsTask, WindowSearch
-from identification.prediction.trial import Contender, Doubt, compared, find_doubt
-from identification.progress import Progress
+from identification.runtime.progress import Progress
 
 NEEDLESS: tuple[Doubt, ...] = ("chance", "little")  # others make up for it
 

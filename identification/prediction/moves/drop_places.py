@@ -11,11 +11,11 @@ from dataclasses import replace
 
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate
-from identification.prediction.model import WindowModel
+from identification.prediction.fits.model import WindowModel
 from identification.prediction.moves.drop_effects import as_good_without
-from identification.prediction.screening import at_places, is_felt, places_of
+from identification.prediction.scoring.screening import at_places, is_felt, places_of
 from identification.prediction.task import Change, WindowSearch
-from identification.progress import Progress
+from identification.runtime.progress import Progress
 
 
 def drop_places(state: WindowSearch, progress: Progress) -> Change:

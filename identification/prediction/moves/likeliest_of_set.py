@@ -23,20 +23,20 @@ import numpy as np
 from identification.discovery.candidates import list_common, list_single
 from identification.discovery.passes import uses
 from identification.effects.effect import BY_RECORD, Candidate, Effect
-from identification.prediction.crossing import at_all_lengths
-from identification.prediction.evidence import compute_confidence
-from identification.prediction.extension import refitted
-from identification.prediction.judging import judged
-from identification.prediction.model import WindowModel
+from identification.prediction.fits.crossing import at_all_lengths
+from identification.prediction.fits.model import WindowModel
+from identification.prediction.judging.evidence import compute_confidence
+from identification.prediction.judging.extension import refitted
+from identification.prediction.judging.judging import judged
+from identification.prediction.judging.odds import LATE, find_odds
+from identification.prediction.judging.trial import Contender, evidences, is_rival
 from identification.prediction.moves.add_set import with_one
-from identification.prediction.odds import LATE, find_odds
-from identification.prediction.selection import ranked
-from identification.prediction.simpler_laws import is_simpler
-from identification.prediction.smooth_rivals import without_imitated
+from identification.prediction.selection.selection import ranked
+from identification.prediction.selection.simpler_laws import is_simpler
+from identification.prediction.selection.smooth_rivals import without_imitated
 from identification.prediction.task import Change, WindowSearch
-from identification.prediction.told_effects import fitted_sizes
-from identification.prediction.trial import Contender, evidences, is_rival
-from identification.progress import Progress
+from identification.prediction.verdict.told_effects import fitted_sizes
+from identification.runtime.progress import Progress
 
 ALIKE = 3.0  # std by which values of two records may be apart and yet be one
 

@@ -1,0 +1,1 @@
+"""Forces that a model lacks, recovered along a trajectory: by laws, curves and smooth forces."""

@@ -1,0 +1,1 @@
+"""The laws and records of effects, by what they act on: joints, inputs, sensors, bodies."""

@@ -1,0 +1,1 @@
+"""Time stamps of a log, and the even grid on which its rows are put."""

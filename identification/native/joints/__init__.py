@@ -1,0 +1,1 @@
+"""Laws of joints as machine code: what a joint's effects see, friction, gears, states."""

@@ -1,0 +1,1 @@
+"""Models fitted to windows of several records, their std and their errors."""

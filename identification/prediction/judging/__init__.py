@@ -1,0 +1,1 @@
+"""Refits with another effect, and their proof by unseen records."""

@@ -1,0 +1,1 @@
+"""Scores of candidates: how much of the windows' residual each would explain."""

@@ -1,0 +1,1 @@
+"""The choice of the next effect, or set of effects, among its rivals."""

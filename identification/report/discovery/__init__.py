@@ -1,0 +1,1 @@
+"""The report of a discovery: verdict, sections, figures, and its JSON."""

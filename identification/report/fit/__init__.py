@@ -1,0 +1,1 @@
+"""The report of a fit: verdict, headline, values, and its JSON."""

@@ -1,0 +1,301 @@
+"""The meaning of a fit, in sentences that say what to do next."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import isnan, nan
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from identification.estimation.fit import Fit
+from identification.estimation.identifiability import in_words
+from identification.estimation.metrics import output_units, relative
+from identification.model.protocol import FINER
+from identification.quantities import held, quantity
+from identification.report.fit.fitted_values import first_few, matters, std_sentence, step_sentences
+from identification.report.fit.untold_words import (
+    WEAK,
+    bound_sentences,
+    cure,
+    identifiable_sentences,
+    scale_of_forces,
+    too_weak,
+    weak_sentences,
+)
+from identification.report.words.errors import describe_scale, error_words, times_words
+from identification.report.words.parts import records_words
+from identification.shares import change
+
+if TYPE_CHECKING:  # both are slow to import
+    from identification.prediction.records_fit import RecordsFit
+    from identification.windows.window_estimate import WindowEstimate
+
+# A residual above this multiple of the noise floor is more than noise; the floor itself is an upper
+# bound of the noise that errs by a few percent.
+ABOVE = 1.2
+HOLDS = 1.2  # a fit holds on unseen data up to this multiple of the residual that is expected there
+GROWN = 10.0  # a free run that errs by more than this multiple of the fitted residual has diverged
+LEVEL = 0.01  # significance of the tests of the residual: one false alarm in a hundred
+CONVERGED = {True: "The search converged.", False: "The search ran out of iterations."}
+
+
+def error_over_noise(fit: Fit | RecordsFit) -> float:
+    """Returns the error on unseen data over the sensors' noise; NaN where the noise is not known.
+
+    A free run strays on unseen data by small errors of its values: there the fitted data count,
+    unless what was fitted does not hold.
+    """
+    if isinstance(fit, Fit):
+        floor = fit.floor_by_unit
+        errors = fit.rms_by_unit if _holds(fit) else fit.validation_rms_by_unit or {}
+    else:
+        floor, errors = fit.noise_by_unit, fit.unseen_by_unit
+    return relative(errors, floor) if all(floor.values()) else nan
+
+
+def _holds(fit: Fit) -> bool:
+    """Returns whether no unseen data contradict what was fitted along a free run."""
+    there, expected = fit.validation_rms_by_unit, fit.validation_expected_by_unit
+    return not (there and expected) or relative(there, expected) < HOLDS
+
+
+def judged_on(fit: Fit | RecordsFit) -> str:
+    """Returns of which data the error is by which a fit is judged."""
+    if isinstance(fit, Fit):
+        return "the fitted data" if _holds(fit) else "unseen data"
+    return f"unseen data ({_names(fit, 'confirm')})"
+
+
+def _names(fit: RecordsFit, role: str) -> str:
+    return records_words([r.log.name for r in fit.records if r.role == role])
+
+
+def answer_sentence(fit: Fit | RecordsFit, is_better: bool = True) -> str:
+    """Returns in one sentence whether the model explains the log.
+
+    Args:
+        fit: that has ended.
+        is_better: whether unseen data do not speak for the values with which it began.
+    """
+    ratio = error_over_noise(fit)
+    if isnan(ratio):
+        return "Whether the model explains the log is not known: the log shows no sensor noise."
+    of_what = f"its error on {judged_on(fit)} is {held(ratio)} times the noise of the sensors"
+    if not ratio <= ABOVE:
+        return (
+            f"Something is missing from the model, or a column is not what it expects: {of_what};"
+            " discover looks for what is missing."
+        )
+    if not is_better:
+        return f"The log does not show that anything is missing: {of_what}."
+    return f"The model with the fitted values explains the log: {of_what}."
+
+
+def fit_verdict(fit: Fit | RecordsFit) -> list[str]:
+    """Returns sentences: did the search converge, what is known, is it enough, is it confirmed."""
+    if not isinstance(fit, Fit):
+        return _of_records(fit)
+    if fit.stopped:  # a search that was stopped says nothing of the model
+        return search_sentences(fit)
+    return [
+        *search_sentences(fit), *identifiable_sentences(fit), *_enough(fit), *_steps(fit),
+        *_unseen(fit),
+    ]  # fmt: skip
+
+
+def _of_records(fit: RecordsFit) -> list[str]:
+    model, floor, rms = fit.model, fit.noise_by_unit, fit.rms_by_unit
+    # positive parameters of which the windows tell too little
+    rows = zip(fit.values.items(), fit.std, model.fit.problem.prior.space.logarithmic, strict=True)
+    weak = [n for (n, v), std, positive in rows if positive and std > WEAK * abs(v)]
+    said = [
+        *_worse(fit),  # first, because nothing else matters then
+        CONVERGED[fit.converged],
+        *filter(None, [std_sentence(model)]),
+        *bound_sentences(model.plant.parameters, model.at_bound),
+        *_blind(fit),
+        *([f"{too_weak(weak, 'windows')} {cure(weak)}"] if weak else []),
+        *_unknown_std(fit),
+        _left_by_windows(_count_windows(fit), fit.horizon, rms, floor, _names(fit, "fit")),
+    ]
+    scale = describe_scale(output_units(fit.records[0].log), model.scale)
+    return [*said, *scale, *step_sentences(model)]
+
+
+def window_sentences(found: WindowEstimate, floor: float, unit: str) -> list[str]:
+    """Returns sentences on a search over windows; `floor` is the rms of the noise [unit]."""
+    bound = [n for n, at in zip(found.values, found.at_bound, strict=True) if at]
+    said = [CONVERGED[found.converged], *bound_sentences((), bound)]
+    if unknown := [n for n, u in zip(found.values, found.found.undetermined, strict=True) if u]:
+        said.append(
+            f"The windows do not tell {' and '.join(unknown)}; fix one, or take longer windows."
+        )
+    left = _left_by_windows(len(found.residual), found.length, {unit: found.rms}, {unit: floor})
+    return [*said, *weak_sentences(found), left]
+
+
+def search_sentences(fit: Fit) -> list[str]:
+    """Returns sentences on how the search of a free run ended."""
+    said = {
+        "converged": CONVERGED[True],
+        "iterations": "The search ran out of iterations; start nearer, or allow more.",
+        "stopped": "The search was stopped; these are the best values it had seen.",
+    }[fit.estimate.status]
+    bound = [n for n, at in zip(fit.found.names, fit.at_bound, strict=True) if at]
+    return [said, *bound_sentences(fit.estimate.predictor.plant.parameters, bound)]
+
+
+def coloured_outputs(fit: Fit) -> int:
+    """Returns how many outputs' residuals are not white."""
+    return int((fit.tests.white < LEVEL / len(fit.tests.white)).sum())
+
+
+def _steps(fit: Fit) -> list[str]:
+    """Returns a sentence on what a finer step would change, where this is most of the std."""
+    plant = fit.estimate.predictor.plant
+    own, units = float(plant.model.opt.timestep), {p.name: p.unit for p in plant.parameters}
+    moves = dict(zip(fit.estimate.space.names, fit.step_shift.tolist(), strict=True))
+    told = [
+        f"{name} by {moves[name]:+z.2g}"
+        for name in fit.far
+        if matters(moves[name], fit.values[name], units[name], own)
+    ]
+    if not told:
+        return []
+    step = own / FINER
+    return [
+        f"A quarter of the model's step, {quantity(step, unit='s')}, would move"
+        f" {first_few(told, '; ')}. The std include this; for smaller ones write"
+        f' timestep="{step:.6g}" into the <option> of the model, and run the command again.'
+    ]
+
+
+def _left_by_windows(
+    count: int, length: float, rms: Mapping[str, float], floor: Mapping[str, float],
+    names: str = "",
+) -> str:  # fmt: skip
+    """Returns a sentence on the error that windows of a length [s] leave, and on the noise."""
+    (left,), (noise,) = error_words([rms]), error_words([floor], "")
+    ratio = f", {times_words(rms, floor)} times the noise floor of {noise}"
+    of = f"of {length:g} s{names and f' of {names}'}"
+    each = f"1 window {of} leaves" if count == 1 else f"{count} windows {of} leave"
+    return f"{each} {left}{ratio if any(floor.values()) else ''}."
+
+
+def _enough(fit: Fit) -> list[str]:
+    ratio = relative(fit.rms_by_unit, fit.floor_by_unit)
+    (left,), (floor,) = error_words([fit.rms_by_unit]), error_words([fit.floor_by_unit], "")
+    times = times_words(fit.rms_by_unit, fit.floor_by_unit)
+    sentences = [f"The residual is {left}, {times} times the noise floor of {floor}."]
+    dependent = int((fit.tests.independent < LEVEL / len(fit.tests.independent)).sum())
+    coloured = coloured_outputs(fit)
+    if ratio > ABOVE:
+        sentences.append(
+            "That is more than noise: the model lacks something, or the robot was disturbed."
+        )
+    if dependent:
+        sentences.append(
+            f"The residual of {_outputs(dependent)} depends on the input, which excites what is"
+            " missing."
+        )
+    elif coloured:
+        sentences.append(
+            f"The residual of {_outputs(coloured)} is coloured, and none depends on the input: the"
+            " noise is not white, or there is an effect that the input does not excite."
+        )
+    elif ratio > ABOVE:
+        sentences.append("It is white and independent of the input: look at the sensors first.")
+    else:
+        sentences.append("The residual is white and independent of the input: the model suffices.")
+    return sentences
+
+
+def _outputs(count: int) -> str:
+    return "1 output" if count == 1 else f"{count} outputs"
+
+
+def _unseen(fit: Fit) -> list[str]:
+    there, expected = fit.validation_rms_by_unit, fit.validation_expected_by_unit
+    if there is None or expected is None:
+        return ["There are no unseen data that could confirm it."]
+    (unseen,) = error_words([there])
+    ratio, grown = relative(there, expected), relative(there, fit.rms_by_unit)
+    if ratio < HOLDS and grown > GROWN:
+        return [
+            f"On unseen data the residual is {unseen}, {grown:.0f} times that of the fitted part."
+            " Small errors of the parameters may cause this along a free run, so that it says"
+            " little. Judge the model over a horizon."
+        ]
+    said = "it does not hold there: it has too many parameters, or an effect is missing"
+    if ratio < HOLDS:
+        said = "what was fitted holds there too"
+        if relative(fit.rms_by_unit, fit.floor_by_unit) > ABOVE:
+            said = "no worse than on what was fitted, but what is missing is missing there too"
+    return [
+        f"On unseen data the residual is {unseen}, {times_words(there, expected)} times what the"
+        f" fit leads us to expect: {said}."
+    ]
+
+
+def _worse(fit: RecordsFit) -> list[str]:
+    """Returns a sentence where unseen records are predicted worse than by the first values."""
+    if fit.worse is None:
+        return []
+    before, after = fit.unseen_rms
+    rise = change((after / before) ** 2 - 1)
+    return [
+        "The fitted values predict unseen data worse than the values with which the fit"
+        f" began (mean square {rise}, t = {fit.worse.t:z.1f}): do not use them. The"
+        " model may lack something, for which the fit has changed the values: run discover to look"
+        " for it. Or fit more records, state in the robot's file what is known of the free"
+        " parameters (known), or"
+        " leave some of them out."
+    ]
+
+
+def _blind(fit: RecordsFit) -> list[str]:
+    """Returns sentences on directions that the windows tell less of than was known before."""
+    names, out = fit.model.fit.problem.names, []
+    for direction in fit.blind:
+        moved, one = in_words(direction, names), names[int(abs(direction).argmax())]
+        if "," in moved:
+            out.append(
+                f"Along ({moved}) the windows tell less than was known before the fit, so that the"
+                " prior knowledge decides there. The windows do tell what does not change along"
+                " this direction. If the prior knowledge is not sure, hold one of these parameters"
+                " (held), or record a motion that tells them apart."
+                f"{scale_of_forces([r.log for r in fit.records if r.role == 'fit'])}"
+            )
+        else:
+            out.append(
+                f"The windows tell less about {one} than was known before the fit, so that the"
+                " prior knowledge decides. If it is not sure, record a motion that shows more."
+            )
+    return out
+
+
+def _unknown_std(fit: RecordsFit) -> list[str]:
+    """Returns the sentence on values that are fitted and whose std too few windows tell."""
+    rows = zip(fit.values, fit.std, fit.at_bound, strict=True)
+    few = [n for n, std, at_bound in rows if np.isnan(std) and not at_bound]
+    if not few:
+        return []
+    count = _count_windows(fit)
+    values, it, their, are = (
+        ("value", "it", "its", "is") if len(few) == 1 else ("values", "them", "their", "are")
+    )
+    told = (
+        "the only window cannot be compared with another"
+        if count == 1
+        else f"too few of the {count} windows depend on {it}"
+    )
+    return [
+        f"The {values} of {', '.join(few)} {are} fitted, but {their} std is not known: a std comes"
+        f" from how much windows differ, and {told}. For a std record longer or give more logs, or"
+        f" compare the {values} with those of a fit of another log."
+    ]
+
+
+def _count_windows(fit: RecordsFit) -> int:
+    return sum(len(part.cut.starts) for part in fit.model.fit.problem.parts)

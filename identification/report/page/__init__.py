@@ -1,0 +1,1 @@
+"""One-file pages and their figures, for all reports."""

@@ -1,0 +1,1 @@
+"""Errors, values, effects and parts of a log in words, for all reports."""

@@ -1,0 +1,1 @@
+"""The file of a robot: its TOML, the model that it names, and its parameters."""

@@ -1,0 +1,1 @@
+"""The running program: its processes, threads, memory, imports, compiled code and progress."""

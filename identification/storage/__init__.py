@@ -1,0 +1,1 @@
+"""Files and folders of results: read, written whole or not at all, and read again."""

@@ -1,0 +1,1 @@
+"""The equations of torques along measured motions, and their base parameters."""
