@@ -58,11 +58,12 @@ def fitted(name, true, start=None, shape=None, known=(), steps=0):
     return conclude(point, level, weak, 0), candidate
 
 
-STRIBECK = {"stribeck_friction.f_s@slide": 2.0, "stribeck_friction.v_s": 0.15,
+V_S = 0.15  # [m/s]
+STRIBECK = {"stribeck_friction.f_s@slide": 2.0, "stribeck_friction.v_s": V_S,
             "stribeck_friction.n": 2.0}  # fmt: skip
 LAWS = {
     "stribeck_friction": (
-        STRIBECK, (), "rate", False, lambda v: -np.sign(v) * 2 * np.exp(-((v / 0.4) ** 2))
+        STRIBECK, (), "rate", False, lambda v: -np.sign(v) * 2 * np.exp(-((v / V_S) ** 2))
     ),
     "hardening": ({"hardening.k_3@slide": 8.0}, (), "position", False, lambda q: -8 * q**3),
     "load_dependent_friction": (
@@ -88,7 +89,7 @@ SLOW = [
 @pytest.mark.parametrize("name", ["stribeck_friction", "hardening", "encoder_scale", *SLOW])
 def test_recovered_points_and_the_band_hold_the_true_law(name):
     true, known, along, resists, law = LAWS[name]
-    shape = {"v_s": 0.15, "n": 2.0} if name == "stribeck_friction" else {}
+    shape = {"v_s": V_S, "n": 2.0} if name == "stribeck_friction" else {}
     fit, candidate = fitted(name, true, shape=shape, known=known)
     of = recover_force(fit, candidate)
     assert (of.along, of.resists, of.places) == (along, resists, 1)
