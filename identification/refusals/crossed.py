@@ -75,7 +75,7 @@ def crossed_readings(doubt: Doubt, pairs: Sequence[Pair]) -> Iterator[Reading]:
         u[:, inputs], y[:, outputs] = log.outputs[:, outputs], log.inputs[:, inputs]
         names = {doubt.outputs[p.output]: doubt.inputs[p.input] for p in some}
         new = names | {b: a for a, b in names.items()}
-        cure = f"exchange {listed(f'{a} and {b}' for a, b in names.items())}{how_to_rename(new)}"
+        cure = f"exchange {', '.join(f'{a} and {b}' for a, b in names.items())}{how_to_rename(new)}"
         if any(doubt.column[n] != n for n in doubt.column):
             cure += ", or correct [columns] of the robot's TOML"
         wanted = [log.input_names[k] for k in inputs]
@@ -116,7 +116,7 @@ def late_sentence(file: RobotFile, model: mujoco.MjModel, log: Log) -> str | Non
         return None
     column = {n: file.columns.get(n, n) for n in (*log.output_names, *log.input_names)}
     names = [(column[log.output_names[p.output]], column[log.input_names[p.input]]) for p in late]
-    leads = listed(
+    leads = ", ".join(
         f"{q} moves {quantity(p.lead, unit='s')} before {u}"
         for (q, u), p in zip(names, late, strict=True)
     )
