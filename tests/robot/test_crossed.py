@@ -80,5 +80,5 @@ def test_an_input_that_stands_still_is_no_position(tmp_path):
     model = mujoco.MjModel.from_xml_string(ARM)
     model.opt.gravity[:] = [3, 1, -5]
     y = stepped(model, np.zeros((400, 2)), [0.7, -0.4])
-    right = model_log(model, np.zeros((400, 2)), y + noise(y.shape, 2e-4))
+    right = model_log(model, np.zeros((400, 2)), y + noise(y.shape, 0.02))  # no force is told
     refuse_miswired(*robot(tmp_path, ARM, right, HORIZON))
