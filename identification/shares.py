@@ -52,6 +52,14 @@ def times(ratio: float) -> str:
     return f"{decimal(ratio, HELD)} times" if isfinite(ratio) else "infinitely many times"
 
 
+def times_noise(ratio: float, noise: str = "the noise") -> str:
+    """Returns the ratio of an error to noise in words: "3.4 times the noise".
+
+    Where two digits say one, it is "as small as the noise".
+    """
+    return f"as small as {noise}" if 0.95 <= ratio < 1.05 else f"{times(ratio)} {noise}"
+
+
 def change(rise: float) -> str:
     """Returns a relative change in words: "-12 %", "less by 99.6 %", "3 times as large"."""
     if not isfinite(rise):

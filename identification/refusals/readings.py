@@ -19,6 +19,7 @@ import numpy as np
 from identification.logs.log import Log
 from identification.logs.names import listed
 from identification.runtime.progress import counted
+from identification.shares import percent
 
 UNEXPLAINED = 0.05  # least ε of an output that is not what it says
 NEARER = 0.2  # of ε, that another reading must leave
@@ -78,11 +79,11 @@ def misread(
         return None
     reading, rest = best
     before, after = (
-        100 * max(0.0, 1 - float(e[list(reading.columns)].max())) for e in (as_read, rest)
+        percent(max(0.0, 1 - float(e[list(reading.columns)].max()))) for e in (as_read, rest)
     )
     return reading, (
-        f"explains {before:.0f} % of {listed(log.output_names[k] for k in reading.columns)}, and"
-        f" {after:.0f} % {reading.words}; {reading.cure}"
+        f"explains {before} of {listed(log.output_names[k] for k in reading.columns)}, and"
+        f" {after} {reading.words}; {reading.cure}"
     )
 
 

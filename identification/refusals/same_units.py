@@ -120,12 +120,21 @@ def _of_rate(log: Log, y: np.ndarray, v: np.ndarray) -> float:
 
 def _followed(log: Log, u: np.ndarray, y: np.ndarray) -> float:
     """Returns b of a wanted position and the position, shape (n,) each, at the best lag."""
+    _, lag = best_lag(log, u, y)
+    return _slope(u[: len(u) - lag], y[lag:])
+
+
+def best_lag(log: Log, u: np.ndarray, y: np.ndarray) -> tuple[float, int]:
+    """Returns the largest correlation of y (n,) with u (n,), and by how many samples y is late.
+
+    Zeros where one of them stands still.
+    """
     most = min(round(LATEST / log.sampling_time), len(y) // 4)
     lags = np.unique(np.linspace(0, most, LAGS).round().astype(int)).tolist()
     each = [(u[: len(u) - lag], y[lag:]) for lag in lags]
     if any(part.std() == 0 for pair in each for part in pair):
-        return _slope(u, y)
-    return _slope(*max(each, key=lambda pair: float(np.corrcoef(*pair)[0, 1])))
+        return 0.0, 0
+    return max((float(np.corrcoef(*pair)[0, 1]), lag) for pair, lag in zip(each, lags, strict=True))
 
 
 def _slope(x: np.ndarray, y: np.ndarray) -> float:

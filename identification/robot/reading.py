@@ -15,6 +15,7 @@ from identification.errors import InputError, refuse_kind
 from identification.logs.log import Log
 from identification.logs.plausible import still_sentence
 from identification.quantities import quantity
+from identification.refusals.crossed import late_sentence
 from identification.refusals.far_angles import far_angles
 from identification.refusals.limits import refuse_limits
 from identification.refusals.same_units import wanted_units
@@ -172,7 +173,8 @@ def _remarks(robot: Robot, logs: Sequence[Log]) -> tuple[str, ...]:
     still = (still_sentence(log) for log in logs)
     resampled = (remark for log in logs for remark in log.remarks)
     clipped = (clipped_sentence(model, log) for log in logs)
-    of_logs = (*still, *resampled, *clipped, *starts, robot.touches)
+    late = (late_sentence(file, model, log) for log in logs)
+    of_logs = (*still, *resampled, *clipped, *late, *starts, robot.touches)
     return tuple(filter(None, (*robot.remarks, *inertias, *of_logs)))
 
 

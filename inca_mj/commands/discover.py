@@ -53,7 +53,8 @@ class Discover:
     options: Annotated[Path | None, tyro.conf.arg(metavar="PATH")] = None
     """TOML file of options: min_proof_t = 3.0, without = ["add_pair"], ... (docs/discovery.md)."""
     minutes: float | None = None
-    """Time after which no further effect is sought (10 if not given); then it answers."""
+    """Time after which no further effect is sought (10 if not given). What comes before and after
+    is always finished and counts besides: the fit without effects, last checks and the report."""
     trust: Trust = ()
     """Checks of the log that you overrule: sensors, units, wiring."""
     robot: Values = Values()

@@ -1,6 +1,7 @@
 """Shares and ratios in words: no power of ten, and neither all nor nothing by rounding."""
 
 import re
+from types import SimpleNamespace
 
 import pytest
 from hypothesis import assume, given
@@ -8,7 +9,8 @@ from hypothesis import strategies as st
 
 from identification.quantities import quantity
 from identification.report.discovery.shown_words import sized
-from identification.shares import change, decimal, fall_words, percent, ratio_of, times
+from identification.report.words.effects import number
+from identification.shares import change, decimal, fall_words, percent, ratio_of, times, times_noise
 
 EXPONENT = re.compile(r"\de[-+]?\d")
 SHARES = st.floats(-1e6, 1e6) | st.floats(-1.0, 1.0) | st.floats(1e-12, 1e-2)
@@ -62,3 +64,16 @@ def test_a_change_that_leaves_something_is_not_one_of_everything(part):
 @given(st.floats(1e-9, 1e9), st.integers(1, 6))
 def test_a_decimal_is_the_number_with_its_digits(value, digits):
     assert float(decimal(value, digits)) == pytest.approx(value, rel=0.51 * 10.0 ** (1 - digits))
+
+
+@given(st.floats(0.5, 2.0))
+def test_noise_is_not_once_itself(ratio):
+    said = times_noise(ratio)
+    assert not re.match(r"1(\.0)? times", said)
+    assert (said == "as small as the noise") == (0.95 <= ratio < 1.05)
+
+
+def test_a_power_is_not_told_in_percent():
+    effect = SimpleNamespace(shapes=[SimpleNamespace(name="n")])
+    assert number(effect, "n", 0.67, 0.05, "") == "0.67 ± 0.05"
+    assert number(effect, "share", 0.67, 0.05, "").endswith("%")

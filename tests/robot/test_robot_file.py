@@ -68,8 +68,19 @@ def test_options_of_a_file_decide(folder, tmp_path, capsys):
     path, options = folder / "one.toml", tmp_path / "options.toml"
     path.write_text(TOML + '[effects]\nonly = ["asymmetric_viscous_friction"]\n')
     options.write_text("min_proof_t = 1e9\n")
-    found = run(capsys, "discover", path, folder / "hidden.csv", "--options", options)
+    call = [
+        "discover",
+        path,
+        folder / "hidden.csv",
+        "--out",
+        tmp_path / "out",
+        "--options",
+        options,
+    ]
+    found = run(capsys, *call)
     assert found["verdict"] == "unknown effect"
+    head = (tmp_path / "out" / "model.xml").read_text().partition("-->")[0]
+    assert "missing from this model, and bends the values" in head
     assert found["options"]["min_proof_t"] == 1e9
     assert "doubtful effect" in [f["kind"] for f in found["findings"]]
     options.write_text("min_prof_t = 2.0\n")

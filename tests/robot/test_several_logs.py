@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from robot_cases import refused, run
 from identification import fit, read_robot
 from identification.__main__ import main
 from identification.logs.joined import REPLAYED, replayed_share
+from identification.report.fit.verdict import _blind
 from identification.robot.file.file import read_robot_file
 from identification.robot.results.fit_files import robot_fit_to_json
 
@@ -71,6 +73,17 @@ def test_what_cannot_be_known_apart_is_said(folder):
     assert "d " not in said[said.index("(") : said.index(")")]
     total = found.values["J"] + found.values["body/arm.inertia[1]"]
     assert total == pytest.approx(2e-3 + 1e-3, rel=0.02)
+
+
+def test_directions_that_are_not_told_stand_in_one_short_sentence():
+    problem = SimpleNamespace(names=("a", "b", "c", "d"))
+    blind = np.array([[0.7, -0.7, 0, 0], [0, 0, 0.6, 0.8], [0, 1, 0, 0]])
+    record = SimpleNamespace(role="fit", log=SimpleNamespace(inputs=np.ones(2)))
+    model = SimpleNamespace(fit=SimpleNamespace(problem=problem))
+    several, single = _blind(SimpleNamespace(model=model, blind=blind, records=[record]))
+    assert "(a +0.70, b -0.70) and (d +0.80, c +0.60)" in several
+    assert len(several.split()) < 60
+    assert "less about b than was known" in single
 
 
 def test_the_command_keeps_a_fit_that_is_worse_and_says_so_everywhere(folder, capsys):

@@ -21,9 +21,9 @@ from identification.report.words.effects import (
     describe_rejected,
     describe_sizes,
     describe_there,
+    number,
     say_choice,
     shown_parameters,
-    value_with_std,
 )
 from identification.report.words.values import phrase, words_of
 from identification.shares import fall_words, percent
@@ -90,12 +90,12 @@ def added_section(found: Discovery, files: str = "") -> Section:
 
 def _numbers(named: NamedEffect) -> list[tuple[str, str]]:
     """Returns the numbers of a named effect, a row each; those of a curve are a figure."""
-    shown = shown_parameters(named)
-    if named.candidate.effect.is_curve:
+    shown, effect = shown_parameters(named), named.candidate.effect
+    if effect.is_curve:
         return [(f"{len(shown)} nodes", "see the figure of the force")]
     return [
-        (name, say_choice(named.candidate, name, value) or value_with_std(value, std, unit))
-        for name, (value, std, unit) in shown.items()
+        (name, say_choice(named.candidate, name, told[0]) or number(effect, name, *told))
+        for name, told in shown.items()
     ]
 
 

@@ -28,7 +28,7 @@ from identification.report.page.page import Section, Table
 from identification.report.page.style import GREY, INK, MEASURED, SERIES, SIMULATED, literal, styled
 from identification.report.words.errors import listed
 from identification.report.words.parts import unseen_of
-from identification.shares import percent
+from identification.shares import percent, times_noise
 
 if TYPE_CHECKING:
     from identification.report.page.page import Figures
@@ -73,7 +73,8 @@ def horizon_sections(found: Discovery) -> list[Section]:
         size, noise = alike([o.after, o.noise], o.unit, 3)
         said = f"the error of {o.name} on unseen data{of} is {size} rms"
         if o.noise > 0:
-            said += f", {held(o.after / o.noise)} times its sensor's noise of {noise}"
+            of_sensor = f"its sensor's noise of {noise}"
+            said += f", {times_noise(o.after / o.noise, of_sensor)}"
         lines.append(said)
     rest = worst_lines(gap) if gap.is_far else []
     if len(gap.lengths) > 1:

@@ -45,9 +45,9 @@ from identification.report.page.page_files import PageFiles
 from identification.report.words.effects import (
     describe_there,
     none_explains,
+    number,
     say_choice,
     shown_parameters,
-    value_with_std,
 )
 from identification.report.words.parts import unseen_of
 from identification.report.words.values import without_colon
@@ -206,7 +206,7 @@ def _size(found: Discovery, named: NamedEffect) -> tuple[Tile, ...]:
         if said := say_choice(named.candidate, name, value):
             words.append(said)
         elif not isinf(std):
-            numbers.append((name, value_with_std(value, std, unit)))
+            numbers.append((name, number(named.candidate.effect, name, value, std, unit)))
     if not numbers:
         return (Tile("what it is", capital(words[0])),) if words else ()
     (first, size), *more = numbers

@@ -27,7 +27,7 @@ from identification.report.page.page import Section, Table
 from identification.report.words.errors import error_words
 from identification.report.words.parts import parts_sentence, unseen_of
 from identification.report.words.values import departures_found, gathered, words_of
-from identification.shares import decimal, fall_words
+from identification.shares import decimal, fall_words, times_noise
 from identification.windows.coarse import steps_of
 
 DIGITS = 3  # of errors of records
@@ -75,7 +75,7 @@ def gap_section(found: Discovery) -> Section:
         ratio, fit = found.times_noise(gap), gap.fit_percent[np.isfinite(gap.fit_percent)]
         times = held(ratio) if isfinite(ratio) else None
         rows.append((model, size, times, decimal(fit.mean(), FIT_DIGITS) if len(fit) else None))
-        lines.append(f"  {when:<7}{rms}" + (f", {times} times the noise" if times else ""))
+        lines.append(f"  {when:<7}{rms}" + (f", {times_noise(ratio)}" if times else ""))
     title, said = f"error on unseen data{unseen_of(found)}:", parts_sentence(found)
     return Section(
         "The gap on unseen data",

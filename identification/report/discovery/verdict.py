@@ -34,7 +34,7 @@ from identification.report.words.effects import (
 from identification.report.words.errors import change_words, describe_scale, error_words, listed
 from identification.report.words.parts import is_untouched, unseen_of
 from identification.runtime.progress import duration
-from identification.shares import HELD, change, fall_words, percent, ratio_of, times
+from identification.shares import HELD, change, fall_words, percent, ratio_of, times, times_noise
 from identification.storage.shown import verdict_of
 
 NOT_FITTED = "the fit has not seen, but on which the search has decided"
@@ -236,7 +236,7 @@ def _unexplained(found: Discovery) -> str:
         return " ".join(findings)  # which says how the search began, and not what is left
     more = "named effect" if len(found.named) == 1 else "named effects"
     ratio = found.times_noise(found.after)
-    times = f", {held(ratio)} times the noise" if 1 < ratio < inf else ""
+    times = f", {times_noise(ratio)}" if 1 < ratio < inf else ""
     (left,) = error_words([found.errors_of(found.after)])
     return " ".join(
         [

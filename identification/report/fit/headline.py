@@ -10,10 +10,10 @@ import numpy as np
 from identification.estimation.fit import Fit
 from identification.prediction.fits.record_errors import errors_by_unit
 from identification.prediction.records_fit import RecordsFit
-from identification.quantities import held
 from identification.report.fit.verdict import ABOVE, error_over_noise, judged_on
 from identification.report.page.headline import Answer, Headline, Tile, error_tile
 from identification.report.words.effects import value_with_std
+from identification.shares import times_noise
 
 FEW = 2  # values that have a tile each
 
@@ -47,7 +47,7 @@ def _judged(fit: Fit | RecordsFit, is_better: bool) -> tuple[str, str]:
     ratio = error_over_noise(fit)
     if isnan(ratio):
         return "Fitted", ""
-    left = f"The error on {judged_on(fit)} is {held(ratio)} times the noise"
+    left = f"The error on {judged_on(fit)} is {times_noise(ratio)}"
     if ratio > ABOVE:
         return "Fitted, and something is missing", f"{left}; discover looks for what it is."
     if not is_better:

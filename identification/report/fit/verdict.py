@@ -12,7 +12,7 @@ from identification.estimation.fit import Fit
 from identification.estimation.identifiability import in_words
 from identification.estimation.metrics import output_units, relative
 from identification.model.protocol import FINER
-from identification.quantities import held, quantity
+from identification.quantities import quantity
 from identification.report.fit.fitted_values import first_few, matters, std_sentence, step_sentences
 from identification.report.fit.untold_words import (
     WEAK,
@@ -23,9 +23,9 @@ from identification.report.fit.untold_words import (
     too_weak,
     weak_sentences,
 )
-from identification.report.words.errors import describe_scale, error_words, times_words
+from identification.report.words.errors import describe_scale, error_words, listed, times_words
 from identification.report.words.parts import records_words
-from identification.shares import change
+from identification.shares import change, times_noise
 
 if TYPE_CHECKING:  # both are slow to import
     from identification.prediction.records_fit import RecordsFit
@@ -81,7 +81,7 @@ def answer_sentence(fit: Fit | RecordsFit, is_better: bool = True) -> str:
     ratio = error_over_noise(fit)
     if isnan(ratio):
         return "Whether the model explains the log is not known: the log shows no sensor noise."
-    of_what = f"its error on {judged_on(fit)} is {held(ratio)} times the noise of the sensors"
+    of_what = f"its error on {judged_on(fit)} is {times_noise(ratio)} of the sensors"
     if not ratio <= ABOVE:
         return (
             f"Something is missing from the model, or a column is not what it expects: {of_what};"
@@ -256,22 +256,24 @@ def _worse(fit: RecordsFit) -> list[str]:
 
 def _blind(fit: RecordsFit) -> list[str]:
     """Returns sentences on directions that the windows tell less of than was known before."""
-    names, out = fit.model.fit.problem.names, []
-    for direction in fit.blind:
-        moved, one = in_words(direction, names), names[int(abs(direction).argmax())]
-        if "," in moved:
-            out.append(
-                f"Along ({moved}) the windows tell less than was known before the fit, so that the"
-                " prior knowledge decides there. The windows do tell what does not change along"
-                " this direction. If the prior knowledge is not sure, hold one of these parameters"
-                " (held), or record a motion that tells them apart."
-                f"{scale_of_forces([r.log for r in fit.records if r.role == 'fit'])}"
-            )
-        else:
-            out.append(
-                f"The windows tell less about {one} than was known before the fit, so that the"
-                " prior knowledge decides. If it is not sure, record a motion that shows more."
-            )
+    names = fit.model.fit.problem.names
+    words = [in_words(direction, names) for direction in fit.blind]
+    several = [f"({word})" for word in words if "," in word]
+    single = [names[int(abs(d).argmax())] for d, word in zip(fit.blind, words, strict=True)
+              if "," not in word]  # fmt: skip
+    out = []
+    if several:
+        out.append(
+            f"The windows tell less than was known before the fit along {listed(several)}, where"
+            " the prior knowledge decides: if it is not sure, hold one parameter of each (held), or"
+            " record a motion that tells them apart."
+            f"{scale_of_forces([r.log for r in fit.records if r.role == 'fit'])}"
+        )
+    if single:
+        out.append(
+            f"The windows tell less about {listed(single)} than was known before the fit, so that"
+            " the prior knowledge decides. If it is not sure, record a motion that shows more."
+        )
     return out
 
 

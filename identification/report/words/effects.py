@@ -15,7 +15,7 @@ if TYPE_CHECKING:  # a search is slow to import, and a page may tell of a model 
     from identification.discovery.effect_results import NamedEffect, Outside, Proof, RejectedEffect
     from identification.discovery.options import DiscoveryOptions
     from identification.discovery.result import Discovery
-    from identification.effects.effect import Candidate
+    from identification.effects.effect import Candidate, Effect
     from identification.model.predictor import Plant
 
 
@@ -88,6 +88,12 @@ def value_with_std(value: float, std: float, unit: str, like: float = 0.0) -> st
     return f"{said} {NOT_TOLD}" if isnan(std) else said
 
 
+def number(effect: Effect, name: str, value: float, std: float, unit: str) -> str:
+    """Returns a size or shape with its std [unit]; a power is no share, and not told in percent."""
+    is_power = not unit and any(s.name == name for s in effect.shapes)
+    return value_with_std(value, std, unit, like=float(is_power))
+
+
 def describe_sizes(found: NamedEffect | RejectedEffect, plant: Plant | None = None) -> str:
     """Returns sizes and shapes of a fitted effect with std, but no shape that no data tell.
 
@@ -100,10 +106,10 @@ def describe_sizes(found: NamedEffect | RejectedEffect, plant: Plant | None = No
         return f"up to {quantity(abs(value), std, unit)} at one of its {len(effect.sizes)} nodes"
     about = effect.about
     said = ", ".join(
-        say_choice(found.candidate, name, value)
-        or (f"{name} not felt" if isinf(std) else f"{name} = {value_with_std(value, std, unit)}")
+        say_choice(found.candidate, name, told[0])
+        or (f"{name} not felt" if isinf(told[1]) else f"{name} = {number(effect, name, *told)}")
         + (f" ({about[name]})" if about.get(name) else "")
-        for name, (value, std, unit) in {in_record(n, {}): v for n, v in shown.items()}.items()
+        for name, told in {in_record(n, {}): v for n, v in shown.items()}.items()
     )
     has = "" if plant is None else _already(found.candidate, plant)
     return f"{said}, in addition to the {has} of the model" if has else said

@@ -28,6 +28,7 @@ from identification.storage.files import write_text
 
 STUB = "own_effect.py"
 OWN = "A law of your own"
+BENT = "Something without a name is missing from this model, and bends the values that were fitted."
 OWN_TEXT = (
     "The largest force is missing on {place}. The file below, which is kept beside this page as"
     f" {STUB}, has an effect there. Write the law that you suspect into it and run it: the search"
@@ -73,7 +74,8 @@ class RobotDiscoveryFiles(DiscoveryFiles):
         if stub := self._stub(place):
             write_text(folder / STUB, stub)
         path, std = folder / "robot.toml", found.final.told_std
-        remark = "; ".join(filter(None, map(set_words, found.named)))
+        said = [*map(set_words, found.named), BENT if found.verdict == "unknown effect" else ""]
+        remark = "; ".join(filter(None, said))
         write_robot(self.robot, values, path, place, remark, own_values=own, std=std)
         # MJCF has a place for a limit of a force that does not fall with the speed
         limits, beside = dict[str, float](), dict(values)
