@@ -49,7 +49,8 @@ def all_effects(
         axes: the joints.
         log: with the inputs and the outputs.
         turns: periods in a turn of a hinge that are tried.
-        asked: names of effects that act wherever they may, also on shafts that turn on and on.
+        asked: names of effects that act wherever they may, also on shafts that turn on and on, and
+            on sensors of joints that hardly turn.
     """
     compiled = spec.copy().compile()
     return (
@@ -58,7 +59,7 @@ def all_effects(
         *body_effects(spec),
         *input_effects(drives(log)),
         *(e for g in groups(axes, turns) for e in rate_limits(g)),
-        *sensor_effects(compiled, log.output_names, axes),
+        *sensor_effects(compiled, log.output_names, axes, asked),
     )
 
 

@@ -265,7 +265,8 @@ def robot_of(
     known = tuple(a for a in known if not file.joints or a.joint in file.joints)
     # A free swing that is fitted together with driven logs says nothing of what inputs do.
     driven = next((each for each in (log, *others) if each.inputs.any()), log)
-    effects = all_effects(spec, known, driven, file.turns or TURNS, file.only)
+    asked = [*file.only, *(n.partition(".")[0] for n in (*file.fixed, *file.free, *file.held))]
+    effects = all_effects(spec, known, driven, file.turns or TURNS, asked)
     said += _said_of_turning(known, file.only)
     for name in file.only:
         if name not in {e.name for e in effects}:

@@ -1,10 +1,11 @@
 """Effects of sensors: readings by hand, in runs and in windows."""
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
-from joint_cases import DAMPING, MASS, SLIDER, arm, arm_log, run, slider, slider_log, steps
+from joint_cases import ARM, DAMPING, MASS, SLIDER, arm_log, run, slider, slider_log, steps
 from plain_logs import plain_log
 
 from identification.effects.axes import Axis
@@ -25,6 +26,13 @@ LAWS = [
 ]
 
 
+@cache
+def arm(turns=4.0):
+    """The arm with a log in which each joint moves by so many radians or twice as much."""
+    log = arm_log(steps(100, 2))
+    return joint_plant(ARM, (), replace(log, outputs=turns * log.outputs))
+
+
 def effects():
     return {e.name: e for e in arm().effects if "reading" in e.hooks}
 
@@ -37,6 +45,13 @@ def test_a_reading_is_what_the_equation_says(name, p, expected):
 
 def test_every_effect_of_a_sensor_is_held_against_its_equation():
     assert {name for name, *_ in LAWS} | {"encoder_lag"} == effects().keys()
+
+
+@pytest.mark.parametrize(("turns", "there"), [(0.5, ()), (1.7, ("sensor b",)), (4.0, "ab")])
+def test_a_disc_is_asked_where_its_joint_moves_by_half_a_turn(turns, there):
+    found = [e for e in arm(turns).effects if e.name == "encoder_eccentricity"]
+    single = [where for e in found for where, at in e.places.items() if at or len(e.places) == 1]
+    assert single == [w if " " in w else f"sensor {w}" for w in there]
 
 
 def test_the_readings_of_an_arm_are_those_by_hand():
