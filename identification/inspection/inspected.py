@@ -26,6 +26,7 @@ from identification.logs.sidecar import read_sidecar
 from identification.logs.stamps.stamps import seconds_of, with_time
 from identification.logs.table import renamed
 from identification.logs.units import to_si
+from identification.logs.wrapped import find_jumps, jump_sentence, turn_of
 from identification.storage.files import read_bytes
 
 GAP = 1.5  # of the usual interval, from which samples are missing
@@ -59,7 +60,8 @@ class Inspection:
     Attributes:
         path: of the log.
         time: stamps from the first one, shape (n,) [s].
-        values: numbers by column, shape (n,), NaN where nothing stands, in the unit of the file.
+        values: numbers by column, shape (n,), NaN where nothing stands, in the unit of the file;
+            angles without jumps by whole turns.
         columns: what each holds, in the order of the file.
         time_column: the column of time, "" where the log has none.
         time_unit: its unit; guessed where no TOML says it.
@@ -135,12 +137,18 @@ def inspect_log(path: str | os.PathLike[str]) -> Inspection:
     )
     if not columns:
         raise InputError(f"{path} has no numbers beside its time; record the log again")
+    turned: dict[str, str] = {}
+    for column in columns:
+        turn = turn_of(column.unit) if column.role != "input" else 0.0
+        if turn and (found := find_jumps(full[column.name], turn)):
+            full[column.name] = found.values
+            turned[column.name] = jump_sentence(column.name, column.unit, found)
     steps = np.diff(np.unique(time))
     return Inspection(
         path=path, time=time, values=full, columns=columns,
         time_column=name, time_unit=unit, is_even=bool(np.ptp(steps) <= EVEN * np.median(steps)),
         answers=_answers(time, full, columns), left_out=texts,
-        remarks=table.remarks,
+        remarks=(*table.remarks, *turned.values()),
     )  # fmt: skip
 
 

@@ -36,6 +36,7 @@ from identification.logs.table import (
     renamed,
 )
 from identification.logs.units import check_si
+from identification.logs.wrapped import without_wraps
 from identification.storage.files import readable
 
 
@@ -71,9 +72,9 @@ def read_log(
         limits: largest plausible size [SI].
         rates: largest plausible speed of change [SI/s]; this finds degrees taken for radians.
         named_in: the file that names `inputs` and `outputs`, for messages; the sidecar when None.
-        lenient: columns that are not asked for are left out, and uneven time stamps and missing
-            cells are put on an even grid (`identification.logs.stamps.resampling`), which the log's
-            remarks say.
+        lenient: columns that are not asked for are left out, uneven time stamps and missing cells
+            are put on an even grid (`identification.logs.stamps.resampling`), and angles lose
+            their jumps by whole turns (`identification.logs.wrapped`); the log's remarks say so.
         said: keys of the sidecar that hold where it does not say otherwise.
         overrule: how a user may overrule `limits` and `rates`, for their messages.
         trust_rows: whether rows that look like those of a second publisher are read; else they are
@@ -141,6 +142,7 @@ def read_log(
     if lenient:
         check_stamps(table)
         check_possible(table)  # a log of a robot; others may hold any number
+        table = without_wraps(table, outputs, si)
         cure = f', or write trust = ["rows"] into {named_in}' if named_in else ""
         refuse_second_publisher(table, inputs, outputs, si, cure, trust_rows)
         if not trust_rows:

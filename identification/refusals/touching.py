@@ -157,8 +157,9 @@ def touch_sentence(
 
 
 @contextmanager
-def told_of_touches(sentence: str) -> Iterator[None]:
-    """Adds a sentence about contacts that the log contradicts, if any, to an error inside."""
+def told_first(*sentences: str) -> Iterator[None]:
+    """Adds sentences on what may be the cause, those that are not "", to an error inside."""
+    sentence = " ".join(filter(None, sentences))
     try:
         yield
     except InputError as error:

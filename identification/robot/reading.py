@@ -14,6 +14,7 @@ from identification.effects.effect import Effect
 from identification.errors import InputError, refuse_kind
 from identification.logs.log import Log
 from identification.logs.plausible import still_sentence
+from identification.logs.wrapped import doubted_jumps
 from identification.quantities import quantity
 from identification.refusals.crossed import late_sentence
 from identification.refusals.far_angles import far_angles
@@ -23,7 +24,7 @@ from identification.refusals.touching import (
     find_touches,
     is_contradicted,
     refuse_touching,
-    told_of_touches,
+    told_first,
     touch_sentence,
 )
 from identification.refusals.trust import trusted
@@ -90,7 +91,8 @@ def read_robot(
     refuse_touching(robot, every, touches)  # no step is short enough for a body inside another
     contradicted = is_contradicted(robot, every, touches)
     text = touch_sentence(robot, every, touches, contradicted)
-    with told_of_touches(text if contradicted else ""):
+    wraps = (doubted_jumps(measured.remarks) for measured in every)
+    with told_first(text if contradicted else "", *wraps):
         for measured in every:  # nor for degrees that are taken for radians, in one of two columns
             refuse_different_units(robot, measured)
         model, far = robot.plant.model, [log for log in every if far_angles(robot.plant.model, log)]
