@@ -103,6 +103,33 @@ def test_a_tendon_and_an_equality_tell_both_joints_of_a_finger(tmp_path):
     assert read.outputs[:, 1] == pytest.approx(0.8 * read.outputs[:, 0], abs=1e-8)
 
 
+# An encoder at the base measures the angle of the far link, the sum of both joints, over a belt.
+BELT = FINGER.replace(FINGER[FINGER.index("<equality>") : FINGER.index("<actuator>")], "").replace(
+    "<sensor>", '<sensor><jointpos name="near" joint="knuckle"/><jointpos name="tip" joint="tip"/>'
+)
+NEAR = (BELT.format(mass=0.03), ("pull", "near", "tip", "cable"), ["near", "cable"])
+ROPE = (
+    crane(more='<jointpos name="x" joint="x"/><jointpos name="z" joint="z"/>'),
+    (*NAMES, "x", "z"), ["length_b", "x"],
+)  # fmt: skip
+
+
+@pytest.mark.parametrize(("xml", "names", "outputs"), [NEAR, ROPE])
+def test_a_joint_and_a_length_tell_the_other_joint(tmp_path, refusal, xml, names, outputs):
+    u, y, q = recorded(xml, noise=0.0)
+    toml = 'model = "robot.xml"\nfree = ["joint/*.damping"]\nhorizon = 0.2\noutputs = '
+    paths = write(tmp_path, xml, names, np.hstack([u, y]), toml + str(outputs).replace("'", '"'))
+    read = read_robot_log(read_robot_file(paths[0]), paths[1])
+    assert np.ptp(q, axis=0).min() > 0.01
+    assert {*read.output_names} in ({"near", "tip"}, {"x", "z"})
+    order = np.argsort(read.output_names)
+    assert read.outputs[:, order] == pytest.approx(q, abs=1e-7)
+    every = [n for n in names if n in (*outputs, *read.output_names)]
+    paths = write(tmp_path, xml, names, np.hstack([u, y]), toml + str(every).replace("'", '"'))
+    text = refusal(read_robot_log, read_robot_file(paths[0]), paths[1])
+    assert "one of these has nothing to tell; leave it out of outputs" in text
+
+
 @pytest.mark.parametrize(
     ("outputs", "more", "offset", "said"),
     [

@@ -4,8 +4,9 @@
 
 q is found sample by sample with Gauss-Newton steps, from where the sample before was; the first
 one begins in the pose of the model's file, which chooses among several that have these lengths.
-Joints that are measured themselves are known. The joints that tendons tell are then outputs like
-others. Noise of lengths becomes noise of angles that neighbouring joints share.
+Joints that the outputs name themselves are known, as the one between the base and a link is where
+an encoder at the base measures the sum of two joints over a belt. The joints that tendons tell are
+then outputs like others. Noise of lengths becomes noise of angles that neighbouring joints share.
 
 A length of MuJoCo is that of the whole path (spatial), or the weighted sum of joint positions
 (fixed). A drum that counts from zero needs its offset: `joint = ...` cannot say it, so such a
@@ -58,7 +59,7 @@ def with_measured_joints(spec: mujoco.MjSpec, file: RobotFile) -> tuple[str, ...
             add_position(spec, joint, joint)
     tendons = measured_tendons(spec.copy().compile(), file)
     return (
-        f"The positions of {listed(joints)} are those at which the tendons have the lengths"
+        f"The positions of {listed(tendons.joints)} are those at which the tendons have the lengths"
         f" {listed(tendons.sensors)}.",
     )
 
@@ -77,7 +78,15 @@ def measured_tendons(model: mujoco.MjModel, file: RobotFile) -> MeasuredTendons:
             " joints"
         )
     at = _positions(model)
-    return MeasuredTendons(sensors, tuple(at[j] for j in _moved_joints(model, sensors)))
+    moved = [at[j] for j in _moved_joints(model, sensors)]
+    told = tuple(name for name in moved if name not in file.outputs)
+    if not told:
+        raise InputError(
+            f"{file.path} has as outputs the lengths {listed(sensors)} and the positions of all"
+            f" joints that change them, {listed(moved)}, so that one of these has nothing to tell;"
+            " leave it out of outputs"
+        )
+    return MeasuredTendons(sensors, told)
 
 
 @quiet()
@@ -93,7 +102,7 @@ def joint_positions(
         names: of the outputs of the log that is returned, in order.
 
     Raises:
-        InputError: the lengths do not tell the joints, or the model has no pose with them.
+        InputError: lengths and known joints do not tell the others, or no pose has these lengths.
     """
     model, data = copy.copy(model), mujoco.MjData(model)
     for flag in ("CONTACT", "LIMIT", "FRICTIONLOSS"):
