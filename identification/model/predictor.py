@@ -223,6 +223,12 @@ def output_columns(model: mujoco.MjModel, names: Sequence[str]) -> list[tuple[st
     return columns
 
 
+def measured_joints(model: mujoco.MjModel, names: Sequence[str]) -> list[int]:
+    """Returns the numbers of the joints whose positions are outputs, in their order."""
+    return [int(np.flatnonzero(model.jnt_qposadr == i)[0])
+            for field, i in output_columns(model, names) if field == "qpos"]  # fmt: skip
+
+
 def output_dofs(model: mujoco.MjModel, names: Sequence[str]) -> list[int]:
     """Returns the degree of freedom whose position or rate each output is."""
     return [i if field == "qvel" else int(model.jnt_dofadr[model.jnt_qposadr == i][0])

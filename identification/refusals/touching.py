@@ -25,8 +25,9 @@ import numpy as np
 from identification.effects.plant.joint_plant import JointPlant
 from identification.errors import InputError
 from identification.logs.log import Log
+from identification.model.equalities import put_tied
 from identification.model.plant import own_start
-from identification.model.predictor import output_columns
+from identification.model.predictor import measured_joints, output_columns
 from identification.quantities import quantity
 from identification.refusals.judge import lengths_of, unexplained
 from identification.refusals.readings import NEARER
@@ -101,11 +102,12 @@ def _contacts(plant: JointPlant, log: Log) -> list[dict[tuple[int, int], tuple[s
     data, out = mujoco.MjData(model), []
     measured = [(i, k) for k, (field, i) in enumerate(output_columns(model, log.output_names))
                 if field == "qpos"]  # fmt: skip
-    count = min(len(log), MOST_STATES)
+    count, known = min(len(log), MOST_STATES), measured_joints(model, log.output_names)
     for k in np.unique(np.linspace(0, len(log) - 1, count).round().astype(int)):
         data.qpos[:] = np.ravel(start.qpos)
         for i, column in measured:
             data.qpos[i] = log.outputs[k, column]
+        put_tied(model, known, data.qpos, data.qvel)
         mujoco.mj_fwdPosition(model, data)
         found: dict[tuple[int, int], tuple[set[int], float]] = {}
         for contact in data.contact:

@@ -24,7 +24,13 @@ import numpy as np
 from identification.errors import DivergenceError, InputError
 from identification.logs.log import Log
 from identification.logs.noise import noise_floor
-from identification.model.predictor import Predictor, output_columns, with_states
+from identification.model.equalities import put_tied, tied_joints
+from identification.model.predictor import (
+    Predictor,
+    measured_joints,
+    output_columns,
+    with_states,
+)
 from identification.model.rollout import State, rollout
 
 MAX_LOST_SHARE = 0.2  # of the windows, for inputs at the ends that were not logged
@@ -176,8 +182,9 @@ def extended(
 
 def _measured(model: mujoco.MjModel, log: Log) -> State | None:
     """Returns the states of all samples; None where some states are not measured positions."""
-    places = {i for field, i in output_columns(model, log.output_names) if field == "qpos"}
-    if model.na or model.nq != model.nv or len(places) < model.nq:
+    known = measured_joints(model, log.output_names)
+    told = {*known, *(joint for joint, _, _ in tied_joints(model, known))}
+    if model.na or model.nq != model.nv or len(told) < model.njnt:
         return None
     n = len(log)
     rows = {"qpos": np.zeros((n, model.nq)), "qvel": np.zeros((n, model.nv))}
@@ -188,7 +195,7 @@ def _measured(model: mujoco.MjModel, log: Log) -> State | None:
 def _put_measured(
     model: mujoco.MjModel, log: Log, rows: dict[str, np.ndarray], at: np.ndarray
 ) -> None:
-    """Write the measured positions of some samples, and their rates, into states."""
+    """Write the positions and rates of some samples that are measured, or tied, into states."""
     rate = np.gradient(log.outputs, log.sampling_time, axis=0)[at]
     columns = list(enumerate(output_columns(model, log.output_names)))
     for k, (field, i) in sorted(columns, key=lambda item: item[1][0]):  # rates last
@@ -196,6 +203,8 @@ def _put_measured(
         if field == "qpos":
             joint = int(np.flatnonzero(model.jnt_qposadr == i)[0])
             rows["qvel"][:, model.jnt_dofadr[joint]] = rate[:, k]
+    known = measured_joints(model, log.output_names)
+    put_tied(model, known, rows["qpos"], rows["qvel"])
 
 
 def _motion(model: mujoco.MjModel, run: State) -> np.ndarray:

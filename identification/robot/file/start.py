@@ -6,7 +6,8 @@ The motion is no parabola for long. So m is the largest number of samples whose 
 with those of all fewer ones within their noise (Lepski 1991), and the std is that of the next
 fewer, because m samples may err by as much as that hides. A start that differs from the model's by
 no more than this is no reason to doubt the model's, which is kept. States that no output measures
-begin as the model does.
+begin as the model does, and joints that equalities tie to others where these tell
+(`identification.model.equalities`).
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ import numpy as np
 from identification.errors import InputError, told_of
 from identification.logs.log import Log
 from identification.logs.noise import noise_floor
+from identification.model.equalities import put_tied
 from identification.model.plant import own_start, start_place
 from identification.model.predictor import output_columns
 from identification.model.rollout import State
@@ -78,10 +80,14 @@ def start_of(file: RobotFile, model: mujoco.MjModel, log: Log | None) -> State:
     start = {f: np.array(getattr(reset, f)) for f in ("qpos", "qvel", "act")}
     for (field, i), begin in moved_begin(file, model, log).items() if log else ():
         start[field][i] = begin.value
-    for path, value in file.start.items():
-        place = start_place(path, model)
+    given = {start_place(path, model): value for path, value in file.start.items()}
+    for place, value in given.items():
         if place is not None:
             start[place[0]][place[1]] = value
+    moved = np.flatnonzero(start["qpos"] != reset.qpos)
+    stands = np.isin(model.jnt_qposadr, [i for f, i in filter(None, given) if f == "qpos"])
+    known = np.flatnonzero(stands | np.isin(model.jnt_qposadr, moved))
+    put_tied(model, known.tolist(), start["qpos"], start["qvel"])
     return State(**start)
 
 
