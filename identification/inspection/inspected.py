@@ -21,6 +21,7 @@ from identification.inspection.guesses import (
 )
 from identification.logs.formats.formats import log_table, refuse_no_log
 from identification.logs.names import listed, lookup
+from identification.logs.repeats import repeat_sentence, repeated_share
 from identification.logs.sampling import MIN_ROWS, FloatArray, grid
 from identification.logs.sidecar import read_sidecar
 from identification.logs.stamps.stamps import seconds_of, with_time
@@ -137,18 +138,20 @@ def inspect_log(path: str | os.PathLike[str]) -> Inspection:
     )
     if not columns:
         raise InputError(f"{path} has no numbers beside its time; record the log again")
-    turned: dict[str, str] = {}
-    for column in columns:
-        turn = turn_of(column.unit) if column.role != "input" else 0.0
+    remarks = [*table.remarks]
+    for column in (c for c in columns if c.role != "input"):
+        turn = turn_of(column.unit)
         if turn and (found := find_jumps(full[column.name], turn)):
             full[column.name] = found.values
-            turned[column.name] = jump_sentence(column.name, column.unit, found)
+            remarks.append(jump_sentence(column.name, column.unit, found))
+        if share := repeated_share(full[column.name]):
+            remarks.append(repeat_sentence(column.name, share))
     steps = np.diff(np.unique(time))
     return Inspection(
         path=path, time=time, values=full, columns=columns,
         time_column=name, time_unit=unit, is_even=bool(np.ptp(steps) <= EVEN * np.median(steps)),
         answers=_answers(time, full, columns), left_out=texts,
-        remarks=(*table.remarks, *turned.values()),
+        remarks=tuple(remarks),
     )  # fmt: skip
 
 

@@ -16,6 +16,7 @@ from identification.logs.log import Log
 from identification.logs.names import check_column_names, check_keys, lookup
 from identification.logs.plausible import check_plausible, check_possible
 from identification.logs.poses import Pose, measured_columns, with_angles
+from identification.logs.repeats import told_of_repeats
 from identification.logs.sampling import FloatArray, check_time, grid
 from identification.logs.sidecar import Sidecar, read_sidecar
 from identification.logs.stamps.coarse import evened_stamps, refuse_contradicted
@@ -152,6 +153,8 @@ def read_log(
             table = without_repeated(table)
         if not _is_even(table, sidecar):
             table = evened_stamps(table, outputs, sidecar, trust_rows)
+    if lenient:
+        table = told_of_repeats(table, outputs)
     if lenient and not _is_even(table, sidecar):
         refuse_contradicted(table, outputs, sidecar, trust_rows)
         refuse_two_inputs(table, inputs, cure, trust_rows)

@@ -91,14 +91,15 @@ def without_wraps(table: Table, names: Sequence[str], units: Mapping[str, str]) 
             continue
         data = np.array(table.data)
         data[:, table.names.index(name)] = found.values
-        table = replace(table, data=data).told(jump_sentence(name, units[name], found))
+        told = jump_sentence(f"{name} of log {table.path.stem!r}", units[name], found)
+        table = replace(table, data=data).told(told)
     return table
 
 
-def jump_sentence(name: str, unit: str, found: Jumps) -> str:
-    """Returns what was made of the jumps of a column, in one sentence."""
+def jump_sentence(what: str, unit: str, found: Jumps) -> str:
+    """Returns what was made of the jumps of a column, in one sentence that begins with its name."""
     times = "once" if found.count == 1 else f"{found.count} times"
-    jumps = f"{name} jumps {times} by about a whole turn ({turn_of(unit):.4g} {unit})"
+    jumps = f"{what} jumps {times} by about a whole turn ({turn_of(unit):.4g} {unit})"
     if found.doubt:
         return (
             f"{jumps}{_LEFT}{found.doubt}: if its encoder begins anew"

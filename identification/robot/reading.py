@@ -14,6 +14,7 @@ from identification.effects.effect import Effect
 from identification.errors import InputError, refuse_kind
 from identification.logs.log import Log
 from identification.logs.plausible import still_sentence
+from identification.logs.repeats import repeats_told
 from identification.logs.wrapped import doubted_jumps
 from identification.quantities import quantity
 from identification.refusals.crossed import late_sentence
@@ -153,7 +154,7 @@ def doubtful(robot: Robot) -> list[str]:
     """Returns sentences of the remarks on which a result depends, to stand beside it.
 
     They say that a free run of the robot's log begins elsewhere than the log does, in short, that
-    outputs stand still, that the model clips inputs, and that its geoms touch.
+    outputs stand still or repeat samples, that the model clips inputs, and that its geoms touch.
     """
     text = None
     if robot.file.horizon is None:
@@ -161,7 +162,8 @@ def doubtful(robot: Robot) -> list[str]:
     fitted = (robot.log, *robot.others)
     still = (still_sentence(log) for log in fitted)
     clipped = (clipped_sentence(robot.plant.model, log) for log in fitted)
-    return [*filter(None, (text, *still, *clipped, robot.touches))]
+    repeats = (told for log in fitted for told in repeats_told(log.remarks))
+    return [*filter(None, (text, *still, *repeats, *clipped, robot.touches))]
 
 
 def _remarks(robot: Robot, logs: Sequence[Log]) -> tuple[str, ...]:

@@ -79,8 +79,8 @@ def test_a_pendulum_that_turns_over_is_read_as_it_moved(tmp_path, unit, is_even)
     (told,) = (r for r in log.remarks if "whole turn" in r)
     jumps = int(np.sum(np.abs(np.diff(table[:, 2])) > turn / 2))
     assert told == (
-        f"hinge jumps {jumps} times by about a whole turn (6.283 rad), where its encoder begins"
-        " anew, and is read without these jumps."
+        f"hinge of log 'log' jumps {jumps} times by about a whole turn (6.283 rad), where its"
+        " encoder begins anew, and is read without these jumps."
     )
     assert not doubted_jumps(log.remarks)
     assert not any("whole turn" in r for r in truth.remarks)
