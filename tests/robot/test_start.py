@@ -111,3 +111,13 @@ def test_noise_of_a_measured_input_at_its_limit_is_not_told(tmp_path, log):
     noisy = replace(log, inputs=log.inputs + 0.003 * span * rng.standard_normal(log.inputs.shape))
     assert (np.abs(noisy.inputs) > span).any()
     assert not [r for r in robot_in(tmp_path, noisy, span).remarks if "ctrlrange" in r]
+
+
+def test_repeated_samples_stand_beside_the_result(tmp_path):
+    log = measured(3, samples=1200)
+    y, late = log.outputs.copy(), np.arange(10, len(log), 12)
+    y[late] = y[late - 1]
+    write_log(replace(log, outputs=y), tmp_path / "log.csv")
+    robot = robot_in(tmp_path, tmp_path / "log.csv", 1e3)
+    (said,) = [r for r in robot.remarks if "repeat the one before" in r]
+    assert said in doubtful(robot)
