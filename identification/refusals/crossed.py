@@ -1,11 +1,13 @@
-"""Are an input and a measured column of its joint in each other's place?
+"""Are a setpoint and the measured column of its joint in each other's place?
 
     r(s) = corr u(t), y(t + s),    |s| <= 0.2 s            y follows u where r is largest at s > 0
 
 A joint follows what its servo wants. Where the position comes first, the setpoint was rather the
 measured column, and the position the setpoint. The model is then late twice, which is little where
 a motion is slow: so a setpoint that comes late is asked for even where the model explains the log
-as it is read. Of a motor no such order is known, and its columns are one reading among others.
+as it is read.
+The columns of a motor are not asked: its torque comes before the motion in a right log, too, and a
+model that lacks something may seem to follow a torque better than the position.
 
 A setpoint that was stamped late comes late too, and so does one that copies the position of an arm
 that is guided by hand. But then the log with its setpoints shifted back in time is explained as
@@ -39,29 +41,27 @@ SHIFTED = 0.5  # of ε of the best shift, that an exchange may leave; of a late 
 
 @dataclass(frozen=True)
 class Pair:
-    """An input and an output of the joint that it drives."""
+    """A setpoint, and the output of its joint that comes before it."""
 
     input: int
     output: int
-    lead: float = 0.0  # by which the output comes before what a servo wants [s]
+    lead: float  # by which the output comes before what the servo wants [s]
 
 
-def joint_pairs(model: mujoco.MjModel, log: Log) -> list[Pair]:
-    """Returns each input with the output that it is compared with, or with each of its joint."""
+def late_pairs(model: mujoco.MjModel, log: Log) -> list[Pair]:
+    """Returns each setpoint of a servo that comes after the output that should follow it."""
     places, wanted = output_columns(model, log.output_names), wanted_units(model, log)
     found = []
     for i, name in enumerate(log.input_names):
         is_joint = model.actuator_trntype[i] == int(mujoco.mjtTrn.mjTRN_JOINT)
-        if not (is_joint and np.ptp(log.inputs[:, i]) > 0):  # a sensor that is still says nothing
+        if name not in wanted or not is_joint or not np.ptp(log.inputs[:, i]) > 0:
             continue
         joint = model.actuator_trnid[i, 0]
         position = ("qpos", int(model.jnt_qposadr[joint]))
         rate = ("qvel", int(model.jnt_dofadr[joint]))
-        is_rate = wanted.get(name, "").endswith("/s")
-        of = [position, rate] if name not in wanted else [rate if is_rate else position]
-        for k in (k for k, place in enumerate(places) if place in of):
-            lead = _lead(log, log.inputs[:, i], log.outputs[:, k]) if name in wanted else 0.0
-            if name not in wanted or lead:
+        of = rate if wanted[name].endswith("/s") else position
+        for k in (k for k, place in enumerate(places) if place == of):
+            if lead := _lead(log, log.inputs[:, i], log.outputs[:, k]):
                 found.append(Pair(i, k, lead))
     return found
 
@@ -111,7 +111,7 @@ def is_no_late_stamp(
 
 def late_sentence(file: RobotFile, model: mujoco.MjModel, log: Log) -> str | None:
     """Returns one sentence on positions that come before the setpoints of their servos, or None."""
-    late = [p for p in joint_pairs(model, log) if p.lead]
+    late = late_pairs(model, log)
     if not late or "wiring" in file.trust:
         return None
     column = {n: file.columns.get(n, n) for n in (*log.output_names, *log.input_names)}
@@ -134,9 +134,7 @@ def _lead(log: Log, u: np.ndarray, y: np.ndarray) -> float:
 
 
 def _words(inputs: Sequence[str], pairs: Sequence[Pair]) -> str:
-    late = max(p.lead for p in pairs)
+    late = quantity(max(p.lead for p in pairs), unit="s")
     if len(pairs) == 1:
-        after = f", which comes {quantity(late, unit='s')} after it" if late else ""
-        return f"were it exchanged with {inputs[0]}{after}"
-    after = f", which come up to {quantity(late, unit='s')} after them" if late else ""
-    return f"were they exchanged with {listed(inputs)}{after}"
+        return f"were it exchanged with {inputs[0]}, which comes {late} after it"
+    return f"were they exchanged with {listed(inputs)}, which come up to {late} after them"

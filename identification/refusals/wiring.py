@@ -37,7 +37,7 @@ from identification.refusals.columns import (
     two_turns,
     unit_readings,
 )
-from identification.refusals.crossed import crossed_readings, is_no_late_stamp, joint_pairs
+from identification.refusals.crossed import crossed_readings, is_no_late_stamp, late_pairs
 from identification.refusals.far_angles import are_whole, far_angles, far_readings, far_sentence
 from identification.refusals.judge import Judge, beginning, lengths_of
 from identification.refusals.readings import NEARER, SAME, UNEXPLAINED, Reading, misread
@@ -75,8 +75,7 @@ def refuse_miswired(robot: Robot, log: Log) -> None:
     balance, lengths = Balance(plant.model, log), lengths_of(robot, log)
     is_far = bool(far_angles(plant.model, log))
     is_explained = is_nearer = False
-    pairs = joint_pairs(plant.model, log) if wiring and is_small else []
-    late, driven = [p for p in pairs if p.lead], [p for p in pairs if not p.lead]
+    late = late_pairs(plant.model, log) if wiring and is_small else []
     for judge in (Judge(plant, length, log) for length in lengths):
         if (as_read := judge.as_read) is None:
             continue
@@ -103,7 +102,6 @@ def refuse_miswired(robot: Robot, log: Log) -> None:
                 )  # fmt: skip
         kinds: list[Readings] = [factor_readings, in_units] * units
         kinds += [partial(_of_outputs, judge), input_readings] * wiring
-        kinds += [partial(crossed_readings, pairs=driven)] * wiring
         kinds += [together] * (wiring and len(log.input_names) > 1)
         readings = chain(*(kind(doubt) for kind in kinds))
         if found is None:
@@ -165,7 +163,6 @@ def refuse_unbalanced(robot: Robot, log: Log) -> None:
         readings += [input_unit_readings(doubt, drive_units(model, log)), unit_readings(doubt)]
     if "wiring" not in file.trust:
         readings += [input_readings(doubt), output_readings(doubt)]
-        readings += [crossed_readings(doubt, joint_pairs(model, log))]
     if found := balanced_otherwise(model, doubt, chain(*readings)):
         raise _refusal(robot, log, *found)
 

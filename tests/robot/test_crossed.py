@@ -1,4 +1,4 @@
-"""An input and a measured column of one joint in each other's place are told, a late one not."""
+"""A setpoint and a measured column in each other's place are told, and a late setpoint is not."""
 
 import re
 from dataclasses import replace
@@ -7,12 +7,12 @@ import mujoco
 import numpy as np
 import pytest
 from advice import advised
-from plain_logs import model_log, noise, stepped
+from plain_logs import model_log, stepped
 from servo_logs import DRAWN, LIFTING, goals, servo_log
 from tracked_cases import ARM, refused, robot
 
 from identification import InputError, read_robot
-from identification.refusals.crossed import joint_pairs, late_sentence
+from identification.refusals.crossed import late_pairs, late_sentence
 from identification.refusals.wiring import refuse_miswired
 
 pytestmark = pytest.mark.usefixtures("few_effects")
@@ -65,20 +65,8 @@ def test_setpoints_that_were_stamped_late_are_no_positions_and_are_told(tmp_path
     assert late_sentence(own.file, own.plant.model, right) is None
 
 
-def test_torque_and_position_of_a_joint_are_told(tmp_path):
+def test_the_columns_of_a_motor_are_not_asked(tmp_path):
+    """Its torque comes before the motion in a right log, too."""
     model = mujoco.MjModel.from_xml_string(ARM)
     u = np.repeat(4 * np.random.default_rng(3).standard_normal((20, 2)), 20, axis=0)
-    y = stepped(model, u)
-    right = model_log(model, u, y + noise(y.shape, 2e-4))
-    refuse_miswired(*robot(tmp_path, ARM, right, HORIZON))
-    assert "exchange q2 and u2 under" in refused(
-        *robot(tmp_path, ARM, crossed(right, [1]), HORIZON)
-    )
-
-
-def test_an_input_that_stands_still_is_no_position():
-    """A column that does not move would be explained whole by any model."""
-    model, u = mujoco.MjModel.from_xml_string(ARM), np.zeros((400, 2))
-    y = stepped(model, u, [0.7, -0.4])
-    assert joint_pairs(model, model_log(model, u, y)) == []
-    assert joint_pairs(model, model_log(model, u + y, y))
+    assert late_pairs(model, crossed(model_log(model, u, stepped(model, u)), [1])) == []
