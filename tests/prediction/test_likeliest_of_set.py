@@ -97,35 +97,3 @@ def test_what_physics_forbids_is_asked_again_beside_what_was_found_since():
     assert first.candidate.key == mine.candidate.key
     assert find_odds(first, model).own > 0.5
     assert second is found
-
-
-def test_a_simpler_law_takes_the_place_of_one_that_had_drawn_what_was_found_later():
-    """A Stribeck peak that was found before the offset beside it; the truth is a Coulomb level."""
-    logs = records(3, {"coulomb_friction.f_c@hinge": 0.05, "offset.f_0@hinge": 0.04}, samples=200)
-    task = RecordsTask(
-        nominal_model=nominal_model(), records=as_records(logs[:1], logs[1:]),
-        effects=listed("coulomb_friction", "stribeck_friction", "offset"),
-        options=DiscoveryOptions(max_effects=2),
-    )  # fmt: skip
-    state = WINDOWS.begin(task, print)
-    best = {}
-    for score in state.scores:
-        best.setdefault(score.candidate.effect.name, score.candidate)
-    peak, level = (
-        judged(state.model, with_one(state, state.model, best[f"{name}_friction"]), 2, task.options)
-        for name in ("stribeck", "coulomb")
-    )
-    unlikely = replace(level, doubt=None, gains=level.gains - 10.0)  # as long as it stood alone
-    peak = replace(peak, doubt=None, alternatives=(unlikely,))
-    with_both = with_one(state, peak.model, best["offset"])
-    offset = judged(peak.model, with_both, 1, task.options)
-    state = replace(state, model=with_both, accepted=(peak, offset), nominal=state.model)
-    model, (first, second), _ = likeliest_of_set(state, print)
-    assert [first.candidate.effect.name, second.candidate.effect.name] == [
-        "coulomb_friction", "offset",
-    ]  # fmt: skip
-    assert {c.effect.name for c in model.candidates} == {"coulomb_friction", "offset"}
-    without = replace(task, options=replace(task.options, without=("simpler_laws",)))
-    kept, accepted, _ = likeliest_of_set(replace(state, task=without), print)
-    assert accepted == state.accepted
-    assert kept is with_both

@@ -6,8 +6,7 @@ imitates what is found next. So after each effect that is found, an earlier one 
 likeliest is asked again: it and the others are refitted in its place, beside all that was found
 since. The likeliest that unseen records prove there takes the place, and the odds are those of
 these refits. A difference between records that is the same in all of them is a law of the robot,
-which is asked in its place. A law with a free shape draws a part of what was not found yet, so that
-a simpler one of its set is asked again, too.
+which is asked in its place.
 
     |a - b| < 3 √(σ_a² + σ_b²)        values a, b of any two records, and their std
 """
@@ -31,8 +30,6 @@ from identification.prediction.judging.judging import judged
 from identification.prediction.judging.odds import LATE, find_odds
 from identification.prediction.judging.trial import Contender, evidences, is_rival
 from identification.prediction.moves.add_set import with_one
-from identification.prediction.selection.selection import ranked
-from identification.prediction.selection.simpler_laws import is_simpler
 from identification.prediction.selection.smooth_rivals import without_imitated
 from identification.prediction.task import Change, WindowSearch
 from identification.prediction.verdict.told_effects import fitted_sizes
@@ -50,7 +47,7 @@ def likeliest_of_set(state: WindowSearch, progress: Progress) -> Change:
         # what unseen records do not prove takes no place, however likely it is
         proven = [share for rival, share in odds.rivals if rival.is_proven]
         is_likelier = max(proven, default=0.0) > odds.own
-        is_asked = is_likelier or is_forbidden or is_alike(old, model) or has_simpler(old, state)
+        is_asked = is_likelier or is_forbidden or is_alike(old, model)
         new = _asked_again(state, model, old) if is_asked else None
         if new is None:
             out.append(old)
@@ -93,8 +90,6 @@ def _asked_again(state: WindowSearch, model: WindowModel, old: Contender) -> Con
     if not proven:
         return None
     best = max(proven, key=lambda pair: pair[0])[1]
-    simpler = [c for _, c in proven if is_simpler(c.candidate, best.candidate)]
-    best = ranked([best, *simpler], task.options)[0] if has_simpler(old, state) else best
     # another shape of the same law is no rival
     others = (o for o in found if o.candidate.key != best.candidate.key and is_rival(o))
     return replace(best, alternatives=tuple(others))
@@ -109,17 +104,6 @@ def _judged_together(
     parent, whole = at_all_lengths(without, models, task.horizon, task.confirm, crosses)
     found = (judged(parent, c, len(models), options) for c in whole if c is not None)
     return [without_imitated(parent, c, options) for c in found]
-
-
-def has_simpler(old: Contender, state: WindowSearch) -> bool:
-    """Returns whether a simpler law was refitted in the place of an effect, and others came later.
-
-    Args:
-        old: an accepted effect.
-        state: the state, with the switch `simpler_laws`.
-    """
-    is_asked = uses(state.task.options, "simpler_laws") and old is not state.accepted[-1]
-    return is_asked and any(is_simpler(o.candidate, old.candidate) for o in old.alternatives)
 
 
 def is_alike(difference: Contender, model: WindowModel) -> bool:

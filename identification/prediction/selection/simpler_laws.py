@@ -69,13 +69,9 @@ def simpler_than(winner: Candidate, scores: Sequence[WindowScore]) -> list[Candi
         winner: which promised most.
         scores: of all candidates.
     """
-    return [s.candidate for s in scores if is_simpler(s.candidate, winner)]
-
-
-def is_simpler(c: Candidate, than: Candidate) -> bool:
-    """Returns whether an effect acts as another one does, at its place, with fewer numbers."""
-    is_alike = c.where == than.where and _way_of(c) == _way_of(than)
-    return is_alike and count_numbers(c) < count_numbers(than)
+    numbers, way = count_numbers(winner), _way_of(winner)
+    each = (s.candidate for s in scores if s.candidate.where == winner.where)
+    return [c for c in each if _way_of(c) == way and count_numbers(c) < numbers]
 
 
 def _way_of(c: Candidate) -> frozenset[str]:
