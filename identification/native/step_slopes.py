@@ -8,7 +8,12 @@ A is that of forward differences, each of which does again only what follows fro
 all for a position, forces for a rate, actuators for an activation. B needs accelerations alone,
 and without constraints it is exact. g is what is left of the force that would have to be resisted
 to stop a joint when its friction has resisted (`identification.native.joints.holding`): zero where
-friction holds it, of the direction of its motion where it slips.
+friction holds it, of the direction of its motion where it slips. It has no forces of constraints,
+because MuJoCo finds these when our laws have acted.
+
+Forces of MuJoCo's own dry friction and of equality constraints are continuous functions of state
+and force, and the differences have them. Limits and contacts act at times that depend on the
+state, so that no slope of a step tells what another force does to them.
 """
 
 from __future__ import annotations
@@ -38,6 +43,7 @@ from identification.native.library import (
     mj_forwardSkip,
     mj_implicit,
     mj_rne,
+    mobility,
     solve,
     unit,
 )
@@ -46,6 +52,7 @@ from identification.native.memory import (
     internal,
     load_constant,
     load_double,
+    load_int,
     load_word,
     offsets,
     store_double,
@@ -55,13 +62,17 @@ from identification.runtime.engine import quiet, untimed
 from identification.runtime.pool import run_parts, threads
 
 STEP = 1e-6  # of the differences, in the units of the states
+TIED_STEP = 1e-8  # where joints are tied: MuJoCo's equalities are softer the less they are violated
+PUSHED = 1e-3  # acceleration of a joint by the force that is moved where constraints answer it
 FIELDS = len(Joint._fields)
 M = offsets("mjModel", "njnt nq nv na nu nuser_jnt jnt_user jnt_type jnt_qposadr jnt_dofadr")
-D = offsets("mjData", "qpos qvel act qfrc_applied qfrc_constraint qfrc_bias qfrc_passive")
+D = offsets("mjData", "qpos qvel act qfrc_applied qfrc_bias qfrc_passive efc_force")
+# Rows of constraints: equalities stand first, dry frictions behind them, then limits and contacts.
+COUNTS = ("ne", "nf", "nefc")
+EQUALITIES, FRICTIONS, ROWS = (structs.byte("mjData", name) for name in COUNTS)
 _EULER = int(mujoco.mjtIntegrator.mjINT_EULER)
 # model, data, number of states, states, number of joints, joints, entries of their rows, whether
-# the integrator is Euler's, room for 3 nx numbers, A, B, joints' states, g, R, forces of
-# constraints
+# the integrator is Euler's, room for 3 nx numbers, A, B, joints' states, g, R, forces of limits
 _SIGNATURE = types.void(*[types.int64] * 15)
 
 
@@ -74,7 +85,7 @@ class StepSlopes:
     joints: np.ndarray  # fields of `Joint`, as a force sees them, shape (P, J, FIELDS)
     g: np.ndarray  # shape (P, J) [N m or N]
     R: np.ndarray  # of these joints, shape (P, J, J)
-    constrained: np.ndarray  # largest force of a constraint, 0 where none acts, shape (P,)
+    limited: np.ndarray  # largest force of a limit or contact, 0 where none acts, shape (P,)
 
 
 def linearise_steps(
@@ -100,7 +111,7 @@ def linearise_steps(
 
     def part(k: int) -> None:
         some, data, room = slice(cuts[k], cuts[k + 1]), mujoco.MjData(model), np.empty(3 * nx)
-        results = (out.A, out.B, out.joints, out.g, out.R, out.constrained)
+        results = (out.A, out.B, out.joints, out.g, out.R, out.limited)
         run(
             model._address, data._address, int(cuts[k + 1] - cuts[k]), x[some].ctypes.data,
             J, at.ctypes.data, entries, int(model.opt.integrator == _EULER), room.ctypes.data,
@@ -115,7 +126,7 @@ def linearise_steps(
 @cache
 def _loop() -> Any:
     """Returns the loop over points, compiled; its arguments are those of `_SIGNATURE`."""
-    structs.require((*M._fields, *D._fields, *joint_callback.FIELDS, *library.FIELDS))
+    structs.require((*M._fields, *D._fields, *COUNTS, *joint_callback.FIELDS, *library.FIELDS))
     return compile_once(_slopes, _SIGNATURE)
 
 
@@ -182,8 +193,17 @@ def _resisted(m, d, n, joints, entries, w, g, R):
         store_double(g + 8 * k, load_double(g + 8 * k) / load_double(R + 8 * (n * k + k)))
 
 
+@internal
+def _largest_limit(d, rows):
+    """Returns the largest force of a limit or a contact, 0 where none acts."""
+    most = 0.0
+    for i in range(load_int(d + EQUALITIES) + load_int(d + FRICTIONS), rows):
+        most = max(most, abs(load_double(word(d, D.efc_force) + 8 * i)))
+    return most
+
+
 def _slopes(
-    m, d, points, states, n, joints, entries, is_euler, room, A, B, seen, g, R, constrained
+    m, d, points, states, n, joints, entries, is_euler, room, A, B, seen, g, R, limited
 ):
     nv, na, columns = word(m, M.nv), word(m, M.na), word(m, M.nuser_jnt)
     nx = 2 * nv + na
@@ -194,10 +214,9 @@ def _slopes(
         load_state(m, d, x)
         clear(word(d, D.qfrc_applied), nv)
         mj_forwardSkip((m, d, NONE, 1))
-        most = 0.0
-        for i in range(nv):
-            most = max(most, abs(load_double(word(d, D.qfrc_constraint) + 8 * i)))
-        store_double(constrained + 8 * p, most)
+        rows = np.int64(load_int(d + ROWS))
+        step = TIED_STEP if load_int(d + EQUALITIES) > 0 else STEP
+        store_double(limited + 8 * p, _largest_limit(d, rows))
         for k in range(n):
             j = load_word(joints + 8 * k)
             at = word(m, M.jnt_user) + 8 * (columns * (j + 1) - entries)
@@ -208,19 +227,21 @@ def _slopes(
         _resisted(m, d, n, joints, entries, w, g + 8 * n * p, R + 8 * n * n * p)
         _integrate(m, d, is_euler, here)
         for i in range(nv):
-            at = word(d, D.qfrc_applied) + 8 * i
-            _step_from(m, d, x, at, 1.0, VELOCITY, is_euler, there)
-            _differ(B + 8 * nx * nv * p, nv, i, here, there, 1.0, nx)
+            at, push = word(d, D.qfrc_applied) + 8 * i, 1.0
+            if rows > 0:  # friction answers a large force otherwise than a small one
+                push = PUSHED / mobility(m, d, i, w)
+            _step_from(m, d, x, at, push, VELOCITY, is_euler, there)
+            _differ(B + 8 * nx * nv * p, nv, i, here, there, push, nx)
             store_double(at, 0.0)
         for i in range(na):
             at = word(d, D.act) + 8 * i
-            _step_from(m, d, x, at, STEP, VELOCITY, is_euler, there)
-            _differ(to, nx, 2 * nv + i, here, there, STEP, nx)
+            _step_from(m, d, x, at, step, VELOCITY, is_euler, there)
+            _differ(to, nx, 2 * nv + i, here, there, step, nx)
         for i in range(nv):
             at = word(d, D.qvel) + 8 * i
-            _step_from(m, d, x, at, STEP, POSITION, is_euler, there)
-            _differ(to, nx, nv + i, here, there, STEP, nx)
+            _step_from(m, d, x, at, step, POSITION, is_euler, there)
+            _differ(to, nx, nv + i, here, there, step, nx)
         for i in range(nv):
             at = word(d, D.qpos) + 8 * i
-            _step_from(m, d, x, at, STEP, NONE, is_euler, there)
-            _differ(to, nx, i, here, there, STEP, nx)
+            _step_from(m, d, x, at, step, NONE, is_euler, there)
+            _differ(to, nx, i, here, there, step, nx)

@@ -18,8 +18,8 @@ from mujoco.introspect import ast_nodes, structs
 _PROBE = """<mujoco>
   <option integrator="RK4"/>
   <size nuser_jnt="1" nuser_actuator="1" nuser_tendon="1" nuser_sensor="1" nuser_body="1"/>
-  <worldbody><site name="a"/><body pos="1 0 0"><joint name="j"/><geom size="1"/><site name="b"/>
-  </body></worldbody>
+  <worldbody><site name="a"/><body pos="1 0 0"><joint name="j" frictionloss="1"/><geom size="1"/>
+  <site name="b"/></body></worldbody>
   <tendon><spatial name="t"><site site="a"/><site site="b"/></spatial></tendon>
   <actuator>
     <general name="u" joint="j" dyntype="integrator" actdim="1" ctrlrange="-1 1"
@@ -80,6 +80,11 @@ def word(struct: str, field: str) -> int:
     if offset % 8:
         raise NotImplementedError(f"{struct}.{field} is at byte {offset}, not on a word")
     return offset // 8
+
+
+def byte(struct: str, field: str) -> int:
+    """Returns the offset of a field in bytes, e.g. of a whole number of 32 bits."""
+    return int(getattr(layout(struct), field).offset)
 
 
 def option_byte(name: str) -> int:

@@ -42,6 +42,8 @@ PENDULUM = """<mujoco model="pendulum"><option timestep="0.005" integrator="{int
   <actuator><motor name="u0" joint="j0"/></actuator>
   <sensor><jointpos name="y0" joint="j0"/></sensor></mujoco>"""
 COULOMB, HARDENING = {"coulomb_friction.f_c@j0": 0.3}, {"hardening.k_3@j0": 2.0}
+RUBS = 'frictionloss="0.2" damping'  # by MuJoCo's own dry friction
+TIED = """<equality><joint joint1="j1" joint2="j2" polycoef="0 0.7 0 0 0"/></equality></mujoco>"""
 CASES = {
     "slider": (SLIDER, "Euler", {}, 1),
     "slider that rubs": (SLIDER, "implicitfast", COULOMB, 1),
@@ -53,6 +55,13 @@ CASES = {
     "arm that rubs": (ARM, "implicitfast", {"coulomb_friction.f_c": 0.3, **HARDENING}, 1),
     "arm with late sensors": (ARM, "RK4", {"encoder_lag.tau@y1": 0.02, "encoder_scale.s@y2": 0.1},
                               1),
+    "slider of a model with friction": (SLIDER.replace("damping", RUBS.replace("0.2", "0.3")),
+                                        "Euler", {}, 1),
+    "arm of a model with friction": (ARM.replace("damping", RUBS), "implicitfast", HARDENING, 1),
+    "arm whose joints are tied": (ARM.replace("</mujoco>", TIED), "implicitfast", HARDENING, 1),
+    "tied arm of a model with friction": (
+        ARM.replace("damping", RUBS).replace("</mujoco>", TIED), "RK4", {}, 1,
+    ),
 }  # fmt: skip
 
 

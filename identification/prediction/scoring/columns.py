@@ -5,8 +5,8 @@
 A group of forces on joints is propagated along the linearised steps of the windows
 (`identification.prediction.scoring.directions`). All others are simulated, each size at its probe:
 what changes a state that joints lack, an input, a sensor, a mass or an inertia. So are forces in
-windows in which a constraint acts, because the time of an impact is not smooth, and where the steps
-have no linearisation.
+windows in which a limit or a contact acts, because the time of an impact is not smooth, and where
+the steps have no linearisation.
 """
 
 from __future__ import annotations

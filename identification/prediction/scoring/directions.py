@@ -42,8 +42,8 @@ class Directions:
 
     @property
     def is_smooth(self) -> np.ndarray:
-        """Whether no constraint acts in a window, shape (W,)."""
-        largest = self.slopes.constrained.reshape(len(self.times), -1).max(axis=1)
+        """Whether no limit or contact acts in a window, shape (W,)."""
+        largest = self.slopes.limited.reshape(len(self.times), -1).max(axis=1)
         return np.asarray(largest == 0)
 
     def dofs(self) -> list[int]:
