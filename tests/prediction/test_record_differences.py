@@ -26,6 +26,8 @@ from identification.prediction.scoring.screening import at_several, felt_places
 from identification.prediction.selection.edges import without_edges
 from identification.prediction.selection.selection import STRONG_BIC, ranked
 from identification.prediction.task import RecordsTask
+from identification.prediction.verdict.verdict import conclude
+from identification.report.discovery.horizon_gap import find_gap
 from identification.report.discovery.json import discovery_to_json
 from identification.report.discovery.report import discovery_text
 from identification.windows.records import as_records
@@ -164,6 +166,18 @@ def test_a_shift_that_all_records_have_alike_becomes_a_delay_and_is_no_rival_of_
     assert law.is_proven
     odds = find_odds(replace(law, alternatives=(shift,)), model)
     assert (odds.own, odds.rivals) == (1.0, ())
+
+
+def test_errors_before_and_after_are_of_the_same_windows_where_a_shift_has_cut_them():
+    _, state = with_shift(0.016, 0.016)
+    cut = without_edges(state)
+    model, accepted, _ = likeliest_of_set(cut, print)  # the shift itself is no part of it any more
+    answer = conclude(replace(cut, model=model, accepted=accepted))
+    assert len(model.fit.errors[0]) < len(cut.nominal.fit.errors[0])
+    (fitted, confirm) = find_gap(answer).records
+    assert [len(r.time) for r in (fitted, confirm)] == [len(r.before) for r in (fitted, confirm)]
+    assert len(fitted.before) == len(fitted.after) == len(model.fit.errors[0])
+    assert np.median(fitted.before) > np.median(fitted.after)
 
 
 def test_shifts_that_differ_stay_differences():

@@ -158,9 +158,14 @@ def largest_share(before: Unseen, after: Unseen, options: DiscoveryOptions) -> f
 
 
 def _with_differences(state: WindowSearch, differ: Sequence[Contender]) -> WindowModel:
-    """Returns the nominal model with the differences between records that the final one has."""
-    if not differ or len(differ) == len(state.accepted):
-        return state.model if differ else state.nominal
+    """Returns the nominal model with the differences between records that the final one has.
+
+    It sees the windows of the final one, which a shift of clocks that was asked for has cut.
+    """
+    if not differ and not any(r.edge for r in state.task.records):
+        return state.nominal
+    if len(differ) == len(state.accepted):
+        return state.model
     found = [a.candidate for a in differ]
     kept = [c for c in state.model.candidates if c.key in {d.key for d in found}]
     bare = refitted(state.model, kept, state.task.nominal_model, state.task.confirm)
