@@ -10,6 +10,7 @@ from identification import Log, Parameter
 from identification.discovery.candidates import list_common, list_single
 from identification.discovery.nominal_model import NominalModel
 from identification.effects.plant.joint_plant import joint_plant
+from identification.model.lean import RK4, slope_integrator
 from identification.prediction.fits.nominal_fit import _priors, begin
 from identification.prediction.scoring import columns as ways
 from identification.prediction.scoring.columns import columns
@@ -42,6 +43,9 @@ PENDULUM = """<mujoco model="pendulum"><option timestep="0.005" integrator="{int
   <actuator><motor name="u0" joint="j0"/></actuator>
   <sensor><jointpos name="y0" joint="j0"/></sensor></mujoco>"""
 COULOMB, HARDENING = {"coulomb_friction.f_c@j0": 0.3}, {"hardening.k_3@j0": 2.0}
+# With such gains steps of Euler would diverge.
+STIFF = ARM.replace('kp="20" kv="1"', 'kp="200" kv="90" forcerange="-40 40"').replace(
+    'kp="15"', 'kp="60" kv="8"')  # fmt: skip
 RUBS = 'frictionloss="0.2" damping'  # by MuJoCo's own dry friction
 TIED = """<equality><joint joint1="j1" joint2="j2" polycoef="0 0.7 0 0 0"/></equality></mujoco>"""
 CASES = {
@@ -142,6 +146,10 @@ def test_what_is_no_force_on_joints_and_where_a_constraint_acts_is_simulated(mon
     stopped = fitted(ARM, "RK4", (), more=' limited="true" range="-1e-3 1e-3"')
     assert not any(f.along.is_smooth.any() for f in ways.forces_of(stopped))
     assert np.array_equal(columns(stopped, group), simulated(stopped, group, 1.0, monkeypatch))
+
+    stiff = fitted(STIFF, "RK4", ())  # its steps have to be those of Runge and Kutta
+    assert slope_integrator(stiff.problem.plant.model) == RK4
+    assert np.array_equal(columns(stiff, group), simulated(stiff, group, 1.0, monkeypatch))
 
     gives = fitted(ARM, "RK4", (("joint_elasticity.c@j0", 1e-3),))
     assert not any(ways.forces_of(gives))

@@ -17,6 +17,7 @@ import numpy as np
 from identification.effects.plant.jointed import JointPlant
 from identification.errors import DivergenceError
 from identification.kalman.response import respond
+from identification.model.lean import RK4
 from identification.model.predictor import Predictor, output_columns
 from identification.model.protocol import with_numbers
 from identification.model.rollout import State, without_sensors
@@ -83,8 +84,9 @@ class Directions:
 def directions(part: Shooting, q: np.ndarray, d: np.ndarray) -> Directions | None:
     """Returns the windows of a record linearised at q (p,) and d (W, nx); None where none hold.
 
-    They do not where joints have states of their own, where positions are quaternions, and of
-    robots with so many degrees of freedom that their slopes would take much memory.
+    They do not where joints have states of their own, where positions are quaternions, where steps
+    have to be those of Runge and Kutta (`identification.model.lean`), and of robots with so many
+    degrees of freedom that their slopes would take much memory.
 
     Raises:
         DivergenceError: a window left the finite numbers.
@@ -96,10 +98,13 @@ def directions(part: Shooting, q: np.ndarray, d: np.ndarray) -> Directions | Non
         return None
     part = at_values(part, q)
     held, start = held_windows(part), part.states(d)
+    model = rough(plant)
+    if model.opt.integrator == RK4:
+        return None
     try:
-        return _along(plant, held, start, rough(plant))
+        return _along(plant, held, start, model)
     except DivergenceError:  # longer steps may diverge where the model's own do not
-        return _along(plant, held, start, at_own_steps(rough(plant), plant.model))
+        return _along(plant, held, start, at_own_steps(model, plant.model))
 
 
 def _along(
