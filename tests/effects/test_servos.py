@@ -19,6 +19,7 @@ from identification.effects.variables import variables
 from identification.model.rollout import State, rollout
 
 RATE, BAND, GAIN = "rate_limit.w@aim", "dead_band.d@pivot", "integral_part.k_i@pivot"
+OTHER = "servo_gain.gamma@pivot"
 SERVO = Servo()
 MANY = 400  # small steps in one of a slow integration
 AT_REST = replace(SERVO, weight=0.0)
@@ -82,6 +83,16 @@ def test_a_load_rests_behind_the_dead_band_and_no_load_rests_anywhere_within(gea
     assert (
         np.abs(run(lever(free), servo_log(np.full(100, gear * 1.1 * d)), **{BAND: d})).max() > 1e-4
     )
+
+
+@pytest.mark.parametrize("gamma", [0.3, -0.2])
+@pytest.mark.parametrize("more", [{}, {"gear": -1.5, "most": 2.5}])
+def test_another_gain_is_that_of_another_servo(gamma, more):
+    servo, u = replace(SERVO, **more), setpoints(4, 150)
+    got = run(lever(servo), servo_log(u), **{OTHER: gamma})
+    other = replace(servo, kp=(1 + gamma) * servo.kp)
+    np.testing.assert_allclose(got, run(lever(other), servo_log(u)), atol=2e-3)
+    assert np.abs(got - run(lever(servo), servo_log(u))).max() > 0.02
 
 
 def test_a_dead_band_takes_nothing_from_a_servo_at_its_limit():
@@ -161,7 +172,9 @@ def test_they_are_candidates_at_position_servos_only():
         if "two" in model:
             log = replace(log, inputs=np.repeat(log.inputs, 2, 1), input_names=("aim", "two"))
         every = all_effects(spec, axes(spec.copy().compile(), log), log)
-        mine = [e for e in every if e.name in ("rate_limit", "dead_band", "integral_part")]
+        mine = [
+            e for e in every if e.name in ("rate_limit", "servo_gain", "dead_band", "integral_part")
+        ]
         assert {w for e in mine for w in e.places} == expected
     law = next(e for e in lever(SERVO).effects if e.name == "dead_band")
     assert variables(law) >= {"e", "f_u"}

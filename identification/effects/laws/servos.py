@@ -1,7 +1,8 @@
 """Effects of position servos, which follow a setpoint u with the error e = u/γ - q.
 
     rate limit      |du'/dt| <= 1/w            u': what the servo follows in place of u
-    dead band       f_s - k_p clip(e, ±d)      in place of f_s, within the limits of the force
+    gain            f_s + γ_p k_p e            in place of f_s, within the limits of the force
+    dead band       f_s - k_p clip(e, ±d)      likewise
     integral part   f_s + k_i ∫ e dt           likewise
 
     r = |u - x| w/h,   x(t + h) = u where r <= 1, else x + (u - x)/r          x: u' as a step begins
@@ -27,9 +28,10 @@ from identification.effects.sizes import Size
 from identification.quantities import per
 
 # Largest plausible sizes. A joint is about as fast as its limit lets it, and one of several may be
-# ten times slower than the fastest. The band is a part of the travel. An integral gain winds up the
+# ten times slower than the fastest. Another voltage of the supply changes a gain by less than half.
+# The band is a part of the travel. An integral gain winds up the
 # largest force in this time, at an error that makes this force at once.
-SLOWEST, BAND, SOONEST = 10.0, 0.05, 0.03
+SLOWEST, OTHER, BAND, SOONEST = 10.0, 0.5, 0.05, 0.03
 RATES = (0.5, 0.8, 1.1, 2.0, 4.0)  # to try, of w over one over the top speed
 BANDS = (1.0, 5.0, 20.0)
 
@@ -63,6 +65,13 @@ def dead_band(s, p):
 
 
 @njit
+def servo_gain(s, p):
+    least, most = s.f_low, s.f_high
+    more = p[0] * s.k_p * s.e
+    return max(least, min(most, s.f_s + more)) - max(least, min(most, s.f_s))
+
+
+@njit
 def integral_part(s, p):
     return p[0]
 
@@ -72,6 +81,10 @@ def servo_effects(g: Group) -> list[Effect]:
     gain = per(g.f, f"{g.x} s")
     soon = g.k / SOONEST
     return [
+        g.force(servo_gain, "f_s + γ_p k_p e in place of f_s, e = u/γ - q",
+                "servo: another gain",
+                Size("gamma", "", OTHER, PROBE * OTHER, 0, "what its gain has more"),
+                places=g.servos),
         g.force(dead_band, "f_s - k_p clip(e, ±d) in place of f_s, e = u/γ - q",
                 "servo: has a dead band",
                 Size("d", g.x, BAND * g.A, PROBE * BAND * g.A, 1, "half the dead band"),
