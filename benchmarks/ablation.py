@@ -1,7 +1,7 @@
 """What passes and options of a search over a horizon are worth: worlds answered without each pass.
 
     python benchmarks/ablation.py [--seed 1] [--count 2] [--processes 2]
-    python benchmarks/ablation.py --passes signed_ranks loud_windows --worlds leg pendulum
+    python benchmarks/ablation.py --passes signed_ranks own_weights --worlds leg pendulum
     python benchmarks/ablation.py --passes --options significance min_fall     each ± 50 %
     python benchmarks/ablation.py --only-page          the page anew, from the rows
 

@@ -102,11 +102,8 @@ class Move(Generic[State]):
     name: str
     # returns the state after it; the state itself where it finds nothing better
     make: Callable[[State, Progress], State]
-    grows: bool = False  # whether it adds effects
-    takes_long: bool = False  # whether the time limit of a search ends it, as it ends growing ones
-    # whether all moves are asked again, once, where it drops effects: in their place there is room
-    # for what they had hidden
-    regrows: bool = False
+    # whether it adds effects; the time limit of a search ends moves that do
+    grows: bool = False
 
     def __str__(self) -> str:
         return self.name.replace("_", " ")
@@ -156,7 +153,7 @@ class Evidence(Generic[State]):
         if state.is_finished:
             return state
         move, *rest = state.moves
-        end = state.end if move.grows or move.takes_long else inf
+        end = state.end if move.grows else inf
         with collected(progress, state.failed) as failed:
             try:
                 with until(end):
@@ -167,11 +164,8 @@ class Evidence(Generic[State]):
         new = replace(new, failed=tuple(failed))
         if [*map(id, new.accepted)] != [*map(id, state.accepted)]:
             new = replace(new, made=(*new.made, move.name))
-        change = len(new.accepted) - len(state.accepted)
-        is_first = move.regrows and move.name not in state.made
-        is_again = is_first and "grow_again" not in state.task.options.without
-        again = change > 0 or (change < 0 and is_again)
-        return replace(new, moves=self.asked(new) if again else tuple(rest))
+        has_grown = len(new.accepted) > len(state.accepted)
+        return replace(new, moves=self.asked(new) if has_grown else tuple(rest))
 
     @one_blas_thread()
     def search(self, task: Task, progress: Progress | None = None) -> Discovery:

@@ -26,22 +26,15 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
     "suggested_effects": (
         HORIZON, "refits effects that the joints' torques have named, whatever their scores are",
     ),
-    "add_yielding_friction": (
-        HORIZON, "fits a friction that gives before it slips from its largest compliance",
-    ),
     "add_set": (HORIZON, "adds several effects that are proven together and not alone"),
     "add_curve": (HORIZON, "adds a curve of the data where neither a law nor a set is proven"),
     "plain_sets": (
         HORIZON, "leaves laws with states of joints, on which a linear choice errs, out of sets",
     ),
-    "set_for_effects": (
-        HORIZON, "puts effects that are proven together in the place of those found one by one",
-    ),
     "add_deviants": (RUN, "makes effects of parts that deviate by more than parts do"),
     "shape_bounds": (HORIZON, "names no law whose shape ends on the bound of its range"),
     "impossible_sizes": (ALL, "names no effect of a size that physics forbids"),
     "drop_effects": (BOTH, "drops an effect that later ones have made needless"),
-    "grow_again": (HORIZON, "asks for further effects once more where needless ones were dropped"),
     "exchange_effects": (
         RUN, "puts a rival in the place of an effect, where the model with it is better",
     ),
@@ -62,9 +55,6 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
     "weak_scores": (
         HORIZON, "refits effects whose scores may be luck, because unseen records decide",
     ),
-    "scores_of_much_left": (
-        HORIZON, "refits effects by their own chance, not that of all, where much is left",
-    ),
     "proof_by_both_roles": (
         HORIZON, "proves the likeliest law by blocks of fitted records too, as fits of the others"
         " predict them",
@@ -76,7 +66,6 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
         HORIZON, "takes no law of a sensor, a body or all inputs where a smooth force of one joint"
         " does as much",
     ),
-    "lone_curves": (HORIZON, "tries a set in the place of one curve that was found alone"),
     "large_scores": (
         HORIZON, "refits effects whose scores ask for too large a size: the refit judges the size",
     ),
@@ -85,9 +74,6 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
     ),
     "losing_blocks": (
         HORIZON, "lets a record contradict an effect only where its blocks lose on average too",
-    ),
-    "loud_windows": (
-        HORIZON, "takes the windows that err most where effects are fitted to some windows first",
     ),
     "simpler_laws": (HORIZON, "fits laws with fewer numbers that act as the best one does"),
     "several_places": (
@@ -127,24 +113,17 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
     "drop_places": (
         HORIZON, "drops places at which an effect that has several does nothing after all",
     ),
-    "curve_for_laws": (
-        HORIZON, "puts one curve of the data in the place of several laws at a joint",
-    ),
     "neighbours_names": (
         HORIZON, "names no law beside which a curve of the data still explains much",
     ),
     "smooth_neighbours": (
         HORIZON, "names no law beside which a smooth force of two variables explains much",
     ),
-    "whole_sets": (
-        HORIZON, "lets a set of effects take the place of others only where little is left with it",
-    ),
     "further_laws": (
         HORIZON, "names no law beside a surer one that explains less than 92 % of what smooth"
         " forces of its joint could",
     ),
     "closed_gap": (HORIZON, "names no law that closes less than half of the gap"),
-    "drop_beside_curves": (HORIZON, "drops laws that were found only beside a curve of the data"),
     "priors_of_last_fit": (
         HORIZON, "weighs outputs and priors of the last fit by its own errors, which are smaller",
     ),

@@ -202,9 +202,7 @@ def _largest_limit(d, rows):
     return most
 
 
-def _slopes(
-    m, d, points, states, n, joints, entries, is_euler, room, A, B, seen, g, R, limited
-):
+def _slopes(m, d, points, states, n, joints, entries, is_euler, room, A, B, seen, g, R, limited):
     nv, na, columns = word(m, M.nv), word(m, M.na), word(m, M.nuser_jnt)
     nx = 2 * nv + na
     row = 8 * (1 + word(m, M.nq) + nv + na + word(m, M.nu))

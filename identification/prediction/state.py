@@ -2,7 +2,7 @@
 
 fit the nominal model  ->  score all candidates  ->  refit the best  ->  predict unseen records
                                    ^_____________________________________________|   again, with it
-then drop effects and places, and what a curve of the data does
+then drop effects and places
 """
 
 from __future__ import annotations
@@ -18,10 +18,7 @@ from identification.prediction.fits.nominal_fit import as_begun, fit_alone, pred
 from identification.prediction.judging.trial import compared, find_doubt
 from identification.prediction.moves.add_curve import add_curve
 from identification.prediction.moves.add_effect import add_effect
-from identification.prediction.moves.add_set import add_set, set_for_effects
-from identification.prediction.moves.add_yielding_friction import add_yielding_friction
-from identification.prediction.moves.curve_for_laws import curve_for_laws
-from identification.prediction.moves.drop_beside_curves import drop_beside_curves
+from identification.prediction.moves.add_set import add_set
 from identification.prediction.moves.drop_doubtful import drop_doubtful
 from identification.prediction.moves.drop_effects import drop_effects
 from identification.prediction.moves.drop_places import drop_places
@@ -39,15 +36,10 @@ FEWEST_BLOCKS = 3  # of unseen windows, whose scatter is known
 MOVES = (
     Move("likeliest_of_set", finishing(likeliest_of_set)),
     Move("add_effect", add_effect, grows=True),
-    Move("add_yielding_friction", add_yielding_friction, grows=True),
     Move("add_set", add_set, grows=True),
     Move("add_curve", add_curve, grows=True),
-    Move("set_for_effects", set_for_effects, takes_long=True),
-    Move("drop_effects", finishing(drop_effects), regrows=True),
-    *(
-        Move(change.__name__, finishing(change))
-        for change in (drop_places, curve_for_laws, drop_beside_curves)
-    ),
+    Move("drop_effects", finishing(drop_effects)),
+    Move("drop_places", finishing(drop_places)),
     Move("drop_doubtful", drop_doubtful),
 )  # fmt: skip
 

@@ -15,7 +15,7 @@ from identification.prediction.discovery import discover_records
 FORCE = {"coulomb_friction.f_c@hinge": 0.08}
 CHOICES = (
     DiscoveryOptions(),
-    DiscoveryOptions(without=("loud_windows",)),
+    DiscoveryOptions(without=("own_weights",)),
     DiscoveryOptions(without=("drop_places",)),  # an effect at one place has none to drop
 )
 
@@ -45,7 +45,7 @@ def test_searches_with_kept_steps_answer_as_searches_from_nothing():
             before = kept_steps.COUNTS["made"]
             assert answer(search(kept_steps.asked(options))) == expected
             made.append(kept_steps.COUNTS["made"] - before)
-    assert made[0] > made[1] > 0  # what is fitted first changes with the windows that are taken
+    assert made[0] > made[1] > 0  # fits change with the weights of outputs
     assert made[2] == 0
 
 

@@ -61,27 +61,6 @@ def test_after_each_effect_all_moves_are_asked_again_and_the_last_ones_once():
     assert end.made == (first, first, second)
 
 
-def test_what_was_dropped_makes_room_once():
-    """Of three that are missing the first one found stands for a part of two."""
-    asked = []
-
-    def add(state, progress):
-        asked.append("add_effect")
-        hidden = ("c", "a") if "b" in state.accepted else ("false", "b")
-        new = [e for e in hidden if e not in state.accepted][:1]
-        return replace(state, accepted=(*state.accepted, *new))
-
-    def drop(state, progress):
-        asked.append("drop_effects")
-        return replace(state, accepted=tuple(e for e in state.accepted if e != "false"))
-
-    every = (Move("add_effect", add, grows=True), Move("drop_effects", drop, regrows=True))
-    assert set(searched(begun(3), every).accepted) == {"a", "b", "c"}
-    assert asked.count("drop_effects") == 2
-    without = searched(begun(3, without=("grow_again",)), every)
-    assert set(without.accepted) == {"b", "c"}
-
-
 def test_where_there_is_room_for_no_more_nothing_is_added():
     most = 1
     asked = []
@@ -103,7 +82,7 @@ def test_behind_the_time_limit_no_effect_is_added_and_the_checks_are_made():
         return replace(state, scores=("checked",))
 
     every = (
-        Move("add_effect", simulates, grows=True), Move("add_set", simulates, takes_long=True),
+        Move("add_effect", simulates, grows=True), Move("add_set", simulates, grows=True),
         Move("drop_effects", checks),
     )  # fmt: skip
     end = searched(begun(minutes=0), every)
@@ -125,7 +104,7 @@ def test_the_time_of_a_search_counts_moves_that_were_ended(monkeypatch):
         now[0] += 7.0
         return replace(state, seconds={"refits": 6.0})
 
-    every = (Move("add_set", ended, takes_long=True), Move("drop_effects", finished))
+    every = (Move("add_set", ended, grows=True), Move("drop_effects", finished))
     end = searched(begun(), every)
     assert end.cut_short == ("add_set",)
     assert (end.took, sum(end.seconds.values())) == (52.0, 6.0)
@@ -160,7 +139,7 @@ def test_every_move_of_both_searches_has_a_reason_and_can_be_left_out():
 
 def test_what_each_move_that_the_time_limit_ends_seeks_is_told_in_words():
     every = {*innovations.MOVES, *windows.MOVES}
-    assert {*SOUGHT} == {move.name for move in every if move.grows or move.takes_long}
+    assert {*SOUGHT} == {move.name for move in every if move.grows}
 
 
 def test_the_page_lists_every_pass_with_what_it_does():

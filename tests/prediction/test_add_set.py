@@ -12,8 +12,7 @@ from identification.discovery.options import DiscoveryOptions
 from identification.prediction.discovery import WINDOWS
 from identification.prediction.fits.nominal_fit import fit_nominal
 from identification.prediction.moves import add_set
-from identification.prediction.scoring.scores import condensed, window_scores
-from identification.prediction.selection.set_choice import Choice, choose, find_members
+from identification.prediction.scoring.scores import condensed
 from identification.prediction.task import RecordsTask
 
 NAMES = ("quadratic_friction", "hardening", "gravity_force", "offset", "stiffness", "encoder_scale")
@@ -41,7 +40,7 @@ def test_three_effects_are_named_together_with_their_sizes():
 
 
 def test_without_sets_they_are_not():
-    discovery, _ = found("add_set", "set_for_effects")
+    discovery, _ = found("add_set")
     assert {n.name for n in discovery.named} != {name.partition(".")[0] for name in HIDDEN}
 
 
@@ -60,20 +59,6 @@ def test_members_compete_for_their_places_as_if_they_were_not_there():
     assert np.abs(a.sum()) < 0.02 * again
 
 
-def test_a_curve_gives_way_to_the_laws_that_it_draws():
-    """Far from the truth a linear choice errs; about the model with the curve it finds both."""
-    logs = records(4, {"hardening.k_3@hinge": 0.1, "offset.f_0@hinge": 0.06}, samples=400)
-    every, laws = roles(logs), (*NAMES, "coulomb_friction", "sublinear_friction", "cogging")
-    nominal = fit_nominal(nominal_model(), every)
-    drawn = with_law(nominal, "curve_position", every)
-    scores = window_scores(nominal.fit, list_common(listed(*laws)))
-    members = find_members(drawn, nominal)
-    assert [m.effect.name for m in members] == ["curve_position"]
-    found = choose(drawn, members, scores, DiscoveryOptions(), 3).laws
-    assert {c.effect.name for c in found} >= {"hardening", "offset"}
-    assert not any(c.effect.is_curve for c in found)
-
-
 def test_members_of_a_set_with_which_unseen_records_are_predicted_no_better_are_not_asked(
     monkeypatch,
 ):
@@ -90,21 +75,6 @@ def test_members_of_a_set_with_which_unseen_records_are_predicted_no_better_are_
 
 
 @pytest.mark.parametrize(
-    ("names", "without", "is_asked"),
-    [
-        (["curve_speed"], (), True),
-        (["curve_speed"], ("lone_curves",), False),
-        (["curve_speed", "offset"], ("lone_curves",), True),
-        (["offset"], (), False),
-    ],
-)
-def test_a_curve_that_stands_alone_is_asked_for_laws(names, without, is_asked):
-    accepted = [SimpleNamespace(candidate=c) for c in list_common(listed(*names))]
-    task = SimpleNamespace(options=DiscoveryOptions(without=without))
-    assert add_set._has_curve(SimpleNamespace(accepted=accepted, task=task)) == is_asked
-
-
-@pytest.mark.parametrize(
     ("without", "names"), [((), {"offset"}), (("plain_sets",), {"offset", "presliding"})]
 )
 def test_sets_are_chosen_among_laws_without_states(monkeypatch, without, names):
@@ -112,7 +82,7 @@ def test_sets_are_chosen_among_laws_without_states(monkeypatch, without, names):
 
     def choose(model, members, scores, options, room):
         asked.append({s.candidate.effect.name for s in scores})
-        return Choice((), 1.0)
+        return ()
 
     monkeypatch.setattr(add_set, "find_members", lambda model, parent: [])
     monkeypatch.setattr(add_set, "choose", choose)
@@ -122,26 +92,3 @@ def test_sets_are_chosen_among_laws_without_states(monkeypatch, without, names):
     )  # fmt: skip
     add_set._with_set(state, None, print)
     assert asked == [names]
-
-
-@pytest.mark.parametrize(("left", "without", "much"), [
-    (1.0, (), True), (0.04, (), False), (-0.1, (), False), (1.0, ("whole_sets",), False),
-])  # fmt: skip
-def test_a_set_of_which_a_linear_choice_expects_little_is_not_refitted(left, without, much):
-    """Five times the noise is left, and a set counts as whole at 1.5 times the noise."""
-    squares = SimpleNamespace(of_outputs=[np.full((4, 1), 25.0)], noise=np.array([1.0]))
-    model = SimpleNamespace(unseen=SimpleNamespace(select=squares))
-    options = DiscoveryOptions(without=without)
-    assert add_set.expects_much(model, Choice((), left), options) == much
-
-
-def test_a_linear_model_expects_what_the_refit_with_its_set_leaves():
-    logs = records(3, {"offset.f_0@hinge": 0.06, "hardening.k_3@hinge": 0.05}, samples=300)
-    every = roles(logs)
-    nominal = fit_nominal(nominal_model(), every)
-    scores = window_scores(nominal.fit, list_common(listed("hardening", "offset", "stiffness")))
-    found = choose(nominal, (), scores, DiscoveryOptions(), 2)
-    model = nominal
-    for c in found.laws:
-        model = with_law(model, c.effect.name, every)
-    assert found.left == pytest.approx(model.fitted_power / nominal.fitted_power, abs=0.02)

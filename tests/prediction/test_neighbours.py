@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 from joint_cases import arm
-from records_cases import FREE, listed, nominal_model, pendulum, records, roles
+from records_cases import FREE, nominal_model, pendulum, records, roles
 from records_cases import with_law as fitted_with
 
 from identification.discovery.candidates import list_common
@@ -17,11 +17,6 @@ from identification.effects.catalogue import joint_effects
 from identification.effects.effect import Candidate
 from identification.effects.plant.joint_plant import candidates
 from identification.prediction.fits.nominal_fit import fit_nominal
-from identification.prediction.judging.judging import judged
-from identification.prediction.moves.curve_for_laws import curve_for_laws
-from identification.prediction.scoring.screening import score_all
-from identification.prediction.state import first_state
-from identification.prediction.task import RecordsTask
 from identification.prediction.verdict.neighbours import (
     MOST_OF_BOTH,
     Explained,
@@ -104,21 +99,6 @@ def test_the_chance_is_paid_for_by_the_number_of_curves_at_the_joint():
     assert found.of_both == pytest.approx(found.share / (9.0 + found.share))
     assert find_neighbour(curves[0].candidate, Explained(9.0), forces) is None
     assert find_neighbour(model.candidates[-1], Explained(9.0), None) is None
-
-
-def test_a_proven_curve_takes_the_place_of_a_neighbours_name():
-    bare, model = with_law("stiffness")
-    task = RecordsTask(
-        nominal_model=nominal_model(), records=logs(), options=OPTIONS,
-        effects=listed("stiffness", "curve_position"),
-    )  # fmt: skip
-    state = first_state(task, lambda line: None)
-    law = judged(bare, model, 1, OPTIONS)
-    scores = score_all(model, task.effects, OPTIONS)
-    state = replace(state, model=model, accepted=(law,), scores=scores)
-    _, kept, lost = curve_for_laws(state, lambda line: None)
-    assert [a.candidate.effect.name for a in kept] == ["curve_position"]
-    assert [a.doubt for a in lost] == ["drawn"]
 
 
 def test_what_a_curve_of_the_model_explains_counts_as_what_is_beside_a_law():

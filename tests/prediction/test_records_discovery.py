@@ -94,10 +94,10 @@ def test_a_search_behind_its_time_limit_answers_and_says_what_it_has_not_tried()
     answer = search(records(4, {MU: 0.15}, samples=SAMPLES), FEW, max_minutes=0.0)
     assert answer.verdict == "unknown effect"
     assert answer.scores
-    assert answer.cut_short == ("add_effect", "add_set", "add_curve")
+    assert answer.cut_short == ("add_effect", "add_set")
     assert discovery_to_json(answer)["cut_short"] == [*answer.cut_short]
     said = discovery_text(answer)
-    sought = "the next effect, sets of several effects and curves of the data"
+    sought = "the next effect and sets of several effects"
     assert f"while it sought {sought}. Effects that it" in said
     (untried,) = [f.evidence for f in answer.findings if f.kind == "untried effect"]
     assert untried.score.candidate.where == "joint hinge"

@@ -51,7 +51,7 @@ def test_text_begins_with_the_verdict_and_holds_no_nan(verdict):
 def test_beside_a_curve_the_listed_law_that_comes_nearest_is_told():
     """That law was left for the curve at its own joint; others are not told there."""
     proof = replace(REJECTED.proof, fall=0.59)
-    law = replace(REJECTED, doubt="drawn", evidence=5.0, proof=proof)
+    law = replace(REJECTED, doubt="smooth", evidence=5.0, proof=proof)
     curve = replace(found().named[0], candidate=replace(
         law.candidate, effect=replace(law.candidate.effect, name="curve_speed")))  # fmt: skip
     behind = replace(law, evidence=4.0, parameters={})

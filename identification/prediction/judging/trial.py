@@ -39,8 +39,8 @@ from identification.windows.unseen import Unseen
 
 Doubt = (
     Literal[
-        "numbers", "chance", "lengths", "record", "little", "size", "bound", "exchange", "curve",
-        "drawn", "smooth", "differ", "steps", "neighbour", "gap", "odds", "beside",
+        "numbers", "chance", "lengths", "record", "little", "size", "bound", "exchange",
+        "smooth", "differ", "steps", "neighbour", "gap", "odds", "beside",
         "further",
     ]
     | Impossible

@@ -8,8 +8,6 @@ chosen    by what they explain of fitted windows together, and again about the r
           states of joints, which are left out    (`identification.prediction.selection.set_choice`)
 in place  each is the best of what was refitted in its place, beside the others
 proven    each beside the others, and all together; the weakest that is not is left out
-whole     in the place of effects that were found one by one, little is left with it: several laws
-          draw a part of any smooth force
 """
 
 from __future__ import annotations
@@ -24,14 +22,13 @@ from identification.discovery.options import DiscoveryOptions
 from identification.discovery.passes import uses
 from identification.effects.effect import Candidate
 from identification.prediction.fits.model import WindowModel
-from identification.prediction.judging.evidence import all_gains, count_windows, evidence
 from identification.prediction.judging.extension import refitted, weighed, with_effect
 from identification.prediction.judging.trial import compared, find_doubt
 from identification.prediction.scoring.contenders import list_starts
 from identification.prediction.scoring.first_fit import begin
 from identification.prediction.scoring.scores import window_scores
 from identification.prediction.scoring.screening import score_all
-from identification.prediction.selection.set_choice import Choice, choose, find_members
+from identification.prediction.selection.set_choice import choose, find_members
 from identification.prediction.selection.set_members import (
     Key,
     Place,
@@ -40,47 +37,34 @@ from identification.prediction.selection.set_members import (
 )
 from identification.prediction.selection.set_proof import proven_members
 from identification.prediction.task import WindowSearch
-from identification.prediction.verdict.remaining import (
-    MAX_OUTPUT_RATIO,
-    is_much_left,
-    output_ratios,
-)
+from identification.prediction.verdict.remaining import is_much_left
 from identification.runtime.progress import Progress
 
 MAX_CHOICES = 3  # of a set, each about the model with the one before
-# Of what a set is expected to leave, over what counts as little. A judgement: a linear choice errs,
-# and of a true set on a cart it expected 1.7 times the error that the refit left.
-MAX_EXPECTED_RATIO = 2.0
 MAX_ROUNDS = 2  # of a choice, and of asking each of its members in its place
 
 
-def add_set(
-    state: WindowSearch, progress: Progress, begin_at: WindowModel | None = None
-) -> WindowSearch:
+def add_set(state: WindowSearch, progress: Progress) -> WindowSearch:
     """Returns the state with several effects more, or as it is where none are proven together.
+
+    A set that predicts worse is left before its members are asked in their places, which takes most
+    of the time.
 
     Args:
         state: the state before.
         progress: is told each set, and what is refitted in the places of its members.
-        begin_at: the model about which the set is chosen first; that of the state when None. A set
-            that predicts worse is left before its members are asked in their places, which takes
-            most of the time. Where the model has effects and leaves much, these are asked too.
     """
     task, watch = state.task, Watch(state.seconds)
     if state.room < 2 or not state.scores or not is_much_left(state.model, task.options):
         return state
-    model, places, refits, asked = begin_at or state.model, dict[Key, Place](), 0, list[set[Key]]()
-    if begin_at is not None and not is_much_left(begin_at, task.options):
-        asked.append(_keys(begin_at))  # its effects are left in their places
+    model, places, refits, asked = state.model, dict[Key, Place](), 0, list[set[Key]]()
     for _ in range(MAX_ROUNDS):
-        chosen = _with_set(state, model, progress, is_begun=begin_at is not None)
-        if _keys(chosen) in asked or _is_worse(chosen, begin_at or state.model, task.options):
+        chosen = _with_set(state, model, progress)
+        if _keys(chosen) in asked or _is_worse(chosen, state.model, task.options):
             break
         asked.append(_keys(chosen))
-        if begin_at is not None and _leaves_much(chosen, task.options):
-            break
         if not proven_members(state, chosen, refits, progress):
-            break  # what is asked in the places of members takes most of the time
+            break
         model, places = each_at_its_best(state, chosen, progress)
         refits += sum(len(p.tried) for p in places.values())
         if _keys(model) in asked:
@@ -88,7 +72,7 @@ def add_set(
         asked.append(_keys(model))
     found = proven_members(state, model, refits, progress) if places else ()
     watch.stop("refits")
-    if not found or (begin_at is not None and _leaves_much(found[0].model, task.options)):
+    if not found:
         return replace(state, seconds=watch.seconds)
     model = weighed(found[0].model, task.horizon, task.confirm, task.options)
     scores = score_all(model, task.effects, task.options)
@@ -99,44 +83,6 @@ def add_set(
         state, model=model, accepted=(*state.accepted, *new), scores=scores, rejected=(),
         seconds=watch.seconds, exchanged=None,
     )  # fmt: skip
-
-
-def set_for_effects(state: WindowSearch, progress: Progress) -> WindowSearch:
-    """Returns the state with a set in the place of all its effects, where more speaks for the set.
-
-    It is asked where much is left, and where a curve was found: the curve may be what several laws
-    do together, of which it hides each. The set is chosen about the model with
-    all that was found: it is nearer to the truth than the one without effects, and a linear choice
-    errs less there. A set that was found in this way is not asked for again.
-    """
-    is_done = any(name == set_for_effects.__name__ for name in state.made)
-    if is_done or not state.accepted or state.worse_fit is not None:
-        return state
-    if not (_has_curve(state) or is_much_left(state.model, state.task.options)):
-        return state
-    bare = replace(
-        state, model=state.nominal, accepted=(), scores=state.nominal_scores, exchanged=None
-    )
-    found = add_set(bare, progress, state.model)
-    old, new = ({a.candidate.key for a in s.accepted} for s in (state, found))
-    if not new or new <= old:
-        return replace(state, seconds=found.seconds)
-    numbers = [sum(a.numbers for a in s.accepted) for s in (state, found)]
-    options = state.task.options
-    gains = [all_gains(state.nominal, s.model, options) for s in (state, found)]
-    windows, outputs = count_windows(state.nominal), len(state.nominal.scale)
-    before, after = evidence(gains, numbers, windows, outputs)[:, 0]
-    if not after > before:
-        return replace(state, seconds=found.seconds)
-    progress("together they explain more than the effects that were found one by one")
-    lost = tuple(a for a in state.accepted if a.candidate.key not in new)
-    return replace(found, rejected=(*lost, *state.rejected))
-
-
-def _has_curve(state: WindowSearch) -> bool:
-    """Returns whether an effect is a curve, which may draw what several laws do."""
-    is_asked = len(state.accepted) > 1 or uses(state.task.options, "lone_curves")
-    return is_asked and any(a.candidate.effect.is_curve for a in state.accepted)
 
 
 def _is_worse(chosen: WindowModel, present: WindowModel, options: DiscoveryOptions) -> bool:
@@ -150,54 +96,26 @@ def _is_worse(chosen: WindowModel, present: WindowModel, options: DiscoveryOptio
     return not compared(present.unseen, chosen.unseen, options).t > 0
 
 
-def _leaves_much(model: WindowModel, options: DiscoveryOptions) -> bool:
-    """Returns whether much is left with a set, which then is no sign of several effects.
-
-    Of many laws, several draw together a part of whatever smooth force there is.
-    """
-    return uses(options, "whole_sets") and is_much_left(model, options)
-
-
-def expects_much(model: WindowModel, found: Choice, options: DiscoveryOptions) -> bool:
-    """Returns whether a set is expected to leave far more than what counts as little.
-
-    Args:
-        model: about which it was chosen.
-        found: the set.
-        options: the switch `whole_sets`.
-    """
-    now = float(output_ratios(model.unseen.select).max())
-    expected = now * np.sqrt(max(0.0, found.left))
-    return uses(options, "whole_sets") and bool(expected > MAX_EXPECTED_RATIO * MAX_OUTPUT_RATIO)
-
-
 def _keys(model: WindowModel) -> set[Key]:
     return {c.key for c in model.candidates}
 
 
-def _with_set(
-    state: WindowSearch, model: WindowModel, progress: Progress, is_begun: bool = False
-) -> WindowModel:
+def _with_set(state: WindowSearch, model: WindowModel, progress: Progress) -> WindowModel:
     """Returns the model refitted with the set that is chosen about itself.
 
     Args:
         state: without the set.
         model: where the choice begins.
         progress: is told each set.
-        is_begun: whether the model has effects that were found, so that a set is not refitted of
-            which the linear choice expects that it leaves much.
     """
     task, best = state.task, model
     for _ in range(MAX_CHOICES):
         members = find_members(model, state.model)
         is_plain = uses(task.options, "plain_sets")
         scores = [s for s in state.scores if not (is_plain and s.candidate.effect.state)]
-        found = choose(model, members, scores, task.options, state.room)
-        chosen = found.laws
+        chosen = choose(model, members, scores, task.options, state.room)
         keys = {c.key for c in chosen}
         if keys == {c.key for c in members} or len(keys) < 2:
-            break
-        if is_begun and expects_much(model, found, task.options):
             break
         progress("tried together: " + " + ".join(f"{c.effect.name}, {c.where}" for c in chosen))
         out = {c.key for c in members} - keys
@@ -235,8 +153,6 @@ def with_one(state: WindowSearch, model: WindowModel, candidate: Candidate) -> W
     def evaluate() -> WindowModel | None:
         scores = window_scores(model.fit, [candidate])
         starts = [s for one in scores for s in (one, *list_starts(one, scores))]
-        is_loud = uses(state.task.options, "loud_windows")
-        begun = begin(model, starts, is_loud)
-        return with_effect(model, begun, state.task.horizon, state.task.confirm)
+        return with_effect(model, begin(model, starts), state.task.horizon, state.task.confirm)
 
     return attempt(candidate, evaluate)

@@ -18,9 +18,8 @@ MAX_CHANCE = 0.05  # of a score, above which its effect is not refitted however 
 
 
 def list_contenders(
-    scores: Sequence[WindowScore], options: DiscoveryOptions, is_left: bool = False,
-    are_curves: bool = False,
-) -> list[WindowScore]:  # fmt: skip
+    scores: Sequence[WindowScore], options: DiscoveryOptions, are_curves: bool = False
+) -> list[WindowScore]:
     """Returns the few best scores beyond chance, with the best shape of each effect at each place.
 
     They are fitted to some windows, and the best of them to all: a score is linear, and what is
@@ -30,17 +29,14 @@ def list_contenders(
     Args:
         scores: of all candidates, the best first.
         options: what is beyond chance, and how many are refitted.
-        is_left: as `refit_level`.
         are_curves: whether curves of the data are asked, or laws.
     """
     some = [s for s in scores if s.candidate.effect.is_curve == are_curves]
-    found = _best_few(some, refit_level(scores, options, is_left), options)
+    found = _best_few(some, refit_level(scores, options), options)
     return found[:MAX_CURVES] if are_curves else found
 
 
-def list_limits(
-    scores: Sequence[WindowScore], chosen: Sequence[WindowScore], options: DiscoveryOptions
-) -> list[WindowScore]:
+def list_limits(scores: Sequence[WindowScore], chosen: Sequence[WindowScore]) -> list[WindowScore]:
     """Returns the best score of each law that is there or is not, which was not chosen.
 
     A limit of a motor or of an input has no size that could be small: the score of a small share
@@ -49,10 +45,7 @@ def list_limits(
     Args:
         scores: of all candidates, the best first.
         chosen: what is refitted anyway.
-        options: the switch `limits_of_much_left`.
     """
-    if not uses(options, "limits_of_much_left"):
-        return []
     known = {s.candidate.key for s in chosen}
     each = {
         s.candidate.key: s
@@ -96,9 +89,7 @@ def _level_among(scores: Sequence[WindowScore], options: DiscoveryOptions) -> fl
     return options.significance / max(1, len(scores))
 
 
-def refit_level(
-    scores: Sequence[WindowScore], options: DiscoveryOptions, is_left: bool = False
-) -> float:
+def refit_level(scores: Sequence[WindowScore], options: DiscoveryOptions) -> float:
     """Returns the chance below which the effect of a score is refitted.
 
     A refit is no proof, for unseen records decide, and a score about a model from which something
@@ -110,12 +101,10 @@ def refit_level(
     Args:
         scores: of all candidates.
         options: what is beyond chance.
-        is_left: whether much is left of the error of the model that was scored.
     """
     if not uses(options, "weak_scores"):
         return _level_among(scores, options)
-    is_missing = is_left and uses(options, "scores_of_much_left")
-    is_missing = is_missing or bool(beyond_chance(scores, options))
+    is_missing = bool(beyond_chance(scores, options))
     return options.significance if is_missing else min(MAX_CHANCE, 1.0 / max(1, len(scores)))
 
 

@@ -26,8 +26,7 @@ from identification.prediction.scoring.contenders import (
     list_contenders,
     list_limits,
     list_starts,
-    refit_level,
-)  # fmt: skip
+)
 from identification.prediction.scoring.first_fit import Begun, begin
 from identification.prediction.scoring.scores import WindowScore, window_scores
 from identification.prediction.scoring.screening import has_what_it_needs
@@ -73,13 +72,11 @@ def refit_contenders(
     Returns:
         The model without them, its windows at the best states that any of them found, and they.
     """
-    is_weak = refit_level(scores, options) < options.significance
-    is_far = output_ratios(model.unseen.select).max() > MIN_LIMITED_RATIO
+    chosen = list_contenders(scores, options, are_curves)
     # what is left is simulated only where something depends on it
-    is_much = (is_weak or is_far) and is_much_left(model, options)
-    is_left, is_far = is_weak and is_much, is_far and is_much
-    chosen = list_contenders(scores, options, is_left, are_curves)
-    chosen += list_limits(scores, chosen, options) if is_far and not are_curves else []
+    is_far = not are_curves and output_ratios(model.unseen.select).max() > MIN_LIMITED_RATIO
+    if is_far and uses(options, "limits_of_much_left") and is_much_left(model, options):
+        chosen += list_limits(scores, chosen)
     if uses(options, "suggested_effects"):
         has = {*(s.candidate.key for s in chosen), *(c.key for c in model.candidates)}
         each = [c for c in suggested if c.key not in has and has_what_it_needs(model, c)]
@@ -137,7 +134,7 @@ def refit_contenders(
     if better and not is_late and uses(options, "simpler_laws"):
         # Chance is not paid for these laws: they are asked only where a richer one has passed.
         best = max(better, key=lambda c: (c.is_proven, c.criterion))
-        there, simpler = simpler_laws(parent, best, scores, options, is_left)
+        there, simpler = simpler_laws(parent, best, scores, options)
         known = {c.candidate.key for c in proven}
         rest = [s for s in simpler if s.candidate.key not in known]
         more = refit(_begun(there, rest, simpler, options))
@@ -169,9 +166,8 @@ def _begun(
     options: DiscoveryOptions,
 ) -> list[Begun]:  # fmt: skip
     """Returns effects fitted to some of the windows; those that cannot be simulated are told."""
-    is_loud = uses(options, "loud_windows")
     each = ((s.candidate, [s, *list_starts(s, scores)]) for s in chosen)
-    tasks = [(c, partial(begin, model, starts, is_loud)) for c, starts in each]
+    tasks = [(c, partial(begin, model, starts)) for c, starts in each]
     return [begun for begun in attempt_each(tasks) if begun is not None]
 
 

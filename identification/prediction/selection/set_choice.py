@@ -5,16 +5,14 @@ in which its members compete with all other laws: their sizes make no room, and 
 
     r + Σ_j S_j η_j         j: members, η_j: their sizes
 
-as it would be without them. What the model expects of the set is of blocks of windows to which its
-sizes were not fitted. A curve of the data among the members may be what several laws do: it
-gives way to them, and does not compete.
+as it would be without them.
 """
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -32,18 +30,10 @@ MAX_LISTED = 120  # laws, the best by themselves, of which a set is chosen
 MAX_SHAPES = 4  # of a law at a place among them
 
 
-@dataclass(frozen=True)
-class Choice:
-    """A set of laws, and what the linear model expects of it."""
-
-    laws: tuple[Candidate, ...]
-    left: float  # sum of squares that it leaves, over what the present model leaves
-
-
 def choose(
     model: WindowModel, members: Sequence[Candidate], scores: Sequence[WindowScore],
     options: DiscoveryOptions, most: int,
-) -> Choice:  # fmt: skip
+) -> tuple[Candidate, ...]:  # fmt: skip
     """Returns the laws that explain most of the fitted windows together.
 
     Args:
@@ -56,35 +46,30 @@ def choose(
     Returns:
         The members where a law cannot be simulated beside them.
     """
-    listed = [*(m for m in members if not m.effect.is_curve), *_listed(model, members, scores)]
+    listed = [*members, *_listed(model, members, scores)]
     listed.sort(key=lambda c: c.effect.state or "")  # those of one plant are simulated at once
-    every = [*listed, *(m for m in members if m.effect.is_curve)]
     fit = model.fit if len(scores) <= MAX_SCORED else some_windows(model.fit)
     held = {n for c in members for n in (*c.free, *shapes_of(c))}
-    known = attempt(None, partial(condensed, fit, every, held)) if listed else None
+    known = attempt(None, partial(condensed, fit, listed, held)) if listed else None
     if known is None:
-        return Choice(tuple(members), 1.0)
+        return tuple(members)
     values = {**model.plant.parameters.values(), **model.fit.of_record(0)}
-    is_member = [any(c is m for m in members) for c in every]
+    is_member = [any(c is m for m in members) for c in listed]
     present = np.concatenate([
         [values[n] if is_in else 0.0 for n in c.sizes]
-        for c, is_in in zip(every, is_member, strict=True)
+        for c, is_in in zip(listed, is_member, strict=True)
     ])  # fmt: skip
     counts = [len(c.sizes) for c in listed]
-    k = sum(counts)
-    G, a = known.G[:, :k, :k], (known.a + known.G @ present)[:, :k]
     first = tuple(j for j in range(len(listed)) if is_member[j])
     sizes = [size for c in listed for size in c.effect.sizes]
     columns = folded(
-        G, a, counts, [f"{c.effect.name}, {c.where}" for c in listed],
+        known.G, known.a + known.G @ present, counts,
+        [f"{c.effect.name}, {c.where}" for c in listed],
         np.array([s.sign for s in sizes]),
         np.array([options.size_factor * s.largest for s in sizes]),
     )  # fmt: skip
     chosen = select_set(columns, most, first)
-    bare = known.squares.sum() + present @ (2 * known.a.sum(axis=0) + known.G.sum(axis=0) @ present)
-    explained = columns.gains([chosen]).sum() if chosen else 0.0
-    left = float((bare - explained) / known.squares.sum())
-    return Choice(tuple(listed[j] for j in chosen), left)
+    return tuple(listed[j] for j in chosen)
 
 
 def find_members(model: WindowModel, parent: WindowModel) -> list[Candidate]:
@@ -101,11 +86,10 @@ def find_members(model: WindowModel, parent: WindowModel) -> list[Candidate]:
 def _listed(
     model: WindowModel, members: Sequence[Candidate], scores: Sequence[WindowScore]
 ) -> list[Candidate]:
-    """Returns the best laws in their best shapes, those at the joints of curves first."""
+    """Returns the best laws in their best shapes."""
     count = Counter({c.key: MAX_SHAPES for c in members})
-    drawn = {c.where for c in members if c.effect.is_curve}
     out: list[Candidate] = []
-    for s in sorted(scores, key=lambda s: s.candidate.where not in drawn):
+    for s in scores:
         c = s.candidate
         is_own = c.effect.own and len(model.fit.problem.parts) > 1
         if c.effect.is_curve or is_own or AND in c.where or count[c.key] >= MAX_SHAPES:

@@ -217,13 +217,13 @@ def nearest_law(found: Discovery, named: NamedEffect) -> str:
     """Returns a sentence on the listed law that comes nearest to a curve; "" where none does.
 
     The law was refitted at the curve's joint, predicts unseen data better than the model without
-    it, and was left for the curve because a curve explains much of what it leaves.
+    it, and was left because a smooth force explains as much.
     """
     c = named.candidate
     if not c.effect.is_curve:
         return ""
-    drawn = [r for r in found.rejected if r.doubt == "drawn" and r.candidate.where == c.where]
-    best = max(drawn, key=lambda r: r.evidence, default=None)
+    left = [r for r in found.rejected if r.doubt == "smooth" and r.candidate.where == c.where]
+    best = max(left, key=lambda r: r.evidence, default=None)
     if best is None or not best.proof.told.fall > 0:
         return ""
     said, change = describe_there(best.candidate, found.final.plant), best.proof.told.fall

@@ -40,10 +40,8 @@ from identification.storage.shown import verdict_of
 NOT_FITTED = "the fit has not seen, but on which the search has decided"
 SOUGHT = {  # what the moves that the time limit ends seek, by their names
     "add_effect": "the next effect",
-    "add_yielding_friction": "a friction that yields before it slips",
     "add_set": "sets of several effects",
     "add_curve": "curves of the data",
-    "set_for_effects": "sets in the place of effects that were found one by one",
     "add_pair": "pairs of effects",
     "add_deviants": "parts that deviate from the others",
 }

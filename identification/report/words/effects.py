@@ -39,15 +39,12 @@ DOUBTS = {
     " else",
     "exchange": "if the other records are fitted instead, it predicts a record worse, or all of"
     " them on average",
-    "drawn": "a curve from the data at the same joint explains the same, and more",
     "smooth": "a smooth force of a joint explains as much, and it adds little to that",
     "neighbour": "beside it a force drawn from the data explains much of what the two explain",
     "gap": "it removes less than half of the power above the noise, and something is left",
     "odds": "other effects in its place are together likelier than it",
     "further": "another law is surer, and smooth forces of the joint explain more than this one",
     "beside": "it was found beside an effect that has no sure name",
-    "curve": "it was found together with a curve from the data, and may be what the nodes of the"
-    " curve cannot draw",
     "differ": "it explains the fitted records and makes unseen ones much worse, so that the records"
     " differ in something that it stands for",
     "steps": "the error of the simulation's steps makes half of what it explains, or more",
