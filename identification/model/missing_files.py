@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 from warnings import catch_warnings, simplefilter
@@ -23,10 +23,12 @@ from warnings import catch_warnings, simplefilter
 import mujoco
 
 from identification.errors import InputError
-from identification.logs.names import listed, quoted
+from identification.logs.names import quoted
 
 _NAMED = re.compile(r"opening file '(.+)'")  # MuJoCo's words of a file that is not there
 _GEOM = mujoco.mjtObj.mjOBJ_GEOM
+_TOLD = 3  # files that are told by name; a model of an arm may lack dozens
+_LONGEST = 200  # letters of a path that are told
 _ALWAYS = mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_TRUE
 _NEVER = mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_FALSE
 
@@ -50,7 +52,7 @@ def compile_without_missing(
         try:
             with catch_warnings():
                 simplefilter("error")
-                return spec.compile(), _sentence(files, geoms, where)
+                return spec.compile(), _sentence(files, geoms, where, spec.modelfiledir)
         except ValueError as error:
             named = _NAMED.search(str(error))
             assets = [] if named is None else [*_read_from(spec, named[1])]
@@ -96,8 +98,8 @@ def _refuse_needed(spec: mujoco.MjSpec, geom: mujoco.MjsGeom, file: str, where: 
     needed = _needed(spec, geom)
     if needed:
         raise InputError(
-            f"{where} names the file {quoted(file, 200)}, which is missing, and {needed[0]}; put"
-            f" the file there, or {needed[1]}"
+            f"{where} names the file {quoted(file, _LONGEST)}, which is missing, and {needed[0]};"
+            f" put the file there, or {needed[1]}"
         )
 
 
@@ -147,14 +149,29 @@ def _short(file: str, folder: str) -> str:
     return os.path.relpath(file, folder) if folder and os.path.isabs(file) else file
 
 
-def _sentence(files: list[str], geoms: int, where: str) -> str:
-    """Returns what was left out of a model in words; "" where nothing was."""
+def _sentence(files: list[str], geoms: int, where: str, folder: str) -> str:
+    """Returns what was left out of a model in words; "" where nothing was.
+
+    `folder` is that of the model, from which the files are told.
+    """
     if not files:
         return ""
-    head = f"{where[0].upper()}{where[1:]} names"
-    if len(files) == 1:
-        head += f" the file {quoted(files[0], 200)}, which is missing and tells only its look;"
-    else:
-        head += f" files that are missing and tell only its look, {listed(files)};"
+    sought = dict.fromkeys(
+        os.path.normpath(os.path.join(folder, os.path.dirname(f))) for f in files
+    )
+    places = _first("the working folder" if p == os.curdir else p for p in sought)
+    one = len(files) == 1
+    what = "a file that is missing and tells" if one else "files that are missing and tell"
     made = f", with {geoms} geom{'s' * (geoms > 1)} of that shape" if geoms else ""
-    return f"{head} {'it was' if len(files) == 1 else 'they were'} left out{made}."
+    return (
+        f"{where[0].upper()}{where[1:]} names {what if one else f'{len(files)} {what}'} only its"
+        f" look, {_first(files)} (looked for in {places}); {'it was' if one else 'they were'} left"
+        f" out{made}."
+    )
+
+
+def _first(files: Iterable[str]) -> str:
+    """Returns the first files or folders for a message, and how many more there are."""
+    every = [quoted(file, _LONGEST) for file in files]
+    more = f" and {len(every) - _TOLD} more" if len(every) > _TOLD else ""
+    return ", ".join(every[:_TOLD]) + more
