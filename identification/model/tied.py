@@ -8,7 +8,8 @@
 gain is gainprm[0], b_1 and b_2 are biasprm[1] and biasprm[2], u is the command and l the length of
 the actuator. A gain that is moved alone multiplies the command: a servo of gain 17.8 whose command
 counts 16.6/17.8 is no servo. So the two numbers are moved together or both are free. An
-<intvelocity> is a position servo whose command is integrated, and has its gains. Other names:
+<intvelocity> is a position servo whose command is integrated, and has its gains. So has a servo
+whose command has a unit of its own (`scaled_servo`). Other names:
 
     <damper>                 F = -kv u dl/dt          actuator/NAME.kv, gainprm[2] = -kv
     filter, filterexact      da/dt = (u - a)/T        actuator/NAME.timeconst, T = dynprm[0]
@@ -44,6 +45,7 @@ import numpy as np
 
 from identification.errors import InputError, unknown_name
 from identification.model.paths import Slot, read, resolve
+from identification.model.scaled_servo import is_scaled_servo, scaling
 
 _SPREAD = re.compile(r"body/(?P<name>[^.]+)\.spread\[(?P<axis>[0-2])\]")
 Place = tuple[int, int]
@@ -77,6 +79,13 @@ def parts(model: mujoco.MjModel, path: str) -> tuple[tuple[str, float], ...]:
         return ((f"{at}.gainprm[0]", 1.0), (f"{at}.biasprm[1]", -1.0))
     if kinds == {"velocity"} and gain == "kv":
         return ((f"{at}.gainprm[0]", 1.0), (f"{at}.biasprm[2]", -1.0))
+    if all(is_scaled_servo(model, row) for row in rows):
+        if gain == "kv":
+            return ((f"{at}.biasprm[2]", -1.0),)
+        if len(meant := {scaling(model, row) for row in rows}) == 1:
+            scale, offset = meant.pop()
+            moved = ((f"{at}.biasprm[1]", -1.0), (f"{at}.gainprm[0]", scale))
+            return (*moved, (f"{at}.biasprm[0]", offset)) if offset else moved
     wanted = "<position> servo" if gain == "kp" else "<position> or <velocity> servo, or <damper>"
     many = "are not all of one kind of" if len(rows) > 1 else "is no"
     raise InputError(
@@ -130,6 +139,11 @@ def servo_kind(model: mujoco.MjModel, row: int) -> str | None:
     if bias[1] == -gain and (gain or not bias[2]):
         return "position"
     return "velocity" if gain and not bias[1] and bias[2] == -gain else None
+
+
+def follows(model: mujoco.MjModel, row: int) -> str | None:
+    """Returns what an actuator follows, as `servo_kind` does, also where its command is scaled."""
+    return "position" if is_scaled_servo(model, row) else servo_kind(model, row)
 
 
 def gain_path(model: mujoco.MjModel, row: int) -> str:
