@@ -8,19 +8,19 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import mujoco
-import numpy as np
 
 from identification.errors import InputError
 from identification.inspection.answers import Answer
+from identification.inspection.channels import OF_JOINTS, Channel, Match, channels_of
 from identification.inspection.guesses import Role
 from identification.inspection.inspected import SAID, Inspection, answers_of
-from identification.inspection.matching import SAME, Channel, Match, channels_of, match
+from identification.inspection.matching import BY_PLACE, SAME, match
+from identification.inspection.needs import limits_of, needs_of, unanswered
 from identification.inspection.words import answer_sentences
-from identification.logs.names import listed
 from identification.logs.units import to_si
-from identification.model.tied import servo_kind
-from identification.refusals.limits import limit_sentence
-from identification.robot.file.completed import torques_without_motor
+from identification.model.scaled_servo import is_scaled_servo, scaling
+from identification.model.tied import follows
+from identification.robot.file.completed import positions_without_sensor, torques_without_motor
 from identification.robot.file.file import RobotFile
 from identification.robot.file.model_file import robot_spec
 from identification.storage.files import exists, toml_key, toml_table, toml_value, whole_file
@@ -58,11 +58,12 @@ def write_beginning(found: Inspection, model: Path, path: Path) -> Beginning:
             f"{path} exists, and nothing of yours is replaced; give another name behind --robot"
         )
     compiled = spec.compile()
-    if motors := _motors(spec, compiled, found):
-        spec, said = robot_spec(replace(file, columns=motors))
+    added = _motors(spec, compiled, found) | _sensors(spec, compiled, found)
+    if added:
+        spec, said = robot_spec(replace(file, columns=added))
         compiled = spec.compile()
     matches = match(channels_of(compiled), found)
-    needs = [*_needs(compiled, matches), *_limits(spec, compiled, matches, found, model)]
+    needs = [*needs_of(compiled, matches), *limits_of(spec, compiled, matches, found, model)]
     if (lasts := float(found.time[-1] - found.time[0])) < 2 * _horizon(found):
         needs.append(
             f"the log lasts {lasts:.3g} s, {len(found.time)} rows: too short to fit one part of it"
@@ -96,8 +97,7 @@ def _serves_torques(found: Inspection, model: mujoco.MjModel, matches: Sequence[
     inputs = [m for m in matches if m.channel.is_input]
     seen = {m.channel.joint for m in matches
             if m.column and not m.channel.is_input and not m.channel.is_rate}  # fmt: skip
-    forces = all(m.column and servo_kind(model, model.actuator(m.channel.name).id) is None
-                 for m in inputs)  # fmt: skip
+    forces = all(m.column and not m.channel.follows for m in inputs)  # fmt: skip
     return (
         bool(joints) and joints <= seen and joints <= {m.channel.joint for m in inputs} and forces
         and {mujoco.mjtJoint(int(kind)) for kind in model.jnt_type} <= turning
@@ -115,19 +115,15 @@ def _motors(spec: mujoco.MjSpec, model: mujoco.MjModel, found: Inspection) -> di
     return {m.channel.name: m.column for m in matches if m.channel.is_input and m.column in forces}
 
 
-def _unanswered(
-    found: Inspection, model: mujoco.MjModel, matches: Sequence[Match]
-) -> tuple[str, ...]:
-    """Returns a sentence on the columns that look like inputs and are those of no actuator."""
-    taken = {m.column for m in matches}
-    columns = [c.name for c in found.columns if c.role == "input" and c.name not in taken]
-    if not columns:
-        return ()
-    drives = listed(model.actuator(k).name for k in range(model.nu)) if model.nu else "none"
-    return (
-        f"{listed(columns)}: no actuator of the model takes"
-        f" {'it' if len(columns) == 1 else 'them'}; its actuators: {drives}",
-    )
+def _sensors(spec: mujoco.MjSpec, model: mujoco.MjModel, found: Inspection) -> dict[str, str]:
+    """Returns the sensors of positions that a model with others needs for columns of their words.
+
+    The order of columns is no reason to add one: a passive joint is often not measured.
+    """
+    lacking = [Channel(n, joint, False) for n, joint in positions_without_sensor(spec).items()]
+    matches = match([*channels_of(model), *lacking], found) if lacking else ()
+    return {m.channel.name: m.column for m in matches
+            if m.channel in lacking and m.column and m.how not in BY_PLACE}  # fmt: skip
 
 
 def _guesses(found: Inspection, model: mujoco.MjModel, matches: Sequence[Match]) -> tuple[str, ...]:
@@ -141,7 +137,7 @@ def _guesses(found: Inspection, model: mujoco.MjModel, matches: Sequence[Match])
     ]
     units = [f"{line} (unit)" for line in _log_lines(found, matches) if "=" in line]
     return (
-        *columns, *units, *_unanswered(found, model, matches),
+        *columns, *units, *unanswered(found, model, matches),
         f"free = {toml_value(free)}: one number for each measured joint, and the gain of each"
         " position servo; free what you want to know",
         f"horizon = {_horizon(found)!r} s: how far ahead the model must predict, a part of a swing",
@@ -219,49 +215,20 @@ def _what(model: mujoco.MjModel, m: Match) -> str:
     if not m.channel.is_input:
         return f"the {'rate' if m.channel.is_rate else 'position'} of joint {m.channel.joint}"
     row = int(model.actuator(m.channel.name).id)
-    drives = _DRIVES.get(servo_kind(model, row) or "", "its input is a torque, force or current")
-    return drives + (f" at joint {m.channel.joint}" if m.channel.joint else "")
+    drives = _DRIVES.get(m.channel.follows, "its input is a torque, force or current")
+    if is_scaled_servo(model, row):
+        scale, offset = scaling(model, row)
+        more = f" {offset:+.4g}".replace(" -", " - ").replace(" +", " + ") if offset else ""
+        drives = f"a position servo: {scale:.4g} times its input{more} is the setpoint"
+    return drives + _place_of(model, row)
 
 
-def _limits(
-    spec: mujoco.MjSpec, model: mujoco.MjModel, matches: Sequence[Match], found: Inspection,
-    path: Path,
-) -> list[str]:  # fmt: skip
-    """Returns a sentence on a joint that the log has far outside its limits, or none."""
-    factors = {c.name: to_si(c.unit)[1] if c.unit else 1.0 for c in found.columns}
-    positions = {
-        m.channel.joint: factors[m.column] * found.values[m.column]
-        for m in matches
-        if m.column and m.channel.joint and not m.channel.is_input and not m.channel.is_rate
-    }
-    said = limit_sentence(model, spec.compiler.degree, positions, path)
-    return [said] if said else []
-
-
-def _needs(model: mujoco.MjModel, matches: Sequence[Match]) -> list[str]:
-    """Returns what a fit will ask for, a sentence each."""
-    out = []
-    for m in matches:
-        if m.channel.is_input and not m.column:
-            out.append(
-                f"no column was found for actuator {m.channel.name}; name it under [columns], or"
-                " take the actuator out of the model"
-            )
-    for j in np.flatnonzero(model.jnt_type == int(mujoco.mjtJoint.mjJNT_FREE)):
-        body = model.body(int(model.jnt_bodyid[j])).name
-        name = model.joint(int(j)).name or body or "NAME"
-        out.append(
-            f"body {body or 'without a name'} has a free joint; write {toml_key(name)} = [seven"
-            " columns: x, y, z and the quaternion w, x, y, z] under [columns] if the log has its"
-            " pose, or delete the free joint if it is fixed"
-        )
-    if not any(m.column for m in matches if not m.channel.is_input):
-        joint = model.joint(0).name if model.njnt else "NAME"
-        out.append(
-            "no sensor of the model has a column; give the model a sensor for each measured joint,"
-            f' such as <jointpos name="{joint}" joint="{joint}"/>, or name its column'
-        )
-    return out
+def _place_of(model: mujoco.MjModel, row: int) -> str:
+    """Returns on which joint or tendon an actuator acts, for a comment."""
+    kind, at = int(model.actuator_trntype[row]), int(model.actuator_trnid[row, 0])
+    if kind == int(mujoco.mjtTrn.mjTRN_TENDON):
+        return f" of the length of tendon {model.tendon(at).name}"
+    return f" at joint {model.joint(at).name}" if kind in OF_JOINTS else ""
 
 
 def _numbers_to_free(model: mujoco.MjModel, matches: Sequence[Match]) -> list[str]:
@@ -271,7 +238,7 @@ def _numbers_to_free(model: mujoco.MjModel, matches: Sequence[Match]) -> list[st
     """
     servos = [m.channel.name for m in matches if m.channel.is_input and m.column]
     gains = [f"actuator/{name}.kp" for name in servos
-             if servo_kind(model, model.actuator(name).id) == "position"]  # fmt: skip
+             if follows(model, model.actuator(name).id) == "position"]  # fmt: skip
     return [*(_number_of(model, joint) for joint in _measured(matches)), *gains]
 
 

@@ -17,17 +17,21 @@ from identification.logs.units import UNITS
 Role = Literal["input", "output", ""]
 # Words of a name, the role of such a column, and its SI unit ("" where the word does not tell it).
 _WORDS: tuple[tuple[tuple[str, ...], Role, str], ...] = (
-    (("command", "commands", "cmd", "action", "desired", "setpoint", "target", "reference", "ref",
-      "goal", "input", "u", "ctrl", "control", "pwm", "duty"), "input", ""),
-    (("effort", "efforts", "torque", "tau"), "input", "N m"),
+    (("command", "commands", "commanded", "cmd", "cmds", "action", "actions", "desired", "des",
+      "setpoint", "setpoints", "sp", "target", "targets", "reference", "references", "ref", "goal",
+      "goals", "wanted", "demand", "sent", "soll", "input", "u", "ctrl", "control"), "input", ""),
+    (("pwm", "duty"), "input", ""),
+    (("effort", "efforts", "torque", "torques", "tau"), "input", "N m"),
     (("force",), "input", "N"),
     (("current", "curr", "amps", "i"), "input", "A"),
     (("voltage", "volt", "volts"), "input", "V"),
     (("velocity", "velocities", "vel", "speed", "rate", "qd", "dq", "qvel"), "output", "rad/s"),
     (("position", "positions", "pos", "angle", "theta", "q", "qpos", "encoder", "state", "y"),
      "output", "rad"),
-    (("present", "actual", "measured"), "output", ""),
+    (("present", "actual", "measured", "meas", "observation", "observed", "obs", "feedback", "fb",
+      "ist"), "output", ""),
 )  # fmt: skip
+_FORCES = {word for words, _, _ in _WORDS[1:6] for word in words if len(word) > 1}
 _TIMES = ("time", "t", "timestamp", "stamp", "secs", "sec", "seconds", "ms", "us", "ns")
 _STEPS = ((0.5, "s"), (200.0, "ms"), (2e5, "us"), (np.inf, "ns"))  # largest usual step in a unit
 _DEGREES = 10 * np.pi  # an angle that goes farther than five turns is rather one in degrees
@@ -50,6 +54,11 @@ def role_of(name: str) -> Role:
 def is_rate(name: str) -> bool:
     """Tells whether a column is a rate by its name, such as a velocity."""
     return _unit_by_words(name) == "rad/s"
+
+
+def is_force(name: str) -> bool:
+    """Tells whether a column is a force or what makes one, such as a current, by its name."""
+    return bool(_FORCES & {*words_of(name)})
 
 
 def family(name: str) -> str:

@@ -17,9 +17,11 @@ from identification.logs.sampling import MIN_ROWS, rows_between
 from identification.logs.sidecar import read_sidecar
 from identification.logs.units import to_si, units_that_fit
 from identification.model.predictor import sensor_word
+from identification.robot.file.completed import position_of
 from identification.robot.file.file import RobotFile
 from identification.robot.file.measured_base import pose_names
 from identification.robot.file.measured_tendons import measured_tendons
+from identification.storage.files import toml_key
 
 FEW = 3  # sensors that a message tells
 MOST_STEPS = 100.0  # of the model in a sample; with more, time is most often in ms, us or ns
@@ -87,7 +89,15 @@ def refuse_unknown_outputs(model: mujoco.MjModel, file: RobotFile, outputs: Sequ
     """Refuse an output that is no sensor of the model, with what to write."""
     sensors = [name for i in range(model.nsensor) if (name := model.sensor(i).name)]
     joints = [name for j in range(model.njnt) if (name := model.joint(j).name)]
+    actuators = [model.actuator(k).name for k in range(model.nu)]
     for name in outputs:
+        own = position_of(name, actuators)
+        if name != own and own in sensors:  # it bears the name of an actuator
+            raise InputError(
+                f"outputs in {file.path}: {name} is an actuator of {file.model}, and a log has a"
+                f' column for each; write "{own}", the sensor, in its place, and'
+                f' {toml_key(own)} = "COLUMN" under [columns] for its column in the log'
+            )
         if name not in sensors:
             unknown = unknown_name(f"sensor under outputs in {file.path}:", name, sensors)
             raise InputError(

@@ -25,7 +25,7 @@ import numpy as np
 from identification.errors import InputError
 from identification.logs.log import Log
 from identification.logs.names import listed
-from identification.robot.file.completed import add_position
+from identification.robot.file.completed import add_position, position_of
 from identification.robot.file.file import RobotFile
 from identification.runtime.engine import quiet
 
@@ -53,10 +53,10 @@ def with_measured_joints(spec: mujoco.MjSpec, file: RobotFile) -> tuple[str, ...
         return ()
     model = spec.copy().compile()
     joints = _moved_joints(model, _lengths(model, file))
-    known = {*_positions(model)}
+    known, actuators = {*_positions(model)}, {actuator.name for actuator in spec.actuators}
     for joint in joints:
         if joint not in known:
-            add_position(spec, joint, joint)
+            add_position(spec, joint, position_of(joint, actuators))
     tendons = measured_tendons(spec.copy().compile(), file)
     return (
         f"The positions of {listed(tendons.joints)} are those at which the tendons have the lengths"
