@@ -31,7 +31,11 @@ _WORDS: tuple[tuple[tuple[str, ...], Role, str], ...] = (
     (("present", "actual", "measured", "meas", "observation", "observed", "obs", "feedback", "fb",
       "ist"), "output", ""),
 )  # fmt: skip
-_FORCES = {word for words, _, _ in _WORDS[1:6] for word in words if len(word) > 1}
+# Words of forces and of what makes them; a single letter (i of a current) may be any other name.
+_FORCES = {"pwm", "duty"} | {
+    word for words, _, unit in _WORDS if unit in ("N m", "N", "A", "V") for word in words
+    if len(word) > 1
+}  # fmt: skip
 _TIMES = ("time", "t", "timestamp", "stamp", "secs", "sec", "seconds", "ms", "us", "ns")
 _STEPS = ((0.5, "s"), (200.0, "ms"), (2e5, "us"), (np.inf, "ns"))  # largest usual step in a unit
 _DEGREES = 10 * np.pi  # an angle that goes farther than five turns is rather one in degrees

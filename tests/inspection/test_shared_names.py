@@ -117,8 +117,9 @@ def test_a_model_with_other_sensors_gets_those_of_the_measured_joints(tmp_path, 
     assert read_robot(tmp_path / "r.toml", tmp_path / "log.csv").log.outputs.shape == (500, 2)
 
 
-def test_a_sensor_that_bears_an_actuators_name_is_told_under_its_own(tmp_path, log, refusal):
-    begun(tmp_path, log, {"{}_cmd": log.inputs, "{}": log.outputs}, lift(sensors=OWN))
+@pytest.mark.parametrize("sensors", ["", OWN, '<gyro name="imu" site="tip"/>'])
+def test_an_output_that_bears_an_actuators_name_is_told_its_own(tmp_path, log, refusal, sensors):
+    begun(tmp_path, log, {"{}_cmd": log.inputs, "{}": log.outputs}, lift(sensors=sensors))
     text = (tmp_path / "r.toml").read_text()
     (tmp_path / "r.toml").write_text(
         text.replace('["lift_position", "Tilt2_p', '["lift", "Tilt2_p')

@@ -92,7 +92,7 @@ def refuse_unknown_outputs(model: mujoco.MjModel, file: RobotFile, outputs: Sequ
     actuators = [model.actuator(k).name for k in range(model.nu)]
     for name in outputs:
         own = position_of(name, actuators)
-        if name != own and own in sensors:  # it bears the name of an actuator
+        if name != own and (own in sensors or name in joints):
             raise InputError(
                 f"outputs in {file.path}: {name} is an actuator of {file.model}, and a log has a"
                 f' column for each; write "{own}", the sensor, in its place, and'
