@@ -3,6 +3,7 @@
     ν_j = ((Σ_b h_bj + w_j)/Σ_b h_bj)² ((Σ_b h_bj)²/Σ_b h_bj² - 1)
     h_bj = a_jᵀ H_b a_j,   w_j = a_jᵀ W² a_j,   a_j = H⁻¹ e_j,   H = Σ_b H_b + W²
     δ = H⁻¹ Σ_w S_wᵀ(I - P_w)(r_w(Δ/4) - r_w(Δ))
+    V(Δ/4) = Σ_w ‖(I - P_w)(r_w(Δ/4) - S_w δ)‖²
 
 The variance of a value is a sum over blocks b of windows and a share w of its prior. A variance of
 ν degrees of freedom (Satterthwaite 1946, for clusters Bell and McCaffrey 2002) is too small by a
@@ -81,13 +82,14 @@ def step_shift(found: WindowFit) -> StepShift:
     errors = attempt(None, lambda: finer_problem.held(q).residuals(found.moves))
     if errors is None or attempt(None, partial(problem.cost_of, q, errors)) is None:
         return unknown
-    g, before, after = np.zeros(len(q)), 0.0, 0.0
+    g, before, each = np.zeros(len(q)), 0.0, []
     for t, r in zip(found.tangents, errors, strict=True):
         S, own = t.projected
         finely = replace(t, r=r).projected[1]
-        g = g + np.einsum("wmp,wm->p", S, finely - own)
-        before, after = before + float(np.sum(own**2)), after + float(np.sum(finely**2))
+        g, before = g + np.einsum("wmp,wm->p", S, finely - own), before + float(np.sum(own**2))
+        each.append((S, finely))
     move = np.linalg.pinv(found.curvature, rcond=1e-14, hermitian=True) @ g
-    after -= float(g @ move)
-    error = float(np.sqrt(max(after, 0.0) / before)) if before > 0 else np.nan
+    # As V - gᵀδ it would be less than nothing where a prior pulls or the search ended early.
+    after = sum(float(np.sum((finely - S @ move) ** 2)) for S, finely in each)
+    error = float(np.sqrt(after / before)) if before > 0 else np.nan
     return StepShift(move * problem.prior.space.slope(q), error)
