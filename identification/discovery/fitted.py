@@ -43,6 +43,11 @@ class StepShift:
         """
         return mostly_steps(self.values, std)
 
+    @property
+    def left(self) -> float:
+        """The share of the rms error that finer steps would leave: 1 where all of it."""
+        return min(1.0, self.error) if np.isfinite(self.error) else 1.0
+
     def is_lower(self) -> bool:
         """Returns whether finer steps would lower the error by so much that it is told."""
         return self.error < TOLD_ERROR

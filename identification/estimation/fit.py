@@ -60,6 +60,8 @@ class Fit:
         information: Fisher information of the log at the estimate, for white noise.
         step_shift: change of each value with a quarter of the model's step, shape (p,), in their
             units; NaN where that cannot be known.
+        step_error: rms of the whitened residual with a quarter of the model's step over what it is;
+            NaN likewise.
     """
 
     estimate: Estimate
@@ -79,6 +81,7 @@ class Fit:
     tests: ResidualTests
     information: Information
     step_shift: np.ndarray
+    step_error: float
 
     @property
     def values(self) -> dict[str, float]:
@@ -191,7 +194,8 @@ def _assessed(estimate: Estimate, validation: Log | None) -> Fit:
     scale = np.sqrt(np.maximum(np.diag(covariance), np.finfo(float).tiny))
     fit, unseen, spread = beyond(estimate, validation, covariance)
     expected = np.hypot(rms(residual), spread)
-    shift = np.where(np.isfinite(std_q), step_shift(estimate, predicted, S, prior, whiten), np.nan)
+    moves, step_error = step_shift(estimate, predicted, S, prior, whiten)
+    shift = np.where(np.isfinite(std_q), moves, np.nan)
     return Fit(
         estimate=estimate,
         std=with_steps(std_q * space.slope(q), shift),
@@ -210,6 +214,7 @@ def _assessed(estimate: Estimate, validation: Log | None) -> Fit:
         tests=residual_tests(residual, log.inputs),
         information=information_of(resolved, space),
         step_shift=shift,
+        step_error=step_error,
     )
 
 

@@ -105,8 +105,11 @@ def influence(error: np.ndarray, loss: str) -> tuple[np.ndarray, float]:
 def step_shift(
     estimate: Estimate, predicted: np.ndarray, S: np.ndarray, prior: np.ndarray,
     whiten: Callable[[np.ndarray], np.ndarray],
-) -> np.ndarray:  # fmt: skip
-    """Returns by how much each value would move with a quarter of the model's step, shape (p,).
+) -> tuple[np.ndarray, float]:  # fmt: skip
+    """Returns what a quarter of the model's step would change of an estimate, to first order.
+
+    The first is by how much each value would move, shape (p,), the second the rms of the whitened
+    residual then, over what it is now.
 
     NaN where the plant's step cannot be changed, where it cannot be simulated with a finer one, and
     of a value that a bound holds.
@@ -122,19 +125,23 @@ def step_shift(
     plant = finer(predictor.plant)
     unknown = np.full(len(q), np.nan)
     if plant is None or estimate.status == "stopped":
-        return unknown
+        return unknown, np.nan
     values = estimate.space.decode(q)
     try:
         finely = replace(predictor, plant=plant).predict(values)[0]
     except (DivergenceError, InputError):
-        return unknown
+        return unknown, np.nan
     free = ~estimate.space.on_bound(q)
     S, prior = S[:, free], prior[:, free]
     g = S.T @ whiten((predicted - finely)[:, :, None])[:, 0]
     A = S.T @ S + prior.T @ prior
     out = unknown
     out[free] = np.linalg.pinv(A, rcond=1e-14, hermitian=True) @ g
-    return out * estimate.space.slope(q)
+    measured = predictor.log.outputs
+    before, after = (whiten((measured - y)[:, :, None])[:, 0] for y in (predicted, finely))
+    size = float(np.linalg.norm(before))
+    left = float(np.linalg.norm(after - S @ out[free])) / size if size > 0 else np.nan
+    return out * estimate.space.slope(q), left
 
 
 def with_steps(std: np.ndarray, shift: np.ndarray) -> np.ndarray:

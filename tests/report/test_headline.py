@@ -32,7 +32,8 @@ def test_a_fit_says_whether_its_values_can_be_used():
 def test_the_first_sentence_of_a_fit_says_whether_the_model_explains_the_log(ratio):
     log = SimpleNamespace(name="third")
     found = SimpleNamespace(noise_by_unit={"m": 2.0}, unseen_by_unit={"m": 2.0 * ratio},
-                            records=[SimpleNamespace(role="confirm", log=log)])  # fmt: skip
+                            records=[SimpleNamespace(role="confirm", log=log)],
+                            model=SimpleNamespace(finer=SimpleNamespace(left=1.0)))  # fmt: skip
     explained, missing = ("explains the log", "is missing")
     said = answer_sentence(found)
     assert (explained in said, missing in said) == (ratio <= ABOVE, ratio > ABOVE)

@@ -152,8 +152,7 @@ def is_off(model: WindowModel, options: DiscoveryOptions) -> bool:
 
 def left_by_steps(model: WindowModel) -> float:
     """Returns the share of a model's rms error that finer steps would leave: 1 where all of it."""
-    error = model.finer.error
-    return min(1.0, error) if np.isfinite(error) else 1.0
+    return model.finer.left
 
 
 def output_ratios(unseen: Unseen) -> np.ndarray:

@@ -11,9 +11,8 @@ import numpy as np
 from identification.estimation.fit import Fit
 from identification.estimation.identifiability import in_words
 from identification.estimation.metrics import output_units, relative
-from identification.model.protocol import FINER
-from identification.quantities import quantity
-from identification.report.fit.fitted_values import first_few, matters, std_sentence, step_sentences
+from identification.report.fit.fitted_values import std_sentence, step_sentences
+from identification.report.fit.step_words import free_run_steps, part_of_steps, steps_answer
 from identification.report.fit.untold_words import (
     WEAK,
     bound_sentences,
@@ -83,6 +82,9 @@ def answer_sentence(fit: Fit | RecordsFit, is_better: bool = True) -> str:
         return "Whether the model explains the log is not known: the log shows no sensor noise."
     of_what = f"its error on {judged_on(fit)} is {times_noise(ratio)} of the sensors"
     if not ratio <= ABOVE:
+        part = part_of_steps(fit, ratio, ABOVE)
+        if part != "no":
+            return steps_answer(fit, part, of_what)
         return (
             f"Something is missing from the model, or a column is not what it expects: {of_what};"
             " discover looks for what is missing."
@@ -99,8 +101,8 @@ def fit_verdict(fit: Fit | RecordsFit) -> list[str]:
     if fit.stopped:  # a search that was stopped says nothing of the model
         return search_sentences(fit)
     return [
-        *search_sentences(fit), *identifiable_sentences(fit), *_enough(fit), *_steps(fit),
-        *_unseen(fit),
+        *search_sentences(fit), *identifiable_sentences(fit), *_enough(fit),
+        *free_run_steps(fit), *_unseen(fit),
     ]  # fmt: skip
 
 
@@ -151,26 +153,6 @@ def coloured_outputs(fit: Fit) -> int:
     return int((fit.tests.white < LEVEL / len(fit.tests.white)).sum())
 
 
-def _steps(fit: Fit) -> list[str]:
-    """Returns a sentence on what a finer step would change, where this is most of the std."""
-    plant = fit.estimate.predictor.plant
-    own, units = float(plant.model.opt.timestep), {p.name: p.unit for p in plant.parameters}
-    moves = dict(zip(fit.estimate.space.names, fit.step_shift.tolist(), strict=True))
-    told = [
-        f"{name} by {moves[name]:+z.2g}"
-        for name in fit.far
-        if matters(moves[name], fit.values[name], units[name], own)
-    ]
-    if not told:
-        return []
-    step = own / FINER
-    return [
-        f"A quarter of the model's step, {quantity(step, unit='s')}, would move"
-        f" {first_few(told, '; ')}. The std include this; for smaller ones write"
-        f' timestep="{step:.6g}" into the <option> of the model, and run the command again.'
-    ]
-
-
 def _left_by_windows(
     count: int, length: float, rms: Mapping[str, float], floor: Mapping[str, float],
     names: str = "",
@@ -190,6 +172,9 @@ def _enough(fit: Fit) -> list[str]:
     sentences = [f"The residual is {left}, {times} times the noise floor of {floor}."]
     dependent = int((fit.tests.independent < LEVEL / len(fit.tests.independent)).sum())
     coloured = coloured_outputs(fit)
+    part = part_of_steps(fit, ratio, ABOVE)
+    if part != "no":
+        return [*sentences, f"That is more than noise, and {part} of it comes from the steps."]
     if ratio > ABOVE:
         sentences.append(
             "That is more than noise: the model lacks something, or the robot was disturbed."
@@ -230,7 +215,10 @@ def _unseen(fit: Fit) -> list[str]:
     said = "it does not hold there: it has too many parameters, or an effect is missing"
     if ratio < HOLDS:
         said = "what was fitted holds there too"
-        if relative(fit.rms_by_unit, fit.floor_by_unit) > ABOVE:
+        left = relative(fit.rms_by_unit, fit.floor_by_unit)
+        if part_of_steps(fit, left, ABOVE) != "no":
+            said = "no worse than on what was fitted, and the steps err there too"
+        elif left > ABOVE:
             said = "no worse than on what was fitted, but what is missing is missing there too"
     return [
         f"On unseen data the residual is {unseen}, {times_words(there, expected)} times what the"
